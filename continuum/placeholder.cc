@@ -1,0 +1,1 @@
+namespace continuum { int placeholder() { return 0; } }

@@ -1,0 +1,1 @@
+namespace lattice { int placeholder() { return 0; } }

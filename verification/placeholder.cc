@@ -1,0 +1,1 @@
+namespace verification { int placeholder() { return 0; } }
