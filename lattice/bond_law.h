@@ -1,0 +1,81 @@
+#pragma once
+
+#include <variant>
+
+/// @file
+/// Bond laws. A law is energy, force and stiffness as functions of the bond stretch, and nothing else.
+///
+/// A bond of rest length l and cross-section A0 stores A0 l psi(lam), lam = |x_j - x_i| / l > 0 being its stretch, and
+/// pulls with the axial force A0 psi'(lam), tension positive. A law gives psi, psi' and psi'' in Pa.
+namespace lattice
+{
+
+/// Uniaxial incompressible Mooney-Rivlin rod (theory.md, eqs. L.2 and L.3), with a = 2 C1 and b = 2 C2 in Pa:
+///   psi  = a (lam^2 / 2 + 1 / lam - 3/2) + b (lam + 1 / (2 lam^2) - 3/2)
+///   psi' = a (lam - lam^-2) + b (1 - lam^-3)
+struct MooneyRivlinBond
+{
+  double a; ///< [Pa], a + b > 0
+  double b; ///< [Pa]
+
+  /// psi(lam) [Pa], energy per reference volume of the bond.
+  double energy(double stretch) const
+  {
+    const double inverse = 1. / stretch;
+    return a * (0.5 * stretch * stretch + inverse - 1.5) + b * (stretch + 0.5 * inverse * inverse - 1.5);
+  }
+
+  /// psi'(lam) [Pa], axial force per reference cross-section, tension positive.
+  double force(double stretch) const { return force(stretch, 1. / stretch); }
+
+  /// The same for a caller that has 1 / lam at hand; the hot loop does.
+  double force(double stretch, double inverse) const
+  {
+    const double inverse_square = inverse * inverse;
+    return a * (stretch - inverse_square) + b * (1. - inverse_square * inverse);
+  }
+
+  /// psi''(lam) [Pa], axial tangent stiffness per reference cross-section.
+  double stiffness(double stretch) const
+  {
+    const double inverse = 1. / stretch;
+    const double inverse_cube = inverse * inverse * inverse;
+    return a * (1. + 2. * inverse_cube) + 3. * b * inverse_cube * inverse;
+  }
+};
+
+/// Linear spring psi = (e / 2) (lam - 1)^2 with modulus e > 0 in Pa.
+struct LinearBond
+{
+  double modulus; ///< e [Pa]
+
+  /// psi(lam) [Pa].
+  double energy(double stretch) const { return 0.5 * modulus * (stretch - 1.) * (stretch - 1.); }
+
+  /// psi'(lam) [Pa].
+  double force(double stretch) const { return modulus * (stretch - 1.); }
+
+  /// The same; the linear law has no use for 1 / lam.
+  double force(double stretch, double /*inverse*/) const { return force(stretch); }
+
+  /// psi''(lam) [Pa].
+  double stiffness(double /*stretch*/) const { return modulus; }
+};
+
+/// The law of one shell of bonds. A further law is a further alternative here.
+using BondLaw = std::variant<MooneyRivlinBond, LinearBond>;
+
+inline double energy(const BondLaw &law, double stretch)
+{
+  return std::visit([stretch](const auto &l) { return l.energy(stretch); }, law);
+}
+inline double force(const BondLaw &law, double stretch)
+{
+  return std::visit([stretch](const auto &l) { return l.force(stretch); }, law);
+}
+inline double stiffness(const BondLaw &law, double stretch)
+{
+  return std::visit([stretch](const auto &l) { return l.stiffness(stretch); }, law);
+}
+
+} // namespace lattice

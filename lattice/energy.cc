@@ -1,0 +1,38 @@
+#include "lattice/energy.h"
+
+namespace lattice
+{
+
+double elastic_energy(const State &state, const TriangularLattice &lattice, const Material &material)
+{
+  std::array<double, n_bond_kinds> volume{};
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+    if (const Shell *shell = material.shell(kind))
+      volume[kind] = cross_section(*shell, lattice) * lattice.rest_length(kind);
+  double total = 0.;
+  for_each_bond(state, lattice,
+                [&](std::size_t place, std::size_t kind, std::size_t)
+                { total += volume[kind] * energy(material.shell(kind)->law, stretch(state, lattice, place, kind)); });
+  return total;
+}
+
+double kinetic_energy(const State &state, const TriangularLattice &lattice)
+{
+  double total = 0.;
+  for (std::size_t place = 0; place < lattice.n_places(); ++place)
+    if (state.inverse_mass[place] > 0.)
+      total +=
+        0.5 / state.inverse_mass[place] * (state.vx[place] * state.vx[place] + state.vy[place] * state.vy[place]);
+  return total;
+}
+
+double boundary_power(const State &state, const TriangularLattice &lattice, const Forces &forces)
+{
+  double power = 0.;
+  for (std::size_t place = 0; place < lattice.n_places(); ++place)
+    if (state.held[place] != 0)
+      power -= forces.fx()[place] * state.vx[place] + forces.fy()[place] * state.vy[place];
+  return power;
+}
+
+} // namespace lattice

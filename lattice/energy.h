@@ -1,0 +1,31 @@
+#pragma once
+
+#include "lattice/forces.h"
+
+namespace lattice
+{
+
+/// Elastic energy of all bonds, per sheet thickness [J/m].
+double elastic_energy(const State &state, const TriangularLattice &lattice, const Material &material);
+
+/// Kinetic energy of all free sites, per sheet thickness [J/m].
+double kinetic_energy(const State &state, const TriangularLattice &lattice);
+
+/// Power the held sites put into the sheet, -sum f . v over them, f being the force of the bonds on a site [W/m].
+double boundary_power(const State &state, const TriangularLattice &lattice, const Forces &forces);
+
+/// Where the energy of a sheet is and where it went, all per sheet thickness [J/m] (theory.md, eq. L.11).
+struct EnergyBalance
+{
+  double elastic;       ///< of the bonds present
+  double kinetic;       ///< of the free sites
+  double viscous;       ///< dissipated by the dashpots since the start
+  double broken;        ///< elastic energy that bonds held when they broke or were cut
+  double boundary_work; ///< done on the sheet by the held sites since the start
+  double initial;       ///< elastic + kinetic before the seed was cut
+
+  /// elastic + kinetic + viscous + broken - initial - boundary_work; zero up to the error of the time stepping.
+  double imbalance() const { return elastic + kinetic + viscous + broken - initial - boundary_work; }
+};
+
+} // namespace lattice

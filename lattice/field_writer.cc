@@ -1,0 +1,187 @@
+#include "lattice/field_writer.h"
+
+#include <charconv>
+#include <cstdio>
+#include <fstream>
+#include <system_error>
+
+#include <vtkCellArray.h>
+#include <vtkCellData.h>
+#include <vtkDoubleArray.h>
+#include <vtkFieldData.h>
+#include <vtkNew.h>
+#include <vtkPointData.h>
+#include <vtkPoints.h>
+#include <vtkPolyData.h>
+#include <vtkUnsignedCharArray.h>
+#include <vtkXMLPolyDataWriter.h>
+
+#include "lattice/site_fields.h"
+
+namespace lattice
+{
+namespace
+{
+
+[[noreturn]] void fail(const std::filesystem::path &path, const char *what)
+{
+  throw std::filesystem::filesystem_error(what, path, std::make_error_code(std::errc::io_error));
+}
+
+std::string shortest(double value)
+{
+  char text[32];
+  const auto result = std::to_chars(text, text + sizeof(text), value);
+  return {text, result.ptr};
+}
+
+vtkNew<vtkDoubleArray> array(const char *name, int components, vtkIdType tuples)
+{
+  vtkNew<vtkDoubleArray> values;
+  values->SetName(name);
+  values->SetNumberOfComponents(components);
+  values->SetNumberOfTuples(tuples);
+  return values;
+}
+
+// ParaView wants vectors of three and tensors of nine components.
+void set_vector(vtkDoubleArray &values, vtkIdType id, double x, double y)
+{
+  values.SetTuple3(id, x, y, 0.);
+}
+
+void set_tensor(vtkDoubleArray &values, vtkIdType id, const Eigen::Matrix2d &t)
+{
+  values.SetTuple9(id, t(0, 0), t(0, 1), 0., t(1, 0), t(1, 1), 0., 0., 0., 0.);
+}
+
+} // namespace
+
+FieldWriter::FieldWriter(const TriangularLattice &lattice, const Material &material, std::filesystem::path directory,
+                         double initial_breaking_stretch)
+  : lattice_(lattice), material_(material), directory_(std::move(directory)),
+    initial_breaking_stretch_(initial_breaking_stretch)
+{
+}
+
+void FieldWriter::add_frame(const State &state)
+{
+  std::vector<std::size_t> places; // of the points, in their order
+  std::vector<vtkIdType> point_of_place(lattice_.n_places(), -1);
+  for (std::size_t row = 0; row < lattice_.rows(); ++row)
+    for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
+    {
+      const std::size_t place = lattice_.index(row, column);
+      if (state.removed[place] != 0)
+        continue;
+      point_of_place[place] = static_cast<vtkIdType>(places.size());
+      places.push_back(place);
+    }
+  const auto n_points = static_cast<vtkIdType>(places.size());
+
+  const SiteFields fields = site_fields(state, lattice_, material_);
+  vtkNew<vtkPoints> points;
+  points->SetDataTypeToDouble();
+  points->SetNumberOfPoints(n_points);
+  vtkNew<vtkCellArray> vertices;
+  const auto displacement = array("displacement", 3, n_points);
+  const auto velocity = array("velocity", 3, n_points);
+  const auto deformation_gradient = array("deformation_gradient", 9, n_points);
+  const auto first_piola_stress = array("first_piola_stress", 9, n_points);
+  const auto cauchy_stress = array("cauchy_stress", 9, n_points);
+  const auto strain_energy_density = array("strain_energy_density", 1, n_points);
+  const auto damage = array("damage", 1, n_points);
+  vtkNew<vtkUnsignedCharArray> held;
+  held->SetName("held");
+  held->SetNumberOfTuples(n_points);
+  for (vtkIdType id = 0; id < n_points; ++id)
+  {
+    const std::size_t place = places[static_cast<std::size_t>(id)];
+    const Eigen::Vector2d reference = lattice_.reference(place);
+    points->SetPoint(id, reference.x(), reference.y(), 0.);
+    vertices->InsertNextCell(1, &id);
+    set_vector(*displacement, id, state.x[place] - reference.x(), state.y[place] - reference.y());
+    set_vector(*velocity, id, state.vx[place], state.vy[place]);
+    set_tensor(*deformation_gradient, id, fields.deformation_gradient[place]);
+    set_tensor(*first_piola_stress, id, fields.first_piola_stress[place]);
+    set_tensor(*cauchy_stress, id, fields.cauchy_stress[place]);
+    strain_energy_density->SetValue(id, fields.strain_energy_density[place]);
+    damage->SetValue(id, fields.damage[place]);
+    held->SetValue(id, state.held[place]);
+  }
+
+  vtkNew<vtkCellArray> lines;
+  const auto bond_stretch = array("stretch", 1, 0);
+  vtkNew<vtkUnsignedCharArray> shell, toughened;
+  shell->SetName("shell");
+  toughened->SetName("toughened");
+  // Cell data counts the vertices first, then the lines.
+  for (vtkIdType id = 0; id < n_points; ++id)
+  {
+    bond_stretch->InsertNextValue(1.);
+    shell->InsertNextValue(0);
+    toughened->InsertNextValue(0);
+  }
+  for_each_bond(state, lattice_,
+                [&](std::size_t near, std::size_t kind, std::size_t far)
+                {
+                  const std::array<vtkIdType, 2> ends{{point_of_place[near], point_of_place[far]}};
+                  lines->InsertNextCell(2, ends.data());
+                  bond_stretch->InsertNextValue(stretch(state, lattice_, near, kind));
+                  shell->InsertNextValue(TriangularLattice::is_nearest(kind) ? 1 : 2);
+                  toughened->InsertNextValue(state.breaking_stretch[kind][near] > initial_breaking_stretch_ ? 1 : 0);
+                });
+
+  vtkNew<vtkPolyData> sheet;
+  sheet->SetPoints(points);
+  sheet->SetVerts(vertices);
+  sheet->SetLines(lines);
+  for (vtkDataArray *data :
+       {static_cast<vtkDataArray *>(displacement.Get()), static_cast<vtkDataArray *>(velocity.Get()),
+        static_cast<vtkDataArray *>(deformation_gradient.Get()), static_cast<vtkDataArray *>(first_piola_stress.Get()),
+        static_cast<vtkDataArray *>(cauchy_stress.Get()), static_cast<vtkDataArray *>(strain_energy_density.Get()),
+        static_cast<vtkDataArray *>(damage.Get()), static_cast<vtkDataArray *>(held.Get())})
+    sheet->GetPointData()->AddArray(data);
+  for (vtkDataArray *data : {static_cast<vtkDataArray *>(bond_stretch.Get()), static_cast<vtkDataArray *>(shell.Get()),
+                             static_cast<vtkDataArray *>(toughened.Get())})
+    sheet->GetCellData()->AddArray(data);
+  const auto time = array("TimeValue", 1, 1);
+  time->SetValue(0, state.time);
+  sheet->GetFieldData()->AddArray(time);
+
+  char name[32];
+  std::snprintf(name, sizeof(name), "lattice-%04zu.vtp", frames_.size());
+  const std::filesystem::path path = directory_ / name;
+  const std::filesystem::path beside = directory_ / (std::string(name) + ".part");
+  vtkNew<vtkXMLPolyDataWriter> writer;
+  writer->SetFileName(beside.c_str());
+  writer->SetInputData(sheet);
+  writer->SetDataModeToAppended();
+  writer->EncodeAppendedDataOff();
+  writer->SetCompressorTypeToZLib();
+  if (writer->Write() != 1 || writer->GetErrorCode() != 0)
+    fail(path, "cannot write lattice frame");
+  std::filesystem::rename(beside, path);
+  frames_.push_back({state.time, name});
+  write_collection();
+}
+
+void FieldWriter::write_collection() const
+{
+  const std::filesystem::path path = directory_ / "lattice.pvd";
+  const std::filesystem::path beside = directory_ / "lattice.pvd.part";
+  {
+    std::ofstream out(beside);
+    out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
+           "  <Collection>\n";
+    for (const Frame &frame : frames_)
+      out << "    <DataSet timestep=\"" << shortest(frame.time) << "\" part=\"0\" file=\"" << frame.file << "\"/>\n";
+    out << "  </Collection>\n</VTKFile>\n";
+    out.flush();
+    if (!out)
+      fail(path, "cannot write");
+  }
+  std::filesystem::rename(beside, path);
+}
+
+} // namespace lattice

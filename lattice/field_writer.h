@@ -1,0 +1,45 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "lattice/state.h"
+
+namespace lattice
+{
+
+/// Writes frames of a lattice for ParaView: `lattice.pvd` and a file `lattice-NNNN.vtp` a frame, in one directory.
+///
+/// Points are the sites at their reference positions [m]; warp by `displacement` for the current ones. Cells are the
+/// sites themselves (vertices) and the bonds (lines). Point data: displacement [m], velocity [m/s],
+/// deformation_gradient [-], first_piola_stress [Pa], cauchy_stress [Pa], strain_energy_density [J/m^3], damage [-],
+/// held, site (row-wise number). Cell data: stretch [-] (1 at vertices), shell (0 vertex, 1 nearest, 2 next-nearest),
+/// toughened (0 or 1). The field data array TimeValue holds the time [s]. Every file is written beside its place and
+/// renamed.
+class FieldWriter
+{
+public:
+  /// @param initial_breaking_stretch lam_f of a bond that has not been toughened [-]
+  FieldWriter(const TriangularLattice &lattice, const Material &material, std::filesystem::path directory,
+              double initial_breaking_stretch);
+
+  /// Adds the state as the next frame. @throws std::filesystem::filesystem_error if a file cannot be written
+  void add_frame(const State &state);
+
+private:
+  void write_collection() const;
+
+  const TriangularLattice &lattice_;
+  const Material &material_;
+  std::filesystem::path directory_;
+  double initial_breaking_stretch_;
+  struct Frame
+  {
+    double time;
+    std::string file;
+  };
+  std::vector<Frame> frames_;
+};
+
+} // namespace lattice

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <optional>
+#include <variant>
+#include <vector>
+
+#include "lattice/forces.h"
+
+namespace lattice
+{
+
+/// lam_f stays what it is.
+struct NoToughening
+{
+};
+
+/// Bonds whose reference midpoint lies at X < X_tip - distance have lam_f multiplied by `factor`, for good.
+struct BehindTipToughening
+{
+  double distance; ///< delta [m], >= 0
+  double factor;   ///< [-], >= 1
+};
+
+/// Bonds that contract below `fraction` of their stretch in the loaded, unbroken sheet have lam_f multiplied by
+/// `factor`, for good (Marder 2005: the material toughens where it retracts).
+struct RetractionToughening
+{
+  double fraction; ///< [-], in (0, 1)
+  double factor;   ///< [-], >= 1
+};
+
+using Toughening = std::variant<NoToughening, BehindTipToughening, RetractionToughening>;
+
+/// A bond that broke.
+struct BrokenBond
+{
+  double time;              ///< [s]
+  std::size_t near, far;    ///< places of its two ends
+  std::size_t kind;         ///< see n_bond_kinds
+  Eigen::Vector2d midpoint; ///< reference [m]
+  double stretch;           ///< at breaking [-]
+  double energy;            ///< elastic energy it held, per sheet thickness [J/m]
+};
+
+/// Permanent breaking at lam_f, toughening, and the crack tip (theory.md, section "Fracture").
+///
+/// The tip is the right-most site (reference X) that has lost at least a quarter of its bonds, rounded up: 3 of 12 as
+/// in the source paper, 2 of 6 where there are nearest neighbours alone. Held and removed sites do not count. Among
+/// sites at the same X the one nearest the previous tip is taken, then the one stored first.
+class Fracture
+{
+public:
+  /// @param deformation F of the loaded, unbroken sheet: the stretch that retraction is measured against
+  /// @throws std::invalid_argument for a rule out of its range
+  Fracture(const TriangularLattice &lattice, const Material &material, double breaking_stretch, Toughening toughening,
+           const Eigen::Matrix2d &deformation);
+
+  /// Has `forces` report the bonds this object wants to hear of.
+  void watch(Forces &forces) const;
+
+  /// Cuts a site and its bonds out of the sheet.
+  /// @return elastic energy of the bonds removed, per sheet thickness [J/m]
+  double remove_site(State &state, std::size_t place);
+
+  /// Breaks every bond beyond its limit at the last evaluation of `forces` and takes it out of `forces`, toughens what
+  /// is to be toughened, and moves the tip. @return the bonds that broke now, in the order of storage
+  const std::vector<BrokenBond> &apply(State &state, Forces &forces, const Field &evaluated_vx,
+                                       const Field &evaluated_vy);
+
+  /// Finds the tip among all sites and toughens behind it; for a state that was cut or loaded from outside.
+  void locate_tip(State &state);
+
+  /// Place of the tip; none before anything was cut or broken.
+  std::optional<std::size_t> tip() const { return tip_; }
+
+private:
+  void lose_bond(State &state, std::size_t place, std::size_t kind);
+  void consider_tip(const State &state, std::size_t place);
+  void toughen_behind_tip(State &state);
+  double bond_energy(const State &state, std::size_t place, std::size_t kind) const;
+
+  const TriangularLattice &lattice_;
+  const Material &material_;
+  double breaking_stretch_;
+  Toughening toughening_;
+  std::array<double, n_bond_kinds> retraction_stretch_{};
+  unsigned int tip_losses_;
+  std::optional<std::size_t> tip_;
+  double tip_x_ = 0.; // reference X of the tip
+  double tip_y_ = 0.; // reference Y of the tip before this step
+  std::vector<BrokenBond> broken_;
+};
+
+} // namespace lattice

@@ -1,0 +1,47 @@
+#pragma once
+
+#include <optional>
+
+#include "lattice/bond_law.h"
+#include "lattice/triangular_lattice.h"
+
+namespace lattice
+{
+
+/// One shell of bonds: nearest or next-nearest neighbours.
+struct Shell
+{
+  BondLaw law;
+  /// s [-], > 0: cross-section of a bond over (sqrt3 / 2) d h (theory.md, eq. L.4). The source paper leaves it open.
+  double area_factor;
+  /// eta [Pa s], >= 0: viscosity of the Kelvin dashpot along the bond.
+  double viscosity;
+};
+
+/// What the sheet is made of. All extensive quantities of the lattice are per unit sheet thickness h, which cancels
+/// from the motion: masses in kg/m, forces in N/m, energies in J/m.
+struct Material
+{
+  double density; ///< rho [kg/m^3], > 0
+  Shell nearest;
+  std::optional<Shell> next_nearest; ///< none: a lattice of nearest neighbours alone
+
+  /// Shell of a bond kind; nullptr where the lattice has no such bonds.
+  const Shell *shell(std::size_t kind) const
+  {
+    if (TriangularLattice::is_nearest(kind))
+      return &nearest;
+    return next_nearest ? &*next_nearest : nullptr;
+  }
+
+  /// Bonds of a site inside the sheet: 6 or 12.
+  unsigned int coordination() const { return next_nearest ? 12 : 6; }
+};
+
+/// A0 / h = s (sqrt3 / 2) d [m], cross-section of a bond per sheet thickness (theory.md, eq. L.4).
+double cross_section(const Shell &shell, const TriangularLattice &lattice);
+
+/// m / h = rho (sqrt3 / 2) d^2 [kg/m], mass of a site per sheet thickness (theory.md, eq. L.1).
+double site_mass(const Material &material, const TriangularLattice &lattice);
+
+} // namespace lattice

@@ -1,1 +1,0 @@
-namespace lattice { int placeholder() { return 0; } }

@@ -1,0 +1,107 @@
+#include "lattice/simulation.h"
+
+#include <stdexcept>
+
+namespace lattice
+{
+
+Simulation::Simulation(const TriangularLattice &lattice, const Material &material, State initial, double time_step,
+                       std::optional<Fracture> fracture)
+  : lattice_(lattice), material_(material), state_(std::move(initial)), forces_(lattice, material),
+    integrator_(lattice, forces_, time_step), fracture_(std::move(fracture))
+{
+  if (fracture_)
+    fracture_->watch(forces_);
+  initial_energy_ = elastic_energy(state_, lattice_, material_) + kinetic_energy(state_, lattice_);
+  restart();
+}
+
+void Simulation::restart()
+{
+  integrator_.initialise(state_);
+  boundary_power_ = edges_move_ ? boundary_power(state_, lattice_, forces_) : 0.;
+}
+
+void Simulation::cut(const std::vector<std::size_t> &places)
+{
+  if (!fracture_)
+    throw std::logic_error("a sheet without fracture rules cannot be cut");
+  for (const std::size_t place : places)
+    broken_ += fracture_->remove_site(state_, place);
+  fracture_->locate_tip(state_);
+  restart();
+}
+
+void Simulation::move_edges(const Eigen::Matrix2d &velocity_gradient)
+{
+  for (std::size_t place = 0; place < lattice_.n_places(); ++place)
+    if (state_.held[place] != 0)
+    {
+      const Eigen::Vector2d velocity = velocity_gradient * lattice_.reference(place);
+      state_.vx[place] = velocity.x();
+      state_.vy[place] = velocity.y();
+    }
+  edges_move_ = true;
+  restart();
+}
+
+void Simulation::set_velocities(const Field &vx, const Field &vy)
+{
+  const double before = kinetic_energy(state_, lattice_);
+  for (std::size_t place = 0; place < lattice_.n_places(); ++place)
+    if (state_.inverse_mass[place] > 0.)
+    {
+      state_.vx[place] = vx[place];
+      state_.vy[place] = vy[place];
+    }
+  initial_energy_ += kinetic_energy(state_, lattice_) - before;
+  restart();
+}
+
+const std::vector<BrokenBond> &Simulation::step()
+{
+  const double h = time_step();
+  const double viscous_power_before = forces_.viscous_power();
+  integrator_.step(state_);
+
+  // Powers are taken before bonds break, so that each interval of the trapezoidal rule sees one set of bonds.
+  viscous_ += 0.5 * h * (viscous_power_before + forces_.viscous_power());
+  if (edges_move_)
+  {
+    const double before = boundary_power_;
+    boundary_power_ = boundary_power(state_, lattice_, forces_);
+    boundary_work_ += 0.5 * h * (before + boundary_power_);
+  }
+  if (!fracture_)
+    return no_bonds_;
+
+  const std::vector<BrokenBond> &broken =
+    fracture_->apply(state_, forces_, integrator_.evaluated_vx(), integrator_.evaluated_vy());
+  if (!broken.empty())
+  {
+    for (const BrokenBond &bond : broken)
+      broken_ += bond.energy;
+    n_broken_ += broken.size();
+    integrator_.update_accelerations(state_);
+    if (edges_move_)
+      boundary_power_ = boundary_power(state_, lattice_, forces_);
+  }
+  return broken;
+}
+
+std::optional<std::size_t> Simulation::tip() const
+{
+  return fracture_ ? fracture_->tip() : std::nullopt;
+}
+
+EnergyBalance Simulation::energies() const
+{
+  return {elastic_energy(state_, lattice_, material_),
+          kinetic_energy(state_, lattice_),
+          viscous_,
+          broken_,
+          boundary_work_,
+          initial_energy_};
+}
+
+} // namespace lattice

@@ -1,0 +1,64 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "lattice/energy.h"
+#include "lattice/fracture.h"
+#include "lattice/velocity_verlet.h"
+
+namespace lattice
+{
+
+/// A sheet in motion: state, forces, time stepping, fracture and the energy ledger, one step at a time.
+class Simulation
+{
+public:
+  /// @param initial loaded state; its accelerations are computed here
+  /// @param time_step h [s]
+  /// @param fracture breaking rules; none for a sheet whose bonds never break
+  Simulation(const TriangularLattice &lattice, const Material &material, State initial, double time_step,
+             std::optional<Fracture> fracture = std::nullopt);
+  Simulation(const Simulation &) = delete; // parts refer to each other
+  Simulation &operator=(const Simulation &) = delete;
+
+  /// Cuts sites out of the sheet before it moves. @throws std::logic_error without fracture rules
+  void cut(const std::vector<std::size_t> &places);
+
+  /// Lets the held sites move with v = L X from now on, L [1/s] in the reference frame.
+  void move_edges(const Eigen::Matrix2d &velocity_gradient);
+
+  /// Adds a velocity field to the free sites; for waves and for tests. One (vx, vy) a place [m/s].
+  void set_velocities(const Field &vx, const Field &vy);
+
+  /// Advances by one time step. @return bonds that broke in it
+  const std::vector<BrokenBond> &step();
+
+  const TriangularLattice &lattice() const { return lattice_; }
+  const Material &material() const { return material_; }
+  const State &state() const { return state_; }
+  const Forces &forces() const { return forces_; }
+  double time_step() const { return integrator_.time_step(); }
+  std::optional<std::size_t> tip() const;
+  std::size_t n_broken() const { return n_broken_; } ///< bonds broken since the start, the seed's not counted
+  EnergyBalance energies() const;
+
+private:
+  void restart();
+
+  const TriangularLattice &lattice_;
+  const Material &material_;
+  State state_;
+  Forces forces_;
+  VelocityVerlet integrator_;
+  std::optional<Fracture> fracture_;
+  std::vector<BrokenBond> no_bonds_;
+
+  bool edges_move_ = false;
+  std::size_t n_broken_ = 0;
+  double initial_energy_ = 0.;
+  double viscous_ = 0., broken_ = 0., boundary_work_ = 0.;
+  double boundary_power_ = 0.;
+};
+
+} // namespace lattice

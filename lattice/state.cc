@@ -1,0 +1,98 @@
+#include "lattice/state.h"
+
+#include <cmath>
+
+namespace lattice
+{
+namespace
+{
+
+// SplitMix64 (Steele, Lea, Flood 2014): a counter-based generator, so that no order of sites is implied.
+std::uint64_t splitmix64(std::uint64_t counter)
+{
+  std::uint64_t z = counter + 0x9e3779b97f4a7c15ull;
+  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
+  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
+  return z ^ (z >> 31);
+}
+
+// Uniform in [-1, 1), from the upper 53 bits.
+double symmetric_uniform(std::uint64_t bits)
+{
+  return static_cast<double>(bits >> 11) * 0x1p-52 - 1.;
+}
+
+} // namespace
+
+State homogeneous_state(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F,
+                        Edges edges, double breaking_stretch)
+{
+  const std::size_t n = lattice.n_places();
+  State state;
+  for (Field *field : {&state.vx, &state.vy, &state.ax, &state.ay, &state.inverse_mass})
+    field->assign(n, 0.);
+  state.held.assign(n, 0);
+  state.removed.assign(n, 0);
+  state.lost_bonds.assign(n, 0);
+
+  state.x.resize(n);
+  state.y.resize(n);
+  for (std::size_t place = 0; place < n; ++place)
+  {
+    const Eigen::Vector2d position = F * lattice.reference(place);
+    state.x[place] = position.x();
+    state.y[place] = position.y();
+  }
+
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  {
+    state.breaking_stretch[kind].assign(n, 0.);
+    if (material.shell(kind) == nullptr)
+      continue;
+    for (std::size_t row = 0; row < lattice.rows(); ++row)
+      for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
+      {
+        const std::size_t place = lattice.index(row, column);
+        if (lattice.is_site(place + static_cast<std::size_t>(lattice.shift(kind, row))))
+          state.breaking_stretch[kind][place] = breaking_stretch;
+      }
+  }
+
+  const double inverse_mass = 1. / site_mass(material, lattice);
+  for (std::size_t row = 0; row < lattice.rows(); ++row)
+    for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
+    {
+      const std::size_t place = lattice.index(row, column);
+      unsigned int bonds = 0;
+      for_each_bond_of_site(state, lattice, place, [&](std::size_t, std::size_t) { ++bonds; });
+      const bool held = edges == Edges::held && bonds < material.coordination();
+      state.held[place] = held ? 1 : 0;
+      state.inverse_mass[place] = held ? 0. : inverse_mass;
+    }
+  return state;
+}
+
+void add_noise(State &state, const TriangularLattice &lattice, double amplitude, std::uint64_t seed)
+{
+  const std::uint64_t stream = splitmix64(seed);
+  for (std::size_t row = 0; row < lattice.rows(); ++row)
+    for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
+    {
+      const std::size_t place = lattice.index(row, column);
+      if (state.held[place] != 0)
+        continue;
+      state.x[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * place));
+      state.y[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * place + 1));
+    }
+}
+
+double stretch(const State &state, const TriangularLattice &lattice, std::size_t place, std::size_t kind)
+{
+  const std::size_t far = place + static_cast<std::size_t>(lattice.shift(kind, lattice.row_of(place)));
+  const double dx = state.x[far] - state.x[place];
+  const double dy = state.y[far] - state.y[place];
+  // The operations of the force loop, so that both agree to the last bit on whether a bond is past its limit.
+  return std::sqrt(dx * dx + dy * dy) * (1. / lattice.rest_length(kind));
+}
+
+} // namespace lattice

@@ -1,0 +1,86 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "lattice/material.h"
+#include "lattice/triangular_lattice.h"
+
+namespace lattice
+{
+
+/// A field over the places of a lattice, one value each, margin included.
+using Field = std::vector<double>;
+
+/// Everything that changes while a sheet moves and breaks, as a structure of arrays over the places of the lattice.
+/// Positions and velocities are current ones.
+struct State
+{
+  double time = 0.; ///< [s]
+  Field x, y;       ///< current position [m]
+  Field vx, vy;     ///< velocity [m/s]
+  Field ax, ay;     ///< acceleration [m/s^2]; 0 at held sites and in the margin
+  /// Stretch beyond which the bond of kind k that starts at a place breaks; 0: there is no bond (any more).
+  std::array<Field, n_bond_kinds> breaking_stretch;
+  Field inverse_mass;                   ///< h / m [m/kg]; 0 at held and removed sites and in the margin
+  std::vector<std::uint8_t> held;       ///< 1 at sites whose motion is prescribed
+  std::vector<std::uint8_t> removed;    ///< 1 at sites cut out as seed crack
+  std::vector<std::uint8_t> lost_bonds; ///< bonds a site has lost, to breaking or to removed neighbours
+};
+
+/// Boundary condition of all four edges of the sheet.
+enum class Edges
+{
+  held, ///< sites that lack a neighbour are held, so that every free site has all its bonds
+  free
+};
+
+/// The unbroken sheet at the homogeneous deformation x = F X, at rest.
+/// @param breaking_stretch lam_f [-] of every bond; infinity for a sheet that never breaks
+State homogeneous_state(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F,
+                        Edges edges, double breaking_stretch);
+
+/// Moves every free site by a random displacement, uniform in [-amplitude, amplitude] along x and y.
+/// The displacement of a site depends on (seed, place) alone, so it is the same on every machine and in any order.
+/// @param amplitude [m], >= 0
+void add_noise(State &state, const TriangularLattice &lattice, double amplitude, std::uint64_t seed);
+
+/// Current stretch |x_j - x_i| / l of a bond [-].
+double stretch(const State &state, const TriangularLattice &lattice, std::size_t place, std::size_t kind);
+
+/// Calls visit(place, kind, far_place) for every bond that is present, row by row.
+template <class Visitor>
+void for_each_bond(const State &state, const TriangularLattice &lattice, Visitor &&visit)
+{
+  for (std::size_t row = 0; row < lattice.rows(); ++row)
+    for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
+    {
+      const std::size_t place = lattice.index(row, column);
+      for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+        if (state.breaking_stretch[kind][place] > 0.)
+          visit(place, kind, place + static_cast<std::size_t>(lattice.shift(kind, row)));
+    }
+}
+
+/// Calls visit(near_place, kind) for each of the up to twelve bonds present at a site, near_place being the end at
+/// which the bond is stored: the site itself or its neighbour.
+template <class Visitor>
+void for_each_bond_of_site(const State &state, const TriangularLattice &lattice, std::size_t place, Visitor &&visit)
+{
+  const std::size_t row = lattice.row_of(place);
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  {
+    if (state.breaking_stretch[kind][place] > 0.)
+      visit(place, kind);
+    // The bond from below starts in a row of the other parity, except along the row and two rows down.
+    const std::size_t near_row = (kind == 0 || kind == n_bond_kinds - 1) ? row : row + 1;
+    const std::size_t near = place - static_cast<std::size_t>(lattice.shift(kind, near_row));
+    if (state.breaking_stretch[kind][near] > 0.)
+      visit(near, kind);
+  }
+}
+
+} // namespace lattice

@@ -1,0 +1,24 @@
+#pragma once
+
+#include "lattice/material.h"
+
+namespace lattice
+{
+
+/// Largest stable time steps of velocity Verlet with predicted velocities [s] (theory.md, eqs. L.8 to L.10).
+struct TimeStepLimits
+{
+  double elastic;  ///< 2 / omega, from the bond stiffness alone
+  double viscous;  ///< 1 / gamma, from the dashpots alone; infinite without them
+  double combined; ///< 2 / (gamma + sqrt(gamma^2 + omega^2)), root of gamma h + (omega h / 2)^2 = 1
+};
+
+/// Limits that hold in every configuration in which no bond is shorter than `smallest_stretch`.
+///
+/// omega^2 <= 2 sum_j A0 psi''(smallest_stretch) / (l m) and gamma <= 2 sum_j A0 eta / (l m), sums over the bonds of a
+/// site: bonds all in line would attain them. In the undeformed lattice of nearest neighbours the true limit is larger
+/// by a factor of 2 for the dashpots (attained by the shortest waves), of sqrt2 for the springs.
+/// @param smallest_stretch lam_min [-] in (0, 1]; the stiffness of every law here grows as a bond shortens
+TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch);
+
+} // namespace lattice

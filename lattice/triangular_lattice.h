@@ -1,0 +1,89 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include <Eigen/Core>
+
+namespace lattice
+{
+
+/// Which way the rows of nearest neighbours run. The crack runs along x.
+enum class Orientation
+{
+  rows_along_crack, ///< NN bonds at 0, 60, 120 degrees to x, NNN bonds at 30, 90, 150
+  rows_across_crack ///< turned by 30 degrees: NN bonds at 30, 90, 150, NNN bonds at 0, 60, 120
+};
+
+/// Half of the twelve bonds of a site, each named by its direction in the row frame (along the row, across the rows).
+/// The other half are the same bonds seen from their far ends. Kinds 0 to 2 are nearest neighbours (rest length d), 3
+/// to 5 next-nearest (rest length sqrt3 d).
+inline constexpr std::size_t n_bond_kinds = 6;
+inline constexpr std::size_t n_nearest_kinds = 3;
+
+/// A rectangular piece of the triangular lattice in its reference configuration (theory.md, section "The lattice").
+///
+/// Sites stand in rows, spacing d along a row, row pitch (sqrt3 / 2) d, every second row shifted by d / 2 and one site
+/// shorter, so that the sheet is the mirror image of itself about both centre lines. With rows along x:
+///
+///     row 2   o     o     o     o        even rows: `columns()` sites
+///     row 1      o     o     o           odd rows:  one site fewer
+///     row 0   o     o     o     o
+///
+/// Storage is row by row with a margin of two unused places on every side, so that the neighbour of a site through a
+/// bond of kind k is always at index + shift(k, row), whether that neighbour exists or not.
+class TriangularLattice
+{
+public:
+  /// @param spacing d [m], > 0
+  /// @param length extent along x [m], > 0
+  /// @param height extent along y [m], > 0
+  /// Both extents are rounded to whole rows and columns, an odd number of them across y, so that one runs along y = 0.
+  /// @throws std::invalid_argument if an extent is not positive or holds fewer than two rows or columns.
+  TriangularLattice(double spacing, double length, double height, Orientation orientation);
+
+  double spacing() const { return spacing_; } ///< d [m]
+  Orientation orientation() const { return orientation_; }
+  double length() const; ///< distance of the outermost sites along x after rounding [m]
+  double height() const; ///< the same along y [m]
+  /// Reference area of one site, (sqrt3 / 2) d^2 [m^2].
+  double site_area() const;
+
+  std::size_t rows() const { return rows_; }
+  std::size_t columns() const { return columns_; } ///< sites in an even row
+  std::size_t sites_in_row(std::size_t row) const { return columns_ - row % 2; }
+  std::size_t n_sites() const { return rows_ * columns_ - rows_ / 2; }
+  std::size_t stride() const { return columns_ + 2 * margin; }             ///< places per row, margin included
+  std::size_t n_places() const { return (rows_ + 2 * margin) * stride(); } ///< length of every field, margin included
+
+  /// Place of a site in every field; column < sites_in_row(row).
+  std::size_t index(std::size_t row, std::size_t column) const { return (row + margin) * stride() + margin + column; }
+  std::size_t row_of(std::size_t place) const { return place / stride() - margin; }
+  std::size_t column_of(std::size_t place) const { return place % stride() - margin; }
+  /// Whether a place, margin included, holds a site.
+  bool is_site(std::size_t place) const;
+
+  /// Reference position (X, Y) [m] of a place; X from 0 to length(), Y centred on 0. Valid in the margin as well.
+  Eigen::Vector2d reference(std::size_t place) const;
+
+  /// Offset from a site in `row` to its neighbour through bond kind k.
+  std::ptrdiff_t shift(std::size_t kind, std::size_t row) const;
+
+  /// Reference bond vector R = X_neighbour - X_site of kind k [m].
+  Eigen::Vector2d bond_vector(std::size_t kind) const;
+  /// Rest length |R|: d or sqrt3 d [m].
+  double rest_length(std::size_t kind) const;
+  static bool is_nearest(std::size_t kind) { return kind < n_nearest_kinds; }
+
+private:
+  static constexpr std::size_t margin = 2;
+
+  Eigen::Vector2d from_row_frame(double along, double across) const;
+
+  double spacing_;
+  Orientation orientation_;
+  std::size_t rows_;
+  std::size_t columns_;
+};
+
+} // namespace lattice

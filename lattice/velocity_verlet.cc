@@ -1,0 +1,97 @@
+#include "lattice/velocity_verlet.h"
+
+#include <stdexcept>
+
+namespace lattice
+{
+namespace
+{
+
+// Rows are shared out among threads; nothing here couples two sites, so the bits cannot depend on how.
+template <class RowOperation>
+void for_each_row(const TriangularLattice &lattice, const RowOperation &operation)
+{
+  const auto n_rows = static_cast<std::ptrdiff_t>(lattice.rows());
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t row = 0; row < n_rows; ++row)
+  {
+    const std::size_t first = lattice.index(static_cast<std::size_t>(row), 0);
+    operation(first, first + lattice.columns());
+  }
+}
+
+} // namespace
+
+VelocityVerlet::VelocityVerlet(const TriangularLattice &lattice, Forces &forces, double time_step)
+  : lattice_(lattice), forces_(forces), time_step_(time_step), predicted_vx_(lattice.n_places(), 0.),
+    predicted_vy_(lattice.n_places(), 0.)
+{
+  if (!(time_step > 0.))
+    throw std::invalid_argument("velocity Verlet needs a positive time step");
+}
+
+void VelocityVerlet::initialise(State &state)
+{
+  predicted_vx_ = state.vx;
+  predicted_vy_ = state.vy;
+  forces_.evaluate(state, predicted_vx_, predicted_vy_);
+  update_accelerations(state);
+}
+
+void VelocityVerlet::update_accelerations(State &state) const
+{
+  for_each_row(lattice_,
+               [&](std::size_t begin, std::size_t end)
+               {
+                 for (std::size_t i = begin; i < end; ++i)
+                 {
+                   state.ax[i] = forces_.fx()[i] * state.inverse_mass[i];
+                   state.ay[i] = forces_.fy()[i] * state.inverse_mass[i];
+                 }
+               });
+}
+
+void VelocityVerlet::step(State &state)
+{
+  const double h = time_step_;
+  const auto drift =
+    [h](double *position, double *velocity, double *predicted, const double *acceleration, std::size_t n)
+  {
+#pragma omp simd
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      const double kick = 0.5 * h * acceleration[i];
+      velocity[i] += kick;
+      position[i] += h * velocity[i];
+      predicted[i] = velocity[i] + kick;
+    }
+  };
+  const auto kick =
+    [h](double *velocity, double *acceleration, const double *force, const double *inverse_mass, std::size_t n)
+  {
+#pragma omp simd
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      acceleration[i] = force[i] * inverse_mass[i];
+      velocity[i] += 0.5 * h * acceleration[i];
+    }
+  };
+
+  for_each_row(lattice_,
+               [&](std::size_t begin, std::size_t end)
+               {
+                 drift(&state.x[begin], &state.vx[begin], &predicted_vx_[begin], &state.ax[begin], end - begin);
+                 drift(&state.y[begin], &state.vy[begin], &predicted_vy_[begin], &state.ay[begin], end - begin);
+               });
+  forces_.evaluate(state, predicted_vx_, predicted_vy_);
+  for_each_row(
+    lattice_,
+    [&](std::size_t begin, std::size_t end)
+    {
+      kick(&state.vx[begin], &state.ax[begin], &forces_.fx()[begin], &state.inverse_mass[begin], end - begin);
+      kick(&state.vy[begin], &state.ay[begin], &forces_.fy()[begin], &state.inverse_mass[begin], end - begin);
+    });
+  state.time += h;
+}
+
+} // namespace lattice

@@ -1,0 +1,41 @@
+#pragma once
+
+#include "lattice/forces.h"
+
+namespace lattice
+{
+
+/// Velocity Verlet for forces that depend on velocity (theory.md, eq. L.7):
+///   v_half = v + (h/2) a,   x' = x + h v_half,   v_pred = v_half + (h/2) a,
+///   a' = f(x', v_pred) / m, v' = v_half + (h/2) a'.
+/// The dashpots see v_pred = v + h a, a second-order prediction of v', so the scheme stays explicit, takes one force
+/// evaluation a step and converges at second order with and without viscosity. Without it, it is plain velocity Verlet.
+class VelocityVerlet
+{
+public:
+  /// @param time_step h [s], > 0; see TimeStepLimits
+  VelocityVerlet(const TriangularLattice &lattice, Forces &forces, double time_step);
+
+  double time_step() const { return time_step_; }
+
+  /// Computes the accelerations a state starts with; needed once, and again after a change from outside.
+  void initialise(State &state);
+
+  /// Advances by one time step. Sites with zero inverse mass keep their velocity.
+  void step(State &state);
+
+  /// Velocities the last force evaluation was made with [m/s].
+  const Field &evaluated_vx() const { return predicted_vx_; }
+  const Field &evaluated_vy() const { return predicted_vy_; }
+
+  /// Accelerations anew from the forces as they stand, after bonds were taken out of them.
+  void update_accelerations(State &state) const;
+
+private:
+  const TriangularLattice &lattice_;
+  Forces &forces_;
+  double time_step_;
+  Field predicted_vx_, predicted_vy_;
+};
+
+} // namespace lattice
