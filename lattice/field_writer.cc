@@ -9,6 +9,7 @@
 #include <vtkCellData.h>
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
+#include <vtkIdTypeArray.h>
 #include <vtkNew.h>
 #include <vtkPointData.h>
 #include <vtkPoints.h>
@@ -94,6 +95,9 @@ void FieldWriter::add_frame(const State &state)
   vtkNew<vtkUnsignedCharArray> held;
   held->SetName("held");
   held->SetNumberOfTuples(n_points);
+  vtkNew<vtkIdTypeArray> site;
+  site->SetName("site");
+  site->SetNumberOfTuples(n_points);
   for (vtkIdType id = 0; id < n_points; ++id)
   {
     const std::size_t place = places[static_cast<std::size_t>(id)];
@@ -108,6 +112,7 @@ void FieldWriter::add_frame(const State &state)
     strain_energy_density->SetValue(id, fields.strain_energy_density[place]);
     damage->SetValue(id, fields.damage[place]);
     held->SetValue(id, state.held[place]);
+    site->SetValue(id, static_cast<vtkIdType>(lattice_.site_number(place)));
   }
 
   vtkNew<vtkCellArray> lines;
@@ -140,7 +145,8 @@ void FieldWriter::add_frame(const State &state)
        {static_cast<vtkDataArray *>(displacement.Get()), static_cast<vtkDataArray *>(velocity.Get()),
         static_cast<vtkDataArray *>(deformation_gradient.Get()), static_cast<vtkDataArray *>(first_piola_stress.Get()),
         static_cast<vtkDataArray *>(cauchy_stress.Get()), static_cast<vtkDataArray *>(strain_energy_density.Get()),
-        static_cast<vtkDataArray *>(damage.Get()), static_cast<vtkDataArray *>(held.Get())})
+        static_cast<vtkDataArray *>(damage.Get()), static_cast<vtkDataArray *>(held.Get()),
+        static_cast<vtkDataArray *>(site.Get())})
     sheet->GetPointData()->AddArray(data);
   for (vtkDataArray *data : {static_cast<vtkDataArray *>(bond_stretch.Get()), static_cast<vtkDataArray *>(shell.Get()),
                              static_cast<vtkDataArray *>(toughened.Get())})

@@ -52,6 +52,12 @@ public:
   std::size_t rows() const { return rows_; }
   std::size_t columns() const { return columns_; } ///< sites in an even row
   std::size_t sites_in_row(std::size_t row) const { return columns_ - row % 2; }
+  /// Number of a site, counted row by row from the lower left without gaps; what files call it.
+  std::size_t site_number(std::size_t place) const
+  {
+    const std::size_t row = row_of(place);
+    return row * columns_ - row / 2 + column_of(place);
+  }
   std::size_t n_sites() const { return rows_ * columns_ - rows_ / 2; }
   std::size_t stride() const { return columns_ + 2 * margin; }             ///< places per row, margin included
   std::size_t n_places() const { return (rows_ + 2 * margin) * stride(); } ///< length of every field, margin included

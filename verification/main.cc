@@ -1,1 +1,9 @@
-int main() {}
+#include <deal.II/base/mpi.h>
+
+#include "verification/command_line.h"
+
+int main(int argc, char **argv)
+{
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  return static_cast<int>(verification::run_program(argc, argv));
+}

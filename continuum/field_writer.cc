@@ -1,0 +1,195 @@
+#include "continuum/field_writer.h"
+
+#include "continuum/collective.h"
+#include "continuum/errors.h"
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/numerics/data_out.h>
+#include <deal.II/numerics/data_postprocessor.h>
+
+#include <fstream>
+#include <iomanip>
+#include <sstream>
+
+using namespace dealii;
+
+namespace continuum
+{
+namespace
+{
+// Fields that follow from the gradient of displacement alone.
+class LocalFields : public DataPostprocessor<2>
+{
+public:
+  explicit LocalFields(const Material &law) : law_(law) {}
+
+  void evaluate_vector_field(const DataPostprocessorInputs::Vector<2> &inputs,
+                             std::vector<Vector<double>> &computed) const override
+  {
+    for (unsigned int p = 0; p < computed.size(); ++p)
+    {
+      Tensor<2, 2> F;
+      for (unsigned int i = 0; i < 2; ++i)
+        for (unsigned int J = 0; J < 2; ++J)
+          F[i][J] = (i == J ? 1. : 0.) + inputs.solution_gradients[p][i][J];
+      const Tensor<2, 2> P = law_.first_piola_stress(F);
+      const Tensor<2, 2> sigma = cauchy_stress(P, F);
+      for (unsigned int i = 0; i < 2; ++i)
+        for (unsigned int J = 0; J < 2; ++J)
+        {
+          computed[p][2 * i + J] = F[i][J];
+          computed[p][4 + 2 * i + J] = P[i][J];
+          computed[p][8 + 2 * i + J] = sigma[i][J];
+        }
+      computed[p][12] = law_.energy(F);
+    }
+  }
+
+  std::vector<std::string> get_names() const override
+  {
+    std::vector<std::string> names;
+    for (const char *tensor : {"deformation_gradient", "first_piola_stress", "cauchy_stress"})
+      names.insert(names.end(), 4, tensor);
+    names.emplace_back("strain_energy_density");
+    return names;
+  }
+
+  std::vector<DataComponentInterpretation::DataComponentInterpretation>
+  get_data_component_interpretation() const override
+  {
+    std::vector<DataComponentInterpretation::DataComponentInterpretation> kinds(
+      12, DataComponentInterpretation::component_is_part_of_tensor);
+    kinds.push_back(DataComponentInterpretation::component_is_scalar);
+    return kinds;
+  }
+
+  UpdateFlags get_needed_update_flags() const override { return update_gradients; }
+
+private:
+  const Material &law_;
+};
+
+// Writes beside the place and renames, so that a reader never sees half a file, then or after a crash.
+void write_whole(const std::filesystem::path &path, const std::string &text)
+{
+  std::filesystem::path beside = path;
+  beside += ".part";
+  {
+    std::ofstream file(beside, std::ios::binary);
+    file << text;
+    file.flush();
+    if (!file)
+      throw OutputFailed("cannot write " + beside.string());
+  }
+  std::error_code failure;
+  std::filesystem::rename(beside, path, failure);
+  if (failure)
+    throw OutputFailed("cannot rename " + beside.string() + " to " + path.string() + ": " + failure.message());
+}
+
+std::string frame_name(const std::string &name, const std::size_t frame)
+{
+  std::ostringstream out;
+  out << name << "_" << std::setfill('0') << std::setw(4) << frame;
+  return out.str();
+}
+
+// The time as field data. deal.II's own flag for it stores single precision.
+std::string with_time(std::string vtu, const double time)
+{
+  const std::string grid = "<UnstructuredGrid>";
+  const std::size_t at = vtu.find(grid);
+  if (at == std::string::npos)
+    throw OutputFailed("the vtu text holds no unstructured grid");
+  std::ostringstream field;
+  field << std::setprecision(17)
+        << "\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TIME\" NumberOfTuples=\"1\" format=\"ascii\">" << time
+        << "</DataArray>\n</FieldData>";
+  return vtu.insert(at + grid.size(), field.str());
+}
+
+std::string collection_text(const std::vector<std::pair<double, std::string>> &frames)
+{
+  std::ostringstream out;
+  out << std::setprecision(17);
+  out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n";
+  for (const auto &[time, file] : frames)
+    out << "    <DataSet timestep=\"" << time << "\" part=\"0\" file=\"" << file << "\"/>\n";
+  out << "  </Collection>\n</VTKFile>\n";
+  return out.str();
+}
+} // namespace
+
+FieldWriter::FieldWriter(const MPI_Comm communicator, std::filesystem::path directory, std::string name)
+  : communicator_(communicator), directory_(std::move(directory)), name_(std::move(name))
+{
+  collectively(communicator_,
+               [&]
+               {
+                 std::error_code failure;
+                 std::filesystem::create_directories(directory_, failure);
+                 if (failure)
+                   throw OutputFailed("cannot make the folder " + directory_.string() + ": " + failure.message());
+               });
+}
+
+void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::Vector &u)
+{
+  if (!frames_.empty() && !(time > frames_.back().first))
+    throw InvalidInput("the time of a frame must be later than that of the frame before");
+
+  const std::string frame = frame_name(name_, frames_.size());
+  const unsigned int n_ranks = Utilities::MPI::n_mpi_processes(communicator_);
+  const unsigned int rank = Utilities::MPI::this_mpi_process(communicator_);
+  const auto piece = [&](const unsigned int r)
+  { return n_ranks == 1 ? frame + ".vtu" : frame + "." + std::to_string(r) + ".vtu"; };
+
+  const LocalFields local_fields(sheet.law());
+  DataOut<2> output;
+  const std::vector<DataComponentInterpretation::DataComponentInterpretation> vector(
+    2, DataComponentInterpretation::component_is_part_of_vector);
+  DataOutBase::VtkFlags flags;
+  flags.compression_level = DataOutBase::VtkFlags::best_speed;
+  flags.physical_units = {{"displacement", "m"},
+                          {"deformation_gradient", "1"},
+                          {"first_piola_stress", "Pa"},
+                          {"cauchy_stress", "Pa"},
+                          {"strain_energy_density", "J/m^3"}};
+  output.set_flags(flags);
+  const std::vector<std::string> names(2, "displacement");
+  output.add_data_vector(sheet.dof_handler(), u, names, vector); // communicates, so not in guarded work
+  output.add_data_vector(sheet.dof_handler(), u, local_fields);
+  collectively(communicator_,
+               [&]
+               {
+                 output.build_patches(sheet.mapping(), sheet.degree());
+                 std::ostringstream text;
+                 output.write_vtu(text);
+                 write_whole(directory_ / piece(rank), with_time(text.str(), time));
+               });
+
+  const std::string file = n_ranks == 1 ? piece(0) : frame + ".pvtu";
+  frames_.emplace_back(time, file);
+  collectively(communicator_,
+               [&]
+               {
+                 if (rank != 0)
+                   return;
+                 if (n_ranks > 1)
+                 {
+                   std::vector<std::string> pieces;
+                   for (unsigned int r = 0; r < n_ranks; ++r)
+                     pieces.push_back(piece(r));
+                   std::ostringstream text;
+                   output.write_pvtu_record(text, pieces);
+                   write_whole(directory_ / file, text.str());
+                 }
+                 write_whole(collection(), collection_text(frames_));
+               });
+}
+
+std::filesystem::path FieldWriter::collection() const
+{
+  return directory_ / (name_ + ".pvd");
+}
+} // namespace continuum

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "continuum/sheet.h"
+
+#include <filesystem>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace continuum
+{
+/// Writes the fields of a sheet as a series that ParaView opens: NAME.pvd, and for each frame NAME_0000.vtu, or
+/// NAME_0000.pvtu with a piece for each rank. Fields, over the reference configuration: `displacement` [m],
+/// `deformation_gradient` [-], `first_piola_stress` [Pa], `cauchy_stress` [Pa] (per reference thickness, see
+/// continuum::cauchy_stress), `strain_energy_density` [J/m^3]. Tensors have nine components, index order row by row
+/// (current index first).
+///
+/// Every file is written beside its place and renamed, pieces before the files that name them, so that what is there is
+/// whole at any moment. Times are written with 17 significant digits.
+class FieldWriter
+{
+public:
+  /// Makes `directory` if it is not there. Collective. Throws OutputFailed on every rank.
+  FieldWriter(MPI_Comm communicator, std::filesystem::path directory, std::string name = "continuum");
+
+  /// Adds the state `u` (nodal displacement [m], with ghost entries) at `time`, which must grow from frame to frame:
+  /// the load factor [-] in statics, [s] in dynamics. Collective. Throws OutputFailed on every rank, and
+  /// NonPhysicalState if the law does; InvalidInput if the time does not grow.
+  void add_frame(double time, const Sheet &sheet, const Sheet::Vector &u);
+
+  /// Path of the .pvd.
+  std::filesystem::path collection() const;
+
+private:
+  MPI_Comm communicator_;
+  std::filesystem::path directory_;
+  std::string name_;
+  std::vector<std::pair<double, std::string>> frames_;
+};
+} // namespace continuum

@@ -1,0 +1,76 @@
+#include "continuum/material.h"
+
+#include "continuum/errors.h"
+
+#include <cmath>
+#include <sstream>
+
+using dealii::Tensor;
+
+namespace continuum
+{
+double checked_determinant(const Tensor<2, 2> &F)
+{
+  const double J = F[0][0] * F[1][1] - F[0][1] * F[1][0];
+  // Written so that a NaN fails it too.
+  if (!(J > 0. && std::isfinite(J)))
+  {
+    std::ostringstream message;
+    message.precision(17);
+    message << "det F = " << J << " is not positive and finite: F = [" << F[0][0] << " " << F[0][1] << "; " << F[1][0]
+            << " " << F[1][1] << "]";
+    throw NonPhysicalState(message.str());
+  }
+  return J;
+}
+
+Tensor<2, 2> cauchy_stress(const Tensor<2, 2> &P, const Tensor<2, 2> &F)
+{
+  return P * dealii::transpose(F) / checked_determinant(F);
+}
+
+double minimum_acoustic_eigenvalue(const Material &law, const Tensor<2, 2> &F)
+{
+  const Tensor<4, 2> T = law.tangent(F);
+  const auto smallest_eigenvalue = [&T](const double angle)
+  {
+    const double n[2] = {std::cos(angle), std::sin(angle)};
+    double Q[2][2] = {{0., 0.}, {0., 0.}};
+    for (unsigned int i = 0; i < 2; ++i)
+      for (unsigned int J = 0; J < 2; ++J)
+        for (unsigned int k = 0; k < 2; ++k)
+          for (unsigned int L = 0; L < 2; ++L)
+            Q[i][k] += T[i][J][k][L] * n[J] * n[L];
+    return 0.5 * (Q[0][0] + Q[1][1]) - std::hypot(0.5 * (Q[0][0] - Q[1][1]), Q[0][1]);
+  };
+
+  // Q is quadratic in n, so its eigenvalues have a few extrema at most over the half circle: a scan finds the valley,
+  // golden section its floor. Where the eigenvalues cross the smaller one has a ridge, never a valley.
+  const double pi = std::acos(-1.);
+  const unsigned int n_samples = 360;
+  double best = smallest_eigenvalue(0.);
+  double at = 0.;
+  for (unsigned int sample = 1; sample < n_samples; ++sample)
+  {
+    const double angle = pi * sample / n_samples;
+    if (const double value = smallest_eigenvalue(angle); value < best)
+    {
+      best = value;
+      at = angle;
+    }
+  }
+  const double golden = 0.5 * (std::sqrt(5.) - 1.);
+  double low = at - pi / n_samples;
+  double high = at + pi / n_samples;
+  while (high - low > 1e-8)
+  {
+    const double left = high - golden * (high - low);
+    const double right = low + golden * (high - low);
+    if (smallest_eigenvalue(left) < smallest_eigenvalue(right))
+      high = right;
+    else
+      low = left;
+  }
+  return std::min(best, smallest_eigenvalue(0.5 * (low + high)));
+}
+} // namespace continuum

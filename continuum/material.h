@@ -1,0 +1,45 @@
+#pragma once
+
+#include <deal.II/base/tensor.h>
+
+namespace continuum
+{
+/// A hyperelastic law of a sheet: energy, stress, tangent, and nothing else. Const and stateless.
+///
+/// F_iJ = dx_i/dX_J is the in-plane deformation gradient (current index first, reference index second). Every
+/// density is per reference volume, so per reference area and unit reference thickness. All functions throw
+/// NonPhysicalState, naming F, when det F <= 0 or F is not finite.
+///
+/// A law with gradient terms is a second, additive one, W_g(F, Grad F): it stands beside this class, not below it.
+class Material
+{
+public:
+  virtual ~Material() = default;
+
+  /// W(F) [Pa = J/m^3], zero at F = I.
+  virtual double energy(const dealii::Tensor<2, 2> &F) const = 0;
+
+  /// First Piola stress P_iJ = dW/dF_iJ [Pa]: force per reference length and unit reference thickness.
+  virtual dealii::Tensor<2, 2> first_piola_stress(const dealii::Tensor<2, 2> &F) const = 0;
+
+  /// dP_iJ/dF_kL [Pa], index order [i][J][k][L]; major symmetric.
+  virtual dealii::Tensor<4, 2> tangent(const dealii::Tensor<2, 2> &F) const = 0;
+
+  /// Thickness stretch F_33 [-], current over reference thickness. A law that knows no thickness answers 1.
+  virtual double thickness_stretch(const dealii::Tensor<2, 2> &F) const = 0;
+};
+
+/// det F [-] of the in-plane deformation gradient; throws NonPhysicalState unless it is finite and > 0.
+/// To be called before any logarithm or power of the state.
+double checked_determinant(const dealii::Tensor<2, 2> &F);
+
+/// sigma_ij = P_iJ F_jJ / det F [Pa], det F in-plane (theory-continuum.md, eq. (C.2)): force per current length and
+/// REFERENCE thickness. Thickness change is not in it, because a lattice has none to compare with; the true stress of
+/// a sheet with thickness stretch F_33 is this divided by F_33.
+dealii::Tensor<2, 2> cauchy_stress(const dealii::Tensor<2, 2> &P, const dealii::Tensor<2, 2> &F);
+
+/// Smallest eigenvalue [Pa] of the acoustic tensor Q_ik(n) = T_iJkL n_J n_L of the tangent T at F, over every
+/// reference direction n (theory-continuum.md, eq. (C.3)); rho c^2 of the slowest plane wave. The law is strongly
+/// elliptic at F if and only if it is positive. Relative accuracy 1e-10. Throws NonPhysicalState as the law does.
+double minimum_acoustic_eigenvalue(const Material &law, const dealii::Tensor<2, 2> &F);
+} // namespace continuum

@@ -1,0 +1,158 @@
+#include "continuum/mooney_rivlin.h"
+
+#include "continuum/errors.h"
+
+#include <cmath>
+#include <sstream>
+
+using dealii::Tensor;
+
+namespace continuum
+{
+namespace
+{
+// State of the sheet in the two in-plane invariants: |F|^2 and j = det F, with the thickness stretch t they imply.
+struct Invariants
+{
+  double F_squared;
+  double j;
+  double t;
+  double A; // coefficients of the thickness equation A t^2 - kappa j t - B = 0, eq. (C.5)
+  double B;
+};
+
+[[noreturn]] void throw_no_thickness(const Tensor<2, 2> &F)
+{
+  std::ostringstream message;
+  message.precision(17);
+  message << "no thickness of the sheet is in stable equilibrium: F = [" << F[0][0] << " " << F[0][1] << "; " << F[1][0]
+          << " " << F[1][1] << "]";
+  throw NonPhysicalState(message.str());
+}
+
+// The thickness equation is quadratic, so the root is written down instead of iterated for. For A > 0 and B > 0 it is
+// the only positive one and no digits cancel. For B < 0 it is the larger of two, the local minimum of the energy.
+Invariants invariants(const MooneyRivlin::Constants &m, const Tensor<2, 2> &F)
+{
+  Invariants s;
+  s.j = checked_determinant(F);
+  s.F_squared = F.norm_square();
+  s.A = 2. * m.c1 + 2. * m.c2 * s.F_squared + m.kappa * s.j * s.j;
+  s.B = 2. * m.c1 + 4. * m.c2;
+  const double discriminant = m.kappa * s.j * m.kappa * s.j + 4. * s.A * s.B;
+  if (!(s.A > 0. && discriminant > 0. && std::isfinite(discriminant)))
+    throw_no_thickness(F);
+  s.t = (m.kappa * s.j + std::sqrt(discriminant)) / (2. * s.A);
+  return s;
+}
+
+Tensor<2, 2> cofactor(const Tensor<2, 2> &F)
+{
+  Tensor<2, 2> cof;
+  cof[0][0] = F[1][1];
+  cof[0][1] = -F[1][0];
+  cof[1][0] = -F[0][1];
+  cof[1][1] = F[0][0];
+  return cof;
+}
+
+// Partial derivatives of the energy at fixed thickness, eq. (C.7).
+double energy_by_F_squared(const MooneyRivlin::Constants &m, const Invariants &s)
+{
+  return m.c1 + m.c2 * s.t * s.t;
+}
+
+double energy_by_j(const MooneyRivlin::Constants &m, const Invariants &s)
+{
+  return -s.B / s.j + 2. * m.c2 * s.j + m.kappa * s.t * (s.j * s.t - 1.);
+}
+} // namespace
+
+MooneyRivlin::Constants MooneyRivlin::Constants::with_equal_lame_constants(const double shear_modulus,
+                                                                           const double ratio)
+{
+  if (!(shear_modulus > 0. && ratio > -1. && ratio < 1.))
+    throw InvalidMaterial("equal Lame constants need a shear modulus > 0 and a ratio c2/(c1+c2) between -1 and 1");
+  return {0.5 * (1. - ratio) * shear_modulus, 0.5 * ratio * shear_modulus, 2. * (1. - ratio) * shear_modulus};
+}
+
+MooneyRivlin::MooneyRivlin(const Constants &constants) : constants_(constants)
+{
+  const auto &[c1, c2, kappa] = constants;
+  if (!(std::isfinite(c1) && std::isfinite(c2) && std::isfinite(kappa)))
+    throw InvalidMaterial("Mooney-Rivlin constants must be finite");
+  if (!(c1 + c2 > 0.))
+    throw InvalidMaterial("Mooney-Rivlin needs a positive shear modulus 2 (c1 + c2)");
+  if (!(kappa > 0.))
+    throw InvalidMaterial("Mooney-Rivlin needs kappa > 0");
+  // d2W/dF33^2 at F = I: the curvature that keeps the unloaded sheet at its thickness.
+  if (!(2. * (2. * c1 + 4. * c2) + kappa > 0.))
+    throw InvalidMaterial("Mooney-Rivlin needs 4 c1 + 8 c2 + kappa > 0, or the unloaded sheet has no stable thickness");
+}
+
+double MooneyRivlin::energy(const Tensor<2, 2> &F) const
+{
+  const auto &[c1, c2, kappa] = constants_;
+  const Invariants s = invariants(constants_, F);
+  const double J = s.j * s.t;
+  const double log_J = std::log(J);
+  const double I1 = s.F_squared + s.t * s.t;
+  const double I2 = s.j * s.j + s.t * s.t * s.F_squared;
+  return c1 * (I1 - 3. - 2. * log_J) + c2 * (I2 - 3. - 4. * log_J) + 0.5 * kappa * (J - 1.) * (J - 1.);
+}
+
+Tensor<2, 2> MooneyRivlin::first_piola_stress(const Tensor<2, 2> &F) const
+{
+  const Invariants s = invariants(constants_, F);
+  return 2. * energy_by_F_squared(constants_, s) * F + energy_by_j(constants_, s) * cofactor(F);
+}
+
+Tensor<4, 2> MooneyRivlin::tangent(const Tensor<2, 2> &F) const
+{
+  const auto &[c1, c2, kappa] = constants_;
+  const Invariants s = invariants(constants_, F);
+  const Tensor<2, 2> cof = cofactor(F);
+
+  // Second derivatives with the thickness eliminated, eq. (C.8).
+  const double tt = s.A + s.B / (s.t * s.t);
+  const double ft = 2. * c2 * s.t;
+  const double jt = kappa * (2. * s.j * s.t - 1.);
+  const double jj = s.B / (s.j * s.j) + 2. * c2 + kappa * s.t * s.t;
+  const double condensed_ff = -ft * ft / tt;
+  const double condensed_fj = -ft * jt / tt;
+  const double condensed_jj = jj - jt * jt / tt;
+
+  const double by_f = energy_by_F_squared(constants_, s);
+  const double by_j = energy_by_j(constants_, s);
+  Tensor<4, 2> T;
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int J = 0; J < 2; ++J)
+      for (unsigned int k = 0; k < 2; ++k)
+        for (unsigned int L = 0; L < 2; ++L)
+        {
+          // The cofactor is linear in F: d cof_iJ / dF_kL = eps_ik eps_JL.
+          const double permutation = i == k || J == L ? 0. : (i == J ? 1. : -1.);
+          T[i][J][k][L] =
+            (i == k && J == L ? 2. * by_f : 0.) + by_j * permutation + 4. * condensed_ff * F[i][J] * F[k][L] +
+            2. * condensed_fj * (F[i][J] * cof[k][L] + cof[i][J] * F[k][L]) + condensed_jj * cof[i][J] * cof[k][L];
+        }
+  return T;
+}
+
+double MooneyRivlin::thickness_stretch(const Tensor<2, 2> &F) const
+{
+  return invariants(constants_, F).t;
+}
+
+double MooneyRivlin::shear_modulus() const
+{
+  return 2. * (constants_.c1 + constants_.c2);
+}
+
+double MooneyRivlin::lame_lambda() const
+{
+  const double mu = shear_modulus();
+  const double lambda_3d = constants_.kappa + 4. * constants_.c2;
+  return 2. * mu * lambda_3d / (lambda_3d + 2. * mu);
+}
+} // namespace continuum

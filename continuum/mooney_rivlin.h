@@ -1,0 +1,51 @@
+#pragma once
+
+#include "continuum/material.h"
+
+namespace continuum
+{
+/// Compressible Mooney-Rivlin sheet in plane stress (theory-continuum.md, eqs. (C.4) to (C.9)).
+///   W(F) = min over F_33 of  c1 (I1 - 3 - 2 ln J) + c2 (I2 - 3 - 4 ln J) + (kappa/2) (J - 1)^2       [Pa]
+/// with the invariants of the three-dimensional C = F^T F and J = F_33 det F.
+///
+/// c2 < 0 is allowed, as calibration may ask for it. Then no thickness is in equilibrium once
+///   c1 + c2 |F|^2 + (kappa/2) (det F)^2 <= 0,
+/// and the law throws NonPhysicalState there; strong ellipticity may be lost earlier (minimum_acoustic_eigenvalue).
+class MooneyRivlin : public Material
+{
+public:
+  /// Material constants [Pa]. Small-strain shear modulus mu = 2 (c1 + c2).
+  struct Constants
+  {
+    double c1;
+    double c2;
+    double kappa;
+
+    /// The constants whose small-strain limit in plane stress has shear modulus `shear_modulus` mu [Pa] > 0 and
+    /// lambda = mu, two-dimensional Poisson ratio 1/3: c1 = (1-r) mu/2, c2 = r mu/2, kappa = 2 mu (1-r), for the
+    /// ratio r = c2/(c1 + c2) [-], -1 < r < 1 (theory-continuum.md, eq. (C.10)).
+    static Constants with_equal_lame_constants(double shear_modulus, double ratio);
+  };
+
+  /// Throws InvalidMaterial unless 2 (c1 + c2) > 0, kappa > 0 and the thickness is stable at F = I.
+  explicit MooneyRivlin(const Constants &constants);
+
+  double energy(const dealii::Tensor<2, 2> &F) const override;
+  dealii::Tensor<2, 2> first_piola_stress(const dealii::Tensor<2, 2> &F) const override;
+  dealii::Tensor<4, 2> tangent(const dealii::Tensor<2, 2> &F) const override;
+
+  /// F_33 [-], the stable root of S_33 = 0 (theory-continuum.md, eq. (C.6)).
+  double thickness_stretch(const dealii::Tensor<2, 2> &F) const override;
+
+  const Constants &constants() const { return constants_; }
+
+  /// Shear modulus mu [Pa] at F = I.
+  double shear_modulus() const;
+
+  /// First Lame constant lambda [Pa] of the plane-stress sheet at F = I (theory-continuum.md, eq. (C.9)).
+  double lame_lambda() const;
+
+private:
+  Constants constants_;
+};
+} // namespace continuum

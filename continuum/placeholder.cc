@@ -1,1 +1,0 @@
-namespace continuum { int placeholder() { return 0; } }

@@ -1,0 +1,106 @@
+#include "continuum/reactions.h"
+
+#include "continuum/collective.h"
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_values.h>
+
+using namespace dealii;
+
+namespace continuum
+{
+namespace
+{
+struct HeldBoundary
+{
+  types::boundary_id id;
+  IndexSet dofs;           // held unknowns that lie on it
+  Sheet::Vector tractions; // integral of its traction against each shape function [N/m]
+  Tensor<1, 2> force;      // own share of the sum, then the sum [N/m]
+};
+
+void integrate_tractions(const Sheet &sheet, const Sheet::Vector &u, std::vector<HeldBoundary> &boundaries)
+{
+  const GuardedWork guarded(
+    [&]
+    {
+      const auto &element = sheet.element();
+      FEFaceValues<2> values(sheet.mapping(), element, QGauss<1>(sheet.degree() + 1),
+                             update_values | update_gradients | update_normal_vectors | update_JxW_values);
+      const FEValuesExtractors::Vector displacement(0);
+      std::vector<Tensor<2, 2>> F(values.n_quadrature_points);
+      std::vector<types::global_dof_index> dofs(element.n_dofs_per_cell());
+      Vector<double> forces(element.n_dofs_per_cell());
+      const auto add = [&](const auto &cell, const unsigned int face, HeldBoundary &boundary)
+      {
+        values.reinit(cell, face);
+        values[displacement].get_function_gradients(u, F);
+        forces = 0.;
+        for (unsigned int q = 0; q < F.size(); ++q)
+        {
+          for (unsigned int i = 0; i < 2; ++i)
+            F[q][i][i] += 1.;
+          const Tensor<1, 2> traction = sheet.law().first_piola_stress(F[q]) * values.normal_vector(q) * values.JxW(q);
+          for (unsigned int a = 0; a < dofs.size(); ++a)
+            forces[a] += traction[element.system_to_component_index(a).first] * values.shape_value(a, q);
+        }
+        cell->get_dof_indices(dofs);
+        sheet.hanging_nodes().distribute_local_to_global(forces, dofs, boundary.tractions);
+      };
+      for (const auto &cell : sheet.dof_handler().active_cell_iterators())
+        if (cell->is_locally_owned())
+          for (const unsigned int face : cell->face_indices())
+            if (cell->at_boundary(face))
+              for (HeldBoundary &boundary : boundaries)
+                if (cell->face(face)->boundary_id() == boundary.id)
+                  add(cell, face, boundary);
+    });
+  for (HeldBoundary &boundary : boundaries)
+    boundary.tractions.compress(VectorOperation::add);
+  guarded.agree(sheet.communicator());
+}
+} // namespace
+
+std::map<types::boundary_id, Tensor<1, 2>> boundary_reactions(const Sheet &sheet, const Sheet::Vector &u,
+                                                              const std::map<types::boundary_id, ComponentMask> &held)
+{
+  Sheet::Vector residual = sheet.make_owned();
+  Sheet::Vector magnitude = sheet.make_owned();
+  sheet.residual(u, residual, magnitude);
+
+  std::vector<HeldBoundary> boundaries;
+  for (const auto &[id, components] : held)
+    boundaries.push_back(
+      {id, DoFTools::extract_boundary_dofs(sheet.dof_handler(), components, {id}), sheet.make_owned(), {}});
+  integrate_tractions(sheet, u, boundaries);
+
+  for (unsigned int component = 0; component < 2; ++component)
+  {
+    ComponentMask mask(2, false);
+    mask.set(component, true);
+    for (const types::global_dof_index i : DoFTools::extract_dofs(sheet.dof_handler(), mask))
+    {
+      if (!sheet.owned().is_element(i))
+        continue;
+      double rest = residual(i);
+      unsigned int n = 0;
+      for (const HeldBoundary &boundary : boundaries)
+        if (boundary.dofs.is_element(i))
+        {
+          rest -= boundary.tractions(i);
+          ++n;
+        }
+      for (HeldBoundary &boundary : boundaries)
+        if (boundary.dofs.is_element(i))
+          boundary.force[component] += boundary.tractions(i) + rest / n;
+    }
+  }
+
+  std::map<types::boundary_id, Tensor<1, 2>> forces;
+  for (const HeldBoundary &boundary : boundaries)
+    forces[boundary.id] = Utilities::MPI::sum(boundary.force, sheet.communicator());
+  return forces;
+}
+} // namespace continuum

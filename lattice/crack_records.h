@@ -1,0 +1,22 @@
+#pragma once
+
+namespace lattice
+{
+
+/// Where the crack tip was. One record each time the tip moves; between records it rests.
+struct TipRecord
+{
+  double t;    ///< time [s], not decreasing along a record
+  double X, Y; ///< reference position [m], X not decreasing along a record
+  double x, y; ///< current position at time t [m]
+};
+
+/// One broken bond.
+struct BreakRecord
+{
+  double t; ///< time of breaking [s]
+  double X; ///< reference midpoint [m]
+  double Y; ///< reference midpoint [m]
+};
+
+} // namespace lattice

@@ -1,0 +1,87 @@
+#!/usr/bin/python3
+"""Reads a series of the continuum with VTK and compares it with a homogeneous deformation worked out here.
+
+Usage: check_fields.py SERIES.pvd N_FRAMES N_CELLS
+The sheet is [0, 0.15] x [-0.05, 0.05] m, x = F(t) X with F(t) = I + t (F(1) - I), of the rubber network of theory.md, section 5.
+"""
+import pathlib
+import sys
+import xml.etree.ElementTree
+
+import numpy
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPUnstructuredGridReader, vtkXMLUnstructuredGridReader
+
+A, B, S = 1e5, 1.5e5, 2.0 / 3.0
+F_END = numpy.array([[2.3, 0.25], [-0.1, 1.4]])
+# Values are stored in single precision.
+TOLERANCE = 1e-6
+
+
+def network(F):
+    """Energy density and first Piola stress of the network, from its bonds."""
+    W, P = 0.0, numpy.zeros((2, 2))
+    for k in range(6):
+        N = numpy.array([numpy.cos(numpy.pi * k / 6), numpy.sin(numpy.pi * k / 6)])
+        c = S * (1.0 if k % 2 == 0 else numpy.sqrt(3.0))
+        x = F @ N
+        l = numpy.linalg.norm(x)
+        W += c * (A * (l**2 / 2 + 1 / l - 1.5) + B * (l + 1 / (2 * l**2) - 1.5))
+        P += c * (A * (l - l**-2) + B * (1 - l**-3)) / l * numpy.outer(x, N)
+    return W, P
+
+
+def planar(tensor):
+    """In-plane part of nine components, after a check that the rest is empty."""
+    full = tensor.reshape(-1, 3, 3)
+    assert not full[:, 2, :].any() and not full[:, :, 2].any(), "out-of-plane components are not zero"
+    return full[:, :2, :2]
+
+
+def expect(name, found, wanted, scale):
+    error = numpy.abs(found - wanted).max()
+    assert error <= TOLERANCE * scale, f"{name}: off by {error}, scale {scale}"
+
+
+def check(path, time, n_cells):
+    reader = vtkXMLPUnstructuredGridReader() if path.suffix == ".pvtu" else vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    grid = reader.GetOutput()
+    assert grid.GetNumberOfCells() == n_cells, f"{path.name} has {grid.GetNumberOfCells()} cells"
+    if path.suffix == ".vtu":
+        stored = grid.GetFieldData().GetArray("TIME")
+        assert stored is not None, f"{path.name} has no TIME"
+        assert stored.GetValue(0) == time, f"TIME is {stored.GetValue(0)!r}, the series says {time!r}"
+    points = grid.GetPointData()
+    names = {points.GetArrayName(i) for i in range(points.GetNumberOfArrays())}
+    wanted = {"displacement", "deformation_gradient", "first_piola_stress", "cauchy_stress", "strain_energy_density"}
+    assert names == wanted, f"{path.name} has fields {sorted(names)}"
+    field = {name: vtk_to_numpy(points.GetArray(name)) for name in names}
+
+    X = vtk_to_numpy(grid.GetPoints().GetData())
+    assert numpy.allclose(X.min(axis=0), [0, -0.05, 0], atol=1e-8) and numpy.allclose(X.max(axis=0), [0.15, 0.05, 0], atol=1e-8)
+    F = numpy.eye(2) + time * (F_END - numpy.eye(2))
+    W, P = network(F)
+    sigma = P @ F.T / numpy.linalg.det(F)
+    # The stress of the unloaded sheet is the round-off of moduli of 5e5 Pa.
+    modulus = 5e5
+    expect("displacement", field["displacement"][:, :2], X[:, :2] @ (F - numpy.eye(2)).T, 0.15)
+    assert not field["displacement"][:, 2].any()
+    expect("deformation_gradient", planar(field["deformation_gradient"]), F, 1.0)
+    expect("first_piola_stress", planar(field["first_piola_stress"]), P, modulus)
+    expect("cauchy_stress", planar(field["cauchy_stress"]), sigma, modulus)
+    expect("strain_energy_density", field["strain_energy_density"], W, modulus)
+
+
+def main():
+    series = pathlib.Path(sys.argv[1])
+    frames = [(float(entry.get("timestep")), entry.get("file")) for entry in xml.etree.ElementTree.parse(series).iter("DataSet")]
+    times = [time for time, _ in frames]
+    assert len(frames) == int(sys.argv[2]), f"{len(frames)} frames"
+    assert times == [0.0, 1.0 / 3.0, 1.0], f"times {times}"
+    for time, name in frames:
+        check(series.parent / name, time, int(sys.argv[3]))
+
+
+main()

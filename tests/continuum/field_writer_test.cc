@@ -1,0 +1,95 @@
+// Files that the continuum writes, read back by VTK through python: check_fields.py holds its own formulas.
+#include "continuum/errors.h"
+#include "continuum/field_writer.h"
+#include "sheets.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+#include <fstream>
+#include <sstream>
+
+using namespace sheets;
+namespace fs = std::filesystem;
+
+namespace
+{
+// A folder of its own for each test, removed at the end.
+class FieldWriter : public testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    directory_ = fs::temp_directory_path() /
+                 ("latcon_" + std::string(testing::UnitTest::GetInstance()->current_test_info()->name()) + "_" +
+                  std::to_string(::getpid()));
+  }
+  void TearDown() override { fs::remove_all(directory_); }
+
+  fs::path directory_;
+};
+} // namespace
+
+TEST_F(FieldWriter, IsReadByVtkWithNamesTimesAndValues)
+{
+  const continuum::CauchyBorn law = rubber_network();
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::make_rectangle(mesh, rectangle(6, 4));
+  continuum::StaticSettings settings;
+  settings.first_load_step = 1. / 3.; // a time that 6 digits would cut
+  continuum::StaticSolver solver(mesh, law, on_all_edges(affine(matrix(2.3, 0.25, -0.1, 1.4))), settings);
+  continuum::FieldWriter writer(MPI_COMM_SELF, directory_ / "deeper");
+  writer.add_frame(0., solver.sheet(), solver.displacement());
+  solver.solve([&](const double factor) { writer.add_frame(factor, solver.sheet(), solver.displacement()); });
+  const std::string command =
+    std::string(PYTHON) + " " + CHECK_FIELDS + " " + writer.collection().string() + " 3 96"; // 24 cells, 2 x 2 each
+  EXPECT_EQ(std::system(command.c_str()), 0);
+}
+
+TEST_F(FieldWriter, LeavesNoHalfFile)
+{
+  const continuum::CauchyBorn law = rubber_network();
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::make_rectangle(mesh, rectangle(2, 2));
+  const continuum::Sheet sheet(mesh, law, 1);
+  continuum::FieldWriter writer(MPI_COMM_SELF, directory_, "sheet");
+  writer.add_frame(0., sheet, sheet.make_ghosted());
+  writer.add_frame(0.1, sheet, sheet.make_ghosted());
+  std::vector<std::string> names;
+  for (const auto &entry : fs::directory_iterator(directory_))
+    names.push_back(entry.path().filename());
+  std::sort(names.begin(), names.end());
+  EXPECT_EQ(names, (std::vector<std::string>{"sheet.pvd", "sheet_0000.vtu", "sheet_0001.vtu"}));
+  std::stringstream text;
+  text << std::ifstream(writer.collection()).rdbuf();
+  EXPECT_NE(text.str().find("timestep=\"0.10000000000000001\""), std::string::npos) << text.str();
+}
+
+TEST_F(FieldWriter, ThrowsWhenItCannotWrite)
+{
+  std::ofstream(directory_) << "a file where the folder should be";
+  EXPECT_THROW(continuum::FieldWriter(MPI_COMM_SELF, directory_ / "fields"), continuum::OutputFailed);
+  fs::remove(directory_);
+
+  const continuum::CauchyBorn law = rubber_network();
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::make_rectangle(mesh, rectangle(2, 2));
+  const continuum::Sheet sheet(mesh, law, 1);
+  continuum::FieldWriter writer(MPI_COMM_SELF, directory_);
+  fs::remove_all(directory_);
+  EXPECT_THROW(writer.add_frame(0., sheet, sheet.make_ghosted()), continuum::OutputFailed);
+}
+
+TEST_F(FieldWriter, RefusesTimeThatDoesNotGrow)
+{
+  const continuum::CauchyBorn law = rubber_network();
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::make_rectangle(mesh, rectangle(2, 2));
+  const continuum::Sheet sheet(mesh, law, 1);
+  continuum::FieldWriter writer(MPI_COMM_SELF, directory_);
+  writer.add_frame(0.5, sheet, sheet.make_ghosted());
+  EXPECT_THROW(writer.add_frame(0.5, sheet, sheet.make_ghosted()), continuum::InvalidInput);
+}

@@ -1,0 +1,19 @@
+// One main for every continuum test program: MPI and the thread limit have to be set before the first test.
+#include <deal.II/base/mpi.h>
+
+#include <gtest/gtest.h>
+
+// Under AddressSanitizer: MPI and Trilinos keep memory until the process ends, some of it in modules unloaded by then,
+// which no suppression can name. Every other check stays on.
+extern "C" const char *__asan_default_options();
+extern "C" const char *__asan_default_options()
+{
+  return "detect_leaks=0";
+}
+
+int main(int argc, char **argv)
+{
+  testing::InitGoogleTest(&argc, argv);
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  return RUN_ALL_TESTS();
+}

@@ -1,0 +1,483 @@
+// Laws alone: energy, stress and tangent against each other, automatic differentiation, and numbers worked by hand.
+#include "continuum/errors.h"
+#include "sheets.h"
+
+#include <Sacado.hpp>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <functional>
+#include <limits>
+
+using namespace sheets;
+using continuum::CauchyBorn;
+using continuum::Material;
+using continuum::MooneyRivlin;
+
+namespace
+{
+const double epsilon = std::numeric_limits<double>::epsilon();
+
+// Least-squares slope of log(remainder) over log(h), h = 2^-4 ... 2^-10.
+double observed_order(const std::function<double(double)> &remainder)
+{
+  double n = 0., x_sum = 0., y_sum = 0., xx_sum = 0., xy_sum = 0.;
+  for (int k = 4; k <= 10; ++k)
+  {
+    const double h = std::ldexp(1., -k);
+    const double x = std::log(h);
+    const double y = std::log(remainder(h));
+    n += 1.;
+    x_sum += x;
+    y_sum += y;
+    xx_sum += x * x;
+    xy_sum += x * y;
+  }
+  return (n * xy_sum - x_sum * y_sum) / (n * xx_sum - x_sum * x_sum);
+}
+
+// Energy to stress and stress to tangent by Taylor's theorem. The second-order remainders are left by terms of the size
+// of the stiffness, so an error of any derivative shows as order 1.
+void expect_taylor_orders(const Material &law, const bool of_energy)
+{
+  std::mt19937 generator(11);
+  std::uniform_real_distribution<double> entry(-0.3, 0.3);
+  for (int sample = 0; sample < 20; ++sample)
+  {
+    const Tensor<2, 2> F = random_deformation(generator, 0.8, 3.);
+    const Tensor<2, 2> G = matrix(entry(generator), entry(generator), entry(generator), entry(generator));
+    const double W = law.energy(F);
+    const Tensor<2, 2> P = law.first_piola_stress(F);
+    const Tensor<2, 2> dP = dealii::double_contract<2, 0, 3, 1>(law.tangent(F), G);
+    const double order =
+      of_energy
+        ? observed_order([&](const double h) { return std::abs(law.energy(F + h * G) - W - h * scalar_product(P, G)); })
+        : observed_order([&](const double h) { return (law.first_piola_stress(F + h * G) - P - h * dP).norm(); });
+    // A remainder of order 3 where the second derivative happens to vanish would be no error, hence no upper limit.
+    EXPECT_GE(order, 1.9) << "F = " << F;
+  }
+}
+
+using Fad = Sacado::Fad::DFad<double>;
+using FadFad = Sacado::Fad::DFad<Fad>;
+constexpr unsigned int n_variables = 5; // F_11, F_12, F_21, F_22, F_33
+
+// The energies written once more, from their definitions: the sheet from the full three-dimensional C, with F_33 a
+// variable.
+template <typename Number>
+Number energy_in_3d(const MooneyRivlin::Constants &m, const std::array<Number, n_variables> &f)
+{
+  std::array<std::array<Number, 3>, 3> F;
+  for (auto &row : F)
+    row.fill(Number(0.));
+  F[0][0] = f[0];
+  F[0][1] = f[1];
+  F[1][0] = f[2];
+  F[1][1] = f[3];
+  F[2][2] = f[4];
+  Number trace(0.), trace_of_square(0.);
+  for (int A = 0; A < 3; ++A)
+    for (int B = 0; B < 3; ++B)
+    {
+      Number C(0.);
+      for (int i = 0; i < 3; ++i)
+        C += F[i][A] * F[i][B];
+      if (A == B)
+        trace += C;
+      trace_of_square += C * C;
+    }
+  const Number I2 = 0.5 * (trace * trace - trace_of_square);
+  const Number J = F[2][2] * (F[0][0] * F[1][1] - F[0][1] * F[1][0]);
+  return m.c1 * (trace - 3. - 2. * log(J)) + m.c2 * (I2 - 3. - 4. * log(J)) + 0.5 * m.kappa * (J - 1.) * (J - 1.);
+}
+
+template <typename Number>
+Number energy_of_network(const CauchyBorn &law, const std::array<Number, n_variables> &f)
+{
+  Number W(0.);
+  for (const auto &family : law.families())
+  {
+    const Number x = f[0] * family.direction[0] + f[1] * family.direction[1];
+    const Number y = f[2] * family.direction[0] + f[3] * family.direction[1];
+    const Number l = sqrt(x * x + y * y);
+    if (const auto *rod = std::get_if<continuum::RodPotential>(&family.potential))
+      W += family.weight * (rod->a * (l * l / 2. + 1. / l - 1.5) + rod->b * (l + 1. / (2. * l * l) - 1.5));
+    else
+      W += family.weight * std::get<continuum::LinearPotential>(family.potential).e / 2. * (l - 1.) * (l - 1.);
+  }
+  return W;
+}
+
+struct Derivatives
+{
+  std::array<double, n_variables> first;
+  std::array<std::array<double, n_variables>, n_variables> second;
+};
+
+template <typename Energy>
+Derivatives differentiate(const Energy &energy, const Tensor<2, 2> &F, const double t)
+{
+  const std::array<double, n_variables> at = {F[0][0], F[0][1], F[1][0], F[1][1], t};
+  std::array<FadFad, n_variables> f;
+  for (unsigned int i = 0; i < n_variables; ++i)
+    f[i] = FadFad(n_variables, i, Fad(n_variables, i, at[i]));
+  const FadFad W = energy(f);
+  Derivatives d{};
+  for (unsigned int i = 0; i < n_variables; ++i)
+  {
+    d.first[i] = W.dx(i).val();
+    for (unsigned int j = 0; j < n_variables; ++j)
+      d.second[i][j] = W.dx(i).dx(j);
+  }
+  return d;
+}
+
+void expect_derivatives(const Material &law, const Tensor<2, 2> &F, const Derivatives &d, const double condition)
+{
+  const Tensor<2, 2> P = law.first_piola_stress(F);
+  const Tensor<4, 2> T = law.tangent(F);
+  // Both sides add some tens of terms of the size of the tangent: 100 rounding errors of it, times the cancellation.
+  const double tolerance = 100. * epsilon * condition * T.norm();
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int J = 0; J < 2; ++J)
+    {
+      EXPECT_NEAR(P[i][J], d.first[2 * i + J], tolerance * F.norm());
+      for (unsigned int k = 0; k < 2; ++k)
+        for (unsigned int L = 0; L < 2; ++L)
+          EXPECT_NEAR(T[i][J][k][L], d.second[2 * i + J][2 * k + L], tolerance);
+    }
+}
+
+void expect_objective(const Material &law)
+{
+  std::mt19937 generator(5);
+  for (int sample = 0; sample < 50; ++sample)
+  {
+    const Tensor<2, 2> F = random_deformation(generator);
+    const Tensor<2, 2> R = rotation(0.1 + 0.12 * sample);
+    const double W = law.energy(F);
+    const Tensor<2, 2> P = law.first_piola_stress(F);
+    const double scale = law.tangent(F).norm() * F.norm_square();
+    EXPECT_NEAR(law.energy(R * F), W, 100. * epsilon * scale);
+    EXPECT_NEAR((law.first_piola_stress(R * F) - R * P).norm(), 0., 100. * epsilon * scale);
+    EXPECT_NEAR(law.thickness_stretch(R * F), law.thickness_stretch(F), 100. * epsilon);
+    // Angular momentum: P F^T is symmetric.
+    const Tensor<2, 2> tau = P * transpose(F);
+    EXPECT_NEAR(tau[0][1], tau[1][0], 100. * epsilon * scale);
+  }
+}
+
+void expect_major_symmetry(const Material &law)
+{
+  std::mt19937 generator(6);
+  for (int sample = 0; sample < 50; ++sample)
+  {
+    const Tensor<4, 2> T = law.tangent(random_deformation(generator));
+    for (unsigned int i = 0; i < 2; ++i)
+      for (unsigned int J = 0; J < 2; ++J)
+        for (unsigned int k = 0; k < 2; ++k)
+          for (unsigned int L = 0; L < 2; ++L)
+            EXPECT_NEAR(T[i][J][k][L], T[k][L][i][J], 10. * epsilon * T.norm());
+  }
+}
+
+void expect_refusal(const Material &law)
+{
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const Tensor<2, 2> &F : {matrix(1., 0., 0., -1.25), matrix(1., 2., 2., 4.), matrix(nan, 0., 0., 1.),
+                                matrix(infinity, 0., 0., 1.), Tensor<2, 2>()})
+  {
+    EXPECT_THROW(law.energy(F), continuum::NonPhysicalState);
+    EXPECT_THROW(law.first_piola_stress(F), continuum::NonPhysicalState);
+    EXPECT_THROW(law.tangent(F), continuum::NonPhysicalState);
+    EXPECT_THROW(law.thickness_stretch(F), continuum::NonPhysicalState);
+  }
+  try
+  {
+    law.energy(matrix(1., 0., 0., -1.25));
+  }
+  catch (const continuum::NonPhysicalState &failure)
+  {
+    EXPECT_NE(std::string(failure.what()).find("-1.25"), std::string::npos) << failure.what();
+  }
+}
+
+void expect_isotropic_moduli(const Material &law, const double lambda, const double mu)
+{
+  const Tensor<2, 2> I = matrix(1., 0., 0., 1.);
+  EXPECT_NEAR(law.energy(I), 0., 10. * epsilon * mu);
+  EXPECT_NEAR(law.first_piola_stress(I).norm(), 0., 10. * epsilon * mu);
+  EXPECT_NEAR(law.thickness_stretch(I), 1., 10. * epsilon);
+  const Tensor<4, 2> T = law.tangent(I);
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int J = 0; J < 2; ++J)
+      for (unsigned int k = 0; k < 2; ++k)
+        for (unsigned int L = 0; L < 2; ++L)
+          EXPECT_NEAR(T[i][J][k][L], lambda * I[i][J] * I[k][L] + mu * (I[i][k] * I[J][L] + I[i][L] * I[J][k]),
+                      20. * epsilon * mu)
+            << i << J << k << L;
+}
+
+// sqrt of the eigenvalues of Q(n)/rho, ascending [m/s].
+std::array<double, 2> wave_speeds(const Material &law, const Tensor<2, 2> &F, const Tensor<1, 2> &n, const double rho)
+{
+  const Tensor<4, 2> T = law.tangent(F);
+  Tensor<2, 2> Q;
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int k = 0; k < 2; ++k)
+      for (unsigned int J = 0; J < 2; ++J)
+        for (unsigned int L = 0; L < 2; ++L)
+          Q[i][k] += T[i][J][k][L] * n[J] * n[L];
+  const double mean = 0.5 * trace(Q);
+  const double half = std::sqrt(mean * mean - determinant(Q));
+  return {std::sqrt((mean - half) / rho), std::sqrt((mean + half) / rho)};
+}
+
+CauchyBorn mixed_network()
+{
+  return CauchyBorn({{Tensor<1, 2>({1., 0.}), 0.7, continuum::RodPotential{1e5, 1.5e5}},
+                     {Tensor<1, 2>({0.6, 0.8}), 1.1, continuum::LinearPotential{2e5}},
+                     {Tensor<1, 2>({-0.28, 0.96}), 0.4, continuum::RodPotential{2e5, -0.5e5}}});
+}
+} // namespace
+
+TEST(MooneyRivlin, StressIsEnergyGradient)
+{
+  expect_taylor_orders(rubber_sheet(), true);
+}
+TEST(MooneyRivlin, TangentIsStressGradient)
+{
+  expect_taylor_orders(rubber_sheet(), false);
+}
+TEST(CauchyBorn, StressIsEnergyGradient)
+{
+  expect_taylor_orders(mixed_network(), true);
+}
+TEST(CauchyBorn, TangentIsStressGradient)
+{
+  expect_taylor_orders(mixed_network(), false);
+}
+
+TEST(MooneyRivlin, AgreesWithDifferentiatedThreeDimensionalEnergy)
+{
+  for (const double ratio : {-0.05, 0.3})
+  {
+    const MooneyRivlin law = rubber_sheet(ratio);
+    std::mt19937 generator(3);
+    for (int sample = 0; sample < 100; ++sample)
+    {
+      const Tensor<2, 2> F = random_deformation(generator);
+      const double t = law.thickness_stretch(F);
+      const auto energy = [&](const auto &f) { return energy_in_3d(law.constants(), f); };
+      Derivatives d = differentiate(energy, F, t);
+      EXPECT_NEAR(law.energy(F), energy(std::array<double, n_variables>{F[0][0], F[0][1], F[1][0], F[1][1], t}),
+                  100. * epsilon * law.tangent(F).norm() * F.norm_square());
+      // The thickness is in equilibrium, and stable.
+      EXPECT_NEAR(d.first[4], 0., 100. * epsilon * d.second[4][4]);
+      EXPECT_GT(d.second[4][4], 0.);
+      // Eliminate it, as a minimum does.
+      for (unsigned int i = 0; i < 4; ++i)
+        for (unsigned int j = 0; j < 4; ++j)
+          d.second[i][j] -= d.second[i][4] * d.second[4][j] / d.second[4][4];
+      expect_derivatives(law, F, d, 10.);
+    }
+  }
+}
+
+TEST(CauchyBorn, AgreesWithDifferentiatedEnergy)
+{
+  const CauchyBorn law = mixed_network();
+  std::mt19937 generator(4);
+  for (int sample = 0; sample < 100; ++sample)
+  {
+    const Tensor<2, 2> F = random_deformation(generator);
+    const auto energy = [&](const auto &f) { return energy_of_network(law, f); };
+    EXPECT_NEAR(law.energy(F), energy(std::array<double, n_variables>{F[0][0], F[0][1], F[1][0], F[1][1], 1.}),
+                100. * epsilon * law.tangent(F).norm() * F.norm_square());
+    expect_derivatives(law, F, differentiate(energy, F, 1.), 1.);
+  }
+}
+
+TEST(MooneyRivlin, HasHandWorkedValues)
+{
+  // c1 = 1, c2 = 0, kappa = 2 at det F = 1: 4 t^2 - 2 t - 2 = 0, so t = 1 and J = 1.
+  const MooneyRivlin neo_hooke({1., 0., 2.});
+  const Tensor<2, 2> F = matrix(2., 0., 0., 0.5);
+  EXPECT_NEAR(neo_hooke.thickness_stretch(F), 1., 4. * epsilon);
+  EXPECT_NEAR(neo_hooke.energy(F), 2.25, 20. * epsilon);
+  EXPECT_NEAR(neo_hooke.first_piola_stress(F)[0][0], 3., 20. * epsilon);
+  EXPECT_NEAR(neo_hooke.first_piola_stress(F)[1][1], -3., 20. * epsilon);
+
+  // c1 = c2 = 1, kappa = 9/2 at the same F: 15 t^2 - 4.5 t - 6 = 0, so t = J = 4/5.
+  const MooneyRivlin law({1., 1., 4.5});
+  EXPECT_NEAR(law.thickness_stretch(F), 0.8, 4. * epsilon);
+  EXPECT_NEAR(law.energy(F), 2.7 - 6. * std::log(0.8), 20. * epsilon);
+  EXPECT_NEAR(law.first_piola_stress(F)[0][0], 4.2, 40. * epsilon);
+  EXPECT_NEAR(law.first_piola_stress(F)[1][1], -7.8, 40. * epsilon);
+}
+
+TEST(MooneyRivlin, ApproachesIncompressibleSheetForLargeKappa)
+{
+  // Equibiaxial stretch l of an incompressible sheet: W = c1 (2 l^2 + l^-4 - 3) + c2 (l^4 + 2 l^-2 - 3). The error is
+  // of the order p^2/kappa, p about 2e6 here: 4e12/1e14 of W is about 1.
+  const MooneyRivlin law({2e5, 0.5e5, 1e14});
+  const double l = 1.7;
+  const double W = 2e5 * (2. * l * l + std::pow(l, -4.) - 3.) + 0.5e5 * (std::pow(l, 4.) + 2. / (l * l) - 3.);
+  EXPECT_NEAR(law.energy(matrix(l, 0., 0., l)), W, 1.);
+  EXPECT_NEAR(law.thickness_stretch(matrix(l, 0., 0., l)), 1. / (l * l), 1e-7);
+}
+
+TEST(CauchyBorn, HasHandWorkedValues)
+{
+  const Tensor<2, 2> F = matrix(2., 0., 0., 1.);
+  const CauchyBorn rod({{Tensor<1, 2>({1., 0.}), 2., continuum::RodPotential{3., 5.}}});
+  EXPECT_NEAR(rod.energy(F), 12.25, 20. * epsilon);
+  EXPECT_NEAR(rod.first_piola_stress(F)[0][0], 19.25, 20. * epsilon);
+  EXPECT_NEAR(rod.tangent(F)[0][0][0][0], 9.375, 20. * epsilon);
+  EXPECT_NEAR(rod.tangent(F)[1][0][1][0], 9.625, 20. * epsilon);
+  const CauchyBorn spring({{Tensor<1, 2>({0., 1.}), 3., continuum::LinearPotential{4.}}});
+  const Tensor<2, 2> G = matrix(1., 3., 0., 4.); // stretch 5 along Y
+  EXPECT_NEAR(spring.energy(G), 96., 100. * epsilon);
+  EXPECT_NEAR(spring.first_piola_stress(G)[0][1], 28.8, 100. * epsilon);
+  EXPECT_NEAR(spring.first_piola_stress(G)[1][1], 38.4, 100. * epsilon);
+}
+
+TEST(MooneyRivlin, IsObjective)
+{
+  expect_objective(rubber_sheet());
+}
+TEST(CauchyBorn, IsObjective)
+{
+  expect_objective(rubber_network());
+}
+TEST(MooneyRivlin, HasMajorSymmetry)
+{
+  expect_major_symmetry(rubber_sheet());
+}
+TEST(CauchyBorn, HasMajorSymmetry)
+{
+  expect_major_symmetry(rubber_network());
+}
+TEST(MooneyRivlin, RefusesNonPositiveDeterminant)
+{
+  expect_refusal(rubber_sheet());
+}
+TEST(CauchyBorn, RefusesNonPositiveDeterminant)
+{
+  expect_refusal(rubber_network());
+}
+
+TEST(MooneyRivlin, HasPlaneStressModuliAtIdentity)
+{
+  // Three-dimensional lambda = kappa + 4 c2, reduced by the free thickness.
+  const double mu = 2. * (2e5 + 0.7e5);
+  const double lambda_3d = 3e6 + 4. * 0.7e5;
+  const double lambda = 2. * mu * lambda_3d / (lambda_3d + 2. * mu);
+  const MooneyRivlin law({2e5, 0.7e5, 3e6});
+  expect_isotropic_moduli(law, lambda, mu);
+  EXPECT_NEAR(law.shear_modulus(), mu, 4. * epsilon * mu);
+  EXPECT_NEAR(law.lame_lambda(), lambda, 4. * epsilon * lambda);
+}
+
+TEST(MooneyRivlin, MatchesCauchyRelationForEveryRatio)
+{
+  for (const double ratio : {-0.5, -0.05, 0., 0.6})
+    expect_isotropic_moduli(rubber_sheet(ratio), 5e5, 5e5);
+}
+
+TEST(CauchyBorn, HasEqualLameConstantsAtIdentity)
+{
+  const double mu = 2. / 3. * 9. / 8. * (1. + std::sqrt(3.)) * 2.5e5;
+  EXPECT_NEAR(mu / 2.5e5, 2.049038, 5e-7); // printed digits of theory.md, section 5
+  expect_isotropic_moduli(rubber_network(), mu, mu);
+}
+
+TEST(CauchyBorn, HasTheWaveSpeedsOfTheTheory)
+{
+  // theory.md, section 5: seven printed digits, so half a unit of the last one.
+  const CauchyBorn law = rubber_network();
+  const double rho = 944.;
+  const Tensor<1, 2> x({1., 0.});
+  const Tensor<1, 2> y({0., 1.});
+  const auto expect_speeds = [&](const Tensor<2, 2> &F, const Tensor<1, 2> &n, const double slow, const double fast)
+  {
+    EXPECT_NEAR(wave_speeds(law, F, n, rho)[0], slow, 5.1e-6);
+    EXPECT_NEAR(wave_speeds(law, F, n, rho)[1], fast, 5.1e-6);
+  };
+  expect_speeds(matrix(1., 0., 0., 1.), x, 23.29480, 40.34778);
+  expect_speeds(matrix(2.3, 0., 0., 2.8), x, 19.76693, 20.31142);
+  expect_speeds(matrix(2.3, 0., 0., 2.8), y, 19.00774, 20.31148);
+}
+
+TEST(Material, MinimumAcousticEigenvalueIsTheShearModulusAtIdentity)
+{
+  // Isotropic moduli: the slow wave is the shear wave in every direction.
+  EXPECT_NEAR(continuum::minimum_acoustic_eigenvalue(rubber_sheet(), matrix(1., 0., 0., 1.)), 5e5, 1e-10 * 5e5);
+}
+
+TEST(Material, MinimumAcousticEigenvalueIsTheLowestOverAllDirections)
+{
+  std::mt19937 generator(8);
+  const MooneyRivlin law = rubber_sheet();
+  for (int sample = 0; sample < 20; ++sample)
+  {
+    const Tensor<2, 2> F = random_deformation(generator);
+    double lowest = std::numeric_limits<double>::infinity();
+    const int n = 20000;
+    for (int k = 0; k < n; ++k)
+    {
+      const double speed = wave_speeds(law, F, Tensor<1, 2>({std::cos(pi * k / n), std::sin(pi * k / n)}), 1.)[0];
+      lowest = std::min(lowest, speed * speed);
+    }
+    // A scan of step pi/n misses a smooth minimum by about its curvature times (pi/n)^2/8, below 1e-8 of the stiffness.
+    const double found = continuum::minimum_acoustic_eigenvalue(law, F);
+    EXPECT_LE(found, lowest * (1. + 1e-12));
+    EXPECT_NEAR(found, lowest, 1e-8 * law.tangent(F).norm());
+  }
+}
+
+TEST(Material, StrongEllipticityIsSeenToBeLost)
+{
+  // c2 < 0: at equibiaxial stretch the slow wave softens and turns unstable while a thickness still exists.
+  const MooneyRivlin law = rubber_sheet(-0.2);
+  EXPECT_GT(continuum::minimum_acoustic_eigenvalue(law, matrix(1.5, 0., 0., 1.5)), 0.);
+  EXPECT_LT(continuum::minimum_acoustic_eigenvalue(law, matrix(3., 0., 0., 0.7)), 0.);
+}
+
+TEST(Material, CauchyStressIsForcePerCurrentLength)
+{
+  // Stretch (2, 3) with P = diag(6, 10): the edge of normal x is 3 times longer, that of normal y twice.
+  const Tensor<2, 2> sigma = continuum::cauchy_stress(matrix(6., 0., 0., 10.), matrix(2., 0., 0., 3.));
+  EXPECT_NEAR(sigma[0][0], 2., 4. * epsilon);
+  EXPECT_NEAR(sigma[1][1], 5., 4. * epsilon);
+  EXPECT_EQ(sigma[0][1], 0.);
+}
+
+TEST(MooneyRivlin, RefusesStateWithoutThickness)
+{
+  // c1 + c2 |F|^2 + (kappa/2) (det F)^2 = 3e5 - 0.5e5 * 16.01 + 6e5 * 0.16 < 0: no root.
+  const MooneyRivlin law = rubber_sheet(-0.2);
+  EXPECT_THROW(law.energy(matrix(4., 0., 0., 0.1)), continuum::NonPhysicalState);
+  EXPECT_NO_THROW(law.energy(matrix(4., 0., 0., 1.)));
+}
+
+TEST(MooneyRivlin, RefusesUnstableConstants)
+{
+  EXPECT_THROW(MooneyRivlin({1., -1., 1.}), continuum::InvalidMaterial);
+  EXPECT_THROW(MooneyRivlin({1., 0., 0.}), continuum::InvalidMaterial);
+  EXPECT_THROW(MooneyRivlin({1., 0., std::nan("")}), continuum::InvalidMaterial);
+  EXPECT_THROW(MooneyRivlin({5., -4., 1.}), continuum::InvalidMaterial); // 4 c1 + 8 c2 + kappa = -11
+  EXPECT_THROW(MooneyRivlin::Constants::with_equal_lame_constants(1., -1.), continuum::InvalidMaterial);
+  EXPECT_NO_THROW(MooneyRivlin({1.05, -0.05, 4.2}));
+}
+
+TEST(CauchyBorn, RefusesUnstableFamilies)
+{
+  const Tensor<1, 2> x({1., 0.});
+  EXPECT_THROW(CauchyBorn({}), continuum::InvalidMaterial);
+  EXPECT_THROW(CauchyBorn({{Tensor<1, 2>({1., 1.}), 1., continuum::LinearPotential{1.}}}), continuum::InvalidMaterial);
+  EXPECT_THROW(CauchyBorn({{x, 0., continuum::LinearPotential{1.}}}), continuum::InvalidMaterial);
+  EXPECT_THROW(CauchyBorn({{x, 1., continuum::LinearPotential{-1.}}}), continuum::InvalidMaterial);
+  EXPECT_THROW(CauchyBorn({{x, 1., continuum::RodPotential{1., -1.}}}), continuum::InvalidMaterial);
+}

@@ -1,0 +1,194 @@
+// What several ranks compute, against one rank alone: each rank solves the whole problem on its own communicator, then
+// all solve it together.
+#include "continuum/collective.h"
+#include "continuum/errors.h"
+#include "continuum/field_writer.h"
+#include "sheets.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+using namespace sheets;
+using continuum::StaticSettings;
+using continuum::StaticSolver;
+
+namespace
+{
+struct Answer
+{
+  double energy;
+  std::map<dealii::types::boundary_id, Tensor<1, 2>> reactions;
+  std::vector<continuum::PointState> states;
+  continuum::DeterminantRange range;
+};
+
+Answer answer(const MPI_Comm communicator, const dealii::types::global_dof_index direct_limit)
+{
+  const continuum::MooneyRivlin law = rubber_sheet();
+  Mesh mesh(communicator);
+  continuum::make_rectangle(mesh, rectangle(12, 10));
+  StaticSettings settings;
+  settings.relative_tolerance = 1e-12;
+  settings.linear.direct_limit = direct_limit;
+  StaticSolver solver(mesh, law, bump_problem(2.3, 2.8, 0.03), settings);
+  solver.solve();
+  auto points = scattered_points(7, 5);
+  points.emplace_back(length / 2, 0.);       // a vertex of the mesh
+  points.emplace_back(length / 12, -0.0213); // on an edge between cells
+  points.emplace_back(0., height / 2);       // a corner of the sheet
+  return {solver.total_energy(), solver.reactions(), solver.evaluate(points), solver.determinant_range()};
+}
+
+void expect_same(const dealii::types::global_dof_index direct_limit)
+{
+  const Answer alone = answer(MPI_COMM_SELF, direct_limit);
+  const Answer together = answer(MPI_COMM_WORLD, direct_limit);
+  const double tolerance = 1e-10;
+  EXPECT_NEAR(together.energy, alone.energy, tolerance * alone.energy);
+  ASSERT_EQ(together.reactions.size(), 4u);
+  for (const auto &[boundary, force] : alone.reactions)
+    EXPECT_NEAR((together.reactions.at(boundary) - force).norm(), 0., tolerance * force.norm());
+  EXPECT_NEAR(together.range.smallest, alone.range.smallest, tolerance * alone.range.smallest);
+  EXPECT_NEAR(together.range.largest, alone.range.largest, tolerance * alone.range.largest);
+  for (std::size_t p = 0; p < alone.states.size(); ++p)
+  {
+    const auto &one = alone.states[p];
+    const auto &all = together.states[p];
+    EXPECT_NEAR((all.displacement - one.displacement).norm(), 0., tolerance * length);
+    EXPECT_NEAR((all.F - one.F).norm(), 0., tolerance * one.F.norm());
+    EXPECT_NEAR((all.P - one.P).norm(), 0., tolerance * one.P.norm());
+    EXPECT_NEAR(all.energy_density, one.energy_density, tolerance * one.energy_density);
+  }
+}
+
+unsigned int rank()
+{
+  return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
+}
+unsigned int n_ranks()
+{
+  return dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+}
+} // namespace
+
+TEST(Ranks, AreAsManyAsTheTestSays)
+{
+  EXPECT_EQ(std::to_string(n_ranks()), std::getenv("LATCON_RANKS"));
+}
+
+TEST(Ranks, GiveTheSameAnswerWithTheDirectSolver)
+{
+  expect_same(1000000);
+}
+
+TEST(Ranks, GiveTheSameAnswerWithConjugateGradients)
+{
+  expect_same(0);
+}
+
+TEST(Ranks, SolveSheetsSmallerThanTheirNumber)
+{
+  // One cell: all ranks but one have nothing.
+  const continuum::CauchyBorn law = rubber_network();
+  Mesh mesh(MPI_COMM_WORLD);
+  continuum::make_rectangle(mesh, rectangle(1, 1));
+  const Tensor<2, 2> F = matrix(2.3, 0.2, 0.1, 2.8);
+  StaticSolver solver(mesh, law, on_all_edges(affine(F)));
+  solver.solve();
+  const double energy = law.energy(F) * length * height;
+  EXPECT_NEAR(solver.total_energy(), energy, 1e-10 * energy);
+  EXPECT_NEAR(solver.determinant_range().smallest, determinant(F), 1e-10);
+}
+
+TEST(Ranks, AllThrowWhatOneThrows)
+{
+  const unsigned int last = n_ranks() - 1;
+  const auto fail_on_last = [&]
+  {
+    if (rank() == last)
+      throw continuum::NonPhysicalState("rank " + std::to_string(last));
+  };
+  try
+  {
+    continuum::collectively(MPI_COMM_WORLD, fail_on_last);
+    FAIL() << "did not throw";
+  }
+  catch (const continuum::NonPhysicalState &failure)
+  {
+    EXPECT_EQ(failure.what(), "rank " + std::to_string(last));
+  }
+  // The gravest failure is told, wherever it is.
+  const auto fail_differently = [&]
+  {
+    if (rank() == last)
+      throw continuum::OutputFailed("no disk");
+    throw continuum::NonPhysicalState("no matter");
+  };
+  EXPECT_THROW(continuum::collectively(MPI_COMM_WORLD, fail_differently), continuum::OutputFailed);
+  EXPECT_NO_THROW(continuum::collectively(MPI_COMM_WORLD, [] {}));
+}
+
+TEST(Ranks, AllSeeANonPhysicalStateOnOneRank)
+{
+  // One cell of the sheet, in a corner, is turned inside out.
+  const continuum::MooneyRivlin law = rubber_sheet();
+  Mesh mesh(MPI_COMM_WORLD);
+  continuum::make_rectangle(mesh, rectangle(8, 8));
+  const continuum::Sheet sheet(mesh, law, 1);
+  continuum::Sheet::Vector owned = sheet.make_owned();
+  std::vector<dealii::types::global_dof_index> dofs(sheet.element().n_dofs_per_cell());
+  for (const auto &cell : sheet.dof_handler().active_cell_iterators())
+    if (cell->is_locally_owned() && cell->vertex(0).distance(Point<2>(0., -height / 2)) < 1e-12)
+    {
+      cell->get_dof_indices(dofs);
+      owned(dofs[0]) = length;
+    }
+  owned.compress(dealii::VectorOperation::insert);
+  continuum::Sheet::Vector u = sheet.make_ghosted();
+  u = owned;
+  EXPECT_THROW(sheet.energy(u), continuum::NonPhysicalState);
+  continuum::Sheet::Vector r = sheet.make_owned();
+  continuum::Sheet::Vector magnitude = sheet.make_owned();
+  EXPECT_THROW(sheet.residual(u, r, magnitude), continuum::NonPhysicalState);
+  EXPECT_LT(sheet.determinant_range(u).smallest, 0.);
+
+  // The same through the solver, which cuts its steps, gives up and tells every rank.
+  StaticSettings settings;
+  settings.degree = 1;
+  settings.smallest_load_step = 0.25;
+  const auto corner = std::make_shared<Field>(
+    [](const Point<2> &X) {
+      return Tensor<1, 2>({X.distance(Point<2>(0., -height / 2)) < 1e-3 ? 10. * length : 0., 0.});
+    });
+  StaticSolver solver(mesh, law, on_all_edges(corner), settings);
+  EXPECT_THROW(solver.solve(), continuum::SolverFailed);
+}
+
+TEST(Ranks, WritePiecesThatVtkJoins)
+{
+  namespace fs = std::filesystem;
+  // The same folder on every rank: named after the parent, mpirun.
+  const fs::path directory = fs::temp_directory_path() / ("latcon_ranks_" + std::to_string(::getppid()));
+  const continuum::CauchyBorn law = rubber_network();
+  Mesh mesh(MPI_COMM_WORLD);
+  continuum::make_rectangle(mesh, rectangle(6, 4));
+  StaticSettings settings;
+  settings.first_load_step = 1. / 3.;
+  StaticSolver solver(mesh, law, on_all_edges(affine(matrix(2.3, 0.25, -0.1, 1.4))), settings);
+  continuum::FieldWriter writer(MPI_COMM_WORLD, directory);
+  writer.add_frame(0., solver.sheet(), solver.displacement());
+  solver.solve([&](const double factor) { writer.add_frame(factor, solver.sheet(), solver.displacement()); });
+  if (rank() == 0)
+  {
+    const std::string command =
+      std::string(PYTHON) + " " + CHECK_FIELDS + " " + writer.collection().string() + " 3 96"; // 24 cells, 2 x 2 each
+    EXPECT_EQ(std::system(command.c_str()), 0);
+    fs::remove_all(directory);
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  EXPECT_THROW(writer.add_frame(2., solver.sheet(), solver.displacement()), continuum::OutputFailed);
+}

@@ -1,0 +1,128 @@
+#pragma once
+
+// Laws, meshes and conditions that several continuum tests use. SI units.
+
+#include "continuum/cauchy_born.h"
+#include "continuum/mooney_rivlin.h"
+#include "continuum/rectangle.h"
+#include "continuum/static_solver.h"
+
+#include <deal.II/base/function.h>
+
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <random>
+
+namespace sheets
+{
+using dealii::Point;
+using dealii::Tensor;
+using Mesh = dealii::parallel::distributed::Triangulation<2>;
+
+inline const double pi = std::acos(-1.);
+
+inline Tensor<2, 2> matrix(const double xx, const double xy, const double yx, const double yy)
+{
+  Tensor<2, 2> F;
+  F[0][0] = xx;
+  F[0][1] = xy;
+  F[1][0] = yx;
+  F[1][1] = yy;
+  return F;
+}
+
+inline Tensor<2, 2> rotation(const double angle)
+{
+  return matrix(std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle));
+}
+
+/// Rubber of theory.md, section 5: both shells of the triangular network, area factor s = 2/3, so weights s and sqrt(3)
+/// s.
+inline continuum::CauchyBorn rubber_network(const double a = 1e5, const double b = 1.5e5)
+{
+  const double s = 2. / 3.;
+  std::vector<continuum::FibreFamily> families;
+  for (int k = 0; k < 6; ++k)
+    families.push_back({Tensor<1, 2>({std::cos(pi * k / 6.), std::sin(pi * k / 6.)}),
+                        k % 2 == 0 ? s : std::sqrt(3.) * s, continuum::RodPotential{a, b}});
+  return continuum::CauchyBorn(families);
+}
+
+inline continuum::MooneyRivlin rubber_sheet(const double ratio = -0.05)
+{
+  return continuum::MooneyRivlin(continuum::MooneyRivlin::Constants::with_equal_lame_constants(5e5, ratio));
+}
+
+/// A deformation gradient with principal stretches from `low` to `high` and rotations on both sides.
+inline Tensor<2, 2> random_deformation(std::mt19937 &generator, const double low = 0.7, const double high = 3.5)
+{
+  std::uniform_real_distribution<double> stretch(low, high);
+  std::uniform_real_distribution<double> angle(-pi, pi);
+  return rotation(angle(generator)) * matrix(stretch(generator), 0., 0., stretch(generator)) *
+         rotation(angle(generator));
+}
+
+/// A displacement field from a lambda.
+class Field : public dealii::Function<2>
+{
+public:
+  explicit Field(std::function<Tensor<1, 2>(const Point<2> &)> field) : dealii::Function<2>(2), field_(std::move(field))
+  {
+  }
+  double value(const Point<2> &X, const unsigned int component) const override { return field_(X)[component]; }
+  void vector_value(const Point<2> &X, dealii::Vector<double> &values) const override
+  {
+    const Tensor<1, 2> u = field_(X);
+    values(0) = u[0];
+    values(1) = u[1];
+  }
+
+private:
+  std::function<Tensor<1, 2>(const Point<2> &)> field_;
+};
+
+inline std::shared_ptr<Field> affine(const Tensor<2, 2> &F)
+{
+  return std::make_shared<Field>([F](const Point<2> &X) { return F * Tensor<1, 2>(X) - Tensor<1, 2>(X); });
+}
+
+/// The same displacement on all four edges.
+inline std::vector<continuum::PrescribedDisplacement> on_all_edges(const std::shared_ptr<Field> &field)
+{
+  return {{continuum::edge::left, field},
+          {continuum::edge::right, field},
+          {continuum::edge::bottom, field},
+          {continuum::edge::top, field}};
+}
+
+/// Stretch by (stretch_x, stretch_y) on all edges of a 0.15 m x 0.1 m sheet, and on top of it a bump of the top edge of
+/// height `bump` [m] that vanishes with three derivatives at the corners, so that the solution is smooth there.
+constexpr double length = 0.15;
+constexpr double height = 0.1;
+inline std::vector<continuum::PrescribedDisplacement> bump_problem(const double stretch_x, const double stretch_y,
+                                                                   const double bump)
+{
+  return on_all_edges(std::make_shared<Field>(
+    [=](const Point<2> &X)
+    {
+      const double on_top = X[1] > 0.499 * height ? std::pow(std::sin(pi * X[0] / length), 4) : 0.;
+      return Tensor<1, 2>({(stretch_x - 1.) * X[0], (stretch_y - 1.) * X[1] + bump * on_top});
+    }));
+}
+
+inline continuum::Rectangle rectangle(const unsigned int cells_x, const unsigned int cells_y)
+{
+  return {length, height, cells_x, cells_y};
+}
+
+/// Points that lie on no cell boundary of the meshes used here, spread over the sheet.
+inline std::vector<Point<2>> scattered_points(const unsigned int n_x = 23, const unsigned int n_y = 17)
+{
+  std::vector<Point<2>> points;
+  for (unsigned int i = 0; i < n_x; ++i)
+    for (unsigned int j = 0; j < n_y; ++j)
+      points.emplace_back(length * (i + 0.4371) / n_x, height * ((j + 0.5613) / n_y - 0.5));
+  return points;
+}
+} // namespace sheets

@@ -1,0 +1,74 @@
+#include "lattice/bond_law.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+namespace
+{
+
+using lattice::BondLaw;
+
+const std::vector<BondLaw> laws{lattice::MooneyRivlinBond{1e5, 1.5e5}, lattice::LinearBond{2.35e5}};
+constexpr double stretches[] = {0.4, 0.8, 1., 1.7, 3.05};
+
+// Observed order of |f(x + h) - f(x) - h f'(x)| as h is halved twice; 2 if f' is the derivative, 1 if it is not. A law
+// whose second derivative vanishes leaves round-off alone, for which 2 is returned.
+template <class Function, class Derivative>
+double taylor_slope(const Function &f, const Derivative &df, double x)
+{
+  const auto remainder = [&](double h) { return std::abs(f(x + h) - f(x) - h * df(x)); };
+  const double round_off = 1e-15 * (std::abs(f(x)) + std::abs(df(x)));
+  if (remainder(1e-3) < 10. * round_off)
+    return 2.;
+  return std::log2(remainder(1e-3) / remainder(2.5e-4)) / 2.;
+}
+
+TEST(BondLaw, ForceIsEnergyGradient)
+{
+  for (const BondLaw &law : laws)
+    for (const double lam : stretches)
+      EXPECT_NEAR(taylor_slope([&](double l) { return energy(law, l); }, [&](double l) { return force(law, l); }, lam),
+                  2., 0.05)
+        << lam;
+}
+
+TEST(BondLaw, StiffnessIsForceGradient)
+{
+  for (const BondLaw &law : laws)
+    for (const double lam : stretches)
+      EXPECT_NEAR(
+        taylor_slope([&](double l) { return force(law, l); }, [&](double l) { return stiffness(law, l); }, lam), 2.,
+        0.05)
+        << lam;
+}
+
+TEST(BondLaw, RestIsFreeOfEnergyAndForce)
+{
+  for (const BondLaw &law : laws)
+  {
+    EXPECT_EQ(energy(law, 1.), 0.);
+    EXPECT_EQ(force(law, 1.), 0.);
+  }
+}
+
+// By hand at lam = 2: psi = a + 5/8 b, psi' = 7/4 a + 7/8 b, psi'' = 5/4 a + 3/16 b; at rest psi'' = 3 (a + b).
+TEST(MooneyRivlinBond, HasHandComputedValues)
+{
+  const lattice::MooneyRivlinBond law{8., 16.};
+  EXPECT_DOUBLE_EQ(law.energy(2.), 8. + 10.);
+  EXPECT_DOUBLE_EQ(law.force(2.), 14. + 14.);
+  EXPECT_DOUBLE_EQ(law.force(2., 0.5), 28.);
+  EXPECT_DOUBLE_EQ(law.stiffness(2.), 10. + 3.);
+  EXPECT_DOUBLE_EQ(law.stiffness(1.), 72.);
+}
+
+TEST(LinearBond, HasHandComputedValues)
+{
+  const lattice::LinearBond law{4.};
+  EXPECT_DOUBLE_EQ(law.energy(1.5), 0.5);
+  EXPECT_DOUBLE_EQ(law.force(1.5), 2.);
+  EXPECT_DOUBLE_EQ(law.stiffness(1.5), 4.);
+}
+
+} // namespace

@@ -1,0 +1,176 @@
+#include "lattice/forces.h"
+
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "lattice/energy.h"
+#include "tests/lattice/sheets.h"
+
+namespace
+{
+
+using namespace lattice;
+
+// A noisy stretched sheet, free or held, with velocities as noisy as its positions.
+struct NoisySheet
+{
+  explicit NoisySheet(Material m, Edges edges, Orientation orientation = Orientation::rows_along_crack)
+    : sheet(sheets::square(14, orientation)), material(std::move(m)), forces(sheet, material),
+      state(homogeneous_state(sheet, material, sheets::stretched(2.3, 2.8), edges, sheets::unbreakable))
+  {
+    State other = state;
+    add_noise(state, sheet, 0.1 * sheets::spacing, 1);
+    add_noise(other, sheet, 1., 2);
+    for (std::size_t i = 0; i < state.x.size(); ++i)
+    {
+      state.vx[i] = other.x[i] - 2.3 * sheet.reference(i).x();
+      state.vy[i] = other.y[i] - 2.8 * sheet.reference(i).y();
+    }
+  }
+  TriangularLattice sheet;
+  Material material;
+  Forces forces;
+  State state;
+};
+
+// Largest force that single bonds exert: what round-off in the sums is relative to.
+double force_scale(const Material &material, const TriangularLattice &sheet)
+{
+  return cross_section(material.nearest, sheet) * 5e5;
+}
+
+TEST(Forces, FreeSheetFeelsNoResultant)
+{
+  NoisySheet noisy(sheets::rubber(), Edges::free);
+  noisy.forces.evaluate(noisy.state, noisy.state.vx, noisy.state.vy);
+  double fx = 0., fy = 0., moment = 0., largest = 0.;
+  for (std::size_t i = 0; i < noisy.state.x.size(); ++i)
+  {
+    const double x = noisy.forces.fx()[i], y = noisy.forces.fy()[i];
+    fx += x;
+    fy += y;
+    moment += noisy.state.x[i] * y - noisy.state.y[i] * x;
+    largest = std::max(largest, std::hypot(x, y));
+  }
+  // n sites, each force a sum of 12 terms: round-off grows at most with n.
+  const double round_off = 1e-16 * 12. * static_cast<double>(noisy.sheet.n_sites()) * largest;
+  EXPECT_GT(largest, 0.);
+  EXPECT_NEAR(fx, 0., round_off);
+  EXPECT_NEAR(fy, 0., round_off);
+  EXPECT_NEAR(moment, 0., round_off * noisy.sheet.length() * 2.8);
+}
+
+TEST(Forces, AreMinusTheEnergyGradient)
+{
+  for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
+  {
+    NoisySheet noisy(sheets::rubber(), Edges::held, orientation);
+    const Field rest(noisy.sheet.n_places(), 0.);
+    noisy.forces.evaluate(noisy.state, rest, rest);
+    // Along a random direction the remainder of a central difference falls with h^2.
+    State direction = noisy.state;
+    add_noise(direction, noisy.sheet, sheets::spacing, 3);
+    double slope = 0.;
+    for (std::size_t i = 0; i < rest.size(); ++i)
+    {
+      direction.x[i] -= noisy.state.x[i];
+      direction.y[i] -= noisy.state.y[i];
+      slope -= noisy.forces.fx()[i] * direction.x[i] + noisy.forces.fy()[i] * direction.y[i];
+    }
+    const auto energy_at = [&](double h)
+    {
+      State moved = noisy.state;
+      for (std::size_t i = 0; i < rest.size(); ++i)
+      {
+        moved.x[i] += h * direction.x[i];
+        moved.y[i] += h * direction.y[i];
+      }
+      return elastic_energy(moved, noisy.sheet, noisy.material);
+    };
+    const auto error = [&](double h) { return std::abs((energy_at(h) - energy_at(-h)) / (2. * h) - slope); };
+    EXPECT_NEAR(std::log2(error(4e-2) / error(1e-2)) / 2., 2., 0.1);
+    EXPECT_LT(error(1e-2), 1e-3 * std::abs(slope));
+  }
+}
+
+TEST(Forces, TurnWithTheSheet)
+{
+  NoisySheet noisy(sheets::rubber(), Edges::free);
+  noisy.forces.evaluate(noisy.state, noisy.state.vx, noisy.state.vy);
+  const Field fx = noisy.forces.fx(), fy = noisy.forces.fy();
+  const double c = std::cos(0.7), s = std::sin(0.7);
+  for (auto [u, v] : {std::pair{&noisy.state.x, &noisy.state.y}, std::pair{&noisy.state.vx, &noisy.state.vy}})
+    for (std::size_t i = 0; i < fx.size(); ++i)
+    {
+      const double before_u = (*u)[i], before_v = (*v)[i];
+      (*u)[i] = c * before_u - s * before_v;
+      (*v)[i] = s * before_u + c * before_v;
+    }
+  noisy.forces.evaluate(noisy.state, noisy.state.vx, noisy.state.vy);
+  // Positions carry round-off of the sheet's size, some 40 spacings, into stretches: 1e-14 of the bond forces.
+  const double tolerance = 1e-13 * force_scale(noisy.material, noisy.sheet) * 100.;
+  for (std::size_t i = 0; i < fx.size(); ++i)
+  {
+    EXPECT_NEAR(noisy.forces.fx()[i], c * fx[i] - s * fy[i], tolerance);
+    EXPECT_NEAR(noisy.forces.fy()[i], s * fx[i] + c * fy[i], tolerance);
+  }
+}
+
+TEST(Forces, DashpotsDoNotFeelRigidMotion)
+{
+  NoisySheet noisy(sheets::rubber(), Edges::free);
+  const Field rest(noisy.sheet.n_places(), 0.);
+  noisy.forces.evaluate(noisy.state, rest, rest);
+  const Field fx = noisy.forces.fx();
+  EXPECT_EQ(noisy.forces.viscous_power(), 0.);
+  Field vx(rest.size()), vy(rest.size());
+  for (std::size_t i = 0; i < vx.size(); ++i)
+  {
+    vx[i] = 3. - 200. * noisy.state.y[i];
+    vy[i] = -1. + 200. * noisy.state.x[i];
+  }
+  noisy.forces.evaluate(noisy.state, vx, vy);
+  const double tolerance = 1e-12 * force_scale(noisy.material, noisy.sheet);
+  for (std::size_t i = 0; i < fx.size(); ++i)
+    EXPECT_NEAR(noisy.forces.fx()[i], fx[i], tolerance);
+}
+
+// One bond along x drawn apart at a known speed: A0 (psi' + eta v / l), and the power is the viscous part times v.
+TEST(Forces, AreTheBondLawAndDashpotOfOneBond)
+{
+  const TriangularLattice sheet = sheets::square(14);
+  const Material material = sheets::rubber();
+  State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::free, sheets::unbreakable);
+  const std::size_t left = sheet.index(6, 6), right = left + 1;
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+    for (double &limit : state.breaking_stretch[kind])
+      limit = 0.;
+  state.breaking_stretch[0][left] = sheets::unbreakable;
+  state.x[right] += sheets::spacing; // stretch 2
+  state.vx[right] = 5.;
+  Forces forces(sheet, material);
+  forces.evaluate(state, state.vx, state.vy);
+  // A0 / h = 2/3 (sqrt3 / 2) d; psi'(2) = 7/4 a + 7/8 b.
+  const double section = 2. / 3. * std::sqrt(3.) / 2. * sheets::spacing;
+  const double viscous = section * 65.625 * 5. / sheets::spacing;
+  const double expected = section * (1.75 * 1e5 + 0.875 * 1.5e5) + viscous;
+  EXPECT_NEAR(forces.fx()[left], expected, 1e-12 * expected);
+  EXPECT_NEAR(forces.fx()[right], -expected, 1e-12 * expected);
+  EXPECT_EQ(forces.fy()[left], 0.);
+  EXPECT_NEAR(forces.viscous_power(), viscous * 5., 1e-12 * viscous * 5.);
+}
+
+TEST(Forces, ReportRowsWithOverstretchedBonds)
+{
+  NoisySheet noisy(sheets::rubber(), Edges::free);
+  noisy.forces.evaluate(noisy.state, noisy.state.vx, noisy.state.vy);
+  for (std::size_t row = 0; row < noisy.sheet.rows(); ++row)
+    EXPECT_FALSE(noisy.forces.row_has_events(row));
+  noisy.state.breaking_stretch[4][noisy.sheet.index(5, 7)] = 1.5;
+  noisy.forces.evaluate(noisy.state, noisy.state.vx, noisy.state.vy);
+  for (std::size_t row = 0; row < noisy.sheet.rows(); ++row)
+    EXPECT_EQ(noisy.forces.row_has_events(row), row == 5);
+}
+
+} // namespace

@@ -1,0 +1,264 @@
+#include "lattice/fracture.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "lattice/simulation.h"
+#include "lattice/time_step.h"
+#include "tests/lattice/sheets.h"
+
+namespace
+{
+
+using namespace lattice;
+
+// Ten sites of a free lattice of nearest neighbours, named (row, column); the eleventh, (2, 3), is cut out:
+//
+//   row 2     o   o   o   x
+//   row 1       o   o   o
+//   row 0     o   o   o   o
+struct TenSites
+{
+  explicit TenSites(Toughening toughening, double breaking_stretch = 1.5)
+    : sheet(1., 3., std::sqrt(3.), Orientation::rows_along_crack), material(sheets::nearest_only()),
+      forces(sheet, material), fracture(sheet, material, breaking_stretch, toughening, Eigen::Matrix2d::Identity()),
+      state(homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::free, breaking_stretch))
+  {
+    fracture.watch(forces);
+    EXPECT_EQ(sheet.n_sites(), 11u);
+    EXPECT_EQ(fracture.remove_site(state, sheet.index(2, 3)), 0.); // undeformed bonds hold no energy
+  }
+
+  const std::vector<BrokenBond> &apply()
+  {
+    forces.evaluate(state, state.vx, state.vy);
+    return fracture.apply(state, forces, state.vx, state.vy);
+  }
+
+  std::size_t n_bonds() const
+  {
+    std::size_t n = 0;
+    for_each_bond(state, sheet, [&](std::size_t, std::size_t, std::size_t) { ++n; });
+    return n;
+  }
+
+  double limit(std::size_t row, std::size_t column, std::size_t kind) const
+  {
+    return state.breaking_stretch[kind][sheet.index(row, column)];
+  }
+
+  TriangularLattice sheet;
+  Material material;
+  Forces forces;
+  Fracture fracture;
+  State state;
+};
+
+// Rows hold 3 + 2 + 3 bonds, the gaps 6 each; the cut corner takes one of a row and one of a gap with it.
+TEST(Fracture, CuttingASiteTakesItsBonds)
+{
+  const TenSites sheet{NoToughening{}};
+  EXPECT_EQ(sheet.n_bonds(), 20u - 2u);
+  EXPECT_EQ(sheet.state.lost_bonds[sheet.sheet.index(2, 2)], 1);
+  EXPECT_EQ(sheet.state.lost_bonds[sheet.sheet.index(1, 2)], 1);
+  EXPECT_EQ(sheet.state.inverse_mass[sheet.sheet.index(2, 3)], 0.);
+}
+
+// Site (0, 0) pulled to the left by 0.6: its bond along the row comes to 1.6, the one at 60 degrees to
+// sqrt(1.1^2 + 3/4) = 1.4. Only the first is beyond 1.5.
+TEST(Fracture, BreaksWhatIsBeyondTheLimitForGood)
+{
+  TenSites sheet{NoToughening{}};
+  const std::size_t corner = sheet.sheet.index(0, 0);
+  sheet.state.x[corner] -= 0.6;
+  const std::vector<BrokenBond> broken = sheet.apply();
+  ASSERT_EQ(broken.size(), 1u);
+  EXPECT_EQ(broken[0].near, corner);
+  EXPECT_EQ(broken[0].far, corner + 1);
+  EXPECT_EQ(broken[0].kind, 0u);
+  EXPECT_NEAR(broken[0].stretch, 1.6, 1e-14);
+  EXPECT_NEAR(broken[0].midpoint.x(), 0.5, 1e-14);
+  EXPECT_NEAR(broken[0].midpoint.y(), -std::sqrt(3.) / 2., 1e-14);
+  const double volume = cross_section(sheet.material.nearest, sheet.sheet) * 1.;
+  EXPECT_NEAR(broken[0].energy, volume * energy(sheet.material.nearest.law, 1.6), 1e-9);
+  EXPECT_EQ(sheet.n_bonds(), 17u);
+  EXPECT_EQ(sheet.state.lost_bonds[corner], 1);
+  EXPECT_EQ(sheet.state.lost_bonds[corner + 1], 1);
+
+  // What remains pulls on the corner along the other bond alone, in the same evaluation already.
+  const Eigen::Vector2d pull(sheet.forces.fx()[corner], sheet.forces.fy()[corner]);
+  EXPECT_NEAR(pull.normalized().dot(Eigen::Vector2d(1.1, std::sqrt(0.75)).normalized()), 1., 1e-12);
+
+  sheet.state.x[corner] += 0.6; // back home: still broken
+  EXPECT_TRUE(sheet.apply().empty());
+  EXPECT_EQ(sheet.n_bonds(), 17u);
+  EXPECT_EQ(sheet.limit(0, 0, 0), 0.);
+}
+
+// Six bonds at most: the tip needs two losses. The corner's two bonds go; then its neighbours have lost one each.
+TEST(Fracture, TipIsTheRightMostSiteThatLostAQuarterOfItsBonds)
+{
+  TenSites sheet{NoToughening{}};
+  EXPECT_FALSE(sheet.fracture.tip());
+  sheet.state.x[sheet.sheet.index(0, 0)] -= 2.;
+  EXPECT_EQ(sheet.apply().size(), 2u);
+  ASSERT_TRUE(sheet.fracture.tip());
+  EXPECT_EQ(*sheet.fracture.tip(), sheet.sheet.index(0, 0));
+  // (0, 1) sinks: it loses (0, 2), (1, 0), (1, 1); now three of its own four are gone, and (1, 1) at X = 1.5 has lost
+  // one.
+  sheet.state.y[sheet.sheet.index(0, 1)] -= 2.;
+  sheet.apply();
+  EXPECT_EQ(*sheet.fracture.tip(), sheet.sheet.index(0, 1));
+  // (0, 0) further left changes nothing; the tip never goes back.
+  sheet.state.x[sheet.sheet.index(2, 0)] -= 2.;
+  sheet.apply();
+  EXPECT_EQ(*sheet.fracture.tip(), sheet.sheet.index(0, 1));
+}
+
+// Tip at (0, 1), X = 1; delta = 0.4: bonds with midpoint X < 0.6 toughen, those at 0.75 and beyond do not.
+TEST(Fracture, ToughensBehindTheTip)
+{
+  TenSites sheet{BehindTipToughening{0.4, 3.}};
+  sheet.state.y[sheet.sheet.index(0, 1)] -= 2.;
+  sheet.apply();
+  ASSERT_EQ(*sheet.fracture.tip(), sheet.sheet.index(0, 1));
+  EXPECT_EQ(sheet.limit(2, 0, 0), 4.5); // midpoint 0.5
+  EXPECT_EQ(sheet.limit(0, 0, 1), 4.5); // midpoint 0.25
+  EXPECT_EQ(sheet.limit(1, 0, 1), 1.5); // midpoint 0.75
+  EXPECT_EQ(sheet.limit(2, 1, 0), 1.5); // midpoint 1.5
+  // A tougher bond holds at 1.6 ... and goes at 4.6.
+  sheet.state.x[sheet.sheet.index(2, 0)] -= 0.6;
+  EXPECT_TRUE(sheet.apply().empty());
+  EXPECT_EQ(sheet.limit(2, 0, 0), 4.5); // toughened once, not once more
+  sheet.state.x[sheet.sheet.index(2, 0)] -= 3.;
+  const std::vector<BrokenBond> broken = sheet.apply();
+  EXPECT_EQ(broken.size(), 1u);
+}
+
+// Bond (2, 0)-(2, 1) squeezed to 0.7 of its loaded stretch, which is 1 here, toughens at fraction 0.8; the others do
+// not.
+TEST(Fracture, ToughensOnRetraction)
+{
+  TenSites sheet{RetractionToughening{0.8, 2.}};
+  sheet.state.x[sheet.sheet.index(2, 0)] += 0.15;
+  sheet.apply();
+  EXPECT_EQ(sheet.limit(2, 0, 0), 1.5); // 0.85: not yet
+  sheet.state.x[sheet.sheet.index(2, 0)] += 0.15;
+  sheet.apply();
+  EXPECT_EQ(sheet.limit(2, 0, 0), 3.);
+  EXPECT_EQ(sheet.limit(0, 0, 0), 1.5);
+  EXPECT_EQ(sheet.limit(2, 1, 0), 1.5);
+  sheet.apply();
+  EXPECT_EQ(sheet.limit(2, 0, 0), 3.);           // once
+  sheet.state.x[sheet.sheet.index(2, 0)] -= 1.3; // stretch 2
+  for (const BrokenBond &bond : sheet.apply())
+    EXPECT_NE(bond.near, sheet.sheet.index(2, 0));
+  EXPECT_EQ(sheet.limit(2, 0, 0), 3.);
+}
+
+TEST(Fracture, RefusesRulesOutOfRange)
+{
+  EXPECT_THROW(TenSites(NoToughening{}, 0.), std::invalid_argument);
+  EXPECT_THROW(TenSites(BehindTipToughening{-1., 2.}), std::invalid_argument);
+  EXPECT_THROW(TenSites(BehindTipToughening{1., 0.5}), std::invalid_argument);
+  EXPECT_THROW(TenSites(RetractionToughening{1.2, 2.}), std::invalid_argument);
+}
+
+struct Crack
+{
+  explicit Crack(Orientation orientation, double noise, double time_step_factor = 0.9, double n = 40.)
+    : sheet(sheets::spacing, 1.5 * n * sheets::spacing, n * sheets::spacing, orientation), material(sheets::rubber())
+  {
+    const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
+    State state = homogeneous_state(sheet, material, F, Edges::held, 3.05);
+    add_noise(state, sheet, noise * sheets::spacing, 1);
+    simulation = std::make_unique<Simulation>(
+      sheet, material, std::move(state), time_step_factor * time_step_limits(sheet, material, 0.3).combined,
+      Fracture(sheet, material, 3.05, BehindTipToughening{8. * sheets::spacing, 1000.}, F));
+    // A slit on the line y = 0: along a row, or one site of every second row.
+    std::vector<std::size_t> seed;
+    if (orientation == Orientation::rows_along_crack)
+      seed = sheets::middle_row(sheet, 6, 8);
+    else
+      for (std::size_t row = 6; row < 14; row += 2)
+        seed.push_back(sheet.index(row, sheet.columns() / 2));
+    simulation->cut(seed);
+  }
+  TriangularLattice sheet;
+  Material material;
+  std::unique_ptr<Simulation> simulation;
+};
+
+// Without noise the crack and its mirror image are one: positions agree to the last bit, bonds break in pairs.
+class SymmetricSeed : public testing::TestWithParam<Orientation>
+{
+};
+INSTANTIATE_TEST_SUITE_P(Fracture, SymmetricSeed,
+                         testing::Values(Orientation::rows_along_crack, Orientation::rows_across_crack));
+TEST_P(SymmetricSeed, StaysSymmetricToTheLastBit)
+{
+  Crack crack(GetParam(), 0.);
+  std::size_t broken = 0;
+  double lowest = 0., highest = 0.;
+  for (int step = 0; step < 4000; ++step)
+    for (const BrokenBond &bond : crack.simulation->step())
+    {
+      ++broken;
+      lowest = std::min(lowest, bond.midpoint.y());
+      highest = std::max(highest, bond.midpoint.y());
+    }
+  EXPECT_GT(broken, 100u);
+  EXPECT_EQ(lowest, -highest);
+  const TriangularLattice &sheet = crack.sheet;
+  const bool along = GetParam() == Orientation::rows_along_crack;
+  for (std::size_t row = 0; row < sheet.rows(); ++row)
+    for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
+    {
+      const std::size_t place = sheet.index(row, column);
+      const std::size_t mirror =
+        along ? sheet.index(sheet.rows() - 1 - row, column) : sheet.index(row, sheet.sites_in_row(row) - 1 - column);
+      ASSERT_EQ(crack.simulation->state().x[place], crack.simulation->state().x[mirror]);
+      ASSERT_EQ(crack.simulation->state().y[place], -crack.simulation->state().y[mirror]);
+    }
+}
+
+// Energy ledger through a running crack: what the springs lost is in motion, in the dashpots or in broken bonds.
+TEST(EnergyBalance, ClosesThroughFracture)
+{
+  Crack crack(Orientation::rows_along_crack, 0.01, 0.5);
+  for (int step = 0; step < 6000; ++step)
+    crack.simulation->step();
+  const EnergyBalance e = crack.simulation->energies();
+  EXPECT_GT(crack.simulation->n_broken(), 100u);
+  EXPECT_GT(e.viscous, 1e-3 * e.initial);
+  EXPECT_GT(e.broken, 1e-3 * e.initial);
+  EXPECT_LT(std::abs(e.imbalance()), 1e-6 * e.initial);
+}
+
+// A sheet drawn out by its edges at 40 % a millisecond, dashpots at work: the edges' work goes into springs and
+// dashpots.
+TEST(EnergyBalance, ClosesWithMovingEdges)
+{
+  const TriangularLattice sheet = sheets::square(20);
+  const Material material = sheets::rubber();
+  const auto relative_imbalance = [&](double time_step)
+  {
+    State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held, sheets::unbreakable);
+    Simulation simulation(sheet, material, std::move(state), time_step);
+    simulation.move_edges(sheets::stretched(400., 200.));
+    const auto steps = static_cast<std::size_t>(std::lround(2e-4 / time_step));
+    for (std::size_t step = 0; step < steps; ++step)
+      simulation.step();
+    const EnergyBalance e = simulation.energies();
+    EXPECT_GT(e.boundary_work, 0.);
+    EXPECT_GT(e.viscous, 0.1 * e.boundary_work);
+    return std::abs(e.imbalance()) / e.boundary_work;
+  };
+  const double fine = relative_imbalance(2.5e-8);
+  EXPECT_LT(fine, 1e-5);
+  EXPECT_NEAR(std::log2(relative_imbalance(1e-7) / fine) / 2., 2., 0.3);
+}
+
+} // namespace

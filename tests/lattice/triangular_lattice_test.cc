@@ -1,0 +1,120 @@
+#include "lattice/triangular_lattice.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "tests/lattice/sheets.h"
+
+namespace
+{
+
+using lattice::Orientation;
+using lattice::TriangularLattice;
+
+class BothOrientations : public testing::TestWithParam<Orientation>
+{
+};
+INSTANTIATE_TEST_SUITE_P(TriangularLattice, BothOrientations,
+                         testing::Values(Orientation::rows_along_crack, Orientation::rows_across_crack));
+
+// Six neighbours at d and six at sqrt3 d, no other: compared with all pairs of positions, which know of no index.
+TEST_P(BothOrientations, SitesHaveTwelveNeighboursAtTheRightDistances)
+{
+  const TriangularLattice sheet = sheets::square(12, GetParam());
+  const lattice::Material material = sheets::rubber();
+  const lattice::State state =
+    lattice::homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), lattice::Edges::free, sheets::unbreakable);
+  std::vector<std::size_t> sites;
+  for (std::size_t place = 0; place < sheet.n_places(); ++place)
+    if (sheet.is_site(place))
+      sites.push_back(place);
+  ASSERT_EQ(sites.size(), sheet.n_sites());
+
+  std::size_t interior = 0;
+  for (const std::size_t site : sites)
+  {
+    std::size_t nearest = 0, next = 0;
+    for (const std::size_t other : sites)
+    {
+      const double distance = (sheet.reference(other) - sheet.reference(site)).norm() / sheets::spacing;
+      nearest += std::abs(distance - 1.) < 1e-9;
+      next += std::abs(distance - std::sqrt(3.)) < 1e-9;
+    }
+    std::size_t nearest_bonds = 0, next_bonds = 0;
+    lattice::for_each_bond_of_site(state, sheet, site,
+                                   [&](std::size_t near, std::size_t kind)
+                                   {
+                                     const std::size_t far =
+                                       near + static_cast<std::size_t>(sheet.shift(kind, sheet.row_of(near)));
+                                     EXPECT_TRUE(near == site || far == site);
+                                     const Eigen::Vector2d bond = sheet.reference(far) - sheet.reference(near);
+                                     EXPECT_NEAR((bond - sheet.bond_vector(kind)).norm(), 0., 1e-15);
+                                     EXPECT_NEAR(bond.norm(), sheet.rest_length(kind), 1e-15);
+                                     (TriangularLattice::is_nearest(kind) ? nearest_bonds : next_bonds) += 1;
+                                   });
+    EXPECT_EQ(nearest_bonds, nearest);
+    EXPECT_EQ(next_bonds, next);
+    interior += nearest == 6 && next == 6;
+  }
+  EXPECT_GT(interior, sites.size() / 2);
+}
+
+TEST_P(BothOrientations, BondDirectionsAreTheStatedOnes)
+{
+  const TriangularLattice sheet = sheets::square(12, GetParam());
+  // Angles modulo 180 degrees of kinds 0 to 5; turned by 30 degrees means x and y exchanged here.
+  const double along[] = {0., 60., 120., 30., 150., 90.};
+  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+  {
+    const Eigen::Vector2d R = sheet.bond_vector(kind);
+    const double angle = std::atan2(R.y(), R.x()) * 180. / M_PI;
+    const double expected = GetParam() == Orientation::rows_along_crack ? along[kind] : 90. - along[kind];
+    EXPECT_NEAR(angle, expected, 1e-9) << kind;
+  }
+}
+
+TEST_P(BothOrientations, SheetIsItsOwnMirrorImage)
+{
+  const TriangularLattice sheet = sheets::square(11, GetParam());
+  for (std::size_t row = 0; row < sheet.rows(); ++row)
+    for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
+    {
+      const Eigen::Vector2d X = sheet.reference(sheet.index(row, column));
+      const bool along = GetParam() == Orientation::rows_along_crack;
+      const std::size_t mirror_row = along ? sheet.rows() - 1 - row : row;
+      const std::size_t mirror_column = along ? column : sheet.sites_in_row(row) - 1 - column;
+      const Eigen::Vector2d mirror = sheet.reference(sheet.index(mirror_row, mirror_column));
+      EXPECT_EQ(mirror.x(), X.x());
+      EXPECT_EQ(mirror.y(), -X.y()); // to the last bit
+    }
+}
+
+TEST_P(BothOrientations, ExtentIsThatOfTheOutermostSites)
+{
+  const TriangularLattice sheet(sheets::spacing, 0.02, 0.01, GetParam());
+  // Rounded to whole rows: at most half a pitch off along x, a whole one along y, where the number of rows is odd.
+  EXPECT_NEAR(sheet.length(), 0.02, 0.5 * sheets::spacing);
+  EXPECT_NEAR(sheet.height(), 0.01, sheets::spacing);
+  Eigen::Vector2d low(1., 1.), high(-1., -1.);
+  for (std::size_t place = 0; place < sheet.n_places(); ++place)
+    if (sheet.is_site(place))
+    {
+      low = low.cwiseMin(sheet.reference(place));
+      high = high.cwiseMax(sheet.reference(place));
+    }
+  EXPECT_EQ(low.x(), 0.);
+  EXPECT_NEAR(high.x(), sheet.length(), 1e-15);
+  EXPECT_NEAR(high.y() - low.y(), sheet.height(), 1e-15);
+  EXPECT_EQ(high.y(), -low.y());
+}
+
+TEST(TriangularLattice, RefusesWhatIsNoSheet)
+{
+  EXPECT_THROW(TriangularLattice(0., 1., 1., Orientation::rows_along_crack), std::invalid_argument);
+  EXPECT_THROW(TriangularLattice(1., -1., 1., Orientation::rows_along_crack), std::invalid_argument);
+  EXPECT_THROW(TriangularLattice(1., 0.3, 1., Orientation::rows_along_crack), std::invalid_argument);
+}
+
+} // namespace

@@ -1,0 +1,30 @@
+/// Files that are either the old ones or the new ones, never halves.
+#ifndef verification_atomic_file_h
+#define verification_atomic_file_h
+
+#include <functional>
+#include <iosfwd>
+#include <string>
+
+namespace verification
+{
+
+/// Replaces the file `path` by `text`. The text goes to `path + ".part"` in the same folder, is forced to the disk, and
+/// is then renamed, so that at any moment, also after a kill or a full disk, `path` is whole: the old file or the new
+/// one.
+/// @throws OutputError naming `path` and the system's reason; the old file is untouched and the part removed.
+void write_file(const std::string &path, const std::string &text);
+
+/// The same for a text that `writer` prints. Nothing is written if `writer` throws; what it throws is passed on.
+/// The whole text is held in memory. The stream prints doubles with six digits unless told otherwise; see
+/// full_precision().
+/// @throws OutputError as above, and if `writer` leaves the stream in a failed state.
+void write_file(const std::string &path, const std::function<void(std::ostream &)> &writer);
+
+/// The shortest decimal text that reads back to the same double, bit for bit, in any locale: 0.1 -> "0.1".
+/// Not-a-number gives "nan" (its sign and payload are lost), infinities "inf" and "-inf".
+[[nodiscard]] std::string full_precision(double value);
+
+} // namespace verification
+
+#endif

@@ -1,0 +1,205 @@
+#include "verification/case.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+
+#include "lattice/time_step.h"
+#include "verification/atomic_file.h"
+
+namespace verification
+{
+
+void ShellCase::declare(Parameters &parameters, const std::string &section)
+{
+  parameters.add(section, "law", law, {{"mooney-rivlin", Law::mooney_rivlin}, {"linear", Law::linear}},
+                 "law of a bond: rod of incompressible Mooney-Rivlin rubber with constants a and b, or linear spring");
+  parameters.add(section, "a", a, NonNegative{}, "Pa", "a = 2 C1 of a Mooney-Rivlin bond");
+  parameters.add(section, "b", b, NonNegative{}, "Pa", "b = 2 C2 of a Mooney-Rivlin bond");
+  parameters.add(section, "modulus", modulus, Positive{}, "Pa", "modulus e of a linear bond");
+  parameters.add(section, "area factor", area_factor, Positive{}, "1",
+                 "s: cross-section of a bond over (sqrt3 / 2) d h; the source paper leaves it open");
+  parameters.add(section, "viscosity", viscosity, NonNegative{}, "Pa s", "eta of the Kelvin dashpot along the bond");
+}
+
+void ShellCase::check(Parameters &parameters, const std::string &section) const
+{
+  if (law == Law::mooney_rivlin && a + b == 0.)
+    parameters.error(section + "/a", "a bond needs stiffness: a + b must be positive", {section + "/b"});
+}
+
+lattice::Shell ShellCase::shell() const
+{
+  if (law == Law::linear)
+    return {lattice::LinearBond{modulus}, area_factor, viscosity};
+  return {lattice::MooneyRivlinBond{a, b}, area_factor, viscosity};
+}
+
+void Case::declare(Parameters &p)
+{
+  p.add("Sheet", "spacing", spacing, Positive{}, "m", "distance d of nearest sites, undeformed", Presence::required);
+  p.add("Sheet", "length", length, Positive{}, "m",
+        "extent along x, the way of the crack, undeformed; rounded to whole lattice rows or columns",
+        Presence::required);
+  p.add("Sheet", "height", height, Positive{}, "m", "extent along y, undeformed; rounded likewise", Presence::required);
+  p.add("Sheet", "orientation", orientation,
+        {{"rows-along-crack", lattice::Orientation::rows_along_crack},
+         {"rows-across-crack", lattice::Orientation::rows_across_crack}},
+        "rows of nearest neighbours along x, or turned by 30 degrees so that they run along y");
+
+  p.add("Material", "density", density, Positive{}, "kg/m^3", "rho of the rubber", Presence::required);
+  nearest.declare(p, "Nearest neighbours");
+  p.add("Next-nearest neighbours", "present", has_next_nearest, "whether there are next-nearest-neighbour bonds");
+  next_nearest.declare(p, "Next-nearest neighbours");
+
+  p.add("Loading", "strain x", strain_x, Above{-1.}, "1", "eps_x: the sheet is stretched by 1 + eps_x along x",
+        Presence::required);
+  p.add("Loading", "strain y", strain_y, Above{-1.}, "1", "eps_y: the sheet is stretched by 1 + eps_y along y",
+        Presence::required);
+
+  p.add("Lattice", "solution", solution, {{"relaxed", Solution::relaxed}, {"motion", Solution::motion}},
+        "what `latcon lattice` computes: static equilibrium, or the motion up to the end time");
+  p.add("Lattice", "noise amplitude", noise_amplitude, Between{0., 0.3}, "1",
+        "largest initial displacement of a site along x and along y, over d");
+  p.add("Lattice", "noise seed", noise_seed, Any{}, "seed of the random numbers");
+
+  p.add("Fracture", "breaking stretch", breaking_stretch, Above{1.}, "1",
+        "lam_f: a bond breaks for good beyond this stretch; needed by `latcon fracture`");
+  p.add("Fracture", "toughening", toughening,
+        {{"none", Toughening::none}, {"behind-tip", Toughening::behind_tip}, {"retraction", Toughening::retraction}},
+        "which bonds have lam_f multiplied by the factor: none, those behind the tip, or those that have retracted");
+  p.add("Fracture", "distance", toughening_distance, NonNegative{}, "m",
+        "delta: behind-tip toughens bonds whose undeformed midpoint is farther than this behind the tip");
+  p.add("Fracture", "fraction", toughening_fraction, Between{0.01, 0.999}, "1",
+        "retraction toughens bonds that come below this fraction of their stretch in the loaded sheet");
+  p.add("Fracture", "factor", toughening_factor, AtLeast{1.}, "1", "toughened bonds break at this times lam_f");
+  p.add("Fracture", "seed sites", seed_sites, Between{1., 1000.},
+        "number of sites removed in a line along y = 0 as seed crack");
+  p.add("Fracture", "seed position", seed_position, Between{0.01, 0.9}, "1",
+        "left end of the seed crack, as a fraction of the length");
+  p.add("Fracture", "stop position", stop_position, Between{0.05, 0.99}, "1",
+        "the run ends when the tip has come this fraction of the length");
+
+  p.add("Time", "end", end_time, NonNegative{}, "s", "the motion ends here at the latest");
+  p.add("Time", "step", time_step, Positive{}, "s",
+        "time step of the lattice; auto: safety factor times the stable one");
+  p.add("Time", "safety factor", safety_factor, Between{0.01, 1.}, "1",
+        "automatic time step over the one that is stable in every configuration");
+
+  p.add("Continuum", "law", law,
+        {{"cauchy-born", ContinuumLaw::cauchy_born}, {"mooney-rivlin", ContinuumLaw::mooney_rivlin}},
+        "law of the finite element sheet: that of the lattice, or Mooney-Rivlin calibrated along the loading path");
+  p.add("Continuum", "ratio", mooney_rivlin_ratio, Between{-0.9, 0.9}, "1",
+        "r = C2 / (C1 + C2) of the Mooney-Rivlin law; auto: calibrated along the loading path");
+  p.add("Continuum", "cells x", cells_x, Between{1., 4096.}, "cells of the mesh along x");
+  p.add("Continuum", "cells y", cells_y, Between{1., 4096.}, "cells of the mesh along y");
+  p.add("Continuum", "degree", degree, Between{1., 4.}, "polynomial degree p of the elements");
+
+  p.add("Output", "frame interval", frame_interval, NonNegative{}, "s",
+        "time between frames of the lattice; 0: first and last frame alone");
+  p.add("Output", "energy interval", energy_interval, AtLeast{1.}, "time steps between rows of energy.csv");
+
+  p.add("Reference", "wavelength", reference_wavelength, Positive{}, "m",
+        "published wavelength of the crack path, undeformed, to set the measured one beside; auto: none");
+  p.add("Reference", "amplitude", reference_amplitude, Positive{}, "m",
+        "published amplitude of the crack path, undeformed, likewise");
+  p.add("Reference", "speed", reference_speed, Positive{}, "m/s", "published Lagrangian speed of the crack, likewise");
+  p.add("Reference", "tolerance", reference_tolerance, Positive{}, "1",
+        "relative difference from the published values within which a measured one counts as agreeing");
+}
+
+void Case::check(Parameters &p) const
+{
+  nearest.check(p, "Nearest neighbours");
+  if (has_next_nearest)
+    next_nearest.check(p, "Next-nearest neighbours");
+
+  if (height < 8. * spacing)
+    p.error("Sheet/height", "the sheet must be at least 8 spacings high, " + full_precision(8. * spacing) + " m",
+            {"Sheet/spacing"});
+  if (length < 8. * spacing)
+    p.error("Sheet/length", "the sheet must be at least 8 spacings long, " + full_precision(8. * spacing) + " m",
+            {"Sheet/spacing"});
+
+  if (breaking_stretch && height >= 8. * spacing && length >= 8. * spacing)
+  {
+    const lattice::TriangularLattice sheet = lattice();
+    double longest = 0.;
+    double angle = 0.;
+    for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+    {
+      if (!has_next_nearest && !lattice::TriangularLattice::is_nearest(kind))
+        continue;
+      const Eigen::Vector2d R = sheet.bond_vector(kind);
+      const double stretch = (deformation() * R).norm() / R.norm();
+      if (stretch > longest)
+      {
+        longest = stretch;
+        angle = std::atan2(R.y(), R.x()) * 180. / M_PI;
+      }
+    }
+    if (longest >= *breaking_stretch)
+    {
+      std::ostringstream text;
+      text << "bonds at " << std::lround(angle) << " degrees to x are stretched to " << longest
+           << " by the loading alone and would all break; the breaking stretch must be larger than that";
+      p.error("Fracture/breaking stretch", text.str(), {"Loading/strain x", "Loading/strain y"});
+    }
+    const double seed_pitch = orientation == lattice::Orientation::rows_along_crack ? spacing : std::sqrt(3.) * spacing;
+    if (seed_position * sheet.length() + (seed_sites + 1) * seed_pitch > stop_position * sheet.length())
+      p.error("Fracture/seed sites", "the seed crack must end before the stop position",
+              {"Fracture/seed position", "Fracture/stop position", "Sheet/length"});
+  }
+  if (toughening != Toughening::none && toughening_factor == 1.)
+    p.error("Fracture/factor",
+            "toughening by a factor of 1 changes nothing; give a larger factor, or toughening = none",
+            {"Fracture/toughening"});
+  if (time_step && spacing > 0. && density > 0. && height >= 8. * spacing && length >= 8. * spacing)
+  {
+    // Twice the bound is where the undeformed lattice of nearest neighbours is certain to be unstable.
+    const double limit = 2. * lattice::time_step_limits(lattice(), material(), 1.).combined;
+    if (*time_step > limit)
+      p.error("Time/step", "beyond " + full_precision(limit) + " s the time stepping is unstable; auto is safe",
+              {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity", "Sheet/spacing"});
+  }
+}
+
+lattice::TriangularLattice Case::lattice() const
+{
+  return {spacing, length, height, orientation};
+}
+
+lattice::Material Case::material() const
+{
+  lattice::Material material{density, nearest.shell(), std::nullopt};
+  if (has_next_nearest)
+    material.next_nearest = next_nearest.shell();
+  return material;
+}
+
+Eigen::Matrix2d Case::deformation() const
+{
+  return Eigen::Vector2d(1. + strain_x, 1. + strain_y).asDiagonal();
+}
+
+lattice::Toughening Case::toughening_rule() const
+{
+  switch (toughening)
+  {
+  case Toughening::behind_tip:
+    return lattice::BehindTipToughening{toughening_distance, toughening_factor};
+  case Toughening::retraction:
+    return lattice::RetractionToughening{toughening_fraction, toughening_factor};
+  default:
+    return lattice::NoToughening{};
+  }
+}
+
+double Case::lattice_time_step() const
+{
+  if (time_step)
+    return *time_step;
+  return safety_factor * lattice::time_step_limits(lattice(), material(), smallest_stable_stretch).combined;
+}
+
+} // namespace verification

@@ -1,0 +1,125 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+
+#include "lattice/fracture.h"
+#include "lattice/material.h"
+#include "verification/parameters.h"
+
+namespace verification
+{
+
+/// Which constitutive law the finite element sheet is made of.
+enum class ContinuumLaw
+{
+  cauchy_born,  ///< exact continuum of the lattice in homogeneous deformation
+  mooney_rivlin ///< compressible Mooney-Rivlin, calibrated along the loading path
+};
+
+/// One shell of bonds as a case states it.
+struct ShellCase
+{
+  enum class Law
+  {
+    mooney_rivlin,
+    linear
+  };
+
+  Law law = Law::mooney_rivlin;
+  double a = 1e5;       ///< [Pa]
+  double b = 1.5e5;     ///< [Pa]
+  double modulus = 1e5; ///< e [Pa]
+  double area_factor = 2. / 3.;
+  double viscosity = 0.; ///< eta [Pa s]
+
+  void declare(Parameters &parameters, const std::string &section);
+  void check(Parameters &parameters, const std::string &section) const;
+  lattice::Shell shell() const;
+};
+
+/// Everything that a run is told: one rubber sheet, its loading, what breaks it, and how it is computed. Every command
+/// reads the same entries, so that one file describes one sheet on both sides.
+struct Case
+{
+  // Sheet
+  double spacing = 0.; ///< d [m]
+  double length = 0.;  ///< [m]
+  double height = 0.;  ///< [m]
+  lattice::Orientation orientation = lattice::Orientation::rows_along_crack;
+
+  // Material
+  double density = 0.; ///< rho [kg/m^3]
+  ShellCase nearest;
+  bool has_next_nearest = true;
+  ShellCase next_nearest;
+
+  // Loading
+  double strain_x = 0.; ///< eps_x [-]
+  double strain_y = 0.; ///< eps_y [-]
+
+  // Lattice
+  enum class Solution
+  {
+    relaxed, ///< static equilibrium
+    motion   ///< motion with dashpots up to the end time
+  };
+  Solution solution = Solution::relaxed;
+  double noise_amplitude = 0.01; ///< in units of d [-]
+  std::uint64_t noise_seed = 1;
+
+  // Fracture
+  std::optional<double> breaking_stretch; ///< lam_f [-]
+  enum class Toughening
+  {
+    none,
+    behind_tip,
+    retraction
+  };
+  Toughening toughening = Toughening::none;
+  double toughening_distance = 0.;  ///< delta [m]
+  double toughening_fraction = 0.9; ///< of the initial stretch [-]
+  double toughening_factor = 1.;    ///< [-]
+  unsigned int seed_sites = 8;
+  double seed_position = 0.1;  ///< of the length [-]
+  double stop_position = 0.93; ///< of the length [-]
+
+  // Time
+  double end_time = 0.;            ///< [s]
+  std::optional<double> time_step; ///< [s]; none: safety factor times the stable one
+  double safety_factor = 0.9;
+
+  // Continuum
+  ContinuumLaw law = ContinuumLaw::cauchy_born;
+  std::optional<double> mooney_rivlin_ratio; ///< r = C2 / (C1 + C2) [-]; none: calibrated
+  unsigned int cells_x = 12;
+  unsigned int cells_y = 8;
+  unsigned int degree = 2;
+
+  // Output
+  double frame_interval = 0.; ///< [s]; 0: first and last frame only
+  unsigned int energy_interval = 200;
+
+  // Reference: published values to set the measured ones beside; none where there are none
+  std::optional<double> reference_wavelength; ///< [m]
+  std::optional<double> reference_amplitude;  ///< [m]
+  std::optional<double> reference_speed;      ///< [m/s], Lagrangian
+  double reference_tolerance = 0.2;           ///< [-]
+
+  void declare(Parameters &parameters);
+  void check(Parameters &parameters) const;
+
+  lattice::TriangularLattice lattice() const;
+  lattice::Material material() const;
+  /// F = diag(1 + eps_x, 1 + eps_y) of the loaded sheet [-].
+  Eigen::Matrix2d deformation() const;
+  lattice::Toughening toughening_rule() const;
+  /// Time step of the lattice [s]: the stated one, or safety factor times the limit.
+  double lattice_time_step() const;
+};
+
+/// Stretch down to which the automatic time step is stable [-]; shorter bonds do not occur in a sheet under tension.
+inline constexpr double smallest_stable_stretch = 0.3;
+
+} // namespace verification

@@ -1,0 +1,151 @@
+#include "verification/command_line.h"
+
+#include <algorithm>
+#include <chrono>
+#include <filesystem>
+#include <functional>
+#include <iostream>
+#include <thread>
+
+#include <dlfcn.h>
+#include <omp.h>
+
+#include <CLI/CLI.hpp>
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/multithread_info.h>
+
+#include "continuum/errors.h"
+#include "continuum/solver_report.h"
+#include "verification/commands/command.h"
+
+namespace verification
+{
+namespace
+{
+
+struct Failure
+{
+  ExitCode exit_code;
+  std::string message;
+};
+
+// What an exception means to the user. The libraries throw their own types; this is where they get their exit codes.
+Failure describe(const std::exception &error)
+{
+  if (const auto *known = dynamic_cast<const Error *>(&error))
+    return {known->exit_code(), error.what()};
+  if (dynamic_cast<const continuum::SolverFailed *>(&error) != nullptr ||
+      dynamic_cast<const continuum::LinearSolverFailed *>(&error) != nullptr)
+    return {ExitCode::solver_failed, error.what()};
+  if (dynamic_cast<const continuum::InvalidInput *>(&error) != nullptr ||
+      dynamic_cast<const continuum::InvalidMaterial *>(&error) != nullptr ||
+      dynamic_cast<const continuum::NonPhysicalState *>(&error) != nullptr)
+    return {ExitCode::bad_input, error.what()};
+  if (dynamic_cast<const continuum::OutputFailed *>(&error) != nullptr ||
+      dynamic_cast<const std::filesystem::filesystem_error *>(&error) != nullptr)
+    return {ExitCode::output_failed, error.what()};
+  return {ExitCode::internal_error, std::string("internal error: ") + error.what()};
+}
+
+void set_threads(unsigned int threads)
+{
+  const unsigned int wanted = threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
+  omp_set_num_threads(static_cast<int>(wanted));
+  dealii::MultithreadInfo::set_thread_limit(1);
+  // A threaded BLAS sums in an order that depends on the number of threads. OpenBLAS is asked if it is the one in use.
+  if (void *const symbol = dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))
+    reinterpret_cast<void (*)(int)>(symbol)(1);
+}
+
+// The file where the installed or checked-out project keeps the case of that name.
+std::string shipped_case(const std::string &name)
+{
+  return std::string(LATCON_DATA_DIR) + "/cases/" + name;
+}
+
+} // namespace
+
+ExitCode run_program(int argc, char **argv)
+{
+  Options options;
+  options.arguments.assign(argv, argv + argc);
+  std::function<ExitCode()> command;
+
+  CLI::App app("latcon: dynamic fracture of rubber on a triangular lattice, and the continuum beside it", "latcon");
+  app.set_version_flag("--version", "latcon " + program_version() + " (" + git_commit() + ")");
+  app.require_subcommand(1);
+  app.fallthrough();
+  app.footer("Exit codes: 0 done, every claim holds; 1 internal error; 2 bad input; 3 a claim does not hold;\n"
+             "4 a solver did not converge or the state blew up; 5 a file could not be written; 130 interrupted.");
+  app.add_option("--set", options.overrides, "Section/Name=value, replaces an entry of the case; repeatable")
+    ->allow_extra_args(false)
+    ->type_name("ENTRY");
+  app.add_option("--output-dir", options.output_dir, "where to write")->capture_default_str()->type_name("DIR");
+  app.add_option("--threads", options.threads, "threads of the lattice; default: all cores")
+    ->check(CLI::Range(1u, 4096u))
+    ->type_name("N");
+  app.add_flag("--quiet", options.quiet, "print errors only");
+  app.add_flag("--dry-run", options.dry_run, "check the input, print the resolved case and its cost, run nothing");
+
+  options.case_file = shipped_case("fig1.prm");
+  CLI::App *verify_command = app.add_subcommand("verify", "check that lattice and continuum agree, claim by claim");
+  verify_command->add_option("CLAIM", options.claims, "claims to check; default: all")
+    ->check(CLI::IsMember(claim_names()))
+    ->type_name("");
+  verify_command->add_option("--case", options.case_file, "case whose material and loading to verify")->type_name("FILE");
+  verify_command->add_flag("--quick", options.quick, "small versions");
+  verify_command->callback([&] { command = [&] { return verify(options); }; });
+
+  const auto add_case_command = [&](const std::string &name, const std::string &help, ExitCode (*run)(const Options &)) {
+    CLI::App *subcommand = app.add_subcommand(name, help);
+    subcommand->add_option("CASE", options.case_file, "case file, .prm or .json")->required()->type_name("");
+    subcommand->callback([&command, &options, run] { command = [&options, run] { return run(options); }; });
+    return subcommand;
+  };
+  add_case_command("lattice", "equilibrium or motion of the unbroken lattice sheet", run_lattice);
+  add_case_command("continuum", "equilibrium of the finite element sheet", run_continuum);
+  add_case_command("fracture", "verify the case's material and pre-stretch, then run its crack", run_fracture)
+    ->add_flag("--skip-verification", options.skip_verification, "run the crack unverified; noted in every output");
+
+  std::string report_directory;
+  CLI::App *report_command = app.add_subcommand("report", "summary table, pictures and report.html of a finished run");
+  report_command->add_option("DIR", report_directory, "output directory of a run, or a folder of several")
+    ->required()
+    ->type_name("");
+  report_command->callback([&] { command = [&] { return report(options, report_directory); }; });
+
+  const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
+  const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+  try
+  {
+    app.parse(argc, argv);
+  }
+  catch (const CLI::ParseError &error)
+  {
+    // Help and version are exceptions of CLI11 as well, with exit code 0.
+    if (rank == 0)
+      app.exit(error);
+    return error.get_exit_code() == 0 ? ExitCode::done : ExitCode::bad_input;
+  }
+
+  try
+  {
+    set_threads(options.threads);
+    catch_signals();
+    return command();
+  }
+  catch (const std::exception &error)
+  {
+    const Failure failure = describe(error);
+    // Most errors are met by all ranks alike: the first one tells. One met by another rank alone is told a moment later.
+    if (rank != 0)
+      std::this_thread::sleep_for(std::chrono::seconds(1));
+    std::cerr << "latcon: " << (n_ranks > 1 ? "rank " + std::to_string(rank) + ": " : "") << failure.message << std::endl;
+    // Ranks that wait for this one in a collective call would wait for ever.
+    if (n_ranks > 1)
+      MPI_Abort(MPI_COMM_WORLD, static_cast<int>(failure.exit_code));
+    return failure.exit_code;
+  }
+}
+
+} // namespace verification

@@ -1,0 +1,12 @@
+#pragma once
+
+#include "verification/errors.h"
+
+namespace verification
+{
+
+/// The program `latcon`: reads the command line, runs the command on every MPI rank, and reports what went wrong.
+/// MPI must be initialised. @return the status to exit with
+ExitCode run_program(int argc, char **argv);
+
+} // namespace verification

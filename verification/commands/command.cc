@@ -1,0 +1,88 @@
+#include "verification/commands/command.h"
+
+#include <atomic>
+#include <csignal>
+#include <filesystem>
+#include <iostream>
+#include <system_error>
+
+#include <deal.II/base/mpi.h>
+
+namespace verification
+{
+namespace
+{
+
+volatile std::sig_atomic_t signal_flag = 0;
+
+void on_signal(int)
+{
+  signal_flag = 1;
+}
+
+bool first_rank()
+{
+  return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+}
+
+} // namespace
+
+void catch_signals()
+{
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+}
+
+bool signal_came()
+{
+  return signal_flag != 0;
+}
+
+void read_case(const Options &options, Case &input, Parameters &parameters)
+{
+  input.declare(parameters);
+  parameters.read_file(options.case_file);
+  parameters.read_overrides(options.overrides);
+  input.check(parameters);
+}
+
+Run::Run(const Options &options, const Parameters &parameters)
+  : directory_(options.output_dir), writes_(first_rank()), talks_(writes_ && !options.quiet), info_(options.arguments)
+{
+  info_.add("case_hash", parameters.hash());
+  if (writes_)
+  {
+    std::error_code error;
+    std::filesystem::create_directories(directory_, error);
+    if (error)
+      throw OutputError(directory_, error.message());
+    parameters.write(directory_ + "/case.prm");
+    info_.write(directory_ + "/run.json", std::nullopt);
+  }
+  // No rank writes beside rank 0 before the directory is there.
+  MPI_Barrier(MPI_COMM_WORLD);
+}
+
+ExitCode Run::end(const Results &results, ExitCode exit_code)
+{
+  if (writes_)
+  {
+    results.write(directory_);
+    info_.write(directory_ + "/run.json", exit_code, to_string(results.verdict()));
+  }
+  if (talks_)
+    results.print(std::cout);
+  return exit_code;
+}
+
+ExitCode Run::finish(const Results &results)
+{
+  return end(results, results.verdict() == Verdict::fails ? ExitCode::claim_failed : ExitCode::done);
+}
+
+ExitCode Run::interrupted(const Results &results)
+{
+  return end(results, ExitCode::interrupted);
+}
+
+} // namespace verification

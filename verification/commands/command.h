@@ -1,0 +1,77 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "verification/case.h"
+#include "verification/errors.h"
+#include "verification/results.h"
+#include "verification/run_info.h"
+
+namespace verification
+{
+
+/// What the command line said, whatever the command.
+struct Options
+{
+  std::vector<std::string> arguments; ///< argv, for the record
+  std::vector<std::string> overrides; ///< `Section/Name=value`
+  std::string case_file;
+  std::string output_dir = "output";
+  std::vector<std::string> claims; ///< none: all
+  unsigned int threads = 0;        ///< 0: as many as the machine has
+  bool quick = false;
+  bool quiet = false;
+  bool dry_run = false;
+  bool skip_verification = false;
+};
+
+/// Names of the claims, in the order in which they are checked.
+const std::vector<std::string> &claim_names();
+
+// The commands. Each runs on every MPI rank and returns what the program should exit with, or throws.
+ExitCode verify(const Options &options);
+ExitCode run_lattice(const Options &options);
+ExitCode run_continuum(const Options &options);
+ExitCode run_fracture(const Options &options);
+ExitCode report(const Options &options, const std::string &directory);
+
+/// Reads and checks the case that the options name. @throws InputError
+void read_case(const Options &options, Case &input, Parameters &parameters);
+
+/// The output directory of a run, and the record of how it came about. Rank 0 alone writes.
+class Run
+{
+public:
+  /// Creates the directory and writes case.prm and run.json. To be made once the input is known to be good.
+  /// @throws OutputError
+  Run(const Options &options, const Parameters &parameters);
+
+  const std::string &directory() const { return directory_; }
+  RunInfo &info() { return info_; }
+  bool writes() const { return writes_; } ///< true on rank 0
+  /// Whether to print: on rank 0, unless --quiet.
+  bool talks() const { return talks_; }
+
+  /// Writes results.json, results.csv, the final run.json, prints the table, and says how the run ended.
+  ExitCode finish(const Results &results);
+
+  /// The same for a run that was stopped by a signal: what is known is written.
+  ExitCode interrupted(const Results &results);
+
+private:
+  ExitCode end(const Results &results, ExitCode exit_code);
+
+  std::string directory_;
+  bool writes_, talks_;
+  RunInfo info_;
+};
+
+/// Runs the claims named, or all of them, on the subject of a case, small versions if `quick`. Collective.
+Results run_claims(const Case &input, const std::vector<std::string> &names, bool quick);
+
+/// Whether SIGINT or SIGTERM has come since catch_signals().
+void catch_signals();
+bool signal_came();
+
+} // namespace verification

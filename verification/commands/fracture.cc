@@ -1,0 +1,168 @@
+#include <iostream>
+#include <sstream>
+
+#include "lattice/field_writer.h"
+#include "verification/commands/command.h"
+#include "verification/commands/lattice_size.h"
+#include "verification/crack_record.h"
+#include "verification/progress.h"
+
+namespace verification
+{
+namespace
+{
+
+// Sites along y = 0 from the seed position on: of the middle row, or, where the rows run across the crack, the middle
+// sites of every second row.
+std::vector<std::size_t> seed_crack(const Case &input, const lattice::TriangularLattice &sheet)
+{
+  const bool along = sheet.orientation() == lattice::Orientation::rows_along_crack;
+  const double pitch = along ? sheet.spacing() : std::sqrt(3.) / 2. * sheet.spacing();
+  const auto first = static_cast<std::size_t>(std::lround(input.seed_position * sheet.length() / pitch));
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < input.seed_sites; ++i)
+    if (along)
+      places.push_back(sheet.index(sheet.rows() / 2, first + i));
+    else
+      places.push_back(sheet.index(first + first % 2 + 2 * i, sheet.columns() / 2));
+  return places;
+}
+
+// The imbalance of the energy ledger that a run may end with, over the energy it was given.
+constexpr double allowed_imbalance = 1e-4;
+
+Results measured_results(const Case &input, const CrackRecord &record, const lattice::CrackMeasurement &crack)
+{
+  Results results;
+  const auto add = [&](const std::string &quantity, const std::string &unit,
+                       const std::optional<lattice::Measured> &measured, const std::optional<double> &published)
+  {
+    Result row{"fracture", quantity, unit, {}, {}, published, {}, {}};
+    if (measured)
+      row.lattice = measured->value;
+    if (published)
+    {
+      row.tolerance = input.reference_tolerance;
+      // A quantity that was published but could not be measured does not agree.
+      row.error = measured ? std::abs(measured->value / *published - 1.) : std::numeric_limits<double>::quiet_NaN();
+    }
+    results.add(row);
+  };
+  add("Lagrangian crack speed", "m/s", crack.speed_lagrangian, input.reference_speed);
+  add("laboratory crack speed", "m/s", crack.speed_laboratory, {});
+  add("wavelength, undeformed", "m", crack.wavelength, input.reference_wavelength);
+  add("amplitude, undeformed", "m", crack.amplitude, input.reference_amplitude);
+  results.add({"fracture",
+               "energy imbalance over energy given",
+               "1",
+               record.largest_imbalance(),
+               {},
+               {},
+               record.largest_imbalance(),
+               allowed_imbalance});
+  return results;
+}
+
+std::string progress_text(const lattice::Simulation &simulation, const CrackRecord &record, std::size_t step)
+{
+  std::ostringstream text;
+  text.precision(3);
+  text << "step " << step << ", t " << 1e3 * simulation.state().time << " ms, tip " << 100. * record.tip_X()
+       << " cm, speed " << record.speed() << " m/s, " << simulation.n_broken() << " bonds broken";
+  return text.str();
+}
+
+// Moves the sheet until the crack is through or the time is up.
+Results break_sheet(const Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
+                    Run &run)
+{
+  lattice::State state =
+    lattice::homogeneous_state(sheet, material, input.deformation(), lattice::Edges::held, *input.breaking_stretch);
+  lattice::add_noise(state, sheet, input.noise_amplitude * input.spacing, input.noise_seed);
+  lattice::Simulation simulation(
+    sheet, material, std::move(state), input.lattice_time_step(),
+    lattice::Fracture(sheet, material, *input.breaking_stretch, input.toughening_rule(), input.deformation()));
+  const std::vector<std::size_t> seed = seed_crack(input, sheet);
+  simulation.cut(seed);
+
+  CrackRecord record(simulation);
+  lattice::FieldWriter fields(sheet, material, run.directory(), *input.breaking_stretch);
+  record.start();
+  fields.add_frame(simulation.state());
+
+  const double stop = input.stop_position * sheet.length();
+  const double seed_tip = sheet.reference(seed.back()).x();
+  double next_frame = input.frame_interval;
+  Progress progress(run.talks());
+  {
+    const auto phase = run.info().stopwatch().phase("fracture");
+    for (std::size_t step = 1; simulation.state().time < input.end_time && record.tip_X() < stop && !signal_came();
+         ++step)
+    {
+      record.step(simulation.step());
+      if (step % input.energy_interval == 0)
+        record.energies();
+      if (input.frame_interval > 0. && simulation.state().time >= next_frame)
+      {
+        // What is known so far is on disk from here on.
+        fields.add_frame(simulation.state());
+        record.write_tables(run.directory());
+        next_frame += input.frame_interval;
+      }
+      if (progress.due())
+        progress.show(progress_text(simulation, record, step), std::max((record.tip_X() - seed_tip) / (stop - seed_tip),
+                                                                        simulation.state().time / input.end_time));
+    }
+  }
+  record.energies();
+  fields.add_frame(simulation.state());
+  record.write_tables(run.directory());
+  const lattice::CrackMeasurement crack = record.measure(seed_tip);
+  record.write_measurement(run.directory(), crack);
+  if (run.talks())
+    std::cout << "The crack is " << lattice::to_string(crack.pattern) << ": " << crack.reason << "\n";
+  return measured_results(input, record, crack);
+}
+
+} // namespace
+
+ExitCode run_fracture(const Options &options)
+{
+  Case input;
+  Parameters parameters;
+  read_case(options, input, parameters);
+  if (!input.breaking_stretch)
+    parameters.error("Fracture/breaking stretch", "fracture needs a breaking stretch");
+  if (!(input.end_time > 0.))
+    parameters.error("Time/end", "fracture needs an end time larger than 0");
+  parameters.finish();
+
+  const lattice::TriangularLattice sheet = input.lattice();
+  const lattice::Material material = input.material();
+  if (options.dry_run)
+  {
+    if (!options.quiet)
+      std::cout << parameters.resolved_text() << lattice_size(input);
+    return ExitCode::done;
+  }
+
+  Run run(options, parameters);
+  run.info().add("skip_verification", options.skip_verification);
+  Results results;
+  if (!options.skip_verification)
+  {
+    const auto phase = run.info().stopwatch().phase("claims");
+    results = run_claims(input, {}, true);
+    if (!results.all_hold())
+    {
+      run.finish(results);
+      throw ClaimFailed("the material and pre-stretch of this case fail their verification; no crack was run");
+    }
+  }
+  // The lattice knows no ranks: the first one breaks it, the others wait.
+  if (run.writes())
+    results.add(break_sheet(input, sheet, material, run));
+  return signal_came() ? run.interrupted(results) : run.finish(results);
+}
+
+} // namespace verification

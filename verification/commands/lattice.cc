@@ -1,0 +1,129 @@
+#include <cmath>
+#include <iostream>
+
+#include "lattice/field_writer.h"
+#include "lattice/relaxation.h"
+#include "verification/commands/command.h"
+#include "verification/commands/lattice_size.h"
+#include "verification/crack_record.h"
+#include "verification/homogenisation.h"
+#include "verification/progress.h"
+
+namespace verification
+{
+namespace
+{
+
+constexpr double unbreakable = std::numeric_limits<double>::infinity();
+
+// Static equilibrium of the held sheet. @return its energy density over the sites with all their bonds, and residual
+Results relaxed(const Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
+                lattice::State state, Run &run)
+{
+  lattice::FieldWriter fields(sheet, material, run.directory(), unbreakable);
+  fields.add_frame(state);
+  lattice::Relaxation relaxation{};
+  try
+  {
+    const auto phase = run.info().stopwatch().phase("relaxation");
+    relaxation =
+      lattice::relax(state, sheet, material, 1e-12 * small_strain(sheet, material).shear_modulus * input.spacing);
+  }
+  catch (const std::runtime_error &error)
+  {
+    throw SolverError(error.what());
+  }
+  state.time = 1.; // load factor, as for the continuum
+  fields.add_frame(state);
+  Results results;
+  results.add({"lattice",
+               "elastic energy per thickness",
+               "J/m",
+               lattice::elastic_energy(state, sheet, material),
+               {},
+               {},
+               {},
+               {}});
+  results.add({"lattice", "largest force on a free site, per thickness", "N/m", relaxation.residual, {}, {}, {}, {}});
+  return results;
+}
+
+Results moved(const Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
+              lattice::State state, Run &run)
+{
+  lattice::FieldWriter fields(sheet, material, run.directory(), unbreakable);
+  fields.add_frame(state);
+  lattice::Simulation simulation(sheet, material, std::move(state), input.lattice_time_step());
+  CrackRecord record(simulation);
+  record.start();
+  Progress progress(run.talks());
+  {
+    const auto phase = run.info().stopwatch().phase("motion");
+    const auto steps = static_cast<std::size_t>(std::ceil(input.end_time / simulation.time_step()));
+    double next_frame = input.frame_interval;
+    for (std::size_t step = 1; step <= steps && !signal_came(); ++step)
+    {
+      simulation.step();
+      if (step % input.energy_interval == 0)
+        record.energies();
+      if (input.frame_interval > 0. && simulation.state().time >= next_frame && step < steps)
+      {
+        fields.add_frame(simulation.state());
+        next_frame += input.frame_interval;
+      }
+      if (progress.due())
+        progress.show("step " + std::to_string(step) + "/" + std::to_string(steps), static_cast<double>(step) / steps);
+    }
+  }
+  record.energies();
+  record.write_tables(run.directory());
+  if (input.end_time > 0.)
+    fields.add_frame(simulation.state());
+  Results results;
+  const lattice::EnergyBalance energies = simulation.energies();
+  results.add({"lattice", "elastic energy per thickness", "J/m", energies.elastic, {}, {}, {}, {}});
+  results.add({"lattice", "kinetic energy per thickness", "J/m", energies.kinetic, {}, {}, {}, {}});
+  results.add({"lattice",
+               "energy imbalance over initial energy",
+               "1",
+               record.largest_imbalance(),
+               {},
+               {},
+               record.largest_imbalance(),
+               1e-4});
+  return results;
+}
+
+} // namespace
+
+ExitCode run_lattice(const Options &options)
+{
+  Case input;
+  Parameters parameters;
+  read_case(options, input, parameters);
+  if (input.solution == Case::Solution::motion && !(input.end_time > 0.))
+    parameters.error("Time/end", "motion needs an end time larger than 0", {"Lattice/solution"});
+  parameters.finish();
+
+  const lattice::TriangularLattice sheet = input.lattice();
+  const lattice::Material material = input.material();
+  if (options.dry_run)
+  {
+    if (!options.quiet)
+      std::cout << parameters.resolved_text() << lattice_size(input);
+    return ExitCode::done;
+  }
+  Run run(options, parameters);
+  Results results;
+  if (run.writes())
+  {
+    lattice::State state =
+      lattice::homogeneous_state(sheet, material, input.deformation(), lattice::Edges::held, unbreakable);
+    lattice::add_noise(state, sheet, input.noise_amplitude * input.spacing, input.noise_seed);
+    results = input.solution == Case::Solution::relaxed ? relaxed(input, sheet, material, std::move(state), run)
+                                                        : moved(input, sheet, material, std::move(state), run);
+  }
+  return signal_came() ? run.interrupted(results) : run.finish(results);
+}
+
+} // namespace verification

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <string>
+
+#include "verification/case.h"
+
+namespace verification
+{
+
+/// What `--dry-run` says of the lattice of a case: sites, bonds, time step, steps, memory and time it will take.
+std::string lattice_size(const Case &input);
+
+} // namespace verification

@@ -1,0 +1,94 @@
+#include <algorithm>
+#include <functional>
+#include <iostream>
+#include <utility>
+
+#include "verification/commands/command.h"
+#include "verification/energy/energy_claim.h"
+#include "verification/prestretch/prestretch_claim.h"
+
+namespace verification
+{
+namespace
+{
+
+Results energy(const Subject &subject, bool quick)
+{
+  return energy_claim(subject, quick ? 200 : 2000);
+}
+
+Results prestretch(const Subject &subject, bool quick)
+{
+  PrestretchOptions options;
+  if (!quick)
+  {
+    options.length = 120.;
+    options.height = 80.;
+    options.cells_x = 24;
+    options.cells_y = 16;
+  }
+  return prestretch_claim(subject, options);
+}
+
+using Claim = std::function<Results(const Subject &, bool)>;
+
+// A further claim is a further line here.
+const std::vector<std::pair<std::string, Claim>> &claims()
+{
+  static const std::vector<std::pair<std::string, Claim>> all{{"energy", energy}, {"prestretch", prestretch}};
+  return all;
+}
+
+} // namespace
+
+const std::vector<std::string> &claim_names()
+{
+  static const std::vector<std::string> names = []
+  {
+    std::vector<std::string> list;
+    for (const auto &[name, claim] : claims())
+      list.push_back(name);
+    return list;
+  }();
+  return names;
+}
+
+Results run_claims(const Case &input, const std::vector<std::string> &names, bool quick)
+{
+  std::vector<Subject> subjects{subject(input)};
+  if (input.has_next_nearest)
+  {
+    lattice::Material nearest_only = input.material();
+    nearest_only.next_nearest.reset();
+    subjects.push_back(subject(input, nearest_only));
+  }
+  Results results;
+  for (const auto &[name, claim] : claims())
+    if (names.empty() || std::find(names.begin(), names.end(), name) != names.end())
+      for (const Subject &one : subjects)
+        results.add(claim(one, quick));
+  return results;
+}
+
+ExitCode verify(const Options &options)
+{
+  Case input;
+  Parameters parameters;
+  read_case(options, input, parameters);
+  parameters.finish();
+  if (options.dry_run)
+  {
+    if (!options.quiet)
+      std::cout << parameters.resolved_text();
+    return ExitCode::done;
+  }
+  Run run(options, parameters);
+  Results results;
+  {
+    const auto phase = run.info().stopwatch().phase("claims");
+    results = run_claims(input, options.claims, options.quick);
+  }
+  return run.finish(results);
+}
+
+} // namespace verification

@@ -1,0 +1,174 @@
+#include "verification/crack_record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <ostream>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "verification/atomic_file.h"
+#include "verification/errors.h"
+
+namespace verification
+{
+namespace
+{
+
+// The tip hops from site to site; its speed means something over several of them only.
+constexpr double speed_baseline = 6.; // in spacings
+
+void write_row(std::ostream &out, std::initializer_list<double> values)
+{
+  const char *separator = "";
+  for (const double value : values)
+  {
+    out << separator << full_precision(value);
+    separator = ",";
+  }
+}
+
+} // namespace
+
+CrackRecord::CrackRecord(const lattice::Simulation &simulation) : simulation_(simulation) {}
+
+void CrackRecord::start()
+{
+  note_tip();
+  energies();
+}
+
+void CrackRecord::step(const std::vector<lattice::BrokenBond> &broken)
+{
+  if (broken.empty())
+    return;
+  broken_.insert(broken_.end(), broken.begin(), broken.end());
+  note_tip();
+}
+
+void CrackRecord::note_tip()
+{
+  const std::optional<std::size_t> tip = simulation_.tip();
+  if (!tip || tip == last_tip_)
+    return;
+  last_tip_ = tip;
+  const lattice::State &state = simulation_.state();
+  const Eigen::Vector2d X = simulation_.lattice().reference(*tip);
+  tip_.push_back({state.time, X.x(), X.y(), state.x[*tip], state.y[*tip]});
+  broken_at_tip_.push_back(simulation_.n_broken());
+
+  double speed = 0.;
+  const double baseline = speed_baseline * simulation_.lattice().spacing();
+  for (std::size_t i = tip_.size() - 1; i-- > 0;)
+    if (X.x() - tip_[i].X >= baseline && state.time > tip_[i].t)
+    {
+      speed = (X.x() - tip_[i].X) / (state.time - tip_[i].t);
+      break;
+    }
+  speeds_.push_back(speed);
+}
+
+void CrackRecord::energies()
+{
+  const lattice::EnergyBalance balance = simulation_.energies();
+  const double available = balance.initial + std::abs(balance.boundary_work);
+  if (!(balance.elastic + balance.kinetic <= 2. * available))
+  {
+    std::ostringstream message;
+    message << "the lattice blew up: at " << simulation_.state().time << " s it holds " << balance.elastic
+            << " J/m elastic and " << balance.kinetic << " J/m kinetic energy, of " << available
+            << " J/m it was given; a smaller Time/safety factor may help";
+    throw SolverError(message.str());
+  }
+  energies_.push_back({simulation_.state().time, balance});
+}
+
+double CrackRecord::largest_imbalance() const
+{
+  double largest = 0.;
+  for (const EnergyRow &row : energies_)
+    largest = std::max(largest,
+                       std::abs(row.balance.imbalance()) / (row.balance.initial + std::abs(row.balance.boundary_work)));
+  return largest;
+}
+
+lattice::CrackMeasurement CrackRecord::measure(double seed_tip_X) const
+{
+  std::vector<lattice::BreakRecord> breaks;
+  for (const lattice::BrokenBond &bond : broken_)
+    breaks.push_back({bond.time, bond.midpoint.x(), bond.midpoint.y()});
+  lattice::CrackMeasurementOptions options;
+  options.strip_length = simulation_.lattice().length();
+  options.lattice_spacing = simulation_.lattice().spacing();
+  options.end_time = simulation_.state().time;
+  options.seed_tip_X = seed_tip_X;
+  return lattice::measure_crack(tip_, breaks, options);
+}
+
+void CrackRecord::write_tables(const std::filesystem::path &directory) const
+{
+  write_file(directory / "crack.csv",
+             [this](std::ostream &out)
+             {
+               out << "t,X,Y,x,y,speed,bonds_broken\n";
+               for (std::size_t i = 0; i < tip_.size(); ++i)
+               {
+                 write_row(out, {tip_[i].t, tip_[i].X, tip_[i].Y, tip_[i].x, tip_[i].y, speeds_[i]});
+                 out << ',' << broken_at_tip_[i] << '\n';
+               }
+             });
+  write_file(directory / "broken_bonds.csv",
+             [this](std::ostream &out)
+             {
+               out << "t,site,other_site,X,Y,stretch\n";
+               const lattice::TriangularLattice &sheet = simulation_.lattice();
+               for (const lattice::BrokenBond &bond : broken_)
+               {
+                 out << full_precision(bond.time) << ',' << sheet.site_number(bond.near) << ','
+                     << sheet.site_number(bond.far) << ',';
+                 write_row(out, {bond.midpoint.x(), bond.midpoint.y(), bond.stretch});
+                 out << '\n';
+               }
+             });
+  write_file(directory / "energy.csv",
+             [this](std::ostream &out)
+             {
+               out << "t,elastic,kinetic,viscous,broken,boundary_work,contact,imbalance\n";
+               // Nothing touches in this model, so contact holds no energy.
+               for (const auto &[time, e] : energies_)
+               {
+                 write_row(out, {time, e.elastic, e.kinetic, e.viscous, e.broken, e.boundary_work, 0., e.imbalance()});
+                 out << '\n';
+               }
+             });
+}
+
+void CrackRecord::write_measurement(const std::filesystem::path &directory,
+                                    const lattice::CrackMeasurement &measurement) const
+{
+  nlohmann::ordered_json json;
+  json["pattern"] = lattice::to_string(measurement.pattern);
+  json["conclusive"] = measurement.conclusive;
+  json["reason"] = measurement.reason;
+  const auto put = [&json](const std::string &name, const std::optional<lattice::Measured> &measured)
+  {
+    json[name] = measured ? nlohmann::ordered_json(measured->value) : nlohmann::ordered_json(nullptr);
+    json[name + "_uncertainty"] =
+      measured ? nlohmann::ordered_json(measured->uncertainty) : nlohmann::ordered_json(nullptr);
+  };
+  put("speed_lagrangian", measurement.speed_lagrangian);
+  put("speed_laboratory", measurement.speed_laboratory);
+  put("wavelength", measurement.wavelength);
+  put("amplitude", measurement.amplitude);
+  json["periods"] = measurement.periods;
+  json["window_begin"] = measurement.X_begin;
+  json["window_end"] = measurement.X_end;
+  json["branched_fraction"] = measurement.branched_fraction;
+  json["bonds_broken"] = simulation_.n_broken();
+  json["end_time"] = simulation_.state().time;
+  json["energy_imbalance"] = largest_imbalance();
+  json["units"] = "speeds m/s, lengths m in the undeformed sheet, time s; uncertainties are one standard deviation";
+  write_file(directory / "crack.json", json.dump(2) + "\n");
+}
+
+} // namespace verification

@@ -1,0 +1,60 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "lattice/crack_measurement.h"
+#include "lattice/simulation.h"
+
+namespace verification
+{
+
+/// What a fracture run leaves behind besides fields: the crack, the bonds that broke, the energies over time.
+class CrackRecord
+{
+public:
+  explicit CrackRecord(const lattice::Simulation &simulation);
+
+  /// Notes the state before the first step.
+  void start();
+
+  /// Notes what a step has done. @param broken bonds that broke in it
+  void step(const std::vector<lattice::BrokenBond> &broken);
+
+  /// Notes the energies now. @throws SolverError if they are not finite or more than there can be
+  void energies();
+
+  /// Reference X of the tip [m]; 0 without one.
+  double tip_X() const { return tip_.empty() ? 0. : tip_.back().X; }
+  /// Lagrangian speed over the last few spacings [m/s]; 0 while there is none.
+  double speed() const { return speeds_.empty() ? 0. : speeds_.back(); }
+  /// Largest |imbalance| of the energies noted, over initial energy plus work of the edges [-].
+  double largest_imbalance() const;
+
+  lattice::CrackMeasurement measure(double seed_tip_X) const;
+
+  /// Writes crack.csv, broken_bonds.csv and energy.csv. @throws OutputError
+  void write_tables(const std::filesystem::path &directory) const;
+
+  /// Writes crack.json. @throws OutputError
+  void write_measurement(const std::filesystem::path &directory, const lattice::CrackMeasurement &measurement) const;
+
+private:
+  void note_tip();
+
+  struct EnergyRow
+  {
+    double time;
+    lattice::EnergyBalance balance;
+  };
+
+  const lattice::Simulation &simulation_;
+  std::optional<std::size_t> last_tip_;
+  std::vector<lattice::TipRecord> tip_;
+  std::vector<double> speeds_;             // a value for each tip record [m/s]
+  std::vector<std::size_t> broken_at_tip_; // bonds broken so far, likewise
+  std::vector<lattice::BrokenBond> broken_;
+  std::vector<EnergyRow> energies_;
+};
+
+} // namespace verification

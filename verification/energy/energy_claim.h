@@ -1,0 +1,29 @@
+#pragma once
+
+#include "verification/results.h"
+#include "verification/subject.h"
+
+namespace verification
+{
+
+/// Claim `energy`: in homogeneous deformation the lattice and its Cauchy-Born law hold the same energy density and the
+/// same first Piola stress, whatever F; at small strain the Mooney-Rivlin sheet has the lattice's moduli and wave
+/// speeds.
+///
+/// The lattice's stress is the force that its simulator finds on the edge of a sheet, its energy the sum over the bonds
+/// of that sheet: nothing of the continuum's formulas is used.
+/// @param samples number of random F, rotations times stretches between 0.7 and 3.5
+Results energy_claim(const Subject &subject, unsigned int samples);
+
+/// Energy density [J/m^3] and first Piola stress [Pa] of a lattice in homogeneous deformation, by its simulator.
+struct LatticeResponse
+{
+  double energy_density;
+  Eigen::Matrix2d first_piola_stress;
+};
+
+/// @throws std::invalid_argument if F leaves no bond its length
+LatticeResponse homogeneous_response(const lattice::TriangularLattice &sheet, const lattice::Material &material,
+                                     const Eigen::Matrix2d &F);
+
+} // namespace verification

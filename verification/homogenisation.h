@@ -1,0 +1,48 @@
+#pragma once
+
+#include "continuum/cauchy_born.h"
+#include "continuum/mooney_rivlin.h"
+#include "lattice/material.h"
+
+namespace verification
+{
+
+/// Small-strain constants of a lattice's continuum (theory.md, eqs. H.2 and H.3): isotropic, lambda = mu.
+struct SmallStrain
+{
+  double shear_modulus;      ///< mu = (3/8) sum over shells of c psi''(1) [Pa], per reference thickness
+  double shear_speed;        ///< c_S = sqrt(mu / rho) [m/s]
+  double longitudinal_speed; ///< c_L = sqrt(3 mu / rho) [m/s]
+};
+
+SmallStrain small_strain(const lattice::TriangularLattice &lattice, const lattice::Material &material);
+
+/// The Cauchy-Born law of a lattice: a fibre family for each of its bond directions, weights c = A0 l / V (theory.md,
+/// eq. H.1). Constants alone are handed over; the continuum evaluates them with its own code.
+continuum::CauchyBorn cauchy_born(const lattice::TriangularLattice &lattice, const lattice::Material &material);
+
+/// A Mooney-Rivlin law fitted to a lattice: exact at small strain, closest in energy along a loading path.
+struct Calibration
+{
+  double ratio;                           ///< r = C2 / (C1 + C2) [-]
+  double energy_residual;                 ///< rms over the path of W_MR / W_CB - 1 [-]
+  double largest_energy_residual;         ///< largest of |W_MR / W_CB - 1| [-]
+  double smallest_acoustic_eigenvalue;    ///< smallest rho c^2 along the path over mu; strongly elliptic if > 0 [-]
+  continuum::MooneyRivlin::Constants law; ///< [Pa]
+};
+
+/// Calibrates r along F(t) = I + t (F - I), 0 < t <= 1, by least squares of the relative energy difference (theory.md,
+/// eq. H.5). @param F end of the loading path [-], not I
+Calibration calibrate_mooney_rivlin(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                                    const Eigen::Matrix2d &F);
+
+/// The same for a ratio r that is given, its residuals along the same path.
+/// @throws continuum::NonPhysicalState if the law breaks down on the path
+Calibration with_ratio(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                       const Eigen::Matrix2d &F, double ratio);
+
+/// The same deformation gradient or vector in the other library's type.
+dealii::Tensor<2, 2> to_continuum(const Eigen::Matrix2d &F);
+Eigen::Matrix2d to_lattice(const dealii::Tensor<2, 2> &F);
+
+} // namespace verification

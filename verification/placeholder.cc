@@ -1,1 +1,0 @@
-namespace verification { int placeholder() { return 0; } }

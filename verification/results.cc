@@ -1,0 +1,248 @@
+#include "verification/results.h"
+
+#include "verification/atomic_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <ostream>
+
+namespace verification
+{
+
+namespace
+{
+
+using Value = std::optional<double>;
+
+nlohmann::ordered_json json_of(const Value &value)
+{
+  if (!value)
+    return nullptr;
+  // JSON knows no such numbers, and null would say that there is no value.
+  if (!std::isfinite(*value))
+    return full_precision(*value);
+  return *value;
+}
+
+std::string csv_of(const Value &value)
+{
+  return value ? full_precision(*value) : "";
+}
+
+std::string csv_of(const std::string &text)
+{
+  if (text.find_first_of(",\"\r\n") == std::string::npos)
+    return text;
+  std::string quoted = "\"";
+  for (const char c : text)
+    quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+std::string table_number(const Value &value, const int digits)
+{
+  if (!value)
+    return "";
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.*g", digits, *value);
+  return text.data();
+}
+
+// Columns a text takes on the screen: its code points.
+std::size_t width_of(const std::string &text)
+{
+  return static_cast<std::size_t>(std::count_if(
+    text.begin(), text.end(), [](const char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
+}
+
+// Breaks a text into lines of at most `width` columns, between words where that is possible.
+std::vector<std::string> wrapped(const std::string &text, const std::size_t width)
+{
+  std::vector<std::string> lines(1);
+  std::size_t columns = 0;
+  for (std::size_t at = 0; at < text.size();)
+  {
+    const std::size_t end = std::min(text.find(' ', at + 1), text.size()); // a word with the blank before it
+    std::string word = text.substr(at, end - at);
+    at = end;
+    if (columns > 0 && columns + width_of(word) > width)
+    {
+      lines.emplace_back();
+      columns = 0;
+    }
+    if (columns == 0 && word.front() == ' ')
+      word.erase(0, 1);
+    for (const char c : word)
+    {
+      const bool begins_character = (static_cast<unsigned char>(c) & 0xc0) != 0x80;
+      if (begins_character && columns == width)
+      {
+        lines.emplace_back();
+        columns = 0;
+      }
+      columns += begins_character ? 1 : 0;
+      // A line break or an escape sequence would break the table.
+      lines.back() += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
+    }
+  }
+  return lines;
+}
+
+} // namespace
+
+std::string to_string(const Verdict verdict)
+{
+  switch (verdict)
+  {
+  case Verdict::holds:
+    return "holds";
+  case Verdict::reported:
+    return "reported";
+  case Verdict::fails:
+    break;
+  }
+  return "fails";
+}
+
+Verdict Result::verdict() const
+{
+  if (!tolerance)
+    return Verdict::reported;
+  // Written so that not-a-number on either side fails.
+  const bool holds = error && std::isfinite(*error) && std::isfinite(*tolerance) && *error <= *tolerance;
+  return holds ? Verdict::holds : Verdict::fails;
+}
+
+void Results::add(Result result)
+{
+  rows_.push_back(std::move(result));
+}
+
+void Results::add(const Results &others)
+{
+  const std::vector<Result> copy = others.rows_; // `others` may be this object
+  rows_.insert(rows_.end(), copy.begin(), copy.end());
+}
+
+Verdict Results::verdict() const
+{
+  Verdict all = Verdict::reported;
+  for (const Result &row : rows_)
+    if (row.verdict() == Verdict::fails)
+      return Verdict::fails;
+    else if (row.verdict() == Verdict::holds)
+      all = Verdict::holds;
+  return all;
+}
+
+std::string Results::json() const
+{
+  nlohmann::ordered_json claims = nlohmann::ordered_json::array();
+  for (const Result &row : rows_)
+  {
+    nlohmann::ordered_json claim;
+    claim["claim"] = row.claim;
+    claim["quantity"] = row.quantity;
+    claim["unit"] = row.unit;
+    claim["lattice"] = json_of(row.lattice);
+    claim["continuum"] = json_of(row.continuum);
+    claim["theory"] = json_of(row.theory);
+    claim["error"] = json_of(row.error);
+    claim["tolerance"] = json_of(row.tolerance);
+    claim["verdict"] = to_string(row.verdict());
+    claims.push_back(std::move(claim));
+  }
+  nlohmann::ordered_json document;
+  document["claims"] = std::move(claims);
+  document["verdict"] = to_string(verdict());
+  return document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string Results::csv() const
+{
+  std::string text = "claim,quantity,unit,lattice,continuum,theory,error,tolerance,verdict\n";
+  for (const Result &row : rows_)
+    text += csv_of(row.claim) + ',' + csv_of(row.quantity) + ',' + csv_of(row.unit) + ',' + csv_of(row.lattice) + ',' +
+            csv_of(row.continuum) + ',' + csv_of(row.theory) + ',' + csv_of(row.error) + ',' + csv_of(row.tolerance) +
+            ',' + to_string(row.verdict()) + '\n';
+  return text;
+}
+
+void Results::write(const std::string &folder) const
+{
+  const std::filesystem::path path(folder);
+  write_file((path / "results.json").string(), json());
+  write_file((path / "results.csv").string(), csv());
+}
+
+void Results::print(std::ostream &out) const
+{
+  constexpr std::size_t n_columns = 8;
+  constexpr std::size_t n_words =
+    2; // columns of words, at the left, which may be wrapped; then numbers, then the verdict
+  constexpr std::size_t widest = 120;
+  constexpr std::size_t gap = 2;
+  using Cells = std::array<std::string, n_columns>;
+
+  std::vector<Cells> table;
+  table.push_back({"claim", "quantity [unit]", "lattice", "continuum", "theory", "error", "tolerance", "verdict"});
+  for (const Result &row : rows_)
+    table.push_back({row.claim, row.quantity + " [" + row.unit + "]", table_number(row.lattice, 7),
+                     table_number(row.continuum, 7), table_number(row.theory, 7), table_number(row.error, 3),
+                     table_number(row.tolerance, 3), to_string(row.verdict())});
+
+  std::array<std::size_t, n_columns> width{};
+  for (const Cells &cells : table)
+    for (std::size_t i = 0; i < n_columns; ++i)
+      width[i] = std::max(width[i], width_of(cells[i]));
+  // Numbers are never cut, so the words share what is left: the claim has a fixed limit, the quantity takes the rest.
+  width[0] = std::min<std::size_t>(width[0], 20);
+  std::size_t others = 0;
+  for (std::size_t i = 0; i < n_columns; ++i)
+    others += (i == 1 ? 0 : width[i]) + (i == 0 ? 0 : gap);
+  width[1] = std::min(width[1], widest - others);
+
+  const auto padded = [](const std::string &text, const std::size_t columns, const bool right)
+  {
+    const std::string fill(columns - std::min(columns, width_of(text)), ' ');
+    return right ? fill + text : text + fill;
+  };
+  for (std::size_t r = 0; r < table.size(); ++r)
+  {
+    std::array<std::vector<std::string>, n_words> words;
+    std::size_t n_lines = 1;
+    for (std::size_t i = 0; i < n_words; ++i)
+    {
+      words[i] = wrapped(table[r][i], width[i]);
+      n_lines = std::max(n_lines, words[i].size());
+    }
+    for (std::size_t l = 0; l < n_lines; ++l)
+    {
+      std::string line;
+      for (std::size_t i = 0; i < n_columns; ++i)
+      {
+        std::string cell;
+        if (i < n_words)
+          cell = l < words[i].size() ? words[i][l] : "";
+        else if (l == 0)
+          cell = table[r][i];
+        const bool is_number = i >= n_words && i + 1 < n_columns;
+        line += std::string(i == 0 ? 0 : gap, ' ') + padded(cell, width[i], is_number);
+      }
+      line.erase(line.find_last_not_of(' ') + 1);
+      out << line << '\n';
+    }
+    if (r == 0)
+    {
+      std::size_t total = others + width[1];
+      out << std::string(total, '-') << '\n';
+    }
+  }
+}
+
+} // namespace verification

@@ -1,0 +1,80 @@
+/// What was checked, what came out, and whether it holds.
+#ifndef verification_results_h
+#define verification_results_h
+
+#include <iosfwd>
+#include <optional>
+#include <string>
+#include <vector>
+
+namespace verification
+{
+
+/// Outcome of one checked quantity.
+enum class Verdict
+{
+  holds,   ///< the error is within the tolerance
+  fails,   ///< it is not, or it is not a finite number, or it is missing
+  reported ///< no tolerance was set: for information
+};
+
+/// The word for a verdict: "holds", "fails", "reported".
+[[nodiscard]] std::string to_string(Verdict verdict);
+
+/// One checked quantity. Values that do not apply are left empty.
+struct Result
+{
+  std::string claim;               ///< name of the claim, e.g. "energy"
+  std::string quantity;            ///< what was compared, in words
+  std::string unit;                ///< unit of lattice, continuum and theory; "1" for a pure number
+  std::optional<double> lattice;   ///< measured on the lattice
+  std::optional<double> continuum; ///< measured on the continuum
+  std::optional<double> theory;    ///< from a closed formula or the literature
+  std::optional<double> error;     ///< as the claim defines it, usually relative; smaller is better
+  std::optional<double> tolerance; ///< largest error with which the claim holds; empty for information only
+
+  /// Holds if both error and tolerance are finite and error <= tolerance.
+  [[nodiscard]] Verdict verdict() const;
+};
+
+/// All results of a run.
+class Results
+{
+public:
+  /// Appends a row.
+  void add(Result result);
+
+  /// Appends the rows of another collection, in their order.
+  void add(const Results &others);
+
+  /// All rows, in the order in which they came.
+  [[nodiscard]] const std::vector<Result> &rows() const { return rows_; }
+
+  /// "fails" if a row fails, else "holds" if a row was checked, else "reported": nothing was checked, so nothing is
+  /// shown.
+  [[nodiscard]] Verdict verdict() const;
+
+  /// Whether at least one row was checked and none fails.
+  [[nodiscard]] bool all_hold() const { return verdict() == Verdict::holds; }
+
+  /// The rows as JSON: {"claims": [{"claim": ..., "quantity": ..., "unit": ..., "lattice": ..., "continuum": ...,
+  /// "theory": ..., "error": ..., "tolerance": ..., "verdict": ...}, ...], "verdict": ...}. Doubles in full precision,
+  /// empty values null, numbers that are not finite as the strings "nan", "inf", "-inf".
+  [[nodiscard]] std::string json() const;
+
+  /// The rows as CSV (RFC 4180, one header line, columns as in json()). Empty values are empty fields.
+  [[nodiscard]] std::string csv() const;
+
+  /// Writes results.json and results.csv into `folder`, which must exist. @throws OutputError
+  void write(const std::string &folder) const;
+
+  /// Prints an aligned table, at most 120 columns wide, values with seven significant digits. Long names are wrapped.
+  void print(std::ostream &out) const;
+
+private:
+  std::vector<Result> rows_;
+};
+
+} // namespace verification
+
+#endif

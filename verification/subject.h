@@ -1,0 +1,46 @@
+#pragma once
+
+#include "verification/case.h"
+#include "verification/homogenisation.h"
+
+namespace verification
+{
+
+/// What a claim is about: a lattice on one side, the laws meant to agree with it on the other. The claims compare the
+/// two and take nothing for granted about how they came together, so a test can put a wrong law beside a right lattice.
+struct Subject
+{
+  std::string name; ///< in results: "NN+NNN" or "NN"
+  double spacing;   ///< d [m]
+  lattice::Orientation orientation;
+  lattice::Material material;
+  Eigen::Matrix2d deformation; ///< F of the loaded sheet [-]
+  SmallStrain theory;
+  continuum::CauchyBorn cauchy_born;
+  Calibration mooney_rivlin;
+};
+
+/// The subject of a case; `material` may differ from the case's own.
+inline Subject subject(const Case &input, const lattice::Material &material)
+{
+  const lattice::TriangularLattice sheet = input.lattice();
+  Calibration calibration = calibrate_mooney_rivlin(sheet, material, input.deformation());
+  if (input.mooney_rivlin_ratio)
+    calibration = with_ratio(sheet, material, input.deformation(), *input.mooney_rivlin_ratio);
+  return {material.next_nearest ? "NN+NNN" : "NN",
+          input.spacing,
+          input.orientation,
+          material,
+          input.deformation(),
+          small_strain(sheet, material),
+          cauchy_born(sheet, material),
+          calibration};
+}
+
+/// The subject of a case as it stands.
+inline Subject subject(const Case &input)
+{
+  return subject(input, input.material());
+}
+
+} // namespace verification
