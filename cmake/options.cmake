@@ -25,3 +25,6 @@ if(CMAKE_BUILD_TYPE STREQUAL "Debug" OR LATCON_AUDIT)
 else()
   target_link_libraries(latcon_dealii INTERFACE ${DEAL_II_TARGET_RELEASE})
 endif()
+
+# The libraries behind deal.II make linking the slowest step; lld takes a tenth of the time of the default linker.
+add_link_options(-fuse-ld=lld)

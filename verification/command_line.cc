@@ -92,11 +92,13 @@ ExitCode run_program(int argc, char **argv)
   verify_command->add_option("CLAIM", options.claims, "claims to check; default: all")
     ->check(CLI::IsMember(claim_names()))
     ->type_name("");
-  verify_command->add_option("--case", options.case_file, "case whose material and loading to verify")->type_name("FILE");
+  verify_command->add_option("--case", options.case_file, "case whose material and loading to verify")
+    ->type_name("FILE");
   verify_command->add_flag("--quick", options.quick, "small versions");
   verify_command->callback([&] { command = [&] { return verify(options); }; });
 
-  const auto add_case_command = [&](const std::string &name, const std::string &help, ExitCode (*run)(const Options &)) {
+  const auto add_case_command = [&](const std::string &name, const std::string &help, ExitCode (*run)(const Options &))
+  {
     CLI::App *subcommand = app.add_subcommand(name, help);
     subcommand->add_option("CASE", options.case_file, "case file, .prm or .json")->required()->type_name("");
     subcommand->callback([&command, &options, run] { command = [&options, run] { return run(options); }; });
@@ -137,10 +139,12 @@ ExitCode run_program(int argc, char **argv)
   catch (const std::exception &error)
   {
     const Failure failure = describe(error);
-    // Most errors are met by all ranks alike: the first one tells. One met by another rank alone is told a moment later.
+    // Most errors are met by all ranks alike: the first one tells. One met by another rank alone is told a moment
+    // later.
     if (rank != 0)
       std::this_thread::sleep_for(std::chrono::seconds(1));
-    std::cerr << "latcon: " << (n_ranks > 1 ? "rank " + std::to_string(rank) + ": " : "") << failure.message << std::endl;
+    std::cerr << "latcon: " << (n_ranks > 1 ? "rank " + std::to_string(rank) + ": " : "") << failure.message
+              << std::endl;
     // Ranks that wait for this one in a collective call would wait for ever.
     if (n_ranks > 1)
       MPI_Abort(MPI_COMM_WORLD, static_cast<int>(failure.exit_code));

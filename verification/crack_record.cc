@@ -144,7 +144,7 @@ void CrackRecord::write_tables(const std::filesystem::path &directory) const
 }
 
 void CrackRecord::write_measurement(const std::filesystem::path &directory,
-                                    const lattice::CrackMeasurement &measurement) const
+                                    const lattice::CrackMeasurement &measurement, bool skip_verification) const
 {
   nlohmann::ordered_json json;
   json["pattern"] = lattice::to_string(measurement.pattern);
@@ -167,6 +167,7 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory,
   json["bonds_broken"] = simulation_.n_broken();
   json["end_time"] = simulation_.state().time;
   json["energy_imbalance"] = largest_imbalance();
+  json["skip_verification"] = skip_verification;
   json["units"] = "speeds m/s, lengths m in the undeformed sheet, time s; uncertainties are one standard deviation";
   write_file(directory / "crack.json", json.dump(2) + "\n");
 }

@@ -36,8 +36,9 @@ public:
   /// Writes crack.csv, broken_bonds.csv and energy.csv. @throws OutputError
   void write_tables(const std::filesystem::path &directory) const;
 
-  /// Writes crack.json. @throws OutputError
-  void write_measurement(const std::filesystem::path &directory, const lattice::CrackMeasurement &measurement) const;
+  /// Writes crack.json. @param skip_verification whether the material went unverified @throws OutputError
+  void write_measurement(const std::filesystem::path &directory, const lattice::CrackMeasurement &measurement,
+                         bool skip_verification) const;
 
 private:
   void note_tip();

@@ -424,16 +424,16 @@ TEST(Material, MinimumAcousticEigenvalueIsTheLowestOverAllDirections)
   {
     const Tensor<2, 2> F = random_deformation(generator);
     double lowest = std::numeric_limits<double>::infinity();
-    const int n = 20000;
+    const int n = 2000;
     for (int k = 0; k < n; ++k)
     {
       const double speed = wave_speeds(law, F, Tensor<1, 2>({std::cos(pi * k / n), std::sin(pi * k / n)}), 1.)[0];
       lowest = std::min(lowest, speed * speed);
     }
-    // A scan of step pi/n misses a smooth minimum by about its curvature times (pi/n)^2/8, below 1e-8 of the stiffness.
+    // A scan of step pi/n misses a smooth minimum by about its curvature times (pi/n)^2/8, below 1e-6 of the stiffness.
     const double found = continuum::minimum_acoustic_eigenvalue(law, F);
     EXPECT_LE(found, lowest * (1. + 1e-12));
-    EXPECT_NEAR(found, lowest, 1e-8 * law.tangent(F).norm());
+    EXPECT_NEAR(found, lowest, 1e-6 * law.tangent(F).norm());
   }
 }
 

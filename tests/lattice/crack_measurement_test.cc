@@ -6,13 +6,13 @@
 // Ensembles are of 200 seeds: a fraction p has a standard deviation of sqrt(p (1 - p) / 200), 0.033 at p = 0.68 and
 // 0.015 at p = 0.95.
 
-#include "synthetic_crack.h"
-
 #include <cmath>
 #include <random>
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "tests/lattice/synthetic_crack.h"
 
 namespace
 {

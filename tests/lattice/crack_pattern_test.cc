@@ -1,7 +1,5 @@
 // Branching and arrest of synthetic cracks, and records and options that cannot be used.
 
-#include "synthetic_crack.h"
-
 #include <cmath>
 #include <functional>
 #include <limits>
@@ -11,6 +9,8 @@
 #include <vector>
 
 #include <gtest/gtest.h>
+
+#include "tests/lattice/synthetic_crack.h"
 
 namespace
 {

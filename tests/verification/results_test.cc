@@ -65,6 +65,7 @@ Results sample()
   results.add(row);
   row = checked(not_a_number, 1e-10);
   row.claim = "a \"quoted\", odd claim";
+  row.unit = "\"";
   row.quantity = "two\nlines";
   row.continuum = infinity;
   results.add(row);
@@ -162,6 +163,7 @@ TEST(Results, CsvHasTheSameRows)
   EXPECT_EQ(rows[1][8], "holds");
   EXPECT_EQ(rows[2][0], "a \"quoted\", odd claim");
   EXPECT_EQ(rows[2][1], "two\nlines");
+  EXPECT_EQ(rows[2][2], "\"");
   EXPECT_EQ(rows[2][6], "nan");
   EXPECT_EQ(rows[3][6], "");
 }

@@ -1,0 +1,298 @@
+#!/usr/bin/python3
+"""The command line's contract: commands, exit codes, output files and what independent readers find in them.
+
+Usage: command_line_test.py PATH_OF_LATCON
+"""
+import csv
+import json
+import math
+import os
+import pathlib
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+import unittest
+import xml.etree.ElementTree
+
+import vtk
+from vtk.util.numpy_support import vtk_to_numpy
+
+LATCON = sys.argv.pop(1)
+CASES = pathlib.Path(__file__).resolve().parents[2] / "verification" / "cases"
+# A strip so short that a crack runs through it in a second.
+TINY = ["--set", "Sheet/length=2.5 cm", "--set", "Sheet/height=1.5 cm", "--set", "Time/end=1.5 ms"]
+
+
+def latcon(*arguments, **keywords):
+    return subprocess.run([LATCON, *map(str, arguments)], capture_output=True, text=True, timeout=600, **keywords)
+
+
+def read_csv(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def frames(path):
+    """(time, file) of every data set of a .pvd."""
+    root = xml.etree.ElementTree.parse(path).getroot()
+    return [(float(d.get("timestep")), path.parent / d.get("file")) for d in root.iter("DataSet")]
+
+
+def read(reader, path):
+    reader.SetFileName(str(path))
+    reader.Update()
+    return reader.GetOutput()
+
+
+class TemporaryFolder(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+        self.out = self.folder / "out"
+
+
+class Fracture(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.out = pathlib.Path(cls.folder.name) / "out"
+        cls.run_ = latcon("fracture", CASES / "quick.prm", "--output-dir", cls.out, *TINY)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_ends_well_with_every_file(self):
+        self.assertEqual(self.run_.returncode, 0, self.run_.stderr)
+        names = {path.name for path in self.out.iterdir()}
+        wanted = {"case.prm", "run.json", "results.json", "results.csv", "crack.csv", "crack.json", "broken_bonds.csv",
+                  "energy.csv", "lattice.pvd"}
+        self.assertLessEqual(wanted, names)
+        self.assertFalse([name for name in names if name.endswith(".part")])
+
+    def test_prints_a_table_within_120_columns(self):
+        self.assertIn("prestretch", self.run_.stdout)
+        self.assertLessEqual(max(map(len, self.run_.stdout.splitlines()[1:])), 120)
+        self.assertNotIn("\r", self.run_.stderr)  # no progress line off a terminal
+
+    def test_results_agree_between_json_and_csv(self):
+        results = json.loads((self.out / "results.json").read_text())
+        rows = read_csv(self.out / "results.csv")
+        self.assertEqual(len(rows), len(results["claims"]))
+        for row, entry in zip(rows, results["claims"]):
+            self.assertEqual(list(row), ["claim", "quantity", "unit", "lattice", "continuum", "theory", "error",
+                                         "tolerance", "verdict"])
+            self.assertEqual(row["verdict"], entry["verdict"])
+            if entry["lattice"] is not None:
+                self.assertEqual(float(row["lattice"]), entry["lattice"])
+        self.assertEqual({entry["claim"] for entry in results["claims"]}, {"energy", "prestretch", "fracture"})
+
+    def test_crack_files_tell_one_story(self):
+        crack = json.loads((self.out / "crack.json").read_text())
+        self.assertIn(crack["pattern"], ["straight", "oscillating", "branching", "arrested"])
+        for name in ["speed_lagrangian", "speed_laboratory", "wavelength", "amplitude"]:
+            self.assertIn(name, crack)
+            self.assertIn(name + "_uncertainty", crack)
+        tip = read_csv(self.out / "crack.csv")
+        self.assertEqual(list(tip[0]), ["t", "X", "Y", "x", "y", "speed", "bonds_broken"])
+        position = [float(row["X"]) for row in tip]
+        self.assertEqual(position, sorted(position))
+        self.assertGreater(position[-1], 2. * position[0])
+        broken = read_csv(self.out / "broken_bonds.csv")
+        self.assertEqual(list(broken[0]), ["t", "site", "other_site", "X", "Y", "stretch"])
+        self.assertEqual(len(broken), crack["bonds_broken"])
+        self.assertGreater(min(float(row["stretch"]) for row in broken), 3.05)
+
+    def test_energy_ledger_is_closed(self):
+        rows = read_csv(self.out / "energy.csv")
+        self.assertEqual(list(rows[0]), ["t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact",
+                                         "imbalance"])
+        # The seed's bonds are in `broken` from the start, so the first row holds all there is.
+        first = {name: float(value) for name, value in rows[0].items()}
+        initial = first["elastic"] + first["broken"]
+        for row in rows:
+            e = {name: float(value) for name, value in row.items()}
+            balance = e["elastic"] + e["kinetic"] + e["viscous"] + e["broken"] - initial - e["boundary_work"]
+            self.assertAlmostEqual(balance / initial, e["imbalance"] / initial, delta=1e-12)
+            self.assertLess(abs(balance), 1e-4 * initial)
+        self.assertGreater(float(rows[-1]["viscous"]), 0.)
+
+    def test_frames_open_outside_latcon_with_times_and_fields(self):
+        series = frames(self.out / "lattice.pvd")
+        times = [time for time, _ in series]
+        self.assertEqual(times[0], 0.)
+        self.assertEqual(times, sorted(times))
+        last = float(read_csv(self.out / "energy.csv")[-1]["t"])
+        self.assertEqual(times[-1], last)  # to the last digit
+        broken_before = None
+        for time_, path in series:
+            sheet = read(vtk.vtkXMLPolyDataReader(), path)
+            self.assertEqual(sheet.GetFieldData().GetArray("TimeValue").GetValue(0), time_)
+            points = sheet.GetPointData()
+            names = [points.GetArrayName(i) for i in range(points.GetNumberOfArrays())]
+            self.assertEqual(names, ["displacement", "velocity", "deformation_gradient", "first_piola_stress",
+                                     "cauchy_stress", "strain_energy_density", "damage", "held", "site"])
+            self.assertEqual([sheet.GetCellData().GetArrayName(i) for i in range(3)], ["stretch", "shell", "toughened"])
+            self.assertEqual(sheet.GetCellData().GetArray("stretch").GetNumberOfTuples(), sheet.GetNumberOfCells())
+            lines = sheet.GetNumberOfLines()
+            if broken_before is not None:
+                self.assertLessEqual(lines, broken_before)
+            broken_before = lines
+        # Bonds of the last frame: those of the first less the broken ones.
+        first = read(vtk.vtkXMLPolyDataReader(), series[0][1]).GetNumberOfLines()
+        self.assertEqual(first - broken_before, len(read_csv(self.out / "broken_bonds.csv")))
+
+    def test_resolved_case_is_the_case(self):
+        again = latcon("fracture", self.out / "case.prm", "--dry-run", "--output-dir", self.out.parent / "none")
+        self.assertEqual(again.returncode, 0, again.stderr)
+        resolved = (self.out / "case.prm").read_text()
+        self.assertIn(resolved.strip(), again.stdout)
+        self.assertFalse((self.out.parent / "none").exists())
+
+    def test_run_json_says_how_it_came_about(self):
+        run = json.loads((self.out / "run.json").read_text())
+        for key in ["version", "git_commit", "compiler", "libraries", "threads", "wall_time_s", "peak_memory_bytes"]:
+            self.assertIn(key, run)
+        self.assertEqual(run["exit_code"], 0)
+        self.assertEqual(run["skip_verification"], False)
+
+
+class Reproducible(TemporaryFolder):
+    def test_threads_leave_no_trace(self):
+        for threads in [1, 2, 3]:
+            run = latcon("fracture", CASES / "quick.prm", "--output-dir", self.folder / str(threads), *TINY, "--threads",
+                         threads, "--skip-verification", "--quiet")
+            self.assertEqual((run.returncode, run.stdout), (0, ""), run.stderr)
+        for name in ["crack.csv", "broken_bonds.csv", "energy.csv", "crack.json", "lattice-0001.vtp"]:
+            one = (self.folder / "1" / name).read_bytes()
+            for threads in ["2", "3"]:
+                self.assertEqual(one, (self.folder / threads / name).read_bytes(), name)
+
+    def test_skipped_verification_is_written_down(self):
+        latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, *TINY, "--set", "Time/end=0.01 ms",
+               "--skip-verification")
+        self.assertTrue(json.loads((self.out / "run.json").read_text())["skip_verification"])
+        self.assertTrue(json.loads((self.out / "crack.json").read_text())["skip_verification"])
+        claims = {row["claim"] for row in read_csv(self.out / "results.csv")}
+        self.assertEqual(claims, {"fracture"})
+
+
+class BothSides(TemporaryFolder):
+    def test_lattice_and_continuum_of_one_case_agree(self):
+        for command in ["lattice", "continuum"]:
+            run = latcon(command, CASES / "quick.prm", "--output-dir", self.folder / command)
+            self.assertEqual(run.returncode, 0, run.stderr)
+        lattice = frames(self.folder / "lattice" / "lattice.pvd")
+        continuum = frames(self.folder / "continuum" / "continuum.pvd")
+        self.assertEqual([lattice[0][0], lattice[-1][0]], [0., 1.])
+        self.assertEqual([continuum[0][0], continuum[-1][0]], [0., 1.])
+        sites = read(vtk.vtkXMLPolyDataReader(), lattice[-1][1])
+        cells = read(vtk.vtkXMLUnstructuredGridReader(), continuum[-1][1])
+        self.assertEqual(cells.GetFieldData().GetArray("TIME").GetValue(0), 1.)
+        probe = vtk.vtkProbeFilter()
+        probe.SetSourceData(cells)
+        probe.SetInputData(sites)
+        probe.Update()
+        at_sites = probe.GetOutput().GetPointData()
+        inside = vtk_to_numpy(at_sites.GetArray("vtkValidPointMask")) == 1
+        inside &= vtk_to_numpy(sites.GetPointData().GetArray("held")) == 0
+        self.assertGreater(inside.sum(), 1000)
+        # vtu fields are stored in single or double precision; both sides solved to 1e-10.
+        for name in ["displacement", "deformation_gradient", "first_piola_stress", "cauchy_stress",
+                     "strain_energy_density"]:
+            a = vtk_to_numpy(sites.GetPointData().GetArray(name))[inside]
+            b = vtk_to_numpy(at_sites.GetArray(name))[inside]
+            self.assertEqual(a.shape, b.shape, name)
+            if name == "deformation_gradient":  # a lattice has no thickness
+                b = b.copy()
+                b[:, 8] = a[:, 8]
+            self.assertLess(abs(a - b).max(), 1e-6 * abs(a).max(), name)
+
+    def test_motion_conserves_energy(self):
+        run = latcon("lattice", CASES / "quick.prm", "--output-dir", self.out, "--set", "Lattice/solution=motion",
+                     "--set", "Time/end=0.2 ms")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertGreater(len(read_csv(self.out / "energy.csv")), 3)
+
+    def test_continuum_runs_on_ranks(self):
+        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+        run = subprocess.run(["mpirun", "--oversubscribe", "-n", "3", LATCON, "continuum", CASES / "quick.prm",
+                              "--output-dir", self.out], capture_output=True, text=True, timeout=600, env=environment)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        ranks = {row["quantity"]: float(row["continuum"]) for row in read_csv(self.out / "results.csv")}
+        latcon("continuum", CASES / "quick.prm", "--output-dir", self.folder / "serial")
+        for row in read_csv(self.folder / "serial" / "results.csv"):
+            self.assertTrue(math.isclose(float(row["continuum"]), ranks[row["quantity"]], rel_tol=1e-10))
+
+
+class ExitCodes(TemporaryFolder):
+    def test_help_and_version(self):
+        self.assertEqual(latcon("--help").returncode, 0)
+        self.assertIn("fracture", latcon("--help").stdout)
+        self.assertRegex(latcon("--version").stdout, r"latcon \d+\.\d+\.\d+")
+
+    def test_bad_command_line_is_2(self):
+        for arguments in [[], ["fly"], ["verify", "everything"], ["lattice"], ["lattice", "--colour"],
+                          ["verify", "--threads", "0"]]:
+            self.assertEqual(latcon(*arguments).returncode, 2, arguments)
+
+    def test_bad_input_is_2_and_writes_nothing(self):
+        run = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, "--set", "Sheet/spacin=1", "--set",
+                     "Material/density=-3", "--set", "Loading/strain y=2.5")
+        self.assertEqual(run.returncode, 2)
+        for part in ["Sheet/spacing", "Material/density", "-3", "> 0", "Fracture/breaking stretch", "quick.prm:"]:
+            self.assertIn(part, run.stderr)
+        self.assertFalse(self.out.exists())
+        self.assertEqual(latcon("lattice", self.folder / "none.prm", "--output-dir", self.out).returncode, 2)
+
+    def test_fracture_needs_what_breaks_it(self):
+        case = (CASES / "quick.prm").read_text().replace("  set breaking stretch = 3.05\n", "")
+        (self.folder / "case.prm").write_text(case)
+        run = latcon("fracture", self.folder / "case.prm", "--output-dir", self.out)
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("Fracture/breaking stretch", run.stderr)
+
+    def test_claim_that_fails_is_3(self):
+        run = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, *TINY, "--skip-verification", "--set",
+                     "Reference/speed=1 m/s")
+        self.assertEqual(run.returncode, 3, run.stderr)
+        self.assertIn("fails", run.stdout)
+        self.assertTrue((self.out / "crack.json").exists())
+
+    def test_unverified_material_is_refused_with_3(self):
+        # A Mooney-Rivlin ratio with which the law loses ellipticity on the way.
+        run = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, *TINY, "--set", "Continuum/ratio=-0.2")
+        self.assertEqual(run.returncode, 3, run.stderr + run.stdout)
+        self.assertFalse((self.out / "crack.csv").exists())
+
+    def test_state_that_blows_up_is_4(self):
+        # Just below twice the bound of the undeformed lattice, which the check lets pass, and beyond what a crack bears.
+        run = latcon("lattice", CASES / "quick.prm", "--output-dir", self.out, "--set", "Lattice/solution=motion",
+                     "--set", "Time/end=2 ms", "--set", "Time/step=5.1e-7")
+        self.assertEqual(run.returncode, 4, run.stderr)
+        self.assertIn("blew up", run.stderr)
+
+    def test_unwritable_place_is_5(self):
+        blocked = self.folder / "file"
+        blocked.write_text("in the way")
+        self.assertEqual(latcon("lattice", CASES / "quick.prm", "--output-dir", blocked / "out").returncode, 5)
+        self.assertEqual(blocked.read_text(), "in the way")
+
+    def test_interrupt_is_130_and_keeps_what_is_known(self):
+        process = subprocess.Popen([LATCON, "fracture", CASES / "quick.prm", "--output-dir", self.out, "--quiet",
+                                    "--skip-verification", "--set", "Time/end=1"], stderr=subprocess.PIPE)
+        deadline = time.time() + 60
+        while not (self.out / "lattice.pvd").exists() and time.time() < deadline:
+            time.sleep(0.05)
+        process.send_signal(signal.SIGINT)
+        self.assertEqual(process.wait(60), 130)
+        process.stderr.close()
+        self.assertTrue((self.out / "crack.csv").exists())
+        self.assertEqual(json.loads((self.out / "run.json").read_text())["exit_code"], 130)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,80 @@
+"""Reading and writing of single files: what is wrong is said with the file's name, what is written appears whole."""
+import csv
+import json
+import os
+
+import numpy as np
+
+
+class DamagedFile(Exception):
+    """A file that a run wrote cannot be understood."""
+
+    def __init__(self, path, problem):
+        super().__init__(f"{path}: {problem}")
+
+
+class UnwritableFile(Exception):
+    """A file of the report cannot be written."""
+
+    def __init__(self, path, problem):
+        super().__init__(f"cannot write {path}: {problem}")
+
+
+def read_text(path):
+    """Text of a file; None if there is no such file."""
+    try:
+        return path.read_text(encoding="utf-8")
+    except FileNotFoundError:
+        return None
+    except OSError as error:
+        raise DamagedFile(path, error.strerror) from error
+    except UnicodeDecodeError as error:
+        raise DamagedFile(path, f"not UTF-8 text (byte {error.start})") from error
+
+
+def read_json(path):
+    """Object in a JSON file; None if there is no such file."""
+    text = read_text(path)
+    if text is None:
+        return None
+    try:
+        value = json.loads(text)
+    except ValueError as error:
+        raise DamagedFile(path, f"not JSON: {error}") from error
+    if not isinstance(value, dict):
+        raise DamagedFile(path, "holds no JSON object")
+    return value
+
+
+def read_table(path, columns):
+    """Columns of a CSV file of numbers, {name: array}; None if there is no such file. Other columns are left out."""
+    text = read_text(path)
+    if text is None:
+        return None
+    rows = list(csv.reader(text.splitlines()))
+    header = rows[0] if rows else []
+    missing = [name for name in columns if name not in header]
+    if missing:
+        raise DamagedFile(path, f"has no column {missing[0]!r}")
+    places = [header.index(name) for name in columns]
+    values = np.empty((len(rows) - 1, len(columns)))
+    for line, row in enumerate(rows[1:], start=2):
+        if len(row) != len(header):
+            raise DamagedFile(path, f"line {line} has {len(row)} fields, the header has {len(header)}")
+        try:
+            values[line - 2] = [float(row[place]) for place in places]
+        except ValueError as error:
+            raise DamagedFile(path, f"line {line}: {error}") from error
+        if not np.isfinite(values[line - 2]).all():
+            raise DamagedFile(path, f"line {line} holds a number that is not finite")
+    return dict(zip(columns, values.T))
+
+
+def write_file(path, write):
+    """Calls `write` with the name of a file beside `path`, which then takes its place."""
+    beside = path.with_name(path.name + ".part")
+    try:
+        write(beside)
+        os.replace(beside, path)
+    except OSError as error:
+        raise UnwritableFile(path, error.strerror or error) from error

@@ -1,0 +1,232 @@
+"""The report as one HTML file that needs nothing beside it."""
+import base64
+import json
+from html import escape
+from pathlib import Path
+
+from summary import VERDICTS, comparisons, percent, ratio_text, tallies, tally_of, with_uncertainty
+
+MARKS = {"holds": "✓", "fails": "✗", "reported": "·"}
+CAPTIONS = {
+    "sheet.png": "The sheet in its last frame, as it is: every unbroken bond is a line, the crack is the white opening. "
+                 "Bonds that cross the opening are toughened ones that have not broken.",
+    "crack_path.png": "The crack in the undeformed sheet. Above: its tip, the right-most site that has lost enough "
+                      "bonds; the dashed sinusoid has the measured wavelength and amplitude, its phase, offset and "
+                      "slope are least squares. Below: where bonds broke, coloured by time.",
+    "energy.png": "Where the elastic energy went, per metre of sheet thickness, from the cut of the seed crack on. The "
+                  "dashed line is what the bonds gave; the areas are what was found elsewhere; the small axis is the "
+                  "difference, over the energy given to the sheet.",
+}
+
+
+def page(title, runs, pictures):
+    """The whole page. `pictures`: {name of a run: [(file name, PNG file), ...]}."""
+    style = (Path(__file__).parent / "style.css").read_text(encoding="utf-8")
+    versions = sorted({f"latcon {run.info['version']}" for run in runs if run.info and "version" in run.info})
+    sections = [run_section(run, number, pictures.get(run.folder, [])) for number, run in enumerate(runs)]
+    links = ['<a href="#claims">Claims</a>']
+    links += [f'<a href="#run-{number}">{escape(run.name)}</a>' for number, run in enumerate(runs)]
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>latcon: {escape(title)}</title>
+<style>
+{style}</style>
+</head>
+<body>
+<h1>latcon report: {escape(title)}</h1>
+<p class="soft">{escape(", ".join(versions) or "latcon")}: what was checked, what came out, and whether it holds</p>
+{banner(runs)}
+<nav>{"".join(links)}</nav>
+{overview(runs)}
+<h2 id="claims">Claims</h2>
+{claims(runs)}
+{"".join(sections)}
+</body>
+</html>
+"""
+
+
+def banner(runs):
+    """The verdict over everything, and what a reader must know first."""
+    checks = [check for run in runs for check in run.checks]
+    total = tally_of(None, "", checks).count
+    checked = total["holds"] + total["fails"]
+    incomplete = [run for run in runs if run.state != "complete"]
+    notes = []
+    if total["fails"]:
+        kind, head = "fails", f"✗ Fails: {total['fails']} of {checked} checks {verb(total['fails'], 'fails', 'fail')}"
+        notes += [f'<b class="fails">{escape(run.name)}, {escape(check.claim)}: {escape(check.quantity)}</b>, '
+                  f"error {number(check.error, '.3g')}, allowed {number(check.tolerance, '.3g')}"
+                  for run in runs for check in run.checks if check.verdict == "fails"]
+    elif incomplete:
+        kind, head = "warns", "! Not complete: what is there holds" if checked else "! Not complete: nothing was checked"
+    elif checked:
+        kind, head = "holds", f"✓ Holds: all {checked} checks are within their tolerances"
+    else:
+        kind, head = "reported", "· Reported: nothing here has a tolerance"
+    notes += [f"{escape(run.name)}: the run {'was interrupted' if run.state == 'interrupted' else 'has not ended'}; "
+              "what it had written by then is shown" for run in incomplete]
+    notes += [f"{escape(run.name)}: the crack was run without its material and pre-stretch having been verified "
+              "(--skip-verification)" for run in runs if run.skipped_verification]
+    notes += [f"{escape(run.name)}: {headline(run)}" for run in runs if run.crack is not None]
+    if total["reported"]:
+        rows = verb(total["reported"], "1 row has", f"{total['reported']} rows have")
+        notes.append(f"{rows} no tolerance and {verb(total['reported'], 'is', 'are')} for information")
+    items = "".join(f"<li>{note}</li>" for note in notes)
+    return f'<div class="banner {kind}"><strong>{head}</strong>{f"<ul>{items}</ul>" if items else ""}</div>'
+
+
+def verb(count, one, many):
+    """The form that goes with a count."""
+    return one if count == 1 else many
+
+
+def headline(run):
+    """A crack in one line."""
+    found = [f"{escape(c.quantity.split(',')[0])} {with_uncertainty(c.measured, c.uncertainty)} {escape(c.unit)} "
+             f"({percent(c.difference)} from the paper)" for c in comparisons(run) if c.measured is not None]
+    return "; ".join([f"the crack is {escape(run.crack['pattern'])}"] + found)
+
+
+def overview(runs):
+    """Counts by run and claim."""
+    rows = []
+    for position, run in enumerate(runs):
+        link = f'<a href="#run-{position}">{escape(run.name)}</a>'
+        for tally in tallies(run):
+            verdict = next((v for v in VERDICTS if tally.count[v]), "reported")
+            rows.append(row(verdict, [
+                ("short", link), ("short", escape(tally.claim)),
+                *(("number", str(tally.count[v])) for v in ("holds", "fails", "reported")),
+                ("number", ratio_text(tally.worst))]))
+        if not run.checks:
+            rows.append(row("reported", [("short", link), ("short", f"none: {run.state}"), *[("number", "–")] * 4]))
+    head = ["verdict", "run", "claim", "#holds", "#fails", "#reported", "#worst error / tolerance"]
+    return table(head, rows, "narrow") if rows else ""
+
+
+def claims(runs):
+    """A table a claim, those that fail first; rows that several runs share are shown once."""
+    runs_of = {}
+    for run in runs:
+        for check in run.checks:
+            # By text, for nan is not equal to itself.
+            runs_of.setdefault(repr(check), (check, []))[1].append(run.name)
+    entries = list(runs_of.values())
+    names = list(dict.fromkeys(check.claim for check, _ in entries))
+    groups = {name: sorted((e for e in entries if e[0].claim == name), key=lambda e: VERDICTS.index(e[0].verdict))
+              for name in names}
+    parts = []
+    for name in sorted(names, key=lambda name: groups[name][0][0].verdict != "fails"):
+        tally = tally_of(None, name, [check for check, _ in groups[name]])
+        counts = ", ".join(f"{tally.count[v]} {verb(tally.count[v], one, many)}"
+                           for v, one, many in (("fails", "fails", "fail"), ("holds", "holds", "hold"),
+                                                ("reported", "reported", "reported")) if tally.count[v])
+        worst = "" if tally.worst is None else f", worst error / tolerance {ratio_text(tally.worst)}"
+        head = ["verdict", "quantity", "unit", "#lattice", "#continuum",
+                "#published" if name == "fracture" else "#theory", "#error", "#tolerance"] + (["run"] if len(runs) > 1 else [])
+        rows = [claim_row(check, shared, len(runs) > 1) for check, shared in groups[name]]
+        parts.append(f"<details open><summary><b>{escape(name)}</b> <span class=\"soft\">{counts}{worst}</span>"
+                     f"</summary>{table(head, rows)}</details>")
+    return "\n".join(parts) or "<p>Nothing was checked.</p>"
+
+
+def claim_row(check, shared, show_runs):
+    """One checked quantity."""
+    cells = [("words", raised(check.quantity)), ("short", raised(check.unit))]
+    cells += [("number", number(value, ".7g")) for value in (check.lattice, check.continuum, check.theory)]
+    cells += [("number", number(check.error, ".2e")), ("number", number(check.tolerance, ".3g"))]
+    if show_runs:
+        cells.append(("short", escape(", ".join(dict.fromkeys(shared)))))
+    return row(check.verdict, cells)
+
+
+def run_section(run, position, pictures):
+    """A run: its crack if it has one, then its inputs and versions."""
+    parts = [f'<h2 id="run-{position}">{escape(run.name)}</h2>', facts(run)]
+    if run.is_fracture:
+        parts += [pattern_sentence(run), comparison_table(run)]
+        shown = [name for name, _ in pictures]
+        parts += [figure(name, png, run) for name, png in pictures]
+        missing = [name for name in CAPTIONS if name not in shown]
+        if missing:
+            parts.append(f'<p class="soft">Not drawn, for the run left nothing to draw: {", ".join(missing)}</p>')
+    if run.case_text is not None:
+        parts.append(f'<details><summary>Inputs (case.prm, SI units)</summary><div class="scroll">'
+                     f"<pre>{escape(run.case_text)}</pre></div></details>")
+    if run.info is not None:
+        text = json.dumps(run.info, indent=2, ensure_ascii=False)
+        parts.append(f'<details><summary>Versions, threads, wall times (run.json)</summary><div class="scroll">'
+                     f"<pre>{escape(text)}</pre></div></details>")
+    return "\n".join(part for part in parts if part)
+
+
+def facts(run):
+    """Version, commit, time and memory in one line, as far as run.json tells."""
+    info = run.info or {}
+    found = []
+    if "version" in info:
+        found.append(f"latcon {info['version']}")
+    if "git_commit" in info:
+        commit, _, changed = str(info["git_commit"]).partition("-")
+        found.append(f"commit {commit[:12]}{' and changes' if changed else ''}")
+    if isinstance(info.get("wall_time_total_s"), (int, float)):
+        found.append(f"{info['wall_time_total_s']:.3g} s on {info.get('threads', '?')} threads")
+    if isinstance(info.get("peak_memory_bytes"), (int, float)):
+        found.append(f"{info['peak_memory_bytes'] / 1e6:.0f} MB")
+    if run.state != "complete":
+        found.append(run.state)
+    return f'<p class="soft">{escape(" · ".join(found))}</p>' if found else ""
+
+
+def pattern_sentence(run):
+    """What the crack did, and how sure that is."""
+    if run.crack is None:
+        return "<p>The run did not get to the measurement of its crack (no crack.json).</p>"
+    sure = "" if run.crack.get("conclusive", True) else " The record does not settle it."
+    reason = f": {run.crack['reason']}" if run.crack.get("reason") else ""
+    return f"<p>The crack is <b>{escape(run.crack['pattern'])}</b>{escape(reason)}.{sure}</p>"
+
+
+def comparison_table(run):
+    """Published beside measured values."""
+    rows = [row(c.verdict, [
+        ("words", raised(c.quantity)), ("short", raised(c.unit)), ("number", number(c.published, ".4g")),
+        ("number", "not measured" if c.measured is None else with_uncertainty(c.measured, c.uncertainty)),
+        ("number", percent(c.difference))])
+        for c in comparisons(run)]
+    head = ["verdict", "quantity", "unit", "#paper", "#latcon", "#difference"]
+    return table(head, rows, "narrow") if rows else ""
+
+
+def figure(name, png, run):
+    """A picture, in the page itself."""
+    data = base64.b64encode(png.read_bytes()).decode("ascii")
+    alt = f"{name} of the run {run.name}"
+    return (f'<figure><div class="picture"><img alt="{escape(alt)}" src="data:image/png;base64,{data}"></div>'
+            f"<figcaption>{CAPTIONS[name]}</figcaption></figure>")
+
+
+def table(head, rows, kind=""):
+    """A table that scrolls in its own box; columns whose head begins with # hold numbers."""
+    cells = "".join(f'<th class="number">{name[1:]}</th>' if name[0] == "#" else f"<th>{name}</th>" for name in head)
+    return f'<div class="scroll {kind}"><table><thead><tr>{cells}</tr></thead><tbody>{"".join(rows)}</tbody></table></div>'
+
+
+def row(verdict, cells):
+    """A table row in the colour of its verdict, which comes first; cells are (class, HTML)."""
+    cells = [("verdict", f"{MARKS[verdict]} {verdict}"), *cells]
+    return f'<tr class="{verdict}">' + "".join(f'<td class="{kind}">{text}</td>' for kind, text in cells) + "</tr>"
+
+
+def number(value, form):
+    """A number, or a dash for none."""
+    return "–" if value is None else format(value, form)
+
+
+def raised(text):
+    """Text with its exponents raised."""
+    return escape(text).replace("^2", "²").replace("^3", "³")

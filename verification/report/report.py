@@ -1,0 +1,71 @@
+#!/usr/bin/python3
+"""Draws the pictures of latcon's runs and writes report.html.
+
+Exit codes, those of latcon: 0 done and no claim fails; 2 no run there, or a damaged file; 3 a claim fails; 5 a file
+cannot be written.
+"""
+import argparse
+import os
+import sys
+from pathlib import Path
+
+sys.dont_write_bytecode = True  # this folder stays as it is
+
+from crack_path import draw_crack_path
+from files import DamagedFile, UnwritableFile, write_file
+from frame import read_last_frame
+from page import page
+from pictures import draw_energy, draw_sheet
+from runs import find_runs, has_rows
+from summary import text_summary
+
+DONE, BAD_INPUT, CLAIM_FAILS, IO_FAILED = 0, 2, 3, 5
+
+
+def draw_pictures(run):
+    """Pictures of a fracture run, as far as its files go: [(file name, PNG file), ...]."""
+    drawn = []
+    frame = read_last_frame(run.folder)
+    if frame is not None:
+        drawn.append("sheet.png")
+        draw_sheet(frame, run.input_number("Fracture", "breaking stretch"), run.folder / drawn[-1])
+    if has_rows(run.tip):
+        drawn.append("crack_path.png")
+        draw_crack_path(run, run.folder / drawn[-1])
+    if has_rows(run.energy):
+        drawn.append("energy.png")
+        draw_energy(run.energy, run.folder / drawn[-1])
+    return [(name, run.folder / name) for name in drawn]
+
+
+def report(directory, quiet):
+    """Everything, for the folder as the user gave it. @return exit code"""
+    folder = Path(directory)
+    runs = find_runs(folder)
+    pictures = {run.folder: draw_pictures(run) for run in runs if run.is_fracture}
+    html = page(folder.resolve().name, runs, pictures)
+    write_file(folder / "report.html", lambda beside: beside.write_text(html, encoding="utf-8"))
+    if not quiet:
+        sys.stdout.reconfigure(errors="replace")
+        print(text_summary(runs))
+        print(f"\n{os.path.join(directory, 'report.html')}")
+    return CLAIM_FAILS if any(c.verdict == "fails" for run in runs for c in run.checks) else DONE
+
+
+def main():
+    parser = argparse.ArgumentParser(description="Draw the pictures of latcon's runs and write report.html.")
+    parser.add_argument("directory", metavar="DIR", help="output directory of a run, or a folder of several")
+    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    arguments = parser.parse_args()
+    try:
+        return report(arguments.directory, arguments.quiet)
+    except DamagedFile as error:
+        print(f"error: {error}", file=sys.stderr)
+        return BAD_INPUT
+    except UnwritableFile as error:
+        print(f"error: {error}", file=sys.stderr)
+        return IO_FAILED
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,175 @@
+"""The runs of latcon that a folder holds, and what they checked and measured."""
+import math
+import re
+from dataclasses import dataclass
+from pathlib import Path
+
+from files import DamagedFile, read_json, read_table, read_text
+
+# Any of these makes a folder that of a run, whole or interrupted.
+SIGNS_OF_A_RUN = ("results.json", "run.json", "crack.json", "crack.csv", "lattice.pvd")
+INTERRUPTED = 130  # exit code of latcon
+
+
+@dataclass(frozen=True)
+class Check:
+    """A row of results.json. Values that do not apply are None."""
+
+    claim: str
+    quantity: str
+    unit: str  # of lattice, continuum and theory; "1" for a pure number
+    lattice: float
+    continuum: float
+    theory: float  # closed formula, or, in the claim "fracture", the published value
+    error: float  # as the claim defines it, smaller is better
+    tolerance: float  # None: for information only
+    verdict: str  # "holds", "fails" or "reported"
+
+    @property
+    def ratio(self):
+        """Error over tolerance, at most 1 where the claim holds; None without a tolerance."""
+        if self.tolerance is None:
+            return None
+        if self.error is None or math.isnan(self.error):
+            return math.inf
+        if self.tolerance == 0:
+            return 0.0 if self.error == 0 else math.inf
+        return self.error / self.tolerance
+
+
+@dataclass(frozen=True)
+class Run:
+    """What one run left in its folder. Parts that are not there are None."""
+
+    name: str
+    folder: Path
+    checks: list  # of Check; empty without results.json
+    has_results: bool
+    info: dict  # run.json
+    case_text: str  # case.prm
+    crack: dict  # crack.json, SI units
+    tip: dict  # crack.csv: t [s], X, Y [m] in the undeformed sheet
+    broken: dict  # broken_bonds.csv: t [s], X, Y [m] in the undeformed sheet
+    energy: dict  # energy.csv: t [s], the rest in J per metre of sheet thickness
+
+    @property
+    def is_fracture(self):
+        """Whether a crack was run, or at least begun."""
+        return self.crack is not None or has_rows(self.tip) or any(c.claim == "fracture" for c in self.checks)
+
+    @property
+    def state(self):
+        """How the run ended: "complete", "interrupted" or "unfinished"."""
+        exit_code = (self.info or {"exit_code": 0}).get("exit_code")
+        if exit_code == INTERRUPTED:
+            return "interrupted"
+        return "complete" if self.has_results and exit_code is not None else "unfinished"
+
+    @property
+    def skipped_verification(self):
+        """Whether the crack was run without the claims of its material having been checked."""
+        return bool((self.info or {}).get("skip_verification"))
+
+    def input_number(self, section, entry):
+        """Number in case.prm, SI unit; None if it is not there or not a number."""
+        current = None
+        for line in (self.case_text or "").splitlines():
+            if match := re.match(r"\s*subsection\s+(.*\S)", line):
+                current = match[1]
+            elif current == section and (match := re.match(rf"\s*set\s+{re.escape(entry)}\s*=\s*(\S+)", line)):
+                try:
+                    return float(match[1])
+                except ValueError:
+                    return None
+        return None
+
+
+def has_rows(table):
+    """Whether a table was read and is not empty."""
+    return table is not None and len(table["t"]) > 0
+
+
+def find_runs(folder):
+    """The run in `folder` and those in its sub-folders, runs without a crack first."""
+    try:
+        candidates = [folder] + sorted(path for path in folder.iterdir() if path.is_dir())
+        runs = [read_run(path) for path in candidates if any((path / sign).exists() for sign in SIGNS_OF_A_RUN)]
+    except OSError as error:
+        raise DamagedFile(folder, error.strerror) from error
+    if not runs:
+        raise DamagedFile(folder, "no run in it (no results.json, here or in a folder in it)")
+    return sorted(runs, key=lambda run: run.is_fracture)
+
+
+def read_run(folder):
+    """Everything a run wrote but its fields."""
+    results = read_json(folder / "results.json")
+    return Run(
+        name=folder.resolve().name,
+        folder=folder,
+        checks=[] if results is None else read_checks(folder / "results.json", results),
+        has_results=results is not None,
+        info=read_json(folder / "run.json"),
+        case_text=read_text(folder / "case.prm"),
+        crack=read_crack(folder / "crack.json"),
+        tip=read_table(folder / "crack.csv", ("t", "X", "Y")),
+        broken=read_table(folder / "broken_bonds.csv", ("t", "X", "Y")),
+        energy=read_table(
+            folder / "energy.csv",
+            ("t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "imbalance"),
+        ),
+    )
+
+
+def read_checks(path, results):
+    """The rows of results.json."""
+    rows = results.get("claims")
+    if not isinstance(rows, list):
+        raise DamagedFile(path, 'holds no list "claims"')
+    checks = []
+    for number, row in enumerate(rows, start=1):
+        where = f"row {number} of \"claims\""
+        try:
+            texts = {key: row[key] for key in ("claim", "quantity", "unit", "verdict")}
+            numbers = {key: row[key] for key in ("lattice", "continuum", "theory", "error", "tolerance")}
+        except (KeyError, TypeError) as error:
+            raise DamagedFile(path, f"{where} lacks {error}") from error
+        for key, value in texts.items():
+            if not isinstance(value, str):
+                raise DamagedFile(path, f"{where}: {key} is {value!r}, no text")
+        for key, value in numbers.items():
+            numbers[key] = checked_number(path, f"{where}: {key}", value)
+        check = Check(**texts, **numbers)
+        if check.verdict != expected_verdict(check):
+            raise DamagedFile(path, f"{where} says {check.verdict!r}, its error and tolerance say otherwise")
+        checks.append(check)
+    return checks
+
+
+def expected_verdict(check):
+    """The verdict that error and tolerance of a row amount to."""
+    if check.tolerance is None:
+        return "reported"
+    return "holds" if math.isfinite(check.tolerance) and check.ratio <= 1 else "fails"
+
+
+def read_crack(path):
+    """crack.json, its numbers checked; None if there is none."""
+    crack = read_json(path)
+    if crack is None:
+        return None
+    if not isinstance(crack.get("pattern"), str):
+        raise DamagedFile(path, 'says no "pattern"')
+    measured = ("speed_lagrangian", "speed_laboratory", "wavelength", "amplitude")
+    for key in measured + tuple(f"{name}_uncertainty" for name in measured) + ("window_begin", "window_end"):
+        crack[key] = checked_number(path, key, crack.get(key))
+    return crack
+
+
+def checked_number(path, what, value):
+    """A number as latcon writes it: null for none, the strings "nan", "inf", "-inf" for what is not finite."""
+    if value is None:
+        return None
+    if value in ("nan", "inf", "-inf") or (isinstance(value, (int, float)) and not isinstance(value, bool)):
+        return float(value)
+    raise DamagedFile(path, f"{what} is {value!r}, no number")

@@ -1,0 +1,142 @@
+"""What all runs together amount to: counts, worst errors, the comparison with published values; the table on stdout."""
+import math
+import textwrap
+from dataclasses import dataclass
+
+from runs import Run
+
+VERDICTS = ("fails", "holds", "reported")
+
+
+@dataclass(frozen=True)
+class Tally:
+    """Rows of one claim in one run, counted."""
+
+    run: Run
+    claim: str
+    count: dict  # verdict: number of rows
+    worst: float  # largest error over tolerance; None if nothing has a tolerance
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """A measured quantity beside its published value, both in `unit`."""
+
+    run: Run
+    quantity: str
+    unit: str
+    published: float
+    measured: float  # None: not measured
+    uncertainty: float  # one standard deviation; None: not known
+    verdict: str
+
+    @property
+    def difference(self):
+        """Relative difference from the published value [1]; None if nothing was measured."""
+        return None if self.measured is None or self.published == 0 else self.measured / self.published - 1
+
+
+def tallies(run):
+    """One Tally a claim, in the order in which they were checked."""
+    result = []
+    for claim in dict.fromkeys(check.claim for check in run.checks):
+        rows = [check for check in run.checks if check.claim == claim]
+        result.append(tally_of(run, claim, rows))
+    return result
+
+
+def tally_of(run, claim, checks):
+    """Counts of some rows."""
+    ratios = [check.ratio for check in checks if check.ratio is not None]
+    count = {verdict: sum(check.verdict == verdict for check in checks) for verdict in VERDICTS}
+    return Tally(run, claim, count, max(ratios, default=None))
+
+
+def comparisons(run):
+    """Rows of the claim "fracture" that have a published value; lengths in cm, as the literature gives them."""
+    result = []
+    for check in run.checks:
+        if check.claim != "fracture" or check.theory is None:
+            continue
+        scale, unit = (100, "cm") if check.unit == "m" else (1, check.unit)
+        uncertainty = uncertainty_of(check.lattice, run.crack)
+        result.append(Comparison(
+            run, check.quantity, unit, scale * check.theory,
+            None if check.lattice is None else scale * check.lattice,
+            None if uncertainty is None else scale * uncertainty, check.verdict))
+    return result
+
+
+def uncertainty_of(value, crack):
+    """Uncertainty that crack.json gives for a value, which results.json holds bit by bit the same."""
+    for name in ("speed_lagrangian", "speed_laboratory", "wavelength", "amplitude"):
+        if value is not None and crack is not None and crack[name] == value:
+            return crack[f"{name}_uncertainty"]
+    return None
+
+
+def with_uncertainty(value, uncertainty, sign="±"):
+    """A value to the digits that its uncertainty leaves, "20.06 ± 0.23"; four digits without one."""
+    if uncertainty is None or not uncertainty > 0 or not math.isfinite(uncertainty):
+        return f"{value:.4g}"
+    digits = max(0, 1 - math.floor(math.log10(uncertainty)))
+    return f"{value:.{digits}f} {sign} {uncertainty:.{digits}f}"
+
+
+def percent(fraction):
+    """Signed percentage; "not measured" for None."""
+    return "not measured" if fraction is None else f"{100 * fraction:+.1f} %"
+
+
+def ratio_text(ratio):
+    """Error over tolerance; a dash if there is none."""
+    return "-" if ratio is None else f"{ratio:.2g}"
+
+
+def text_table(header, rows, numbers, width=120):
+    """Aligned text of at most `width` columns; the second column is wrapped if need be. `numbers`: right-aligned."""
+    sizes = [max(len(row[i]) for row in [header, *rows]) for i in range(len(header))]
+    sizes[1] = max(8, min(sizes[1], width - sum(sizes) + sizes[1] - 2 * (len(sizes) - 1)))
+    lines = []
+    for row in [header, *rows]:
+        wrapped = textwrap.wrap(row[1], sizes[1]) or [""]
+        for i, part in enumerate(wrapped):
+            cells = [row[0] if i == 0 else "", part] + [cell if i == 0 else "" for cell in row[2:]]
+            padded = [cell.rjust(size) if column in numbers else cell.ljust(size)
+                      for column, (cell, size) in enumerate(zip(cells, sizes))]
+            lines.append("  ".join(padded).rstrip()[:width])
+    lines.insert(1, "-" * min(width, sum(sizes) + 2 * (len(sizes) - 1)))
+    return "\n".join(lines)
+
+
+def text_summary(runs):
+    """What is printed: claims of every run, what fails, and measured beside published values."""
+    parts = []
+    rows = []
+    for run in runs:
+        name = shortened(run.name)
+        for tally in tallies(run):
+            rows.append([name, tally.claim] + [str(tally.count[v]) for v in ("holds", "fails", "reported")]
+                        + [ratio_text(tally.worst)])
+            name = ""
+        if run.state != "complete":
+            rows.append([name, run.state, "", "", "", ""])
+    parts.append(text_table(["run", "claim", "holds", "fails", "reported", "worst error / tolerance"], rows,
+                            (2, 3, 4, 5)))
+    failing = [[shortened(run.name), f"{check.claim}: {check.quantity}", ratio_text(check.ratio)]
+               for run in runs for check in run.checks if check.verdict == "fails"]
+    if failing:
+        parts.append(text_table(["run", "fails", "error / tolerance"], failing, (2,)))
+    compared = [[shortened(c.run.name), c.quantity, c.unit, f"{c.published:.4g}",
+                 "-" if c.measured is None else with_uncertainty(c.measured, c.uncertainty, "+-"),
+                 percent(c.difference), c.verdict]
+                for run in runs for c in comparisons(run)]
+    if compared:
+        parts.append(text_table(["run", "quantity", "unit", "paper", "latcon", "difference", "verdict"], compared,
+                                (3, 4, 5)))
+    return "\n\n".join(parts)
+
+
+def shortened(name, length=24):
+    """A name that leaves room for the rest of the line."""
+    return name if len(name) <= length else name[:length - 3] + "..."
