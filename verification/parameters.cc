@@ -276,8 +276,7 @@ std::string Parameters::nearest_key(const std::string &section, const std::strin
     {
       // Another section is a further mistake to assume; how much of one depends on how its name is spelt.
       const std::size_t errors =
-        typing_errors(name, entry.name) +
-        (section == entry.section ? 0 : 1 + std::min<std::size_t>(typing_errors(section, entry.section), 3));
+        typing_errors(name, entry.name) + std::min<std::size_t>(typing_errors(section, entry.section), 3);
       if (errors < least)
       {
         least = errors;

@@ -222,13 +222,21 @@ TEST(CrackMeasurement, GrowingPartIsLeftOut)
 
 TEST(CrackMeasurement, LateOnsetKeepsTwoWavelengths)
 {
-  // Onset at 100 mm: 35 mm, 1.5 wavelengths, are steady. The window must not shrink to them.
+  // 35 to 45 mm, 1.5 to 1.95 wavelengths, are steady. The window must not shrink to them, not even where the amplitude
+  // has to come to 95 % of the later one.
   SyntheticCrack crack;
-  crack.path = [](double X) { return X < 0.1 ? 0. : amplitude * std::sin(2. * pi * (X - 0.1) / wavelength); };
   crack.hops = 0.3 * d;
-  const CrackMeasurement m = measure(crack);
-  ASSERT_TRUE(m.sinusoid);
-  EXPECT_GE(m.periods, 1.95); // to within what the fit's own wavelength changes in the last step
+  for (const double onset : {0.09, 0.095, 0.1})
+  {
+    crack.path = [onset](double X) { return X < onset ? 0. : sinusoid(wavelength, amplitude)(X - onset); };
+    const std::vector<TipRecord> tip = crack.record(1);
+    CrackMeasurementOptions options = options_for(tip);
+    options.settled_amplitude = 0.95;
+    const CrackMeasurement m = measure_crack(tip, {}, options);
+    ASSERT_TRUE(m.sinusoid);
+    EXPECT_GT(m.X_begin, 0.07) << m.reason; // it did move
+    EXPECT_GE(m.periods, 1.95) << m.reason; // two, to within what the wavelength changes in the last fit
+  }
 }
 
 TEST(CrackMeasurement, UnevenSamplingDoesNotBias)
@@ -323,6 +331,25 @@ TEST(CrackMeasurement, RandomWalkIsNotOscillating)
   EXPECT_LE(ensemble.n_oscillating, 0.03 * n_seeds);
   EXPECT_LE(ensemble.n_surely_oscillating, 0.01 * n_seeds);
   EXPECT_LE(ensemble.n_conclusive, 0.6 * n_seeds);
+}
+
+TEST(CrackMeasurement, RippleOnAWanderingPathIsNotItsPattern)
+{
+  // A true sinusoid of 10 mm and 1 mm, evident as such, on a path that strays by 3 d for reasons of its own.
+  SyntheticCrack crack;
+  crack.path = sinusoid(0.01, 0.001);
+  crack.wander = 3. * d;
+  crack.memory = 40. * d;
+  unsigned int n_ripples = 0;
+  for (unsigned int seed = 1; seed <= 100; ++seed)
+  {
+    const CrackMeasurement m = measure(crack, seed);
+    if (m.sinusoid.value().log_evidence < 3. || m.sinusoid->share_of_path >= 0.5)
+      continue;
+    EXPECT_EQ(m.pattern, CrackPattern::straight) << m.reason;
+    ++n_ripples;
+  }
+  EXPECT_GE(n_ripples, 10u) << "nothing was tested";
 }
 
 TEST(CrackMeasurement, HoppingBetweenTwoRowsIsStraight)

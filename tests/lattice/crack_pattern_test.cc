@@ -127,6 +127,14 @@ TEST_F(CrackMeasurementDamage, RowBesideThePathIsNoBranch)
   expect_oscillating();
 }
 
+TEST_F(CrackMeasurementDamage, StragglingDamageIsNoBranch)
+{
+  // Damage that leaves a gap of 4 d to 16 d and comes back every 37 d: past 10 d for less than 20 d at a time.
+  const auto beside = [&](double X) { return crack.path(X) + (12. + 6. * std::sin(2. * pi * X / wavelength)) * d; };
+  break_along(breaks, beside, seed_tip, 0.98 * length);
+  expect_oscillating();
+}
+
 TEST_F(CrackMeasurementDamage, SpurAtEveryCrestIsNoBranch)
 {
   // Secondary cracks of 14 d that leave every second crest at 60 degrees and die.

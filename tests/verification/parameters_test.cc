@@ -282,7 +282,10 @@ TEST(Parameters, RangesHoldAtTheirEnds)
   EXPECT_TRUE(Between(0., 1.).contains(0.));
   EXPECT_TRUE(Between(0., 1.).contains(1.));
   EXPECT_FALSE(Between(0., 1.).contains(1.0000000000000002));
+  EXPECT_FALSE(Range({0., true}, {1., false}).contains(1.));
   EXPECT_FALSE(Any().contains(std::numeric_limits<double>::quiet_NaN()));
+  constexpr double infinity = std::numeric_limits<double>::infinity();
+  EXPECT_FALSE(Range({0., true}, {infinity, true}).contains(infinity));
   EXPECT_FALSE(Any().contains(-std::numeric_limits<double>::infinity()));
   EXPECT_EQ(Any().text(), "");
   EXPECT_EQ(Range({0., false}, {1., true}).text(), "> 0 and <= 1");
@@ -356,6 +359,20 @@ TEST(Parameters, MissingRequiredEntryIsExplained)
   EXPECT_EQ(problem(""), "a.prm" + expected);
   EXPECT_EQ(problem("# nothing\n\n  \t\n"), "a.prm" + expected);
   EXPECT_TRUE(problems("", {"Lattice/spacing=1"}).empty());
+}
+
+TEST(Parameters, RequiredTextsAndListsMustNotBeEmpty)
+{
+  std::string text;
+  std::vector<double> list;
+  Parameters p;
+  p.add("A", "text", text, "a text", Presence::required);
+  p.add("A", "list", list, Any(), "m", "a list", Presence::required);
+  p.read_overrides({"A/text=", "A/list= "});
+  const std::vector<std::string> all = problems_of(p);
+  ASSERT_EQ(all.size(), 2u);
+  EXPECT_EQ(all[0], "--set: A/text = : empty; allowed: a text on one line");
+  EXPECT_EQ(all[1].find("--set: A/list = : empty"), 0u);
 }
 
 TEST(Parameters, UnbalancedSectionsAreToldWithTheirLines)

@@ -33,6 +33,7 @@ TEST(Spelling, NearEnoughIsAThirdOfTheWordOrAPartOfIt)
   EXPECT_FALSE(could_mean("x", "dt"));
   EXPECT_TRUE(could_mean("factor", "nearest neighbour area factor"));
   EXPECT_TRUE(could_mean("ne", "nearest neighbour area factor"));
+  EXPECT_TRUE(could_mean("nearst nieghbor aera factor", "nearest neighbour area factor"));
   EXPECT_FALSE(could_mean("area x", "nearest neighbour area factor"));
 }
 

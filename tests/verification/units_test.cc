@@ -56,6 +56,7 @@ TEST(Units, ProductsAndQuotients)
   EXPECT_EQ(read("7 m s^-1", "m/s"), 7.);
   EXPECT_EQ(read("7 m*s^-1", "m/s"), 7.);
   EXPECT_EQ(read("4 mN s/mm", "N s/m"), 4.);
+  EXPECT_EQ(read("4 N/m s", "N s/m"), 4.); // a quotient divides by one factor only
   EXPECT_EQ(read("36 km/h", "m/s"), 10.);
   EXPECT_EQ(read("2 MHz", "1/s"), 2e6);
   EXPECT_EQ(read("30 deg", "rad"), 30. * (3.14159265358979323846 / 180.));

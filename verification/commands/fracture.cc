@@ -162,7 +162,11 @@ ExitCode run_fracture(const Options &options)
   // The lattice knows no ranks: the first one breaks it, the others wait.
   if (run.writes())
     results.add(break_sheet(input, sheet, material, options.skip_verification, run));
-  return signal_came() ? run.interrupted(results) : run.finish(results);
+  const ExitCode exit_code = signal_came() ? run.interrupted(results) : run.finish(results);
+  Options silent = options;
+  silent.quiet = true;
+  report(silent, run.directory()); // pictures and page; the verdict in them is the one returned here
+  return exit_code;
 }
 
 } // namespace verification

@@ -52,7 +52,7 @@ def read_frame(path, time):
         selection.EnableArray(wanted)
     reader.Update()
     sheet = reader.GetOutput()
-    if reader.GetErrorCode() != 0 or sheet.GetNumberOfPoints() == 0 or sheet.GetNumberOfLines() == 0:
+    if sheet.GetNumberOfPoints() == 0 or sheet.GetNumberOfLines() == 0:  # what VTK returns of a broken file
         raise DamagedFile(path, "cut short, or without sites and bonds")
     ends = vtk_to_numpy(sheet.GetLines().GetConnectivityArray())
     # Cell data counts the vertices first.

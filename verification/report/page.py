@@ -6,7 +6,7 @@ from pathlib import Path
 
 from summary import VERDICTS, comparisons, percent, ratio_text, tallies, tally_of, with_uncertainty
 
-MARKS = {"holds": "✓", "fails": "✗", "reported": "·"}
+MARKS = {"holds": "✓", "fails": "✗", "reported": "·", "interrupted": "!", "unfinished": "!"}
 CAPTIONS = {
     "sheet.png": "The sheet in its last frame, as it is: every unbroken bond is a line, the crack is the white opening. "
                  "Bonds that cross the opening are toughened ones that have not broken.",
@@ -20,7 +20,7 @@ CAPTIONS = {
 
 
 def page(title, runs, pictures):
-    """The whole page. `pictures`: {name of a run: [(file name, PNG file), ...]}."""
+    """The whole page. `pictures`: {folder of a run: [(file name, PNG file), ...]}."""
     style = (Path(__file__).parent / "style.css").read_text(encoding="utf-8")
     versions = sorted({f"latcon {run.info['version']}" for run in runs if run.info and "version" in run.info})
     sections = [run_section(run, number, pictures.get(run.folder, [])) for number, run in enumerate(runs)]
@@ -103,7 +103,8 @@ def overview(runs):
                 *(("number", str(tally.count[v])) for v in ("holds", "fails", "reported")),
                 ("number", ratio_text(tally.worst))]))
         if not run.checks:
-            rows.append(row("reported", [("short", link), ("short", f"none: {run.state}"), *[("number", "–")] * 4]))
+            word = "reported" if run.state == "complete" else run.state
+            rows.append(row(word, [("short", link), ("short", "none"), *[("number", "–")] * 4]))
     head = ["verdict", "run", "claim", "#holds", "#fails", "#reported", "#worst error / tolerance"]
     return table(head, rows, "narrow") if rows else ""
 

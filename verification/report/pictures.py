@@ -122,7 +122,7 @@ def draw_energy(energy, path):
 
     given = energy["elastic"][0] + energy["kinetic"][0] + energy["broken"][0] + np.abs(energy["boundary_work"])
     imbalance = energy["imbalance"] / np.where(given > 0, given, 1.0)
-    exponent = math.floor(math.log10(max(np.abs(imbalance).max(), 1e-99)))
+    exponent = math.floor(math.log10(np.abs(imbalance).max())) if imbalance.any() else 0
     below = page.axes(1.0, 3.85, WIDTH - 1.25, 0.95, sharex=axes)
     below.plot(t, imbalance / 10.0**exponent, color=BLACK, linewidth=1.2)
     below.set(xlabel="time [ms]", ylabel=f"imbalance / energy\ngiven [$10^{{{exponent}}}$]")

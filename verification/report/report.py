@@ -52,11 +52,12 @@ def report(directory, quiet):
     return CLAIM_FAILS if any(c.verdict == "fails" for run in runs for c in run.checks) else DONE
 
 
-def main():
+def main(words=None):
+    """The command line; `words` in place of that of the process. @return exit code"""
     parser = argparse.ArgumentParser(description="Draw the pictures of latcon's runs and write report.html.")
     parser.add_argument("directory", metavar="DIR", help="output directory of a run, or a folder of several")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
-    arguments = parser.parse_args()
+    arguments = parser.parse_args(words)
     try:
         return report(arguments.directory, arguments.quiet)
     except DamagedFile as error:

@@ -1,0 +1,294 @@
+#!/usr/bin/python3
+"""The report of runs made up here: what it says, draws and refuses, and how it exits."""
+import base64
+import contextlib
+import io
+import json
+import math
+import re
+import subprocess
+import sys
+import tempfile
+import unittest
+from html.parser import HTMLParser
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonCore import vtkPoints
+from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
+from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
+
+sys.dont_write_bytecode = True
+FOLDER = Path(__file__).resolve().parents[2] / "verification" / "report"
+sys.path.insert(0, str(FOLDER))
+
+import report
+from crack_path import fit_sinusoid
+from summary import with_uncertainty
+
+# The crack of the made-up run [m].
+WAVELENGTH, AMPLITUDE, PHASE, OFFSET, SLOPE = 0.02, 0.0012, 0.7, 0.0003, 0.004
+BEGIN, END = 0.03, 0.09
+PICTURES = ("sheet.png", "crack_path.png", "energy.png")
+VOID = {"meta", "br", "hr", "img", "link", "input"}
+
+
+def path_of_tip(X):
+    """The sinusoid of the made-up run about the middle of the window."""
+    distance = X - (BEGIN + END) / 2
+    return OFFSET + SLOPE * distance + AMPLITUDE * np.sin(2 * np.pi * distance / WAVELENGTH + PHASE)
+
+
+def check_row(claim, quantity, verdict, **numbers):
+    """A row of results.json."""
+    empty = dict.fromkeys(("lattice", "continuum", "theory", "error", "tolerance"))
+    return {"claim": claim, "quantity": quantity, "unit": "m", **empty, **numbers, "verdict": verdict}
+
+
+HOLDS = check_row("energy", "c^2 <of> a wave", "holds", lattice=1.25, error=2e-3, tolerance=1e-2)
+FAILS = check_row("prestretch", "traction", "fails", lattice=3.5, continuum=3.0, error=0.17, tolerance=1e-2)
+REPORTED = check_row("energy", "residual", "reported", continuum=0.042, error=0.042)
+PUBLISHED = check_row("fracture", "wavelength", "holds", lattice=WAVELENGTH, theory=0.021, error=0.048, tolerance=0.2)
+
+
+def write_verification(folder, rows):
+    """A run without a crack."""
+    folder.mkdir(parents=True)
+    (folder / "results.json").write_text(json.dumps({"claims": rows, "verdict": "holds"}))
+    (folder / "run.json").write_text(json.dumps({"version": "1.2.3", "exit_code": 0}))
+    (folder / "case.prm").write_text("subsection Fracture\n  set breaking stretch = 3 # default: auto\nend\n")
+
+
+def write_table(path, header, columns):
+    """A CSV file."""
+    np.savetxt(path, np.column_stack(columns), delimiter=",", header=header, comments="", fmt="%.17g")
+
+
+def write_fracture(folder, rows):
+    """A run with an oscillating crack."""
+    write_verification(folder, rows)
+    X = np.linspace(0.01, 0.095, 300)
+    t = X / 20
+    Y = path_of_tip(X)
+    write_table(folder / "crack.csv", "t,X,Y,x,y,speed,bonds_broken", (t, X, Y, 2 * X, 3 * Y, 0 * t + 20, 10 * X))
+    write_table(folder / "broken_bonds.csv", "t,site,other_site,X,Y,stretch", (t, 0 * t, 0 * t + 1, X, Y, 0 * t + 3))
+    write_table(folder / "energy.csv", "t,elastic,kinetic,viscous,broken,boundary_work,contact,imbalance",
+                (t, 100 - 1e4 * t, 2e3 * t, 5e3 * t, 3e3 * t, 0 * t, 0 * t, 1e-6 * t))
+    crack = {"pattern": "oscillating", "conclusive": True, "reason": "it winds", "window_begin": BEGIN,
+             "window_end": END, "speed_lagrangian": 20.0, "speed_lagrangian_uncertainty": 0.2,
+             "wavelength": WAVELENGTH, "wavelength_uncertainty": 1.5e-4, "amplitude": AMPLITUDE,
+             "amplitude_uncertainty": 1e-4}
+    (folder / "crack.json").write_text(json.dumps(crack))
+    write_sheet(folder)
+
+
+def write_sheet(folder):
+    """A frame of 12 by 8 sites, its bonds along x, and the file that names it and its time."""
+    columns, rows = np.meshgrid(np.arange(12), np.arange(8))
+    reference = np.column_stack((columns.ravel(), rows.ravel(), np.zeros(96))) * 1e-2
+    ends = [(i, i + 1) for i in range(96) if i % 12 < 11]
+    sheet, points, vertices, lines = vtkPolyData(), vtkPoints(), vtkCellArray(), vtkCellArray()
+    points.SetData(numpy_to_vtk(reference, deep=True))
+    for site in range(96):
+        vertices.InsertNextCell(1, (site,))
+    for bond in ends:
+        lines.InsertNextCell(2, bond)
+    sheet.SetPoints(points)
+    sheet.SetVerts(vertices)
+    sheet.SetLines(lines)
+    stretch = np.concatenate((np.ones(96), np.linspace(1.5, 4.0, len(ends))))
+    for data, name, values in ((sheet.GetPointData(), "displacement", 1.3 * reference),
+                               (sheet.GetCellData(), "stretch", stretch)):
+        array = numpy_to_vtk(values, deep=True)
+        array.SetName(name)
+        data.AddArray(array)
+    writer = vtkXMLPolyDataWriter()
+    writer.SetFileName(str(folder / "lattice-0000.vtp"))
+    writer.SetInputData(sheet)
+    writer.EncodeAppendedDataOff()
+    writer.Write()
+    (folder / "lattice.pvd").write_text('<VTKFile type="Collection"><Collection>'
+                                        '<DataSet timestep="0.004" file="lattice-0000.vtp"/></Collection></VTKFile>')
+
+
+class Page(HTMLParser):
+    """Reads a page: its text, what it refers to, and whether every element is closed in its turn."""
+
+    def __init__(self, html):
+        super().__init__()
+        self.open, self.images, self.references, self.text = [], [], [], ""
+        self.feed(html)
+        self.close()
+
+    def handle_starttag(self, tag, attributes):
+        self.references += [value for name, value in attributes if name in ("src", "href", "srcset", "data")]
+        self.images += [dict(attributes)["src"] for _ in [0] if tag == "img"]
+        if tag not in VOID:
+            self.open.append(tag)
+
+    def handle_endtag(self, tag):
+        if not self.open or self.open.pop() != tag:
+            raise AssertionError(f"</{tag}> closes nothing")
+
+    def handle_data(self, data):
+        if "style" not in self.open:
+            self.text += data + " "
+
+
+class ReportTest(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name) / "runs"
+
+    def report(self, *options, expect, folder=None):
+        """What the script does, in this process. @return (stdout, stderr)"""
+        streams = [io.TextIOWrapper(io.BytesIO(), encoding="utf-8") for _ in range(2)]
+        with contextlib.redirect_stdout(streams[0]), contextlib.redirect_stderr(streams[1]):
+            exit_code = report.main([str(folder or self.folder), *options])
+        texts = []
+        for stream in streams:
+            stream.seek(0)
+            texts.append(stream.read())
+        self.assertEqual(exit_code, expect, texts)
+        return tuple(texts)
+
+    def page(self, folder=None):
+        html = ((folder or self.folder) / "report.html").read_text(encoding="utf-8")
+        page = Page(html)
+        self.assertEqual(page.open, [])
+        return html, page
+
+    def test_says_what_was_checked_measured_and_given(self):
+        write_verification(self.folder / "verify", [HOLDS, REPORTED])
+        write_fracture(self.folder / "fig", [HOLDS, PUBLISHED])
+        out, err = self.report(expect=0)
+        self.assertEqual(err, "")
+        _, page = self.page()
+        for words in ("c² <of> a wave", "1.25", "✓ holds", "2.00e-03", "0.01", "· reported", "0.042", "oscillating",
+                      "it winds", "2.1", "2.000 ± 0.015", "-4.8 %", "breaking stretch", "1.2.3", "verify, fig",
+                      "Holds: all 3 checks"):
+            self.assertIn(words, page.text)
+        self.assertNotIn("fails", page.text.replace("#fails", "").replace("holds fails reported", ""))
+        lines = out.splitlines()
+        self.assertLessEqual(max(map(len, lines)), 120)
+        self.assertEqual(lines[-1], f"{self.folder}/report.html")
+        self.assertRegex(out, r"verify +energy +1 +0 +1 +0\.2\n")
+        self.assertRegex(out, r"fig +wavelength +cm +2\.1 +2\.000 \+- 0\.015 +-4\.8 % +holds")
+
+    def test_a_failing_row_is_first_and_exits_3(self):
+        write_verification(self.folder, [HOLDS, FAILS, check_row("energy", "lost", "fails", error="nan", tolerance=1)])
+        out, _ = self.report(expect=3)
+        html, page = self.page()
+        self.assertIn("Fails: 2 of 3 checks fail", page.text)
+        self.assertLess(html.rindex("lost"), html.index("c² &lt;of&gt; a wave"))
+        self.assertRegex(out, r"prestretch: traction +17\n")
+        self.assertRegex(out, r"energy: lost +inf\n")
+
+    def test_needs_nothing_beside_it(self):
+        write_fracture(self.folder, [HOLDS, PUBLISHED])
+        self.report("--quiet", expect=0)
+        html, page = self.page()
+        self.assertEqual([r[:30] for r in page.references if not r.startswith(("data:image/png;base64,", "#"))], [])
+        self.assertNotRegex(re.sub(r"base64,[^\"]*", "", html), r"https?://|@import|url\(|<script|<link")
+        self.assertEqual(len(page.images), len(PICTURES))
+
+    def test_pictures_show_something(self):
+        write_fracture(self.folder, [HOLDS])
+        self.report("--quiet", expect=0)
+        _, page = self.page()
+        for name, source in zip(PICTURES, page.images):
+            png = (self.folder / name).read_bytes()
+            self.assertEqual(png, base64.b64decode(source.partition(",")[2]))
+            pixels = np.asarray(Image.open(io.BytesIO(png)).convert("RGB"), dtype=float)
+            self.assertEqual(pixels.shape[1], 1600)
+            self.assertGreater(pixels.shape[0], 500)
+            coloured = np.ptp(pixels[:len(pixels) // 2], axis=2) > 60  # colour bars are below
+            self.assertGreater(coloured.mean(), 2e-3, f"{name} has no colours")
+            self.assertGreater(pixels.std(), 10, f"{name} is blank")
+
+    def test_runs_as_a_script(self):
+        write_verification(self.folder, [FAILS])
+        command = ["/usr/bin/python3", str(FOLDER / "report.py"), str(self.folder)]
+        loud = subprocess.run(command, capture_output=True, text=True, check=False)
+        quiet = subprocess.run(command + ["--quiet"], capture_output=True, text=True, check=False)
+        self.assertEqual((loud.returncode, quiet.returncode), (3, 3))
+        self.assertTrue(loud.stdout.endswith(f"\n{self.folder}/report.html\n"), loud.stdout)
+        self.assertEqual((loud.stderr, quiet.stdout, quiet.stderr), ("", "", ""))
+
+    def test_an_interrupted_run_is_shown_as_far_as_it_went(self):
+        write_fracture(self.folder / "cut", [HOLDS])
+        for name in ("results.json", "crack.json", "lattice-0000.vtp"):
+            (self.folder / "cut" / name).unlink()
+        (self.folder / "cut" / "run.json").write_text(json.dumps({"version": "1.2.3", "exit_code": None}))
+        self.assertIn("unfinished", self.report(expect=0)[0])
+        _, page = self.page()
+        self.assertIn("Not complete", page.text)
+        self.assertIn("no crack.json", page.text)
+        self.assertIn("nothing to draw: sheet.png", page.text)
+        self.assertEqual(len(page.images), 2)
+
+    def test_a_skipped_verification_is_said(self):
+        write_fracture(self.folder, [PUBLISHED])
+        (self.folder / "run.json").write_text(json.dumps({"exit_code": 0, "skip_verification": True}))
+        self.report("--quiet", expect=0)
+        self.assertIn("without its material and pre-stretch having been verified", self.page()[1].text)
+
+    def test_refuses_a_folder_without_a_run(self):
+        self.folder.mkdir()
+        self.assertIn("no run in it", self.report(expect=2)[1])
+        self.assertIn("missing", self.report(expect=2, folder=self.folder / "missing")[1])
+
+    def test_names_the_damaged_file(self):
+        write_fracture(self.folder, [HOLDS])
+        intact = {name: (self.folder / name).read_bytes()
+                  for name in ("results.json", "crack.json", "crack.csv", "energy.csv", "lattice.pvd",
+                               "lattice-0000.vtp")}
+        for name, content in intact.items():
+            for damaged in (content[:len(content) * 2 // 3], b"\xff\xfe"):
+                with self.subTest(name=name, length=len(damaged)):
+                    (self.folder / name).write_bytes(damaged)
+                    out, err = self.report(expect=2)
+                    self.assertEqual(out, "")
+                    self.assertRegex(err, rf"\Aerror: .*{re.escape(name)}: .+\n\Z")
+                    self.assertFalse((self.folder / "report.html").exists())
+            (self.folder / name).write_bytes(content)
+        self.report("--quiet", expect=0)
+
+    def test_does_not_believe_a_verdict_against_its_numbers(self):
+        write_verification(self.folder, [{**FAILS, "verdict": "holds"}])
+        self.assertRegex(self.report(expect=2)[1], "results.json: row 1 .* says 'holds'")
+
+    def test_a_file_that_cannot_be_written_exits_5(self):
+        write_verification(self.folder, [HOLDS])
+        (self.folder / "report.html").mkdir()
+        self.assertIn("report.html", self.report(expect=5)[1])
+
+
+class FitSinusoid(unittest.TestCase):
+    def test_recovers_the_sinusoid(self):
+        X = np.linspace(0.0, 0.12, 500)
+        Y = np.where((X < BEGIN) | (X > END), 1.0, path_of_tip(X))  # what lies outside must not count
+        fit = fit_sinusoid(X, Y, WAVELENGTH, BEGIN, END)
+        for value, truth in ((fit.amplitude, AMPLITUDE), (fit.phase, PHASE), (fit.offset, OFFSET), (fit.slope, SLOPE)):
+            self.assertAlmostEqual(value / truth, 1, places=9)
+        self.assertLess(np.abs(fit(X) - path_of_tip(X)).max(), 1e-12)
+
+    def test_needs_more_points_than_coefficients(self):
+        X = np.linspace(BEGIN, END, 4)
+        self.assertIsNone(fit_sinusoid(X, X, WAVELENGTH, BEGIN, END))
+
+
+class WithUncertainty(unittest.TestCase):
+    def test_gives_the_digits_that_the_uncertainty_leaves(self):
+        self.assertEqual(with_uncertainty(20.0576, 0.2328), "20.06 ± 0.23")
+        self.assertEqual(with_uncertainty(2.34468, 0.0225), "2.345 ± 0.022")
+        self.assertEqual(with_uncertainty(1234.5, 120.0), "1234 ± 120")
+        for unknown in (None, 0.0, math.nan):
+            self.assertEqual(with_uncertainty(20.0576, unknown), "20.06")
+
+
+if __name__ == "__main__":
+    unittest.main()
