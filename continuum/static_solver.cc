@@ -108,6 +108,7 @@ StaticSolver::Evaluation StaticSolver::look_at(const Vector &u) const
   return state;
 }
 
+// The floor of eq. (C.19).
 double StaticSolver::round_off(const Evaluation &state, const Vector &u) const
 {
   double sum = 0.;
@@ -118,7 +119,8 @@ double StaticSolver::round_off(const Evaluation &state, const Vector &u) const
       const double of_displacement = matrix_.diag_element(i) * u(i);
       sum += of_stress * of_stress + of_displacement * of_displacement;
     }
-  return std::numeric_limits<double>::epsilon() * std::sqrt(Utilities::MPI::sum(sum, sheet_.communicator()));
+  // Four: a stress takes several roundings after those of the displacement.
+  return 4. * std::numeric_limits<double>::epsilon() * std::sqrt(Utilities::MPI::sum(sum, sheet_.communicator()));
 }
 
 std::string StaticSolver::attempt(const double target, SolverReport &report)

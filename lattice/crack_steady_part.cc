@@ -31,6 +31,9 @@ ColumnMeans column_means(const std::vector<TipRecord> &tip, double spacing)
   return {std::move(X), std::move(Y), column_width * spacing};
 }
 
+/// Wavelengths that stay in the window: two, and what the wavelength may change by when the window has moved.
+constexpr double kept_periods = 2.2;
+
 /// Amplitude over the wavelength that begins at X_begin, of the path less the offset and drift of the whole window;
 /// none where fewer than four columns lie there.
 std::optional<double> local_amplitude(const ColumnMeans &path, const Sinusoid &curve, double X_begin)
@@ -84,7 +87,7 @@ double settled_from(const ColumnMeans &path, const SinusoidFit &fit, double X_be
     return X_begin;
   // Over a wavelength that holds the onset of a steady oscillation, the amplitude is the part that lies past the onset.
   const double onset = (first < starts.size() ? starts[first] : starts.back()) + (1. - settled) * wavelength;
-  return std::max(X_begin, std::min(onset, X_end - 2. * wavelength));
+  return std::max(X_begin, std::min(onset, X_end - kept_periods * wavelength));
 }
 
 } // namespace
@@ -111,7 +114,7 @@ SteadyPart find_steady_part(const std::vector<TipRecord> &tip, double X_begin, d
       return result;
     const SinusoidFit &fit = *result.sinusoid;
     const bool is_clear = fit.amplitude.value > 3. * fit.amplitude.uncertainty;
-    if (!is_clear || X_end - result.X_begin < 2. * fit.curve.wavelength)
+    if (!is_clear || X_end - result.X_begin < kept_periods * fit.curve.wavelength)
       return result;
     const double settled = settled_from(path, fit, result.X_begin, X_end, rule.settled_amplitude);
     if (settled - result.X_begin < 0.05 * fit.curve.wavelength)

@@ -1,6 +1,5 @@
 /// Files that are either the old ones or the new ones, never halves.
-#ifndef verification_atomic_file_h
-#define verification_atomic_file_h
+#pragma once
 
 #include <functional>
 #include <iosfwd>
@@ -26,5 +25,3 @@ void write_file(const std::string &path, const std::function<void(std::ostream &
 [[nodiscard]] std::string full_precision(double value);
 
 } // namespace verification
-
-#endif

@@ -1,6 +1,5 @@
 /// The two ways to write a case down, taken apart into assignments with the place of each.
-#ifndef verification_case_text_h
-#define verification_case_text_h
+#pragma once
 
 #include <cstddef>
 #include <string>
@@ -61,5 +60,3 @@ using CaseText = std::vector<std::variant<SectionStart, Assignment, SyntaxProble
 [[nodiscard]] std::string printable(const std::string &text, std::size_t longest = 80);
 
 } // namespace verification
-
-#endif

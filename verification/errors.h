@@ -1,6 +1,5 @@
 /// Why a run of latcon ended: exit codes, and the exceptions that carry them up to main.
-#ifndef verification_errors_h
-#define verification_errors_h
+#pragma once
 
 #include <stdexcept>
 #include <string>
@@ -97,5 +96,3 @@ public:
 };
 
 } // namespace verification
-
-#endif

@@ -1,6 +1,5 @@
 /// Cases: named entries with unit, range and documentation, read from a file and from the command line.
-#ifndef verification_parameters_h
-#define verification_parameters_h
+#pragma once
 
 #include <cstddef>
 #include <cstdint>
@@ -279,5 +278,3 @@ void Parameters::add(const std::string &section, const std::string &name, Enumer
 }
 
 } // namespace verification
-
-#endif

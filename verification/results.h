@@ -1,6 +1,5 @@
 /// What was checked, what came out, and whether it holds.
-#ifndef verification_results_h
-#define verification_results_h
+#pragma once
 
 #include <iosfwd>
 #include <optional>
@@ -76,5 +75,3 @@ private:
 };
 
 } // namespace verification
-
-#endif

@@ -1,6 +1,5 @@
 /// How a run came about: program, machine, times.
-#ifndef verification_run_info_h
-#define verification_run_info_h
+#pragma once
 
 #include "verification/errors.h"
 
@@ -100,5 +99,3 @@ private:
 };
 
 } // namespace verification
-
-#endif

@@ -1,6 +1,5 @@
 /// What a mistyped word was meant to be.
-#ifndef verification_spelling_h
-#define verification_spelling_h
+#pragma once
 
 #include <cstddef>
 #include <string>
@@ -21,5 +20,3 @@ namespace verification
 [[nodiscard]] std::string nearest_word(const std::string &given, const std::vector<std::string> &known);
 
 } // namespace verification
-
-#endif

@@ -1,6 +1,5 @@
 /// Units of measurement: reading "0.625 mm" where metres are wanted.
-#ifndef verification_units_h
-#define verification_units_h
+#pragma once
 
 #include <array>
 #include <optional>
@@ -42,5 +41,3 @@ struct Quantity
 [[nodiscard]] Quantity read_quantity(const std::string &text, const std::string &unit);
 
 } // namespace verification
-
-#endif

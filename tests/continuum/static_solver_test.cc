@@ -336,12 +336,13 @@ TEST(StaticSolver, ConvergesAtTheOrderOfTheElements)
     solver.solve();
     return solver.evaluate(scattered_points());
   };
+  // Degree 5 on 24 x 24 is two orders closer than degree 3 on 32 x 32; coarser than 16 x 16 the bump is not resolved
+  // yet.
   const auto exact = solution(24, 5);
   for (const unsigned int degree : {1, 2, 3})
   {
-    const unsigned int coarse = degree == 3 ? 12 : 16;
     const double order =
-      std::log2(norm_of_error(solution(coarse, degree), exact) / norm_of_error(solution(2 * coarse, degree), exact));
+      std::log2(norm_of_error(solution(16, degree), exact) / norm_of_error(solution(32, degree), exact));
     EXPECT_NEAR(order, degree + 1., 0.2);
     RecordProperty("order of degree " + std::to_string(degree), std::to_string(order));
   }

@@ -361,6 +361,26 @@ TEST(Parameters, MissingRequiredEntryIsExplained)
   EXPECT_TRUE(problems("", {"Lattice/spacing=1"}).empty());
 }
 
+TEST(Parameters, LinesAreCountedWithAnyLineEnds)
+{
+  for (const std::string end : {"\n", "\r\n", "\r"})
+    EXPECT_EQ(problem("subsection Lattice" + end + end + "set spacing = 1" + end + "set rows = 1" + end + "end" + end),
+              "a.prm:4: Lattice/rows = 1: out of range; allowed: a whole number >= 2");
+}
+
+TEST(Parameters, WhatIsNoTextIsOneProblem)
+{
+  const std::vector<std::string> all = problems(good + std::string("x\0\ny\nz\n", 7));
+  ASSERT_EQ(all.size(), 2u); // and nothing is read, so the required entry is missing
+  EXPECT_EQ(all[0], "a.prm:4: not a text file: it holds zero bytes");
+}
+
+TEST(Parameters, NothingIsReadFromNestedSections)
+{
+  EXPECT_EQ(problem("subsection Lattice\n set spacing = 1\n subsection Run\n  set steps = x\n end\nend\n"),
+            "a.prm:3: subsection 'Run' lies inside of 'Lattice', which begins on line 1; subsections do not nest here");
+}
+
 TEST(Parameters, RequiredTextsAndListsMustNotBeEmpty)
 {
   std::string text;
@@ -679,6 +699,8 @@ TEST(Parameters, JsonProblemsAreToldWithTheirPath)
             "a.json:/Run: '1' is not understood here; allowed: an object with the entries of the section");
   EXPECT_EQ(json(R"("Fracture": {"stretches": [1, [2, 3], 4]})"),
             "a.json:/Fracture/stretches: a list in a list is not understood here; allowed: numbers, strings, booleans");
+  EXPECT_EQ(json(R"("Fracture": {"stretches": [-1, null]})"),
+            "a.json:/Fracture/stretches: null in a list is not understood here; allowed: numbers, strings, booleans");
   EXPECT_EQ(json(R"("Run": {"title": "a\u0000b"})"),
             "a.json:/Run/title: Run/title = a\\x00b: control characters and line "
             "breaks are not allowed; allowed: a text on one line");

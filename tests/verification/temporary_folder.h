@@ -1,6 +1,5 @@
 /// A folder of its own for a test, removed with all it holds at the end.
-#ifndef tests_verification_temporary_folder_h
-#define tests_verification_temporary_folder_h
+#pragma once
 
 #include <cstdlib>
 #include <filesystem>
@@ -43,5 +42,3 @@ inline std::string content_of(const std::string &path)
   std::ifstream file(path, std::ios::binary);
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
-
-#endif

@@ -48,12 +48,12 @@ def draw_crack_path(run, path):
     X, Y = 100 * run.tip["X"], 100 * run.tip["Y"]
     broken = run.broken if has_rows(run.broken) else None
     length = run.input_number("Sheet", "length")
-    X_range = (0.0, 100 * length) if length else (X.min(), max(X.max(), X.min() + 1e-9))
+    X_range = (0.0, 100 * length) if length else (X.min(), max(X.max(), X.min() + 0.1))
     width, upper = WIDTH - LEFT - RIGHT, 2.6
     scale = width / (X_range[1] - X_range[0])  # [in] of picture per cm of sheet
 
     # The largest whole exaggeration with which the path fits.
-    centre, half = (Y.min() + Y.max()) / 2, max(0.6 * (Y.max() - Y.min()), 1e-3 * (X_range[1] - X_range[0]))
+    centre, half = (Y.min() + Y.max()) / 2, max(0.6 * (Y.max() - Y.min()), 1e-2 * (X_range[1] - X_range[0]))
     exaggeration = max(1, math.floor(upper / (2 * half * scale)))
     upper = max(upper, min(2 * half * scale, 8.0)) if exaggeration == 1 else upper
     half = upper / (2 * exaggeration * scale)

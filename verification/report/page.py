@@ -8,8 +8,8 @@ from summary import VERDICTS, comparisons, percent, ratio_text, tallies, tally_o
 
 MARKS = {"holds": "✓", "fails": "✗", "reported": "·", "interrupted": "!", "unfinished": "!"}
 CAPTIONS = {
-    "sheet.png": "The sheet in its last frame, as it is: every unbroken bond is a line, the crack is the white opening. "
-                 "Bonds that cross the opening are toughened ones that have not broken.",
+    "sheet.png": "The sheet in its last frame, as it is: every unbroken bond is a line, the crack is the white "
+                 "opening; lines across it are bonds that still hold.",
     "crack_path.png": "The crack in the undeformed sheet. Above: its tip, the right-most site that has lost enough "
                       "bonds; the dashed sinusoid has the measured wavelength and amplitude, its phase, offset and "
                       "slope are least squares. Below: where bonds broke, coloured by time.",
@@ -62,7 +62,7 @@ def banner(runs):
                   f"error {number(check.error, '.3g')}, allowed {number(check.tolerance, '.3g')}"
                   for run in runs for check in run.checks if check.verdict == "fails"]
     elif incomplete:
-        kind, head = "warns", "! Not complete: what is there holds" if checked else "! Not complete: nothing was checked"
+        kind, head = "warns", f"! Not complete: {'what is there holds' if checked else 'nothing was checked'}"
     elif checked:
         kind, head = "holds", f"✓ Holds: all {checked} checks are within their tolerances"
     else:
@@ -128,7 +128,8 @@ def claims(runs):
                                                 ("reported", "reported", "reported")) if tally.count[v])
         worst = "" if tally.worst is None else f", worst error / tolerance {ratio_text(tally.worst)}"
         head = ["verdict", "quantity", "unit", "#lattice", "#continuum",
-                "#published" if name == "fracture" else "#theory", "#error", "#tolerance"] + (["run"] if len(runs) > 1 else [])
+                "#published" if name == "fracture" else "#theory", "#error", "#tolerance"]
+        head += ["run"] if len(runs) > 1 else []
         rows = [claim_row(check, shared, len(runs) > 1) for check, shared in groups[name]]
         parts.append(f"<details open><summary><b>{escape(name)}</b> <span class=\"soft\">{counts}{worst}</span>"
                      f"</summary>{table(head, rows)}</details>")
@@ -214,7 +215,8 @@ def figure(name, png, run):
 def table(head, rows, kind=""):
     """A table that scrolls in its own box; columns whose head begins with # hold numbers."""
     cells = "".join(f'<th class="number">{name[1:]}</th>' if name[0] == "#" else f"<th>{name}</th>" for name in head)
-    return f'<div class="scroll {kind}"><table><thead><tr>{cells}</tr></thead><tbody>{"".join(rows)}</tbody></table></div>'
+    body = "".join(rows)
+    return f'<div class="scroll {kind}"><table><thead><tr>{cells}</tr></thead><tbody>{body}</tbody></table></div>'
 
 
 def row(verdict, cells):

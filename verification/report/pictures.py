@@ -115,7 +115,7 @@ def draw_energy(energy, path):
     if shares:
         axes.stackplot(t, [parts[name] for _, name, _ in shares], colors=[colour for *_, colour in shares], alpha=0.85,
                        linewidth=0, labels=[f"{label}, {parts[name][-1]:.4g} J/m" for label, name, _ in shares])
-    axes.set(xlim=(t[0], max(t[-1], t[0] + 1e-9)), ylabel="energy per sheet thickness\nsince the seed crack [J/m]")
+    axes.set(xlim=(t[0], t[-1]), ylabel="energy per sheet thickness\nsince the seed crack [J/m]")
     axes.tick_params(labelbottom=False)
     handles, labels = axes.get_legend_handles_labels()
     axes.legend(handles[:1] + handles[:0:-1], labels[:1] + labels[:0:-1], loc="upper left")

@@ -29,10 +29,10 @@ def draw_pictures(run):
     if frame is not None:
         drawn.append("sheet.png")
         draw_sheet(frame, run.input_number("Fracture", "breaking stretch"), run.folder / drawn[-1])
-    if has_rows(run.tip):
+    if has_rows(run.tip, 2):
         drawn.append("crack_path.png")
         draw_crack_path(run, run.folder / drawn[-1])
-    if has_rows(run.energy):
+    if has_rows(run.energy, 2):
         drawn.append("energy.png")
         draw_energy(run.energy, run.folder / drawn[-1])
     return [(name, run.folder / name) for name in drawn]

@@ -84,9 +84,9 @@ class Run:
         return None
 
 
-def has_rows(table):
-    """Whether a table was read and is not empty."""
-    return table is not None and len(table["t"]) > 0
+def has_rows(table, at_least=1):
+    """Whether a table was read and has rows enough."""
+    return table is not None and len(table["t"]) >= at_least
 
 
 def find_runs(folder):
