@@ -199,6 +199,11 @@ TEST(StaticSolver, BacktracksOnEnergy)
   for (const auto &iteration : report.iterations)
     shortest = std::min(shortest, iteration.step_length);
   EXPECT_LT(shortest, 1.) << report.text();
+  for (std::size_t k = 1; k < report.iterations.size(); ++k)
+    if (report.iterations[k].iteration > 0)
+    {
+      EXPECT_LE(report.iterations[k].energy, report.iterations[k - 1].energy * (1. + 1e-13)) << report.text();
+    }
   EXPECT_EQ(report.load_factor, 1.);
 }
 
@@ -358,11 +363,12 @@ TEST(StaticSolver, ConjugateGradientsAgreeWithDirectSolver)
     continuum::make_rectangle(mesh, rectangle(n, n));
     const auto conditions = bump_problem(2.3, 2.8, 0.03);
     StaticSolver direct(mesh, law, conditions);
-    direct.solve();
+    const std::size_t newton_iterations = direct.solve().iterations.size();
     StaticSettings settings;
     settings.linear.direct_limit = 0;
     StaticSolver iterative(mesh, law, conditions, settings);
     const continuum::SolverReport report = iterative.solve();
+    EXPECT_EQ(report.iterations.size(), newton_iterations); // linear solves tight enough to keep Newton quadratic
     EXPECT_NEAR(iterative.total_energy(), direct.total_energy(), 1e-12 * direct.total_energy());
     const auto left = direct.reactions().at(edge::left);
     EXPECT_NEAR((iterative.reactions().at(edge::left) - left).norm(), 0., 1e-9 * left.norm());
@@ -373,9 +379,10 @@ TEST(StaticSolver, ConjugateGradientsAgreeWithDirectSolver)
     most_iterations.push_back(most);
     RecordProperty("iterations at " + std::to_string(n), std::to_string(most));
   }
-  // Multigrid: flat within the drift of an algebraic hierarchy. Without the linear fields it grows, and starts higher.
+  // Multigrid: flat within the drift of an algebraic hierarchy. 15 and 16 measured; constants alone as near-null space
+  // cost 1.7 times as many.
   EXPECT_LE(most_iterations[1], 1.5 * most_iterations[0]);
-  EXPECT_LE(most_iterations[1], 40u);
+  EXPECT_LE(most_iterations[1], 20u);
 }
 
 TEST(StaticSolver, RefusesImpossibleInput)
