@@ -1,34 +1,12 @@
 #pragma once
 
+#include "continuum/fibres.h"
 #include "continuum/material.h"
 
-#include <variant>
 #include <vector>
 
 namespace continuum
 {
-/// Energy of an incompressible Mooney-Rivlin rod at stretch l [-] (theory-continuum.md, eq. (C.12)):
-///   psi = a (l^2/2 + 1/l - 3/2) + b (l + 1/(2 l^2) - 3/2)    [Pa], with a, b [Pa] and a + b > 0.
-struct RodPotential
-{
-  double a;
-  double b;
-};
-
-/// Energy of a linear spring at stretch l [-]: psi = (e/2) (l - 1)^2 [Pa], with e [Pa] > 0.
-struct LinearPotential
-{
-  double e;
-};
-
-/// Fibres of one reference direction.
-struct FibreFamily
-{
-  dealii::Tensor<1, 2> direction;                        ///< unit vector N_J [-], reference configuration
-  double weight;                                         ///< c [-] > 0
-  std::variant<RodPotential, LinearPotential> potential; ///< psi [Pa]
-};
-
 /// A network of fibres that all follow the deformation gradient (theory-continuum.md, eqs. (C.11) to (C.14)):
 ///   W(F) = sum over families of  c_k psi_k(l_k),   l_k = |F N_k|    [Pa]
 /// Exact for a periodic network whose unit cell has one point. It knows no thickness: thickness_stretch is 1.

@@ -17,11 +17,11 @@ namespace continuum
 {
 namespace
 {
-// Fields that follow from the gradient of displacement alone.
+// Fields that follow from the derivatives of displacement.
 class LocalFields : public DataPostprocessor<2>
 {
 public:
-  explicit LocalFields(const Material &law) : law_(law) {}
+  explicit LocalFields(const Constitution &laws) : laws_(laws) {}
 
   void evaluate_vector_field(const DataPostprocessorInputs::Vector<2> &inputs,
                              std::vector<Vector<double>> &computed) const override
@@ -29,10 +29,14 @@ public:
     for (unsigned int p = 0; p < computed.size(); ++p)
     {
       Tensor<2, 2> F;
+      Tensor<3, 2> G;
       for (unsigned int i = 0; i < 2; ++i)
+      {
         for (unsigned int J = 0; J < 2; ++J)
           F[i][J] = (i == J ? 1. : 0.) + inputs.solution_gradients[p][i][J];
-      const Tensor<2, 2> P = law_.first_piola_stress(F);
+        G[i] = inputs.solution_hessians[p][i];
+      }
+      const Tensor<2, 2> P = laws_.first_piola_stress(F, G);
       const Tensor<2, 2> sigma = cauchy_stress(P, F);
       for (unsigned int i = 0; i < 2; ++i)
         for (unsigned int J = 0; J < 2; ++J)
@@ -41,7 +45,15 @@ public:
           computed[p][4 + 2 * i + J] = P[i][J];
           computed[p][8 + 2 * i + J] = sigma[i][J];
         }
-      computed[p][12] = law_.energy(F);
+      computed[p][12] = laws_.energy(F, G);
+      const Tensor<3, 2> Q = laws_.double_stress(F, G);
+      for (unsigned int i = 0; i < 2; ++i)
+        for (unsigned int J = 0; J < 2; ++J)
+          for (unsigned int K = 0; K < 2; ++K)
+          {
+            computed[p][13 + 4 * i + 2 * J + K] = G[i][J][K];
+            computed[p][21 + 4 * i + 2 * J + K] = Q[i][J][K];
+          }
     }
   }
 
@@ -51,6 +63,8 @@ public:
     for (const char *tensor : {"deformation_gradient", "first_piola_stress", "cauchy_stress"})
       names.insert(names.end(), 4, tensor);
     names.emplace_back("strain_energy_density");
+    for (const char *tensor : {"strain_gradient_x", "strain_gradient_y", "double_stress_x", "double_stress_y"})
+      names.insert(names.end(), 4, tensor);
     return names;
   }
 
@@ -60,13 +74,14 @@ public:
     std::vector<DataComponentInterpretation::DataComponentInterpretation> kinds(
       12, DataComponentInterpretation::component_is_part_of_tensor);
     kinds.push_back(DataComponentInterpretation::component_is_scalar);
+    kinds.insert(kinds.end(), 16, DataComponentInterpretation::component_is_part_of_tensor);
     return kinds;
   }
 
-  UpdateFlags get_needed_update_flags() const override { return update_gradients; }
+  UpdateFlags get_needed_update_flags() const override { return update_gradients | update_hessians; }
 
 private:
-  const Material &law_;
+  const Constitution &laws_;
 };
 
 // Writes beside the place and renames, so that a reader never sees half a file, then or after a crash.
@@ -144,17 +159,17 @@ void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::
   const auto piece = [&](const unsigned int r)
   { return n_ranks == 1 ? frame + ".vtu" : frame + "." + std::to_string(r) + ".vtu"; };
 
-  const LocalFields local_fields(sheet.law());
+  const LocalFields local_fields(sheet.constitution());
   DataOut<2> output;
   const std::vector<DataComponentInterpretation::DataComponentInterpretation> vector(
     2, DataComponentInterpretation::component_is_part_of_vector);
   DataOutBase::VtkFlags flags;
   flags.compression_level = DataOutBase::VtkFlags::best_speed;
-  flags.physical_units = {{"displacement", "m"},
-                          {"deformation_gradient", "1"},
-                          {"first_piola_stress", "Pa"},
-                          {"cauchy_stress", "Pa"},
-                          {"strain_energy_density", "J/m^3"}};
+  flags.physical_units = {
+    {"displacement", "m"},        {"deformation_gradient", "1"},      {"first_piola_stress", "Pa"},
+    {"cauchy_stress", "Pa"},      {"strain_energy_density", "J/m^3"}, {"strain_gradient_x", "1/m"},
+    {"strain_gradient_y", "1/m"}, {"double_stress_x", "Pa m"},        {"double_stress_y", "Pa m"}};
+  flags.write_higher_order_cells = sheet.degree() > 1;
   output.set_flags(flags);
   const std::vector<std::string> names(2, "displacement");
   output.add_data_vector(sheet.dof_handler(), u, names, vector); // communicates, so not in guarded work

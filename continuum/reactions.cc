@@ -28,26 +28,30 @@ void integrate_tractions(const Sheet &sheet, const Sheet::Vector &u, std::vector
     {
       const auto &element = sheet.element();
       FEFaceValues<2> values(sheet.mapping(), element, QGauss<1>(sheet.degree() + 1),
-                             update_values | update_gradients | update_normal_vectors | update_JxW_values);
+                             update_values | update_gradients | update_hessians | update_normal_vectors |
+                               update_JxW_values);
       const FEValuesExtractors::Vector displacement(0);
       std::vector<Tensor<2, 2>> F(values.n_quadrature_points);
+      std::vector<Tensor<3, 2>> G(values.n_quadrature_points);
       std::vector<types::global_dof_index> dofs(element.n_dofs_per_cell());
       Vector<double> forces(element.n_dofs_per_cell());
       const auto add = [&](const auto &cell, const unsigned int face, HeldBoundary &boundary)
       {
         values.reinit(cell, face);
         values[displacement].get_function_gradients(u, F);
+        values[displacement].get_function_hessians(u, G);
         forces = 0.;
         for (unsigned int q = 0; q < F.size(); ++q)
         {
           for (unsigned int i = 0; i < 2; ++i)
             F[q][i][i] += 1.;
-          const Tensor<1, 2> traction = sheet.law().first_piola_stress(F[q]) * values.normal_vector(q) * values.JxW(q);
+          const Tensor<1, 2> traction =
+            sheet.constitution().first_piola_stress(F[q], G[q]) * values.normal_vector(q) * values.JxW(q);
           for (unsigned int a = 0; a < dofs.size(); ++a)
             forces[a] += traction[element.system_to_component_index(a).first] * values.shape_value(a, q);
         }
         cell->get_dof_indices(dofs);
-        sheet.hanging_nodes().distribute_local_to_global(forces, dofs, boundary.tractions);
+        sheet.continuity().distribute_local_to_global(forces, dofs, boundary.tractions);
       };
       for (const auto &cell : sheet.dof_handler().active_cell_iterators())
         if (cell->is_locally_owned())
@@ -64,11 +68,13 @@ void integrate_tractions(const Sheet &sheet, const Sheet::Vector &u, std::vector
 } // namespace
 
 std::map<types::boundary_id, Tensor<1, 2>> boundary_reactions(const Sheet &sheet, const Sheet::Vector &u,
+                                                              const double load_factor,
                                                               const std::map<types::boundary_id, ComponentMask> &held)
 {
   Sheet::Vector residual = sheet.make_owned();
   Sheet::Vector magnitude = sheet.make_owned();
-  sheet.residual(u, residual, magnitude);
+  sheet.residual(u, residual, magnitude, load_factor);
+  residual.add(-load_factor, sheet.loads());
 
   std::vector<HeldBoundary> boundaries;
   for (const auto &[id, components] : held)

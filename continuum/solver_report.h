@@ -14,7 +14,7 @@ struct NewtonIteration
   double load_factor;             ///< [-]
   double residual;                ///< Euclidean norm over the free unknowns [N/m], after this step
   double tolerance;               ///< residual that would end the load step here [N/m]
-  double energy;                  ///< E [J/m], after this step
+  double energy;                  ///< E less the work of the dead loads [J/m], after this step
   double step_length;             ///< fraction of the Newton step taken, in (0, 1]
   unsigned int linear_iterations; ///< conjugate-gradient iterations, 0 if direct
 };

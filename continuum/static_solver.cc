@@ -5,8 +5,6 @@
 #include "continuum/reactions.h"
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/dofs/dof_tools.h>
-#include <deal.II/lac/trilinos_sparsity_pattern.h>
 #include <deal.II/numerics/vector_tools_boundary.h>
 
 #include <algorithm>
@@ -20,25 +18,19 @@ namespace continuum
 /// What Newton has to know of a state.
 struct StaticSolver::Evaluation
 {
-  double energy;    // [J/m]
+  double potential; // [J/m]
   double free;      // norm of the residual over the free unknowns [N/m]
-  double reference; // norm of the nodal reactions [N/m]
+  double reference; // norm of the nodal reactions and dead loads [N/m]
   Vector residual;  // of every unknown [N/m]
   Vector magnitude; // sums of absolute values behind the residual [N/m]
 };
 
-StaticSolver::StaticSolver(const parallel::distributed::Triangulation<2> &mesh, const Material &law,
-                           std::vector<PrescribedDisplacement> conditions, const StaticSettings &settings)
-  : sheet_(mesh, law, settings.degree), conditions_(std::move(conditions)), settings_(settings),
-    linear_solver_(sheet_, settings.linear), displacement_(sheet_.make_ghosted())
+StaticSolver::StaticSolver(const Sheet::Mesh &mesh, const Constitution &constitution, Conditions conditions,
+                           const StaticSettings &settings)
+  : sheet_(mesh, constitution, settings.degree, std::move(conditions)), settings_(settings)
 {
   check_input();
-  hold_boundaries();
-  TrilinosWrappers::SparsityPattern pattern(sheet_.owned(), sheet_.owned(), sheet_.relevant(), sheet_.communicator());
-  DoFTools::make_sparsity_pattern(sheet_.dof_handler(), pattern, homogeneous_, false,
-                                  Utilities::MPI::this_mpi_process(sheet_.communicator()));
-  pattern.compress();
-  matrix_.reinit(pattern);
+  set_up();
 }
 
 void StaticSolver::check_input() const
@@ -53,37 +45,28 @@ void StaticSolver::check_input() const
   require(settings_.first_load_step > 0. && settings_.first_load_step <= 1., "the first load step must lie in (0, 1]");
   require(settings_.smallest_load_step > 0. && settings_.smallest_load_step <= settings_.first_load_step,
           "the smallest load step must be positive and no larger than the first");
-  require(!conditions_.empty(), "a sheet needs a boundary with prescribed displacement");
-  const auto ids = sheet_.mesh().get_boundary_ids();
-  for (const PrescribedDisplacement &condition : conditions_)
-  {
-    require(std::find(ids.begin(), ids.end(), condition.boundary) != ids.end(),
-            "the mesh has no boundary with id " + std::to_string(condition.boundary));
-    require(condition.displacement && condition.displacement->n_components == 2,
-            "a prescribed displacement needs a function of two components");
-    require(condition.components.represents_n_components(2) && condition.components.n_selected_components(2) > 0,
-            "a prescribed displacement needs a mask of two components, one of them selected");
-  }
+  require(!sheet_.conditions().displacements.empty(), "a sheet needs a boundary with prescribed displacement");
 }
 
-void StaticSolver::hold_boundaries()
+// Everything that depends on the mesh.
+void StaticSolver::set_up()
 {
   AffineConstraints<double> given(sheet_.relevant());
-  given.merge(sheet_.hanging_nodes());
+  given.merge(sheet_.continuity());
   collectively(sheet_.communicator(),
                [&]
                {
-                 for (const PrescribedDisplacement &condition : conditions_)
+                 for (const PrescribedDisplacement &condition : sheet_.conditions().displacements)
                    VectorTools::interpolate_boundary_values(sheet_.mapping(), sheet_.dof_handler(), condition.boundary,
                                                             *condition.displacement, given, condition.components);
                });
 
   Vector lift = sheet_.make_owned();
   for (const types::global_dof_index i : sheet_.owned())
-    if (given.is_constrained(i) && !sheet_.hanging_nodes().is_constrained(i))
+    if (given.is_constrained(i) && !sheet_.continuity().is_constrained(i))
       lift(i) = given.get_inhomogeneity(i);
   lift.compress(VectorOperation::insert);
-  sheet_.hanging_nodes().distribute(lift);
+  sheet_.continuity().distribute(lift);
   full_lift_ = sheet_.make_ghosted();
   full_lift_ = lift;
 
@@ -92,19 +75,35 @@ void StaticSolver::hold_boundaries()
     if (homogeneous_.is_constrained(i))
       homogeneous_.set_inhomogeneity(i, 0.);
   homogeneous_.close();
+
+  loads_ = sheet_.loads();
+  displacement_ = sheet_.make_ghosted();
+  sheet_.make_matrix(homogeneous_, matrix_);
+  linear_solver_ = std::make_unique<LinearSolver>(sheet_, settings_.linear);
 }
 
-StaticSolver::Evaluation StaticSolver::look_at(const Vector &u) const
+double StaticSolver::potential(const Vector &u, const double load_factor) const
+{
+  Vector owned = sheet_.make_owned();
+  owned = u;
+  return sheet_.energy(u, load_factor) - load_factor * (loads_ * owned);
+}
+
+StaticSolver::Evaluation StaticSolver::look_at(const Vector &u, const double load_factor) const
 {
   Evaluation state{0., 0., 0., sheet_.make_owned(), sheet_.make_owned()};
-  state.energy = sheet_.energy(u);
-  sheet_.residual(u, state.residual, state.magnitude);
+  state.potential = potential(u, load_factor);
+  sheet_.residual(u, state.residual, state.magnitude, load_factor);
+  state.residual.add(-load_factor, loads_);
   double free = 0.;
-  double held = 0.;
+  double given = 0.; // forces at work: reactions and dead loads
   for (const types::global_dof_index i : sheet_.owned())
-    (homogeneous_.is_constrained(i) ? held : free) += state.residual(i) * state.residual(i);
+  {
+    (homogeneous_.is_constrained(i) ? given : free) += state.residual(i) * state.residual(i);
+    given += std::pow(load_factor * loads_(i), 2);
+  }
   state.free = std::sqrt(Utilities::MPI::sum(free, sheet_.communicator()));
-  state.reference = std::sqrt(Utilities::MPI::sum(held, sheet_.communicator()));
+  state.reference = std::sqrt(Utilities::MPI::sum(given, sheet_.communicator()));
   return state;
 }
 
@@ -130,51 +129,51 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
   Vector trial = sheet_.make_owned(); // being written
   Vector step = sheet_.make_owned();  // Newton step, or predictor
   Vector rhs = sheet_.make_owned();
-  Vector lift = sheet_.make_ghosted(); // rise of the prescribed displacement still to be made
+  Vector lift = sheet_.make_ghosted(); // rise of the prescribed displacement
   Vector lift_forces = sheet_.make_owned();
 
-  const auto solve = [&](const Evaluation &state, const Vector &at)
+  const auto solve = [&](const Evaluation &state, const Vector &at, const Vector *rise)
   {
-    sheet_.tangent(at, homogeneous_, matrix_, lift, lift_forces);
+    sheet_.tangent(at, homogeneous_, matrix_, target, rise, &lift_forces);
     rhs = state.residual;
-    rhs += lift_forces;
+    if (rise != nullptr)
+      rhs += lift_forces;
     rhs *= -1.;
     for (const types::global_dof_index i : sheet_.owned())
       if (homogeneous_.is_constrained(i))
         rhs(i) = 0.;
     rhs.compress(VectorOperation::insert);
-    const unsigned int iterations = linear_solver_.solve(matrix_, step, rhs);
+    const unsigned int iterations = linear_solver_->solve(matrix_, step, rhs);
     homogeneous_.distribute(step);
     return iterations;
   };
 
   try
   {
-    // Predictor: the linear response to the rise of the boundary displacement.
+    // Predictor: the linear response to the rise of load and boundary displacement.
     lift = full_lift_;
     lift *= target - load_factor_;
-    unsigned int linear_iterations = solve(look_at(displacement_), displacement_);
+    unsigned int linear_iterations = solve(look_at(displacement_, target), displacement_, &lift);
     trial = displacement_;
     trial += step;
     step = lift;
     trial += step;
     u = trial;
-    lift = 0.;
     double length = 1.;
 
     for (unsigned int iteration = 0;; ++iteration)
     {
-      const Evaluation state = look_at(u);
+      const Evaluation state = look_at(u, target);
       const double floor = round_off(state, u);
       const double tolerance = std::max(settings_.relative_tolerance * state.reference, floor);
       report.iterations.push_back(
-        {number, iteration, target, state.free, tolerance, state.energy, length, linear_iterations});
+        {number, iteration, target, state.free, tolerance, state.potential, length, linear_iterations});
       if (state.free <= tolerance)
         break;
       if (iteration == settings_.max_newton_iterations)
         return "no convergence in " + std::to_string(iteration) + " Newton iterations";
 
-      linear_iterations = solve(state, u);
+      linear_iterations = solve(state, u, nullptr);
       const double slope = -(rhs * step); // dE along the step; rhs is minus the residual, zero where held
       if (!(slope < 0.))
         return "the tangent is not positive definite along the Newton step";
@@ -182,7 +181,8 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
       // Energies closer than their round-off cannot be told apart: n terms summed, errors of random sign.
       const double n_points =
         static_cast<double>(sheet_.mesh().n_global_active_cells()) * Utilities::pow(sheet_.degree() + 1, 2);
-      const double noise = 4. * std::numeric_limits<double>::epsilon() * std::sqrt(n_points) * std::abs(state.energy);
+      const double noise =
+        4. * std::numeric_limits<double>::epsilon() * std::sqrt(n_points) * std::abs(state.potential);
       length = 1.;
       std::string reason;
       for (unsigned int halvings = 0;; ++halvings, length *= 0.5)
@@ -195,7 +195,7 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
         candidate = trial;
         try
         {
-          if (sheet_.energy(candidate) <= state.energy + 1e-4 * length * slope + noise)
+          if (potential(candidate, target) <= state.potential + 1e-4 * length * slope + noise)
           {
             u = candidate;
             break;
@@ -256,13 +256,13 @@ SolverReport StaticSolver::solve(const Observer &observer)
 
 double StaticSolver::total_energy() const
 {
-  return sheet_.energy(displacement_);
+  return sheet_.energy(displacement_, load_factor_);
 }
 
 std::map<types::boundary_id, Tensor<1, 2>> StaticSolver::reactions() const
 {
   std::map<types::boundary_id, ComponentMask> held;
-  for (const PrescribedDisplacement &condition : conditions_)
+  for (const PrescribedDisplacement &condition : sheet_.conditions().displacements)
   {
     ComponentMask mask(2, false);
     for (unsigned int i = 0; i < 2; ++i)
@@ -271,7 +271,7 @@ std::map<types::boundary_id, Tensor<1, 2>> StaticSolver::reactions() const
     if (!is_new)
       entry->second = entry->second | mask;
   }
-  return boundary_reactions(sheet_, displacement_, held);
+  return boundary_reactions(sheet_, displacement_, load_factor_, held);
 }
 
 DeterminantRange StaticSolver::determinant_range() const

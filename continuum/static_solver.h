@@ -4,28 +4,18 @@
 #include "continuum/sheet.h"
 #include "continuum/solver_report.h"
 
-#include <deal.II/base/function.h>
-#include <deal.II/fe/component_mask.h>
-
 #include <functional>
 #include <map>
 #include <memory>
+#include <string>
 #include <vector>
 
 namespace continuum
 {
-/// Displacement given on one part of the boundary: u_i(X) = load factor * displacement_i(X) [m].
-struct PrescribedDisplacement
-{
-  dealii::types::boundary_id boundary;
-  std::shared_ptr<const dealii::Function<2>> displacement;    ///< two components [m], of reference position [m]
-  dealii::ComponentMask components = dealii::ComponentMask(); ///< which of the two are held; default both
-};
-
 /// How the nonlinear problem is solved.
 struct StaticSettings
 {
-  unsigned int degree = 2;                 ///< of the elements, p >= 1
+  unsigned int degree = 3;                 ///< of the elements, p >= 1; p >= 2 with a gradient law
   double relative_tolerance = 1e-10;       ///< residual over reference force [-], in (0, 1)
   unsigned int max_newton_iterations = 20; ///< per load step
   unsigned int max_halvings = 10;          ///< of the Newton step in one line search
@@ -34,16 +24,17 @@ struct StaticSettings
   LinearSettings linear;
 };
 
-/// Static equilibrium of a sheet whose boundary is displaced, at finite strain, total Lagrangian: the minimum of E(u)
-/// (theory-continuum.md, eq. (C.15)), followed from the unloaded state at load factor 0 to load factor 1.
+/// Static equilibrium of a sheet under boundary conditions and dead loads, at finite strain, total Lagrangian: the
+/// minimum of E(u) less the work of the dead loads (theory-continuum.md, eq. (C.15)), followed from the unloaded state
+/// at load factor 0 to load factor 1.
 ///
-/// Each load step starts from the linear response to the rise of the boundary displacement (predictor), then Newton
-/// with backtracking on the energy: the equilibria wanted are minima, and the energy tells them from saddle points, as
-/// the norm of the residual does not. A step that leaves det F <= 0 anywhere is halved. A load step that does not
-/// converge is cut in two; one that converges fast makes the next one larger.
+/// Each load step starts from the linear response to the rise of load and boundary displacement (predictor), then
+/// Newton with backtracking on the energy: the equilibria wanted are minima, and the energy tells them from saddle
+/// points, as the norm of the residual does not. A step that leaves det F <= 0 anywhere is halved. A load step that
+/// does not converge is cut in two; one that converges fast makes the next one larger.
 ///
-/// The residual is held to relative_tolerance times the reference force (norm of the nodal reactions), or to the
-/// round-off of its own evaluation where that is larger (theory-continuum.md, eq. (C.19)).
+/// The residual is held to relative_tolerance times the reference force (norm of the nodal reactions and dead
+/// loads), or to the round-off of its own evaluation where that is larger (theory-continuum.md, eq. (C.19)).
 ///
 /// All functions are collective, and every exception reaches every rank.
 class StaticSolver
@@ -54,17 +45,17 @@ public:
   /// Called after every accepted load step, with the load factor [-] reached.
   using Observer = std::function<void(double load_factor)>;
 
-  /// `mesh` and `law` must outlive the solver. Throws InvalidInput for settings out of range, no boundary condition, a
-  /// boundary id that the mesh does not have, or a function of other than two components. Where boundaries meet and
-  /// disagree, the first in the list holds the common node.
-  StaticSolver(const dealii::parallel::distributed::Triangulation<2> &mesh, const Material &law,
-               std::vector<PrescribedDisplacement> conditions, const StaticSettings &settings = StaticSettings());
+  /// `mesh` and the laws must outlive the solver. Throws InvalidInput for settings out of range, no prescribed
+  /// displacement, or what Sheet refuses. Where boundaries meet and disagree, the first in the list holds the
+  /// common node.
+  StaticSolver(const Sheet::Mesh &mesh, const Constitution &constitution, Conditions conditions,
+               const StaticSettings &settings = StaticSettings());
 
   /// Loads from zero to the full displacement. Throws SolverFailed with the history if that cannot be done; the state
   /// is then the last accepted one.
   SolverReport solve(const Observer &observer = Observer());
 
-  /// E [J/m] of the present state, per unit reference thickness.
+  /// Stored energy E [J/m] of the present state, per unit reference thickness.
   double total_energy() const;
 
   /// Force [N/m] that each boundary with a prescribed displacement exerts on the sheet, per unit reference thickness:
@@ -87,17 +78,18 @@ private:
   struct Evaluation;
 
   void check_input() const;
-  void hold_boundaries();
-  Evaluation look_at(const Vector &u) const;
+  void set_up();
+  Evaluation look_at(const Vector &u, double load_factor) const;
+  double potential(const Vector &u, double load_factor) const;
   double round_off(const Evaluation &state, const Vector &u) const;
   std::string attempt(double target, SolverReport &report);
 
   Sheet sheet_;
-  std::vector<PrescribedDisplacement> conditions_;
   StaticSettings settings_;
-  LinearSolver linear_solver_;
+  std::unique_ptr<LinearSolver> linear_solver_;
   dealii::AffineConstraints<double> homogeneous_; // hanging nodes, and held unknowns at zero
   Vector full_lift_;                              // prescribed displacement at load factor 1, zero elsewhere
+  Vector loads_;                                  // nodal dead loads at load factor 1
   Sheet::Matrix matrix_;
   Vector displacement_;
   double load_factor_ = 0.;

@@ -55,7 +55,8 @@ def check(path, time, n_cells):
         assert stored.GetValue(0) == time, f"TIME is {stored.GetValue(0)!r}, the series says {time!r}"
     points = grid.GetPointData()
     names = {points.GetArrayName(i) for i in range(points.GetNumberOfArrays())}
-    wanted = {"displacement", "deformation_gradient", "first_piola_stress", "cauchy_stress", "strain_energy_density"}
+    wanted = {"displacement", "deformation_gradient", "first_piola_stress", "cauchy_stress", "strain_energy_density",
+              "strain_gradient_x", "strain_gradient_y", "double_stress_x", "double_stress_y"}
     assert names == wanted, f"{path.name} has fields {sorted(names)}"
     field = {name: vtk_to_numpy(points.GetArray(name)) for name in names}
 

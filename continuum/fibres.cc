@@ -1,0 +1,43 @@
+#include "continuum/fibres.h"
+
+#include "continuum/errors.h"
+
+#include <cmath>
+
+namespace continuum
+{
+namespace
+{
+PotentialDerivatives of(const RodPotential &p, const double l)
+{
+  const double r = 1. / l;
+  const double r2 = r * r;
+  const double r3 = r2 * r;
+  const double r4 = r2 * r2;
+  return {p.a * (0.5 * l * l + r - 1.5) + p.b * (l + 0.5 * r2 - 1.5), p.a * (l - r2) + p.b * (1. - r3),
+          p.a * (1. + 2. * r3) + 3. * p.b * r4, -6. * p.a * r4 - 12. * p.b * r4 * r,
+          24. * p.a * r4 * r + 60. * p.b * r3 * r3};
+}
+
+PotentialDerivatives of(const LinearPotential &p, const double l)
+{
+  return {0.5 * p.e * (l - 1.) * (l - 1.), p.e * (l - 1.), p.e, 0., 0.};
+}
+} // namespace
+
+PotentialDerivatives derivatives(const FibrePotential &potential, const double l)
+{
+  return std::visit([l](const auto &p) { return of(p, l); }, potential);
+}
+
+void check(const FibreFamily &family)
+{
+  if (!(std::abs(family.direction.norm() - 1.) <= 1e-12))
+    throw InvalidMaterial("the direction of a fibre family must be a unit vector");
+  if (!(family.weight > 0. && std::isfinite(family.weight)))
+    throw InvalidMaterial("the weight of a fibre family must be positive and finite");
+  const double stiffness = derivatives(family.potential, 1.).second;
+  if (!(stiffness > 0. && std::isfinite(stiffness)))
+    throw InvalidMaterial("a fibre must have a positive and finite stiffness at stretch 1");
+}
+} // namespace continuum

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <deal.II/base/tensor.h>
+
+#include <variant>
+
+namespace continuum
+{
+/// Energy of an incompressible Mooney-Rivlin rod at stretch l [-] (theory-continuum.md, eq. (C.12)):
+///   psi = a (l^2/2 + 1/l - 3/2) + b (l + 1/(2 l^2) - 3/2)    [Pa], with a, b [Pa] and a + b > 0.
+struct RodPotential
+{
+  double a;
+  double b;
+};
+
+/// Energy of a linear spring at stretch l [-]: psi = (e/2) (l - 1)^2 [Pa], with e [Pa] > 0.
+struct LinearPotential
+{
+  double e;
+};
+
+using FibrePotential = std::variant<RodPotential, LinearPotential>;
+
+/// Fibres of one reference direction.
+struct FibreFamily
+{
+  dealii::Tensor<1, 2> direction; ///< unit vector N_J [-], reference configuration
+  double weight;                  ///< c [-] > 0
+  FibrePotential potential;       ///< psi [Pa]
+};
+
+/// psi and its derivatives by the stretch [Pa].
+struct PotentialDerivatives
+{
+  double value;
+  double first;
+  double second;
+  double third;
+  double fourth;
+};
+
+/// psi(l) with its first four derivatives (theory-continuum.md, eqs. (C.12), (C.13)), l > 0.
+PotentialDerivatives derivatives(const FibrePotential &potential, double l);
+
+/// Throws InvalidMaterial, unless the direction is a unit vector to 1e-12, the weight is positive, and the stiffness
+/// psi''(1) is positive, all of them finite.
+void check(const FibreFamily &family);
+} // namespace continuum

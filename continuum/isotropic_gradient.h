@@ -1,0 +1,27 @@
+#pragma once
+
+#include "continuum/gradient_law.h"
+
+namespace continuum
+{
+/// W_g = (c_g/2) |Grad F|^2 with one constant c_g = mu l_s^2 (theory-continuum.md, eq. (C.21)): isotropic, objective,
+/// positive. It resists gradients, so short waves travel faster than long ones.
+class IsotropicGradient : public GradientLaw
+{
+public:
+  /// `shear_modulus` mu [Pa] > 0 and `length` l_s [m] >= 0. Throws InvalidMaterial otherwise.
+  IsotropicGradient(double shear_modulus, double length);
+
+  double form(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override;
+  dealii::Tensor<2, 2> form_by_F(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override;
+  dealii::Tensor<4, 2> form_by_FF(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override;
+  Gradient double_stress(const dealii::Tensor<2, 2> &F, const Gradient &G) const override;
+  dealii::Tensor<5, 2> double_stress_by_F(const dealii::Tensor<2, 2> &F, const Gradient &G) const override;
+  dealii::Tensor<6, 2> double_stress_by_G(const dealii::Tensor<2, 2> &F) const override;
+
+  double modulus() const { return modulus_; } ///< c_g [Pa m^2]
+
+private:
+  double modulus_;
+};
+} // namespace continuum
