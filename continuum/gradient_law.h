@@ -35,7 +35,8 @@ public:
   /// dQ_iJK/dF_lM [Pa m], index order [i][J][K][l][M].
   virtual dealii::Tensor<5, 2> double_stress_by_F(const dealii::Tensor<2, 2> &F, const Gradient &G) const = 0;
 
-  /// dQ_iJK/dG_lMN [Pa m^2], index order [i][J][K][l][M][N]; it does not depend on G.
+  /// dQ_iJK/dG_lMN [Pa m^2], index order [i][J][K][l][M][N], symmetric in J and K and in M and N; it does
+  /// not depend on G.
   virtual dealii::Tensor<6, 2> double_stress_by_G(const dealii::Tensor<2, 2> &F) const = 0;
 
   /// W_g [Pa].

@@ -3,6 +3,8 @@
 // Laws, meshes and conditions that several continuum tests use. SI units.
 
 #include "continuum/cauchy_born.h"
+#include "continuum/isotropic_gradient.h"
+#include "continuum/lattice_gradient.h"
 #include "continuum/mooney_rivlin.h"
 #include "continuum/rectangle.h"
 #include "continuum/static_solver.h"
@@ -47,6 +49,22 @@ inline continuum::CauchyBorn rubber_network(const double a = 1e5, const double b
     families.push_back({Tensor<1, 2>({std::cos(pi * k / 6.), std::sin(pi * k / 6.)}),
                         k % 2 == 0 ? s : std::sqrt(3.) * s, continuum::RodPotential{a, b}});
   return continuum::CauchyBorn(families);
+}
+
+/// Its bonds, for nearest neighbours at the distance `spacing` [m].
+inline std::vector<continuum::BondFamily> rubber_bonds(const double spacing)
+{
+  const continuum::CauchyBorn network = rubber_network();
+  std::vector<continuum::BondFamily> bonds;
+  for (const continuum::FibreFamily &family : network.families())
+    bonds.push_back({family, (bonds.size() % 2 == 0 ? 1. : std::sqrt(3.)) * spacing});
+  return bonds;
+}
+
+inline continuum::LatticeGradient rubber_gradient(const double spacing)
+{
+  const auto bonds = rubber_bonds(spacing);
+  return continuum::LatticeGradient(bonds, continuum::LatticeGradient::smallest_length(bonds));
 }
 
 inline continuum::MooneyRivlin rubber_sheet(const double ratio = -0.05)
