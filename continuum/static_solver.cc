@@ -1,10 +1,13 @@
 #include "continuum/static_solver.h"
 
 #include "continuum/collective.h"
+#include "continuum/error_indicator.h"
 #include "continuum/errors.h"
 #include "continuum/reactions.h"
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/distributed/grid_refinement.h>
+#include <deal.II/distributed/solution_transfer.h>
 #include <deal.II/numerics/vector_tools_boundary.h>
 
 #include <algorithm>
@@ -252,6 +255,48 @@ SolverReport StaticSolver::solve(const Observer &observer)
     }
   }
   return report;
+}
+
+void StaticSolver::refine(Sheet::Mesh &mesh, const double fraction)
+{
+  if (&mesh != &sheet_.mesh())
+    throw InvalidInput("a solver can refine the mesh of its own sheet only");
+  if (!(fraction > 0. && fraction <= 1.))
+    throw InvalidInput("the fraction of cells to refine must lie in (0, 1]");
+  parallel::distributed::GridRefinement::refine_and_coarsen_fixed_number(mesh, error_indicators(sheet_, displacement_),
+                                                                         fraction, 0.);
+  mesh.prepare_coarsening_and_refinement();
+  parallel::distributed::SolutionTransfer<2, Vector> transfer(sheet_.dof_handler());
+  transfer.prepare_for_coarsening_and_refinement(displacement_);
+  mesh.execute_coarsening_and_refinement();
+  sheet_.distribute();
+  set_up();
+
+  Vector u = sheet_.make_owned();
+  transfer.interpolate(u);
+  // Boundary values are those of the function, which the coarser edge may have missed.
+  for (const types::global_dof_index i : sheet_.owned())
+    if (homogeneous_.is_constrained(i) && !sheet_.continuity().is_constrained(i))
+      u(i) = load_factor_ * full_lift_(i);
+  u.compress(VectorOperation::insert);
+  sheet_.continuity().distribute(u);
+  displacement_ = u;
+}
+
+SolverReport StaticSolver::equilibrate()
+{
+  SolverReport report;
+  const std::string failure = attempt(load_factor_, report);
+  report.load_steps.push_back({1, load_factor_, failure.empty(), failure});
+  report.load_factor = load_factor_;
+  if (failure.empty())
+    return report;
+  displacement_ = 0.;
+  load_factor_ = 0.;
+  SolverReport again = solve();
+  again.load_steps.insert(again.load_steps.begin(), report.load_steps.begin(), report.load_steps.end());
+  again.iterations.insert(again.iterations.begin(), report.iterations.begin(), report.iterations.end());
+  return again;
 }
 
 double StaticSolver::total_energy() const

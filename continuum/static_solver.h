@@ -55,6 +55,15 @@ public:
   /// is then the last accepted one.
   SolverReport solve(const Observer &observer = Observer());
 
+  /// Refines the `fraction` [-] of the cells of `mesh` (that of the sheet) where the error seems largest and takes the
+  /// state along; equilibrate() makes it an equilibrium of the refined mesh. Throws InvalidInput for another mesh or a
+  /// fraction outside (0, 1].
+  void refine(Sheet::Mesh &mesh, double fraction);
+
+  /// Finds the equilibrium at the present load factor from the present state, or if Newton fails there, by loading from
+  /// zero. Throws SolverFailed as solve() does.
+  SolverReport equilibrate();
+
   /// Stored energy E [J/m] of the present state, per unit reference thickness.
   double total_energy() const;
 

@@ -1,5 +1,6 @@
-// Manufactured solutions at finite strain: errors of the displacement and its first and second derivatives fall with the
-// orders of C0 interior penalty elements. With LATCON_TABLES set to a folder, every series is also written there as CSV.
+// Manufactured solutions at finite strain: errors of the displacement and its first and second derivatives fall with
+// the orders of C0 interior penalty elements. With LATCON_TABLES set to a folder, every series is also written there as
+// CSV.
 #include "manufactured.h"
 
 #include <deal.II/base/quadrature_lib.h>
@@ -107,7 +108,8 @@ struct Series
   }
 };
 
-// The unit square in cells of side 2^-level, with a disc in the middle refined once more if there are to be hanging nodes.
+// The unit square in cells of side 2^-level, with a disc in the middle refined once more if there are to be hanging
+// nodes.
 void make_mesh(Mesh &mesh, const unsigned int level, const Meshes meshes)
 {
   dealii::GridGenerator::hyper_cube(mesh, 0., 1., true);
@@ -182,16 +184,16 @@ std::vector<Errors> run(const Series &series)
     }
     conditions.displacements.push_back({id, displacement});
     if (series.nonlocal != Nonlocal::none)
-      conditions.normal_gradients.push_back(
-        {id, std::make_shared<Field>(
-               [exact, N](const Point<2> &X)
-               {
-                 const std::array<double, 2> at = {X[0], X[1]};
-                 Tensor<1, 2> gradient;
-                 for (unsigned int i = 0; i < 2; ++i)
-                   gradient[i] = exact.first(i, 0, at) * N[0] + exact.first(i, 1, at) * N[1];
-                 return gradient;
-               })});
+      conditions.normal_gradients.push_back({id, std::make_shared<Field>(
+                                                   [exact, N](const Point<2> &X)
+                                                   {
+                                                     const std::array<double, 2> at = {X[0], X[1]};
+                                                     Tensor<1, 2> gradient;
+                                                     for (unsigned int i = 0; i < 2; ++i)
+                                                       gradient[i] =
+                                                         exact.first(i, 0, at) * N[0] + exact.first(i, 1, at) * N[1];
+                                                     return gradient;
+                                                   })});
   }
 
   StaticSettings settings;

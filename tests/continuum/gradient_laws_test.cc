@@ -1,5 +1,5 @@
-// Gradient laws alone: forms and their derivatives against automatic differentiation of the energy as theory.md, section
-// 4, writes it, symmetries, and the dispersion of the lattice.
+// Gradient laws alone: forms and their derivatives against automatic differentiation of the energy as theory.md,
+// section 4, writes it, symmetries, and the dispersion of the lattice.
 #include "continuum/errors.h"
 #include "sheets.h"
 
@@ -36,8 +36,8 @@ unsigned int variable(const unsigned int i, const unsigned int J, const unsigned
   return 4 + 3 * i + place[J][K];
 }
 
-// Sum over the bonds of c/2 [ l_d^2 (G_.JK N_K).H.(G_.JL N_L) - (l^2/12) (G:NN).H.(G:NN) ], with the bond's own stiffness
-// H = psi'' n n + (psi'/stretch) (I - n n).
+// Sum over the bonds of c/2 [ l_d^2 (G_.JK N_K).H.(G_.JL N_L) - (l^2/12) (G:NN).H.(G:NN) ], with the bond's own
+// stiffness H = psi'' n n + (psi'/stretch) (I - n n).
 template <typename Number>
 Number lattice_energy(const std::vector<BondFamily> &bonds, const double length,
                       const std::array<Number, n_variables> &v)
@@ -265,7 +265,8 @@ TEST(GradientLaw, VanishesInHomogeneousDeformation)
 {
   const LatticeGradient lattice = rubber_gradient(spacing);
   const IsotropicGradient isotropic(5e5, spacing);
-  for (const GradientLaw *law : {static_cast<const GradientLaw *>(&lattice), static_cast<const GradientLaw *>(&isotropic)})
+  for (const GradientLaw *law :
+       {static_cast<const GradientLaw *>(&lattice), static_cast<const GradientLaw *>(&isotropic)})
   {
     const Tensor<2, 2> F = matrix(2.3, 0.1, -0.2, 2.8);
     EXPECT_EQ(law->energy(F, Gradient()), 0.);
@@ -304,7 +305,8 @@ TEST(LatticeGradient, IsPositiveInTension)
     EXPECT_GT(law.energy(random_deformation(generator, 1.01, 3.), random_gradient(generator)), 0.);
 }
 
-// theory.md, section 5: alpha d^2 = l_d^2 - H/A2, with A2 = rho c^2 from the Cauchy-Born law and H from the gradient law.
+// theory.md, section 5: alpha d^2 = l_d^2 - H/A2, with A2 = rho c^2 from the Cauchy-Born law and H from the gradient
+// law.
 TEST(LatticeGradient, HasTheDispersionOfTheLattice)
 {
   const LatticeGradient law = rubber_gradient(spacing);

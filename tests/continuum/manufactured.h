@@ -124,8 +124,8 @@ struct IsotropicGradientEnergy
   {
     Energy W(0.);
     for (unsigned int i = 0; i < 2; ++i)
-      W += 0.5 * modulus *
-           (v[4 + 3 * i] * v[4 + 3 * i] + v[5 + 3 * i] * v[5 + 3 * i] + 2. * v[6 + 3 * i] * v[6 + 3 * i]);
+      W +=
+        0.5 * modulus * (v[4 + 3 * i] * v[4 + 3 * i] + v[5 + 3 * i] * v[5 + 3 * i] + 2. * v[6 + 3 * i] * v[6 + 3 * i]);
     return W;
   }
 };

@@ -1,0 +1,194 @@
+#include "continuum/meshes.h"
+
+#include "continuum/collective.h"
+#include "continuum/errors.h"
+
+#include <deal.II/grid/grid_in.h>
+#include <deal.II/grid/grid_tools.h>
+#include <deal.II/grid/manifold_lib.h>
+
+#include <algorithm>
+#include <cmath>
+#include <fstream>
+#include <vector>
+
+using namespace dealii;
+
+namespace continuum
+{
+namespace
+{
+constexpr types::manifold_id rim = 1;
+
+void require(const bool holds, const std::string &rule)
+{
+  if (!holds)
+    throw InvalidInput(rule);
+}
+
+// `n` equal parts of [from, to], without the first end.
+void append_parts(std::vector<double> &lines, const double to, const double size)
+{
+  const double from = lines.back();
+  const unsigned int n = std::max(1., std::round((to - from) / size));
+  for (unsigned int k = 1; k <= n; ++k)
+    lines.push_back(k == n ? to : from + (to - from) * k / n);
+}
+
+class CoarseMesh
+{
+public:
+  unsigned int vertex(const double x, const double y)
+  {
+    vertices_.emplace_back(x, y);
+    return vertices_.size() - 1;
+  }
+
+  // Corners in the order of reading: lower left, lower right, upper left, upper right.
+  void cell(const unsigned int a, const unsigned int b, const unsigned int c, const unsigned int d)
+  {
+    CellData<2> data(4);
+    data.vertices = {a, b, c, d};
+    cells_.push_back(data);
+  }
+
+  // Creates the mesh; outer edges get their ids by position, all else is inner boundary.
+  void create(parallel::distributed::Triangulation<2> &mesh, const double length, const double height) const
+  {
+    // Lines must run the same way in both their cells, or elements of degree 3 and more do not fit together.
+    std::vector<CellData<2>> cells = cells_;
+    GridTools::consistently_order_cells(cells);
+    mesh.create_triangulation(vertices_, cells, SubCellData());
+    const double tolerance = 1e-9 * (length + height);
+    for (const auto &cell : mesh.active_cell_iterators())
+      for (const auto &face : cell->face_iterators())
+      {
+        if (!face->at_boundary())
+          continue;
+        const Point<2> X = face->center();
+        face->set_boundary_id(X[0] < tolerance                   ? edge::left
+                              : X[0] > length - tolerance        ? edge::right
+                              : X[1] < -0.5 * height + tolerance ? edge::bottom
+                              : X[1] > 0.5 * height - tolerance  ? edge::top
+                                                                 : edge::inner);
+      }
+  }
+
+private:
+  std::vector<Point<2>> vertices_;
+  std::vector<CellData<2>> cells_;
+};
+} // namespace
+
+void make_rectangle_with_hole(parallel::distributed::Triangulation<2> &mesh, const RectangleWithHole &shape)
+{
+  const auto &[length, height, radius, refinements] = shape;
+  require(length > 0. && height > 0. && std::isfinite(length) && std::isfinite(height),
+          "a rectangle needs a positive and finite length and height");
+  const double smaller = std::min(length, height);
+  require(radius > 0. && radius < 0.45 * smaller,
+          "the radius of a hole must be positive and less than 0.45 of the sheet");
+
+  // A square of cells around the hole, twice as wide where there is room, and rows and columns of cells outside.
+  const double half = std::min(2. * radius, 0.5 * (radius + 0.5 * smaller));
+  const double cx = 0.5 * length;
+  std::vector<double> xs = {0.}, ys = {-0.5 * height};
+  append_parts(xs, cx - half, 1.5 * half);
+  const unsigned int box_x = xs.size() - 1;
+  xs.insert(xs.end(), {cx, cx + half});
+  append_parts(xs, length, 1.5 * half);
+  append_parts(ys, -half, 1.5 * half);
+  const unsigned int box_y = ys.size() - 1;
+  ys.insert(ys.end(), {0., half});
+  append_parts(ys, 0.5 * height, 1.5 * half);
+
+  CoarseMesh coarse;
+  const auto on_grid = [&xs](const unsigned int i, const unsigned int j)
+  { return static_cast<unsigned int>(j * xs.size() + i); };
+  for (const double y : ys)
+    for (const double x : xs)
+      coarse.vertex(x, y); // the one in the middle of the hole is used by no cell
+  for (unsigned int j = 0; j + 1 < ys.size(); ++j)
+    for (unsigned int i = 0; i + 1 < xs.size(); ++i)
+      if (i < box_x || i > box_x + 1 || j < box_y || j > box_y + 1)
+        coarse.cell(on_grid(i, j), on_grid(i + 1, j), on_grid(i, j + 1), on_grid(i + 1, j + 1));
+  unsigned int circle[8], box[8];
+  const int around[8][2] = {{1, 0}, {1, 1}, {0, 1}, {-1, 1}, {-1, 0}, {-1, -1}, {0, -1}, {1, -1}};
+  for (unsigned int k = 0; k < 8; ++k)
+  {
+    const double angle = std::acos(-1.) * k / 4.;
+    circle[k] = coarse.vertex(cx + radius * std::cos(angle), radius * std::sin(angle));
+    box[k] = on_grid(box_x + 1 + around[k][0], box_y + 1 + around[k][1]);
+  }
+  for (unsigned int k = 0; k < 8; ++k)
+    coarse.cell(circle[k], box[k], circle[(k + 1) % 8], box[(k + 1) % 8]);
+
+  coarse.create(mesh, length, height);
+  for (const auto &cell : mesh.active_cell_iterators())
+    for (const auto &face : cell->face_iterators())
+      if (face->at_boundary() && face->boundary_id() == edge::inner)
+        face->set_manifold_id(rim);
+  mesh.set_manifold(rim, SphericalManifold<2>(Point<2>(cx, 0.)));
+  mesh.refine_global(refinements);
+}
+
+void make_notched_rectangle(parallel::distributed::Triangulation<2> &mesh, const NotchedRectangle &shape)
+{
+  const auto &[length, height, notch, refinements] = shape;
+  require(length > 0. && height > 0. && std::isfinite(length) && std::isfinite(height),
+          "a rectangle needs a positive and finite length and height");
+  require(notch > 0. && notch < length, "a notch must be longer than 0 and shorter than the sheet");
+
+  std::vector<double> xs = {0.};
+  append_parts(xs, notch, 0.5 * height);
+  const unsigned int tip = xs.size() - 1;
+  append_parts(xs, length, 0.5 * height);
+  CoarseMesh coarse;
+  std::vector<unsigned int> bottom, below, above, top;
+  for (unsigned int i = 0; i < xs.size(); ++i)
+  {
+    bottom.push_back(coarse.vertex(xs[i], -0.5 * height));
+    below.push_back(coarse.vertex(xs[i], 0.));
+    above.push_back(i < tip ? coarse.vertex(xs[i], 0.) : below.back());
+    top.push_back(coarse.vertex(xs[i], 0.5 * height));
+  }
+  for (unsigned int i = 0; i + 1 < xs.size(); ++i)
+  {
+    coarse.cell(bottom[i], bottom[i + 1], below[i], below[i + 1]);
+    coarse.cell(above[i], above[i + 1], top[i], top[i + 1]);
+  }
+  coarse.create(mesh, length, height);
+  mesh.refine_global(refinements);
+}
+
+void read_gmsh(parallel::distributed::Triangulation<2> &mesh, const std::filesystem::path &file,
+               const unsigned int refinements)
+{
+  collectively(mesh.get_communicator(),
+               [&]
+               {
+                 std::ifstream stream(file);
+                 require(stream.good(), "cannot read the mesh file " + file.string());
+                 // Into a serial mesh first: what deal.II throws on one rank must not leave the others waiting.
+                 Triangulation<2> serial;
+                 GridIn<2> reader(serial);
+                 try
+                 {
+                   reader.read_msh(stream);
+                 }
+                 catch (const std::exception &failure)
+                 {
+                   throw InvalidInput("the mesh file " + file.string() +
+                                      " is no Gmsh mesh of quadrilaterals in the plane: " + failure.what());
+                 }
+                 require(serial.n_active_cells() > 0, "the mesh file " + file.string() + " holds no cells");
+                 require(serial.all_reference_cells_are_hyper_cube(),
+                         "the mesh file " + file.string() +
+                           " holds cells other than quadrilaterals; Gmsh's `Recombine Surface` makes them");
+               });
+  std::ifstream stream(file);
+  GridIn<2> reader(mesh);
+  reader.read_msh(stream);
+  mesh.refine_global(refinements);
+}
+} // namespace continuum

@@ -1,0 +1,210 @@
+// Domains and their boundary ids, and refinement where the error is.
+#include "continuum/error_indicator.h"
+#include "continuum/errors.h"
+#include "continuum/meshes.h"
+#include "sheets.h"
+
+#include <gtest/gtest.h>
+
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <filesystem>
+#include <fstream>
+#include <map>
+
+using namespace sheets;
+using continuum::StaticSettings;
+using continuum::StaticSolver;
+
+namespace
+{
+struct Measures
+{
+  double area;
+  std::map<dealii::types::boundary_id, double> edges; // length of each
+};
+
+// By quadrature through the mapping that a sheet of this degree has.
+Measures measures(const continuum::Sheet &sheet)
+{
+  dealii::FEValues<2> values(sheet.mapping(), sheet.element(), dealii::QGauss<2>(sheet.degree() + 2),
+                             dealii::update_JxW_values);
+  dealii::FEFaceValues<2> face_values(sheet.mapping(), sheet.element(), dealii::QGauss<1>(sheet.degree() + 2),
+                                      dealii::update_JxW_values);
+  Measures result{};
+  for (const auto &cell : sheet.mesh().active_cell_iterators())
+  {
+    values.reinit(Mesh::cell_iterator(cell));
+    for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
+      result.area += values.JxW(q);
+    for (const unsigned int face : cell->face_indices())
+      if (cell->at_boundary(face))
+      {
+        face_values.reinit(Mesh::cell_iterator(cell), face);
+        for (unsigned int q = 0; q < face_values.n_quadrature_points; ++q)
+          result.edges[cell->face(face)->boundary_id()] += face_values.JxW(q);
+      }
+  }
+  return result;
+}
+
+std::filesystem::path write_file(const std::string &name, const std::string &text)
+{
+  const std::filesystem::path path = std::filesystem::path(testing::TempDir()) / name;
+  std::ofstream(path) << text;
+  return path;
+}
+
+// Two squares side by side, 2 m x 1 m, with physical curves 2 (bottom of both) and 5 (the right edge).
+const char *const two_squares = R"($MeshFormat
+2.2 0 8
+$EndMeshFormat
+$Nodes
+6
+1 0 0 0
+2 1 0 0
+3 2 0 0
+4 0 1 0
+5 1 1 0
+6 2 1 0
+$EndNodes
+$Elements
+5
+1 1 2 2 1 1 2
+2 1 2 2 1 2 3
+3 1 2 5 2 3 6
+4 3 2 7 1 1 2 5 4
+5 3 2 7 1 2 3 6 5
+$EndElements
+)";
+} // namespace
+
+TEST(Meshes, HoleHasItsAreaAndRim)
+{
+  const continuum::CauchyBorn law = rubber_network();
+  for (const double radius : {0.005, 0.02, 0.044})
+  {
+    Mesh mesh(MPI_COMM_SELF);
+    continuum::make_rectangle_with_hole(mesh, {length, height, radius, 2});
+    const Measures m = measures(continuum::Sheet(mesh, law, 4));
+    // Each of 32 arcs is a polynomial of degree 4: the error of the area is that of interpolating a circle.
+    EXPECT_NEAR(m.area, length * height - pi * radius * radius, 1e-8 * radius * radius);
+    EXPECT_NEAR(m.edges.at(continuum::edge::inner), 2. * pi * radius, 1e-8 * radius);
+    EXPECT_NEAR(m.edges.at(continuum::edge::left), height, 1e-12);
+    EXPECT_NEAR(m.edges.at(continuum::edge::right), height, 1e-12);
+    EXPECT_NEAR(m.edges.at(continuum::edge::bottom), length, 1e-12);
+    EXPECT_NEAR(m.edges.at(continuum::edge::top), length, 1e-12);
+  }
+}
+
+TEST(Meshes, NotchHasTwoFacesAndNoArea)
+{
+  const continuum::CauchyBorn law = rubber_network();
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::make_notched_rectangle(mesh, {length, height, 0.06, 2});
+  const Measures m = measures(continuum::Sheet(mesh, law, 2));
+  EXPECT_NEAR(m.area, length * height, 1e-12);
+  EXPECT_NEAR(m.edges.at(continuum::edge::inner), 2. * 0.06, 1e-12);
+  EXPECT_NEAR(m.edges.at(continuum::edge::left), height, 1e-12);
+}
+
+TEST(Meshes, NotchOpens)
+{
+  const continuum::CauchyBorn law = rubber_network();
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::make_notched_rectangle(mesh, {length, height, 0.06, 3});
+  const auto field = affine(matrix(1., 0., 0., 1.3));
+  StaticSolver solver(mesh, law, {{continuum::edge::bottom, field}, {continuum::edge::top, field}});
+  solver.solve();
+  // Just above and below the slit, near its mouth and beyond its tip.
+  const auto states = solver.evaluate({{0.001, 1e-5}, {0.001, -1e-5}, {0.1, 1e-5}, {0.1, -1e-5}});
+  EXPECT_GT(states[0].displacement[1] - states[1].displacement[1], 0.01);
+  EXPECT_LT(states[2].displacement[1] - states[3].displacement[1], 1e-4);
+}
+
+TEST(Meshes, ReadsGmsh)
+{
+  const continuum::CauchyBorn law = rubber_network();
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::read_gmsh(mesh, write_file("two_squares.msh", two_squares), 1);
+  EXPECT_EQ(mesh.n_active_cells(), 8u);
+  const Measures m = measures(continuum::Sheet(mesh, law, 2));
+  EXPECT_NEAR(m.area, 2., 1e-12);
+  EXPECT_NEAR(m.edges.at(2), 2., 1e-12);
+  EXPECT_NEAR(m.edges.at(5), 1., 1e-12);
+  EXPECT_NEAR(m.edges.at(0), 3., 1e-12);
+}
+
+TEST(Meshes, RefusesWhatCannotBeMeshed)
+{
+  Mesh mesh(MPI_COMM_SELF);
+  EXPECT_THROW(continuum::make_rectangle_with_hole(mesh, {length, height, 0.046, 0}), continuum::InvalidInput);
+  EXPECT_THROW(continuum::make_rectangle_with_hole(mesh, {length, height, 0., 0}), continuum::InvalidInput);
+  EXPECT_THROW(continuum::make_notched_rectangle(mesh, {length, height, length, 0}), continuum::InvalidInput);
+  EXPECT_THROW(continuum::make_notched_rectangle(mesh, {length, -1., 0.01, 0}), continuum::InvalidInput);
+  try
+  {
+    continuum::read_gmsh(mesh, "no/such.msh");
+    FAIL();
+  }
+  catch (const continuum::InvalidInput &failure)
+  {
+    EXPECT_NE(std::string(failure.what()).find("no/such.msh"), std::string::npos);
+  }
+  EXPECT_THROW(continuum::read_gmsh(mesh, write_file("text.msh", "not a mesh")), continuum::InvalidInput);
+}
+
+// A smaller error of the energy with a third of the unknowns of a uniform mesh.
+TEST(ErrorIndicator, RefinesAtTheTipOfANotch)
+{
+  const continuum::CauchyBorn law = rubber_network();
+  const continuum::IsotropicGradient gradient(5e5, 0.005);
+  const auto field = affine(matrix(1., 0., 0., 1.3));
+  const continuum::Conditions conditions{{continuum::edge::bottom, field}, {continuum::edge::top, field}};
+  const auto start = [&](Mesh &mesh, const unsigned int refinements)
+  {
+    continuum::make_notched_rectangle(mesh, {length, height, 0.06, refinements});
+    auto solver = std::make_unique<StaticSolver>(mesh, continuum::Constitution(law, gradient), conditions);
+    solver->solve();
+    return solver;
+  };
+  Mesh everywhere(MPI_COMM_SELF), here(MPI_COMM_SELF);
+  const auto uniform = start(everywhere, 3);
+  const auto adaptive = start(here, 1);
+  std::vector<double> energies;
+  std::vector<dealii::types::global_dof_index> unknowns;
+  for (unsigned int cycle = 0; cycle < 7; ++cycle)
+  {
+    adaptive->refine(here, 0.12);
+    const continuum::SolverReport report = adaptive->equilibrate();
+    EXPECT_EQ(report.load_steps.size(), 1u) << report.text(); // from the state carried over, not from zero
+    energies.push_back(adaptive->total_energy());
+    unknowns.push_back(adaptive->sheet().dof_handler().n_dofs());
+  }
+  double smallest = 1.;
+  double distance = 1.;
+  for (const auto &cell : here.active_cell_iterators())
+    if (cell->diameter() < smallest)
+    {
+      smallest = cell->diameter();
+      distance = cell->center().distance(Point<2>(0.06, 0.));
+    }
+  EXPECT_LT(distance, 0.005);
+  EXPECT_LT(3 * unknowns[3], uniform->sheet().dof_handler().n_dofs());
+  EXPECT_LT(std::abs(energies[3] - energies.back()), 0.5 * std::abs(uniform->total_energy() - energies.back()));
+}
+
+TEST(ErrorIndicator, VanishesInHomogeneousDeformation)
+{
+  const continuum::CauchyBorn law = rubber_network();
+  const continuum::LatticeGradient gradient = rubber_gradient(0.005);
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::make_rectangle(mesh, rectangle(6, 4));
+  StaticSolver solver(mesh, continuum::Constitution(law, gradient), on_all_edges(affine(matrix(2.3, 0.1, 0.2, 2.8))));
+  solver.solve();
+  // Against the energy of a deformation that varies by itself.
+  EXPECT_LT(continuum::error_indicators(solver.sheet(), solver.displacement()).l2_norm(),
+            1e-9 * std::sqrt(solver.total_energy()));
+}
