@@ -4,7 +4,6 @@
 #include "continuum/vertex_patches.h"
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/dofs/dof_tools.h>
 #include <deal.II/lac/precondition.h>
 #include <deal.II/lac/trilinos_solver.h>
 #include <deal.II/multigrid/mg_transfer_global_coarsening.h>
@@ -13,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 using namespace dealii;
 
@@ -150,18 +150,20 @@ Multigrid::Multigrid(const Sheet &fine, const SheetFactory &make_sheet, const Ma
       level->sheet = level->own_sheet.get();
     }
     const Sheet &sheet = *level->sheet;
-    level->constraints.reinit(sheet.relevant());
-    level->constraints.merge(sheet.hanging_nodes());
-    for (const auto &[boundary, components] : held)
-      DoFTools::make_zero_boundary_constraints(sheet.dof_handler(), boundary, level->constraints, components);
-    level->constraints.make_consistent_in_parallel(sheet.owned(), sheet.relevant(), sheet.communicator());
-    level->constraints.close();
-    level->layout =
-      std::make_shared<const Utilities::MPI::Partitioner>(sheet.owned(), sheet.relevant(), sheet.communicator());
+    level->constraints = homogeneous_constraints(sheet, held);
     if (level->own_sheet)
       make_matrix(sheet, level->constraints, level->own_matrix);
+    const bool is_coarsest = n == 0 || sheet.dof_handler().n_dofs() <= settings.coarsest_size;
+    if (is_coarsest)
+      level->layout =
+        std::make_shared<const Utilities::MPI::Partitioner>(sheet.owned(), sheet.relevant(), sheet.communicator());
+    else
+    {
+      level->patches = std::make_shared<VertexPatches>(sheet, level->constraints);
+      level->layout = level->patches->layout();
+    }
     levels_.push_back(std::move(level));
-    if (sheet.dof_handler().n_dofs() <= settings.coarsest_size)
+    if (is_coarsest)
       break;
   }
   std::reverse(levels_.begin(), levels_.end());
@@ -173,7 +175,6 @@ Multigrid::Multigrid(const Sheet &fine, const SheetFactory &make_sheet, const Ma
     level.to_coarser.reinit_geometric_transfer(level.sheet->dof_handler(), coarser.sheet->dof_handler(),
                                                level.constraints, coarser.constraints);
     level.to_coarser.enable_inplace_operations_if_possible(coarser.layout, level.layout);
-    level.patches = std::make_shared<VertexPatches>(*level.sheet, level.constraints, level.layout);
     level.start.reinit(level.layout);
     fill_start(*level.sheet, level.constraints, level.start);
     level.residual.reinit(level.layout);

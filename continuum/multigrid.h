@@ -1,12 +1,11 @@
 #pragma once
 
+#include "continuum/homogeneous_constraints.h"
 #include "continuum/sheet.h"
 
-#include <deal.II/fe/component_mask.h>
 #include <deal.II/lac/la_parallel_vector.h>
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <vector>
 
@@ -16,7 +15,7 @@ namespace continuum
 struct MultigridSettings
 {
   unsigned int smoothing_degree = 2; ///< of the Chebyshev polynomial, before and after the coarse correction, >= 1
-  double smoothing_range = 8.;       ///< largest eigenvalue over the smallest that is smoothed [-], > 1
+  double smoothing_range = 6.;       ///< largest eigenvalue over the smallest that is smoothed [-], > 1
   unsigned int eigenvalue_iterations = 12; ///< of the Lanczos process that estimates the largest eigenvalue, >= 2
   /// Number of unknowns below which a level is coarse enough to be solved directly. A mesh that cannot be coarsened
   /// further is solved directly whatever its size.
@@ -46,9 +45,6 @@ public:
   /// Throws NonPhysicalState, on every rank, where there is none.
   using Assembler = std::function<void(const Sheet &, const Sheet::Vector &u,
                                        const dealii::AffineConstraints<double> &constraints, Sheet::Matrix &K)>;
-  /// Which components are held at which boundary.
-  using HeldBoundaries = std::map<dealii::types::boundary_id, dealii::ComponentMask>;
-
   /// Builds all that depends on the mesh alone: levels, transfers, sparsity, patches. `fine` must outlive the
   /// multigrid, and its mesh must not change. Throws InvalidInput for settings out of range.
   Multigrid(const Sheet &fine, const SheetFactory &make_sheet, const MatrixFactory &make_matrix,

@@ -13,7 +13,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <stdexcept>
+#include <unordered_map>
 
 using namespace dealii;
 
@@ -74,33 +76,55 @@ void add_product(const double *packed, const unsigned int n, const double *x, do
     packed += below + 1;
   }
 }
-} // namespace
 
-VertexPatches::VertexPatches(const Sheet &sheet, const AffineConstraints<double> &constraints,
-                             std::shared_ptr<const Layout> layout)
-  : layout_(std::move(layout))
+using Dofs = std::vector<types::global_dof_index>;
+
+void make_unique(Dofs &dofs)
 {
-  collectively(sheet.communicator(), [&] { list_patches(sheet, constraints); });
-
-  const unsigned int n_owned = layout_->locally_owned_size();
-  std::vector<bool> is_needed(layout_->n_ghost_indices(), false);
-  for (const unsigned int dof : dofs_)
-    if (dof >= n_owned)
-      is_needed[dof - n_owned] = true;
-  std::vector<int> rows;
-  for (unsigned int ghost = 0; ghost < is_needed.size(); ++ghost)
-    if (is_needed[ghost])
-      rows.push_back(static_cast<int>(layout_->local_to_global(n_owned + ghost)));
-  ghost_rows_ = std::make_unique<Epetra_Map>(-1, static_cast<int>(rows.size()), rows.data(), 0,
-                                             Epetra_MpiComm(sheet.communicator()));
+  std::sort(dofs.begin(), dofs.end());
+  dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
 }
 
-VertexPatches::~VertexPatches() = default;
+// Degrees of freedom of one cell by the vertex, line or interior they sit on; the free ones of them.
+class CellDofs
+{
+public:
+  CellDofs(const Sheet &sheet, const AffineConstraints<double> &constraints)
+    : element_(sheet.element()), constraints_(constraints), dofs_(element_.n_dofs_per_cell())
+  {
+  }
+  void reinit(const DoFHandler<2>::active_cell_iterator &cell) { cell->get_dof_indices(dofs_); }
 
-void VertexPatches::list_patches(const Sheet &sheet, const AffineConstraints<double> &constraints)
+  // The first on a vertex, as a name of the vertex on all ranks.
+  types::global_dof_index name(const unsigned int vertex) const { return dofs_[vertex * element_.n_dofs_per_vertex()]; }
+
+  void add_vertex(const unsigned int vertex, Dofs &to) const
+  {
+    add(vertex * element_.n_dofs_per_vertex(), element_.n_dofs_per_vertex(), to);
+  }
+  void add_line(const unsigned int line, Dofs &to) const
+  {
+    add(element_.get_first_line_index() + line * element_.n_dofs_per_line(), element_.n_dofs_per_line(), to);
+  }
+  void add_interior(Dofs &to) const { add(element_.get_first_quad_index(), element_.n_dofs_per_quad(), to); }
+
+private:
+  void add(const unsigned int first, const unsigned int n, Dofs &to) const
+  {
+    for (unsigned int a = first; a < first + n; ++a)
+      if (!constraints_.is_constrained(dofs_[a]))
+        to.push_back(dofs_[a]);
+  }
+
+  const FESystem<2> &element_;
+  const AffineConstraints<double> &constraints_;
+  Dofs dofs_;
+};
+
+// Free degrees of freedom of the patches of this rank.
+std::vector<Dofs> list_patches(const Sheet &sheet, const AffineConstraints<double> &constraints)
 {
   const auto &mesh = sheet.mesh();
-  const auto &element = sheet.element();
   const unsigned int own_rank = Utilities::MPI::this_mpi_process(sheet.communicator());
   constexpr auto n_vertices = GeometryInfo<2>::vertices_per_cell;
   constexpr auto n_lines = GeometryInfo<2>::lines_per_cell;
@@ -112,60 +136,114 @@ void VertexPatches::list_patches(const Sheet &sheet, const AffineConstraints<dou
       for (unsigned int v = 0; v < n_vertices; ++v)
         owner[cell->vertex_index(v)] = std::min(owner[cell->vertex_index(v)], cell->subdomain_id());
 
-  std::vector<std::vector<unsigned int>> dofs_of(mesh.n_vertices());
-  std::vector<types::global_dof_index> cell_dofs(element.n_dofs_per_cell());
-  const auto add = [&](std::vector<unsigned int> &patch, const unsigned int first, const unsigned int n)
-  {
-    for (unsigned int a = first; a < first + n; ++a)
-      if (!constraints.is_constrained(cell_dofs[a]))
-        patch.push_back(layout_->global_to_local(cell_dofs[a]));
-  };
-  const auto add_line = [&](std::vector<unsigned int> &patch, const unsigned int line)
-  { add(patch, element.get_first_line_index() + line * element.n_dofs_per_line(), element.n_dofs_per_line()); };
-  const auto add_interior = [&](std::vector<unsigned int> &patch)
-  { add(patch, element.get_first_quad_index(), element.n_dofs_per_quad()); };
-
+  std::vector<Dofs> patch_of(mesh.n_vertices());
+  std::unordered_map<types::global_dof_index, unsigned int> vertex_of; // by name, for own vertices at halved lines
+  std::map<unsigned int, Dofs> messages;                               // by rank: name, number and list, over and over
+  CellDofs dofs(sheet, constraints);
+  CellDofs smaller_dofs(sheet, constraints);
+  Dofs beyond;
   for (const auto &cell : sheet.dof_handler().active_cell_iterators())
   {
     if (cell->is_artificial())
       continue;
-    cell->get_dof_indices(cell_dofs);
+    dofs.reinit(cell);
     for (unsigned int v = 0; v < n_vertices; ++v)
-      if (owner[cell->vertex_index(v)] == own_rank)
+      if (owner[cell->vertex_index(v)] == own_rank && !sheet.hanging_nodes().is_constrained(dofs.name(v)))
       {
-        std::vector<unsigned int> &patch = dofs_of[cell->vertex_index(v)];
-        add(patch, v * element.n_dofs_per_vertex(), element.n_dofs_per_vertex());
+        Dofs &patch = patch_of[cell->vertex_index(v)];
+        dofs.add_vertex(v, patch);
         for (unsigned int line = 0; line < n_lines; ++line)
           for (unsigned int end = 0; end < 2; ++end)
             if (GeometryInfo<2>::face_to_cell_vertices(line, end) == v)
-              add_line(patch, line);
-        add_interior(patch);
+              dofs.add_line(line, patch);
+        dofs.add_interior(patch);
+        vertex_of.emplace(dofs.name(v), cell->vertex_index(v));
       }
+
+    // The owner of a vertex need not see the smaller cells beyond a halved line; that of the larger cell does.
+    if (!cell->is_locally_owned())
+      continue;
     for (unsigned int line = 0; line < n_lines; ++line)
       if (cell->face(line)->has_children())
       {
-        const unsigned int middle = cell->face(line)->child(0)->vertex_index(1);
-        if (owner[middle] == own_rank)
+        const auto side = cell->face(line);
+        const unsigned int middle = side->child(0)->vertex_index(1);
+        beyond.clear();
+        for (unsigned int half = 0; half < 2; ++half)
         {
-          add_line(dofs_of[middle], line);
-          add_interior(dofs_of[middle]);
+          const auto smaller = cell->neighbor_child_on_subface(line, half);
+          smaller_dofs.reinit(smaller);
+          smaller_dofs.add_interior(beyond);
+          for (unsigned int l = 0; l < n_lines; ++l)
+            if (smaller->face(l) != side->child(half) &&
+                (smaller->face(l)->vertex_index(0) == middle || smaller->face(l)->vertex_index(1) == middle))
+              smaller_dofs.add_line(l, beyond);
+        }
+        for (unsigned int end = 0; end < 2; ++end)
+        {
+          const unsigned int v = GeometryInfo<2>::face_to_cell_vertices(line, end);
+          if (sheet.hanging_nodes().is_constrained(dofs.name(v)))
+            continue;
+          Dofs &message = messages[owner[cell->vertex_index(v)]];
+          message.push_back(dofs.name(v));
+          message.push_back(beyond.size());
+          message.insert(message.end(), beyond.begin(), beyond.end());
         }
       }
   }
-
-  first_dof_.assign(1, 0);
-  std::size_t n_entries = 0;
-  for (std::vector<unsigned int> &patch : dofs_of)
-    if (!patch.empty())
+  for (const auto &received : Utilities::MPI::some_to_some(sheet.communicator(), messages))
+    for (auto at = received.second.begin(); at != received.second.end();)
     {
-      std::sort(patch.begin(), patch.end());
-      patch.erase(std::unique(patch.begin(), patch.end()), patch.end());
-      dofs_.insert(dofs_.end(), patch.begin(), patch.end());
-      first_dof_.push_back(dofs_.size());
-      n_entries += packed_size(patch.size());
+      Dofs &patch = patch_of[vertex_of.at(*at++)];
+      const auto n = static_cast<std::ptrdiff_t>(*at++);
+      patch.insert(patch.end(), at, at + n);
+      at += n;
     }
+
+  patch_of.erase(std::remove_if(patch_of.begin(), patch_of.end(), [](const Dofs &patch) { return patch.empty(); }),
+                 patch_of.end());
+  for (Dofs &patch : patch_of)
+    make_unique(patch);
+  return patch_of;
+}
+} // namespace
+
+VertexPatches::VertexPatches(const Sheet &sheet, const AffineConstraints<double> &constraints)
+{
+  const std::vector<Dofs> patches = list_patches(sheet, constraints);
+
+  Dofs foreign;
+  for (const Dofs &patch : patches)
+    for (const types::global_dof_index dof : patch)
+      if (!sheet.owned().is_element(dof))
+        foreign.push_back(dof);
+  make_unique(foreign);
+  IndexSet ghosts = sheet.relevant();
+  ghosts.add_indices(foreign.begin(), foreign.end());
+  layout_ = std::make_shared<const Layout>(sheet.owned(), ghosts, sheet.communicator());
+  const std::vector<int> rows(foreign.begin(), foreign.end());
+  ghost_rows_ = std::make_unique<Epetra_Map>(-1, static_cast<int>(rows.size()), rows.data(), 0,
+                                             Epetra_MpiComm(sheet.communicator()));
+
+  std::size_t n_dofs = 0;
+  std::size_t n_entries = 0;
+  for (const Dofs &patch : patches)
+  {
+    n_dofs += patch.size();
+    n_entries += packed_size(patch.size());
+  }
+  dofs_.reserve(n_dofs);
+  first_dof_.assign(1, 0);
+  for (const Dofs &patch : patches)
+  {
+    for (const types::global_dof_index dof : patch)
+      dofs_.push_back(layout_->global_to_local(dof));
+    first_dof_.push_back(dofs_.size());
+  }
   inverses_.resize(n_entries);
 }
+
+VertexPatches::~VertexPatches() = default;
 
 void VertexPatches::factorise(const Sheet::Matrix &K)
 {

@@ -13,22 +13,24 @@ class Epetra_Map;
 namespace continuum
 {
 /// Additive Schwarz over the stars of the vertices of a mesh: z = sum over patches p of R_p^T (R_p K R_p^T)^{-1} R_p r,
-/// where R_p picks the free degrees of freedom on a vertex, on the lines that end there and inside the cells around it,
-/// both components. At a hanging vertex the larger cell, whose side it halves, counts among the cells around it, and
-/// that side among the lines. Every free degree of freedom is in at least one patch.
+/// where R_p picks the free degrees of freedom, both components, whose shape functions vanish outside the star of a
+/// vertex: on the vertex, on the lines that end there and inside the cells around it.
+///
+/// Around hanging nodes, too, the star is the support of the continuous bilinear hat function of the vertex: if one of
+/// the lines is the side of a larger cell and halved on the other side, then both of the smaller cells there belong to
+/// the star, with the line between them. Hanging vertices have no hat function and no patch. Thus every free degree of
+/// freedom is in a patch, and the largest eigenvalue is the same as on uniform meshes.
 ///
 /// The operator is symmetric positive definite on vectors that vanish at constrained degrees of freedom, and the same
-/// for every partition of the mesh, rounding apart. Every vector must have the layout of `layout`.
+/// for every partition of the mesh, rounding apart. Every vector must have the layout of layout().
 class VertexPatches : public dealii::Subscriptor
 {
 public:
   using Vector = dealii::LinearAlgebra::distributed::Vector<double>;
   using Layout = dealii::Utilities::MPI::Partitioner;
 
-  /// Lists the patches. `constraints` tells which degrees of freedom are free. `layout` holds the owned degrees of
-  /// freedom of the sheet and, as ghosts, the other relevant ones. Collective.
-  VertexPatches(const Sheet &sheet, const dealii::AffineConstraints<double> &constraints,
-                std::shared_ptr<const Layout> layout);
+  /// Lists the patches. `constraints` tells which of the relevant degrees of freedom are free. Collective.
+  VertexPatches(const Sheet &sheet, const dealii::AffineConstraints<double> &constraints);
   ~VertexPatches();
 
   /// Inverts the blocks of the condensed tangent K [N/m^2]. A block that is not safely positive definite (the tangent
@@ -42,9 +44,10 @@ public:
   /// Blocks on all ranks that were replaced by their row sums in the last factorisation. Collective.
   unsigned int n_replaced() const;
 
-private:
-  void list_patches(const Sheet &sheet, const dealii::AffineConstraints<double> &constraints);
+  /// The owned degrees of freedom of the sheet and, as ghosts, the relevant ones and those of own patches.
+  const std::shared_ptr<const Layout> &layout() const { return layout_; }
 
+private:
   std::shared_ptr<const Layout> layout_;
   std::vector<unsigned int> dofs_;         // of all patches, one after the other, as positions in the layout
   std::vector<std::size_t> first_dof_;     // of each patch in dofs_, and the end

@@ -29,8 +29,8 @@ public:
 
   void make_matrix(const Sheet &sheet, const AffineConstraints<double> &constraints, Sheet::Matrix &K) const
   {
-    dealii::TrilinosWrappers::SparsityPattern pattern(sheet.owned(), sheet.owned(), sheet.relevant(),
-                                                      sheet.communicator());
+    dealii::TrilinosWrappers::SparsityPattern pattern(
+      sheet.owned(), sheet.owned(), continuum::writable_rows(sheet, constraints), sheet.communicator());
     const auto rank = dealii::Utilities::MPI::this_mpi_process(sheet.communicator());
     if (square_ > 0.)
       dealii::DoFTools::make_flux_sparsity_pattern(sheet.dof_handler(), pattern, constraints, false, rank);
@@ -169,7 +169,7 @@ inline Multigrid::SheetFactory same_sheets(const continuum::Material &law, const
   return [&law, degree](const Mesh &mesh) { return std::make_unique<Sheet>(mesh, law, degree); };
 }
 
-inline Multigrid::HeldBoundaries all_held()
+inline continuum::HeldBoundaries all_held()
 {
   return {{continuum::edge::left, {}},
           {continuum::edge::right, {}},
