@@ -1,8 +1,15 @@
 #include "continuum/homogeneous_constraints.h"
 
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/partitioner.h>
 #include <deal.II/dofs/dof_tools.h>
 
+#include <boost/serialization/utility.hpp>
+
 #include <algorithm>
+#include <map>
+#include <utility>
+#include <vector>
 
 using namespace dealii;
 
@@ -10,33 +17,47 @@ namespace continuum
 {
 AffineConstraints<double> homogeneous_constraints(const Sheet &sheet, const HeldBoundaries &held)
 {
-  AffineConstraints<double> own(sheet.relevant());
-  own.merge(sheet.hanging_nodes());
+  AffineConstraints<double> known(sheet.relevant());
+  known.merge(sheet.hanging_nodes());
   for (const auto &[boundary, components] : held)
-    DoFTools::make_zero_boundary_constraints(sheet.dof_handler(), boundary, own, components);
-  own.close();
+    DoFTools::make_zero_boundary_constraints(sheet.dof_handler(), boundary, known, components);
+  known.close(); // before they travel: the receiver may know nothing of the degrees of freedom in between
 
-  // Resolved before they travel: the receiver may know nothing of the degrees of freedom in between.
-  AffineConstraints<double> constraints(sheet.relevant());
-  for (const auto &line : own.get_lines())
-  {
-    constraints.add_line(line.index);
-    constraints.add_entries(line.index, line.entries);
-  }
-  constraints.make_consistent_in_parallel(sheet.owned(), sheet.relevant(), sheet.communicator());
-  constraints.close();
-  return constraints;
-}
+  // Each owner tells its constraints to the ranks to which they are relevant.
+  using Line = std::pair<types::global_dof_index, std::vector<std::pair<types::global_dof_index, double>>>;
+  const Utilities::MPI::Partitioner layout(sheet.owned(), sheet.relevant(), sheet.communicator());
+  std::vector<Line> lines;
+  for (const auto &line : known.get_lines())
+    if (layout.in_local_range(line.index))
+      lines.emplace_back(line.index, line.entries);
 
-IndexSet writable_rows(const Sheet &sheet, const AffineConstraints<double> &constraints)
-{
+  std::vector<types::global_dof_index> wanted; // by the first rank, then by the next
+  for (const auto &[begin, end] : layout.import_indices())
+    for (unsigned int i = begin; i < end; ++i)
+      wanted.push_back(layout.local_to_global(i));
+  std::map<unsigned int, std::vector<Line>> messages;
+  auto next = wanted.begin();
+  for (const auto &[rank, n_wanted] : layout.import_targets())
+    for (const auto end = next + n_wanted; next != end; ++next)
+      if (known.is_constrained(*next))
+        messages[rank].emplace_back(*next, *known.get_constraint_entries(*next));
+  for (const auto &received : Utilities::MPI::some_to_some(sheet.communicator(), messages))
+    lines.insert(lines.end(), received.second.begin(), received.second.end());
+
   std::vector<types::global_dof_index> masters;
-  for (const auto &line : constraints.get_lines())
-    for (const auto &entry : line.entries)
+  for (const Line &line : lines)
+    for (const auto &entry : line.second)
       masters.push_back(entry.first);
   std::sort(masters.begin(), masters.end());
-  IndexSet rows = sheet.relevant();
-  rows.add_indices(masters.begin(), std::unique(masters.begin(), masters.end()));
-  return rows;
+  IndexSet storable = sheet.relevant();
+  storable.add_indices(masters.begin(), std::unique(masters.begin(), masters.end()));
+  AffineConstraints<double> constraints(storable);
+  for (const Line &line : lines)
+  {
+    constraints.add_line(line.first);
+    constraints.add_entries(line.first, line.second);
+  }
+  constraints.close();
+  return constraints;
 }
 } // namespace continuum

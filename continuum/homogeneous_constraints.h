@@ -13,11 +13,8 @@ using HeldBoundaries = std::map<dealii::types::boundary_id, dealii::ComponentMas
 
 /// Hanging nodes of a sheet, and the components that are `held` at its boundaries at zero, chains resolved and closed.
 /// Known for every relevant degree of freedom as its owner knows it: what a rank finds out by itself is short of
-/// constraints on the far side of its ghost cells, which operators with face terms couple to. A degree of freedom that
-/// is relevant may thus hang on one that is not; see writable_rows. Collective.
+/// constraints on the far side of its ghost cells, which operators with face terms couple to. A relevant degree of
+/// freedom may thus hang on one that is not: a matrix that is condensed needs to be writable, on each rank, in all rows
+/// of get_local_lines(). Collective.
 dealii::AffineConstraints<double> homogeneous_constraints(const Sheet &sheet, const HeldBoundaries &held);
-
-/// Rows of a matrix that this rank may have to add to when it condenses by `constraints`: the relevant ones and those
-/// they hang on.
-dealii::IndexSet writable_rows(const Sheet &sheet, const dealii::AffineConstraints<double> &constraints);
 } // namespace continuum

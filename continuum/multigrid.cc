@@ -8,6 +8,7 @@
 #include <deal.II/lac/trilinos_solver.h>
 #include <deal.II/multigrid/mg_transfer_global_coarsening.h>
 
+#include <Amesos.h>
 #include <Eigen/Dense>
 
 #include <algorithm>
@@ -40,7 +41,6 @@ struct Multigrid::Level
   mutable Vector coarse_correction;
 };
 
-/// KLU and not MUMPS: it is small, and KLU's rounding does not depend on the order in which messages arrive.
 struct Multigrid::Coarsest
 {
   SolverControl control{1, 0.};
@@ -49,6 +49,13 @@ struct Multigrid::Coarsest
 
 namespace
 {
+// KLU where that is fast enough: it works on one rank, so that its rounding depends on no order of messages.
+std::string coarsest_solver_name(const types::global_dof_index n_unknowns)
+{
+  constexpr types::global_dof_index fast_enough = 10000;
+  return n_unknowns > fast_enough && Amesos().Query("Amesos_Mumps") ? "Amesos_Mumps" : "Amesos_Klu";
+}
+
 // Waves in all directions, short and long against the cells, so that no eigenvector is missed; a function of place, so
 // that the partition of the mesh does not matter.
 void fill_start(const Sheet &sheet, const AffineConstraints<double> &constraints, Multigrid::Vector &start)
@@ -77,7 +84,8 @@ void fill_start(const Sheet &sheet, const AffineConstraints<double> &constraints
 }
 
 // Estimate of the largest eigenvalue of B A from below, by `n_steps` steps of the Lanczos process that conjugate
-// gradients imply, from B `start`; for a tangent that is not positive definite, from the steps until that shows.
+// gradients imply, from B `start`. Where A shows not to be positive definite there is no such process, and the bound
+// for positive cell energies stands in.
 double largest_eigenvalue(const Sheet::Matrix &A, const VertexPatches &B, const Multigrid::Vector &start,
                           const unsigned int n_steps)
 {
@@ -91,11 +99,13 @@ double largest_eigenvalue(const Sheet::Matrix &A, const VertexPatches &B, const 
   double rz = r * z;
   const double rz_start = rz;
   double from_last_step = 0.;
+  bool is_definite = true;
   for (unsigned int step = 0; step < n_steps && rz > 1e-20 * rz_start; ++step)
   {
     A.vmult(Ap, p);
     const double curvature = p * Ap;
-    if (!(curvature > 0.))
+    is_definite = curvature > 0.;
+    if (!is_definite)
       break;
     const double alpha = rz / curvature;
     diagonal.push_back(1. / alpha + from_last_step);
@@ -110,8 +120,8 @@ double largest_eigenvalue(const Sheet::Matrix &A, const VertexPatches &B, const 
     p.sadd(beta, 1., z);
     rz = rz_next;
   }
-  constexpr double patches_over_one_place = 4.; // bounds the eigenvalues of a sum of cell energies
-  if (diagonal.empty())
+  constexpr double patches_over_one_place = 4.;
+  if (!is_definite || diagonal.empty())
     return patches_over_one_place;
   const Eigen::Index n = diagonal.size();
   off_diagonal.resize(n);
@@ -245,7 +255,8 @@ void Multigrid::update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix,
   try
   {
     coarsest_->solver = std::make_unique<TrilinosWrappers::SolverDirect>(
-      coarsest_->control, TrilinosWrappers::SolverDirect::AdditionalData(false, "Amesos_Klu"));
+      coarsest_->control, TrilinosWrappers::SolverDirect::AdditionalData(
+                            false, coarsest_solver_name(levels_.front()->sheet->dof_handler().n_dofs())));
     coarsest_->solver->initialize(*levels_.front()->matrix);
   }
   catch (const ExceptionBase &failure)

@@ -16,7 +16,7 @@ struct MultigridSettings
 {
   unsigned int smoothing_degree = 2; ///< of the Chebyshev polynomial, before and after the coarse correction, >= 1
   double smoothing_range = 6.;       ///< largest eigenvalue over the smallest that is smoothed [-], > 1
-  unsigned int eigenvalue_iterations = 12; ///< of the Lanczos process that estimates the largest eigenvalue, >= 2
+  unsigned int eigenvalue_iterations = 10; ///< of the Lanczos process that estimates the largest eigenvalue, >= 2
   /// Number of unknowns below which a level is coarse enough to be solved directly. A mesh that cannot be coarsened
   /// further is solved directly whatever its size.
   dealii::types::global_dof_index coarsest_size = 2000;
@@ -29,7 +29,9 @@ struct MultigridSettings
 /// solved directly.
 ///
 /// The cycle is symmetric, and positive definite as long as the tangents are. Vectors vanish at constrained degrees of
-/// freedom: those at hanging nodes, and the held ones. Repeated runs on the same ranks give the same bits.
+/// freedom: those at hanging nodes, and the held ones. Repeated runs on the same ranks give the same bits, as long as
+/// the coarsest level has at most 10000 unknowns; beyond, it is left to MUMPS, whose rounding on several ranks depends
+/// on the order in which messages arrive.
 ///
 /// All functions are collective, and every exception reaches every rank.
 class Multigrid

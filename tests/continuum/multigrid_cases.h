@@ -29,8 +29,8 @@ public:
 
   void make_matrix(const Sheet &sheet, const AffineConstraints<double> &constraints, Sheet::Matrix &K) const
   {
-    dealii::TrilinosWrappers::SparsityPattern pattern(
-      sheet.owned(), sheet.owned(), continuum::writable_rows(sheet, constraints), sheet.communicator());
+    dealii::TrilinosWrappers::SparsityPattern pattern(sheet.owned(), sheet.owned(), constraints.get_local_lines(),
+                                                      sheet.communicator());
     const auto rank = dealii::Utilities::MPI::this_mpi_process(sheet.communicator());
     if (square_ > 0.)
       dealii::DoFTools::make_flux_sparsity_pattern(sheet.dof_handler(), pattern, constraints, false, rank);

@@ -92,19 +92,19 @@ TEST(Multigrid, IsSymmetricAndPositive)
 
 TEST(Multigrid, NeedsFewIterationsForTheLocalLaw)
 {
-  // Measured: 7 on every mesh, from 10^3 to 2 10^5 unknowns.
+  // Measured: 6 on every mesh, from 10^3 to 4 10^5 unknowns.
   for (const unsigned int degree : {2u, 3u})
     for (const unsigned int halvings : {2u, 3u, 4u})
       for (const unsigned int times : {0u, 2u})
-        EXPECT_LE(LinearProblem(0., degree, halvings, times).iterations(), 8u)
+        EXPECT_LE(LinearProblem(0., degree, halvings, times).iterations(), 7u)
           << "degree " << degree << ", " << halvings << " halvings, refined " << times << " times";
 }
 
 TEST(Multigrid, NeedsAboutAsManyIterationsOnEveryMeshForTheFourthOrderForm)
 {
-  // Measured, with internal lengths of 0.01 and 0.1: up to 18 and 25 with degree 2, 10 and 12 with degree 3.
+  // Measured here, with internal lengths of 0.01 and 0.1: up to 15 and 21 with degree 2, 9 and 11 with degree 3.
   const auto limit = [](const unsigned int degree, const double relative_length)
-  { return degree == 3 ? (relative_length > 0.05 ? 13u : 11u) : (relative_length > 0.05 ? 26u : 20u); };
+  { return degree == 3 ? (relative_length > 0.05 ? 12u : 10u) : (relative_length > 0.05 ? 23u : 17u); };
   for (const double relative_length : {0.01, 0.1})
     for (const unsigned int degree : {2u, 3u})
     {
@@ -117,6 +117,61 @@ TEST(Multigrid, NeedsAboutAsManyIterationsOnEveryMeshForTheFourthOrderForm)
                   limit(degree, relative_length))
           << "degree " << degree << ", refined " << times << " times, internal length " << relative_length;
     }
+}
+
+TEST(Multigrid, SmoothsAroundHangingNodesAsElsewhere)
+{
+  // The largest eigenvalue of patches times tangent. Measured: 5.7 on uniform and adaptive meshes.
+  const LinearProblem problem(0.1 * length, 3, 2, 4);
+  const auto levels = problem.multigrid->levels();
+  for (std::size_t level = 1; level < levels.size(); ++level)
+  {
+    EXPECT_GT(levels[level].largest_eigenvalue, 1.);
+    EXPECT_LT(levels[level].largest_eigenvalue, 6.);
+    EXPECT_EQ(levels[level].n_replaced_patches, 0u);
+  }
+}
+
+TEST(Multigrid, HasAPatchForEveryFreeDegreeOfFreedom)
+{
+  const continuum::MooneyRivlin law = rubber_sheet();
+  for (const unsigned int degree : {1u, 2u, 3u})
+  {
+    // Cells refined at random: levels that meet in every way that the mesh allows.
+    Mesh mesh(MPI_COMM_SELF);
+    continuum::make_rectangle(mesh, rectangle(6, 4));
+    std::mt19937 generator(degree);
+    for (unsigned int n = 0; n < 4; ++n)
+    {
+      for (const auto &cell : mesh.active_cell_iterators())
+        if (generator() % 3 == 0)
+          cell->set_refine_flag();
+      mesh.execute_coarsening_and_refinement();
+    }
+    const Sheet sheet(mesh, law, degree);
+    const auto constraints = continuum::homogeneous_constraints(
+      sheet, {{continuum::edge::left, dealii::ComponentMask(std::vector<bool>{true, false})}});
+    Sheet::Matrix identity;
+    GradientForm(0.).make_matrix(sheet, constraints, identity);
+    for (const auto i : sheet.owned())
+      identity.set(i, i, 1.);
+    identity.compress(dealii::VectorOperation::insert);
+
+    // Counts the patches.
+    continuum::VertexPatches patches(sheet, constraints);
+    patches.factorise(identity);
+    Multigrid::Vector ones(patches.layout());
+    Multigrid::Vector counts(patches.layout());
+    ones = 1.;
+    patches.vmult(counts, ones);
+    for (const auto i : sheet.owned())
+    {
+      if (constraints.is_constrained(i))
+        EXPECT_EQ(counts(i), 0.);
+      else
+        EXPECT_GE(counts(i), 1.);
+    }
+  }
 }
 
 TEST(Multigrid, SolvesToTheAnswerOfADirectSolver)
@@ -289,7 +344,7 @@ TEST(Multigrid, SolvesForTheTangentOfAStretchedSheet)
     Sheet::Vector x = sheet.make_owned();
     Sheet::Vector b = sheet.make_owned();
     body_force(sheet, multigrid.constraints(), b);
-    EXPECT_LE(solve(multigrid, K, x, b), 10u);
+    EXPECT_LE(solve(multigrid, K, x, b), 8u) << "degree " << degree;
     for (const auto &level : multigrid.levels())
       EXPECT_EQ(level.n_replaced_patches, 0u);
   }
