@@ -2,6 +2,7 @@
 
 #include "continuum/collective.h"
 #include "continuum/errors.h"
+#include "continuum/homogeneous_constraints.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
@@ -113,12 +114,12 @@ void Sheet::distribute()
   dof_handler_.distribute_dofs(element_);
   owned_ = dof_handler_.locally_owned_dofs();
   DoFTools::extract_locally_relevant_dofs(dof_handler_, relevant_);
-  continuity_.clear();
-  continuity_.reinit(relevant_);
-  DoFTools::make_hanging_node_constraints(dof_handler_, continuity_);
+  AffineConstraints<double> known(relevant_);
+  DoFTools::make_hanging_node_constraints(dof_handler_, known);
   for (const PeriodicPair &pair : conditions_.periodic)
-    DoFTools::make_periodicity_constraints(dof_handler_, pair.first, pair.second, pair.direction, continuity_);
-  continuity_.close();
+    DoFTools::make_periodicity_constraints(dof_handler_, pair.first, pair.second, pair.direction, known);
+  known.close();
+  continuity_.copy_from(shared_constraints(known, owned_, relevant_, communicator()));
 }
 
 double Sheet::penalty(const double extent) const

@@ -104,7 +104,7 @@ public:
   const dealii::FESystem<2> &element() const { return element_; }
   const dealii::DoFHandler<2> &dof_handler() const { return dof_handler_; }
   const dealii::MappingQ<2> &mapping() const { return mapping_; }
-  /// What makes the displacement one field: hanging nodes and periodic edges. Homogeneous.
+  /// What makes the displacement one field: hanging nodes and periodic edges (see shared_constraints).
   const dealii::AffineConstraints<double> &continuity() const { return continuity_; }
   /// Whether there are face terms: a gradient law that is not zero.
   bool has_gradient() const { return normal_stiffness_ > 0.; }

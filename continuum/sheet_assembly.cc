@@ -717,7 +717,7 @@ void Sheet::mass(const double density, const double inertia_length, const Affine
 
 void Sheet::make_matrix(const AffineConstraints<double> &constraints, Matrix &matrix) const
 {
-  TrilinosWrappers::SparsityPattern pattern(owned_, owned_, relevant_, communicator());
+  TrilinosWrappers::SparsityPattern pattern(owned_, owned_, constraints.get_local_lines(), communicator());
   const types::subdomain_id own = Utilities::MPI::this_mpi_process(communicator());
   if (has_gradient())
     DoFTools::make_flux_sparsity_pattern(dof_handler_, pattern, constraints, false, own);

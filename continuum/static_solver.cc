@@ -55,7 +55,7 @@ void StaticSolver::check_input() const
 void StaticSolver::set_up()
 {
   AffineConstraints<double> given(sheet_.relevant());
-  given.merge(sheet_.continuity());
+  given.merge(sheet_.continuity(), AffineConstraints<double>::no_conflicts_allowed, true);
   collectively(sheet_.communicator(),
                [&]
                {
@@ -73,16 +73,12 @@ void StaticSolver::set_up()
   full_lift_ = sheet_.make_ghosted();
   full_lift_ = lift;
 
-  homogeneous_.copy_from(given);
-  for (const types::global_dof_index i : sheet_.relevant())
-    if (homogeneous_.is_constrained(i))
-      homogeneous_.set_inhomogeneity(i, 0.);
-  homogeneous_.close();
+  homogeneous_.copy_from(homogeneous_constraints(sheet_, held()));
 
   loads_ = sheet_.loads();
   displacement_ = sheet_.make_ghosted();
   sheet_.make_matrix(homogeneous_, matrix_);
-  linear_solver_ = std::make_unique<LinearSolver>(sheet_, settings_.linear);
+  linear_solver_ = std::make_unique<LinearSolver>(sheet_, held(), settings_.linear);
 }
 
 double StaticSolver::potential(const Vector &u, const double load_factor) const
@@ -146,6 +142,10 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
       if (homogeneous_.is_constrained(i))
         rhs(i) = 0.;
     rhs.compress(VectorOperation::insert);
+    linear_solver_->update(
+      at, matrix_,
+      [target](const Sheet &level, const Vector &there, const AffineConstraints<double> &constraints, Sheet::Matrix &K)
+      { level.tangent(there, constraints, K, target); });
     const unsigned int iterations = linear_solver_->solve(matrix_, step, rhs);
     homogeneous_.distribute(step);
     return iterations;
@@ -304,9 +304,10 @@ double StaticSolver::total_energy() const
   return sheet_.energy(displacement_, load_factor_);
 }
 
-std::map<types::boundary_id, Tensor<1, 2>> StaticSolver::reactions() const
+// Components held at each boundary.
+HeldBoundaries StaticSolver::held() const
 {
-  std::map<types::boundary_id, ComponentMask> held;
+  HeldBoundaries held;
   for (const PrescribedDisplacement &condition : sheet_.conditions().displacements)
   {
     ComponentMask mask(2, false);
@@ -316,7 +317,12 @@ std::map<types::boundary_id, Tensor<1, 2>> StaticSolver::reactions() const
     if (!is_new)
       entry->second = entry->second | mask;
   }
-  return boundary_reactions(sheet_, displacement_, load_factor_, held);
+  return held;
+}
+
+std::map<types::boundary_id, Tensor<1, 2>> StaticSolver::reactions() const
+{
+  return boundary_reactions(sheet_, displacement_, load_factor_, held());
 }
 
 DeterminantRange StaticSolver::determinant_range() const

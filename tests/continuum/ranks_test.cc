@@ -3,6 +3,7 @@
 #include "continuum/collective.h"
 #include "continuum/errors.h"
 #include "continuum/field_writer.h"
+#include "multigrid_cases.h"
 #include "sheets.h"
 
 #include <deal.II/base/mpi.h>
@@ -65,6 +66,45 @@ void expect_same(const dealii::types::global_dof_index direct_limit)
   }
 }
 
+struct LinearAnswer
+{
+  unsigned int iterations;
+  std::vector<continuum::PointState> states;
+  std::vector<continuum::Multigrid::LevelFacts> levels;
+};
+
+// The fourth-order form on an adaptive mesh, by conjugate gradients with multigrid.
+LinearAnswer linear_answer(const MPI_Comm communicator, const unsigned int degree)
+{
+  const continuum::MooneyRivlin law = rubber_sheet();
+  Mesh mesh(communicator);
+  continuum::make_rectangle(mesh, rectangle(6, 4));
+  multigrid_cases::refine_towards(mesh, Point<2>(0.4 * length, 0.003), 3, length / 3.);
+  const continuum::Sheet sheet(mesh, law, degree);
+  const multigrid_cases::GradientForm form(0.03 * length);
+  continuum::MultigridSettings settings;
+  settings.coarsest_size = 100;
+  continuum::Multigrid multigrid(sheet, multigrid_cases::same_sheets(law, degree), form.matrix_factory(),
+                                 multigrid_cases::all_held(), settings);
+  continuum::Sheet::Matrix K;
+  form.make_matrix(sheet, multigrid.constraints(), K);
+  form.assemble(sheet, multigrid.constraints(), K);
+  multigrid.update(sheet.make_ghosted(), K, form.assembler());
+  continuum::Sheet::Vector b = sheet.make_owned();
+  continuum::Sheet::Vector x = sheet.make_owned();
+  multigrid_cases::body_force(sheet, multigrid.constraints(), b);
+  LinearAnswer answer;
+  answer.iterations = multigrid_cases::solve(multigrid, K, x, b, 1e-12);
+  multigrid.constraints().distribute(x);
+  // Scaled to be a displacement that the law takes.
+  x *= 1e-3 * length / x.linfty_norm();
+  continuum::Sheet::Vector u = sheet.make_ghosted();
+  u = x;
+  answer.states = sheet.evaluate(u, scattered_points(7, 5));
+  answer.levels = multigrid.levels();
+  return answer;
+}
+
 unsigned int rank()
 {
   return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
@@ -88,6 +128,22 @@ TEST(Ranks, GiveTheSameAnswerWithTheDirectSolver)
 TEST(Ranks, GiveTheSameAnswerWithConjugateGradients)
 {
   expect_same(0);
+}
+
+TEST(Ranks, NeedTheSameMultigridIterationsForTheSameAnswer)
+{
+  for (const unsigned int degree : {2u, 3u})
+  {
+    const LinearAnswer alone = linear_answer(MPI_COMM_SELF, degree);
+    const LinearAnswer together = linear_answer(MPI_COMM_WORLD, degree);
+    EXPECT_NEAR(together.iterations, alone.iterations, 1.);
+    for (std::size_t p = 0; p < alone.states.size(); ++p)
+      EXPECT_NEAR((together.states[p].displacement - alone.states[p].displacement).norm(), 0., 1e-10 * 1e-3 * length);
+    ASSERT_EQ(together.levels.size(), alone.levels.size());
+    ASSERT_GE(alone.levels.size(), 4u);
+    for (std::size_t level = 0; level < alone.levels.size(); ++level)
+      EXPECT_NEAR(together.levels[level].largest_eigenvalue, alone.levels[level].largest_eigenvalue, 1e-6);
+  }
 }
 
 TEST(Ranks, SolveSheetsSmallerThanTheirNumber)

@@ -1,0 +1,319 @@
+#include "continuum/multigrid.h"
+
+#include "continuum/errors.h"
+#include "continuum/vertex_patches.h"
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/lac/precondition.h>
+#include <deal.II/lac/trilinos_solver.h>
+#include <deal.II/multigrid/mg_transfer_global_coarsening.h>
+
+#include <Amesos.h>
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+using namespace dealii;
+
+namespace continuum
+{
+struct Multigrid::Level
+{
+  using Smoother = PreconditionChebyshev<Sheet::Matrix, Vector, VertexPatches>;
+
+  std::shared_ptr<const Triangulation<2>> mesh; // empty on the finest level, as are own_sheet and own_matrix
+  std::unique_ptr<Sheet> own_sheet;
+  const Sheet *sheet = nullptr;
+  AffineConstraints<double> constraints;
+  std::shared_ptr<const Utilities::MPI::Partitioner> layout;
+  Sheet::Matrix own_matrix;
+  const Sheet::Matrix *matrix = nullptr;
+  MGTwoLevelTransfer<2, Vector> to_coarser; // from here and on, unused on the coarsest level
+  std::shared_ptr<VertexPatches> patches;
+  Smoother smoother;
+  Vector start; // of the eigenvalue estimate
+  double largest_eigenvalue = 0.;
+  double state_factor = 1.;
+  mutable Vector residual;
+  mutable Vector coarse_residual; // two vectors of the next coarser level
+  mutable Vector coarse_correction;
+};
+
+struct Multigrid::Coarsest
+{
+  SolverControl control{1, 0.};
+  std::unique_ptr<TrilinosWrappers::SolverDirect> solver;
+};
+
+namespace
+{
+// KLU where that is fast enough: it works on one rank, so that its rounding depends on no order of messages.
+std::string coarsest_solver_name(const types::global_dof_index n_unknowns)
+{
+  constexpr types::global_dof_index fast_enough = 10000;
+  return n_unknowns > fast_enough && Amesos().Query("Amesos_Mumps") ? "Amesos_Mumps" : "Amesos_Klu";
+}
+
+// Waves in all directions, short and long against the cells, so that no eigenvector is missed; a function of place, so
+// that the partition of the mesh does not matter.
+void fill_start(const Sheet &sheet, const AffineConstraints<double> &constraints, Multigrid::Vector &start)
+{
+  double own_size = std::numeric_limits<double>::max();
+  for (const auto &cell : sheet.mesh().active_cell_iterators())
+    if (cell->is_locally_owned())
+      own_size = std::min(own_size, cell->diameter());
+  const double size = Utilities::MPI::min(own_size, sheet.communicator());
+
+  const auto &element = sheet.element();
+  std::vector<types::global_dof_index> dofs(element.n_dofs_per_cell());
+  for (const auto &cell : sheet.dof_handler().active_cell_iterators())
+    if (cell->is_locally_owned())
+    {
+      cell->get_dof_indices(dofs);
+      for (unsigned int a = 0; a < dofs.size(); ++a)
+        if (start.in_local_range(dofs[a]) && !constraints.is_constrained(dofs[a]))
+        {
+          const Point<2> X = sheet.mapping().transform_unit_to_real_cell(cell, element.unit_support_point(a)) / size;
+          const unsigned int i = element.system_to_component_index(a).first;
+          start(dofs[a]) = std::sin(11.3 * X[0] + 3.1 * i) * std::cos(9.7 * X[1]) + std::sin(4.9 * X[1] - 0.7 * i) +
+                           std::cos(5.3 * X[0] + 0.2 * X[1]);
+        }
+    }
+}
+
+// Estimate of the largest eigenvalue of B A from below, by `n_steps` steps of the Lanczos process that conjugate
+// gradients imply, from B `start`. Where A shows not to be positive definite there is no such process, and the bound
+// for positive cell energies stands in.
+double largest_eigenvalue(const Sheet::Matrix &A, const VertexPatches &B, const Multigrid::Vector &start,
+                          const unsigned int n_steps)
+{
+  std::vector<double> diagonal;
+  std::vector<double> off_diagonal;
+  Multigrid::Vector r = start;
+  Multigrid::Vector z(start.get_partitioner());
+  Multigrid::Vector Ap(start.get_partitioner());
+  B.vmult(z, r);
+  Multigrid::Vector p = z;
+  double rz = r * z;
+  const double rz_start = rz;
+  double from_last_step = 0.;
+  bool is_definite = true;
+  for (unsigned int step = 0; step < n_steps && rz > 1e-20 * rz_start; ++step)
+  {
+    A.vmult(Ap, p);
+    const double curvature = p * Ap;
+    is_definite = curvature > 0.;
+    if (!is_definite)
+      break;
+    const double alpha = rz / curvature;
+    diagonal.push_back(1. / alpha + from_last_step);
+    r.add(-alpha, Ap);
+    B.vmult(z, r);
+    const double rz_next = r * z;
+    const double beta = rz_next / rz;
+    if (!(beta > 0.))
+      break;
+    from_last_step = beta / alpha;
+    off_diagonal.push_back(std::sqrt(beta) / alpha);
+    p.sadd(beta, 1., z);
+    rz = rz_next;
+  }
+  constexpr double patches_over_one_place = 4.;
+  if (!is_definite || diagonal.empty())
+    return patches_over_one_place;
+  const Eigen::Index n = diagonal.size();
+  off_diagonal.resize(n);
+  Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigenvalues;
+  eigenvalues.computeFromTridiagonal(Eigen::Map<const Eigen::VectorXd>(diagonal.data(), n),
+                                     Eigen::Map<const Eigen::VectorXd>(off_diagonal.data(), n - 1),
+                                     Eigen::EigenvaluesOnly);
+  const double largest = eigenvalues.eigenvalues().maxCoeff();
+  return std::isfinite(largest) && largest > 0. ? largest : patches_over_one_place;
+}
+} // namespace
+
+Multigrid::Multigrid(const Sheet &fine, const SheetFactory &make_sheet, const MatrixFactory &make_matrix,
+                     const HeldBoundaries &held, const MultigridSettings &settings)
+  : settings_(settings), coarsest_(std::make_unique<Coarsest>())
+{
+  if (settings.smoothing_degree == 0)
+    throw InvalidInput("the smoother needs a degree of at least 1");
+  if (!(settings.smoothing_range > 1. && std::isfinite(settings.smoothing_range)))
+    throw InvalidInput("the smoothing range must be finite and greater than 1");
+  if (settings.eigenvalue_iterations < 2)
+    throw InvalidInput("the eigenvalue estimate needs at least 2 iterations");
+
+  // From the finest level down, as far as is of use.
+  const auto meshes = MGTransferGlobalCoarseningTools::create_geometric_coarsening_sequence(
+    static_cast<const Triangulation<2> &>(fine.mesh()));
+  for (std::size_t n = meshes.size(); n-- > 0;)
+  {
+    auto level = std::make_unique<Level>();
+    if (n + 1 == meshes.size())
+      level->sheet = &fine;
+    else
+    {
+      level->mesh = meshes[n];
+      level->own_sheet = make_sheet(dynamic_cast<const parallel::distributed::Triangulation<2> &>(*meshes[n]));
+      level->sheet = level->own_sheet.get();
+    }
+    const Sheet &sheet = *level->sheet;
+    level->constraints = homogeneous_constraints(sheet, held);
+    if (level->own_sheet)
+      make_matrix(sheet, level->constraints, level->own_matrix);
+    const bool is_coarsest = n == 0 || sheet.dof_handler().n_dofs() <= settings.coarsest_size;
+    if (is_coarsest)
+      level->layout =
+        std::make_shared<const Utilities::MPI::Partitioner>(sheet.owned(), sheet.relevant(), sheet.communicator());
+    else
+    {
+      level->patches = std::make_shared<VertexPatches>(sheet, level->constraints);
+      level->layout = level->patches->layout();
+    }
+    levels_.push_back(std::move(level));
+    if (is_coarsest)
+      break;
+  }
+  std::reverse(levels_.begin(), levels_.end());
+
+  for (std::size_t l = 1; l < levels_.size(); ++l)
+  {
+    Level &level = *levels_[l];
+    const Level &coarser = *levels_[l - 1];
+    level.to_coarser.reinit_geometric_transfer(level.sheet->dof_handler(), coarser.sheet->dof_handler(),
+                                               level.constraints, coarser.constraints);
+    level.to_coarser.enable_inplace_operations_if_possible(coarser.layout, level.layout);
+    level.start.reinit(level.layout);
+    fill_start(*level.sheet, level.constraints, level.start);
+    level.residual.reinit(level.layout);
+    level.coarse_residual.reinit(coarser.layout);
+    level.coarse_correction.reinit(coarser.layout);
+  }
+}
+
+Multigrid::~Multigrid() = default;
+
+void Multigrid::update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix, const Assembler &assemble)
+{
+  Vector state(levels_.back()->layout);
+  {
+    Sheet::Vector owned = levels_.back()->sheet->make_owned();
+    owned = u;
+    copy(owned, state);
+  }
+  for (std::size_t l = levels_.size(); l-- > 0;)
+  {
+    Level &level = *levels_[l];
+    if (l + 1 == levels_.size())
+      level.matrix = &fine_matrix;
+    else
+    {
+      Vector coarse_state(level.layout);
+      levels_[l + 1]->to_coarser.interpolate(coarse_state, state);
+      Sheet::Vector owned = level.sheet->make_owned();
+      copy(coarse_state, owned);
+      level.sheet->continuity().distribute(owned);
+      state.reinit(level.layout);
+      copy(owned, state);
+
+      Sheet::Vector ghosted = level.sheet->make_ghosted();
+      constexpr double smallest_factor = 0.1;
+      for (level.state_factor = 1.;; level.state_factor *= 0.5)
+      {
+        if (level.state_factor < smallest_factor)
+          level.state_factor = 0.;
+        ghosted = owned;
+        ghosted *= level.state_factor;
+        try
+        {
+          assemble(*level.sheet, ghosted, level.constraints, level.own_matrix);
+          break;
+        }
+        catch (const NonPhysicalState &)
+        {
+          if (level.state_factor == 0.)
+            throw;
+        }
+      }
+      level.matrix = &level.own_matrix;
+    }
+    if (l > 0)
+    {
+      level.patches->factorise(*level.matrix);
+      level.largest_eigenvalue =
+        largest_eigenvalue(*level.matrix, *level.patches, level.start, settings_.eigenvalue_iterations);
+      constexpr double safety = 1.1; // the estimate is from below
+      Level::Smoother::AdditionalData data(settings_.smoothing_degree, settings_.smoothing_range, 0, 0.,
+                                           safety * level.largest_eigenvalue);
+      data.preconditioner = level.patches;
+      level.smoother.initialize(*level.matrix, data);
+    }
+  }
+
+  try
+  {
+    coarsest_->solver = std::make_unique<TrilinosWrappers::SolverDirect>(
+      coarsest_->control, TrilinosWrappers::SolverDirect::AdditionalData(
+                            false, coarsest_solver_name(levels_.front()->sheet->dof_handler().n_dofs())));
+    coarsest_->solver->initialize(*levels_.front()->matrix);
+  }
+  catch (const ExceptionBase &failure)
+  {
+    throw LinearSolverFailed(std::string("the coarsest tangent could not be factorised: ") + failure.what());
+  }
+}
+
+void Multigrid::cycle(const unsigned int l, Vector &z, const Vector &r) const
+{
+  const Level &level = *levels_[l];
+  if (l == 0)
+  {
+    coarsest_->solver->solve(z, r);
+    return;
+  }
+  level.smoother.vmult(z, r);
+  level.matrix->vmult(level.residual, z);
+  level.residual.sadd(-1., 1., r);
+  level.coarse_residual = 0.;
+  level.to_coarser.restrict_and_add(level.coarse_residual, level.residual);
+  cycle(l - 1, level.coarse_correction, level.coarse_residual);
+  level.to_coarser.prolongate_and_add(z, level.coarse_correction);
+  level.smoother.step(z, r);
+}
+
+void Multigrid::vmult(Vector &z, const Vector &r) const
+{
+  cycle(levels_.size() - 1, z, r);
+}
+
+void Multigrid::initialize(Vector &v) const
+{
+  v.reinit(levels_.back()->layout);
+}
+
+void Multigrid::copy(const Sheet::Vector &from, Vector &to)
+{
+  std::copy(from.begin(), from.end(), to.begin());
+}
+
+void Multigrid::copy(const Vector &from, Sheet::Vector &to)
+{
+  std::copy(from.begin(), from.end(), to.begin());
+}
+
+const AffineConstraints<double> &Multigrid::constraints() const
+{
+  return levels_.back()->constraints;
+}
+
+std::vector<Multigrid::LevelFacts> Multigrid::levels() const
+{
+  std::vector<LevelFacts> facts;
+  for (const auto &level : levels_)
+    facts.push_back({level->sheet->dof_handler().n_dofs(), level->largest_eigenvalue, level->state_factor,
+                     level->patches ? level->patches->n_replaced() : 0});
+  return facts;
+}
+} // namespace continuum

@@ -1,0 +1,341 @@
+#include "continuum/vertex_patches.h"
+
+#include "continuum/collective.h"
+
+#include <deal.II/base/geometry_info.h>
+#include <deal.II/base/mpi.h>
+
+#include <Eigen/Dense>
+#include <Epetra_CrsMatrix.h>
+#include <Epetra_Import.h>
+#include <Epetra_Map.h>
+#include <Epetra_MpiComm.h>
+
+#include <algorithm>
+#include <cmath>
+#include <map>
+#include <stdexcept>
+#include <unordered_map>
+
+using namespace dealii;
+
+namespace continuum
+{
+namespace
+{
+constexpr unsigned int nowhere = numbers::invalid_unsigned_int;
+
+// Entries of a lower triangle of n rows.
+std::size_t packed_size(const std::size_t n)
+{
+  return n * (n + 1) / 2;
+}
+
+// Lower triangle of the inverse of `block`, column by column; false if the block had to be replaced.
+bool invert(Eigen::MatrixXd &block, Eigen::LLT<Eigen::MatrixXd> &cholesky, double *packed)
+{
+  // Of the pivot, relative to the diagonal entry it came from: below it, round-off decides about the sign.
+  constexpr double smallest_pivot = 1e-12;
+  const Eigen::Index n = block.rows();
+  bool is_safe = block.allFinite();
+  if (is_safe)
+  {
+    cholesky.compute(block);
+    is_safe = cholesky.info() == Eigen::Success;
+    for (Eigen::Index i = 0; is_safe && i < n; ++i)
+    {
+      const double pivot = cholesky.matrixLLT()(i, i);
+      is_safe = pivot * pivot > smallest_pivot * block(i, i);
+    }
+  }
+  if (is_safe)
+    block = cholesky.solve(Eigen::MatrixXd::Identity(n, n));
+  else
+  {
+    const Eigen::VectorXd row_sums = block.cwiseAbs().rowwise().sum();
+    block.setZero();
+    for (Eigen::Index i = 0; i < n; ++i)
+      block(i, i) = row_sums(i) > 0. && std::isfinite(row_sums(i)) ? 1. / row_sums(i) : 0.;
+  }
+  for (Eigen::Index j = 0; j < n; ++j)
+    for (Eigen::Index i = j; i < n; ++i)
+      *packed++ = block(i, j);
+  return is_safe;
+}
+
+// y += A x for a symmetric matrix of which `packed` is the lower triangle, column by column.
+void add_product(const double *packed, const unsigned int n, const double *x, double *y)
+{
+  using Segment = Eigen::Map<const Eigen::VectorXd>;
+  for (unsigned int j = 0; j < n; ++j)
+  {
+    const unsigned int below = n - j - 1;
+    const Segment column(packed + 1, below);
+    y[j] += packed[0] * x[j] + column.dot(Segment(x + j + 1, below));
+    Eigen::Map<Eigen::VectorXd>(y + j + 1, below) += column * x[j];
+    packed += below + 1;
+  }
+}
+
+using Dofs = std::vector<types::global_dof_index>;
+
+void make_unique(Dofs &dofs)
+{
+  std::sort(dofs.begin(), dofs.end());
+  dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
+}
+
+// Degrees of freedom of one cell by the vertex, line or interior they sit on; the free ones of them.
+class CellDofs
+{
+public:
+  CellDofs(const Sheet &sheet, const AffineConstraints<double> &constraints)
+    : element_(sheet.element()), constraints_(constraints), dofs_(element_.n_dofs_per_cell())
+  {
+  }
+  void reinit(const DoFHandler<2>::active_cell_iterator &cell) { cell->get_dof_indices(dofs_); }
+
+  // The first on a vertex, as a name of the vertex on all ranks.
+  types::global_dof_index name(const unsigned int vertex) const { return dofs_[vertex * element_.n_dofs_per_vertex()]; }
+
+  void add_vertex(const unsigned int vertex, Dofs &to) const
+  {
+    add(vertex * element_.n_dofs_per_vertex(), element_.n_dofs_per_vertex(), to);
+  }
+  void add_line(const unsigned int line, Dofs &to) const
+  {
+    add(element_.get_first_line_index() + line * element_.n_dofs_per_line(), element_.n_dofs_per_line(), to);
+  }
+  void add_interior(Dofs &to) const { add(element_.get_first_quad_index(), element_.n_dofs_per_quad(), to); }
+
+private:
+  void add(const unsigned int first, const unsigned int n, Dofs &to) const
+  {
+    for (unsigned int a = first; a < first + n; ++a)
+      if (!constraints_.is_constrained(dofs_[a]))
+        to.push_back(dofs_[a]);
+  }
+
+  const FESystem<2> &element_;
+  const AffineConstraints<double> &constraints_;
+  Dofs dofs_;
+};
+
+// Free degrees of freedom of the patches of this rank.
+std::vector<Dofs> list_patches(const Sheet &sheet, const AffineConstraints<double> &constraints)
+{
+  const auto &mesh = sheet.mesh();
+  const unsigned int own_rank = Utilities::MPI::this_mpi_process(sheet.communicator());
+  constexpr auto n_vertices = GeometryInfo<2>::vertices_per_cell;
+  constexpr auto n_lines = GeometryInfo<2>::lines_per_cell;
+
+  // A vertex belongs to the lowest rank that owns a cell with that vertex; each of these ranks sees all such cells.
+  std::vector<types::subdomain_id> owner(mesh.n_vertices(), numbers::invalid_subdomain_id);
+  for (const auto &cell : mesh.active_cell_iterators())
+    if (!cell->is_artificial())
+      for (unsigned int v = 0; v < n_vertices; ++v)
+        owner[cell->vertex_index(v)] = std::min(owner[cell->vertex_index(v)], cell->subdomain_id());
+
+  std::vector<Dofs> patch_of(mesh.n_vertices());
+  std::unordered_map<types::global_dof_index, unsigned int> vertex_of; // by name, for own vertices at halved lines
+  std::map<unsigned int, Dofs> messages;                               // by rank: name, number and list, over and over
+  CellDofs dofs(sheet, constraints);
+  CellDofs smaller_dofs(sheet, constraints);
+  Dofs beyond;
+  for (const auto &cell : sheet.dof_handler().active_cell_iterators())
+  {
+    if (cell->is_artificial())
+      continue;
+    dofs.reinit(cell);
+    for (unsigned int v = 0; v < n_vertices; ++v)
+      if (owner[cell->vertex_index(v)] == own_rank && !sheet.continuity().is_constrained(dofs.name(v)))
+      {
+        Dofs &patch = patch_of[cell->vertex_index(v)];
+        dofs.add_vertex(v, patch);
+        for (unsigned int line = 0; line < n_lines; ++line)
+          for (unsigned int end = 0; end < 2; ++end)
+            if (GeometryInfo<2>::face_to_cell_vertices(line, end) == v)
+              dofs.add_line(line, patch);
+        dofs.add_interior(patch);
+        vertex_of.emplace(dofs.name(v), cell->vertex_index(v));
+      }
+
+    // The owner of a vertex need not see the smaller cells beyond a halved line; that of the larger cell does.
+    if (!cell->is_locally_owned())
+      continue;
+    for (unsigned int line = 0; line < n_lines; ++line)
+      if (cell->face(line)->has_children())
+      {
+        const auto side = cell->face(line);
+        const unsigned int middle = side->child(0)->vertex_index(1);
+        beyond.clear();
+        for (unsigned int half = 0; half < 2; ++half)
+        {
+          const auto smaller = cell->neighbor_child_on_subface(line, half);
+          smaller_dofs.reinit(smaller);
+          smaller_dofs.add_interior(beyond);
+          for (unsigned int l = 0; l < n_lines; ++l)
+            if (smaller->face(l) != side->child(half) &&
+                (smaller->face(l)->vertex_index(0) == middle || smaller->face(l)->vertex_index(1) == middle))
+              smaller_dofs.add_line(l, beyond);
+        }
+        for (unsigned int end = 0; end < 2; ++end)
+        {
+          const unsigned int v = GeometryInfo<2>::face_to_cell_vertices(line, end);
+          if (sheet.continuity().is_constrained(dofs.name(v)))
+            continue;
+          Dofs &message = messages[owner[cell->vertex_index(v)]];
+          message.push_back(dofs.name(v));
+          message.push_back(beyond.size());
+          message.insert(message.end(), beyond.begin(), beyond.end());
+        }
+      }
+  }
+  for (const auto &received : Utilities::MPI::some_to_some(sheet.communicator(), messages))
+    for (auto at = received.second.begin(); at != received.second.end();)
+    {
+      Dofs &patch = patch_of[vertex_of.at(*at++)];
+      const auto n = static_cast<std::ptrdiff_t>(*at++);
+      patch.insert(patch.end(), at, at + n);
+      at += n;
+    }
+
+  patch_of.erase(std::remove_if(patch_of.begin(), patch_of.end(), [](const Dofs &patch) { return patch.empty(); }),
+                 patch_of.end());
+  for (Dofs &patch : patch_of)
+    make_unique(patch);
+  return patch_of;
+}
+} // namespace
+
+VertexPatches::VertexPatches(const Sheet &sheet, const AffineConstraints<double> &constraints)
+{
+  const std::vector<Dofs> patches = list_patches(sheet, constraints);
+
+  Dofs foreign;
+  for (const Dofs &patch : patches)
+    for (const types::global_dof_index dof : patch)
+      if (!sheet.owned().is_element(dof))
+        foreign.push_back(dof);
+  make_unique(foreign);
+  IndexSet ghosts = sheet.relevant();
+  ghosts.add_indices(foreign.begin(), foreign.end());
+  layout_ = std::make_shared<const Layout>(sheet.owned(), ghosts, sheet.communicator());
+  const std::vector<int> rows(foreign.begin(), foreign.end());
+  ghost_rows_ = std::make_unique<Epetra_Map>(-1, static_cast<int>(rows.size()), rows.data(), 0,
+                                             Epetra_MpiComm(sheet.communicator()));
+
+  std::size_t n_dofs = 0;
+  std::size_t n_entries = 0;
+  for (const Dofs &patch : patches)
+  {
+    n_dofs += patch.size();
+    n_entries += packed_size(patch.size());
+  }
+  dofs_.reserve(n_dofs);
+  first_dof_.assign(1, 0);
+  for (const Dofs &patch : patches)
+  {
+    for (const types::global_dof_index dof : patch)
+      dofs_.push_back(layout_->global_to_local(dof));
+    first_dof_.push_back(dofs_.size());
+  }
+  inverses_.resize(n_entries);
+}
+
+VertexPatches::~VertexPatches() = default;
+
+void VertexPatches::factorise(const Sheet::Matrix &K)
+{
+  const Epetra_CrsMatrix &own = K.trilinos_matrix();
+  Epetra_CrsMatrix ghosts(Copy, *ghost_rows_, 0);
+  if (ghosts.Import(own, Epetra_Import(*ghost_rows_, own.RowMap()), Insert) < 0)
+    throw std::runtime_error("rows of the tangent could not be exchanged");
+
+  own_replaced_ = 0;
+  const unsigned int n_owned = layout_->locally_owned_size();
+  const auto position_of = [&](const int column)
+  {
+    const auto index = static_cast<types::global_dof_index>(column);
+    return layout_->in_local_range(index) || layout_->is_ghost_entry(index) ? layout_->global_to_local(index) : nowhere;
+  };
+  collectively(layout_->get_mpi_communicator(),
+               [&]
+               {
+                 std::vector<unsigned int> own_columns(own.NumMyCols());
+                 for (int column = 0; column < own.NumMyCols(); ++column)
+                   own_columns[column] = position_of(own.GCID(column));
+
+                 std::vector<unsigned int> at(n_owned + layout_->n_ghost_indices(), nowhere); // in the present patch
+                 Eigen::MatrixXd block;
+                 Eigen::LLT<Eigen::MatrixXd> cholesky;
+                 double *inverse = inverses_.data();
+                 for (std::size_t p = 0; p + 1 < first_dof_.size(); ++p)
+                 {
+                   const unsigned int *dofs = &dofs_[first_dof_[p]];
+                   const unsigned int n = first_dof_[p + 1] - first_dof_[p];
+                   for (unsigned int i = 0; i < n; ++i)
+                     at[dofs[i]] = i;
+                   block.setZero(n, n);
+                   int n_entries = 0;
+                   double *values = nullptr;
+                   int *columns = nullptr;
+                   for (unsigned int i = 0; i < n; ++i)
+                   {
+                     const auto take = [&](const int k, const unsigned int position)
+                     {
+                       if (position != nowhere && at[position] != nowhere)
+                         block(at[position], i) = values[k];
+                     };
+                     if (dofs[i] < n_owned)
+                     {
+                       own.ExtractMyRowView(static_cast<int>(dofs[i]), n_entries, values, columns);
+                       for (int k = 0; k < n_entries; ++k)
+                         take(k, own_columns[columns[k]]);
+                     }
+                     else
+                     {
+                       ghosts.ExtractGlobalRowView(static_cast<int>(layout_->local_to_global(dofs[i])), n_entries,
+                                                   values, columns);
+                       for (int k = 0; k < n_entries; ++k)
+                         take(k, position_of(columns[k]));
+                     }
+                   }
+                   if (!invert(block, cholesky, inverse))
+                     ++own_replaced_;
+                   inverse += packed_size(n);
+                   for (unsigned int i = 0; i < n; ++i)
+                     at[dofs[i]] = nowhere;
+                 }
+               });
+}
+
+void VertexPatches::vmult(Vector &z, const Vector &r) const
+{
+  z = 0.;
+  r.update_ghost_values();
+  std::vector<double> patch_r;
+  std::vector<double> patch_z;
+  const double *inverse = inverses_.data();
+  for (std::size_t p = 0; p + 1 < first_dof_.size(); ++p)
+  {
+    const unsigned int *dofs = &dofs_[first_dof_[p]];
+    const unsigned int n = first_dof_[p + 1] - first_dof_[p];
+    patch_r.resize(n);
+    for (unsigned int i = 0; i < n; ++i)
+      patch_r[i] = r.local_element(dofs[i]);
+    patch_z.assign(n, 0.);
+    add_product(inverse, n, patch_r.data(), patch_z.data());
+    for (unsigned int i = 0; i < n; ++i)
+      z.local_element(dofs[i]) += patch_z[i];
+    inverse += packed_size(n);
+  }
+  r.zero_out_ghost_values();
+  z.compress(VectorOperation::add);
+}
+
+unsigned int VertexPatches::n_replaced() const
+{
+  return Utilities::MPI::sum(own_replaced_, layout_->get_mpi_communicator());
+}
+} // namespace continuum

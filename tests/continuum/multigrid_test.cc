@@ -1,0 +1,361 @@
+#include "continuum/errors.h"
+#include "continuum/vertex_patches.h"
+#include "multigrid_cases.h"
+
+#include <gtest/gtest.h>
+
+using namespace multigrid_cases;
+using continuum::MultigridSettings;
+
+namespace
+{
+// Small enough that every mesh here has levels.
+MultigridSettings many_levels()
+{
+  MultigridSettings settings;
+  settings.coarsest_size = 300;
+  return settings;
+}
+
+// A mesh of 3 x 2 cells, halved `halvings` times and then refined `times` times around a place inside.
+void make_mesh(Mesh &mesh, const unsigned int halvings, const unsigned int times)
+{
+  continuum::make_rectangle(mesh, rectangle(3u << halvings, 2u << halvings));
+  refine_towards(mesh, Point<2>(0.4 * length, 0.003), times, length / 3.);
+}
+
+struct LinearProblem
+{
+  LinearProblem(const double internal_length, const unsigned int degree, const unsigned int halvings,
+                const unsigned int times, const MultigridSettings &settings = many_levels())
+    : law(rubber_sheet()), mesh(MPI_COMM_SELF), form(internal_length)
+  {
+    make_mesh(mesh, halvings, times);
+    sheet = std::make_unique<Sheet>(mesh, law, degree);
+    multigrid =
+      std::make_unique<Multigrid>(*sheet, same_sheets(law, degree), form.matrix_factory(), all_held(), settings);
+    form.make_matrix(*sheet, multigrid->constraints(), K);
+    form.assemble(*sheet, multigrid->constraints(), K);
+    multigrid->update(sheet->make_ghosted(), K, form.assembler());
+  }
+
+  // Iterations to a residual of 1e-8.
+  unsigned int iterations() const
+  {
+    Sheet::Vector x = sheet->make_owned();
+    Sheet::Vector b = sheet->make_owned();
+    body_force(*sheet, multigrid->constraints(), b);
+    return solve(*multigrid, K, x, b);
+  }
+
+  // Random numbers at the free degrees of freedom.
+  Multigrid::Vector random(const unsigned int seed) const
+  {
+    std::mt19937 generator(seed);
+    std::uniform_real_distribution<double> number(-1., 1.);
+    Multigrid::Vector v;
+    multigrid->initialize(v);
+    for (const auto i : sheet->owned())
+      v(i) = multigrid->constraints().is_constrained(i) ? 0. : number(generator);
+    return v;
+  }
+
+  continuum::MooneyRivlin law;
+  Mesh mesh;
+  GradientForm form;
+  std::unique_ptr<Sheet> sheet;
+  Sheet::Matrix K;
+  std::unique_ptr<Multigrid> multigrid;
+};
+} // namespace
+
+TEST(Multigrid, IsSymmetricAndPositive)
+{
+  for (const unsigned int degree : {1u, 2u, 3u})
+    for (const double internal_length : {0., 0.1 * length})
+    {
+      if (degree == 1 && internal_length > 0.)
+        continue;
+      const LinearProblem problem(internal_length, degree, 3, 2);
+      ASSERT_GE(problem.multigrid->levels().size(), 3u);
+      const auto a = problem.random(1);
+      const auto b = problem.random(2);
+      auto Ba = a;
+      auto Bb = b;
+      problem.multigrid->vmult(Ba, a);
+      problem.multigrid->vmult(Bb, b);
+      EXPECT_NEAR(Ba * b, a * Bb, 1e-11 * Ba.l2_norm() * b.l2_norm());
+      EXPECT_GT(Ba * a, 0.);
+      EXPECT_GT(Bb * b, 0.);
+    }
+}
+
+TEST(Multigrid, NeedsFewIterationsForTheLocalLaw)
+{
+  // Measured: 6 on every mesh, from 10^3 to 4 10^5 unknowns.
+  for (const unsigned int degree : {2u, 3u})
+    for (const unsigned int halvings : {2u, 3u, 4u})
+      for (const unsigned int times : {0u, 2u})
+        EXPECT_LE(LinearProblem(0., degree, halvings, times).iterations(), 7u)
+          << "degree " << degree << ", " << halvings << " halvings, refined " << times << " times";
+}
+
+TEST(Multigrid, NeedsAboutAsManyIterationsOnEveryMeshForTheFourthOrderForm)
+{
+  // Measured here, with internal lengths of 0.01 and 0.1: up to 15 and 21 with degree 2, 9 and 11 with degree 3.
+  const auto limit = [](const unsigned int degree, const double relative_length)
+  { return degree == 3 ? (relative_length > 0.05 ? 12u : 10u) : (relative_length > 0.05 ? 23u : 17u); };
+  for (const double relative_length : {0.01, 0.1})
+    for (const unsigned int degree : {2u, 3u})
+    {
+      for (const unsigned int halvings : {2u, 3u, 4u})
+        EXPECT_LE(LinearProblem(relative_length * length, degree, halvings, 0).iterations(),
+                  limit(degree, relative_length))
+          << "degree " << degree << ", " << halvings << " halvings, internal length " << relative_length;
+      for (const unsigned int times : {2u, 4u})
+        EXPECT_LE(LinearProblem(relative_length * length, degree, 2, times).iterations(),
+                  limit(degree, relative_length))
+          << "degree " << degree << ", refined " << times << " times, internal length " << relative_length;
+    }
+}
+
+TEST(Multigrid, SmoothsAroundHangingNodesAsElsewhere)
+{
+  // The largest eigenvalue of patches times tangent. Measured: 5.7 on uniform and adaptive meshes.
+  const LinearProblem problem(0.1 * length, 3, 2, 4);
+  const auto levels = problem.multigrid->levels();
+  for (std::size_t level = 1; level < levels.size(); ++level)
+  {
+    EXPECT_GT(levels[level].largest_eigenvalue, 1.);
+    EXPECT_LT(levels[level].largest_eigenvalue, 6.);
+    EXPECT_EQ(levels[level].n_replaced_patches, 0u);
+  }
+}
+
+TEST(Multigrid, HasAPatchForEveryFreeDegreeOfFreedom)
+{
+  const continuum::MooneyRivlin law = rubber_sheet();
+  for (const unsigned int degree : {1u, 2u, 3u})
+  {
+    // Cells refined at random: levels that meet in every way that the mesh allows.
+    Mesh mesh(MPI_COMM_SELF);
+    continuum::make_rectangle(mesh, rectangle(6, 4));
+    std::mt19937 generator(degree);
+    for (unsigned int n = 0; n < 4; ++n)
+    {
+      for (const auto &cell : mesh.active_cell_iterators())
+        if (generator() % 3 == 0)
+          cell->set_refine_flag();
+      mesh.execute_coarsening_and_refinement();
+    }
+    const Sheet sheet(mesh, law, degree);
+    const auto constraints = continuum::homogeneous_constraints(
+      sheet, {{continuum::edge::left, dealii::ComponentMask(std::vector<bool>{true, false})}});
+    Sheet::Matrix identity;
+    GradientForm(0.).make_matrix(sheet, constraints, identity);
+    for (const auto i : sheet.owned())
+      identity.set(i, i, 1.);
+    identity.compress(dealii::VectorOperation::insert);
+
+    // Counts the patches.
+    continuum::VertexPatches patches(sheet, constraints);
+    patches.factorise(identity);
+    Multigrid::Vector ones(patches.layout());
+    Multigrid::Vector counts(patches.layout());
+    ones = 1.;
+    patches.vmult(counts, ones);
+    for (const auto i : sheet.owned())
+    {
+      if (constraints.is_constrained(i))
+        EXPECT_EQ(counts(i), 0.);
+      else
+        EXPECT_GE(counts(i), 1.);
+    }
+  }
+}
+
+TEST(Multigrid, SolvesToTheAnswerOfADirectSolver)
+{
+  const LinearProblem problem(0.1 * length, 2, 2, 2);
+  Sheet::Vector x = problem.sheet->make_owned();
+  Sheet::Vector direct = problem.sheet->make_owned();
+  Sheet::Vector b = problem.sheet->make_owned();
+  body_force(*problem.sheet, problem.multigrid->constraints(), b);
+  solve(*problem.multigrid, problem.K, x, b, 1e-12);
+  continuum::LinearSettings settings;
+  settings.direct_limit = 1000000;
+  continuum::LinearSolver(*problem.sheet, all_held(), settings).solve(problem.K, direct, b);
+  x -= direct;
+  EXPECT_LT(x.l2_norm(), 1e-9 * direct.l2_norm());
+}
+
+TEST(Multigrid, IsADirectSolverOnAMeshThatIsCoarseEnough)
+{
+  MultigridSettings settings;
+  settings.coarsest_size = 1000000;
+  const LinearProblem problem(0.01 * length, 2, 2, 1, settings);
+  EXPECT_EQ(problem.multigrid->levels().size(), 1u);
+  EXPECT_LE(problem.iterations(), 2u);
+}
+
+TEST(Multigrid, GivesTheSameBitsAgain)
+{
+  Multigrid::Vector first;
+  for (const bool again : {false, true})
+  {
+    const LinearProblem problem(0.1 * length, 3, 2, 2);
+    const auto r = problem.random(3);
+    auto z = r;
+    problem.multigrid->vmult(z, r);
+    problem.multigrid->vmult(z, r);
+    if (!again)
+      first = z;
+    z -= first;
+    EXPECT_EQ(z.linfty_norm(), 0.);
+  }
+}
+
+namespace
+{
+// A displacement at the nodes of a sheet, with ghost entries.
+Sheet::Vector nodal(const Sheet &sheet, const std::function<Tensor<1, 2>(const Point<2> &)> &field)
+{
+  Sheet::Vector owned = sheet.make_owned();
+  std::vector<dealii::types::global_dof_index> dofs(sheet.element().n_dofs_per_cell());
+  for (const auto &cell : sheet.dof_handler().active_cell_iterators())
+    if (cell->is_locally_owned())
+    {
+      cell->get_dof_indices(dofs);
+      for (unsigned int a = 0; a < dofs.size(); ++a)
+        if (sheet.owned().is_element(dofs[a]))
+          owned(dofs[a]) = field(sheet.mapping().transform_unit_to_real_cell(
+            cell, sheet.element().unit_support_point(a)))[sheet.element().system_to_component_index(a).first];
+    }
+  owned.compress(dealii::VectorOperation::insert);
+  sheet.continuity().distribute(owned);
+  Sheet::Vector u = sheet.make_ghosted();
+  u = owned;
+  return u;
+}
+
+Tensor<1, 2> quadratic(const Point<2> &X)
+{
+  return Tensor<1, 2>({0.4 * X[0] - 2. * X[0] * X[1], 0.2 * X[1] + 3. * X[0] * X[0] - X[1] * X[1]});
+}
+} // namespace
+
+TEST(Multigrid, TakesTheStateToEveryLevel)
+{
+  // A quadratic field, held boundaries included, is the same field on every mesh.
+  const continuum::MooneyRivlin law = rubber_sheet();
+  for (const unsigned int degree : {2u, 3u})
+  {
+    Mesh mesh(MPI_COMM_SELF);
+    make_mesh(mesh, 2, 3);
+    const Sheet sheet(mesh, law, degree);
+    const GradientForm form(0.);
+    Multigrid multigrid(sheet, same_sheets(law, degree), form.matrix_factory(), all_held(), many_levels());
+    Sheet::Matrix K;
+    form.make_matrix(sheet, multigrid.constraints(), K);
+    form.assemble(sheet, multigrid.constraints(), K);
+    unsigned int n_levels = 1;
+    multigrid.update(nodal(sheet, quadratic), K,
+                     [&](const Sheet &level, const Sheet::Vector &u, const AffineConstraints<double> &constraints,
+                         Sheet::Matrix &matrix)
+                     {
+                       Sheet::Vector difference = level.make_owned();
+                       difference = u;
+                       Sheet::Vector exact = level.make_owned();
+                       exact = nodal(level, quadratic);
+                       difference -= exact;
+                       EXPECT_LT(difference.linfty_norm(), 1e-13 * exact.linfty_norm()) << "degree " << degree;
+                       form.assemble(level, constraints, matrix);
+                       ++n_levels;
+                     });
+    EXPECT_EQ(n_levels, multigrid.levels().size());
+    EXPECT_GE(n_levels, 4u);
+  }
+}
+
+TEST(Multigrid, TakesAPartOfAStateThatACoarserLevelCannotHave)
+{
+  LinearProblem problem(0., 2, 3, 0);
+  const Sheet::Vector u = nodal(*problem.sheet, quadratic);
+  const auto update = [&](const double refused)
+  {
+    problem.multigrid->update(u, problem.K,
+                              [&](const Sheet &level, const Sheet::Vector &state,
+                                  const AffineConstraints<double> &constraints, Sheet::Matrix &matrix)
+                              {
+                                if (state.linfty_norm() >= refused * u.linfty_norm())
+                                  throw continuum::NonPhysicalState("too large");
+                                problem.form.assemble(level, constraints, matrix);
+                              });
+  };
+  update(0.3);
+  EXPECT_EQ(problem.multigrid->levels().front().state_factor, 0.25);
+  EXPECT_EQ(problem.multigrid->levels().back().state_factor, 1.);
+  EXPECT_LE(problem.iterations(), 8u);
+  update(1e-3);
+  EXPECT_EQ(problem.multigrid->levels().front().state_factor, 0.);
+  EXPECT_LE(problem.iterations(), 8u);
+  EXPECT_THROW(update(0.), continuum::NonPhysicalState);
+}
+
+TEST(Multigrid, StaysFiniteForATangentThatIsNotPositiveDefinite)
+{
+  LinearProblem problem(0., 2, 3, 1);
+  problem.K *= -1.;
+  problem.multigrid->update(problem.sheet->make_ghosted(), problem.K, problem.form.assembler());
+  EXPECT_GT(problem.multigrid->levels().back().n_replaced_patches, 0u);
+  const auto r = problem.random(4);
+  auto z = r;
+  problem.multigrid->vmult(z, r);
+  EXPECT_TRUE(std::isfinite(z.l2_norm()));
+}
+
+TEST(Multigrid, SolvesForTheTangentOfAStretchedSheet)
+{
+  // The same cycle with the law's own tangent at a large, inhomogeneous stretch. Measured: 8 and 8.
+  const continuum::MooneyRivlin law = rubber_sheet();
+  for (const unsigned int degree : {2u, 3u})
+  {
+    Mesh mesh(MPI_COMM_SELF);
+    make_mesh(mesh, 2, 2);
+    const Sheet sheet(mesh, law, degree);
+    const GradientForm form(0.);
+    Multigrid multigrid(sheet, same_sheets(law, degree), form.matrix_factory(), all_held(), many_levels());
+    const Multigrid::Assembler assemble = [](const Sheet &level, const Sheet::Vector &u,
+                                             const AffineConstraints<double> &constraints, Sheet::Matrix &matrix)
+    { level.tangent(u, constraints, matrix); };
+    const Sheet::Vector u =
+      nodal(sheet,
+            [](const Point<2> &X) {
+              return Tensor<1, 2>({1.3 * X[0] + 0.02 * std::sin(40. * X[1]), 1.8 * X[1] + 0.02 * std::sin(30. * X[0])});
+            });
+    Sheet::Matrix K;
+    form.make_matrix(sheet, multigrid.constraints(), K);
+    assemble(sheet, u, multigrid.constraints(), K);
+    multigrid.update(u, K, assemble);
+    Sheet::Vector x = sheet.make_owned();
+    Sheet::Vector b = sheet.make_owned();
+    body_force(sheet, multigrid.constraints(), b);
+    EXPECT_LE(solve(multigrid, K, x, b), 8u) << "degree " << degree;
+    for (const auto &level : multigrid.levels())
+      EXPECT_EQ(level.n_replaced_patches, 0u);
+  }
+}
+
+TEST(Multigrid, RefusesSettingsOutOfRange)
+{
+  const auto refused = [](const std::function<void(MultigridSettings &)> &change)
+  {
+    MultigridSettings settings;
+    change(settings);
+    EXPECT_THROW(LinearProblem(0., 1, 1, 0, settings), continuum::InvalidInput);
+  };
+  refused([](MultigridSettings &settings) { settings.smoothing_degree = 0; });
+  refused([](MultigridSettings &settings) { settings.smoothing_range = 1.; });
+  refused([](MultigridSettings &settings) { settings.smoothing_range = std::nan(""); });
+  refused([](MultigridSettings &settings) { settings.eigenvalue_iterations = 1; });
+}
