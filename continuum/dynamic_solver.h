@@ -145,6 +145,7 @@ private:
   void add_viscous_tangent(const Vector &u, const Vector &v, double rate_by_displacement);
   double dissipation(const Vector &u, const Vector &v) const;
   Balance look_at(const Step &step, const Vector &u) const;
+  Balance best_balance(const Step &step, const Vector &first, const Vector &second, Vector &u) const;
   void assemble(const Step &step, const Balance &state);
   double norm_over_free(const Vector &x) const;
   double round_off(const Balance &state, const Vector &u) const;

@@ -2,8 +2,6 @@
 // when a step cannot be taken.
 #include "continuum/dynamic_solver.h"
 #include "continuum/errors.h"
-#include "continuum/isotropic_gradient.h"
-#include "continuum/lattice_gradient.h"
 #include "sheets.h"
 
 #include <deal.II/base/mpi.h>
@@ -194,9 +192,7 @@ TEST(DynamicSolver, WavesFollowTheDispersionOfTheLattice)
   // Bonds of an NN and NNN network with d = 0.2 m, so kd = 1.26; see theory.md, section 4.
   const continuum::CauchyBorn law = rubber_network();
   const double d = 0.2;
-  std::vector<continuum::BondFamily> bonds;
-  for (std::size_t f = 0; f < law.families().size(); ++f)
-    bonds.push_back({law.families()[f], f % 2 == 0 ? d : std::sqrt(3.) * d});
+  const auto bonds = rubber_bonds(d);
   const double l_d = 0.6 * d;
   const continuum::LatticeGradient gradient(bonds, l_d);
   for (const Tensor<2, 2> &F : {identity, matrix(2.3, 0., 0., 2.8)})
@@ -388,22 +384,31 @@ TEST(DynamicSolver, DampsHighFrequenciesOnly)
   const double w = k_wave * std::sqrt(law.tangent(identity)[1][0][1][0] / density);
   Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, strip(8));
+  // q^2 + (dq/dt)^2/w^2 of the wave's amplitude q, over that at the start. The energy itself would drown in the
+  // round-off of W at strains of 1e-5.
   const auto energy_left = [&](const TimeRule &rule, const double dt, const unsigned int n_steps)
   {
     DynamicSettings settings{dt};
     settings.rule = rule;
     DynamicSolver solver(mesh, law, periodic(), {density, 0.}, settings);
     solver.start(wave(Tensor<1, 2>({0., 1e-6})));
-    const double before = solver.ledger().stored + solver.ledger().kinetic;
+    Vector initial = solver.sheet().make_owned();
+    initial = solver.displacement();
     for (unsigned int n = 0; n < n_steps; ++n)
       solver.step();
-    return (solver.ledger().stored + solver.ledger().kinetic) / before;
+    Vector now = solver.sheet().make_owned();
+    now = solver.displacement();
+    const double q = (now * initial) / initial.norm_sqr();
+    now = solver.velocity();
+    const double rate = (now * initial) / initial.norm_sqr();
+    return q * q + rate * rate / (w * w);
   };
-  // A period in 60 steps of w dt = 0.1. For rho_inf = 1/2 the amplitude loses about (w dt)^4/10 of itself in each.
+  // A period in 60 steps, w dt = 0.1. Eight cells of degree 3 have w to 1e-5.
   EXPECT_NEAR(energy_left(TimeRule::generalised_alpha(0.5), 2. * pi / 60. / w, 60), 1., 5e-3);
-  EXPECT_NEAR(energy_left(TimeRule::average_acceleration(), 2. * pi / 60. / w, 60), 1., 1e-8);
-  EXPECT_LT(energy_left(TimeRule::generalised_alpha(0.5), 1000. / w, 20), 1e-6);
-  EXPECT_NEAR(energy_left(TimeRule::average_acceleration(), 1000. / w, 20), 1., 1e-8);
+  EXPECT_NEAR(energy_left(TimeRule::average_acceleration(), 2. * pi / 60. / w, 60), 1., 1e-4);
+  // The amplification of a step tends to rho_inf, a double eigenvalue: 0.5^40 after 20 steps, times some hundreds.
+  EXPECT_LT(energy_left(TimeRule::generalised_alpha(0.5), 1000. / w, 20), 1e-8);
+  EXPECT_NEAR(energy_left(TimeRule::average_acceleration(), 1000. / w, 20), 1., 1e-4);
 }
 
 TEST(DynamicSolver, MovesHeldBoundariesWithTheLoadFactor)
@@ -542,7 +547,6 @@ TEST(DynamicSolver, ThrowsWithHistoryAndStaysWhenAStepFails)
                        [](const double t) { return t < 4.5e-4 ? 0. : 3.; });
   EXPECT_THROW(solver.step(), continuum::InvalidInput); // no start
   solver.start();
-  EXPECT_EQ(solver.ledger().stored, 0.);
   try
   {
     solver.run_until(1e-3);
@@ -557,7 +561,7 @@ TEST(DynamicSolver, ThrowsWithHistoryAndStaysWhenAStepFails)
   }
   EXPECT_NEAR(solver.time(), 4e-4, 1e-15);
   EXPECT_EQ(solver.load_factor(), 0.);
-  EXPECT_EQ(solver.displacement().linfty_norm(), 0.);
+  EXPECT_LT(solver.displacement().linfty_norm(), 1e-15 * length); // round-off of the stress at F = I
 }
 
 TEST(DynamicSolver, NewtonIsQuadraticWithViscosityAtFiniteStrain)
