@@ -37,7 +37,8 @@ struct TimeRule
   static TimeRule average_acceleration() { return {0., 0., 0.25, 0.5}; }
 };
 
-/// How motion is followed.
+/// How motion is followed. Viscosity at finite strain makes the matrix unsymmetric, which the direct solver takes and
+/// conjugate gradients need not.
 struct DynamicSettings
 {
   double time_step;        ///< [s] > 0
