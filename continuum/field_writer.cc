@@ -148,7 +148,7 @@ FieldWriter::FieldWriter(const MPI_Comm communicator, std::filesystem::path dire
                });
 }
 
-void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::Vector &u)
+void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::Vector &u, const Sheet::Vector *v)
 {
   if (!frames_.empty() && !(time > frames_.back().first))
     throw InvalidInput("the time of a frame must be later than that of the frame before");
@@ -173,6 +173,8 @@ void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::
   output.set_flags(flags);
   const std::vector<std::string> names(2, "displacement");
   output.add_data_vector(sheet.dof_handler(), u, names, vector); // communicates, so not in guarded work
+  if (v != nullptr)
+    output.add_data_vector(sheet.dof_handler(), *v, std::vector<std::string>(2, "velocity"), vector);
   output.add_data_vector(sheet.dof_handler(), u, local_fields);
   collectively(communicator_,
                [&]

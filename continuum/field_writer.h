@@ -12,8 +12,10 @@ namespace continuum
 /// Writes the fields of a sheet as a series that ParaView opens: NAME.pvd, and for each frame NAME_0000.vtu, or
 /// NAME_0000.pvtu with a piece for each rank. Fields, over the reference configuration: `displacement` [m],
 /// `deformation_gradient` [-], `first_piola_stress` [Pa], `cauchy_stress` [Pa] (per reference thickness, see
-/// continuum::cauchy_stress), `strain_energy_density` [J/m^3]. Tensors have nine components, index order row by row
-/// (current index first).
+/// continuum::cauchy_stress), `strain_energy_density` [J/m^3], and of the gradient G_iJK [1/m] and the double stress
+/// Q_iJK [Pa m] the tensors in J and K for i = x and i = y: `strain_gradient_x`, `strain_gradient_y`,
+/// `double_stress_x`, `double_stress_y`; in motion also `velocity` [m/s]. Tensors have nine components, index order row
+/// by row (current index first). Cells are Lagrange cells of the degree of the elements.
 ///
 /// Every file is written beside its place and renamed, pieces before the files that name them, so that what is there is
 /// whole at any moment. Times are written with 17 significant digits.
@@ -23,10 +25,10 @@ public:
   /// Makes `directory` if it is not there. Collective. Throws OutputFailed on every rank.
   FieldWriter(MPI_Comm communicator, std::filesystem::path directory, std::string name = "continuum");
 
-  /// Adds the state `u` (nodal displacement [m], with ghost entries) at `time`, which must grow from frame to frame:
-  /// the load factor [-] in statics, [s] in dynamics. Collective. Throws OutputFailed on every rank, and
-  /// NonPhysicalState if the law does; InvalidInput if the time does not grow.
-  void add_frame(double time, const Sheet &sheet, const Sheet::Vector &u);
+  /// Adds the state `u` (nodal displacement [m], with ghost entries), and its velocity `v` [m/s] if given, at `time`,
+  /// which must grow from frame to frame: the load factor [-] in statics, [s] in dynamics. Collective. Throws
+  /// OutputFailed on every rank, and NonPhysicalState if the law does; InvalidInput if the time does not grow.
+  void add_frame(double time, const Sheet &sheet, const Sheet::Vector &u, const Sheet::Vector *v = nullptr);
 
   /// Path of the .pvd.
   std::filesystem::path collection() const;

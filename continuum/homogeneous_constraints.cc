@@ -17,6 +17,21 @@ using namespace dealii;
 
 namespace continuum
 {
+HeldBoundaries held_boundaries(const Conditions &conditions)
+{
+  HeldBoundaries held;
+  for (const PrescribedDisplacement &condition : conditions.displacements)
+  {
+    ComponentMask mask(2, false);
+    for (unsigned int i = 0; i < 2; ++i)
+      mask.set(i, condition.components[i]);
+    const auto [entry, is_new] = held.try_emplace(condition.boundary, mask);
+    if (!is_new)
+      entry->second = entry->second | mask;
+  }
+  return held;
+}
+
 AffineConstraints<double> homogeneous_constraints(const Sheet &sheet, const HeldBoundaries &held)
 {
   AffineConstraints<double> known(sheet.relevant());

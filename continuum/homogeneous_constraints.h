@@ -1,5 +1,7 @@
 #pragma once
 
+#include "continuum/conditions.h"
+
 #include <deal.II/base/index_set.h>
 #include <deal.II/base/types.h>
 #include <deal.II/fe/component_mask.h>
@@ -13,6 +15,9 @@ class Sheet;
 
 /// Which components are held at which boundary.
 using HeldBoundaries = std::map<dealii::types::boundary_id, dealii::ComponentMask>;
+
+/// What prescribed displacements hold.
+HeldBoundaries held_boundaries(const Conditions &conditions);
 
 /// The closed constraints of every relevant degree of freedom as its owner knows them. `known` is what this rank found
 /// out by itself, which is short of constraints on the far side of its ghost cells; operators with face terms couple to

@@ -3,8 +3,10 @@
 #include "continuum/errors.h"
 
 #include <deal.II/grid/grid_generator.h>
+#include <deal.II/grid/grid_tools.h>
 
 #include <cmath>
+#include <vector>
 
 namespace continuum
 {
@@ -15,6 +17,9 @@ void make_rectangle(dealii::parallel::distributed::Triangulation<2> &mesh, const
     throw InvalidInput("a rectangle needs a positive, finite length and height");
   if (rectangle.cells_x == 0 || rectangle.cells_y == 0)
     throw InvalidInput("a rectangle needs at least one cell in each direction");
+  // A cell that is its own neighbour would have no face between two cells.
+  if ((rectangle.periodic_x && rectangle.cells_x < 2) || (rectangle.periodic_y && rectangle.cells_y < 2))
+    throw InvalidInput("a periodic rectangle needs at least two cells across");
 
   // Refined rather than coarse cells: they are distributed, and they form the levels of a multigrid hierarchy.
   unsigned int halvings = 0;
@@ -30,6 +35,14 @@ void make_rectangle(dealii::parallel::distributed::Triangulation<2> &mesh, const
   const dealii::Point<2> upper_right(rectangle.length, 0.5 * rectangle.height);
   // Colourised, the generator numbers the edges as continuum::edge does.
   dealii::GridGenerator::subdivided_hyper_rectangle(mesh, {coarse_x, coarse_y}, lower_left, upper_right, true);
+  std::vector<dealii::GridTools::PeriodicFacePair<dealii::parallel::distributed::Triangulation<2>::cell_iterator>>
+    pairs;
+  if (rectangle.periodic_x)
+    dealii::GridTools::collect_periodic_faces(mesh, edge::left, edge::right, 0, pairs);
+  if (rectangle.periodic_y)
+    dealii::GridTools::collect_periodic_faces(mesh, edge::bottom, edge::top, 1, pairs);
+  if (!pairs.empty())
+    mesh.add_periodicity(pairs);
   mesh.refine_global(halvings);
 }
 } // namespace continuum

@@ -10,6 +10,7 @@
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
 #include <deal.II/grid/grid_tools_cache.h>
+#include <deal.II/numerics/vector_tools_boundary.h>
 
 #include <algorithm>
 #include <cmath>
@@ -125,6 +126,26 @@ void Sheet::distribute()
 double Sheet::penalty(const double extent) const
 {
   return constitution_.penalty * degree_ * (degree_ + 1) / extent * normal_stiffness_;
+}
+
+Sheet::Vector Sheet::lift() const
+{
+  AffineConstraints<double> given(continuity_.get_local_lines());
+  given.merge(continuity_);
+  collectively(communicator(),
+               [&]
+               {
+                 for (const PrescribedDisplacement &condition : conditions_.displacements)
+                   VectorTools::interpolate_boundary_values(mapping_, dof_handler_, condition.boundary,
+                                                            *condition.displacement, given, condition.components);
+               });
+  Vector nodal = make_owned();
+  for (const types::global_dof_index i : owned_)
+    if (given.is_constrained(i) && !continuity_.is_constrained(i))
+      nodal(i) = given.get_inhomogeneity(i);
+  nodal.compress(VectorOperation::insert);
+  continuity_.distribute(nodal);
+  return nodal;
 }
 
 std::vector<PointState> Sheet::evaluate(const Vector &u, const std::vector<Point<2>> &points) const

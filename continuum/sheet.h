@@ -79,6 +79,10 @@ public:
   /// Nodal forces [N/m] of the dead loads at load factor 1: tractions, double tractions, body force.
   Vector loads() const;
 
+  /// Nodal displacements [m] that the conditions prescribe at load factor 1, zero where nothing is held, without ghost
+  /// entries. Where boundaries meet and disagree, the first in the list holds the common node.
+  Vector lift() const;
+
   /// M_ab = integral of density [kg/m^3] * (phi_a phi_b + inertia_length^2 [m^2] Grad phi_a . Grad phi_b) dX [kg/m per
   /// thickness], condensed: consistent mass with micro-inertia.
   void mass(double density, double inertia_length, const dealii::AffineConstraints<double> &constraints,

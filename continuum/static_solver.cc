@@ -8,7 +8,6 @@
 #include <deal.II/base/mpi.h>
 #include <deal.II/distributed/grid_refinement.h>
 #include <deal.II/distributed/solution_transfer.h>
-#include <deal.II/numerics/vector_tools_boundary.h>
 
 #include <algorithm>
 #include <cmath>
@@ -54,31 +53,15 @@ void StaticSolver::check_input() const
 // Everything that depends on the mesh.
 void StaticSolver::set_up()
 {
-  AffineConstraints<double> given(sheet_.relevant());
-  given.merge(sheet_.continuity(), AffineConstraints<double>::no_conflicts_allowed, true);
-  collectively(sheet_.communicator(),
-               [&]
-               {
-                 for (const PrescribedDisplacement &condition : sheet_.conditions().displacements)
-                   VectorTools::interpolate_boundary_values(sheet_.mapping(), sheet_.dof_handler(), condition.boundary,
-                                                            *condition.displacement, given, condition.components);
-               });
-
-  Vector lift = sheet_.make_owned();
-  for (const types::global_dof_index i : sheet_.owned())
-    if (given.is_constrained(i) && !sheet_.continuity().is_constrained(i))
-      lift(i) = given.get_inhomogeneity(i);
-  lift.compress(VectorOperation::insert);
-  sheet_.continuity().distribute(lift);
   full_lift_ = sheet_.make_ghosted();
-  full_lift_ = lift;
+  full_lift_ = sheet_.lift();
 
-  homogeneous_.copy_from(homogeneous_constraints(sheet_, held()));
+  homogeneous_.copy_from(homogeneous_constraints(sheet_, held_boundaries(sheet_.conditions())));
 
   loads_ = sheet_.loads();
   displacement_ = sheet_.make_ghosted();
   sheet_.make_matrix(homogeneous_, matrix_);
-  linear_solver_ = std::make_unique<LinearSolver>(sheet_, held(), settings_.linear);
+  linear_solver_ = std::make_unique<LinearSolver>(sheet_, held_boundaries(sheet_.conditions()), settings_.linear);
 }
 
 double StaticSolver::potential(const Vector &u, const double load_factor) const
@@ -304,25 +287,9 @@ double StaticSolver::total_energy() const
   return sheet_.energy(displacement_, load_factor_);
 }
 
-// Components held at each boundary.
-HeldBoundaries StaticSolver::held() const
-{
-  HeldBoundaries held;
-  for (const PrescribedDisplacement &condition : sheet_.conditions().displacements)
-  {
-    ComponentMask mask(2, false);
-    for (unsigned int i = 0; i < 2; ++i)
-      mask.set(i, condition.components[i]);
-    const auto [entry, is_new] = held.try_emplace(condition.boundary, mask);
-    if (!is_new)
-      entry->second = entry->second | mask;
-  }
-  return held;
-}
-
 std::map<types::boundary_id, Tensor<1, 2>> StaticSolver::reactions() const
 {
-  return boundary_reactions(sheet_, displacement_, load_factor_, held());
+  return boundary_reactions(sheet_, displacement_, load_factor_, held_boundaries(sheet_.conditions()));
 }
 
 DeterminantRange StaticSolver::determinant_range() const

@@ -88,7 +88,6 @@ private:
 
   void check_input() const;
   void set_up();
-  HeldBoundaries held() const;
   Evaluation look_at(const Vector &u, double load_factor) const;
   double potential(const Vector &u, double load_factor) const;
   double round_off(const Evaluation &state, const Vector &u) const;

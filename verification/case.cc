@@ -47,6 +47,11 @@ void Case::declare(Parameters &p)
          {"rows-across-crack", lattice::Orientation::rows_across_crack}},
         "rows of nearest neighbours along x, or turned by 30 degrees so that they run along y");
 
+  p.add("Sheet", "hole radius", hole_radius, NonNegative{}, "m",
+        "of a round hole in the middle of the finite element sheet, undeformed; 0: none");
+  p.add("Sheet", "notch length", notch_length, NonNegative{}, "m",
+        "of a slit in the finite element sheet, from the left edge along y = 0, undeformed; 0: none");
+
   p.add("Material", "density", density, Positive{}, "kg/m^3", "rho of the rubber", Presence::required);
   nearest.declare(p, "Nearest neighbours");
   p.add("Next-nearest neighbours", "present", has_next_nearest, "whether there are next-nearest-neighbour bonds");
@@ -56,6 +61,8 @@ void Case::declare(Parameters &p)
         Presence::required);
   p.add("Loading", "strain y", strain_y, Above{-1.}, "1", "eps_y: the sheet is stretched by 1 + eps_y along y",
         Presence::required);
+
+  p.add("Loading", "shear", shear, Any{}, "1", "F_xy: points move along x by this times their undeformed y");
 
   p.add("Lattice", "solution", solution, {{"relaxed", Solution::relaxed}, {"motion", Solution::motion}},
         "what `latcon lattice` computes: static equilibrium, or the motion up to the end time");
@@ -86,14 +93,7 @@ void Case::declare(Parameters &p)
   p.add("Time", "safety factor", safety_factor, Between{0.01, 1.}, "1",
         "automatic time step over the one that is stable in every configuration");
 
-  p.add("Continuum", "law", law,
-        {{"cauchy-born", ContinuumLaw::cauchy_born}, {"mooney-rivlin", ContinuumLaw::mooney_rivlin}},
-        "law of the finite element sheet: that of the lattice, or Mooney-Rivlin calibrated along the loading path");
-  p.add("Continuum", "ratio", mooney_rivlin_ratio, Between{-0.9, 0.9}, "1",
-        "r = C2 / (C1 + C2) of the Mooney-Rivlin law; auto: calibrated along the loading path");
-  p.add("Continuum", "cells x", cells_x, Between{1., 4096.}, "cells of the mesh along x");
-  p.add("Continuum", "cells y", cells_y, Between{1., 4096.}, "cells of the mesh along y");
-  p.add("Continuum", "degree", degree, Between{1., 4.}, "polynomial degree p of the elements");
+  continuum.declare(p);
 
   p.add("Output", "frame interval", frame_interval, NonNegative{}, "s",
         "time between frames of the lattice; 0: first and last frame alone");
@@ -120,6 +120,15 @@ void Case::check(Parameters &p) const
   if (length < 8. * spacing)
     p.error("Sheet/length", "the sheet must be at least 8 spacings long, " + full_precision(8. * spacing) + " m",
             {"Sheet/spacing"});
+
+  if (hole_radius > 0. && notch_length > 0.)
+    p.error("Sheet/notch length", "a sheet has a hole or a notch, not both", {"Sheet/hole radius"});
+  if (hole_radius >= 0.45 * std::min(length, height))
+    p.error("Sheet/hole radius", "it must be less than 0.45 of the sheet's length and height",
+            {"Sheet/length", "Sheet/height"});
+  if (notch_length >= length && notch_length > 0.)
+    p.error("Sheet/notch length", "it must be less than the sheet's length", {"Sheet/length"});
+  continuum.check(p, has_inner_edge());
 
   if (breaking_stretch && height >= 8. * spacing && length >= 8. * spacing)
   {
@@ -179,7 +188,17 @@ lattice::Material Case::material() const
 
 Eigen::Matrix2d Case::deformation() const
 {
-  return Eigen::Vector2d(1. + strain_x, 1. + strain_y).asDiagonal();
+  Eigen::Matrix2d F;
+  F << 1. + strain_x, shear, 0., 1. + strain_y;
+  return F;
+}
+
+void Case::require_whole_sheet(Parameters &p, const std::string &command) const
+{
+  if (hole_radius > 0.)
+    p.error("Sheet/hole radius", command + " has no use for a hole; give 0");
+  if (notch_length > 0.)
+    p.error("Sheet/notch length", command + " has no use for a notch; give 0");
 }
 
 lattice::Toughening Case::toughening_rule() const

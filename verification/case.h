@@ -6,17 +6,11 @@
 
 #include "lattice/fracture.h"
 #include "lattice/material.h"
+#include "verification/continuum_case.h"
 #include "verification/parameters.h"
 
 namespace verification
 {
-
-/// Which constitutive law the finite element sheet is made of.
-enum class ContinuumLaw
-{
-  cauchy_born,  ///< exact continuum of the lattice in homogeneous deformation
-  mooney_rivlin ///< compressible Mooney-Rivlin, calibrated along the loading path
-};
 
 /// One shell of bonds as a case states it.
 struct ShellCase
@@ -44,9 +38,11 @@ struct ShellCase
 struct Case
 {
   // Sheet
-  double spacing = 0.; ///< d [m]
-  double length = 0.;  ///< [m]
-  double height = 0.;  ///< [m]
+  double spacing = 0.;      ///< d [m]
+  double length = 0.;       ///< [m]
+  double height = 0.;       ///< [m]
+  double hole_radius = 0.;  ///< [m], in the middle of the sheet; 0 for none
+  double notch_length = 0.; ///< [m], from the left edge along y = 0; 0 for none
   lattice::Orientation orientation = lattice::Orientation::rows_along_crack;
 
   // Material
@@ -58,6 +54,7 @@ struct Case
   // Loading
   double strain_x = 0.; ///< eps_x [-]
   double strain_y = 0.; ///< eps_y [-]
+  double shear = 0.;    ///< F_xy [-]
 
   // Lattice
   enum class Solution
@@ -91,11 +88,7 @@ struct Case
   double safety_factor = 0.9;
 
   // Continuum
-  ContinuumLaw law = ContinuumLaw::cauchy_born;
-  std::optional<double> mooney_rivlin_ratio; ///< r = C2 / (C1 + C2) [-]; none: calibrated
-  unsigned int cells_x = 12;
-  unsigned int cells_y = 8;
-  unsigned int degree = 2;
+  ContinuumCase continuum;
 
   // Output
   double frame_interval = 0.; ///< [s]; 0: first and last frame only
@@ -112,7 +105,11 @@ struct Case
 
   lattice::TriangularLattice lattice() const;
   lattice::Material material() const;
-  /// F = diag(1 + eps_x, 1 + eps_y) of the loaded sheet [-].
+  /// Whether the sheet has an edge inside: of a hole or a notch.
+  bool has_inner_edge() const { return hole_radius > 0. || notch_length > 0.; }
+  /// Refuses a hole or notch, which `command` has no use for.
+  void require_whole_sheet(Parameters &parameters, const std::string &command) const;
+  /// F = [1 + eps_x, F_xy; 0, 1 + eps_y] of the loaded sheet [-].
   Eigen::Matrix2d deformation() const;
   lattice::Toughening toughening_rule() const;
   /// Time step of the lattice [s]: the stated one, or safety factor times the limit.

@@ -56,9 +56,10 @@ SmallStrain small_strain(const lattice::TriangularLattice &lattice, const lattic
   return {mu, std::sqrt(mu / material.density), std::sqrt(3. * mu / material.density)};
 }
 
-continuum::CauchyBorn cauchy_born(const lattice::TriangularLattice &lattice, const lattice::Material &material)
+std::vector<continuum::BondFamily> bond_families(const lattice::TriangularLattice &lattice,
+                                                 const lattice::Material &material)
 {
-  std::vector<continuum::FibreFamily> families;
+  std::vector<continuum::BondFamily> families;
   for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
     if (const lattice::Shell *shell = material.shell(kind))
     {
@@ -71,9 +72,49 @@ continuum::CauchyBorn cauchy_born(const lattice::TriangularLattice &lattice, con
         family.potential = continuum::RodPotential{rod->a, rod->b};
       else
         family.potential = continuum::LinearPotential{std::get<lattice::LinearBond>(shell->law).modulus};
-      families.push_back(family);
+      families.push_back({family, lattice.rest_length(kind)});
     }
-  return continuum::CauchyBorn(std::move(families));
+  return families;
+}
+
+continuum::CauchyBorn cauchy_born(const lattice::TriangularLattice &lattice, const lattice::Material &material)
+{
+  std::vector<continuum::FibreFamily> fibres;
+  for (const continuum::BondFamily &family : bond_families(lattice, material))
+    fibres.push_back(family.fibre);
+  return continuum::CauchyBorn(std::move(fibres));
+}
+
+std::unique_ptr<continuum::Viscosity> homogenised_viscosity(const lattice::TriangularLattice &lattice,
+                                                            const lattice::Material &material)
+{
+  std::vector<continuum::FibreDashpot> dashpots;
+  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+    if (const lattice::Shell *shell = material.shell(kind); shell && shell->viscosity > 0.)
+    {
+      const Eigen::Vector2d direction = lattice.bond_vector(kind).normalized();
+      dashpots.push_back(
+        {dealii::Tensor<1, 2>({direction.x(), direction.y()}), bond_weight(lattice, *shell, kind), shell->viscosity});
+    }
+  if (dashpots.empty())
+    return nullptr;
+  return std::make_unique<continuum::FibreViscosity>(std::move(dashpots));
+}
+
+GradientLengths gradient_lengths(const lattice::TriangularLattice &lattice, const lattice::Material &material)
+{
+  double stiffness = 0.;
+  double with_length = 0.;
+  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+    if (const lattice::Shell *shell = material.shell(kind))
+    {
+      const double c = bond_weight(lattice, *shell, kind) * lattice::stiffness(shell->law, 1.);
+      stiffness += c;
+      with_length += c * std::pow(lattice.rest_length(kind), 2);
+    }
+  const double lambda = with_length / stiffness;
+  return {continuum::LatticeGradient::smallest_length(bond_families(lattice, material)), std::sqrt(lambda / 24.),
+          std::sqrt(lambda / 12.)};
 }
 
 Calibration calibrate_mooney_rivlin(const lattice::TriangularLattice &lattice, const lattice::Material &material,

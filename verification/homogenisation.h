@@ -1,7 +1,12 @@
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "continuum/cauchy_born.h"
+#include "continuum/lattice_gradient.h"
 #include "continuum/mooney_rivlin.h"
+#include "continuum/viscosity.h"
 #include "lattice/material.h"
 
 namespace verification
@@ -20,6 +25,29 @@ SmallStrain small_strain(const lattice::TriangularLattice &lattice, const lattic
 /// The Cauchy-Born law of a lattice: a fibre family for each of its bond directions, weights c = A0 l / V (theory.md,
 /// eq. H.1). Constants alone are handed over; the continuum evaluates them with its own code.
 continuum::CauchyBorn cauchy_born(const lattice::TriangularLattice &lattice, const lattice::Material &material);
+
+/// The bonds of a lattice, for the gradient energy that its long waves have (theory.md, eq. H.6): families as in
+/// cauchy_born, with the undeformed length [m] of each.
+std::vector<continuum::BondFamily> bond_families(const lattice::TriangularLattice &lattice,
+                                                 const lattice::Material &material);
+
+/// The dashpots of a lattice as a viscosity of its continuum, weights as in cauchy_born (theory.md, eq. H.9); null if
+/// no bond has one.
+std::unique_ptr<continuum::Viscosity> homogenised_viscosity(const lattice::TriangularLattice &lattice,
+                                                            const lattice::Material &material);
+
+/// Lengths of the gradient continuum.
+struct GradientLengths
+{
+  double lattice;           ///< l_d of the lattice's own gradient energy, the shortest that keeps it positive [m]
+  double isotropic_static;  ///< l_s of the isotropic gradient energy [m]
+  double isotropic_inertia; ///< l_d that goes with it [m]
+};
+
+/// The isotropic pair gives the longitudinal and the shear wave their dispersion at F = I, averaged over directions:
+/// l_s^2 = Lambda/24, l_d^2 = Lambda/12 with Lambda = sum c l^2 psi''(1) / sum c psi''(1) over the bonds (theory.md,
+/// eqs. H.7, H.8).
+GradientLengths gradient_lengths(const lattice::TriangularLattice &lattice, const lattice::Material &material);
 
 /// A Mooney-Rivlin law fitted to a lattice: exact at small strain, closest in energy along a loading path.
 struct Calibration

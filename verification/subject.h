@@ -25,8 +25,8 @@ inline Subject subject(const Case &input, const lattice::Material &material)
 {
   const lattice::TriangularLattice sheet = input.lattice();
   Calibration calibration = calibrate_mooney_rivlin(sheet, material, input.deformation());
-  if (input.mooney_rivlin_ratio)
-    calibration = with_ratio(sheet, material, input.deformation(), *input.mooney_rivlin_ratio);
+  if (input.continuum.mooney_rivlin_ratio)
+    calibration = with_ratio(sheet, material, input.deformation(), *input.continuum.mooney_rivlin_ratio);
   return {material.next_nearest ? "NN+NNN" : "NN",
           input.spacing,
           input.orientation,

@@ -305,6 +305,28 @@ TEST(LatticeGradient, IsPositiveInTension)
     EXPECT_GT(law.energy(random_deformation(generator, 1.01, 3.), random_gradient(generator)), 0.);
 }
 
+// A strip pulled along y and free across: bonds along x are compressed, and push their ends apart across themselves.
+// The lateral stretches make P_xx = 0 in the local law; a wave that alternates along x is resisted no longer
+// beyond 2.2.
+TEST(LatticeGradient, LosesPositivityWhereBondsAreCompressed)
+{
+  const LatticeGradient law = rubber_gradient(spacing);
+  const continuum::CauchyBorn local = rubber_network();
+  const auto softest = [&](const double lateral, const double stretch)
+  {
+    const Tensor<2, 2> F = matrix(lateral, 0., 0., stretch);
+    EXPECT_LT(std::abs(local.first_piola_stress(F)[0][0]), 1e3); // of 5e5 Pa: the three digits of the stretch
+    double least = std::numeric_limits<double>::infinity();
+    for (int n = 0; n < 180; ++n)
+      for (int p = 0; p < 180; ++p)
+        least = std::min(least, symbol(law, F, Tensor<1, 2>({std::cos(n * pi / 180.), std::sin(n * pi / 180.)}),
+                                       Tensor<1, 2>({std::cos(p * pi / 180.), std::sin(p * pi / 180.)})));
+    return least;
+  };
+  EXPECT_GT(softest(0.779, 2.), 0.);
+  EXPECT_LT(softest(0.747, 2.5), 0.);
+}
+
 // theory.md, section 5: alpha d^2 = l_d^2 - H/A2, with A2 = rho c^2 from the Cauchy-Born law and H from the gradient
 // law.
 TEST(LatticeGradient, HasTheDispersionOfTheLattice)

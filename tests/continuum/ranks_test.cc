@@ -1,6 +1,7 @@
 // What several ranks compute, against one rank alone: each rank solves the whole problem on its own communicator, then
 // all solve it together.
 #include "continuum/collective.h"
+#include "continuum/dynamic_solver.h"
 #include "continuum/errors.h"
 #include "continuum/field_writer.h"
 #include "multigrid_cases.h"
@@ -16,6 +17,7 @@
 using namespace sheets;
 using continuum::StaticSettings;
 using continuum::StaticSolver;
+namespace edge = continuum::edge;
 
 namespace
 {
@@ -222,6 +224,90 @@ TEST(Ranks, AllSeeANonPhysicalStateOnOneRank)
     });
   StaticSolver solver(mesh, law, on_all_edges(corner), settings);
   EXPECT_THROW(solver.solve(), continuum::SolverFailed);
+}
+
+TEST(Ranks, GiveTheSameMotion)
+{
+  // Periodic across, one edge shaken: a gradient law, viscosity, a load and time rule that use everything.
+  struct Motion
+  {
+    std::vector<continuum::PointState> states;
+    continuum::EnergyLedger ledger;
+    Tensor<1, 2> momentum;
+  };
+  const auto motion = [](const MPI_Comm communicator)
+  {
+    const continuum::CauchyBorn law = rubber_network();
+    const continuum::IsotropicGradient gradient(5e5, 0.01);
+    std::vector<continuum::FibreDashpot> dashpots;
+    for (const auto &family : law.families())
+      dashpots.push_back({family.direction, family.weight, 50.});
+    const continuum::FibreViscosity viscosity(dashpots);
+    Mesh mesh(communicator);
+    continuum::make_rectangle(mesh, {length, height, 8, 6, false, true});
+    continuum::Conditions conditions;
+    conditions.displacements = {{edge::left, std::make_shared<Field>(
+                                               [](const Point<2> &) {
+                                                 return Tensor<1, 2>({0.01, 0.02});
+                                               })}};
+    conditions.tractions = {{edge::right, std::make_shared<Field>(
+                                            [](const Point<2> &) {
+                                              return Tensor<1, 2>({1e5, 0.});
+                                            })}};
+    conditions.periodic = {{edge::bottom, edge::top, 1}};
+    continuum::DynamicSettings settings{2e-4};
+    settings.degree = 2;
+    settings.rule = continuum::TimeRule::generalised_alpha(0.8);
+    settings.relative_tolerance = 1e-12;
+    continuum::DynamicSolver solver(mesh, continuum::Constitution(law, gradient), conditions, {944., 0.01}, settings,
+                                    &viscosity, [](const double t) { return std::sin(500. * t); });
+    solver.start(nullptr, std::make_shared<Field>(
+                            [](const Point<2> &X) {
+                              return Tensor<1, 2>({5. * std::sin(2. * pi * X[1] / height), 3. * X[0] / length});
+                            }));
+    solver.run_until(4e-3);
+    auto points = scattered_points(7, 5);
+    points.emplace_back(length / 2, 0.);
+    points.emplace_back(length, height / 2);
+    return Motion{solver.evaluate(points), solver.ledger(), solver.momentum()};
+  };
+  const Motion alone = motion(MPI_COMM_SELF);
+  const Motion together = motion(MPI_COMM_WORLD);
+  const double tolerance = 1e-10;
+  for (std::size_t p = 0; p < alone.states.size(); ++p)
+  {
+    EXPECT_NEAR((together.states[p].displacement - alone.states[p].displacement).norm(), 0., tolerance * length);
+    EXPECT_NEAR((together.states[p].F - alone.states[p].F).norm(), 0., tolerance * alone.states[p].F.norm());
+  }
+  const continuum::EnergyLedger &one = alone.ledger;
+  const continuum::EnergyLedger &all = together.ledger;
+  const double energy = one.stored + one.kinetic;
+  EXPECT_GT(one.dissipated, 0.01 * energy);
+  EXPECT_GT(std::abs(one.work), 0.01 * energy);
+  EXPECT_NEAR(all.stored, one.stored, tolerance * energy);
+  EXPECT_NEAR(all.kinetic, one.kinetic, tolerance * energy);
+  EXPECT_NEAR(all.micro_kinetic, one.micro_kinetic, tolerance * energy);
+  EXPECT_NEAR(all.dissipated, one.dissipated, tolerance * energy);
+  EXPECT_NEAR(all.work, one.work, tolerance * energy);
+  EXPECT_NEAR((together.momentum - alone.momentum).norm(), 0., tolerance * alone.momentum.norm());
+}
+
+TEST(Ranks, AllSeeAnInitialFieldThatFailsOnOneRank)
+{
+  const continuum::CauchyBorn law = rubber_network();
+  Mesh mesh(MPI_COMM_WORLD);
+  continuum::make_rectangle(mesh, rectangle(8, 8));
+  continuum::DynamicSolver solver(mesh, law, {}, {944., 0.}, {1e-4});
+  const auto failing = std::make_shared<Field>(
+    [](const Point<2> &X)
+    {
+      if (X.distance(Point<2>(length, height / 2)) < 1e-3)
+        throw continuum::InvalidInput("not in this corner");
+      return Tensor<1, 2>();
+    });
+  EXPECT_THROW(solver.start(failing), continuum::InvalidInput);
+  EXPECT_NO_THROW(solver.start());
+  EXPECT_NO_THROW(solver.step());
 }
 
 TEST(Ranks, WritePiecesThatVtkJoins)

@@ -1,65 +1,243 @@
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 
+#include <deal.II/base/mpi.h>
+#include <deal.II/numerics/vector_tools_interpolate.h>
+
+#include "continuum/dynamic_solver.h"
 #include "continuum/field_writer.h"
-#include "continuum/static_solver.h"
 #include "verification/affine_displacement.h"
 #include "verification/commands/command.h"
-#include "verification/subject.h"
+#include "verification/continuum_model.h"
+#include "verification/continuum_record.h"
+#include "verification/progress.h"
 
 namespace verification
 {
+namespace
+{
+
+continuum::StaticSettings static_settings(const Case &input)
+{
+  continuum::StaticSettings settings;
+  settings.degree = input.continuum.degree;
+  settings.relative_tolerance = input.continuum.relative_tolerance;
+  settings.first_load_step = input.continuum.first_load_step;
+  settings.smallest_load_step = std::min(settings.smallest_load_step, settings.first_load_step);
+  settings.linear.direct_limit = input.continuum.direct_limit;
+  return settings;
+}
+
+// Newton iterations and conjugate-gradient iterations in them, for people.
+void say(const Run &run, const continuum::SolverReport &report)
+{
+  if (run.talks())
+    std::cout << report.text();
+}
+
+Results equilibrium(const Case &input, ContinuumModel &model, Run &run)
+{
+  ContinuumRecord record;
+  continuum::FieldWriter fields(MPI_COMM_WORLD, run.directory());
+  auto set_up = std::make_unique<Stopwatch::Phase>(run.info().stopwatch(), "set-up");
+  continuum::StaticSolver solver(model.mesh(), model.constitution(), model.conditions(), static_settings(input));
+  set_up.reset();
+  const auto write_frame = [&](double load_factor)
+  {
+    const auto phase = run.info().stopwatch().phase("output");
+    fields.add_frame(load_factor, solver.sheet(), solver.displacement());
+  };
+  write_frame(0.);
+  const std::size_t n_cycles = input.continuum.adaptive_cycles;
+  {
+    const auto phase = run.info().stopwatch().phase("solve");
+    const continuum::SolverReport report = solver.solve(
+      [&](double load_factor)
+      {
+        record.equilibrium(solver);
+        // The frame at full load is that of the last mesh.
+        if (load_factor < 1.)
+          write_frame(load_factor);
+      });
+    record.newton(report);
+    say(run, report);
+  }
+  record.mesh(solver);
+  for (std::size_t cycle = 1; cycle <= n_cycles && !signal_came(); ++cycle)
+  {
+    const auto phase = run.info().stopwatch().phase("adaptive cycles");
+    solver.refine(model.mesh(), input.continuum.refined_fraction);
+    const continuum::SolverReport report = solver.equilibrate();
+    record.newton(report);
+    record.mesh(solver);
+    if (run.talks())
+      std::cout << "cycle " << cycle << ": " << solver.sheet().mesh().n_global_active_cells() << " cells, "
+                << solver.sheet().dof_handler().n_dofs() << " unknowns, largest reaction " << record.largest_reaction()
+                << " N/m, changed by " << record.reaction_change() << "\n";
+    say(run, report);
+  }
+  write_frame(1.);
+
+  Results results;
+  const auto add = [&results](const std::string &quantity, const std::string &unit, double value) {
+    results.add({"continuum", quantity, unit, {}, value, {}, {}, {}});
+  };
+  add("unknowns", "1", solver.sheet().dof_handler().n_dofs());
+  add("elastic energy per thickness", "J/m", solver.total_energy());
+  for (const auto &[id, force] : solver.reactions())
+    for (const unsigned int i : {0u, 1u})
+      add("force on the " + edge_name(id) + " edge per thickness, " + (i == 0 ? "x" : "y"), "N/m", force[i]);
+  const continuum::DeterminantRange range = solver.determinant_range();
+  add("smallest area ratio", "1", range.smallest);
+  add("largest area ratio", "1", range.largest);
+  if (n_cycles > 0)
+    results.add({"continuum",
+                 "largest reaction, relative change in the last adaptive cycle",
+                 "N/m",
+                 {},
+                 record.largest_reaction(),
+                 {},
+                 record.reaction_change(),
+                 input.continuum.reaction_tolerance});
+  if (run.writes())
+    record.write(run.directory());
+  return results;
+}
+
+// The nodal state to which the initial fields are added.
+continuum::Sheet::Vector base_state(const Case &input, const ContinuumModel &model, const continuum::Sheet &sheet,
+                                    Run &run)
+{
+  continuum::Sheet::Vector u = sheet.make_owned();
+  if (input.continuum.initial_base == ContinuumCase::Base::loading)
+    dealii::VectorTools::interpolate(sheet.mapping(), sheet.dof_handler(), AffineDisplacement(input.deformation()), u);
+  if (input.continuum.initial_base == ContinuumCase::Base::equilibrium)
+  {
+    const auto phase = run.info().stopwatch().phase("equilibrium");
+    continuum::StaticSolver solver(sheet.mesh(), model.constitution(), model.conditions(), static_settings(input));
+    say(run, solver.solve());
+    u = solver.displacement();
+  }
+  return u;
+}
+
+double motion_time_step(const Case &input, ContinuumModel &model)
+{
+  if (input.continuum.time_step)
+    return *input.continuum.time_step;
+  double smallest = model.extent();
+  for (const auto &cell : model.mesh().active_cell_iterators())
+    smallest = std::min(smallest, cell->minimum_vertex_distance());
+  smallest = dealii::Utilities::MPI::min(smallest, MPI_COMM_WORLD);
+  return 0.1 * smallest / model.subject().theory.shear_speed;
+}
+
+Results motion(const Case &input, ContinuumModel &model, Run &run)
+{
+  const ContinuumCase &c = input.continuum;
+  continuum::DynamicSettings settings;
+  settings.time_step = motion_time_step(input, model);
+  settings.degree = c.degree;
+  settings.relative_tolerance = c.relative_tolerance;
+  settings.linear.direct_limit = c.direct_limit;
+  if (c.rule == ContinuumCase::Rule::generalised_alpha)
+    settings.rule = continuum::TimeRule::generalised_alpha(c.spectral_radius);
+  const auto viscosity = homogenised_viscosity(input.lattice(), model.subject().material);
+  continuum::DynamicSolver solver(model.mesh(), model.constitution(), model.conditions(),
+                                  {input.density, model.inertia_length()}, settings, viscosity.get());
+
+  const continuum::Sheet &sheet = solver.sheet();
+  continuum::Sheet::Vector u = base_state(input, model, sheet, run);
+  continuum::Sheet::Vector added = sheet.make_owned();
+  continuum::Sheet::Vector v = sheet.make_owned();
+  dealii::VectorTools::interpolate(sheet.mapping(), sheet.dof_handler(), *c.initial_displacement.field(model.extent()),
+                                   added);
+  dealii::VectorTools::interpolate(sheet.mapping(), sheet.dof_handler(), *c.initial_velocity.field(model.extent()), v);
+  u += added;
+  solver.start(u, v);
+
+  ContinuumRecord record;
+  continuum::FieldWriter fields(MPI_COMM_WORLD, run.directory());
+  const auto write_frame = [&]
+  {
+    const auto phase = run.info().stopwatch().phase("output");
+    fields.add_frame(solver.time(), sheet, solver.displacement(), &solver.velocity());
+  };
+  write_frame();
+  record.motion(solver);
+  Progress progress(run.talks());
+  const auto n_steps = static_cast<std::size_t>(std::ceil(input.end_time / settings.time_step * (1. - 1e-12)));
+  double next_frame = input.frame_interval;
+  {
+    const auto phase = run.info().stopwatch().phase("motion");
+    for (std::size_t step = 1; step <= n_steps && !signal_came(); ++step)
+    {
+      solver.step();
+      if (step % input.energy_interval == 0 || step == n_steps)
+        record.motion(solver);
+      if (input.frame_interval > 0. && solver.time() >= next_frame && step < n_steps)
+      {
+        write_frame();
+        next_frame += input.frame_interval;
+      }
+      if (progress.due())
+        progress.show("step " + std::to_string(step) + "/" + std::to_string(n_steps),
+                      static_cast<double>(step) / n_steps);
+    }
+  }
+  write_frame();
+
+  Results results;
+  const continuum::EnergyLedger &ledger = solver.ledger();
+  const auto add = [&results](const std::string &quantity, const std::string &unit, double value) {
+    results.add({"continuum", quantity, unit, {}, value, {}, {}, {}});
+  };
+  add("unknowns", "1", sheet.dof_handler().n_dofs());
+  add("time step", "s", settings.time_step);
+  add("elastic energy per thickness", "J/m", ledger.stored);
+  add("kinetic energy per thickness", "J/m", ledger.kinetic);
+  add("kinetic energy of micro-inertia per thickness", "J/m", ledger.micro_kinetic);
+  add("energy dissipated per thickness", "J/m", ledger.dissipated);
+  add("work done on the sheet per thickness", "J/m", ledger.work);
+  add("energy imbalance per thickness", "J/m", ledger.imbalance);
+  if (run.writes())
+    record.write(run.directory());
+  return results;
+}
+
+} // namespace
 
 ExitCode run_continuum(const Options &options)
 {
   Case input;
   Parameters parameters;
   read_case(options, input, parameters);
+  const bool moves = input.continuum.solution == ContinuumCase::Solution::motion;
+  if (moves && !(input.end_time > 0.))
+    parameters.error("Time/end", "motion needs an end time larger than 0", {"Continuum/solution"});
   parameters.finish();
 
-  const lattice::TriangularLattice sheet = input.lattice();
+  ContinuumModel model(input);
   if (options.dry_run)
   {
-    const unsigned int unknowns = 2 * (input.degree * input.cells_x + 1) * (input.degree * input.cells_y + 1);
-    if (!options.quiet)
-      std::cout << parameters.resolved_text() << "# continuum: " << input.cells_x * input.cells_y << " cells, "
-                << unknowns << " unknowns, " << sheet.length() << " m x " << sheet.height() << " m\n";
+    const continuum::Sheet sheet(model.mesh(), model.constitution(), input.continuum.degree, model.conditions());
+    if (!options.quiet && dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+    {
+      std::cout << parameters.resolved_text() << "# continuum: " << model.mesh().n_global_active_cells() << " cells, "
+                << sheet.dof_handler().n_dofs() << " unknowns\n";
+      if (input.continuum.gradient != ContinuumGradient::none)
+        std::cout << "# lengths: static " << model.static_length() << " m, inertia " << model.inertia_length()
+                  << " m\n";
+      if (moves)
+        std::cout << "# motion: time step " << motion_time_step(input, model) << " s, "
+                  << std::ceil(input.end_time / motion_time_step(input, model)) << " steps\n";
+    }
     return ExitCode::done;
   }
-
-  const Subject material = subject(input);
-  const continuum::MooneyRivlin mooney_rivlin(material.mooney_rivlin.law);
-  const continuum::Material *law = &material.cauchy_born;
-  if (input.law == ContinuumLaw::mooney_rivlin)
-    law = &mooney_rivlin;
-
   Run run(options, parameters);
-  // The size of the lattice after rounding to whole rows, so that both sides are the same sheet.
-  dealii::parallel::distributed::Triangulation<2> mesh(MPI_COMM_WORLD);
-  continuum::make_rectangle(mesh, {sheet.length(), sheet.height(), input.cells_x, input.cells_y});
-  continuum::StaticSettings settings;
-  settings.degree = input.degree;
-  continuum::StaticSolver solver(mesh, *law, affine_boundary(input.deformation()), settings);
-  continuum::FieldWriter fields(MPI_COMM_WORLD, run.directory());
-  const auto write_frame = [&](double load_factor)
-  { fields.add_frame(load_factor, solver.sheet(), solver.displacement()); };
-  write_frame(0.);
-  continuum::SolverReport history;
-  {
-    const auto phase = run.info().stopwatch().phase("solve");
-    history = solver.solve(write_frame);
-  }
-  if (run.talks())
-    std::cout << history.text();
-
-  Results results;
-  const auto add = [&results](const std::string &quantity, const std::string &unit, double value) {
-    results.add({"continuum", quantity, unit, {}, value, {}, {}, {}});
-  };
-  add("elastic energy per thickness", "J/m", solver.total_energy());
-  const auto reactions = solver.reactions();
-  add("force on the right edge per thickness", "N/m", reactions.at(continuum::edge::right)[0]);
-  add("force on the top edge per thickness", "N/m", reactions.at(continuum::edge::top)[1]);
-  return run.finish(results);
+  const Results results = moves ? motion(input, model, run) : equilibrium(input, model, run);
+  return signal_came() ? run.interrupted(results) : run.finish(results);
 }
 
 } // namespace verification

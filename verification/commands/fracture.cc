@@ -131,6 +131,7 @@ ExitCode run_fracture(const Options &options)
   Case input;
   Parameters parameters;
   read_case(options, input, parameters);
+  input.require_whole_sheet(parameters, "`latcon fracture`");
   if (!input.breaking_stretch)
     parameters.error("Fracture/breaking stretch", "fracture needs a breaking stretch");
   if (!(input.end_time > 0.))

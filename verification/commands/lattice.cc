@@ -101,6 +101,7 @@ ExitCode run_lattice(const Options &options)
   Case input;
   Parameters parameters;
   read_case(options, input, parameters);
+  input.require_whole_sheet(parameters, "`latcon lattice`");
   if (input.solution == Case::Solution::motion && !(input.end_time > 0.))
     parameters.error("Time/end", "motion needs an end time larger than 0", {"Lattice/solution"});
   parameters.finish();

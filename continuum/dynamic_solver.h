@@ -1,0 +1,186 @@
+#pragma once
+
+#include "continuum/linear_solver.h"
+#include "continuum/sheet.h"
+#include "continuum/solver_report.h"
+#include "continuum/viscosity.h"
+
+#include <functional>
+#include <memory>
+#include <string>
+
+namespace continuum
+{
+/// Mass and micro-inertia: kinetic energy density (rho/2) (|v|^2 + l_d^2 |Grad v|^2) [J/m^3].
+struct Inertia
+{
+  double density;     ///< rho [kg/m^3] > 0, reference volume
+  double length = 0.; ///< l_d [m] >= 0
+};
+
+/// A one-step rule for the second-order equation in time: Newmark's formulas with beta, gamma, and the equation of
+/// motion asked for with the acceleration at t_(n+1-alpha_m) and all else at t_(n+1-alpha_f) (theory-continuum.md,
+/// eqs. (C.43), (C.44)). The numbers are [-].
+struct TimeRule
+{
+  double alpha_m;
+  double alpha_f;
+  double beta;
+  double gamma;
+
+  /// Generalised-alpha after Chung and Hulbert: second order, unconditionally stable when linear, with the least
+  /// damping of low frequencies for an amplification rho_inf in [0, 1] of the highest in each step. Throws
+  /// InvalidInput for another rho_inf.
+  static TimeRule generalised_alpha(double rho_inf);
+
+  /// Newmark's average acceleration, the trapezoidal rule: no damping.
+  static TimeRule average_acceleration() { return {0., 0., 0.25, 0.5}; }
+};
+
+/// How motion is followed. Viscosity at finite strain makes the matrix unsymmetric, which the direct solver takes and
+/// conjugate gradients need not.
+struct DynamicSettings
+{
+  double time_step;        ///< [s] > 0
+  unsigned int degree = 3; ///< of the elements, p >= 1; p >= 2 with a gradient law
+  TimeRule rule = TimeRule::average_acceleration();
+  double relative_tolerance = 1e-10;       ///< residual over the forces at work [-], in (0, 1)
+  unsigned int max_newton_iterations = 20; ///< per time step
+  unsigned int max_halvings = 10;          ///< of a Newton step that leaves det F <= 0
+  LinearSettings linear = LinearSettings();
+};
+
+/// Where the energy is and where it came from [J/m], per unit reference thickness (theory-continuum.md, eq. (C.46)).
+/// What has gone by is summed over the steps since start() by the midpoint rule, to second order in the time step.
+struct EnergyLedger
+{
+  double stored = 0.;        ///< E(u)
+  double kinetic = 0.;       ///< (1/2) v.M v, micro-inertia included
+  double micro_kinetic = 0.; ///< the share of micro-inertia in `kinetic`
+  double dissipated = 0.;    ///< by viscosity
+  double work = 0.;          ///< done on the sheet by held boundaries and dead loads
+  double imbalance = 0.;     ///< stored + kinetic + dissipated - work, less stored + kinetic at the start
+};
+
+/// Motion of a sheet at finite strain, total Lagrangian:
+///   M a + C(u, v) + dE/du(u) = lambda(t) L
+/// (theory-continuum.md, eq. (C.40)), with M the consistent mass with micro-inertia, C the viscous forces and L the
+/// dead loads. Everything that Conditions prescribe is multiplied by the load factor lambda(t): displacements of held
+/// boundaries, which move as u(X, t) = lambda(t) u(X), weak normal gradients and loads. No condition is needed: a
+/// sheet may be free.
+///
+/// Internal and viscous forces are those of the mid-state u_(n+1-alpha_f), v_(n+1-alpha_f), the load factor the
+/// same mean of its values at both ends; the state of the mean, not the mean of the forces, so that one evaluation
+/// serves. Each step is solved for the displacement by Newton with the exact tangent. A Newton step that leaves det F
+/// <= 0 anywhere is halved. The residual is held to relative_tolerance times the forces at work, or to the round-off of
+/// its own evaluation where that is larger (eq. (C.45)).
+///
+/// Held boundaries get their velocity and acceleration from lambda(t) by one-sided differences at the start, and from
+/// Newmark's formulas afterwards. Periodic pairs bind the increments of displacement and the velocities, so a state
+/// that is affine and periodic stays one.
+///
+/// All functions are collective, and every exception reaches every rank.
+class DynamicSolver
+{
+public:
+  using Vector = Sheet::Vector;
+  using LoadFactor = std::function<double(double time)>; ///< [-], of the time [s]
+  using Observer = std::function<void()>;                ///< called after every step
+
+  /// `mesh`, the laws and `viscosity` (none: nullptr) must outlive the solver; `load_factor` empty stands for 1 at all
+  /// times. Throws InvalidInput for numbers out of range, or what Sheet refuses.
+  DynamicSolver(const Sheet::Mesh &mesh, const Constitution &constitution, Conditions conditions,
+                const Inertia &inertia, const DynamicSettings &settings, const Viscosity *viscosity = nullptr,
+                LoadFactor load_factor = LoadFactor());
+
+  /// Begins at `time` [s] with the fields `displacement` [m] and `velocity` [m/s], interpolated; a null field is zero.
+  /// The acceleration follows from the equation of motion, the ledger starts anew. Throws InvalidInput if the
+  /// displacement of a held node is not lambda(time) times the prescribed one, to 1e-8 of the sheet's extent;
+  /// NonPhysicalState or LinearSolverFailed if there is no acceleration.
+  void start(const VectorField &displacement = VectorField(), const VectorField &velocity = VectorField(),
+             double time = 0.);
+
+  /// The same with nodal vectors of sheet(), with or without ghost entries: of a StaticSolver on the same mesh with the
+  /// same degree and conditions, for one.
+  void start(const Vector &displacement, const Vector &velocity, double time = 0.);
+
+  /// One time step. Throws SolverFailed with the history if it cannot be solved; the state is then the one before.
+  /// Throws InvalidInput before start().
+  void step();
+
+  /// Steps until the time is `end` [s] or, for want of a whole step, up to one step later. Throws as step().
+  void run_until(double end, const Observer &observer = Observer());
+
+  double time() const { return time_; } ///< [s]
+  double load_factor() const { return load_factor_; }
+  const EnergyLedger &ledger() const { return ledger_; }
+
+  /// Momentum [kg/s], per unit reference thickness.
+  dealii::Tensor<1, 2> momentum() const;
+
+  /// States at reference points [m]; see Sheet::evaluate. Viscous stress is not in them.
+  std::vector<PointState> evaluate(const std::vector<dealii::Point<2>> &points) const;
+
+  // Nodal vectors with ghost entries.
+  const Vector &displacement() const { return displacement_; } ///< [m]
+  const Vector &velocity() const { return velocity_; }         ///< [m/s]
+  /// [m/s^2]. With generalised-alpha, that of the time t + (alpha_m - alpha_f) * time_step, which differs from
+  /// that of the time t to first order.
+  const Vector &acceleration() const { return acceleration_; }
+  const Sheet &sheet() const { return sheet_; }
+  /// Residuals of the last step.
+  const SolverReport &last_report() const { return report_; }
+
+private:
+  struct Balance;
+  struct Step;
+
+  void check_input() const;
+  void set_up();
+  double load_factor_at(double time) const;
+  Vector interpolate(const VectorField &field) const;
+  void begin(Vector &u, Vector &v, double time);
+  Vector ghosted(const Vector &owned) const;
+  void multiply_by_mass(const Sheet::Matrix &M, const Vector &x, Vector &product) const;
+  void add_viscous_forces(const Vector &u, const Vector &v, Vector &forces, Vector *magnitude) const;
+  void add_viscous_tangent(const Vector &u, const Vector &v, double rate_by_displacement);
+  double dissipation(const Vector &u, const Vector &v) const;
+  Balance look_at(const Step &step, const Vector &u) const;
+  Balance best_balance(const Step &step, const Vector &first, const Vector &second, Vector &u) const;
+  void assemble(const Step &step, const Balance &state);
+  double norm_over_free(const Vector &x) const;
+  double round_off(const Balance &state, const Vector &u) const;
+  std::string attempt(Step &step, Vector &u);
+  EnergyLedger settled(const Step &step, const Vector &u, const Vector &v) const;
+  void take_stock(EnergyLedger &ledger, const Vector &u, const Vector &v, double load_factor) const;
+
+  Sheet sheet_;
+  Inertia inertia_;
+  DynamicSettings settings_;
+  const Viscosity *viscosity_;
+  LoadFactor given_load_factor_;
+  std::unique_ptr<LinearSolver> linear_solver_;
+  dealii::AffineConstraints<double> homogeneous_; // what makes the field one, and held unknowns at zero
+  Vector full_lift_;                              // prescribed displacement at load factor 1, zero elsewhere
+  Vector loads_;                                  // nodal dead loads at load factor 1
+  double smallest_cell_ = 0.;                     // extent [m]
+  Sheet::Matrix mass_;                            // condensed by homogeneous_: for solving
+  Sheet::Matrix full_mass_;                       // condensed by continuity alone: for forces
+  Sheet::Matrix plain_mass_;                      // the same without micro-inertia
+  Sheet::Matrix matrix_;                          // of the Newton step
+  Vector elastic_diagonal_;                       // of the elastic tangent last assembled
+  Vector effective_diagonal_;                     // of matrix_
+
+  bool has_started_ = false;
+  double start_time_ = 0.;
+  double initial_energy_ = 0.;
+  unsigned long n_steps_ = 0;
+  double time_ = 0.;
+  double load_factor_ = 0.;
+  Vector displacement_;
+  Vector velocity_;
+  Vector acceleration_;
+  EnergyLedger ledger_;
+  SolverReport report_;
+};
+} // namespace continuum

@@ -1,0 +1,187 @@
+// Dashpots of a network alone: stress and tangents against automatic differentiation and Taylor's theorem, objectivity,
+// dissipation, and the force of one dashpot by hand.
+#include "continuum/errors.h"
+#include "continuum/viscosity.h"
+#include "sheets.h"
+
+#include <Sacado.hpp>
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <limits>
+
+using namespace sheets;
+using continuum::FibreDashpot;
+using continuum::FibreViscosity;
+
+namespace
+{
+const double epsilon = std::numeric_limits<double>::epsilon();
+
+FibreViscosity mixed_dashpots()
+{
+  return FibreViscosity({{Tensor<1, 2>({1., 0.}), 0.7, 60.},
+                         {Tensor<1, 2>({0.6, 0.8}), 1.1, 200.},
+                         {Tensor<1, 2>({-0.28, 0.96}), 0.4, 0.}});
+}
+
+Tensor<2, 2> random_rate(std::mt19937 &generator)
+{
+  std::uniform_real_distribution<double> entry(-3., 3.);
+  return matrix(entry(generator), entry(generator), entry(generator), entry(generator));
+}
+
+using Fad = Sacado::Fad::DFad<double>;
+constexpr unsigned int n_variables = 8; // F_11, F_12, F_21, F_22, then Fdot likewise
+
+// The stress once more: the rate of l from l dl/dt = (F N).(Fdot N).
+std::array<Fad, 4> differentiable_stress(const FibreViscosity &law, const std::array<Fad, n_variables> &z)
+{
+  std::array<Fad, 4> P;
+  P.fill(Fad(0.));
+  for (const FibreDashpot &dashpot : law.dashpots())
+  {
+    const auto &N = dashpot.direction;
+    const Fad f[2] = {z[0] * N[0] + z[1] * N[1], z[2] * N[0] + z[3] * N[1]};
+    const Fad g[2] = {z[4] * N[0] + z[5] * N[1], z[6] * N[0] + z[7] * N[1]};
+    const Fad square = f[0] * f[0] + f[1] * f[1];
+    const Fad tension = dashpot.weight * dashpot.viscosity * (f[0] * g[0] + f[1] * g[1]) / square; // over l
+    for (unsigned int i = 0; i < 2; ++i)
+      for (unsigned int J = 0; J < 2; ++J)
+        P[2 * i + J] += tension * f[i] * N[J];
+  }
+  return P;
+}
+} // namespace
+
+TEST(Viscosity, AgreesWithDifferentiatedStress)
+{
+  const FibreViscosity law = mixed_dashpots();
+  std::mt19937 generator(21);
+  for (int sample = 0; sample < 100; ++sample)
+  {
+    const Tensor<2, 2> F = random_deformation(generator);
+    const Tensor<2, 2> Fdot = random_rate(generator);
+    std::array<Fad, n_variables> z;
+    for (unsigned int i = 0; i < 4; ++i)
+    {
+      z[i] = Fad(n_variables, i, F[i / 2][i % 2]);
+      z[4 + i] = Fad(n_variables, 4 + i, Fdot[i / 2][i % 2]);
+    }
+    const auto P = differentiable_stress(law, z);
+    const Tensor<4, 2> by_F = law.stress_by_F(F, Fdot);
+    const Tensor<4, 2> by_rate = law.stress_by_rate(F, Fdot);
+    // Both sides add some tens of terms: 100 rounding errors of their size, which is that of eta and of eta Fdot / l
+    // with stretches l of at least 0.7.
+    const double tolerance = 100. * epsilon * by_rate.norm();
+    const double rate = Fdot.norm() / 0.7;
+    for (unsigned int i = 0; i < 2; ++i)
+      for (unsigned int J = 0; J < 2; ++J)
+      {
+        EXPECT_NEAR(law.stress(F, Fdot)[i][J], P[2 * i + J].val(), tolerance * Fdot.norm());
+        for (unsigned int k = 0; k < 2; ++k)
+          for (unsigned int L = 0; L < 2; ++L)
+          {
+            EXPECT_NEAR(by_F[i][J][k][L], P[2 * i + J].dx(2 * k + L), tolerance * rate);
+            EXPECT_NEAR(by_rate[i][J][k][L], P[2 * i + J].dx(4 + 2 * k + L), tolerance);
+          }
+      }
+  }
+}
+
+TEST(Viscosity, TangentsLeaveASecondOrderRemainder)
+{
+  const FibreViscosity law = mixed_dashpots();
+  std::mt19937 generator(22);
+  for (int sample = 0; sample < 20; ++sample)
+  {
+    const Tensor<2, 2> F = random_deformation(generator, 0.8, 3.);
+    const Tensor<2, 2> Fdot = random_rate(generator);
+    const Tensor<2, 2> G = 0.1 * random_rate(generator);
+    const Tensor<2, 2> Gdot = random_rate(generator);
+    const Tensor<2, 2> P = law.stress(F, Fdot);
+    const Tensor<2, 2> slope = dealii::double_contract<2, 0, 3, 1>(law.stress_by_F(F, Fdot), G) +
+                               dealii::double_contract<2, 0, 3, 1>(law.stress_by_rate(F, Fdot), Gdot);
+    const auto remainder = [&](const double h)
+    { return (law.stress(F + h * G, Fdot + h * Gdot) - P - h * slope).norm(); };
+    // From 2^-6 to 2^-9: an error of a tangent would leave order 1.
+    EXPECT_GE(std::log2(remainder(std::ldexp(1., -6)) / remainder(std::ldexp(1., -9))) / 3., 1.9) << "F = " << F;
+  }
+}
+
+TEST(Viscosity, IsObjectiveAndIgnoresRotation)
+{
+  const FibreViscosity law = mixed_dashpots();
+  std::mt19937 generator(23);
+  for (int sample = 0; sample < 50; ++sample)
+  {
+    const Tensor<2, 2> F = random_deformation(generator);
+    const Tensor<2, 2> Fdot = random_rate(generator);
+    const double scale = law.stress_by_rate(F, Fdot).norm() * (Fdot.norm() + F.norm());
+    const Tensor<2, 2> spin = matrix(0., -1., 1., 0.);
+    EXPECT_NEAR(law.stress(F, spin * F).norm(), 0., 100. * epsilon * scale);
+    // Seen from a frame turned by R, which turns itself: d(R F)/dt = R (Fdot + spin F).
+    const Tensor<2, 2> R = rotation(0.1 + 0.12 * sample);
+    EXPECT_NEAR((law.stress(R * F, R * (Fdot + spin * F)) - R * law.stress(F, Fdot)).norm(), 0.,
+                100. * epsilon * scale);
+    // Angular momentum: P F^T is symmetric.
+    const Tensor<2, 2> tau = law.stress(F, Fdot) * transpose(F);
+    EXPECT_NEAR(tau[0][1], tau[1][0], 100. * epsilon * scale * F.norm());
+  }
+}
+
+TEST(Viscosity, DissipatesWhatItsDashpotsDo)
+{
+  const FibreViscosity law = mixed_dashpots();
+  std::mt19937 generator(24);
+  for (int sample = 0; sample < 100; ++sample)
+  {
+    const Tensor<2, 2> F = random_deformation(generator);
+    const Tensor<2, 2> Fdot = random_rate(generator);
+    double power = 0.;
+    for (const FibreDashpot &dashpot : law.dashpots())
+    {
+      const Tensor<1, 2> f = F * dashpot.direction;
+      const double rate = (f * (Fdot * dashpot.direction)) / f.norm();
+      power += dashpot.weight * dashpot.viscosity * rate * rate;
+    }
+    EXPECT_GE(law.dissipation(F, Fdot), 0.);
+    EXPECT_NEAR(law.dissipation(F, Fdot), power,
+                100. * epsilon * law.stress_by_rate(F, Fdot).norm() * Fdot.norm_square());
+  }
+}
+
+TEST(Viscosity, HasTheForceOfABond)
+{
+  // One fibre along x, stretched to 2 and stretching at 3/s while it turns: 0.5 * 60 * 3 Pa along its current
+  // direction (3/5, 4/5).
+  const FibreViscosity law({{Tensor<1, 2>({1., 0.}), 0.5, 60.}});
+  const Tensor<2, 2> F = matrix(1.2, 0., 1.6, 1.);
+  const Tensor<1, 2> n({0.6, 0.8});
+  const Tensor<1, 2> t({-0.8, 0.6});
+  const Tensor<1, 2> g = 3. * n + 7. * t;
+  const Tensor<2, 2> P = law.stress(F, matrix(g[0], 5., g[1], -5.));
+  EXPECT_NEAR((P - matrix(54., 0., 72., 0.)).norm(), 0., 20. * epsilon * 90.);
+}
+
+TEST(Viscosity, RefusesWhatIsNoDashpotOrNoState)
+{
+  const Tensor<1, 2> x({1., 0.});
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_THROW(FibreViscosity({}), continuum::InvalidMaterial);
+  EXPECT_THROW(FibreViscosity({{Tensor<1, 2>({1., 1.}), 1., 1.}}), continuum::InvalidMaterial);
+  for (const double weight : {0., -1., nan})
+    EXPECT_THROW(FibreViscosity({{x, weight, 1.}}), continuum::InvalidMaterial);
+  for (const double viscosity : {-1., nan})
+    EXPECT_THROW(FibreViscosity({{x, 1., viscosity}}), continuum::InvalidMaterial);
+
+  const FibreViscosity law = mixed_dashpots();
+  for (const Tensor<2, 2> &F : {matrix(1., 0., 0., -1.25), matrix(nan, 0., 0., 1.), Tensor<2, 2>()})
+  {
+    EXPECT_THROW(law.stress(F, Tensor<2, 2>()), continuum::NonPhysicalState);
+    EXPECT_THROW(law.stress_by_F(F, Tensor<2, 2>()), continuum::NonPhysicalState);
+    EXPECT_THROW(law.stress_by_rate(F, Tensor<2, 2>()), continuum::NonPhysicalState);
+    EXPECT_THROW(law.dissipation(F, Tensor<2, 2>()), continuum::NonPhysicalState);
+  }
+}

@@ -1,0 +1,214 @@
+#include "verification/continuum_case.h"
+
+#include <cmath>
+
+namespace verification
+{
+namespace
+{
+
+// In a try block: muparser tells what is wrong with an expression by an exception.
+std::string problem_with(const std::string &x, const std::string &y)
+{
+  try
+  {
+    FieldCase field;
+    field.x = x;
+    field.y = y;
+    const auto function = field.field(1.);
+    for (unsigned int i = 0; i < 2; ++i)
+      function->value(dealii::Point<2>(0.0123, 0.0045), i);
+    return "";
+  }
+  catch (const std::exception &error)
+  {
+    // Of deal.II's report the line that muparser wrote.
+    const std::string text = error.what();
+    const std::size_t at = text.find("Message:");
+    return at == std::string::npos ? "it cannot be parsed" : text.substr(at + 8, text.find('\n', at) - at - 8);
+  }
+}
+
+bool is_word(const std::string &text)
+{
+  return text == "loading" || text == "free";
+}
+
+void check_expression(Parameters &parameters, const std::string &key, const std::string &text)
+{
+  const std::string problem = problem_with(text, "0");
+  if (!problem.empty())
+    parameters.error(key, "it is no expression in x, y and pi:" + problem);
+}
+
+} // namespace
+
+void FieldCase::declare(Parameters &p, const std::string &section, const std::string &name, const std::string &unit,
+                        const std::string &documentation)
+{
+  for (std::string *component : {&x, &y})
+    p.add(section, name + (component == &x ? " x" : " y"), *component,
+          documentation + ", component " + (component == &x ? "x" : "y") + " [" + unit +
+            "]: expression in the undeformed x and y [m], and pi");
+}
+
+void FieldCase::check(Parameters &p, const std::string &section, const std::string &name) const
+{
+  check_expression(p, section + "/" + name + " x", x);
+  check_expression(p, section + "/" + name + " y", y);
+}
+
+std::shared_ptr<dealii::FunctionParser<2>> FieldCase::field(const double extent) const
+{
+  // Gradients by differences of fourth order: the step balances their error against round-off.
+  auto function = std::make_shared<dealii::FunctionParser<2>>(2, 0., 1e-3 * extent);
+  function->set_formula(dealii::AutoDerivativeFunction<2>::FourthOrder);
+  function->initialize("x,y", std::vector<std::string>{x, y}, {{"pi", std::acos(-1.)}});
+  return function;
+}
+
+void EdgeCase::declare(Parameters &p, const bool can_be_periodic)
+{
+  std::vector<std::pair<std::string, Condition>> words = {{"held", Condition::held}, {"free", Condition::free}};
+  if (can_be_periodic)
+    words.emplace_back("periodic", Condition::periodic);
+  p.add(name, "condition", condition, words,
+        "finite elements: held where the displacement is given, free where the traction is" +
+          std::string(can_be_periodic ? ", periodic where it follows the opposite edge" : ""));
+  for (std::string *component : {&displacement_x, &displacement_y})
+    p.add(name, component == &displacement_x ? "displacement x" : "displacement y", *component,
+          std::string("of a held edge, component ") + (component == &displacement_x ? "x" : "y") +
+            " [m]: `loading` for that of the homogeneous loading, `free`, or an expression in x, y [m] and pi");
+  p.add(
+    name, "normal gradient", normal_gradient,
+    {{"free", NormalGradient::free}, {"clamped", NormalGradient::clamped}, {"loading", NormalGradient::loading}},
+    "derivative of displacement along the outward normal, which a gradient law can hold: free, zero, or that of the "
+    "homogeneous loading");
+  traction.declare(p, name, "traction", "Pa", "dead load per undeformed length and thickness");
+  double_traction.declare(p, name, "double traction", "Pa m", "dead load on the normal gradient of displacement");
+}
+
+void EdgeCase::check(Parameters &p) const
+{
+  if (!is_word(displacement_x))
+    check_expression(p, name + "/displacement x", displacement_x);
+  if (!is_word(displacement_y))
+    check_expression(p, name + "/displacement y", displacement_y);
+  traction.check(p, name, "traction");
+  double_traction.check(p, name, "double traction");
+  if (condition == Condition::held && displacement_x == "free" && displacement_y == "free")
+    p.error(name + "/condition", "a held edge needs a displacement that is not `free`, or condition = free");
+  if (condition != Condition::free && !traction.is_zero() && displacement_x != "free" && displacement_y != "free")
+    p.error(name + "/traction x", "a traction needs an edge that is free to move", {name + "/condition"});
+}
+
+ContinuumCase::ContinuumCase()
+{
+  const char *const names[5] = {"Left edge", "Right edge", "Bottom edge", "Top edge", "Inner edge"};
+  for (std::size_t id = 0; id < edges.size(); ++id)
+    edges[id].name = names[id];
+  edges[4].condition = EdgeCase::Condition::free;
+}
+
+void ContinuumCase::declare(Parameters &p)
+{
+  p.add("Continuum", "law", law,
+        {{"cauchy-born", ContinuumLaw::cauchy_born}, {"mooney-rivlin", ContinuumLaw::mooney_rivlin}},
+        "law of the finite element sheet: that of the lattice, or Mooney-Rivlin calibrated along the loading path");
+  p.add("Continuum", "ratio", mooney_rivlin_ratio, Between{-0.9, 0.9}, "1",
+        "r = C2 / (C1 + C2) of the Mooney-Rivlin law; auto: calibrated along the loading path");
+  p.add("Continuum", "gradient", gradient,
+        {{"none", ContinuumGradient::none},
+         {"isotropic", ContinuumGradient::isotropic},
+         {"lattice", ContinuumGradient::lattice}},
+        "energy of the gradient of deformation: none, (mu l_s^2 / 2) |Grad F|^2, or that of the lattice's bonds");
+  p.add(
+    "Continuum", "static length", static_length, NonNegative{}, "m",
+    "l_s of the isotropic gradient energy; auto: fitted to the dispersion of the lattice, averaged over directions");
+  p.add("Continuum", "inertia length", inertia_length, NonNegative{}, "m",
+        "l_d of the micro-inertia and of the lattice's gradient energy; auto: 0 without a gradient energy, fitted with "
+        "l_s for the isotropic one, the longest bond over sqrt(12) for that of the lattice");
+  p.add("Continuum", "penalty", penalty, Between{0.5, 1000.}, "1",
+        "gamma of the interior penalty gamma p (p + 1) / h on jumps of the normal derivative");
+  p.add("Continuum", "cells x", cells_x, Between{1., 65536.}, "cells along x of a sheet without hole or notch");
+  p.add("Continuum", "cells y", cells_y, Between{1., 65536.}, "cells along y of a sheet without hole or notch");
+  p.add("Continuum", "refinements", refinements, Between{0., 12.},
+        "halvings of the coarse mesh of a sheet with a hole or a notch, or from a file");
+  p.add(
+    "Continuum", "mesh file", mesh_file,
+    "Gmsh mesh of quadrilaterals [m] in place of the sheet; physical curves 0 left, 1 right, 2 bottom, 3 top, 4 inner");
+  p.add("Continuum", "degree", degree, Between{1., 5.},
+        "polynomial degree p of the elements; at least 2 with a gradient energy");
+  p.add("Continuum", "adaptive cycles", adaptive_cycles, Between{0., 30.},
+        "times that the mesh is refined where the error seems largest, after the loading");
+  p.add("Continuum", "refined fraction", refined_fraction, Between{0.001, 1.}, "1",
+        "of the cells, in each adaptive cycle");
+  p.add("Continuum", "reaction tolerance", reaction_tolerance, Positive{}, "1",
+        "largest relative change of the largest reaction in the last adaptive cycle with which it counts as converged; "
+        "auto: reported, not judged");
+  p.add("Continuum", "first load step", first_load_step, Between{0.001, 1.}, "1",
+        "rise of the load factor with which the loading starts");
+  p.add("Continuum", "relative tolerance", relative_tolerance, Between{1e-14, 1e-4}, "1",
+        "residual over the forces at work at which Newton stops; its round-off is never undercut");
+  p.add("Continuum", "direct limit", direct_limit, Between{0., 1e7},
+        "unknowns up to which linear systems are solved directly; conjugate gradients with multigrid beyond");
+  p.add("Continuum", "solution", solution, {{"equilibrium", Solution::equilibrium}, {"motion", Solution::motion}},
+        "what `latcon continuum` computes: static equilibrium, or the motion up to the end time");
+  p.add("Continuum", "time step", time_step, Positive{}, "s",
+        "of the motion; auto: a tenth of the time that a shear wave takes across a cell");
+  p.add("Continuum", "rule", rule,
+        {{"average-acceleration", Rule::average_acceleration}, {"generalised-alpha", Rule::generalised_alpha}},
+        "of time integration");
+  p.add("Continuum", "spectral radius", spectral_radius, Between{0., 1.}, "1",
+        "of generalised-alpha at high frequencies: 1 keeps their energy, 0 removes it in a step");
+  for (std::size_t id = 0; id < edges.size(); ++id)
+    edges[id].declare(p, id < 4);
+  body_force.declare(p, "Body force", "force", "N/m^3", "dead load of the finite element sheet");
+  p.add("Body force", "corrected", body_force_corrected,
+        "apply (1 - l_d^2 Laplace) of the force, as the lattice's continuum with micro-inertia needs");
+  p.add("Initial state", "base", initial_base,
+        {{"undeformed", Base::undeformed}, {"loading", Base::loading}, {"equilibrium", Base::equilibrium}},
+        "where a motion of the finite elements starts: undeformed, homogeneously loaded, or in equilibrium under the "
+        "conditions of the case");
+  initial_displacement.declare(p, "Initial state", "displacement", "m", "added to the base, zero where edges are held");
+  initial_velocity.declare(p, "Initial state", "velocity", "m/s", "at the start of a motion of the finite elements");
+}
+
+void ContinuumCase::check(Parameters &p, const bool has_inner_edge) const
+{
+  if (gradient != ContinuumGradient::none && degree < 2)
+    p.error("Continuum/degree", "a gradient energy needs elements of degree 2 or more", {"Continuum/gradient"});
+  for (const EdgeCase &edge : edges)
+  {
+    edge.check(p);
+    if (gradient == ContinuumGradient::none && edge.normal_gradient != EdgeCase::NormalGradient::free)
+      p.error(edge.name + "/normal gradient", "without a gradient energy it cannot be held", {"Continuum/gradient"});
+    if (gradient == ContinuumGradient::none && !edge.double_traction.is_zero())
+      p.error(edge.name + "/double traction x", "without a gradient energy there is none", {"Continuum/gradient"});
+  }
+  for (const std::size_t id : {0, 2})
+    if ((edges[id].condition == EdgeCase::Condition::periodic) !=
+        (edges[id + 1].condition == EdgeCase::Condition::periodic))
+      p.error(edges[id].name + "/condition", "opposite edges must both be periodic, or neither",
+              {edges[id + 1].name + "/condition"});
+  if (!mesh_file.empty() || has_inner_edge)
+    for (const std::size_t id : {0, 2})
+      if (edges[id].condition == EdgeCase::Condition::periodic)
+        p.error(edges[id].name + "/condition", "only a sheet without hole, notch and mesh file can be periodic");
+  bool held = false;
+  for (std::size_t id = 0; id < edges.size(); ++id)
+    held =
+      held || (edges[id].condition == EdgeCase::Condition::held && (id < 4 || has_inner_edge || !mesh_file.empty()));
+  if (!held && solution == Solution::equilibrium)
+    p.error("Left edge/condition", "equilibrium needs an edge that is held",
+            {"Right edge/condition", "Bottom edge/condition", "Top edge/condition", "Inner edge/condition"});
+  if (solution == Solution::motion && adaptive_cycles > 0)
+    p.error("Continuum/adaptive cycles", "the mesh of a motion is not refined; give 0", {"Continuum/solution"});
+  if (edges[4].normal_gradient == EdgeCase::NormalGradient::loading)
+    p.error("Inner edge/normal gradient", "an inner edge has no single normal; give free or clamped");
+  body_force.check(p, "Body force", "force");
+  initial_displacement.check(p, "Initial state", "displacement");
+  initial_velocity.check(p, "Initial state", "velocity");
+}
+
+} // namespace verification

@@ -1,0 +1,145 @@
+#include "verification/continuum_record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <ostream>
+
+#include "verification/atomic_file.h"
+
+namespace verification
+{
+namespace
+{
+
+double largest(const std::map<dealii::types::boundary_id, dealii::Tensor<1, 2>> &reactions)
+{
+  double result = 0.;
+  for (const auto &[id, force] : reactions)
+    result = std::max(result, force.norm());
+  return result;
+}
+
+void print_names(std::ostream &out, const std::map<dealii::types::boundary_id, dealii::Tensor<1, 2>> &reactions)
+{
+  for (const auto &[id, force] : reactions)
+    out << "," << edge_name(id) << "_x," << edge_name(id) << "_y";
+  out << "\n";
+}
+
+void print(std::ostream &out, const std::map<dealii::types::boundary_id, dealii::Tensor<1, 2>> &reactions)
+{
+  for (const auto &[id, force] : reactions)
+    out << "," << full_precision(force[0]) << "," << full_precision(force[1]);
+  out << "\n";
+}
+
+} // namespace
+
+std::string edge_name(dealii::types::boundary_id id)
+{
+  const char *const names[] = {"left", "right", "bottom", "top", "inner"};
+  return id < 5 ? names[id] : std::to_string(id);
+}
+
+void ContinuumRecord::equilibrium(const continuum::StaticSolver &solver)
+{
+  equilibria_.push_back({solver.load_factor(), solver.total_energy(), solver.reactions()});
+}
+
+void ContinuumRecord::mesh(const continuum::StaticSolver &solver)
+{
+  meshes_.push_back({solver.sheet().mesh().n_global_active_cells(), solver.sheet().dof_handler().n_dofs(),
+                     solver.total_energy(), solver.reactions()});
+}
+
+void ContinuumRecord::newton(const continuum::SolverReport &report)
+{
+  iterations_.insert(iterations_.end(), report.iterations.begin(), report.iterations.end());
+}
+
+void ContinuumRecord::motion(const continuum::DynamicSolver &solver)
+{
+  motion_.push_back({solver.time(), solver.ledger()});
+}
+
+double ContinuumRecord::largest_reaction() const
+{
+  return meshes_.empty() ? 0. : largest(meshes_.back().reactions);
+}
+
+double ContinuumRecord::reaction_change() const
+{
+  if (meshes_.size() < 2)
+    return std::numeric_limits<double>::infinity();
+  const double before = largest(meshes_[meshes_.size() - 2].reactions);
+  return std::abs(largest_reaction() - before) / largest_reaction();
+}
+
+void ContinuumRecord::write(const std::string &directory) const
+{
+  if (!motion_.empty())
+  {
+    write_file(
+      directory + "/energy.csv",
+      [this](std::ostream &out)
+      {
+        out << "t,elastic,kinetic,micro_inertia,viscous,boundary_work,imbalance\n";
+        for (const auto &[time, ledger] : motion_)
+        {
+          const char *separator = "";
+          for (const double value : {time, ledger.stored, ledger.kinetic, ledger.micro_kinetic, ledger.dissipated,
+                                     ledger.work, ledger.imbalance})
+          {
+            out << separator << full_precision(value);
+            separator = ",";
+          }
+          out << "\n";
+        }
+      });
+    return;
+  }
+  write_file(directory + "/energy.csv",
+             [this](std::ostream &out)
+             {
+               out << "load_factor,elastic\n";
+               for (const Equilibrium &state : equilibria_)
+                 out << full_precision(state.load_factor) << "," << full_precision(state.energy) << "\n";
+             });
+  if (!equilibria_.empty())
+    write_file(directory + "/reactions.csv",
+               [this](std::ostream &out)
+               {
+                 out << "load_factor";
+                 print_names(out, equilibria_.front().reactions);
+                 for (const Equilibrium &state : equilibria_)
+                 {
+                   out << full_precision(state.load_factor);
+                   print(out, state.reactions);
+                 }
+               });
+  write_file(directory + "/newton.csv",
+             [this](std::ostream &out)
+             {
+               out << "load_step,iteration,load_factor,residual,tolerance,energy,step_length,linear_iterations\n";
+               for (const continuum::NewtonIteration &row : iterations_)
+                 out << row.load_step << "," << row.iteration << "," << full_precision(row.load_factor) << ","
+                     << full_precision(row.residual) << "," << full_precision(row.tolerance) << ","
+                     << full_precision(row.energy) << "," << full_precision(row.step_length) << ","
+                     << row.linear_iterations << "\n";
+             });
+  if (meshes_.size() > 1)
+    write_file(directory + "/meshes.csv",
+               [this](std::ostream &out)
+               {
+                 out << "cells,unknowns,elastic";
+                 print_names(out, meshes_.front().reactions);
+                 for (const MeshRow &row : meshes_)
+                 {
+                   out << row.n_cells << "," << row.n_unknowns << "," << full_precision(row.energy);
+                   print(out, row.reactions);
+                 }
+               });
+}
+
+} // namespace verification

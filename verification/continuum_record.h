@@ -1,0 +1,68 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "continuum/dynamic_solver.h"
+#include "continuum/static_solver.h"
+
+namespace verification
+{
+
+/// The tables that a run of the finite element sheet leaves behind besides fields. All ranks note, one writes.
+class ContinuumRecord
+{
+public:
+  /// An equilibrium: the load factor, energy and reactions of it.
+  void equilibrium(const continuum::StaticSolver &solver);
+
+  /// A mesh of an adaptive series, once equilibrium is found on it.
+  void mesh(const continuum::StaticSolver &solver);
+
+  /// The Newton iterations of a solve.
+  void newton(const continuum::SolverReport &report);
+
+  /// A state of a motion.
+  void motion(const continuum::DynamicSolver &solver);
+
+  /// Largest of |reaction of an edge| of the last mesh noted [N/m], and its relative change from the one before [-]; 0
+  /// and infinite where there is none.
+  double largest_reaction() const;
+  double reaction_change() const;
+
+  /// Writes energy.csv and, for equilibria, reactions.csv, newton.csv and, with two meshes or more, meshes.csv.
+  /// @throws OutputError
+  void write(const std::string &directory) const;
+
+private:
+  using Reactions = std::map<dealii::types::boundary_id, dealii::Tensor<1, 2>>;
+
+  struct Equilibrium
+  {
+    double load_factor;
+    double energy;
+    Reactions reactions;
+  };
+  struct MeshRow
+  {
+    dealii::types::global_cell_index n_cells;
+    dealii::types::global_dof_index n_unknowns;
+    double energy;
+    Reactions reactions;
+  };
+  struct MotionRow
+  {
+    double time;
+    continuum::EnergyLedger ledger;
+  };
+
+  std::vector<Equilibrium> equilibria_;
+  std::vector<MeshRow> meshes_;
+  std::vector<continuum::NewtonIteration> iterations_;
+  std::vector<MotionRow> motion_;
+};
+
+/// "left", "right", "bottom", "top", "inner", or the number of another edge.
+std::string edge_name(dealii::types::boundary_id id);
+
+} // namespace verification
