@@ -14,8 +14,10 @@ namespace continuum
 /// How the multigrid cycle is set up.
 struct MultigridSettings
 {
-  unsigned int smoothing_degree = 2; ///< of the Chebyshev polynomial, before and after the coarse correction, >= 1
-  double smoothing_range = 6.;       ///< largest eigenvalue over the smallest that is smoothed [-], > 1
+  /// Of the Chebyshev polynomial on the finest level, before and after the coarse correction, >= 1; it doubles from
+  /// level to level, up to 16 times.
+  unsigned int smoothing_degree = 2;
+  double smoothing_range = 6.;             ///< largest eigenvalue over the smallest that is smoothed [-], > 1
   unsigned int eigenvalue_iterations = 10; ///< of the Lanczos process that estimates the largest eigenvalue, >= 2
   /// Number of unknowns below which a level is coarse enough to be solved directly. A mesh that cannot be coarsened
   /// further is solved directly whatever its size.

@@ -28,9 +28,18 @@ struct LoadStep
   std::string reason;  ///< why it was rejected; empty if accepted
 };
 
+/// Wall time [s] spent on the calling rank.
+struct SolverTimes
+{
+  double assembly = 0.;       ///< of energies, residuals and tangents
+  double preconditioner = 0.; ///< taking over a tangent: coarser tangents and patches
+  double linear_solve = 0.;   ///< factorisation and substitution, or conjugate gradients
+};
+
 /// Everything that happened in a solve.
 struct SolverReport
 {
+  SolverTimes times;
   std::vector<NewtonIteration> iterations;
   std::vector<LoadStep> load_steps;
   double load_factor = 0.; ///< reached [-]

@@ -10,6 +10,7 @@
 #include <deal.II/distributed/solution_transfer.h>
 
 #include <algorithm>
+#include <chrono>
 #include <cmath>
 #include <limits>
 
@@ -17,6 +18,23 @@ using namespace dealii;
 
 namespace continuum
 {
+namespace
+{
+// Adds the time of its life to a sum.
+class Clock
+{
+public:
+  explicit Clock(double &seconds) : seconds_(seconds), start_(std::chrono::steady_clock::now()) {}
+  ~Clock() { seconds_ += std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count(); }
+  Clock(const Clock &) = delete;
+  Clock &operator=(const Clock &) = delete;
+
+private:
+  double &seconds_;
+  std::chrono::steady_clock::time_point start_;
+};
+} // namespace
+
 /// What Newton has to know of a state.
 struct StaticSolver::Evaluation
 {
@@ -116,7 +134,10 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
 
   const auto solve = [&](const Evaluation &state, const Vector &at, const Vector *rise)
   {
-    sheet_.tangent(at, homogeneous_, matrix_, target, rise, &lift_forces);
+    {
+      const Clock clock(report.times.assembly);
+      sheet_.tangent(at, homogeneous_, matrix_, target, rise, &lift_forces);
+    }
     rhs = state.residual;
     if (rise != nullptr)
       rhs += lift_forces;
@@ -125,13 +146,22 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
       if (homogeneous_.is_constrained(i))
         rhs(i) = 0.;
     rhs.compress(VectorOperation::insert);
-    linear_solver_->update(
-      at, matrix_,
-      [target](const Sheet &level, const Vector &there, const AffineConstraints<double> &constraints, Sheet::Matrix &K)
-      { level.tangent(there, constraints, K, target); });
+    {
+      const Clock clock(report.times.preconditioner);
+      linear_solver_->update(at, matrix_,
+                             [target](const Sheet &level, const Vector &there,
+                                      const AffineConstraints<double> &constraints, Sheet::Matrix &K)
+                             { level.tangent(there, constraints, K, target); });
+    }
+    const Clock clock(report.times.linear_solve);
     const unsigned int iterations = linear_solver_->solve(matrix_, step, rhs);
     homogeneous_.distribute(step);
     return iterations;
+  };
+  const auto look = [&](const Vector &at)
+  {
+    const Clock clock(report.times.assembly);
+    return look_at(at, target);
   };
 
   try
@@ -139,7 +169,7 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
     // Predictor: the linear response to the rise of load and boundary displacement.
     lift = full_lift_;
     lift *= target - load_factor_;
-    unsigned int linear_iterations = solve(look_at(displacement_, target), displacement_, &lift);
+    unsigned int linear_iterations = solve(look(displacement_), displacement_, &lift);
     trial = displacement_;
     trial += step;
     step = lift;
@@ -149,7 +179,7 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
 
     for (unsigned int iteration = 0;; ++iteration)
     {
-      const Evaluation state = look_at(u, target);
+      const Evaluation state = look(u);
       const double floor = round_off(state, u);
       const double tolerance = std::max(settings_.relative_tolerance * state.reference, floor);
       report.iterations.push_back(
@@ -181,6 +211,7 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
         candidate = trial;
         try
         {
+          const Clock clock(report.times.assembly);
           if (potential(candidate, target) <= state.potential + 1e-4 * length * slope + noise)
           {
             u = candidate;

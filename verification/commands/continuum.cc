@@ -29,9 +29,13 @@ continuum::StaticSettings static_settings(const Case &input)
   return settings;
 }
 
-// Newton iterations and conjugate-gradient iterations in them, for people.
-void say(const Run &run, const continuum::SolverReport &report)
+// Newton iterations and conjugate-gradient iterations in them, for people, and times for the record.
+void note(Run &run, const continuum::SolverReport &report)
 {
+  Stopwatch &stopwatch = run.info().stopwatch();
+  stopwatch.add("assembly", report.times.assembly);
+  stopwatch.add("preconditioner", report.times.preconditioner);
+  stopwatch.add("linear solve", report.times.linear_solve);
   if (run.talks())
     std::cout << report.text();
 }
@@ -61,7 +65,7 @@ Results equilibrium(const Case &input, ContinuumModel &model, Run &run)
           write_frame(load_factor);
       });
     record.newton(report);
-    say(run, report);
+    note(run, report);
   }
   record.mesh(solver);
   for (std::size_t cycle = 1; cycle <= n_cycles && !signal_came(); ++cycle)
@@ -75,7 +79,7 @@ Results equilibrium(const Case &input, ContinuumModel &model, Run &run)
       std::cout << "cycle " << cycle << ": " << solver.sheet().mesh().n_global_active_cells() << " cells, "
                 << solver.sheet().dof_handler().n_dofs() << " unknowns, largest reaction " << record.largest_reaction()
                 << " N/m, changed by " << record.reaction_change() << "\n";
-    say(run, report);
+    note(run, report);
   }
   write_frame(1.);
 
@@ -116,7 +120,7 @@ continuum::Sheet::Vector base_state(const Case &input, const ContinuumModel &mod
   {
     const auto phase = run.info().stopwatch().phase("equilibrium");
     continuum::StaticSolver solver(sheet.mesh(), model.constitution(), model.conditions(), static_settings(input));
-    say(run, solver.solve());
+    note(run, solver.solve());
     u = solver.displacement();
   }
   return u;
