@@ -271,14 +271,14 @@ class Motion(TemporaryFolder):
     LENGTH = 0.01  # of the strip and the wave [m]
     STATIC, INERTIA = 0.5e-3, 1e-3  # l_s, l_d [m]
 
-    def arguments(self, folder, cells):
+    def arguments(self, folder, cells, step=5e-6):
         return ["continuum", LAYER, "--quiet", "--output-dir", folder,
                 *settings("Loading/shear=0", "Continuum/law=cauchy-born", "Continuum/ratio=auto",
                           "Bottom edge/normal gradient=free", "Top edge/normal gradient=free",
                           "Bottom edge/condition=periodic", "Top edge/condition=periodic", "Continuum/solution=motion",
                           "Initial state/base=undeformed", "Output/energy interval=1", f"Continuum/cells x={cells}",
                           "Continuum/cells y=2", f"Continuum/static length={self.STATIC}",
-                          f"Continuum/inertia length={self.INERTIA}", "Continuum/time step=5e-6", "Time/end=5e-5",
+                          f"Continuum/inertia length={self.INERTIA}", f"Continuum/time step={step}", "Time/end=5e-5",
                           f"Initial state/velocity y={self.AMPLITUDE}*sin(2*pi*x/{self.LENGTH})")]
 
     def moved(self, cells):
@@ -324,6 +324,20 @@ class Motion(TemporaryFolder):
         for name, column in one.items():
             # Sums in another order; displacements are 1e-7 of the size of a cell, so strains keep nine digits.
             np.testing.assert_allclose(two[name], column, rtol=0., atol=1e-9 * max(abs(column).max(), one["kinetic"][0]))
+        time, path = frames(self.folder / "ranks" / "continuum.pvd")[-1]
+        whole = read(vtk.vtkXMLPUnstructuredGridReader(), path)
+        self.assertEqual((time, whole.GetNumberOfCells()), (one["t"][-1], 16))
+        here = last_mesh(self.out)
+        for name in ["displacement", "velocity"]:
+            self.assertAlmostEqual(abs(field(whole, name)).max() / abs(field(here, name)).max(), 1., delta=1e-6)
+
+    def test_ends_when_it_is_told(self):
+        run = latcon(*self.arguments(self.out, 8, step="auto"))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        steps = np.diff(numbers(self.out / "energy.csv")["t"])
+        self.assertAlmostEqual(steps.sum() / 5e-5, 1., delta=1e-12)
+        # A tenth of the time that a shear wave takes across the smaller side of a cell, or somewhat less.
+        self.assertLess(steps.max(), 0.1 * (self.LENGTH / 8) / math.sqrt(MODULUS / DENSITY))
 
 
 class Gmsh(TemporaryFolder):
