@@ -25,6 +25,14 @@ private:
 // Empty if there is none. Evaluated once, since parsing happens with the first value.
 std::string problem_with(const std::string &expression)
 {
+  // Of a list muparser takes the last entry, where the user may have meant a decimal comma or both components.
+  int open = 0;
+  for (const char c : expression)
+  {
+    open += c == '(' ? 1 : c == ')' ? -1 : 0;
+    if (c == ',' && open == 0)
+      return "a list where one number is wanted";
+  }
   const SilentErrors silent;
   try
   {

@@ -89,6 +89,8 @@ TEST(ContinuumCase, RefusesExpressionsThatCannotBeRead)
   expect_refused("Left edge/traction y", {"Left edge/condition=free", "Left edge/traction y=2*"});
   expect_refused("Body force/force x", {"Body force/force x=(x"});
   expect_refused("Initial state/velocity y", {"Initial state/velocity y=loading"});
+  expect_refused("Body force/force y", {"Body force/force y=0,5 * x"});
+  expect_accepted({"Body force/force y=max(x, y) + atan2(y, x)"});
 }
 
 TEST(ContinuumCase, PeriodicEdgesComeInPairsOfAWholeSheet)
