@@ -128,6 +128,9 @@ void Case::check(Parameters &p) const
             {"Sheet/length", "Sheet/height"});
   if (notch_length >= length && notch_length > 0.)
     p.error("Sheet/notch length", "it must be less than the sheet's length", {"Sheet/length"});
+  if (has_inner_edge() && !continuum.mesh_file.empty())
+    p.error("Continuum/mesh file", "a mesh from a file has its own holes; give hole radius = 0 and notch length = 0",
+            {"Sheet/hole radius", "Sheet/notch length"});
   continuum.check(p, has_inner_edge());
 
   if (breaking_stretch && height >= 8. * spacing && length >= 8. * spacing)

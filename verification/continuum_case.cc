@@ -1,31 +1,59 @@
 #include "verification/continuum_case.h"
 
 #include <cmath>
+#include <iostream>
+#include <sstream>
 
 namespace verification
 {
 namespace
 {
 
-// In a try block: muparser tells what is wrong with an expression by an exception.
-std::string problem_with(const std::string &x, const std::string &y)
+// deal.II prints what muparser says before it throws it; the user is told once, with the entry.
+class SilentErrors
 {
+public:
+  SilentErrors() : buffer_(std::cerr.rdbuf(nullptr)) {}
+  ~SilentErrors() { std::cerr.rdbuf(buffer_); }
+  SilentErrors(const SilentErrors &) = delete;
+  SilentErrors &operator=(const SilentErrors &) = delete;
+
+private:
+  std::streambuf *buffer_;
+};
+
+// Empty if there is none. Evaluated once, since parsing happens with the first value.
+std::string problem_with(const std::string &expression)
+{
+  // Of a list muparser takes the last entry, where the user may have meant a decimal comma or both components.
+  int open = 0;
+  for (const char c : expression)
+  {
+    open += c == '(' ? 1 : c == ')' ? -1 : 0;
+    if (c == ',' && open == 0)
+      return "a list where one number is wanted";
+  }
+  const SilentErrors silent;
   try
   {
     FieldCase field;
-    field.x = x;
-    field.y = y;
-    const auto function = field.field(1.);
-    for (unsigned int i = 0; i < 2; ++i)
-      function->value(dealii::Point<2>(0.0123, 0.0045), i);
+    field.x = expression;
+    field.field(1.)->value(dealii::Point<2>(0.0123, 0.0045), 0);
     return "";
   }
   catch (const std::exception &error)
   {
-    // Of deal.II's report the line that muparser wrote.
     const std::string text = error.what();
-    const std::size_t at = text.find("Message:");
-    return at == std::string::npos ? "it cannot be parsed" : text.substr(at + 8, text.find('\n', at) - at - 8);
+    const std::string before = "The parser said: ";
+    const std::size_t begin = text.find(before);
+    if (begin == std::string::npos)
+      return "it cannot be parsed";
+    // deal.II breaks long lines, and ends with an empty one or a rule.
+    std::istringstream lines(text.substr(begin + before.size()));
+    std::string said, line;
+    while (std::getline(lines, line) && line.find_first_not_of(" -") != std::string::npos)
+      said += (said.empty() ? "" : " ") + line.substr(line.find_first_not_of(' '));
+    return said;
   }
 }
 
@@ -36,9 +64,9 @@ bool is_word(const std::string &text)
 
 void check_expression(Parameters &parameters, const std::string &key, const std::string &text)
 {
-  const std::string problem = problem_with(text, "0");
+  const std::string problem = problem_with(text);
   if (!problem.empty())
-    parameters.error(key, "it is no expression in x, y and pi:" + problem);
+    parameters.error(key, "it is no expression in x, y and pi: " + problem);
 }
 
 } // namespace
@@ -98,8 +126,17 @@ void EdgeCase::check(Parameters &p) const
   double_traction.check(p, name, "double traction");
   if (condition == Condition::held && displacement_x == "free" && displacement_y == "free")
     p.error(name + "/condition", "a held edge needs a displacement that is not `free`, or condition = free");
-  if (condition != Condition::free && !traction.is_zero() && displacement_x != "free" && displacement_y != "free")
-    p.error(name + "/traction x", "a traction needs an edge that is free to move", {name + "/condition"});
+  // What is given has to act: of a held edge on the component that is free, of a periodic one not at all.
+  for (const bool is_x : {true, false})
+    if ((is_x ? traction.x : traction.y) != "0" && condition != Condition::free &&
+        (condition == Condition::periodic || (is_x ? displacement_x : displacement_y) != "free"))
+      p.error(name + (is_x ? "/traction x" : "/traction y"), "a traction needs an edge that is free to move that way",
+              {name + "/condition"});
+  if (condition == Condition::periodic && normal_gradient != NormalGradient::free)
+    p.error(name + "/normal gradient", "that of a periodic edge follows from the opposite one", {name + "/condition"});
+  if (!double_traction.is_zero() && (condition == Condition::periodic || normal_gradient != NormalGradient::free))
+    p.error(name + "/double traction x", "a double traction needs an edge whose normal gradient is free",
+            {name + "/condition", name + "/normal gradient"});
 }
 
 ContinuumCase::ContinuumCase()

@@ -6,6 +6,7 @@
 #include "continuum/lattice_gradient.h"
 #include "continuum/meshes.h"
 #include "verification/affine_displacement.h"
+#include "verification/errors.h"
 
 namespace verification
 {
@@ -118,6 +119,8 @@ void ContinuumModel::make_conditions(const Case &input)
     if (!edge.double_traction.is_zero())
       conditions_.double_tractions.push_back({id, edge.double_traction.field(extent_)});
   }
+  if (c.solution == ContinuumCase::Solution::equilibrium && conditions_.displacements.empty())
+    throw InputError("the mesh file " + c.mesh_file + " has no edge that the case holds, and equilibrium needs one");
   if (!c.body_force.is_zero())
     conditions_.body_force =
       continuum::BodyForce{c.body_force.field(extent_), c.body_force_corrected ? inertia_length_ : 0.};

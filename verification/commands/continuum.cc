@@ -134,7 +134,8 @@ double motion_time_step(const Case &input, ContinuumModel &model)
   for (const auto &cell : model.mesh().active_cell_iterators())
     smallest = std::min(smallest, cell->minimum_vertex_distance());
   smallest = dealii::Utilities::MPI::min(smallest, MPI_COMM_WORLD);
-  return 0.1 * smallest / model.subject().theory.shear_speed;
+  const double longest = 0.1 * smallest / model.subject().theory.shear_speed;
+  return input.end_time / std::ceil(input.end_time / longest); // so that the last step ends at the end
 }
 
 Results motion(const Case &input, ContinuumModel &model, Run &run)

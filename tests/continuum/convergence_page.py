@@ -1,0 +1,218 @@
+#!/usr/bin/python3
+"""docs/convergence.md and its pictures, from the manufactured solutions of convergence_test.cc.
+
+Usage: convergence_page.py FROM DOCS
+
+FROM: the program continuum_convergence_tests, which is run (minutes), or a folder with the tables that a run of it
+left where the environment variable LATCON_TABLES said. DOCS: the folder of the page, its pictures in DOCS/images.
+"""
+import csv
+import dataclasses
+import math
+import os
+import pathlib
+import re
+import subprocess
+import sys
+import tempfile
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parents[2] / "verification" / "report"))
+
+from matplotlib.lines import Line2D
+
+from pictures import BLACK, BLUE, GREEN, GREY, RED, WIDTH, Page, save
+
+NORMS = ("L2", "H1", "H2")  # columns of a table
+TITLES = {"L2": "displacement, $L_2$ [m$^2$]", "H1": "gradient, $H_1$ [m]", "H2": "second gradient, broken $H_2$ [1]"}
+LOCAL = {"network": "network of fibres (C.11)", "mooney_rivlin": "Mooney-Rivlin (C.4)"}
+GRADIENT = {"local": "without gradient law", "isotropic": "isotropic gradient law (C.21)",
+            "lattice": "gradient law of the lattice (C.22)"}
+MESH = {"uniform": "uniform, clamped", "hanging": "hanging nodes, clamped", "uniform_loaded": "uniform, loaded above"}
+COLOURS = {2: BLUE, 3: RED, 4: GREEN}
+TOLERANCE = 0.2  # of an order, as convergence_test.cc asserts it
+SERIES = re.compile(rf"({'|'.join(LOCAL)})_({'|'.join(GRADIENT)})_(uniform|hanging)(_loaded)?_p([0-9])")
+
+
+@dataclasses.dataclass(frozen=True)
+class Series:
+    """Errors of one law, mesh family and degree: rows of (h, L2, H1, H2), coarse to fine."""
+    local: str
+    gradient: str
+    mesh: str
+    degree: int
+    rows: list
+
+    def orders(self, norm):
+        """Observed order from each mesh to the next finer one."""
+        column = 1 + NORMS.index(norm)
+        return [math.log(a[column] / b[column]) / math.log(a[0] / b[0]) for a, b in zip(self.rows, self.rows[1:])]
+
+
+class BadTable(Exception):
+    """A table is not what convergence_test.cc writes."""
+
+
+def theory(gradient, degree):
+    """Orders of the three norms for a smooth solution and h < l."""
+    return {"L2": 2 if degree == 2 and gradient != "local" else degree + 1, "H1": degree, "H2": degree - 1}
+
+
+def read_series(folder):
+    """Every table of a folder, in the order of the page."""
+    series = []
+    for path in folder.glob("*.csv"):
+        match = SERIES.fullmatch(path.stem)
+        with open(path, newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+        try:
+            numbers = [tuple(map(float, row)) for row in rows[1:]]
+        except ValueError as error:
+            raise BadTable(f"{path}: {error}") from error
+        if not match or len(numbers) < 2 or any(len(row) != 4 or min(row) <= 0. for row in numbers):
+            raise BadTable(f"{path}: no table of a convergence series")
+        local, gradient, mesh, loaded, degree = match.groups()
+        series.append(Series(local, gradient, mesh + (loaded or ""), int(degree), sorted(numbers, reverse=True)))
+    if not series:
+        raise BadTable(f"{folder}: no tables")
+    places = [list(names) for names in (LOCAL, GRADIENT, MESH)]
+    return sorted(series, key=lambda s: (places[1].index(s.gradient), places[0].index(s.local), places[2].index(s.mesh),
+                                         s.degree))
+
+
+def table_of(header, rows):
+    """A table in Markdown."""
+    lines = [header, [":--"] + ["--:"] * (len(header) - 1), *rows]
+    return "\n".join("| " + " | ".join(line) + " |" for line in lines) + "\n"
+
+
+def summary_table(series):
+    """Orders between the two finest meshes beside those of theory, a row per gradient law and degree."""
+    rows = []
+    for gradient in GRADIENT:
+        for degree in sorted({s.degree for s in series if s.gradient == gradient}):
+            alike = [s for s in series if (s.gradient, s.degree) == (gradient, degree)]
+            cells = []
+            for norm in NORMS:
+                last = [s.orders(norm)[-1] for s in alike]
+                cells += [str(theory(gradient, degree)[norm]), f"{min(last):.2f} … {max(last):.2f}"]
+            rows.append([GRADIENT[gradient], str(degree), str(len(alike)), *cells])
+    header = ["", "p", "series"] + [text for norm in NORMS for text in (f"{norm}: theory", "observed")]
+    return table_of(header, rows)
+
+
+def series_table(series):
+    """Errors on every mesh and the orders between them."""
+    rows = []
+    shown = None
+    for s in series:
+        for i, row in enumerate(s.rows):
+            cells = [MESH[s.mesh] if s.mesh != shown else "", str(s.degree) if i == 0 else "", f"1/{1. / row[0]:.4g}"]
+            for norm, error in zip(NORMS, row[1:]):
+                cells += [f"{error:.2e}", f"{s.orders(norm)[i - 1]:.2f}" if i > 0 else ""]
+            rows.append(cells)
+            shown = s.mesh
+    return table_of(["mesh, edges", "p", "h [m]"] + [text for norm in NORMS for text in (norm, "order")], rows)
+
+
+def draw(series, path):
+    """Errors over h, a panel per norm; the slope of theory below the lines of each degree."""
+    page = Page(4.1)
+    for panel, norm in enumerate(NORMS):
+        axes = page.axes(0.62 + panel * 3.2, 0.35, 2.62, 2.75)
+        column = 1 + NORMS.index(norm)
+        for s in series:
+            colour = COLOURS[s.degree]
+            # The local laws nearly coincide: one as a dot, the other as a cross on it.
+            style = dict(marker="x", markersize=4, markeredgecolor=BLACK, zorder=3)
+            if s.local == "network":
+                style = dict(marker="^" if s.mesh == "uniform_loaded" else "o", markersize=6,
+                             markerfacecolor="white" if s.mesh == "hanging" else colour)
+            axes.loglog([row[0] for row in s.rows], [row[column] for row in s.rows], color=colour, linewidth=1.0, **style)
+        for degree in sorted({s.degree for s in series}):
+            # Below the lowest of the solid lines, so that it hides none.
+            lowest = min((s for s in series if s.degree == degree), key=lambda s: s.rows[-1][column])
+            h = [lowest.rows[0][0], lowest.rows[-1][0]]
+            order = theory(lowest.gradient, degree)[norm]
+            error = [0.55 * lowest.rows[-1][column] * (x / h[1]) ** order for x in h]
+            axes.loglog(h, error, "--", color=COLOURS[degree], linewidth=1.0)
+            axes.annotate(f"{order}", (h[1], error[1]), xytext=(-3, -2), textcoords="offset points", ha="right",
+                          va="center", color=COLOURS[degree])
+        steps = sorted({row[0] for s in series for row in s.rows})
+        axes.set_xticks(steps, [f"1/{1. / h:.3g}" for h in steps])
+        axes.minorticks_off()
+        axes.set(xlim=(0.75 * steps[0], 1.2 * steps[-1]), xlabel="largest side h of a cell [m]", title=TITLES[norm])
+
+    degrees = [Line2D([], [], color=COLOURS[d], label=f"p = {d}") for d in sorted({s.degree for s in series})]
+    kinds = [("o", GREY, "uniform"), ("o", "white", "hanging nodes"), ("^", GREY, "loaded above"),
+             ("x", BLACK, "Mooney-Rivlin")]
+    kinds = [Line2D([], [], color=BLACK if mark == "x" else GREY, marker=mark, markersize=4 if mark == "x" else 6,
+                    markerfacecolor=fill, linewidth=0, label=label)
+             for mark, fill, label in kinds if mark != "^" or any(s.mesh == "uniform_loaded" for s in series)]
+    slope = Line2D([], [], color=BLACK, linestyle="--", linewidth=1.0, label="slope of theory")
+    page.figure.legend(handles=[*degrees, slope, *kinds], loc="lower center", ncol=8, columnspacing=1.2,
+                       handletextpad=0.4, bbox_to_anchor=(0.5, 0.))
+    save(page.figure, path)
+
+
+def page_text(series):
+    """The whole page."""
+    parts = [f"""# Orders of convergence
+
+Made by `cmake --build build/release --target convergence_page` from the {len(series)} series of
+`tests/continuum/convergence_test.cc`; do not edit.
+
+A displacement is made up on the unit square (side 1 m): a stretch of 1.55 by 1.4 with a sine in each component, so that
+principal stretches run from 0.9 to 2.0. Body force, tractions and double tractions that hold it in equilibrium come from
+automatic differentiation of the energies as their definitions write them, and from none of the code under test. The solver
+gets these and the displacement on the edges; with a gradient law also the normal gradient there. Of the sheets "loaded
+above" the upper edge gets traction and double traction instead. Lengths of the gradient laws are l = 0.1 m, more than a
+cell of the finest meshes. Meshes with hanging nodes have a disc in the middle refined once more; h is the largest side.
+
+For a smooth solution and h < l, theory gives the errors of displacement, gradient and second gradient (cell by cell) the
+orders 2/2/1, 4/3/2 and 5/4/3 for p = 2, 3, 4 with a gradient law, and p + 1, p, p - 1 without. The tests assert them between
+the two finest meshes to within {TOLERANCE}.
+
+{summary_table(series)}
+Observed: smallest and largest over local laws, meshes and edges, between the two finest meshes.
+"""]
+    for gradient, title in GRADIENT.items():
+        of_gradient = [s for s in series if s.gradient == gradient]
+        if not of_gradient:
+            continue
+        parts.append(f"## {title[0].upper()}{title[1:]}\n\n![Errors over h, {title}](images/convergence-{gradient}.png)\n")
+        for local, name in LOCAL.items():
+            of_both = [s for s in of_gradient if s.local == local]
+            if of_both:
+                parts.append(f"### {name[0].upper()}{name[1:]}\n\n{series_table(of_both)}")
+    return "\n".join(parts)
+
+
+def write_page(folder, docs):
+    """Page and pictures from the tables of a folder."""
+    series = read_series(folder)
+    (docs / "images").mkdir(parents=True, exist_ok=True)
+    for gradient in GRADIENT:
+        of_gradient = [s for s in series if s.gradient == gradient]
+        if of_gradient:
+            draw(of_gradient, docs / "images" / f"convergence-{gradient}.png")
+    (docs / "convergence.md").write_text(page_text(series), encoding="utf-8")
+
+
+def main(source, docs):
+    if source.is_dir():
+        write_page(source, docs)
+        return 0
+    with tempfile.TemporaryDirectory() as folder:
+        run = subprocess.run([str(source.resolve())], env=dict(os.environ, LATCON_TABLES=folder))
+        # A page of orders that the tests refuse would be a false statement.
+        if run.returncode != 0:
+            return run.returncode
+        write_page(pathlib.Path(folder), docs)
+    return 0
+
+
+if __name__ == "__main__":
+    if len(sys.argv) != 3:
+        sys.exit(__doc__)
+    sys.exit(main(*map(pathlib.Path, sys.argv[1:])))

@@ -1,0 +1,386 @@
+#!/usr/bin/python3
+"""Finite element cases from the command line: closed forms, files, refusals, motion, meshes from Gmsh.
+
+Usage: continuum_command_test.py PATH_OF_LATCON
+"""
+import json
+import math
+import pathlib
+import sys
+import tempfile
+import unittest
+
+import numpy as np
+import vtk
+from vtk.util.numpy_support import vtk_to_numpy
+
+sys.dont_write_bytecode = True
+from program import CASES, TemporaryFolder, frames, latcon, latcon_on_ranks, read, read_csv
+
+LAYER, HOLE = CASES / "shear_layer.prm", CASES / "hole.prm"
+# Of both cases. Two shells with s = 2/3 and a + b = 0.25 MPa have the small-strain modulus of theory.md.
+SPACING = 0.625e-3  # [m]
+DENSITY = 944.  # [kg/m^3]
+MODULUS = 2. / 3. * 9. / 8. * (1. + math.sqrt(3.)) * 0.25e6  # [Pa]
+TOP_FORCE = "force on the top edge per thickness, x"
+
+
+def settings(*entries):
+    return [word for entry in entries for word in ("--set", entry)]
+
+
+def results(folder):
+    return {row["quantity"]: float(row["continuum"]) for row in read_csv(folder / "results.csv")}
+
+
+def numbers(path):
+    """Columns of a table, all of whose cells must be finite numbers."""
+    rows = read_csv(path)
+    columns = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
+    assert all(np.isfinite(column).all() for column in columns.values()), path
+    return columns
+
+
+def last_mesh(folder):
+    return read(vtk.vtkXMLUnstructuredGridReader(), frames(folder / "continuum.pvd")[-1][1])
+
+
+def field(mesh, name):
+    """Values at the points; tensors as (point, row, column) of the plane."""
+    values = vtk_to_numpy(mesh.GetPointData().GetArray(name)).astype(float)
+    return values.reshape(-1, 3, 3)[:, :2, :2] if values.ndim == 2 and values.shape[1] == 9 else values
+
+
+def points_of(mesh):
+    return vtk_to_numpy(mesh.GetPoints().GetData())[:, :2].astype(float)
+
+
+def cells_of(mesh):
+    """Middle and area of every cell, whose first four points are its corners."""
+    points = points_of(mesh)
+    corners = np.array([[points[mesh.GetCell(i).GetPointId(k)] for k in range(4)]
+                        for i in range(mesh.GetNumberOfCells())])
+    one, two = corners[:, 2] - corners[:, 0], corners[:, 3] - corners[:, 1]
+    return corners.mean(axis=1), 0.5 * abs(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0])
+
+
+def stiffening(ratio):
+    """Shear force of a clamped layer over that of the local law, for l = ratio H (theory-continuum.md, eq. C.35)."""
+    return 1. / (1. - 2. * ratio * math.tanh(0.5 / ratio))
+
+
+class ShearLayer(TemporaryFolder):
+    """Shear A (1 - cosh(Y/l) / cosh(H/2l)) about the middle, of mean 1, and traction mu A."""
+
+    def sheared(self, *entries):
+        """Length and height of the sheet, results, points and displacement."""
+        run = latcon("continuum", LAYER, "--output-dir", self.out, "--quiet", *settings(*entries))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        mesh = last_mesh(self.out)
+        points = points_of(mesh)
+        # Whole rows of the lattice, of which the file knows seven digits.
+        pitch = np.array([0.5 * SPACING, 0.5 * math.sqrt(3.) * SPACING])
+        extent = np.round(np.ptp(points, axis=0) / pitch) * pitch
+        np.testing.assert_allclose(np.ptp(points, axis=0), extent, rtol=1e-6)
+        return *extent, results(self.out), points, field(mesh, "displacement")
+
+    def force(self, *entries):
+        """Over that of the local law."""
+        length, _, found, *_ = self.sheared(*entries)
+        return found[TOP_FORCE] / (MODULUS * length)
+
+    def test_converges_to_the_closed_form(self):
+        l = 4e-3
+        errors = []
+        for cells in (8, 16):
+            length, height, found, points, u = self.sheared(f"Continuum/cells y={cells}")
+            A = stiffening(l / height)
+            force = MODULUS * A * length
+            Y = points[:, 1] - points[:, 1].min() - 0.5 * height
+            profile = A * (Y - l * np.sinh(Y / l) / math.cosh(0.5 * height / l))
+            difference = u[:, 0] - profile
+            errors.append([abs(found[TOP_FORCE] / force - 1.),
+                           abs(found["elastic energy per thickness"] / (0.5 * force * height) - 1.),
+                           np.ptp(difference) / height])
+            self.assertLess(abs(u[:, 1]).max(), 1e-10 * height)
+        # Energies of interior penalty elements have the order 2 (p - 1) = 4 and displacements p + 1 = 4. Measured on 16
+        # cells: 2.7e-6, 2.7e-6, 7.6e-6 with the orders 3.88, 3.88, 3.77.
+        for coarse, fine in zip(*errors):
+            self.assertLess(fine, 1.5e-5)
+            self.assertGreater(math.log2(coarse / fine), 3.5)
+
+    def test_stiffening_by_size(self):
+        _, height, *_ = self.sheared()
+        for ratio in (0.05, 0.1, 0.2):
+            # Measured: 7.7e-6, 1.2e-6, 1.9e-7; the boundary layer of the first is 1.6 cells thick.
+            force = self.force(f"Continuum/static length={ratio * height!r}", "Continuum/cells y=32")
+            self.assertLess(abs(force / stiffening(ratio) - 1.), 1.5e-5, ratio)
+
+    def test_local_law_is_the_limit(self):
+        free = ["Bottom edge/normal gradient=free", "Top edge/normal gradient=free"]
+        # Linear elements hold a uniform shear exactly; Newton stops at 1e-10.
+        self.assertAlmostEqual(self.force("Continuum/gradient=none", "Continuum/degree=1", *free), 1., delta=1e-9)
+        # Unclamped there is no boundary layer, whatever the length.
+        self.assertAlmostEqual(self.force(*free), 1., delta=1e-9)
+        # At most the stiffening 2 l/H of a layer that the mesh does not see.
+        self.assertAlmostEqual(self.force("Continuum/static length=1e-6"), 1., delta=2e-6 / 0.0194)
+        self.assertAlmostEqual(self.force("Continuum/static length=0"), 1., delta=1e-9)
+
+
+class Hole(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.folder = tempfile.TemporaryDirectory()
+        cls.out = pathlib.Path(cls.folder.name) / "out"
+        cls.run_ = latcon("continuum", HOLE, "--output-dir", cls.out)
+
+    @classmethod
+    def tearDownClass(cls):
+        cls.folder.cleanup()
+
+    def test_ends_well_with_every_file(self):
+        self.assertEqual(self.run_.returncode, 0, self.run_.stderr)
+        names = {path.name for path in self.out.iterdir()}
+        self.assertLessEqual({"case.prm", "run.json", "results.json", "results.csv", "energy.csv", "reactions.csv",
+                              "newton.csv", "meshes.csv", "continuum.pvd"}, names)
+        self.assertFalse([name for name in names if name.endswith(".part")])
+        self.assertIn("cycle 6", self.run_.stdout)
+
+    def test_reactions_settle_as_the_mesh_grows(self):
+        meshes = numbers(self.out / "meshes.csv")
+        self.assertEqual(len(meshes["cells"]), 7)
+        self.assertTrue((np.diff(meshes["cells"]) > 0).all())
+        self.assertTrue((np.diff(meshes["unknowns"]) > 0).all())
+        largest = meshes["top_y"]  # more than x: the sheet is stretched twice as much, and wider than high
+        change = abs(np.diff(largest)) / largest[1:]
+        self.assertLess(change[-1], 1e-5)
+        self.assertLess(change[-1], change[0])
+        row = read_csv(self.out / "results.csv")[-1]
+        self.assertEqual((float(row["error"]), row["verdict"]), (change[-1], "holds"))
+        self.assertEqual(float(row["continuum"]), largest[-1])
+
+    def test_tables_tell_one_story(self):
+        meshes, newton = numbers(self.out / "meshes.csv"), numbers(self.out / "newton.csv")
+        reactions, energy = numbers(self.out / "reactions.csv"), numbers(self.out / "energy.csv")
+        self.assertEqual(list(energy), ["load_factor", "elastic"])
+        self.assertEqual((reactions["load_factor"][-1], energy["load_factor"][-1]), (1., 1.))
+        # The loading happens on the first mesh.
+        self.assertEqual(energy["elastic"][-1], meshes["elastic"][0])
+        self.assertEqual(results(self.out)["elastic energy per thickness"], meshes["elastic"][-1])
+        for axis in "xy":
+            sides = [meshes[f"{edge}_{axis}"] for edge in ("left", "right", "bottom", "top")]
+            # Newton stops at 1e-10 of the reactions.
+            self.assertLess(abs(sum(sides)).max(), 1e-9 * meshes["top_y"][0])
+        ends = np.append(newton["iteration"][1:] == 0, True)
+        self.assertEqual(ends.sum(), 7)
+        self.assertTrue((newton["residual"][ends] <= newton["tolerance"][ends]).all())
+
+    def test_fields_open_outside_latcon(self):
+        mesh = last_mesh(self.out)
+        self.assertEqual(mesh.GetFieldData().GetArray("TIME").GetValue(0), 1.)
+        points = mesh.GetPointData()
+        components = {points.GetArrayName(i): points.GetArray(i).GetNumberOfComponents()
+                      for i in range(points.GetNumberOfArrays())}
+        tensors = ["deformation_gradient", "first_piola_stress", "cauchy_stress", "strain_gradient_x",
+                   "strain_gradient_y", "double_stress_x", "double_stress_y"]
+        self.assertEqual(components, {"displacement": 3, "strain_energy_density": 1, **dict.fromkeys(tensors, 9)})
+        F, P, sigma, Gx, Gy, Qx, Qy = (field(mesh, name) for name in (
+            "deformation_gradient", "first_piola_stress", "cauchy_stress", "strain_gradient_x", "strain_gradient_y",
+            "double_stress_x", "double_stress_y"))
+        # Fields are stored in single precision.
+        pushed = np.einsum("piJ,pjJ->pij", P, F) / np.linalg.det(F)[:, None, None]
+        self.assertLess(abs(pushed - sigma).max(), 1e-5 * abs(sigma).max())
+        for G in (Gx, Gy, Qx, Qy):
+            self.assertGreater(abs(G).max(), 0.)
+            self.assertLess(abs(G - G.transpose(0, 2, 1)).max(), 1e-5 * abs(G).max())
+        self.assertGreater(field(mesh, "strain_energy_density").min(), 0.)
+
+    def test_smallest_cells_lie_at_the_rim(self):
+        mesh = last_mesh(self.out)
+        middle, area = cells_of(mesh)
+        points = points_of(mesh)
+        distance = np.linalg.norm(middle - 0.5 * (points.min(axis=0) + points.max(axis=0)), axis=1) - 5e-3
+        self.assertGreater(distance.min(), 0.)
+        smallest = area < 1.5 * area.min()
+        # Within a radius of it, where stress concentrates.
+        self.assertLess(distance[smallest].max(), 5e-3)
+        self.assertGreater(distance[area > 0.5 * area.max()].min(), 5e-3)
+        self.assertGreater(area.max() / area.min(), 16.)
+
+    def test_reaction_that_does_not_settle_is_3(self):
+        out = self.out.parent / "absurd"
+        run = latcon("continuum", HOLE, "--output-dir", out,
+                     *settings("Continuum/adaptive cycles=1", "Continuum/reaction tolerance=1e-12"))
+        self.assertEqual(run.returncode, 3, run.stderr)
+        self.assertIn("fails", run.stdout)
+        self.assertEqual(json.loads((out / "run.json").read_text())["exit_code"], 3)
+
+    def test_loading_that_cannot_be_carried_is_4(self):
+        run = latcon("continuum", HOLE, "--output-dir", self.out.parent / "torn",
+                     *settings("Loading/strain y=1.5", "Continuum/adaptive cycles=0"))
+        self.assertEqual(run.returncode, 4, run.stderr)
+        for part in ["equilibrium was lost at load factor 0.", "rejected", "converged", "iteration  0  residual"]:
+            self.assertIn(part, run.stdout + run.stderr)
+        self.assertIn("equilibrium was lost", run.stderr)
+
+
+class BadInput(TemporaryFolder):
+    def refused(self, command, case, parts, *entries):
+        """Exit 2, with a message that holds the parts, and not a file touched."""
+        self.out.mkdir(exist_ok=True)
+        (self.out / "case.prm").write_text("of an earlier run")
+        run = latcon(command, case, "--output-dir", self.out, *settings(*entries))
+        self.assertEqual(run.returncode, 2, (entries, run.stdout, run.stderr))
+        for part in parts:
+            self.assertIn(part, run.stderr)
+        self.assertEqual([path.name for path in self.out.iterdir()], ["case.prm"])
+        self.assertEqual((self.out / "case.prm").read_text(), "of an earlier run")
+        return run
+
+    def test_conditions_that_contradict_each_other(self):
+        for case, parts, *entries in [
+                (LAYER, ["Left edge/condition", "Right edge/condition", "shear_layer.prm:"], "Left edge/condition=held"),
+                (LAYER, ["Bottom edge/normal gradient", "Continuum/gradient"], "Continuum/gradient=none"),
+                (LAYER, ["Top edge/double traction x", "Top edge/normal gradient"], "Top edge/double traction x=1"),
+                (LAYER, ["Continuum/degree"], "Continuum/degree=1"),
+                (HOLE, ["Sheet/notch length", "Sheet/hole radius"], "Sheet/notch length=1 cm"),
+                (HOLE, ["Continuum/mesh file", "Sheet/hole radius"], "Continuum/mesh file=a.msh")]:
+            self.refused("continuum", case, parts, *entries)
+
+    def test_expression_that_cannot_be_read(self):
+        run = self.refused("continuum", LAYER, ["Top edge/displacement x", "sin(z)", "position 4"],
+                           "Top edge/displacement x=sin(z)")
+        self.assertEqual(len(run.stderr.splitlines()), 1)
+
+    def test_mesh_file_that_is_not_there_or_none(self):
+        nowhere = self.folder / "none.msh"
+        whole = "Sheet/hole radius=0"
+        self.refused("continuum", HOLE, [str(nowhere)], whole, f"Continuum/mesh file={nowhere}")
+        text = self.folder / "text.msh"
+        text.write_text("no mesh\n")
+        self.refused("continuum", HOLE, [str(text)], whole, f"Continuum/mesh file={text}")
+
+    def test_lattice_has_no_hole(self):
+        for command in ["lattice", "fracture"]:
+            self.refused(command, HOLE, ["Sheet/hole radius", f"latcon {command}"])
+
+
+class Motion(TemporaryFolder):
+    """A shear wave in a strip that is periodic both ways."""
+    AMPLITUDE = 0.01  # of velocity [m/s]
+    LENGTH = 0.01  # of the strip and the wave [m]
+    STATIC, INERTIA = 0.5e-3, 1e-3  # l_s, l_d [m]
+
+    def arguments(self, folder, cells, step=5e-6):
+        return ["continuum", LAYER, "--quiet", "--output-dir", folder,
+                *settings("Loading/shear=0", "Continuum/law=cauchy-born", "Continuum/ratio=auto",
+                          "Bottom edge/normal gradient=free", "Top edge/normal gradient=free",
+                          "Bottom edge/condition=periodic", "Top edge/condition=periodic", "Continuum/solution=motion",
+                          "Initial state/base=undeformed", "Output/energy interval=1", f"Continuum/cells x={cells}",
+                          "Continuum/cells y=2", f"Continuum/static length={self.STATIC}",
+                          f"Continuum/inertia length={self.INERTIA}", f"Continuum/time step={step}", "Time/end=5e-5",
+                          f"Initial state/velocity y={self.AMPLITUDE}*sin(2*pi*x/{self.LENGTH})")]
+
+    def moved(self, cells):
+        run = latcon(*self.arguments(self.out, cells))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return numbers(self.out / "energy.csv")
+
+    def test_energy_balances(self):
+        energy = self.moved(8)
+        self.assertEqual(list(energy), ["t", "elastic", "kinetic", "micro_inertia", "viscous", "boundary_work",
+                                        "imbalance"])
+        np.testing.assert_allclose(energy["t"], 5e-6 * np.arange(11), rtol=1e-12)
+        total = energy["elastic"] + energy["kinetic"] + energy["viscous"] - energy["boundary_work"]
+        # Average acceleration conserves the energy of a linear problem, and strains of 4e-4 are next to linear: measured
+        # 1e-9.
+        self.assertLess(abs(total - total[0]).max(), 1e-8 * total[0])
+        np.testing.assert_allclose(energy["imbalance"], total - total[0], atol=1e-12 * total[0])
+        # Of which micro-inertia is a part: (l_d k)^2 to 1.
+        inertia = (2. * math.pi * self.INERTIA / self.LENGTH) ** 2
+        np.testing.assert_allclose(energy["micro_inertia"] / energy["kinetic"], inertia / (1. + inertia), rtol=1e-4)
+        self.assertGreater(energy["elastic"][-1], 0.3 * total[0])
+
+    def test_frequency_is_that_of_the_dispersion_relation(self):
+        k = 2. * math.pi / self.LENGTH
+        omega = k * math.sqrt(MODULUS / DENSITY * (1. + (self.STATIC * k) ** 2) / (1. + (self.INERTIA * k) ** 2))
+        step = 5e-6
+        discrete = 2. / step * math.atan(0.5 * omega * step)  # of average acceleration
+        errors = []
+        for cells in (8, 16):
+            energy = self.moved(cells)
+            phase = np.arccos(np.sqrt(energy["kinetic"][1:] / energy["kinetic"][0]))
+            errors.append(abs(phase[-1] / energy["t"][-1] / discrete - 1.))
+        # Of order 2 (p - 1) = 4 (motion.md). Measured: 2.1e-5 and 1.2e-6.
+        self.assertLess(errors[0], 5e-5)
+        self.assertGreater(errors[0] / errors[1], 8.)
+
+    def test_ranks_leave_no_trace(self):
+        one = self.moved(8)
+        run = latcon_on_ranks(2, *self.arguments(self.folder / "ranks", 8))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        two = numbers(self.folder / "ranks" / "energy.csv")
+        self.assertEqual(list(one), list(two))
+        for name, column in one.items():
+            # Sums in another order; displacements are 1e-7 of the size of a cell, so strains keep nine digits.
+            np.testing.assert_allclose(two[name], column, rtol=0., atol=1e-9 * max(abs(column).max(), one["kinetic"][0]))
+        time, path = frames(self.folder / "ranks" / "continuum.pvd")[-1]
+        whole = read(vtk.vtkXMLPUnstructuredGridReader(), path)
+        self.assertEqual((time, whole.GetNumberOfCells()), (one["t"][-1], 16))
+        here = last_mesh(self.out)
+        for name in ["displacement", "velocity"]:
+            self.assertAlmostEqual(abs(field(whole, name)).max() / abs(field(here, name)).max(), 1., delta=1e-6)
+
+    def test_ends_when_it_is_told(self):
+        run = latcon(*self.arguments(self.out, 8, step="auto"))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        steps = np.diff(numbers(self.out / "energy.csv")["t"])
+        self.assertAlmostEqual(steps.sum() / 5e-5, 1., delta=1e-12)
+        # A tenth of the time that a shear wave takes across the smaller side of a cell, or somewhat less.
+        self.assertLess(steps.max(), 0.1 * (self.LENGTH / 8) / math.sqrt(MODULUS / DENSITY))
+
+
+class Gmsh(TemporaryFolder):
+    # Four quadrilaterals about a node off the middle, one of them halved, in a rectangle of 3 by 2 cm.
+    NODES = [(0, 0), (1.7, 0), (3, 0), (0, 1.2), (1.3, 0.8), (3, 0.9), (0, 2), (1.2, 2), (3, 2)]
+    QUADS = [(1, 2, 5, 4), (2, 3, 6, 5), (4, 5, 8, 7), (5, 6, 9, 8)]
+    # Physical curve and its nodes: left, right, bottom, top.
+    LINES = [(0, 1, 4), (0, 4, 7), (1, 3, 6), (1, 6, 9), (2, 1, 2), (2, 2, 3), (3, 7, 8), (3, 8, 9)]
+
+    def write_mesh(self, shift=0):
+        """@param shift added to the numbers of the curves"""
+        nodes = [f"{i} {0.01 * x!r} {0.01 * y!r} 0" for i, (x, y) in enumerate(self.NODES, 1)]
+        lines = [f"1 2 {tag + shift} 1 {a} {b}" for tag, a, b in self.LINES]
+        quads = ["3 2 9 1 " + " ".join(map(str, quad)) for quad in self.QUADS]
+        elements = [f"{i} {element}" for i, element in enumerate(lines + quads, 1)]
+        path = self.folder / "four.msh"
+        path.write_text("\n".join(["$MeshFormat", "2.2 0 8", "$EndMeshFormat", "$Nodes", str(len(nodes)), *nodes,
+                                   "$EndNodes", "$Elements", str(len(elements)), *elements, "$EndElements", ""]))
+        return settings("Sheet/hole radius=0", f"Continuum/mesh file={path}", "Continuum/adaptive cycles=0",
+                        "Continuum/refinements=1")
+
+    def test_skewed_quadrilaterals_hold_a_homogeneous_state(self):
+        run = latcon("continuum", HOLE, "--output-dir", self.out, *self.write_mesh())
+        self.assertEqual(run.returncode, 0, run.stderr)
+        mesh = last_mesh(self.out)
+        self.assertEqual(mesh.GetNumberOfCells(), 16)
+        self.assertAlmostEqual(cells_of(mesh)[1].sum(), 6e-4, delta=1e-9)
+        F, P = field(mesh, "deformation_gradient"), field(mesh, "first_piola_stress")
+        self.assertLess(abs(F - np.diag([1.2, 1.4])).max(), 1e-6)
+        # Forces of the edges by their names, that is by the numbers of the curves; fields in single precision.
+        found = results(self.out)
+        for edge, i, force in [("left", 0, -0.02 * P[0, 0, 0]), ("right", 0, 0.02 * P[0, 0, 0]),
+                               ("bottom", 1, -0.03 * P[0, 1, 1]), ("top", 1, 0.03 * P[0, 1, 1])]:
+            self.assertAlmostEqual(found[f"force on the {edge} edge per thickness, {'xy'[i]}"] / force, 1., delta=1e-5)
+        density = field(mesh, "strain_energy_density")[0]
+        self.assertAlmostEqual(found["elastic energy per thickness"] / (6e-4 * density), 1., delta=1e-5)
+
+    def test_mesh_without_a_held_edge_is_refused(self):
+        run = latcon("continuum", HOLE, "--output-dir", self.out, *self.write_mesh(shift=5))
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("four.msh", run.stderr)
+        self.assertFalse(self.out.exists())
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
