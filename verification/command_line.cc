@@ -105,7 +105,7 @@ ExitCode run_program(int argc, char **argv)
     return subcommand;
   };
   add_case_command("lattice", "equilibrium or motion of the unbroken lattice sheet", run_lattice);
-  add_case_command("continuum", "equilibrium of the finite element sheet", run_continuum);
+  add_case_command("continuum", "equilibrium or motion of the finite element sheet", run_continuum);
   add_case_command("fracture", "verify the case's material and pre-stretch, then run its crack", run_fracture)
     ->add_flag("--skip-verification", options.skip_verification, "run the crack unverified; noted in every output");
 

@@ -44,6 +44,8 @@ std::string edge_name(dealii::types::boundary_id id)
 
 void ContinuumRecord::equilibrium(const continuum::StaticSolver &solver)
 {
+  if (!equilibria_.empty() && equilibria_.back().load_factor == solver.load_factor())
+    equilibria_.pop_back();
   equilibria_.push_back({solver.load_factor(), solver.total_energy(), solver.reactions()});
 }
 
@@ -55,7 +57,8 @@ void ContinuumRecord::mesh(const continuum::StaticSolver &solver)
 
 void ContinuumRecord::newton(const continuum::SolverReport &report)
 {
-  iterations_.insert(iterations_.end(), report.iterations.begin(), report.iterations.end());
+  for (const continuum::NewtonIteration &iteration : report.iterations)
+    iterations_.emplace_back(meshes_.size(), iteration);
 }
 
 void ContinuumRecord::motion(const continuum::DynamicSolver &solver)
@@ -80,23 +83,22 @@ void ContinuumRecord::write(const std::string &directory) const
 {
   if (!motion_.empty())
   {
-    write_file(
-      directory + "/energy.csv",
-      [this](std::ostream &out)
-      {
-        out << "t,elastic,kinetic,micro_inertia,viscous,boundary_work,imbalance\n";
-        for (const auto &[time, ledger] : motion_)
-        {
-          const char *separator = "";
-          for (const double value : {time, ledger.stored, ledger.kinetic, ledger.micro_kinetic, ledger.dissipated,
-                                     ledger.work, ledger.imbalance})
-          {
-            out << separator << full_precision(value);
-            separator = ",";
-          }
-          out << "\n";
-        }
-      });
+    write_file(directory + "/energy.csv",
+               [this](std::ostream &out)
+               {
+                 out << "t,elastic,kinetic,micro_inertia,viscous,boundary_work,imbalance\n";
+                 for (const auto &[time, ledger] : motion_)
+                 {
+                   const char *separator = "";
+                   for (const double value : {time, ledger.stored, ledger.kinetic, ledger.micro_kinetic,
+                                              ledger.dissipated, ledger.work, ledger.imbalance})
+                   {
+                     out << separator << full_precision(value);
+                     separator = ",";
+                   }
+                   out << "\n";
+                 }
+               });
     return;
   }
   write_file(directory + "/energy.csv",
@@ -121,10 +123,10 @@ void ContinuumRecord::write(const std::string &directory) const
   write_file(directory + "/newton.csv",
              [this](std::ostream &out)
              {
-               out << "load_step,iteration,load_factor,residual,tolerance,energy,step_length,linear_iterations\n";
-               for (const continuum::NewtonIteration &row : iterations_)
-                 out << row.load_step << "," << row.iteration << "," << full_precision(row.load_factor) << ","
-                     << full_precision(row.residual) << "," << full_precision(row.tolerance) << ","
+               out << "mesh,load_step,iteration,load_factor,residual,tolerance,energy,step_length,linear_iterations\n";
+               for (const auto &[mesh, row] : iterations_)
+                 out << mesh << "," << row.load_step << "," << row.iteration << "," << full_precision(row.load_factor)
+                     << "," << full_precision(row.residual) << "," << full_precision(row.tolerance) << ","
                      << full_precision(row.energy) << "," << full_precision(row.step_length) << ","
                      << row.linear_iterations << "\n";
              });

@@ -13,13 +13,14 @@ namespace verification
 class ContinuumRecord
 {
 public:
-  /// An equilibrium: the load factor, energy and reactions of it.
+  /// An equilibrium: the load factor, energy and reactions of it. It takes the place of one at the same load factor on
+  /// a coarser mesh.
   void equilibrium(const continuum::StaticSolver &solver);
 
   /// A mesh of an adaptive series, once equilibrium is found on it.
   void mesh(const continuum::StaticSolver &solver);
 
-  /// The Newton iterations of a solve.
+  /// The Newton iterations of a solve, on the mesh that is to be noted next.
   void newton(const continuum::SolverReport &report);
 
   /// A state of a motion.
@@ -58,7 +59,7 @@ private:
 
   std::vector<Equilibrium> equilibria_;
   std::vector<MeshRow> meshes_;
-  std::vector<continuum::NewtonIteration> iterations_;
+  std::vector<std::pair<std::size_t, continuum::NewtonIteration>> iterations_; // with the number of the mesh, from 0
   std::vector<MotionRow> motion_;
 };
 

@@ -6,6 +6,7 @@
 #include <deal.II/numerics/vector_tools_interpolate.h>
 
 #include "continuum/dynamic_solver.h"
+#include "continuum/errors.h"
 #include "continuum/field_writer.h"
 #include "verification/affine_displacement.h"
 #include "verification/commands/command.h"
@@ -54,32 +55,47 @@ Results equilibrium(const Case &input, ContinuumModel &model, Run &run)
   };
   write_frame(0.);
   const std::size_t n_cycles = input.continuum.adaptive_cycles;
+  const auto find_equilibrium = [&](const std::string &phase_name, auto &&find)
   {
-    const auto phase = run.info().stopwatch().phase("solve");
-    const continuum::SolverReport report = solver.solve(
-      [&](double load_factor)
-      {
-        record.equilibrium(solver);
-        // The frame at full load is that of the last mesh.
-        if (load_factor < 1.)
-          write_frame(load_factor);
-      });
-    record.newton(report);
-    note(run, report);
-  }
+    const auto phase = run.info().stopwatch().phase(phase_name);
+    try
+    {
+      const continuum::SolverReport report = find();
+      record.newton(report);
+      note(run, report);
+    }
+    catch (const continuum::SolverFailed &failure)
+    {
+      // What was found up to here is kept.
+      record.newton(failure.report());
+      if (run.writes())
+        record.write(run.directory());
+      throw;
+    }
+  };
+  find_equilibrium("solve",
+                   [&]
+                   {
+                     return solver.solve(
+                       [&](double load_factor)
+                       {
+                         record.equilibrium(solver);
+                         // The frame at full load is that of the last mesh.
+                         if (load_factor < 1.)
+                           write_frame(load_factor);
+                       });
+                   });
   record.mesh(solver);
   for (std::size_t cycle = 1; cycle <= n_cycles && !signal_came(); ++cycle)
   {
-    const auto phase = run.info().stopwatch().phase("adaptive cycles");
     solver.refine(model.mesh(), input.continuum.refined_fraction);
-    const continuum::SolverReport report = solver.equilibrate();
-    record.newton(report);
+    find_equilibrium("adaptive cycles", [&] { return solver.equilibrate(); });
+    record.equilibrium(solver);
     record.mesh(solver);
     if (run.talks())
       std::cout << "cycle " << cycle << ": " << solver.sheet().mesh().n_global_active_cells() << " cells, "
                 << solver.sheet().dof_handler().n_dofs() << " unknowns, largest reaction " << record.largest_reaction()
                 << " N/m, changed by " << record.reaction_change() << "\n";
-    note(run, report);
   }
   write_frame(1.);
 
@@ -241,8 +257,16 @@ ExitCode run_continuum(const Options &options)
     return ExitCode::done;
   }
   Run run(options, parameters);
-  const Results results = moves ? motion(input, model, run) : equilibrium(input, model, run);
-  return signal_came() ? run.interrupted(results) : run.finish(results);
+  try
+  {
+    const Results results = moves ? motion(input, model, run) : equilibrium(input, model, run);
+    return signal_came() ? run.interrupted(results) : run.finish(results);
+  }
+  catch (const continuum::NonPhysicalState &failure)
+  {
+    // The input was good, so it is the computed state that is not.
+    throw SolverError(failure.what());
+  }
 }
 
 } // namespace verification
