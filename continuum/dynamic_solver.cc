@@ -81,7 +81,7 @@ DynamicSolver::DynamicSolver(const Sheet::Mesh &mesh, const Constitution &consti
                              const Inertia &inertia, const DynamicSettings &settings, const Viscosity *viscosity,
                              LoadFactor load_factor)
   : sheet_(mesh, constitution, settings.degree, std::move(conditions)), inertia_(inertia), settings_(settings),
-    viscosity_(viscosity), given_load_factor_(std::move(load_factor))
+    viscosity_(viscosity), viscous_forces_(sheet_, viscosity), given_load_factor_(std::move(load_factor))
 {
   check_input();
   set_up();
@@ -211,127 +211,6 @@ void DynamicSolver::multiply_by_mass(const Sheet::Matrix &M, const Vector &x, Ve
   product.compress(VectorOperation::insert);
 }
 
-namespace
-{
-// Calls work(values, F, Fdot, dofs) for every own cell, u and v with ghost entries. Local.
-template <typename Work>
-void for_each_cell(const Sheet &sheet, const Sheet::Vector &u, const Sheet::Vector &v, const Work &work)
-{
-  FEValues<2> values(sheet.mapping(), sheet.element(), QGauss<2>(sheet.degree() + 1),
-                     update_gradients | update_JxW_values);
-  const FEValuesExtractors::Vector field(0);
-  std::vector<Tensor<2, 2>> F(values.n_quadrature_points);
-  std::vector<Tensor<2, 2>> Fdot(values.n_quadrature_points);
-  std::vector<types::global_dof_index> dofs(sheet.element().n_dofs_per_cell());
-  for (const auto &cell : sheet.dof_handler().active_cell_iterators())
-    if (cell->is_locally_owned())
-    {
-      values.reinit(cell);
-      values[field].get_function_gradients(u, F);
-      values[field].get_function_gradients(v, Fdot);
-      for (Tensor<2, 2> &at_point : F)
-        for (unsigned int i = 0; i < 2; ++i)
-          at_point[i][i] += 1.;
-      cell->get_dof_indices(dofs);
-      work(values, F, Fdot, dofs);
-    }
-}
-} // namespace
-
-void DynamicSolver::add_viscous_forces(const Vector &u, const Vector &v, Vector &forces, Vector *magnitude) const
-{
-  if (viscosity_ == nullptr)
-    return;
-  const GuardedWork guarded(
-    [&]
-    {
-      const auto &element = sheet_.element();
-      dealii::Vector<double> local(element.n_dofs_per_cell());
-      dealii::Vector<double> local_magnitude(element.n_dofs_per_cell());
-      for_each_cell(sheet_, u, v,
-                    [&](const auto &values, const auto &F, const auto &Fdot, const auto &dofs)
-                    {
-                      local = 0.;
-                      local_magnitude = 0.;
-                      for (unsigned int q = 0; q < F.size(); ++q)
-                      {
-                        const Tensor<2, 2> P = viscosity_->stress(F[q], Fdot[q]);
-                        for (unsigned int a = 0; a < dofs.size(); ++a)
-                          for (unsigned int J = 0; J < 2; ++J)
-                          {
-                            const double term = P[element.system_to_component_index(a).first][J] *
-                                                values.shape_grad(a, q)[J] * values.JxW(q);
-                            local[a] += term;
-                            local_magnitude[a] += std::abs(term);
-                          }
-                      }
-                      sheet_.continuity().distribute_local_to_global(local, dofs, forces);
-                      if (magnitude != nullptr)
-                        sheet_.continuity().distribute_local_to_global(local_magnitude, dofs, *magnitude);
-                    });
-    });
-  forces.compress(VectorOperation::add);
-  if (magnitude != nullptr)
-    magnitude->compress(VectorOperation::add);
-  guarded.agree(sheet_.communicator());
-}
-
-// Derivative of the viscous forces by the displacement, where dv/du = rate_by_displacement [1/s], added to matrix_.
-void DynamicSolver::add_viscous_tangent(const Vector &u, const Vector &v, const double rate_by_displacement)
-{
-  if (viscosity_ == nullptr)
-    return;
-  const GuardedWork guarded(
-    [&]
-    {
-      const auto &element = sheet_.element();
-      const unsigned int n = element.n_dofs_per_cell();
-      FullMatrix<double> local(n, n);
-      for_each_cell(sheet_, u, v,
-                    [&](const auto &values, const auto &F, const auto &Fdot, const auto &dofs)
-                    {
-                      local = 0.;
-                      for (unsigned int q = 0; q < F.size(); ++q)
-                      {
-                        const Tensor<4, 2> T = viscosity_->stress_by_F(F[q], Fdot[q]) +
-                                               rate_by_displacement * viscosity_->stress_by_rate(F[q], Fdot[q]);
-                        for (unsigned int b = 0; b < n; ++b)
-                        {
-                          const unsigned int k = element.system_to_component_index(b).first;
-                          Tensor<2, 2> change; // of the stress with unknown b
-                          for (unsigned int i = 0; i < 2; ++i)
-                            for (unsigned int J = 0; J < 2; ++J)
-                              change[i][J] = T[i][J][k] * values.shape_grad(b, q) * values.JxW(q);
-                          for (unsigned int a = 0; a < n; ++a)
-                            local(a, b) += change[element.system_to_component_index(a).first] * values.shape_grad(a, q);
-                        }
-                      }
-                      homogeneous_.distribute_local_to_global(local, dofs, matrix_);
-                    });
-    });
-  matrix_.compress(VectorOperation::add);
-  guarded.agree(sheet_.communicator());
-}
-
-// [W/m], per unit reference thickness.
-double DynamicSolver::dissipation(const Vector &u, const Vector &v) const
-{
-  if (viscosity_ == nullptr)
-    return 0.;
-  double own = 0.;
-  collectively(sheet_.communicator(),
-               [&]
-               {
-                 for_each_cell(sheet_, u, v,
-                               [&](const auto &values, const auto &F, const auto &Fdot, const auto &)
-                               {
-                                 for (unsigned int q = 0; q < F.size(); ++q)
-                                   own += viscosity_->dissipation(F[q], Fdot[q]) * values.JxW(q);
-                               });
-               });
-  return Utilities::MPI::sum(own, sheet_.communicator());
-}
-
 double DynamicSolver::norm_over_free(const Vector &x) const
 {
   double sum = 0.;
@@ -404,7 +283,7 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time)
   Vector magnitude = sheet_.make_owned();
   multiply_by_mass(full_mass_, a, rhs);
   sheet_.residual(u_ghosted, forces, magnitude, factors[0]);
-  add_viscous_forces(u_ghosted, v_ghosted, forces, nullptr);
+  viscous_forces_.add_forces(u_ghosted, v_ghosted, forces, nullptr);
   rhs += forces;
   rhs.add(-factors[0], loads_);
   rhs *= -1.;
@@ -452,7 +331,7 @@ DynamicSolver::Balance DynamicSolver::look_at(const Step &step, const Vector &u)
   Vector forces = sheet_.make_owned();
   multiply_by_mass(full_mass_, Step::mean(step.rule.alpha_m, step.a, a_1), inertial);
   sheet_.residual(state.u_mean, forces, state.magnitude, factor);
-  add_viscous_forces(state.u_mean, state.v_mean, forces, &state.magnitude);
+  viscous_forces_.add_forces(state.u_mean, state.v_mean, forces, &state.magnitude);
   state.residual = inertial;
   state.residual += forces;
   state.residual.add(-factor, loads_);
@@ -509,7 +388,7 @@ void DynamicSolver::assemble(const Step &step, const Balance &state)
   const TimeRule &rule = step.rule;
   sheet_.tangent(state.u_mean, homogeneous_, matrix_, step.mean_load_factor());
   take_diagonal(elastic_diagonal_);
-  add_viscous_tangent(state.u_mean, state.v_mean, rule.gamma / (rule.beta * step.dt));
+  viscous_forces_.add_tangent(state.u_mean, state.v_mean, rule.gamma / (rule.beta * step.dt), homogeneous_, matrix_);
   const double stiffness_share = 1. - rule.alpha_f;
   const double mass_share = (1. - rule.alpha_m) / (rule.beta * step.dt * step.dt);
   matrix_ *= stiffness_share;
@@ -642,7 +521,7 @@ EnergyLedger DynamicSolver::settled(const Step &step, const Vector &u, const Vec
   Vector rate = rise;
   rate *= 1. / step.dt;
   const Vector middle_velocity = ghosted(rate);
-  ledger.dissipated += step.dt * dissipation(middle, middle_velocity);
+  ledger.dissipated += step.dt * viscous_forces_.dissipation(middle, middle_velocity);
 
   const double factor = 0.5 * (step.first_load_factor + step.last_load_factor);
   ledger.work += factor * (loads_ * rise);
@@ -657,7 +536,7 @@ EnergyLedger DynamicSolver::settled(const Step &step, const Vector &u, const Vec
       Vector inertial = sheet_.make_owned();
       Vector magnitude = sheet_.make_owned();
       sheet_.residual(middle, forces, magnitude, factor);
-      add_viscous_forces(middle, middle_velocity, forces, nullptr);
+      viscous_forces_.add_forces(middle, middle_velocity, forces, nullptr);
       Vector change = v;
       change -= step.v;
       change *= 1. / step.dt;

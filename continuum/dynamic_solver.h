@@ -3,7 +3,7 @@
 #include "continuum/linear_solver.h"
 #include "continuum/sheet.h"
 #include "continuum/solver_report.h"
-#include "continuum/viscosity.h"
+#include "continuum/viscous_forces.h"
 
 #include <functional>
 #include <memory>
@@ -142,9 +142,6 @@ private:
   void begin(Vector &u, Vector &v, double time);
   Vector ghosted(const Vector &owned) const;
   void multiply_by_mass(const Sheet::Matrix &M, const Vector &x, Vector &product) const;
-  void add_viscous_forces(const Vector &u, const Vector &v, Vector &forces, Vector *magnitude) const;
-  void add_viscous_tangent(const Vector &u, const Vector &v, double rate_by_displacement);
-  double dissipation(const Vector &u, const Vector &v) const;
   Balance look_at(const Step &step, const Vector &u) const;
   Balance best_balance(const Step &step, const Vector &first, const Vector &second, Vector &u) const;
   void assemble(const Step &step, const Balance &state);
@@ -158,6 +155,7 @@ private:
   Inertia inertia_;
   DynamicSettings settings_;
   const Viscosity *viscosity_;
+  ViscousForces viscous_forces_;
   LoadFactor given_load_factor_;
   std::unique_ptr<LinearSolver> linear_solver_;
   dealii::AffineConstraints<double> homogeneous_; // what makes the field one, and held unknowns at zero

@@ -1,0 +1,192 @@
+#include "continuum/point_density.h"
+
+using namespace dealii;
+
+namespace continuum
+{
+namespace
+{
+Tensor<2, 2> deformation_gradient(const FieldJet &u)
+{
+  Tensor<2, 2> F;
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int J = 0; J < 2; ++J)
+      F[i][J] = (i == J ? 1. : 0.) + u[i][J];
+  return F;
+}
+
+Tensor<3, 2> second_gradient(const FieldJet &u)
+{
+  Tensor<3, 2> G;
+  for (unsigned int i = 0; i < 2; ++i)
+  {
+    G[i][0][0] = u[i][2];
+    G[i][1][1] = u[i][3];
+    G[i][0][1] = G[i][1][0] = u[i][4];
+  }
+  return G;
+}
+
+// Component c of a jet among the second derivatives stands for the entries (J, K) and (K, J).
+constexpr unsigned int first_index[n_jet] = {0, 1, 0, 1, 0};
+constexpr unsigned int second_index[n_jet] = {0, 0, 0, 1, 1};
+constexpr double multiplicity[n_jet] = {1., 1., 1., 1., 2.};
+
+// Second derivatives += factor * tensor of a law, on side s.
+void add_F_F(Density &d, const unsigned int s, const Tensor<4, 2> &T, const double factor)
+{
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int J = 0; J < 2; ++J)
+      for (unsigned int k = 0; k < 2; ++k)
+        for (unsigned int L = 0; L < 2; ++L)
+          d.second[s][s][i][J][k][L] += factor * T[i][J][k][L];
+}
+
+void add_G_F(Density &d, const unsigned int s, const Tensor<5, 2> &T, const double factor)
+{
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int c = n_first; c < n_jet; ++c)
+      for (unsigned int l = 0; l < 2; ++l)
+        for (unsigned int M = 0; M < 2; ++M)
+        {
+          const double value = factor * multiplicity[c] * T[i][first_index[c]][second_index[c]][l][M];
+          d.second[s][s][i][c][l][M] += value;
+          d.second[s][s][l][M][i][c] += value;
+        }
+}
+
+void add_G_G(Density &d, const unsigned int s, const Tensor<6, 2> &T, const double factor)
+{
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int c = n_first; c < n_jet; ++c)
+      for (unsigned int l = 0; l < 2; ++l)
+        for (unsigned int e = n_first; e < n_jet; ++e)
+          d.second[s][s][i][c][l][e] += factor * multiplicity[c] * multiplicity[e] *
+                                        T[i][first_index[c]][second_index[c]][l][first_index[e]][second_index[e]];
+}
+} // namespace
+
+void clear(Density &density, const Order order)
+{
+  density.value = 0.;
+  for (FieldJet &side : density.first)
+    for (Jet &jet : side)
+      jet.fill(0.);
+  if (order == Order::second)
+    for (auto &side : density.second)
+      for (auto &other_side : side)
+        for (auto &component : other_side)
+          for (FieldJet &field : component)
+            for (Jet &jet : field)
+              jet.fill(0.);
+}
+
+void cell_density(const Constitution &laws, const bool has_gradient, const FieldJet &u, const Order order, Density &d)
+{
+  const Tensor<2, 2> F = deformation_gradient(u);
+  d.value = laws.local->energy(F);
+  const Tensor<3, 2> G = has_gradient ? second_gradient(u) : Tensor<3, 2>();
+  if (has_gradient)
+    d.value += laws.gradient->energy(F, G);
+  if (order == Order::value)
+    return;
+
+  Tensor<2, 2> P = laws.local->first_piola_stress(F);
+  if (has_gradient)
+  {
+    P += laws.gradient->first_piola_stress(F, G);
+    const Tensor<3, 2> Q = laws.gradient->double_stress(F, G);
+    for (unsigned int i = 0; i < 2; ++i)
+      for (unsigned int c = n_first; c < n_jet; ++c)
+        d.first[0][i][c] = multiplicity[c] * Q[i][first_index[c]][second_index[c]];
+  }
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int J = 0; J < 2; ++J)
+      d.first[0][i][J] = P[i][J];
+  if (order == Order::first)
+    return;
+
+  add_F_F(d, 0, laws.local->tangent(F), 1.);
+  if (has_gradient)
+  {
+    add_F_F(d, 0, laws.gradient->tangent(F, G), 1.);
+    add_G_F(d, 0, laws.gradient->double_stress_by_F(F, G), 1.);
+    add_G_G(d, 0, laws.gradient->double_stress_by_G(F), 1.);
+  }
+}
+
+void face_density(const GradientLaw &law, const std::array<FieldJet, 2> &u, const unsigned int n_sides,
+                  const Tensor<1, 2> &N, const Tensor<1, 2> &prescribed, const double penalty, const Order order,
+                  Density &d)
+{
+  const double sign[2] = {1., -1.};
+  const double share = 1. / n_sides;
+  Tensor<1, 2> z = -prescribed;
+  for (unsigned int s = 0; s < n_sides; ++s)
+    for (unsigned int i = 0; i < 2; ++i)
+      for (unsigned int J = 0; J < 2; ++J)
+        z[i] += sign[s] * u[s][i][J] * N[J];
+  const Tensor<2, 2> NN = outer_product(N, N);
+  const Tensor<3, 2> Z = outer_product(z, NN);
+
+  d.value = 0.5 * penalty * z.norm_square();
+  Tensor<1, 2> by_z = penalty * z;
+  for (unsigned int s = 0; s < n_sides; ++s)
+  {
+    const Tensor<2, 2> F = deformation_gradient(u[s]);
+    const Tensor<3, 2> G = second_gradient(u[s]);
+    d.value -= share * law.form(F, G, Z);
+    if (order == Order::value)
+      continue;
+
+    const Tensor<3, 2> Q = law.double_stress(F, G);
+    for (unsigned int i = 0; i < 2; ++i)
+      by_z[i] -= share * scalar_product(Q[i], NN);
+    const Tensor<2, 2> by_F = law.form_by_F(F, G, Z);
+    const Tensor<3, 2> by_G = law.double_stress(F, Z);
+    for (unsigned int i = 0; i < 2; ++i)
+      for (unsigned int c = 0; c < n_jet; ++c)
+        d.first[s][i][c] -=
+          share * (c < n_first ? by_F[i][c] : multiplicity[c] * by_G[i][first_index[c]][second_index[c]]);
+    if (order == Order::first)
+      continue;
+
+    add_F_F(d, s, law.form_by_FF(F, G, Z), -share);
+    add_G_F(d, s, law.double_stress_by_F(F, Z), -share);
+    // Derivative of by_z by the jets of this side; z itself depends on both sides.
+    const Tensor<5, 2> Q_by_F = law.double_stress_by_F(F, G);
+    const Tensor<6, 2> Q_by_G = law.double_stress_by_G(F);
+    for (unsigned int i = 0; i < 2; ++i)
+      for (unsigned int l = 0; l < 2; ++l)
+        for (unsigned int c = 0; c < n_jet; ++c)
+        {
+          double value = 0.;
+          for (unsigned int J = 0; J < 2; ++J)
+            for (unsigned int K = 0; K < 2; ++K)
+              value -= share * NN[J][K] *
+                       (c < n_first ? Q_by_F[i][J][K][l][c]
+                                    : multiplicity[c] * Q_by_G[i][J][K][l][first_index[c]][second_index[c]]);
+          for (unsigned int t = 0; t < n_sides; ++t)
+            for (unsigned int J = 0; J < 2; ++J)
+            {
+              d.second[t][s][i][J][l][c] += sign[t] * N[J] * value;
+              d.second[s][t][l][c][i][J] += sign[t] * N[J] * value;
+            }
+        }
+  }
+  if (order == Order::value)
+    return;
+  for (unsigned int s = 0; s < n_sides; ++s)
+    for (unsigned int i = 0; i < 2; ++i)
+      for (unsigned int J = 0; J < 2; ++J)
+        d.first[s][i][J] += sign[s] * by_z[i] * N[J];
+  if (order == Order::first)
+    return;
+  for (unsigned int s = 0; s < n_sides; ++s)
+    for (unsigned int t = 0; t < n_sides; ++t)
+      for (unsigned int i = 0; i < 2; ++i)
+        for (unsigned int J = 0; J < 2; ++J)
+          for (unsigned int L = 0; L < 2; ++L)
+            d.second[s][t][i][J][i][L] += sign[s] * sign[t] * penalty * N[J] * N[L];
+}
+} // namespace continuum
