@@ -25,6 +25,93 @@ Conditions clamped_bump(const double stretch_x, const double stretch_y, const do
 }
 } // namespace
 
+// Energy, residual and tangent of the discrete functional by Taylor's theorem at a state whose normal gradients jump
+// everywhere, on a mesh with hanging nodes and a clamped edge; the tangent is symmetric.
+TEST(GradientEquilibrium, ResidualAndTangentAreDerivativesOfOneFunctional)
+{
+  using Vector = continuum::Sheet::Vector;
+  const continuum::CauchyBorn law = rubber_network();
+  const continuum::LatticeGradient lattice = rubber_gradient(2. * internal_length);
+  const continuum::IsotropicGradient isotropic(5e5, internal_length);
+  for (const continuum::GradientLaw *gradient :
+       {static_cast<const continuum::GradientLaw *>(&lattice), static_cast<const continuum::GradientLaw *>(&isotropic)})
+    for (const unsigned int degree : {2u, 3u})
+    {
+      Mesh mesh(MPI_COMM_SELF);
+      continuum::make_rectangle(mesh, rectangle(2, 2));
+      mesh.begin_active()->set_refine_flag();
+      mesh.execute_coarsening_and_refinement();
+      const continuum::Sheet sheet(mesh, Constitution(law, *gradient), degree, clamped_bump(1.2, 1.3, 0.));
+      std::mt19937 generator(17);
+      const auto random = [&](const double amplitude)
+      {
+        std::uniform_real_distribution<double> entry(-amplitude, amplitude);
+        Vector v = sheet.make_owned();
+        for (const auto i : sheet.owned())
+          v(i) = entry(generator);
+        sheet.continuity().distribute(v);
+        return v;
+      };
+      const auto ghosted = [&](const Vector &v)
+      {
+        Vector result = sheet.make_ghosted();
+        result = v;
+        return result;
+      };
+      Vector u = random(2e-3); // over cells of 2.5 to 7.5 cm
+      for (const auto &cell : sheet.dof_handler().active_cell_iterators())
+      {
+        std::vector<dealii::types::global_dof_index> dofs(sheet.element().n_dofs_per_cell());
+        cell->get_dof_indices(dofs);
+        for (unsigned int a = 0; a < dofs.size(); ++a)
+          if (!sheet.continuity().is_constrained(dofs[a]))
+          {
+            const auto X = sheet.mapping().transform_unit_to_real_cell(cell, sheet.element().unit_support_point(a));
+            const unsigned int i = sheet.element().system_to_component_index(a).first;
+            u(dofs[a]) = 0.4 * X[i] + 1e-3 * std::sin(900. * (X[0] + 2. * X[1]) + i);
+          }
+      }
+      sheet.continuity().distribute(u);
+      const Vector v = random(1e-3);
+      const Vector w = random(1e-3);
+
+      Vector r = sheet.make_owned(), magnitude = sheet.make_owned(), Kv = sheet.make_owned(), Kw = sheet.make_owned();
+      sheet.residual(ghosted(u), r, magnitude);
+      continuum::Sheet::Matrix K;
+      sheet.make_matrix(sheet.continuity(), K);
+      sheet.tangent(ghosted(u), sheet.continuity(), K);
+      // The rows of dependent unknowns hold a diagonal that is none of the functional's.
+      const auto product = [&](const Vector &x, Vector &Kx)
+      {
+        K.vmult(Kx, x);
+        for (const auto i : sheet.owned())
+          if (sheet.continuity().is_constrained(i))
+            Kx(i) = 0.;
+      };
+      product(v, Kv);
+      product(w, Kw);
+      EXPECT_NEAR(v * Kw, w * Kv, 1e-12 * v.l2_norm() * Kw.l2_norm());
+
+      const double E = sheet.energy(ghosted(u));
+      const auto remainders = [&](const double h)
+      {
+        Vector moved = u;
+        moved.add(h, v);
+        sheet.continuity().distribute(moved);
+        Vector there = sheet.make_owned();
+        sheet.residual(ghosted(moved), there, magnitude);
+        const double of_energy = std::abs(sheet.energy(ghosted(moved)) - E - h * (r * v));
+        there -= r;
+        there.add(-h, Kv);
+        return std::make_pair(of_energy, there.l2_norm());
+      };
+      const auto coarse = remainders(1. / 8.);
+      const auto fine = remainders(1. / 64.);
+      EXPECT_GT(std::log2(coarse.first / fine.first) / 3., 1.9) << "degree " << degree;
+      EXPECT_GT(std::log2(coarse.second / fine.second) / 3., 1.9) << "degree " << degree;
+    }
+}
+
 // Quadratic: the exponent by which the residual falls from one iteration to the next, once it is small and before
 // round-off. Both gradient laws, whose face terms enter the tangent with their second variation.
 TEST(GradientEquilibrium, NewtonIsQuadratic)
