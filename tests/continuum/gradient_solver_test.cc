@@ -3,6 +3,8 @@
 #include "continuum/meshes.h"
 #include "sheets.h"
 
+#include <deal.II/base/function_parser.h>
+
 #include <gtest/gtest.h>
 
 using namespace sheets;
@@ -229,6 +231,31 @@ TEST(GradientEquilibrium, IsLocalWithoutLengthAndInHomogeneousStates)
   const double flat = energy(law, homogeneous);
   EXPECT_NEAR(energy(Constitution(law, large), homogeneous), flat, 1e-12 * flat);
   EXPECT_NEAR(energy(Constitution(law, rubber_gradient(0.01)), homogeneous), flat, 1e-12 * flat);
+}
+
+// A sinusoidal force of wave number k is 1 + l^2 k^2 times as large for (1 - l^2 Laplace), on every shape function: the
+// integral over the boundary makes up for the partial integration.
+TEST(GradientEquilibrium, CorrectsTheBodyForceOfMicroInertia)
+{
+  const continuum::CauchyBorn law = rubber_network();
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::make_rectangle(mesh, rectangle(12, 8));
+  const double k = 40.;
+  const auto force = std::make_shared<dealii::FunctionParser<2>>(2, 0., 1e-4);
+  force->set_formula(dealii::AutoDerivativeFunction<2>::FourthOrder);
+  force->initialize("x,y", std::vector<std::string>{"1e5*sin(40*(0.6*x+0.8*y)+0.3)", "2e5*cos(40*(0.8*x-0.6*y))"}, {});
+  const auto loads = [&](const double with_length)
+  {
+    Conditions conditions(on_all_edges(affine(matrix(1., 0., 0., 1.))));
+    conditions.body_force = continuum::BodyForce{force, with_length};
+    return continuum::Sheet(mesh, law, 3, conditions).loads();
+  };
+  continuum::Sheet::Vector plain = loads(0.);
+  continuum::Sheet::Vector corrected = loads(0.02);
+  plain *= 1. + std::pow(0.02 * k, 2);
+  corrected -= plain;
+  // Gauss points of degree 9 over cells of half a radian, and differences of fourth order: both below 1e-8.
+  EXPECT_LT(corrected.linfty_norm(), 1e-7 * plain.linfty_norm());
 }
 
 TEST(GradientEquilibrium, RefusesImpossibleInput)
