@@ -78,7 +78,7 @@ struct ContinuumCase
   ContinuumGradient gradient = ContinuumGradient::none;
   std::optional<double> static_length;  ///< l_s [m]; none: that of the lattice, averaged over directions
   std::optional<double> inertia_length; ///< l_d [m]; none: likewise, or half the longest bond over sqrt3
-  double penalty = 1.;                  ///< gamma [-]
+  double penalty = 2.;                  ///< gamma [-]
   unsigned int cells_x = 12;
   unsigned int cells_y = 8;
   unsigned int refinements = 2; ///< of the coarse mesh, where cells_x and cells_y do not apply
