@@ -1,4 +1,4 @@
-// Integrals of Sheet: energy, residual, tangent, loads, mass.
+// Integrals of Sheet that depend on the state: energy, residual, tangent.
 #include "continuum/collective.h"
 #include "continuum/errors.h"
 #include "continuum/point_density.h"
@@ -401,109 +401,6 @@ void Sheet::tangent(const Vector &u, const AffineConstraints<double> &constraint
   if (lift != nullptr)
     stiffness_times_lift->compress(VectorOperation::add);
   guarded.agree(communicator());
-}
-
-Sheet::Vector Sheet::loads() const
-{
-  Vector forces = make_owned();
-  const GuardedWork guarded(
-    [&]
-    {
-      const UpdateFlags needed = update_values | update_gradients | update_quadrature_points | update_JxW_values;
-      FEValues<2> values(mapping_, element_, QGauss<2>(degree_ + 2), needed);
-      FEFaceValues<2> face_values(mapping_, element_, QGauss<1>(degree_ + 2), needed | update_normal_vectors);
-      const unsigned int n = element_.n_dofs_per_cell();
-      dealii::Vector<double> local(n);
-      std::vector<types::global_dof_index> dofs(n);
-      const auto component = [this](const unsigned int a) { return element_.system_to_component_index(a).first; };
-      for (const auto &cell : dof_handler_.active_cell_iterators())
-      {
-        if (!cell->is_locally_owned())
-          continue;
-        local = 0.;
-        if (conditions_.body_force)
-        {
-          const auto &[force, length] = *conditions_.body_force;
-          values.reinit(cell);
-          for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
-            for (unsigned int i = 0; i < 2; ++i)
-            {
-              const double f = force->value(values.quadrature_point(q), i);
-              // Integrated by parts once: (1 - l^2 Laplace) f against a shape function.
-              Tensor<1, 2> slope;
-              if (length > 0.)
-                slope = length * length * force->gradient(values.quadrature_point(q), i);
-              for (unsigned int a = 0; a < n; ++a)
-                if (component(a) == i)
-                  local[a] += (f * values.shape_value(a, q) + slope * values.shape_grad(a, q)) * values.JxW(q);
-            }
-        }
-        for (const unsigned int face : cell->face_indices())
-        {
-          if (!cell->at_boundary(face) || cell->has_periodic_neighbor(face))
-            continue;
-          const types::boundary_id id = cell->face(face)->boundary_id();
-          face_values.reinit(cell, face);
-          for (unsigned int q = 0; q < face_values.n_quadrature_points; ++q)
-          {
-            const Point<2> &X = face_values.quadrature_point(q);
-            const Tensor<1, 2> &N = face_values.normal_vector(q);
-            for (unsigned int i = 0; i < 2; ++i)
-            {
-              double on_value = 0.;
-              double on_normal_gradient = 0.;
-              for (const Traction &condition : conditions_.tractions)
-                if (condition.boundary == id)
-                  on_value += condition.traction->value(X, i);
-              for (const DoubleTraction &condition : conditions_.double_tractions)
-                if (condition.boundary == id)
-                  on_normal_gradient += condition.traction->value(X, i);
-              if (conditions_.body_force && conditions_.body_force->length > 0.)
-                on_value -=
-                  std::pow(conditions_.body_force->length, 2) * (conditions_.body_force->force->gradient(X, i) * N);
-              for (unsigned int a = 0; a < n; ++a)
-                if (component(a) == i)
-                  local[a] += (on_value * face_values.shape_value(a, q) +
-                               on_normal_gradient * (face_values.shape_grad(a, q) * N)) *
-                              face_values.JxW(q);
-            }
-          }
-        }
-        cell->get_dof_indices(dofs);
-        continuity_.distribute_local_to_global(local, dofs, forces);
-      }
-    });
-  forces.compress(VectorOperation::add);
-  guarded.agree(communicator());
-  return forces;
-}
-
-void Sheet::mass(const double density, const double inertia_length, const AffineConstraints<double> &constraints,
-                 Matrix &M) const
-{
-  M = 0.;
-  FEValues<2> values(mapping_, element_, QGauss<2>(degree_ + 1), update_values | update_gradients | update_JxW_values);
-  const unsigned int n = element_.n_dofs_per_cell();
-  FullMatrix<double> local(n, n);
-  std::vector<types::global_dof_index> dofs(n);
-  for (const auto &cell : dof_handler_.active_cell_iterators())
-  {
-    if (!cell->is_locally_owned())
-      continue;
-    values.reinit(cell);
-    local = 0.;
-    for (unsigned int q = 0; q < values.n_quadrature_points; ++q)
-      for (unsigned int a = 0; a < n; ++a)
-        for (unsigned int b = 0; b < n; ++b)
-          if (element_.system_to_component_index(a).first == element_.system_to_component_index(b).first)
-            local(a, b) += density *
-                           (values.shape_value(a, q) * values.shape_value(b, q) +
-                            inertia_length * inertia_length * (values.shape_grad(a, q) * values.shape_grad(b, q))) *
-                           values.JxW(q);
-    cell->get_dof_indices(dofs);
-    constraints.distribute_local_to_global(local, dofs, M);
-  }
-  M.compress(VectorOperation::add);
 }
 
 void Sheet::make_matrix(const AffineConstraints<double> &constraints, Matrix &matrix) const
