@@ -1,6 +1,7 @@
 #include "verification/results.h"
 
 #include "verification/atomic_file.h"
+#include "verification/csv.h"
 
 #include <nlohmann/json.hpp>
 
@@ -32,16 +33,6 @@ nlohmann::ordered_json json_of(const Value &value)
 std::string csv_of(const Value &value)
 {
   return value ? full_precision(*value) : "";
-}
-
-std::string csv_of(const std::string &text)
-{
-  if (text.find_first_of(",\"\r\n") == std::string::npos)
-    return text;
-  std::string quoted = "\"";
-  for (const char c : text)
-    quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return quoted + "\"";
 }
 
 std::string table_number(const Value &value, const int digits)
@@ -167,7 +158,7 @@ std::string Results::csv() const
 {
   std::string text = "claim,quantity,unit,lattice,continuum,theory,error,tolerance,verdict\n";
   for (const Result &row : rows_)
-    text += csv_of(row.claim) + ',' + csv_of(row.quantity) + ',' + csv_of(row.unit) + ',' + csv_of(row.lattice) + ',' +
+    text += csv_field(row.claim) + ',' + csv_field(row.quantity) + ',' + csv_field(row.unit) + ',' + csv_of(row.lattice) + ',' +
             csv_of(row.continuum) + ',' + csv_of(row.theory) + ',' + csv_of(row.error) + ',' + csv_of(row.tolerance) +
             ',' + to_string(row.verdict()) + '\n';
   return text;

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "verification/case.h"
+#include "verification/claim_outcome.h"
 #include "verification/errors.h"
 #include "verification/results.h"
 #include "verification/run_info.h"
@@ -68,7 +69,7 @@ private:
 };
 
 /// Runs the claims named, or all of them, on the subject of a case, small versions if `quick`. Collective.
-Results run_claims(const Case &input, const std::vector<std::string> &names, bool quick);
+ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names, bool quick);
 
 /// Whether SIGINT or SIGTERM has come since catch_signals().
 void catch_signals();

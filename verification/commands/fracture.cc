@@ -153,7 +153,10 @@ ExitCode run_fracture(const Options &options)
   if (!options.skip_verification)
   {
     const auto phase = run.info().stopwatch().phase("claims");
-    results = run_claims(input, {}, true);
+    const ClaimOutcome claims = run_claims(input, {}, true);
+    if (run.writes())
+      claims.write_tables(run.directory());
+    results = claims.results;
     if (!results.all_hold())
     {
       run.finish(results);

@@ -12,12 +12,12 @@ namespace verification
 namespace
 {
 
-Results energy(const Subject &subject, bool quick)
+ClaimOutcome energy(const Subject &subject, bool quick)
 {
-  return energy_claim(subject, quick ? 200 : 2000);
+  return {energy_claim(subject, quick ? 200 : 2000), {}};
 }
 
-Results prestretch(const Subject &subject, bool quick)
+ClaimOutcome prestretch(const Subject &subject, bool quick)
 {
   PrestretchOptions options;
   if (!quick)
@@ -27,10 +27,10 @@ Results prestretch(const Subject &subject, bool quick)
     options.cells_x = 24;
     options.cells_y = 16;
   }
-  return prestretch_claim(subject, options);
+  return {prestretch_claim(subject, options), {}};
 }
 
-using Claim = std::function<Results(const Subject &, bool)>;
+using Claim = std::function<ClaimOutcome(const Subject &, bool)>;
 
 // A further claim is a further line here.
 const std::vector<std::pair<std::string, Claim>> &claims()
@@ -53,7 +53,7 @@ const std::vector<std::string> &claim_names()
   return names;
 }
 
-Results run_claims(const Case &input, const std::vector<std::string> &names, bool quick)
+ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names, bool quick)
 {
   std::vector<Subject> subjects{subject(input)};
   if (input.has_next_nearest)
@@ -62,12 +62,12 @@ Results run_claims(const Case &input, const std::vector<std::string> &names, boo
     nearest_only.next_nearest.reset();
     subjects.push_back(subject(input, nearest_only));
   }
-  Results results;
+  ClaimOutcome outcome;
   for (const auto &[name, claim] : claims())
     if (names.empty() || std::find(names.begin(), names.end(), name) != names.end())
       for (const Subject &one : subjects)
-        results.add(claim(one, quick));
-  return results;
+        outcome.add(claim(one, quick));
+  return outcome;
 }
 
 ExitCode verify(const Options &options)
@@ -83,12 +83,14 @@ ExitCode verify(const Options &options)
     return ExitCode::done;
   }
   Run run(options, parameters);
-  Results results;
+  ClaimOutcome outcome;
   {
     const auto phase = run.info().stopwatch().phase("claims");
-    results = run_claims(input, options.claims, options.quick);
+    outcome = run_claims(input, options.claims, options.quick);
   }
-  return run.finish(results);
+  if (run.writes())
+    outcome.write_tables(run.directory());
+  return run.finish(outcome.results);
 }
 
 } // namespace verification
