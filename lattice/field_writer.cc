@@ -130,6 +130,8 @@ void FieldWriter::add_frame(const State &state)
   for_each_bond(state, lattice_,
                 [&](std::size_t near, std::size_t kind, std::size_t far)
                 {
+                  if (point_of_place[far] < 0)
+                    return; // across a periodic edge; a line through the whole sheet would stand for it
                   const std::array<vtkIdType, 2> ends{{point_of_place[near], point_of_place[far]}};
                   lines->InsertNextCell(2, ends.data());
                   bond_stretch->InsertNextValue(stretch(state, lattice_, near, kind));

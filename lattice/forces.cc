@@ -109,6 +109,14 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy)
 #pragma omp for schedule(static)
     for (std::ptrdiff_t row = 0; row < n_rows; ++row)
       bonds_of_row(static_cast<std::size_t>(row), state, vx, vy);
+      // A site gathers from the places around it, so bonds that start beyond a periodic edge must be there.
+#pragma omp single
+    for (const TriangularLattice::Image &image : lattice_.images())
+      for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+      {
+        bond_fx_[kind][image.place] = bond_fx_[kind][image.site];
+        bond_fy_[kind][image.place] = bond_fy_[kind][image.site];
+      }
 #pragma omp for schedule(static)
     for (std::ptrdiff_t row = 0; row < n_rows; ++row)
       gather_row(static_cast<std::size_t>(row));

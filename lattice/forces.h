@@ -25,7 +25,7 @@ public:
   /// apart.
   void watch_retraction(const std::array<double, n_bond_kinds> &stretch, double initial_breaking_stretch);
 
-  /// Computes the force on every site at positions state.x, y and the given velocities [m/s].
+  /// Computes the force on every site at positions state.x, y and the given velocities [m/s], those of images included.
   /// Forces at held sites are those the bonds exert on them.
   void evaluate(const State &state, const Field &vx, const Field &vy);
 

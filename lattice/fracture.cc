@@ -22,6 +22,7 @@ Fracture::Fracture(const TriangularLattice &lattice, const Material &material, d
     tip_losses_((material.coordination() + 3) / 4)
 {
   require(breaking_stretch > 0., "the breaking stretch must be positive");
+  require(lattice.images().empty(), "a periodic sheet does not break: a crack has no tip there");
   if (const auto *behind = std::get_if<BehindTipToughening>(&toughening_))
     require(behind->distance >= 0. && behind->factor >= 1.,
             "toughening behind the tip needs distance >= 0, factor >= 1");

@@ -16,24 +16,40 @@ namespace
 struct Sums
 {
   double power = 0., velocity_square = 0., force_square = 0., largest_force_square = 0.;
+
+  void add(const Sums &other)
+  {
+    power += other.power;
+    velocity_square += other.velocity_square;
+    force_square += other.force_square;
+    // Written so that a NaN is kept.
+    if (!(other.largest_force_square <= largest_force_square))
+      largest_force_square = other.largest_force_square;
+  }
 };
 
-Sums sums_over_free_sites(const State &state, const Forces &forces)
+// Rows are shared out among threads, each with its own sums, which are added row after row: the same bits for any
+// number of threads.
+template <class SiteOperation>
+Sums over_free_sites(const State &state, const TriangularLattice &lattice, const SiteOperation &operation)
 {
-  Sums sums;
-  for (std::size_t i = 0; i < state.x.size(); ++i)
-    if (state.inverse_mass[i] > 0.)
-    {
-      const double fx = forces.fx()[i], fy = forces.fy()[i];
-      const double force_square = fx * fx + fy * fy;
-      sums.power += fx * state.vx[i] + fy * state.vy[i];
-      sums.velocity_square += state.vx[i] * state.vx[i] + state.vy[i] * state.vy[i];
-      sums.force_square += force_square;
-      // Written so that a NaN is kept.
-      if (!(force_square <= sums.largest_force_square))
-        sums.largest_force_square = force_square;
-    }
-  return sums;
+  std::vector<Sums> rows(lattice.rows());
+  const auto n_rows = static_cast<std::ptrdiff_t>(lattice.rows());
+#pragma omp parallel for schedule(static)
+  for (std::ptrdiff_t r = 0; r < n_rows; ++r)
+  {
+    const auto row = static_cast<std::size_t>(r);
+    const std::size_t first = lattice.index(row, 0);
+    Sums sums; // not in place: neighbouring rows share cache lines
+    for (std::size_t i = first; i < first + lattice.columns(); ++i)
+      if (state.inverse_mass[i] > 0.)
+        operation(i, sums);
+    rows[row] = sums;
+  }
+  Sums total;
+  for (const Sums &sums : rows)
+    total.add(sums);
+  return total;
 }
 
 } // namespace
@@ -55,6 +71,7 @@ Relaxation relax(State &state, const TriangularLattice &lattice, const Material 
   Forces forces(lattice, springs);
   std::fill(state.vx.begin(), state.vx.end(), 0.);
   std::fill(state.vy.begin(), state.vy.end(), 0.);
+  update_images(state, lattice);
   double step = 0.3 * largest_step;
   double mixing = initial_mixing;
   std::size_t downhill = 0;
@@ -62,7 +79,15 @@ Relaxation relax(State &state, const TriangularLattice &lattice, const Material 
   for (std::size_t iteration = 0; iteration <= max_iterations; ++iteration)
   {
     forces.evaluate(state, state.vx, state.vy);
-    const Sums sums = sums_over_free_sites(state, forces);
+    const Field &fx = forces.fx(), &fy = forces.fy();
+    const Sums sums =
+      over_free_sites(state, lattice,
+                      [&](std::size_t i, Sums &row)
+                      {
+                        const double force_square = fx[i] * fx[i] + fy[i] * fy[i];
+                        row.add({fx[i] * state.vx[i] + fy[i] * state.vy[i],
+                                 state.vx[i] * state.vx[i] + state.vy[i] * state.vy[i], force_square, force_square});
+                      });
     residual = std::sqrt(sums.largest_force_square);
     if (residual <= tolerance)
     {
@@ -87,19 +112,17 @@ Relaxation relax(State &state, const TriangularLattice &lattice, const Material 
     }
     const double along_force =
       sums.force_square > 0. ? mixing * std::sqrt(sums.velocity_square / sums.force_square) : 0.;
-    for (std::size_t i = 0; i < state.x.size(); ++i)
-    {
-      const double inverse_mass = state.inverse_mass[i];
-      if (!(inverse_mass > 0.))
-        continue;
-      const double fx = forces.fx()[i], fy = forces.fy()[i];
-      state.vx[i] = uphill ? 0. : (1. - mixing) * state.vx[i] + along_force * fx;
-      state.vy[i] = uphill ? 0. : (1. - mixing) * state.vy[i] + along_force * fy;
-      state.vx[i] += step * fx * inverse_mass;
-      state.vy[i] += step * fy * inverse_mass;
-      state.x[i] += step * state.vx[i];
-      state.y[i] += step * state.vy[i];
-    }
+    over_free_sites(state, lattice,
+                    [&](std::size_t i, Sums &)
+                    {
+                      state.vx[i] = uphill ? 0. : (1. - mixing) * state.vx[i] + along_force * fx[i];
+                      state.vy[i] = uphill ? 0. : (1. - mixing) * state.vy[i] + along_force * fy[i];
+                      state.vx[i] += step * fx[i] * state.inverse_mass[i];
+                      state.vy[i] += step * fy[i] * state.inverse_mass[i];
+                      state.x[i] += step * state.vx[i];
+                      state.y[i] += step * state.vy[i];
+                    });
+    update_images(state, lattice);
   }
   std::ostringstream message;
   message << "the lattice did not come to rest: largest force on a free site " << residual << " N/m, wanted "

@@ -37,7 +37,7 @@ SiteFields site_fields(const State &state, const TriangularLattice &lattice, con
                     section * (force(shell.law, bond_stretch) + shell.viscosity * rate.dot(direction) / rest_length);
                   const double half_energy = 0.5 * section * rest_length * energy(shell.law, bond_stretch);
                   const Eigen::Matrix2d half_virial = 0.5 * axial * direction * reference.transpose();
-                  for (const std::size_t end : {near, far})
+                  for (const std::size_t end : {near, lattice.home(far)})
                   {
                     fields.strain_energy_density[end] += half_energy;
                     fields.first_piola_stress[end] += half_virial;

@@ -22,7 +22,38 @@ double symmetric_uniform(std::uint64_t bits)
   return static_cast<double>(bits >> 11) * 0x1p-52 - 1.;
 }
 
+// Whether a bond of a site, in either sense, would end beyond one of the edges that `edges` holds.
+bool reaches_beyond(const TriangularLattice &lattice, const Material &material, std::size_t place, const Edges &edges)
+{
+  const Eigen::Vector2d X = lattice.reference(place);
+  const double margin = 0.1 * lattice.spacing(); // sites are either on the sheet or half a spacing off
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+    if (material.shell(kind) != nullptr)
+      for (const double sense : {1., -1.})
+      {
+        const Eigen::Vector2d end = X + sense * lattice.bond_vector(kind);
+        if ((edges.left && !lattice.periodic().x && end.x() < -margin) ||
+            (edges.right && !lattice.periodic().x && end.x() > lattice.length() + margin) ||
+            (edges.bottom && !lattice.periodic().y && end.y() < -0.5 * lattice.height() - margin) ||
+            (edges.top && !lattice.periodic().y && end.y() > 0.5 * lattice.height() + margin))
+          return true;
+      }
+  return false;
+}
+
 } // namespace
+
+void update_images(State &state, const TriangularLattice &lattice)
+{
+  for (const TriangularLattice::Image &image : lattice.images())
+  {
+    const Eigen::Vector2d period = state.periods * image.period;
+    state.x[image.place] = state.x[image.site] + period.x();
+    state.y[image.place] = state.y[image.site] + period.y();
+    state.vx[image.place] = state.vx[image.site];
+    state.vy[image.place] = state.vy[image.site];
+  }
+}
 
 State homogeneous_state(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F,
                         Edges edges, double breaking_stretch)
@@ -35,6 +66,7 @@ State homogeneous_state(const TriangularLattice &lattice, const Material &materi
   state.removed.assign(n, 0);
   state.lost_bonds.assign(n, 0);
 
+  state.periods = F;
   state.x.resize(n);
   state.y.resize(n);
   for (std::size_t place = 0; place < n; ++place)
@@ -53,7 +85,7 @@ State homogeneous_state(const TriangularLattice &lattice, const Material &materi
       for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
       {
         const std::size_t place = lattice.index(row, column);
-        if (lattice.is_site(place + static_cast<std::size_t>(lattice.shift(kind, row))))
+        if (lattice.is_occupied(place + static_cast<std::size_t>(lattice.shift(kind, row))))
           state.breaking_stretch[kind][place] = breaking_stretch;
       }
   }
@@ -65,10 +97,11 @@ State homogeneous_state(const TriangularLattice &lattice, const Material &materi
       const std::size_t place = lattice.index(row, column);
       unsigned int bonds = 0;
       for_each_bond_of_site(state, lattice, place, [&](std::size_t, std::size_t) { ++bonds; });
-      const bool held = edges == Edges::held && bonds < material.coordination();
+      const bool held = bonds < material.coordination() && reaches_beyond(lattice, material, place, edges);
       state.held[place] = held ? 1 : 0;
       state.inverse_mass[place] = held ? 0. : inverse_mass;
     }
+  update_images(state, lattice);
   return state;
 }
 
@@ -84,6 +117,7 @@ void add_noise(State &state, const TriangularLattice &lattice, double amplitude,
       state.x[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * place));
       state.y[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * place + 1));
     }
+  update_images(state, lattice);
 }
 
 double stretch(const State &state, const TriangularLattice &lattice, std::size_t place, std::size_t kind)

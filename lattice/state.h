@@ -29,16 +29,25 @@ struct State
   std::vector<std::uint8_t> held;       ///< 1 at sites whose motion is prescribed
   std::vector<std::uint8_t> removed;    ///< 1 at sites cut out as seed crack
   std::vector<std::uint8_t> lost_bonds; ///< bonds a site has lost, to breaking or to removed neighbours
+  Eigen::Matrix2d periods = Eigen::Matrix2d::Identity(); ///< F that takes reference periods to current ones [-]
 };
 
-/// Boundary condition of all four edges of the sheet.
-enum class Edges
+/// Gives the images of a periodic sheet the positions and velocities of their sites. To be called after a change of
+/// either from outside; what moves a sheet calls it itself.
+void update_images(State &state, const TriangularLattice &lattice);
+
+/// Which edges of the sheet are held: there, sites that lack a neighbour beyond the edge have their motion prescribed.
+struct Edges
 {
-  held, ///< sites that lack a neighbour are held, so that every free site has all its bonds
-  free
+  bool left, right, bottom, top;
+  static const Edges held; ///< all of them: every free site has all its bonds
+  static const Edges free; ///< none of them
 };
+inline constexpr Edges Edges::held{true, true, true, true};
+inline constexpr Edges Edges::free{false, false, false, false};
 
-/// The unbroken sheet at the homogeneous deformation x = F X, at rest.
+/// The unbroken sheet at the homogeneous deformation x = F X, at rest. Edges across which the sheet is periodic do not
+/// exist, whatever `edges` says of them.
 /// @param breaking_stretch lam_f [-] of every bond; infinity for a sheet that never breaks
 State homogeneous_state(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F,
                         Edges edges, double breaking_stretch);
@@ -51,7 +60,7 @@ void add_noise(State &state, const TriangularLattice &lattice, double amplitude,
 /// Current stretch |x_j - x_i| / l of a bond [-].
 double stretch(const State &state, const TriangularLattice &lattice, std::size_t place, std::size_t kind);
 
-/// Calls visit(place, kind, far_place) for every bond that is present, row by row.
+/// Calls visit(place, kind, far_place) for every bond that is present, row by row; far_place may be an image.
 template <class Visitor>
 void for_each_bond(const State &state, const TriangularLattice &lattice, Visitor &&visit)
 {
@@ -66,7 +75,7 @@ void for_each_bond(const State &state, const TriangularLattice &lattice, Visitor
 }
 
 /// Calls visit(near_place, kind) for each of the up to twelve bonds present at a site, near_place being the end at
-/// which the bond is stored: the site itself or its neighbour.
+/// which the bond is stored: the site itself or its neighbour, never an image.
 template <class Visitor>
 void for_each_bond_of_site(const State &state, const TriangularLattice &lattice, std::size_t place, Visitor &&visit)
 {
@@ -77,7 +86,7 @@ void for_each_bond_of_site(const State &state, const TriangularLattice &lattice,
       visit(place, kind);
     // The bond from below starts in a row of the other parity, except along the row and two rows down.
     const std::size_t near_row = (kind == 0 || kind == n_bond_kinds - 1) ? row : row + 1;
-    const std::size_t near = place - static_cast<std::size_t>(lattice.shift(kind, near_row));
+    const std::size_t near = lattice.home(place - static_cast<std::size_t>(lattice.shift(kind, near_row)));
     if (state.breaking_stretch[kind][near] > 0.)
       visit(near, kind);
   }

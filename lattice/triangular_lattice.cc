@@ -1,5 +1,6 @@
 #include "lattice/triangular_lattice.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -32,36 +33,51 @@ std::size_t even_intervals(double extent, double pitch)
 
 } // namespace
 
-TriangularLattice::TriangularLattice(double spacing, double length, double height, Orientation orientation)
+TriangularLattice::TriangularLattice(double spacing, double length, double height, Orientation orientation,
+                                     Periodic periodic)
   : spacing_(spacing), orientation_(orientation)
 {
   if (!(spacing > 0.) || !(length > 0.) || !(height > 0.))
     throw std::invalid_argument("a lattice needs positive spacing, length and height");
   const double pitch = half_sqrt3 * spacing;
-  if (orientation == Orientation::rows_along_crack)
-  {
-    columns_ = intervals(length, spacing) + 1;
-    rows_ = even_intervals(height, pitch) + 1;
-  }
+  const bool rows_along_x = orientation == Orientation::rows_along_crack;
+  periodic_along_ = rows_along_x ? periodic.x : periodic.y;
+  periodic_across_ = rows_along_x ? periodic.y : periodic.x;
+
+  const double along = rows_along_x ? length : height;
+  const double across = rows_along_x ? height : length;
+  if (periodic_along_)
+    columns_ = intervals(along, spacing);
   else
-  {
-    columns_ = even_intervals(height, spacing) + 1;
-    rows_ = intervals(length, pitch) + 1;
-  }
-  if (columns_ < 3 || rows_ < 2)
+    columns_ = (rows_along_x ? intervals(along, spacing) : even_intervals(along, spacing)) + 1;
+  if (periodic_across_)
+    rows_ = even_intervals(across, pitch);
+  else
+    rows_ = (rows_along_x ? even_intervals(across, pitch) : intervals(across, pitch)) + 1;
+  // The margin of a periodic sheet is filled from the sheet once around, so it must not be wider.
+  if (columns_ < (periodic_along_ ? margin : 3) || rows_ < 2)
     throw std::invalid_argument("the sheet is too small for its lattice spacing: fewer than two rows or three columns");
+  find_images();
+}
+
+Periodic TriangularLattice::periodic() const
+{
+  return orientation_ == Orientation::rows_along_crack ? Periodic{periodic_along_, periodic_across_}
+                                                       : Periodic{periodic_across_, periodic_along_};
 }
 
 double TriangularLattice::length() const
 {
-  return orientation_ == Orientation::rows_along_crack ? static_cast<double>(columns_ - 1) * spacing_
-                                                       : static_cast<double>(rows_ - 1) * half_sqrt3 * spacing_;
+  const double along = static_cast<double>(periodic_along_ ? columns_ : columns_ - 1);
+  const double across = static_cast<double>(periodic_across_ ? rows_ : rows_ - 1);
+  return from_row_frame(along, across).x();
 }
 
 double TriangularLattice::height() const
 {
-  return orientation_ == Orientation::rows_along_crack ? static_cast<double>(rows_ - 1) * half_sqrt3 * spacing_
-                                                       : static_cast<double>(columns_ - 1) * spacing_;
+  const double along = static_cast<double>(periodic_along_ ? columns_ : columns_ - 1);
+  const double across = static_cast<double>(periodic_across_ ? rows_ : rows_ - 1);
+  return from_row_frame(along, across).y();
 }
 
 double TriangularLattice::site_area() const
@@ -76,6 +92,44 @@ bool TriangularLattice::is_site(std::size_t place) const
   if (padded_row < margin || padded_row >= rows_ + margin || padded_column < margin)
     return false;
   return padded_column - margin < sites_in_row(padded_row - margin);
+}
+
+void TriangularLattice::find_images()
+{
+  const std::size_t width = stride();
+  for (std::size_t place = 0; place < n_places(); ++place)
+  {
+    const std::size_t padded_row = place / width, padded_column = place % width;
+    const bool below = padded_row < margin, above = padded_row >= rows_ + margin;
+    const bool left = padded_column < margin, right = padded_column >= columns_ + margin;
+    if ((!below && !above && !left && !right) || ((below || above) && !periodic_across_) ||
+        ((left || right) && !periodic_along_))
+      continue;
+    const std::size_t row = below ? padded_row + rows_ : above ? padded_row - rows_ : padded_row;
+    const std::size_t column = left ? padded_column + columns_ : right ? padded_column - columns_ : padded_column;
+    const std::size_t site = row * width + column;
+    if (!is_site(site))
+      continue; // the missing end of an odd row
+    const auto turns = [](bool before, bool after) { return after ? 1. : before ? -1. : 0.; };
+    images_.push_back({place, site,
+                       from_row_frame(turns(left, right) * static_cast<double>(columns_),
+                                      turns(below, above) * static_cast<double>(rows_))});
+  }
+}
+
+const TriangularLattice::Image *TriangularLattice::site_of_image(std::size_t place) const
+{
+  const auto found = std::lower_bound(images_.begin(), images_.end(), place,
+                                      [](const Image &image, std::size_t wanted) { return image.place < wanted; });
+  return found != images_.end() && found->place == place ? &*found : nullptr;
+}
+
+std::size_t TriangularLattice::home(std::size_t place) const
+{
+  if (images_.empty())
+    return place;
+  const Image *image = site_of_image(place);
+  return image != nullptr ? image->site : place;
 }
 
 Eigen::Vector2d TriangularLattice::reference(std::size_t place) const

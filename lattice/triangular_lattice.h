@@ -2,6 +2,7 @@
 
 #include <array>
 #include <cstddef>
+#include <vector>
 
 #include <Eigen/Core>
 
@@ -13,6 +14,13 @@ enum class Orientation
 {
   rows_along_crack, ///< NN bonds at 0, 60, 120 degrees to x, NNN bonds at 30, 90, 150
   rows_across_crack ///< turned by 30 degrees: NN bonds at 30, 90, 150, NNN bonds at 0, 60, 120
+};
+
+/// Directions along which the sheet repeats itself without end.
+struct Periodic
+{
+  bool x = false;
+  bool y = false;
 };
 
 /// Half of the twelve bonds of a site, each named by its direction in the row frame (along the row, across the rows).
@@ -30,35 +38,39 @@ inline constexpr std::size_t n_nearest_kinds = 3;
 ///     row 1      o     o     o           odd rows:  one site fewer
 ///     row 0   o     o     o     o
 ///
-/// Storage is row by row with a margin of two unused places on every side, so that the neighbour of a site through a
-/// bond of kind k is always at index + shift(k, row), whether that neighbour exists or not.
+/// Storage is row by row with a margin of two places on every side, so that the neighbour of a site through a bond of
+/// kind k is always at index + shift(k, row), whether that neighbour exists or not. The margin is empty, except where
+/// the sheet is periodic: there it holds images of the sites at the other end. In a sheet that is periodic along its
+/// rows all rows have `columns()` sites; one that is periodic across them has an even number of rows.
 class TriangularLattice
 {
 public:
   /// @param spacing d [m], > 0
   /// @param length extent along x [m], > 0
   /// @param height extent along y [m], > 0
-  /// Both extents are rounded to whole rows and columns, an odd number of them across y, so that one runs along y = 0.
+  /// Both extents are rounded to whole rows and columns, an odd number of them across y, so that one runs along y = 0;
+  /// a periodic extent to whole periods of the lattice.
   /// @throws std::invalid_argument if an extent is not positive or holds fewer than two rows or columns.
-  TriangularLattice(double spacing, double length, double height, Orientation orientation);
+  TriangularLattice(double spacing, double length, double height, Orientation orientation, Periodic periodic = {});
 
   double spacing() const { return spacing_; } ///< d [m]
   Orientation orientation() const { return orientation_; }
-  double length() const; ///< distance of the outermost sites along x after rounding [m]
+  Periodic periodic() const;
+  double length() const; ///< distance of the outermost sites along x after rounding, or the period [m]
   double height() const; ///< the same along y [m]
   /// Reference area of one site, (sqrt3 / 2) d^2 [m^2].
   double site_area() const;
 
   std::size_t rows() const { return rows_; }
   std::size_t columns() const { return columns_; } ///< sites in an even row
-  std::size_t sites_in_row(std::size_t row) const { return columns_ - row % 2; }
+  std::size_t sites_in_row(std::size_t row) const { return periodic_along_ ? columns_ : columns_ - row % 2; }
   /// Number of a site, counted row by row from the lower left without gaps; what files call it.
   std::size_t site_number(std::size_t place) const
   {
     const std::size_t row = row_of(place);
-    return row * columns_ - row / 2 + column_of(place);
+    return row * columns_ - (periodic_along_ ? 0 : row / 2) + column_of(place);
   }
-  std::size_t n_sites() const { return rows_ * columns_ - rows_ / 2; }
+  std::size_t n_sites() const { return rows_ * columns_ - (periodic_along_ ? 0 : rows_ / 2); }
   std::size_t stride() const { return columns_ + 2 * margin; }             ///< places per row, margin included
   std::size_t n_places() const { return (rows_ + 2 * margin) * stride(); } ///< length of every field, margin included
 
@@ -66,8 +78,22 @@ public:
   std::size_t index(std::size_t row, std::size_t column) const { return (row + margin) * stride() + margin + column; }
   std::size_t row_of(std::size_t place) const { return place / stride() - margin; }
   std::size_t column_of(std::size_t place) const { return place % stride() - margin; }
-  /// Whether a place, margin included, holds a site.
+  /// Whether a place, margin included, holds a site that is no image.
   bool is_site(std::size_t place) const;
+
+  /// A place in the margin that stands for a site one period away.
+  struct Image
+  {
+    std::size_t place;
+    std::size_t site;       ///< place of the site itself
+    Eigen::Vector2d period; ///< reference vector from the site to its image [m]
+  };
+  /// All images, in the order of their places; none unless the sheet is periodic.
+  const std::vector<Image> &images() const { return images_; }
+  /// Whether a place holds a site or an image of one.
+  bool is_occupied(std::size_t place) const { return is_site(place) || site_of_image(place) != nullptr; }
+  /// The site that stands at a place or has its image there: what fields over sites are summed at.
+  std::size_t home(std::size_t place) const;
 
   /// Reference position (X, Y) [m] of a place; X from 0 to length(), Y centred on 0. Valid in the margin as well.
   Eigen::Vector2d reference(std::size_t place) const;
@@ -85,11 +111,16 @@ private:
   static constexpr std::size_t margin = 2;
 
   Eigen::Vector2d from_row_frame(double along, double across) const;
+  const Image *site_of_image(std::size_t place) const;
+  void find_images();
 
   double spacing_;
   Orientation orientation_;
+  bool periodic_along_;  // the rows
+  bool periodic_across_; // the rows
   std::size_t rows_;
   std::size_t columns_;
+  std::vector<Image> images_;
 };
 
 } // namespace lattice

@@ -32,6 +32,7 @@ VelocityVerlet::VelocityVerlet(const TriangularLattice &lattice, Forces &forces,
 
 void VelocityVerlet::initialise(State &state)
 {
+  update_images(state, lattice_);
   predicted_vx_ = state.vx;
   predicted_vy_ = state.vy;
   forces_.evaluate(state, predicted_vx_, predicted_vy_);
@@ -83,6 +84,12 @@ void VelocityVerlet::step(State &state)
                  drift(&state.x[begin], &state.vx[begin], &predicted_vx_[begin], &state.ax[begin], end - begin);
                  drift(&state.y[begin], &state.vy[begin], &predicted_vy_[begin], &state.ay[begin], end - begin);
                });
+  update_images(state, lattice_);
+  for (const TriangularLattice::Image &image : lattice_.images())
+  {
+    predicted_vx_[image.place] = predicted_vx_[image.site];
+    predicted_vy_[image.place] = predicted_vy_[image.site];
+  }
   forces_.evaluate(state, predicted_vx_, predicted_vy_);
   for_each_row(
     lattice_,
@@ -91,6 +98,7 @@ void VelocityVerlet::step(State &state)
       kick(&state.vx[begin], &state.ax[begin], &forces_.fx()[begin], &state.inverse_mass[begin], end - begin);
       kick(&state.vy[begin], &state.ay[begin], &forces_.fy()[begin], &state.inverse_mass[begin], end - begin);
     });
+  update_images(state, lattice_);
   state.time += h;
 }
 

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <memory>
+
+#include "continuum/isotropic_gradient.h"
 #include "verification/case.h"
 #include "verification/homogenisation.h"
 
@@ -18,6 +21,10 @@ struct Subject
   SmallStrain theory;
   continuum::CauchyBorn cauchy_born;
   Calibration mooney_rivlin;
+  bool ratio_is_calibrated; ///< the Mooney-Rivlin ratio was fitted, not given
+  GradientLengths lengths;
+  std::shared_ptr<const continuum::GradientLaw> lattice_gradient;   ///< with lengths.lattice
+  std::shared_ptr<const continuum::GradientLaw> isotropic_gradient; ///< with lengths.isotropic_static
 };
 
 /// The subject of a case; `material` may differ from the case's own.
@@ -27,14 +34,20 @@ inline Subject subject(const Case &input, const lattice::Material &material)
   Calibration calibration = calibrate_mooney_rivlin(sheet, material, input.deformation());
   if (input.continuum.mooney_rivlin_ratio)
     calibration = with_ratio(sheet, material, input.deformation(), *input.continuum.mooney_rivlin_ratio);
+  const SmallStrain theory = small_strain(sheet, material);
+  const GradientLengths lengths = gradient_lengths(sheet, material);
   return {material.next_nearest ? "NN+NNN" : "NN",
           input.spacing,
           input.orientation,
           material,
           input.deformation(),
-          small_strain(sheet, material),
+          theory,
           cauchy_born(sheet, material),
-          calibration};
+          calibration,
+          !input.continuum.mooney_rivlin_ratio,
+          lengths,
+          std::make_shared<continuum::LatticeGradient>(bond_families(sheet, material), lengths.lattice),
+          std::make_shared<continuum::IsotropicGradient>(theory.shear_modulus, lengths.isotropic_static)};
 }
 
 /// The subject of a case as it stands.

@@ -1,0 +1,28 @@
+#pragma once
+
+#include <variant>
+
+#include "lattice/state.h"
+
+namespace lattice
+{
+
+/// Sites closer to the middle of the sheet, (length() / 2, 0), than this are not there.
+struct RoundHole
+{
+  double radius; ///< R [m], >= 0, undeformed
+};
+
+/// A cut along Y = 0 from the left edge: the sites on it are not there, nor the bonds that cross it.
+struct Notch
+{
+  double length; ///< [m], >= 0, undeformed
+};
+
+using Cutout = std::variant<RoundHole, Notch>;
+
+/// Takes a piece out of a sheet that nothing has broken yet. What is left at the rim is free and undamaged: bonds that
+/// were never there are not lost.
+void cut_out(State &state, const TriangularLattice &lattice, const Cutout &cutout);
+
+} // namespace lattice

@@ -1,0 +1,235 @@
+// A periodic sheet is a piece of an endless one: nobody on it can tell where its edge is.
+#include <gtest/gtest.h>
+
+#include "lattice/energy.h"
+#include "lattice/relaxation.h"
+#include "lattice/site_fields.h"
+#include "tests/lattice/sheets.h"
+
+namespace
+{
+
+using namespace lattice;
+
+constexpr Orientation orientations[] = {Orientation::rows_along_crack, Orientation::rows_across_crack};
+constexpr Periodic both{true, true};
+
+// About n by n sites, periodic as asked.
+TriangularLattice periodic_square(double n, Orientation orientation, Periodic periodic)
+{
+  return {sheets::spacing, n * sheets::spacing, n * sheets::spacing, orientation, periodic};
+}
+
+template <class Visitor>
+void for_each_site(const TriangularLattice &sheet, const Visitor &visit)
+{
+  for (std::size_t row = 0; row < sheet.rows(); ++row)
+    for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
+      visit(sheet.index(row, column));
+}
+
+TEST(PeriodicLattice, EverySiteHasAllItsBondsWhereNoEdgeIsLeft)
+{
+  for (const Orientation orientation : orientations)
+  {
+    const TriangularLattice sheet = periodic_square(8., orientation, both);
+    const Material material = sheets::rubber();
+    const State state =
+      homogeneous_state(sheet, material, sheets::stretched(1.2, 1.5), Edges::held, sheets::unbreakable);
+    std::size_t sites = 0;
+    for_each_site(sheet,
+                  [&](std::size_t place)
+                  {
+                    unsigned int bonds = 0;
+                    for_each_bond_of_site(state, sheet, place,
+                                          [&](std::size_t near, std::size_t)
+                                          {
+                                            ++bonds;
+                                            EXPECT_TRUE(sheet.is_site(near));
+                                          });
+                    EXPECT_EQ(bonds, 12u);
+                    EXPECT_EQ(state.held[place], 0);
+                    ++sites;
+                  });
+    EXPECT_EQ(sites, sheet.n_sites());
+    std::size_t bonds = 0;
+    for_each_bond(state, sheet, [&](std::size_t, std::size_t, std::size_t) { ++bonds; });
+    EXPECT_EQ(bonds, 6 * sheet.n_sites());
+    EXPECT_NEAR(static_cast<double>(sheet.n_sites()) * sheet.site_area(), sheet.length() * sheet.height(),
+                1e-12 * sheet.length() * sheet.height());
+  }
+}
+
+TEST(PeriodicLattice, HasEdgesOnlyWhereItIsNotPeriodic)
+{
+  for (const Orientation orientation : orientations)
+    for (const Periodic periodic : {Periodic{true, false}, Periodic{false, true}})
+    {
+      const TriangularLattice sheet = periodic_square(10., orientation, periodic);
+      const Material material = sheets::rubber();
+      const State state =
+        homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held, sheets::unbreakable);
+      for_each_site(sheet,
+                    [&](std::size_t place)
+                    {
+                      const Eigen::Vector2d X = sheet.reference(place);
+                      const double from_edge =
+                        periodic.x ? 0.5 * sheet.height() - std::abs(X.y()) : std::min(X.x(), sheet.length() - X.x());
+                      // Bonds reach sqrt3 d across rows that run along the edge, 1.5 d across those that do not.
+                      EXPECT_EQ(state.held[place] != 0, from_edge < 1.4 * sheets::spacing);
+                    });
+    }
+}
+
+TEST(PeriodicLattice, HomogeneousDeformationIsInEquilibriumAtEverySite)
+{
+  for (const Orientation orientation : orientations)
+  {
+    const TriangularLattice sheet = periodic_square(6., orientation, both);
+    const Material material = sheets::rubber();
+    Eigen::Matrix2d F;
+    F << 1.4, 0.3, -0.2, 1.7;
+    const State state = homogeneous_state(sheet, material, F, Edges::held, sheets::unbreakable);
+    Forces forces(sheet, material);
+    forces.evaluate(state, state.vx, state.vy);
+    const SiteFields fields = site_fields(state, sheet, material);
+    const TriangularLattice finite = sheets::square(8., orientation);
+    const SiteFields inside =
+      site_fields(homogeneous_state(finite, material, F, Edges::free, sheets::unbreakable), finite, material);
+    const std::size_t middle = finite.index(finite.rows() / 2, finite.columns() / 2);
+    const double scale = 2.5e5 * sheets::spacing; // of a bond force [N/m]
+    for_each_site(sheet,
+                  [&](std::size_t place)
+                  {
+                    EXPECT_LT(std::hypot(forces.fx()[place], forces.fy()[place]), 1e-13 * scale * 12.);
+                    EXPECT_NEAR(fields.strain_energy_density[place], inside.strain_energy_density[middle],
+                                1e-12 * inside.strain_energy_density[middle]);
+                    EXPECT_LT((fields.first_piola_stress[place] - inside.first_piola_stress[middle]).norm(),
+                              1e-12 * inside.first_piola_stress[middle].norm());
+                    EXPECT_LT((fields.deformation_gradient[place] - F).norm(), 1e-12);
+                  });
+  }
+}
+
+// The smallest cell, two rows of two sites, is bonded to itself over and over. Laid out three times along and across
+// without anything repeating, it must feel the same forces.
+TEST(PeriodicLattice, SmallestCellFeelsWhatItsCopiesFeelInALargeSheet)
+{
+  for (const Orientation orientation : orientations)
+  {
+    const Material material = sheets::rubber();
+    const bool along_x = orientation == Orientation::rows_along_crack;
+    const double pitch = std::sqrt(3.) / 2.;
+    const auto sheet_of = [&](double columns, double rows)
+    {
+      const double d = sheets::spacing;
+      return along_x ? TriangularLattice(d, columns * d, rows * pitch * d, orientation, both)
+                     : TriangularLattice(d, rows * pitch * d, columns * d, orientation, both);
+    };
+    const TriangularLattice cell = sheet_of(2., 2.), large = sheet_of(6., 6.);
+    ASSERT_EQ(cell.n_sites(), 4u);
+    ASSERT_EQ(large.n_sites(), 36u);
+    const Eigen::Matrix2d F = sheets::stretched(1.3, 1.6);
+    State small = homogeneous_state(cell, material, F, Edges::held, sheets::unbreakable);
+    add_noise(small, cell, 0.1 * sheets::spacing, 3);
+    for_each_site(cell,
+                  [&](std::size_t place)
+                  {
+                    small.vx[place] = 0.3 * static_cast<double>(place % 5);
+                    small.vy[place] = -0.2 * static_cast<double>(place % 7);
+                  });
+    update_images(small, cell);
+    State copies = homogeneous_state(large, material, F, Edges::held, sheets::unbreakable);
+    const auto original = [&](std::size_t place)
+    { return cell.index(large.row_of(place) % 2, large.column_of(place) % 2); };
+    for_each_site(large,
+                  [&](std::size_t place)
+                  {
+                    const std::size_t from = original(place);
+                    const Eigen::Vector2d at_rest = F * cell.reference(from);
+                    copies.x[place] += small.x[from] - at_rest.x();
+                    copies.y[place] += small.y[from] - at_rest.y();
+                    copies.vx[place] = small.vx[from];
+                    copies.vy[place] = small.vy[from];
+                  });
+    update_images(copies, large);
+    Forces in_cell(cell, material), in_large(large, material);
+    in_cell.evaluate(small, small.vx, small.vy);
+    in_large.evaluate(copies, copies.vx, copies.vy);
+    double largest = 0.;
+    for_each_site(cell, [&](std::size_t place) { largest = std::max(largest, std::abs(in_cell.fx()[place])); });
+    for_each_site(large,
+                  [&](std::size_t place)
+                  {
+                    EXPECT_NEAR(in_large.fx()[place], in_cell.fx()[original(place)], 1e-12 * largest);
+                    EXPECT_NEAR(in_large.fy()[place], in_cell.fy()[original(place)], 1e-12 * largest);
+                  });
+    EXPECT_NEAR(in_large.viscous_power(), 9. * in_cell.viscous_power(), 1e-12 * in_large.viscous_power());
+    EXPECT_NEAR(elastic_energy(copies, large, material), 9. * elastic_energy(small, cell, material),
+                1e-12 * elastic_energy(copies, large, material));
+  }
+}
+
+// A sheet that moves keeps its energy and momentum, which it would not with images that lag behind.
+TEST(PeriodicLattice, MotionKeepsEnergyAndMomentum)
+{
+  const Material material = sheets::rubber(0.);
+  const TriangularLattice sheet = periodic_square(10., Orientation::rows_along_crack, both);
+  State state = homogeneous_state(sheet, material, sheets::stretched(1.5, 1.5), Edges::held, sheets::unbreakable);
+  add_noise(state, sheet, 0.02 * sheets::spacing, 7);
+  Simulation simulation(sheet, material, std::move(state), 1e-7);
+  const double before = simulation.energies().elastic;
+  for (int step = 0; step < 2000; ++step)
+    simulation.step();
+  const EnergyBalance after = simulation.energies();
+  EXPECT_GT(after.kinetic, 0.);
+  // (omega h)^2 / 8 of the energy in motion, omega h < 0.1 for the shortest waves.
+  EXPECT_NEAR(after.elastic + after.kinetic, before, 2e-3 * after.kinetic);
+  double px = 0., py = 0., scale = 0.;
+  for_each_site(sheet,
+                [&](std::size_t place)
+                {
+                  px += simulation.state().vx[place];
+                  py += simulation.state().vy[place];
+                  scale += std::abs(simulation.state().vx[place]);
+                });
+  EXPECT_LT(std::abs(px) + std::abs(py), 1e-11 * scale);
+}
+
+TEST(PeriodicLattice, RelaxesToTheHomogeneousState)
+{
+  const Material material = sheets::rubber();
+  const TriangularLattice sheet = periodic_square(10., Orientation::rows_across_crack, both);
+  State state = homogeneous_state(sheet, material, sheets::stretched(1.5, 1.5), Edges::held, sheets::unbreakable);
+  const double homogeneous = elastic_energy(state, sheet, material);
+  add_noise(state, sheet, 0.05 * sheets::spacing, 7);
+  EXPECT_GT(elastic_energy(state, sheet, material), homogeneous * (1. + 1e-6));
+  relax(state, sheet, material, 1e-12 * 5e5 * sheets::spacing);
+  EXPECT_NEAR(elastic_energy(state, sheet, material), homogeneous, 1e-13 * homogeneous);
+}
+
+TEST(PeriodicLattice, RefusesToBreak)
+{
+  const TriangularLattice sheet = periodic_square(10., Orientation::rows_along_crack, {true, false});
+  EXPECT_THROW(Fracture(sheet, sheets::rubber(), 3., NoToughening{}, Eigen::Matrix2d::Identity()),
+               std::invalid_argument);
+}
+
+TEST(Edges, HoldOnlyThoseThatAreAskedFor)
+{
+  for (const Orientation orientation : orientations)
+  {
+    const TriangularLattice sheet = sheets::square(12., orientation);
+    const Material material = sheets::rubber();
+    const State state =
+      homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), {false, true, false, false}, sheets::unbreakable);
+    for_each_site(sheet,
+                  [&](std::size_t place)
+                  {
+                    const double from_right = sheet.length() - sheet.reference(place).x();
+                    EXPECT_EQ(state.held[place] != 0, from_right < 1.4 * sheets::spacing);
+                  });
+  }
+}
+
+} // namespace
