@@ -104,7 +104,7 @@ void Forces::watch_retraction(const std::array<double, n_bond_kinds> &stretch, d
 void Forces::evaluate(const State &state, const Field &vx, const Field &vy)
 {
   const auto n_rows = static_cast<std::ptrdiff_t>(lattice_.rows());
-#pragma omp parallel
+#pragma omp parallel if (lattice_.n_places() >= worth_threads)
   {
 #pragma omp for schedule(static)
     for (std::ptrdiff_t row = 0; row < n_rows; ++row)

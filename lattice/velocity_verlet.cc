@@ -12,7 +12,7 @@ template <class RowOperation>
 void for_each_row(const TriangularLattice &lattice, const RowOperation &operation)
 {
   const auto n_rows = static_cast<std::ptrdiff_t>(lattice.rows());
-#pragma omp parallel for schedule(static)
+#pragma omp parallel for schedule(static) if (lattice.n_places() >= worth_threads)
   for (std::ptrdiff_t row = 0; row < n_rows; ++row)
   {
     const std::size_t first = lattice.index(static_cast<std::size_t>(row), 0);

@@ -5,16 +5,57 @@
 
 #include "verification/commands/command.h"
 #include "verification/energy/energy_claim.h"
+#include "verification/energy/wave_energy.h"
+#include "verification/intrinsic_length/intrinsic_length_claim.h"
 #include "verification/prestretch/prestretch_claim.h"
+#include "verification/wave_speeds/wave_speeds_claim.h"
 
 namespace verification
 {
 namespace
 {
 
+// The states about which waves are looked at: at rest, stretched alike along both axes, and as the case is loaded.
+std::vector<Eigen::Matrix2d> states(const Subject &subject, bool quick)
+{
+  const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
+  if (subject.deformation.isApprox(I, 1e-12))
+    return {I};
+  if (quick)
+    return {I, subject.deformation};
+  return {I, 1.5 * I, subject.deformation};
+}
+
 ClaimOutcome energy(const Subject &subject, bool quick)
 {
-  return {energy_claim(subject, quick ? 200 : 2000), {}};
+  ClaimOutcome outcome{energy_claim(subject, quick ? 200 : 2000), {}};
+  WaveEnergyOptions options;
+  options.states = states(subject, true);
+  if (quick)
+    options.kd = {0.25, 0.5};
+  outcome.add(wave_energy_claim(subject, options));
+  return outcome;
+}
+
+ClaimOutcome wave_speeds(const Subject &subject, bool quick)
+{
+  WaveSpeedsOptions options;
+  options.states = states(subject, quick);
+  options.damped_states = states(subject, true);
+  if (quick)
+  {
+    options.kd = {0.1, 0.25, 0.5};
+    options.mesh.cells = 4;
+    options.damped_states = {subject.deformation};
+  }
+  return wave_speeds_claim(subject, options);
+}
+
+ClaimOutcome intrinsic_length(const Subject &subject, bool quick)
+{
+  IntrinsicLengthOptions options;
+  options.angle_step = quick ? 15. : 3.;
+  return intrinsic_length_claim(subject, options);
 }
 
 ClaimOutcome prestretch(const Subject &subject, bool quick)
@@ -35,7 +76,10 @@ using Claim = std::function<ClaimOutcome(const Subject &, bool)>;
 // A further claim is a further line here.
 const std::vector<std::pair<std::string, Claim>> &claims()
 {
-  static const std::vector<std::pair<std::string, Claim>> all{{"energy", energy}, {"prestretch", prestretch}};
+  static const std::vector<std::pair<std::string, Claim>> all{{"energy", energy},
+                                                              {"wave-speeds", wave_speeds},
+                                                              {"intrinsic-length", intrinsic_length},
+                                                              {"prestretch", prestretch}};
   return all;
 }
 

@@ -1,0 +1,110 @@
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <ostream>
+
+#include "continuum/lattice_gradient.h"
+#include "tests/verification/claims/subjects.h"
+
+/// Mistakes to plant in a subject, one side of which stays right. A claim that cannot fail claims nothing.
+namespace faults
+{
+
+struct Fault
+{
+  const char *name;
+  std::function<void(verification::Subject &)> plant;
+};
+
+inline std::ostream &operator<<(std::ostream &out, const Fault &fault)
+{
+  return out << fault.name;
+}
+
+/// a times one gradient energy plus b times another.
+class Combination : public continuum::GradientLaw
+{
+public:
+  using Law = std::shared_ptr<const continuum::GradientLaw>;
+  Combination(double a, Law first, double b, Law second)
+    : a_(a), b_(b), first_(std::move(first)), second_(std::move(second))
+  {
+  }
+  double form(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override
+  {
+    return a_ * first_->form(F, G, Z) + b_ * second_->form(F, G, Z);
+  }
+  dealii::Tensor<2, 2> form_by_F(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override
+  {
+    return a_ * first_->form_by_F(F, G, Z) + b_ * second_->form_by_F(F, G, Z);
+  }
+  dealii::Tensor<4, 2> form_by_FF(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override
+  {
+    return a_ * first_->form_by_FF(F, G, Z) + b_ * second_->form_by_FF(F, G, Z);
+  }
+  Gradient double_stress(const dealii::Tensor<2, 2> &F, const Gradient &G) const override
+  {
+    return a_ * first_->double_stress(F, G) + b_ * second_->double_stress(F, G);
+  }
+  dealii::Tensor<5, 2> double_stress_by_F(const dealii::Tensor<2, 2> &F, const Gradient &G) const override
+  {
+    return a_ * first_->double_stress_by_F(F, G) + b_ * second_->double_stress_by_F(F, G);
+  }
+  dealii::Tensor<6, 2> double_stress_by_G(const dealii::Tensor<2, 2> &F) const override
+  {
+    return a_ * first_->double_stress_by_G(F) + b_ * second_->double_stress_by_G(F);
+  }
+
+private:
+  double a_, b_;
+  Law first_, second_;
+};
+
+/// The gradient energy l_d^2 A - B of the lattice with its k^4 term the wrong way round, l_d^2 A + B.
+inline void turn_sign_of_fourth_order(verification::Subject &subject)
+{
+  const lattice::TriangularLattice sheet(subject.spacing, 10. * subject.spacing, 10. * subject.spacing,
+                                         subject.orientation);
+  // With twice the square of the length it is 2 l_d^2 A - B, and twice that less three times the right one is wanted.
+  const auto longer = std::make_shared<continuum::LatticeGradient>(verification::bond_families(sheet, subject.material),
+                                                                   std::sqrt(2.) * subject.lengths.lattice);
+  subject.lattice_gradient = std::make_shared<Combination>(2., longer, -3., subject.lattice_gradient);
+}
+
+/// The length of micro-inertia that nearest neighbours alone would ask for.
+inline void length_of_nearest_neighbours(verification::Subject &subject)
+{
+  subject.lengths.lattice = subject.spacing / std::sqrt(12.);
+}
+
+/// Bonds of the next-nearest shell stiffer by 1 % on the lattice side.
+inline void stiffer_next_nearest(verification::Subject &subject)
+{
+  subject.material.next_nearest.value().area_factor *= 1.01;
+}
+
+inline void heavier(verification::Subject &subject)
+{
+  subject.material.density *= 1.01;
+}
+
+/// The square of the spacing in place of a site's Voronoi cell, (sqrt3 / 2) d^2.
+inline void square_voronoi_cell(verification::Subject &subject)
+{
+  std::vector<continuum::FibreFamily> families = subject.cauchy_born.families();
+  for (continuum::FibreFamily &family : families)
+    family.weight *= std::sqrt(3.) / 2.;
+  subject.cauchy_born = continuum::CauchyBorn(std::move(families));
+}
+
+/// Rows of an outcome that fail and whose name contains a text; any text: "".
+inline std::size_t failing(const verification::Results &results, const std::string &text = "")
+{
+  std::size_t count = 0;
+  for (const verification::Result &row : results.rows())
+    count += row.verdict() == verification::Verdict::fails && row.quantity.find(text) != std::string::npos;
+  return count;
+}
+
+} // namespace faults

@@ -1,0 +1,139 @@
+// What length the bonds bring, and what makes the claim about it fail.
+#include "verification/intrinsic_length/intrinsic_length_claim.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/verification/claims/faults.h"
+#include "verification/intrinsic_length/dispersion.h"
+#include "verification/intrinsic_length/edge_layer.h"
+#include "verification/intrinsic_length/gradient_positivity.h"
+
+namespace
+{
+
+using namespace verification;
+
+IntrinsicLengthOptions small_version()
+{
+  IntrinsicLengthOptions options;
+  options.angle_step = 30.;
+  return options;
+}
+
+Eigen::Vector2d direction(double degrees)
+{
+  return {std::cos(degrees * M_PI / 180.), std::sin(degrees * M_PI / 180.)};
+}
+
+// Table of theory.md, section "Known answers", to the digits given there.
+TEST(Dispersion, HasTheKnownCoefficients)
+{
+  const Case input = subjects::paper_case();
+  const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
+  const auto check =
+    [&](const lattice::Material &material, double degrees, double longitudinal, double shear, double digits)
+  {
+    const Alpha alpha = lattice_alpha(input.lattice(), material, I, direction(degrees));
+    EXPECT_NEAR(alpha[0], longitudinal, digits);
+    EXPECT_NEAR(alpha[1], shear, digits);
+    const Alpha bloch = bloch_alpha(input.lattice(), material, I, direction(degrees));
+    EXPECT_NEAR(bloch[0], alpha[0], 1e-7);
+    EXPECT_NEAR(bloch[1], alpha[1], 1e-7);
+  };
+  check(subjects::nearest_only(input), 0., 11. / 144., 1. / 48., 1e-14);
+  check(subjects::nearest_only(input), 30., 1. / 16., 1. / 16., 1e-14);
+  check(subjects::nearest_only(input), 90., 1. / 16., 1. / 16., 1e-14);
+  check(input.material(), 0., 0.1468305, 0.1264958, 5e-8);
+  check(input.material(), 90., 0.1681624, 0.0625, 5e-8);
+}
+
+TEST(EdgeLayer, HasTheKnownDeviationAndDecay)
+{
+  const Case input = subjects::paper_case();
+  const EdgeLayer layer = relaxed_edge(input.spacing, input.material(), 1.05, 8);
+  EXPECT_NEAR(layer.deviations[0], -8.67e-3, 5e-6);
+  EXPECT_NEAR(edge_decay(input.spacing, input.material(), 1.05, layer.stretch_across), -0.2177, 5e-5);
+  const lattice::Material nearest = subjects::nearest_only(input);
+  EXPECT_EQ(edge_decay(input.spacing, nearest, 1.05, relaxed_edge(input.spacing, nearest, 1.05, 8).stretch_across), 0.);
+}
+
+// Far from the edge the sheet carries no load across: Cauchy-Born's answer for a free lateral stretch.
+TEST(EdgeLayer, BulkIsFreeOfStressAcross)
+{
+  const Case input = subjects::paper_case();
+  for (const lattice::Material &material : {input.material(), subjects::nearest_only(input)})
+  {
+    // Edge layers decay by a third a row here.
+    const EdgeLayer layer = relaxed_edge(input.spacing, material, 1.3, 16);
+    Eigen::Matrix2d F = Eigen::Matrix2d::Identity();
+    F(0, 0) = 1.3;
+    F(1, 1) = layer.stretch_across;
+    const auto P = cauchy_born(input.lattice(), material).first_piola_stress(to_continuum(F));
+    EXPECT_LT(std::abs(P[1][1]), 1e-9 * P[0][0]);
+    EXPECT_LT(layer.stretch_across, 1.);
+  }
+}
+
+TEST(GradientPositivity, SumOverBondsIsTheLaw)
+{
+  const Case input = subjects::paper_case();
+  const Subject s = subject(input);
+  for (const Eigen::Matrix2d &F : {Eigen::Matrix2d(Eigen::Matrix2d::Identity()), input.deformation()})
+  {
+    const double of_law = smallest_eigenvalue(*s.lattice_gradient, F);
+    EXPECT_NEAR(smallest_lattice_eigenvalue(input.lattice(), s.material, F, s.lengths.lattice), of_law, 1e-12 * of_law);
+  }
+}
+
+TEST(GradientPositivity, IsLostBelowTheCriticalLengthAndNotAboveIt)
+{
+  const Case input = subjects::paper_case();
+  const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
+  for (const lattice::Material &material : {input.material(), subjects::nearest_only(input)})
+  {
+    const double critical = critical_length(input.lattice(), material, I);
+    EXPECT_LT(smallest_lattice_eigenvalue(input.lattice(), material, I, 0.999 * critical), 0.);
+    EXPECT_GT(smallest_lattice_eigenvalue(input.lattice(), material, I, 1.001 * critical), 0.);
+  }
+  // Nearest neighbours alone need all of d / sqrt(12); together with the next-nearest, less than d / 2 will do.
+  EXPECT_NEAR(critical_length(input.lattice(), subjects::nearest_only(input), I), input.spacing / std::sqrt(12.),
+              1e-12 * input.spacing);
+  EXPECT_LT(critical_length(input.lattice(), input.material(), I), 0.44 * input.spacing);
+}
+
+TEST(IntrinsicLength, HoldsForBothShellSetsAndOrientations)
+{
+  for (const auto orientation : {lattice::Orientation::rows_along_crack, lattice::Orientation::rows_across_crack})
+  {
+    Case input = subjects::paper_case();
+    input.orientation = orientation;
+    for (const lattice::Material &material : {input.material(), subjects::nearest_only(input)})
+    {
+      const ClaimOutcome outcome = intrinsic_length_claim(subject(input, material), small_version());
+      EXPECT_TRUE(outcome.results.all_hold());
+      for (const Result &row : outcome.results.rows())
+        EXPECT_NE(row.verdict(), Verdict::fails) << row.quantity << " " << row.error.value_or(-1.);
+    }
+  }
+}
+
+class IntrinsicLengthFault : public testing::TestWithParam<faults::Fault>
+{
+};
+INSTANTIATE_TEST_SUITE_P(Claims, IntrinsicLengthFault,
+                         testing::Values(faults::Fault{"next-nearest stiffness", faults::stiffer_next_nearest},
+                                         faults::Fault{"length of nearest", faults::length_of_nearest_neighbours},
+                                         faults::Fault{"sign of k^4", faults::turn_sign_of_fourth_order},
+                                         faults::Fault{"isotropic length",
+                                                       [](Subject &s) { s.lengths.isotropic_inertia *= 1.01; }}));
+
+TEST_P(IntrinsicLengthFault, FailsTheClaim)
+{
+  Subject wrong = subject(subjects::paper_case());
+  GetParam().plant(wrong);
+  const ClaimOutcome outcome = intrinsic_length_claim(wrong, small_version());
+  EXPECT_EQ(outcome.results.verdict(), Verdict::fails);
+  EXPECT_EQ(faults::failing(outcome.results, "lattice run against closed form"), 0u);
+}
+
+} // namespace

@@ -1,0 +1,94 @@
+// Energies of fields that vary, and what makes the claim about them fail.
+#include "verification/energy/wave_energy.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/verification/claims/faults.h"
+#include "verification/energy/energy_claim.h"
+
+namespace
+{
+
+using namespace verification;
+
+WaveEnergyOptions small_version(const Case &input)
+{
+  WaveEnergyOptions options;
+  options.states = {Eigen::Matrix2d::Identity(), input.deformation()};
+  options.kd = {0.25, 0.5};
+  return options;
+}
+
+TEST(WaveEnergy, HoldsForBothShellSetsAndOrientations)
+{
+  for (const auto orientation : {lattice::Orientation::rows_along_crack, lattice::Orientation::rows_across_crack})
+  {
+    Case input = subjects::paper_case();
+    input.orientation = orientation;
+    for (const lattice::Material &material : {input.material(), subjects::nearest_only(input)})
+    {
+      const ClaimOutcome outcome = wave_energy_claim(subject(input, material), small_version(input));
+      EXPECT_TRUE(outcome.results.all_hold());
+      for (const Result &row : outcome.results.rows())
+        EXPECT_EQ(row.verdict(), Verdict::holds) << row.quantity << " " << row.error.value_or(-1.);
+    }
+  }
+}
+
+// The excess is there, with its sign: the gradient continuum holds more energy than the local one, the lattice less.
+TEST(WaveEnergy, OfTheGradientContinuumIsOnTheOtherSideOfTheLocalOne)
+{
+  const Case input = subjects::paper_case();
+  const ClaimOutcome outcome = wave_energy_claim(subject(input), small_version(input));
+  const Table &table = outcome.tables.at("sinusoidal_energy");
+  const auto column = [&](const std::string &name)
+  {
+    const auto found = std::find(table.columns().begin(), table.columns().end(), name);
+    return static_cast<std::size_t>(found - table.columns().begin());
+  };
+  for (const auto &row : table.rows())
+  {
+    EXPECT_LT(std::get<double>(row[column("lattice")]), 1. - 1e-3);
+    EXPECT_GT(std::get<double>(row[column("gradient")]), 1. + 1e-3);
+  }
+}
+
+class WaveEnergyFault : public testing::TestWithParam<faults::Fault>
+{
+};
+INSTANTIATE_TEST_SUITE_P(Claims, WaveEnergyFault,
+                         testing::Values(faults::Fault{"next-nearest stiffness", faults::stiffer_next_nearest},
+                                         faults::Fault{"length of nearest", faults::length_of_nearest_neighbours},
+                                         faults::Fault{"sign of k^4", faults::turn_sign_of_fourth_order},
+                                         faults::Fault{"Voronoi cell", faults::square_voronoi_cell}));
+
+TEST_P(WaveEnergyFault, FailsTheClaim)
+{
+  const Case input = subjects::paper_case();
+  Subject wrong = subject(input);
+  GetParam().plant(wrong);
+  const ClaimOutcome outcome = wave_energy_claim(wrong, small_version(input));
+  EXPECT_EQ(outcome.results.verdict(), Verdict::fails);
+  EXPECT_EQ(faults::failing(outcome.results, "energy of the lattice against Bloch"), 0u);
+}
+
+TEST(Energy, FailsForAWrongVoronoiCell)
+{
+  Subject wrong = subject(subjects::paper_case());
+  faults::square_voronoi_cell(wrong);
+  EXPECT_GE(faults::failing(energy_claim(wrong, 10)), 2u);
+}
+
+// The ratio of the constants of a bond is not that of the sheet.
+TEST(Energy, FailsForTheRatioOfTheBondConstants)
+{
+  const Case input = subjects::paper_case();
+  Subject wrong = subject(input);
+  wrong.mooney_rivlin = with_ratio(input.lattice(), input.material(), input.deformation(), 0.6);
+  EXPECT_EQ(faults::failing(energy_claim(wrong, 10), "calibrated ratio"), 1u);
+  // As a choice of the user's it is nothing to judge.
+  wrong.ratio_is_calibrated = false;
+  EXPECT_EQ(faults::failing(energy_claim(wrong, 10), "ratio r"), 0u);
+}
+
+} // namespace

@@ -1,0 +1,236 @@
+// Waves on the lattice, in the finite elements and in closed form; and what makes the claim about them fail.
+#include "verification/wave_speeds/wave_speeds_claim.h"
+
+#include <gtest/gtest.h>
+
+#include "lattice/forces.h"
+#include "tests/verification/claims/faults.h"
+#include "verification/wave_speeds/bloch.h"
+#include "verification/wave_speeds/lattice_waves.h"
+
+namespace
+{
+
+using namespace verification;
+
+lattice::TriangularLattice sheet_of(const Case &input)
+{
+  return input.lattice();
+}
+
+WaveSpeedsOptions small_version(const Case &input)
+{
+  WaveSpeedsOptions options;
+  options.states = {Eigen::Matrix2d::Identity(), input.deformation()};
+  options.kd = {0.25, 0.5};
+  options.mesh.cells = 4;
+  return options;
+}
+
+// Table of theory.md, section "Known answers", to the digits given there.
+TEST(Bloch, HasTheKnownSpeedsOfTheStretchedSheet)
+{
+  const Case input = subjects::paper_case();
+  const Eigen::Matrix2d F = input.deformation();
+  const auto speeds = [&](const Eigen::Vector2d &N)
+  {
+    const double k = 1e-4 / input.spacing;
+    const auto waves = bloch_waves(sheet_of(input), input.material(), F, k * N);
+    return std::array<double, 2>{std::min(waves[0].frequency, waves[1].frequency) / k,
+                                 std::max(waves[0].frequency, waves[1].frequency) / k};
+  };
+  const auto along = speeds({1., 0.}), across = speeds({0., 1.});
+  EXPECT_NEAR(along[0], 19.76693, 5e-6);
+  EXPECT_NEAR(along[1], 20.31142, 5e-6);
+  EXPECT_NEAR(across[0], 19.00774, 5e-6);
+  EXPECT_NEAR(across[1], 20.31148, 5e-6);
+}
+
+TEST(Bloch, HasTheKnownErrorsOfBothContinua)
+{
+  const Case input = subjects::paper_case();
+  const Subject s = subject(input);
+  const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
+  const Eigen::Vector2d K(0.5 / input.spacing, 0.);
+  const double exact = bloch_waves(sheet_of(input), input.material(), I, K)[0].frequency;
+  const WaveContinuum local{{s.cauchy_born}, {input.density}};
+  const WaveContinuum gradient{{s.cauchy_born, *s.lattice_gradient}, {input.density, s.lengths.lattice}};
+  const auto error = [&](const WaveContinuum &medium)
+  { return plane_waves(continuum_matrices(medium, I, K), wave_normal(I, K))[0].frequency / exact - 1.; };
+  EXPECT_NEAR(error(local), 1.86e-2, 5e-5);
+  EXPECT_NEAR(error(gradient), 8.0e-4, 5e-6);
+}
+
+// The dynamical matrix is minus the force that the simulator finds on a site of a wave, over its mass and amplitude.
+TEST(Bloch, IsTheResponseOfTheForceLoop)
+{
+  for (const auto orientation : {lattice::Orientation::rows_along_crack, lattice::Orientation::rows_across_crack})
+  {
+    const Case input = subjects::paper_case();
+    const WaveCell cell = wave_cell(input.spacing, orientation, 2, 1, 1.2);
+    Eigen::Matrix2d F;
+    F << 1.6, 0.2, -0.1, 1.3;
+    const lattice::Material material = input.material();
+    const WaveMatrices matrices = bloch_matrices(cell.sheet, material, F, cell.K);
+    const double mass = lattice::site_mass(material, cell.sheet), amplitude = 1e-6 * input.spacing;
+    lattice::Forces forces(cell.sheet, material);
+    const std::size_t place = cell.sheet.index(0, 0);
+    const double phase = cell.K.dot(cell.sheet.reference(place));
+    for (int component = 0; component < 2; ++component)
+    {
+      lattice::State state = lattice::homogeneous_state(cell.sheet, material, F, lattice::Edges::free,
+                                                        std::numeric_limits<double>::infinity());
+      for (std::size_t row = 0; row < cell.sheet.rows(); ++row)
+        for (std::size_t column = 0; column < cell.sheet.sites_in_row(row); ++column)
+        {
+          const std::size_t at = cell.sheet.index(row, column);
+          const double shape = std::cos(cell.K.dot(cell.sheet.reference(at)) - phase);
+          (component == 0 ? state.x : state.y)[at] += amplitude * shape;
+          (component == 0 ? state.vx : state.vy)[at] = shape;
+        }
+      lattice::update_images(state, cell.sheet);
+      const lattice::Field still(state.x.size(), 0.);
+      const auto force = [&](const lattice::Field &vx, const lattice::Field &vy)
+      {
+        forces.evaluate(state, vx, vy);
+        return Eigen::Vector2d(forces.fx()[place], forces.fy()[place]);
+      };
+      const Eigen::Vector2d elastic = force(still, still);
+      const Eigen::Vector2d viscous = force(state.vx, state.vy) - elastic;
+      // The force is linear to the relative amplitude, and rounded to some 1e-16 of bond forces, 1e6 times itself.
+      EXPECT_LT((elastic / (-mass * amplitude) - matrices.stiffness.col(component)).norm(),
+                1e-5 * matrices.stiffness.norm());
+      EXPECT_LT((viscous / -mass - matrices.damping.col(component)).norm(), 1e-5 * matrices.damping.norm());
+    }
+  }
+}
+
+TEST(PlaneWaves, OfADampedSystemAreTheRootsOfItsPolynomial)
+{
+  WaveMatrices matrices;
+  matrices.stiffness << 9e6, 1e6, 1e6, 4e6;
+  matrices.damping << 600., 50., 50., 300.;
+  for (const PlaneWave &wave : plane_waves(matrices, {1., 0.}))
+  {
+    const std::complex<double> s(-wave.decay, wave.frequency);
+    const Eigen::Matrix2cd polynomial =
+      s * s * Eigen::Matrix2cd::Identity() + s * matrices.damping + matrices.stiffness.cast<std::complex<double>>();
+    EXPECT_LT(std::abs(polynomial(0, 0) * polynomial(1, 1) - polynomial(0, 1) * polynomial(1, 0)),
+              1e-12 * matrices.stiffness.squaredNorm());
+  }
+  matrices.damping.setZero();
+  const auto free = plane_waves(matrices, {1., 0.});
+  EXPECT_GT(free[0].frequency, free[1].frequency); // the stiff direction is the one nearest to (1, 0)
+  EXPECT_EQ(free[0].decay, 0.);
+}
+
+TEST(Oscillation, FindsFrequencyAndDecay)
+{
+  for (const double decay : {0., 0.1, 0.4})
+  {
+    std::vector<double> values;
+    const double step = 0.02, frequency = 3.;
+    for (int i = 0; i < 130; ++i)
+      values.push_back(std::exp(-decay * i * step) *
+                       (std::cos(frequency * i * step) + 0.05 * std::sin(frequency * i * step)));
+    const Oscillation found = fit_oscillation(values, step);
+    EXPECT_NEAR(found.frequency, frequency, 1e-11);
+    EXPECT_NEAR(found.decay, decay, 1e-11);
+    EXPECT_LT(found.residual, 1e-12);
+    for (std::size_t i = 0; i < values.size(); ++i)
+      values[i] += 1e-3 * std::sin(1e4 * static_cast<double>(i * i)); // as good as random
+    const Oscillation noisy = fit_oscillation(values, step);
+    EXPECT_NEAR(noisy.frequency, frequency, 2e-3);
+    EXPECT_GT(noisy.residual, 1e-4);
+  }
+}
+
+TEST(Oscillation, RefusesWhatDoesNotOscillate)
+{
+  std::vector<double> values;
+  for (int i = 0; i < 100; ++i)
+    values.push_back(std::exp(-0.1 * i));
+  EXPECT_THROW(fit_oscillation(values, 1.), std::runtime_error);
+}
+
+TEST(WaveCell, HoldsWholeWavelengthsNearTheLengthAskedFor)
+{
+  for (const auto orientation : {lattice::Orientation::rows_along_crack, lattice::Orientation::rows_across_crack})
+    for (const auto &[along_x, along_y] : {std::array<unsigned int, 2>{1, 0}, {0, 1}, {1, 1}, {3, 1}, {1, 2}})
+      for (const double kd : {0.05, 0.3, 1., 2.})
+      {
+        const WaveCell cell = wave_cell(1e-3, orientation, along_x, along_y, kd);
+        EXPECT_NEAR(cell.K.norm() * 1e-3, kd, 0.021 * kd);
+        for (const double turns : {cell.K.x() * cell.sheet.length(), cell.K.y() * cell.sheet.height()})
+          EXPECT_NEAR(turns / (2. * M_PI), std::round(turns / (2. * M_PI)), 1e-9);
+      }
+}
+
+TEST(WaveSpeeds, HoldsForBothShellSetsAndOrientations)
+{
+  for (const auto orientation : {lattice::Orientation::rows_along_crack, lattice::Orientation::rows_across_crack})
+  {
+    Case input = subjects::paper_case();
+    input.orientation = orientation;
+    for (const lattice::Material &material : {input.material(), subjects::nearest_only(input)})
+    {
+      const ClaimOutcome outcome = wave_speeds_claim(subject(input, material), small_version(input));
+      EXPECT_TRUE(outcome.results.all_hold());
+      for (const Result &row : outcome.results.rows())
+        EXPECT_EQ(row.verdict(), Verdict::holds) << row.quantity << " " << row.error.value_or(-1.);
+      EXPECT_EQ(outcome.tables.at("wave_speeds").rows().size(), 2u * 4u * 2u * 2u); // F, directions, kd, waves
+    }
+  }
+}
+
+TEST(WaveSpeeds, HoldsForDampedWaves)
+{
+  const Case input = subjects::paper_case();
+  WaveSpeedsOptions options;
+  options.damped_states = {input.deformation()};
+  options.mesh.cells = 4;
+  const ClaimOutcome outcome = wave_speeds_claim(subject(input), options);
+  EXPECT_EQ(outcome.results.rows().size(), 6u);
+  for (const Result &row : outcome.results.rows())
+    EXPECT_EQ(row.verdict(), Verdict::holds) << row.quantity << " " << row.error.value_or(-1.);
+
+  // A dashpot 1 % off on one side is seen in the decay.
+  Subject wrong = subject(input);
+  const auto viscosity_of = [](const Subject &s) { return s.material.next_nearest->viscosity; };
+  wrong.material.next_nearest->viscosity *= 1.01;
+  const ClaimOutcome other = wave_speeds_claim(wrong, options);
+  EXPECT_GT(viscosity_of(wrong), 0.);
+  for (std::size_t w = 0; w < 2; ++w)
+    EXPECT_GT(
+      std::abs(other.results.rows()[3 * w + 1].lattice.value() / outcome.results.rows()[3 * w + 1].lattice.value() -
+               1.),
+      1e-3);
+}
+
+class WaveSpeedsFault : public testing::TestWithParam<faults::Fault>
+{
+};
+INSTANTIATE_TEST_SUITE_P(Claims, WaveSpeedsFault,
+                         testing::Values(faults::Fault{"next-nearest stiffness", faults::stiffer_next_nearest},
+                                         faults::Fault{"length of nearest", faults::length_of_nearest_neighbours},
+                                         faults::Fault{"sign of k^4", faults::turn_sign_of_fourth_order},
+                                         faults::Fault{"density", faults::heavier},
+                                         faults::Fault{"Voronoi cell", faults::square_voronoi_cell}));
+
+TEST_P(WaveSpeedsFault, FailsTheClaim)
+{
+  const Case input = subjects::paper_case();
+  Subject wrong = subject(input);
+  GetParam().plant(wrong);
+  const ClaimOutcome outcome = wave_speeds_claim(wrong, small_version(input));
+  EXPECT_EQ(outcome.results.verdict(), Verdict::fails);
+  // Not by the comparison of a side with its own theory.
+  EXPECT_EQ(faults::failing(outcome.results, "lattice run against Bloch"), 0u);
+  for (const Result &row : outcome.results.rows())
+    if (row.quantity.find("finite elements against their continuum") != std::string::npos)
+    {
+      EXPECT_EQ(row.verdict(), Verdict::holds) << row.error.value_or(-1.);
+    }
+}
+
+} // namespace

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "verification/claim_outcome.h"
+#include "verification/subject.h"
+#include "verification/wave_speeds/continuum_waves.h"
+
+namespace verification
+{
+
+/// The part of the claim `energy` about fields that vary: the energy that a sinusoidal displacement adds to a
+/// homogeneous state, and what a travelling wave carries.
+///
+/// For one displacement field the lattice and the local continuum differ in second order of kd. So do the lattice and
+/// the gradient continuum, with the opposite sign, and they must: the continuum's equations are the lattice's times 1 +
+/// l_d^2 k^2, and its energies are too (theory.md, eqs. W.4, W.5). Divided by that, they agree to fourth order.
+///
+/// Leaves the tables `sinusoidal_energy` and `travelling_waves`. Every rank computes all of it.
+struct WaveEnergyOptions
+{
+  std::vector<Eigen::Matrix2d> states;        ///< homogeneous F [-]
+  std::vector<double> kd{0.1, 0.25, 0.5, 1.}; ///< of the sinusoidal fields [-]
+  WaveMesh mesh;                              ///< of the finite elements
+};
+
+ClaimOutcome wave_energy_claim(const Subject &subject, const WaveEnergyOptions &options);
+
+} // namespace verification

@@ -1,0 +1,23 @@
+#pragma once
+
+#include "continuum/gradient_law.h"
+#include "lattice/material.h"
+
+namespace verification
+{
+
+/// Smallest eigenvalue of the gradient energy at F over all gradients G_iJK of unit size, |G| = 1, symmetric in J and K
+/// [Pa m^2]. The energy is positive if it is not negative.
+double smallest_eigenvalue(const continuum::GradientLaw &law, const Eigen::Matrix2d &F);
+
+/// The same of the lattice's gradient energy with another length, from sums over its bonds (theory-continuum.md, eq.
+/// C.22). @param length l_d [m]
+double smallest_lattice_eigenvalue(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                                   const Eigen::Matrix2d &F, double length);
+
+/// Length l_d [m] below which the lattice's gradient energy at F is no longer positive, exactly: largest eigenvalue of
+/// its two parts against each other. Bonds in compression can leave none; then it is not-a-number.
+double critical_length(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                       const Eigen::Matrix2d &F);
+
+} // namespace verification

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <cmath>
+#include <stdexcept>
+#include <vector>
+
+namespace verification
+{
+
+/// Order p of an error that behaves as e = C h^p: slope of the least-squares line through (log h, log e).
+/// @param h sizes, > 0, two different ones at least; @param errors > 0, one for each
+/// @return not-a-number if an error is 0 or not finite
+inline double fitted_order(const std::vector<double> &h, const std::vector<double> &errors)
+{
+  if (h.size() != errors.size() || h.size() < 2)
+    throw std::invalid_argument("an order is fitted to two errors or more, each with its size");
+  double mean_x = 0., mean_y = 0.;
+  for (std::size_t i = 0; i < h.size(); ++i)
+  {
+    mean_x += std::log(h[i]) / static_cast<double>(h.size());
+    mean_y += std::log(errors[i]) / static_cast<double>(h.size());
+  }
+  double xx = 0., xy = 0.;
+  for (std::size_t i = 0; i < h.size(); ++i)
+  {
+    xx += std::pow(std::log(h[i]) - mean_x, 2);
+    xy += (std::log(h[i]) - mean_x) * (std::log(errors[i]) - mean_y);
+  }
+  return std::isfinite(mean_y) ? xy / xx : std::nan("");
+}
+
+} // namespace verification

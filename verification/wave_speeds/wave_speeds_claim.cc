@@ -1,0 +1,334 @@
+#include "verification/wave_speeds/wave_speeds_claim.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <sstream>
+
+#include "verification/order_fit.h"
+#include "verification/wave_speeds/bloch.h"
+#include "verification/wave_speeds/lattice_waves.h"
+
+namespace verification
+{
+namespace
+{
+
+// Extrapolated time stepping leaves 2e-7 (lattice_waves.cc), nonlinear terms 1e-10.
+constexpr double lattice_tolerance = 1e-6;
+// The claim: at this wave number the gradient continuum has the lattice's speed to 1e-4.
+constexpr double compared_kd = 0.25;
+constexpr double gradient_tolerance = 1e-4;
+constexpr double order_tolerance = 0.2;
+// Wave numbers over which orders are fitted: the next order is (kd)^2 of the error, so it bends the line by less than
+// the tolerance, and the smallest error is well above round-off.
+constexpr double order_kd[] = {0.05, 0.1, 0.2, 0.4};
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+constexpr const char *wave_names[] = {"L", "S"};
+
+// Multiples of the reciprocal periods: along x, at 30 degrees, along y, and off every line of symmetry.
+struct Direction
+{
+  unsigned int along_x, along_y;
+};
+
+std::vector<Direction> directions(lattice::Orientation orientation)
+{
+  const Direction oblique = orientation == lattice::Orientation::rows_along_crack ? Direction{1, 1} : Direction{3, 1};
+  return {{1, 0}, oblique, {0, 1}, {1, 2}};
+}
+
+std::string state_name(const Eigen::Matrix2d &F)
+{
+  std::ostringstream text;
+  if (F.isIdentity(1e-12))
+    return "F = I";
+  text << "F = (" << F(0, 0) << ", " << F(1, 1);
+  if (F(0, 1) != 0.)
+    text << ", shear " << F(0, 1);
+  text << ")";
+  return text.str();
+}
+
+// The material without dashpots, which the claim on speeds is about.
+lattice::Material springs(lattice::Material material)
+{
+  material.nearest.viscosity = 0.;
+  if (material.next_nearest)
+    material.next_nearest->viscosity = 0.;
+  return material;
+}
+
+std::array<double, 2> frequencies(const std::array<PlaneWave, 2> &waves)
+{
+  return {waves[0].frequency, waves[1].frequency};
+}
+
+// The largest of some relative differences, with the two values that it is between.
+struct Worst
+{
+  double value = nothing, reference = nothing, error = 0.;
+
+  void look_at(double a, double b)
+  {
+    const double difference = std::abs(a / b - 1.);
+    if (!(difference <= error)) // keeps a NaN
+    {
+      value = a;
+      reference = b;
+      error = difference;
+    }
+  }
+};
+
+// Everything about waves of one direction at one state.
+class Waves
+{
+public:
+  Waves(const Subject &subject, const Eigen::Matrix2d &F)
+    : subject_(subject), F_(F), material_(springs(subject.material)),
+      sheet_(subject.spacing, 10. * subject.spacing, 10. * subject.spacing, subject.orientation)
+  {
+    const double rho = subject.material.density;
+    local_ = std::make_unique<WaveContinuum>(WaveContinuum{{subject.cauchy_born}, {rho}});
+    gradient_ = std::make_unique<WaveContinuum>(
+      WaveContinuum{{subject.cauchy_born, *subject.lattice_gradient}, {rho, subject.lengths.lattice}});
+    isotropic_ = std::make_unique<WaveContinuum>(
+      WaveContinuum{{subject.cauchy_born, *subject.isotropic_gradient}, {rho, subject.lengths.isotropic_inertia}});
+  }
+
+  std::array<double, 2> bloch(const Eigen::Vector2d &K) const
+  {
+    return frequencies(bloch_waves(sheet_, material_, F_, K));
+  }
+  std::array<double, 2> local(const Eigen::Vector2d &K) const { return closed(*local_, K); }
+  std::array<double, 2> gradient(const Eigen::Vector2d &K) const { return closed(*gradient_, K); }
+  std::array<double, 2> isotropic(const Eigen::Vector2d &K) const { return closed(*isotropic_, K); }
+
+  std::array<double, 2> run(const WaveCell &cell) const
+  {
+    try
+    {
+      const std::array<Oscillation, 2> found = lattice_waves(cell, material_, F_);
+      return {found[0].frequency, found[1].frequency};
+    }
+    catch (const std::runtime_error &)
+    {
+      return {nothing, nothing}; // not a wave: fails the rows that ask for it
+    }
+  }
+
+  std::array<double, 2> finite_elements(const Eigen::Vector2d &K, const WaveMesh &mesh) const
+  {
+    return discrete_frequencies(*gradient_, F_, K, mesh);
+  }
+
+private:
+  std::array<double, 2> closed(const WaveContinuum &medium, const Eigen::Vector2d &K) const
+  {
+    return frequencies(plane_waves(continuum_matrices(medium, F_, K), wave_normal(F_, K)));
+  }
+
+  const Subject &subject_;
+  Eigen::Matrix2d F_;
+  lattice::Material material_;
+  lattice::TriangularLattice sheet_; // only its bonds matter
+  std::unique_ptr<WaveContinuum> local_, gradient_, isotropic_;
+};
+
+// Orders of the error of a continuum, the one farthest from what is claimed.
+struct WorstOrder
+{
+  double claimed;
+  double order = nothing, error = 0.;
+
+  void look_at(double found)
+  {
+    if (!(std::abs(found - claimed) <= error))
+    {
+      order = found;
+      error = std::abs(found - claimed);
+    }
+  }
+};
+
+void speeds_at(const Subject &subject, const Eigen::Matrix2d &F, const WaveSpeedsOptions &options,
+               ClaimOutcome &outcome)
+{
+  const Waves waves(subject, F);
+  const double d = subject.spacing;
+  Table &table =
+    outcome.table("wave_speeds", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d", "local [m/s]", "bloch [m/s]",
+                                  "lattice [m/s]", "gradient [m/s]", "isotropic [m/s]", "fem [m/s]"});
+  Worst run_against_bloch, elements_against_closed, gradient_against_bloch;
+  WorstOrder local_order{2.}, gradient_order{4.};
+  std::array<Worst, 2> long_waves;
+  for (const Direction &direction : directions(subject.orientation))
+  {
+    std::array<std::array<double, 2>, 2> longest{}; // speeds of the two longest waves run, by wave
+    std::array<double, 2> longest_kd{};
+    Eigen::Vector2d N;
+    for (std::size_t i = 0; i < options.kd.size(); ++i)
+    {
+      const WaveCell cell = wave_cell(d, subject.orientation, direction.along_x, direction.along_y, options.kd[i]);
+      const double k = cell.K.norm();
+      N = cell.K / k;
+      const auto local = waves.local(cell.K), bloch = waves.bloch(cell.K), gradient = waves.gradient(cell.K),
+                 isotropic = waves.isotropic(cell.K), run = waves.run(cell),
+                 elements = waves.finite_elements(cell.K, options.mesh);
+      for (std::size_t w = 0; w < 2; ++w)
+      {
+        run_against_bloch.look_at(run[w] / k, bloch[w] / k);
+        elements_against_closed.look_at(elements[w] / k, gradient[w] / k);
+        if (i < 2)
+        {
+          longest[w][i] = run[w] / k;
+          longest_kd[i] = k * d;
+        }
+        table.add({subject.name, F(0, 0), F(1, 1), std::atan2(N.y(), N.x()) * 180. / M_PI, std::string(wave_names[w]),
+                   k * d, local[w] / k, bloch[w] / k, run[w] / k, gradient[w] / k, isotropic[w] / k, elements[w] / k});
+      }
+    }
+    const Eigen::Vector2d K = compared_kd / d * N;
+    const auto speed = [&](const std::array<double, 2> &frequency, std::size_t w)
+    { return frequency[w] * d / compared_kd; };
+    for (std::size_t w = 0; w < 2; ++w)
+    {
+      gradient_against_bloch.look_at(speed(waves.gradient(K), w), speed(waves.bloch(K), w));
+      std::vector<double> lengths, local_errors, gradient_errors;
+      for (const double kd : order_kd)
+      {
+        const double exact = waves.bloch(kd / d * N)[w];
+        lengths.push_back(kd);
+        local_errors.push_back(std::abs(waves.local(kd / d * N)[w] / exact - 1.));
+        gradient_errors.push_back(std::abs(waves.gradient(kd / d * N)[w] / exact - 1.));
+      }
+      local_order.look_at(fitted_order(lengths, local_errors));
+      gradient_order.look_at(fitted_order(lengths, gradient_errors));
+      // v = c (1 - alpha (kd)^2 / 2 + ...): two waves give c.
+      const double a = std::pow(longest_kd[0], 2), b = std::pow(longest_kd[1], 2);
+      const double extrapolated = (b * longest[w][0] - a * longest[w][1]) / (b - a);
+      const double closed = F.isIdentity(1e-12)
+                              ? (w == 0 ? subject.theory.longitudinal_speed : subject.theory.shear_speed)
+                              : waves.local(N / d)[w] * d;
+      long_waves[w].look_at(extrapolated, closed);
+    }
+  }
+
+  const std::string prefix = subject.name + ", " + state_name(F) + ": ";
+  const auto add = [&](const std::string &quantity, const std::string &unit, std::optional<double> lattice_value,
+                       std::optional<double> continuum_value, std::optional<double> theory, double error,
+                       double tolerance)
+  {
+    outcome.results.add(
+      {"wave-speeds", prefix + quantity, unit, lattice_value, continuum_value, theory, error, tolerance});
+  };
+  // The next term of the series of v(k) has a coefficient below 1/20: at most (3^2/360)/2 + (3/12)^2/8 for bonds up to
+  // sqrt3 d long.
+  const double remainder = std::pow(options.kd[0] * options.kd[1] * 1.02 * 1.02, 2) / 20.;
+  for (std::size_t w = 0; w < 2; ++w)
+    add(std::string("long-wave speed, ") + wave_names[w] + ", lattice run against closed form, worst of 4 directions",
+        "m/s", long_waves[w].value, {}, long_waves[w].reference, long_waves[w].error,
+        std::max(remainder, lattice_tolerance));
+  add("phase velocity, lattice run against Bloch, worst of all waves", "m/s", run_against_bloch.value, {},
+      run_against_bloch.reference, run_against_bloch.error, lattice_tolerance);
+  add("phase velocity, finite elements against their continuum, worst of all waves", "m/s", {},
+      elements_against_closed.value, elements_against_closed.reference, elements_against_closed.error,
+      discretisation_bound(options.mesh));
+  add("phase velocity at kd = 0.25, gradient continuum against Bloch, worst of all waves", "m/s", {},
+      gradient_against_bloch.value, gradient_against_bloch.reference, gradient_against_bloch.error, gradient_tolerance);
+  add("order in kd of the local continuum's error, worst of all waves", "1", {}, local_order.order, 2.,
+      local_order.error, order_tolerance);
+  add("order in kd of the gradient continuum's error, worst of all waves", "1", {}, gradient_order.order, 4.,
+      gradient_order.error, order_tolerance);
+}
+
+// Waves along x, whose two polarisations the dashpots keep apart by symmetry.
+void attenuation_at(const Subject &subject, const Eigen::Matrix2d &F, ClaimOutcome &outcome)
+{
+  const lattice::TriangularLattice any(subject.spacing, 10. * subject.spacing, 10. * subject.spacing,
+                                       subject.orientation);
+  const auto damped = [&](const Eigen::Vector2d &K)
+  { return plane_waves(bloch_matrices(any, subject.material, F, K), wave_normal(F, K)); };
+
+  // Damping grows with kd; a fifth of critical is seen well within one period.
+  constexpr double probe = 0.01, wanted_ratio = 0.2;
+  const auto at_probe = damped(Eigen::Vector2d(probe / subject.spacing, 0.));
+  const double ratio = std::max(at_probe[0].decay / at_probe[0].frequency, at_probe[1].decay / at_probe[1].frequency);
+  const double kd = std::clamp(probe * wanted_ratio / ratio, 0.005, 0.5);
+  const WaveCell cell = wave_cell(subject.spacing, subject.orientation, 1, 0, kd);
+  const double k = cell.K.norm();
+
+  const auto viscosity = homogenised_viscosity(any, subject.material);
+  const WaveContinuum medium{{subject.cauchy_born, *subject.lattice_gradient},
+                             {subject.material.density, subject.lengths.lattice},
+                             viscosity.get()};
+  const std::array<PlaneWave, 2> theory = damped(cell.K),
+                                 kelvin = plane_waves(continuum_matrices(medium, F, cell.K), wave_normal(F, cell.K));
+  std::array<Oscillation, 2> run{{{nothing, nothing, 0.}, {nothing, nothing, 0.}}}, elements = run;
+  try
+  {
+    run = lattice_waves(cell, subject.material, F);
+    // Waves this long hardly feel the gradient energy: the error in space is below 1e-6.
+    elements = finite_element_waves(medium, F, cell.K, {4, 4});
+  }
+  catch (const std::runtime_error &)
+  {
+    // No wave, no number: the rows fail.
+  }
+
+  Table &table =
+    outcome.table("attenuation",
+                  {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d", "theory_frequency [rad/s]",
+                   "theory_decay [1/s]", "lattice_frequency [rad/s]", "lattice_decay [1/s]",
+                   "continuum_frequency [rad/s]", "continuum_decay [1/s]", "fem_frequency [rad/s]", "fem_decay [1/s]"});
+  std::ostringstream where;
+  where << subject.name << ", " << state_name(F) << ", kd = " << std::round(1e4 * k * subject.spacing) / 1e4 << ": ";
+  // Both sides step with (w h)^4 left over after extrapolation: 2e-6 for 40 steps a period, and at a fifth of critical
+  // damping the decay has a fifth of the frequency's digits.
+  constexpr double tolerance = 1e-4;
+  for (std::size_t w = 0; w < 2; ++w)
+  {
+    table.add({subject.name, F(0, 0), F(1, 1), 0., std::string(wave_names[w]), k * subject.spacing, theory[w].frequency,
+               theory[w].decay, run[w].frequency, run[w].decay, kelvin[w].frequency, kelvin[w].decay,
+               elements[w].frequency, elements[w].decay});
+    const std::string name = where.str() + wave_names[w] + ", ";
+    const auto add = [&](const std::string &quantity, const std::string &unit, double lattice_value,
+                         double element_value, double bloch, double closed)
+    {
+      outcome.results.add({"wave-speeds", name + quantity + ", lattice and finite elements each against its theory",
+                           unit, lattice_value, element_value, bloch,
+                           std::max(std::abs(lattice_value / bloch - 1.), std::abs(element_value / closed - 1.)),
+                           tolerance});
+    };
+    add("damped frequency", "rad/s", run[w].frequency, elements[w].frequency, theory[w].frequency, kelvin[w].frequency);
+    add("decay", "1/s", run[w].decay, elements[w].decay, theory[w].decay, kelvin[w].decay);
+    // Dashpots are homogenised to leading order: l_d^2 k^2 is the largest relative difference.
+    outcome.results.add({"wave-speeds",
+                         name + "decay, Kelvin continuum against Bloch",
+                         "1/s",
+                         {},
+                         kelvin[w].decay,
+                         theory[w].decay,
+                         std::abs(kelvin[w].decay / theory[w].decay - 1.),
+                         std::pow(subject.lengths.lattice * k, 2)});
+  }
+}
+
+} // namespace
+
+ClaimOutcome wave_speeds_claim(const Subject &subject, const WaveSpeedsOptions &options)
+{
+  ClaimOutcome outcome;
+  for (const Eigen::Matrix2d &F : options.states)
+    speeds_at(subject, F, options, outcome);
+  const bool has_dashpots = subject.material.nearest.viscosity > 0. ||
+                            (subject.material.next_nearest && subject.material.next_nearest->viscosity > 0.);
+  if (has_dashpots)
+    for (const Eigen::Matrix2d &F : options.damped_states)
+      attenuation_at(subject, F, outcome);
+  return outcome;
+}
+
+} // namespace verification
