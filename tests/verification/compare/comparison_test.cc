@@ -274,7 +274,8 @@ TEST_F(Comparing, RefusesDamagedFiles)
     for (const std::size_t kept : {std::size_t(0), std::size_t(60), content.size() / 4, content.size() - 400})
     {
       std::ofstream(folder_ / name, std::ios::binary) << content.substr(0, kept);
-      refused([&, s = side] { s == Side::lattice ? void(lattice()) : void(continuum()); }, {name});
+      refused([&, s = side] { s == Side::lattice ? void(lattice()) : void(continuum()); },
+              {name, kept > 60 ? "damaged: " : "not a VTK file"});
     }
   }
 }
