@@ -2,10 +2,11 @@
 """The three views of verification/paraview/side_by_side.py, drawn by ParaView on a display of memory.
 
 Usage: side_by_side_test.py FOLDER_WITH_PARAVIEWS_PYTHON_MODULES
-Exits with 77 where they are not: cmake/set-up.sh puts them there.
+Exits with 77 where they are not, or Xvfb is not: cmake/set-up.sh puts both there.
 """
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -166,7 +167,7 @@ class SideBySide(unittest.TestCase):
 
 
 if __name__ == "__main__":
-    if not (MODULES / "paraview").is_dir():
-        print(f"no ParaView in {MODULES}")
+    if not (MODULES / "paraview").is_dir() or shutil.which("Xvfb") is None:
+        print(f"no ParaView in {MODULES}, or no Xvfb")
         sys.exit(77)
     unittest.main(verbosity=2)
