@@ -29,6 +29,23 @@ if [ ${#missing[@]} -gt 0 ]; then
   rm -f "$log"
 fi
 
+# ParaView's own VTK for Python cannot be installed beside the one that libvtk9-dev asks for, so it is unpacked in the build
+# folder. Only the test and the use of verification/paraview/ need it: nothing fails where it cannot be had.
+modules="$root/build/paraview"
+if [ ! -d "$modules" ]; then
+  part=$(mktemp -d)
+  wanted="python3-paraview=$(dpkg-query -W -f='${Version}' paraview)"
+  if (cd "$part" && { apt-get download -q "$wanted" || { apt-get update -q && apt-get download -q "$wanted"; }; } \
+        && dpkg-deb -x python3-paraview_*.deb unpacked) >"$part/log" 2>&1; then
+    mkdir -p "$root/build"
+    mv "$part/unpacked" "$modules"
+  else
+    echo "ParaView's Python modules could not be unpacked, so ParaView is not tested:" >&2
+    tail -n 3 "$part/log" >&2
+  fi
+  rm -rf "$part"
+fi
+
 build="$root/build/$preset"
 cd "$root"
 if [ ! -f "$build/build.ninja" ]; then

@@ -109,6 +109,27 @@ ExitCode run_program(int argc, char **argv)
   add_case_command("fracture", "verify the case's material and pre-stretch, then run its crack", run_fracture)
     ->add_flag("--skip-verification", options.skip_verification, "run the crack unverified; noted in every output");
 
+  CompareOptions chosen;
+  CLI::App *compare_command = app.add_subcommand("compare", "a lattice frame beside a continuum frame, site by site");
+  compare_command->add_option("LATTICE", chosen.lattice, "frame (.vtp), series (.pvd) or output directory of a lattice")
+    ->required()
+    ->type_name("");
+  compare_command
+    ->add_option("CONTINUUM", chosen.continuum, "frame (.vtu, .pvtu), series (.pvd) or output directory of a continuum")
+    ->required()
+    ->type_name("");
+  const auto add_time = [&](const std::string &name, std::string &time, const std::string &help)
+  { compare_command->add_option(name, time, help)->type_name("TIME"); };
+  add_time("--time", chosen.time, "time of both frames, or load factor; default: the last");
+  add_time("--lattice-time", chosen.lattice_time, "time of the lattice frame");
+  add_time("--continuum-time", chosen.continuum_time, "time of the continuum frame; with --lattice-time it may differ");
+  compare_command
+    ->add_option("--tolerance", chosen.tolerances,
+                 "FIELD=VALUE, largest relative root-mean-square difference that holds; repeatable")
+    ->allow_extra_args(false)
+    ->type_name("FIELD=VALUE");
+  compare_command->callback([&] { command = [&] { return compare_frames(options, chosen); }; });
+
   std::string report_directory;
   CLI::App *report_command = app.add_subcommand("report", "summary table, pictures and report.html of a finished run");
   report_command->add_option("DIR", report_directory, "output directory of a run, or a folder of several")

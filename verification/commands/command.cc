@@ -46,17 +46,21 @@ void read_case(const Options &options, Case &input, Parameters &parameters)
   input.check(parameters);
 }
 
-Run::Run(const Options &options, const Parameters &parameters)
+Run::Run(const Options &options, const Parameters &parameters) : Run(options, &parameters) {}
+
+Run::Run(const Options &options, const Parameters *parameters)
   : directory_(options.output_dir), writes_(first_rank()), talks_(writes_ && !options.quiet), info_(options.arguments)
 {
-  info_.add("case_hash", parameters.hash());
+  if (parameters != nullptr)
+    info_.add("case_hash", parameters->hash());
   if (writes_)
   {
     std::error_code error;
     std::filesystem::create_directories(directory_, error);
     if (error)
       throw OutputError(directory_, error.message());
-    parameters.write(directory_ + "/case.prm");
+    if (parameters != nullptr)
+      parameters->write(directory_ + "/case.prm");
     info_.write(directory_ + "/run.json", std::nullopt);
   }
   // No rank writes beside rank 0 before the directory is there.

@@ -27,6 +27,15 @@ struct Options
   bool skip_verification = false;
 };
 
+/// What `latcon compare` was asked. Times are texts, with a unit or in s, or load factors; empty: the last frame.
+struct CompareOptions
+{
+  std::string lattice, continuum; ///< frames, series or output directories
+  std::string time;               ///< of both frames
+  std::string lattice_time, continuum_time;
+  std::vector<std::string> tolerances; ///< `FIELD=VALUE`
+};
+
 /// Names of the claims, in the order in which they are checked.
 const std::vector<std::string> &claim_names();
 
@@ -35,6 +44,7 @@ ExitCode verify(const Options &options);
 ExitCode run_lattice(const Options &options);
 ExitCode run_continuum(const Options &options);
 ExitCode run_fracture(const Options &options);
+ExitCode compare_frames(const Options &options, const CompareOptions &chosen);
 ExitCode report(const Options &options, const std::string &directory);
 
 /// Reads and checks the case that the options name. @throws InputError
@@ -47,6 +57,9 @@ public:
   /// Creates the directory and writes case.prm and run.json. To be made once the input is known to be good.
   /// @throws OutputError
   Run(const Options &options, const Parameters &parameters);
+
+  /// The same for a run without a case: run.json alone.
+  explicit Run(const Options &options) : Run(options, nullptr) {}
 
   const std::string &directory() const { return directory_; }
   RunInfo &info() { return info_; }
@@ -61,6 +74,7 @@ public:
   ExitCode interrupted(const Results &results);
 
 private:
+  Run(const Options &options, const Parameters *parameters);
   ExitCode end(const Results &results, ExitCode exit_code);
 
   std::string directory_;

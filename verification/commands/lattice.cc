@@ -53,13 +53,16 @@ Results moved(const Case &input, const lattice::TriangularLattice &sheet, const 
 {
   lattice::FieldWriter fields(sheet, material, run.directory(), unbreakable);
   fields.add_frame(state);
-  lattice::Simulation simulation(sheet, material, std::move(state), input.lattice_time_step());
+  double time_step = input.lattice_time_step();
+  if (!input.time_step)
+    time_step = input.end_time / std::ceil(input.end_time / time_step); // so that the last step ends at the end
+  lattice::Simulation simulation(sheet, material, std::move(state), time_step);
   CrackRecord record(simulation);
   record.start();
   Progress progress(run.talks());
   {
     const auto phase = run.info().stopwatch().phase("motion");
-    const auto steps = static_cast<std::size_t>(std::ceil(input.end_time / simulation.time_step()));
+    const auto steps = static_cast<std::size_t>(std::ceil(input.end_time / time_step * (1. - 1e-12)));
     double next_frame = input.frame_interval;
     for (std::size_t step = 1; step <= steps && !signal_came(); ++step)
     {

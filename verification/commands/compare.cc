@@ -1,0 +1,121 @@
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+#include <map>
+
+#include <deal.II/base/mpi.h>
+
+#include "verification/atomic_file.h"
+#include "verification/commands/command.h"
+#include "verification/compare/difference_writer.h"
+#include "verification/units.h"
+
+namespace verification
+{
+namespace
+{
+
+// A time [s], or load factor [-], of the command line.
+std::optional<double> time_option(const std::string &name, const std::string &text)
+{
+  if (text.empty())
+    return {};
+  const Quantity quantity = read_quantity(text, "s");
+  if (!quantity.wrong.empty())
+    throw InputError(name + " " + text + ": " + quantity.wrong);
+  return quantity.value;
+}
+
+std::map<std::string, double> read_tolerances(const std::vector<std::string> &texts)
+{
+  std::string names;
+  for (const CommonField &field : common_fields)
+    names += (names.empty() ? "" : ", ") + std::string(field.name);
+  std::map<std::string, double> tolerances;
+  std::vector<std::string> problems;
+  for (const std::string &text : texts)
+  {
+    const std::size_t equals = text.find('=');
+    const std::string field = text.substr(0, equals);
+    bool known = false;
+    for (const CommonField &common : common_fields)
+      known = known || field == common.name;
+    if (equals == std::string::npos || !known)
+    {
+      problems.push_back("--tolerance " + text + ": FIELD=VALUE is wanted, FIELD one of " + names);
+      continue;
+    }
+    const Quantity quantity = read_quantity(text.substr(equals + 1), "1");
+    if (!quantity.wrong.empty() || !(quantity.value > 0.))
+      problems.push_back("--tolerance " + text + ": " +
+                         (quantity.wrong.empty() ? "must be larger than 0" : quantity.wrong));
+    tolerances[field] = quantity.value;
+  }
+  if (!problems.empty())
+    throw InputError(problems);
+  return tolerances;
+}
+
+// A run's results.json and run.json would be replaced by those of the comparison.
+void require_own_directory(const std::string &directory, const Frame &frame)
+{
+  std::error_code ignored;
+  const std::filesystem::path folder = frame.file.path.parent_path();
+  if (std::filesystem::equivalent(directory, folder.empty() ? "." : folder, ignored))
+    throw InputError("--output-dir " + directory + " is where " + frame.file.path.filename().string() +
+                     " is from, whose run.json and results.json would be lost: give another");
+}
+
+} // namespace
+
+ExitCode compare_frames(const Options &options, const CompareOptions &chosen)
+{
+  if (!options.overrides.empty())
+    throw InputError("latcon compare has no case that --set could change");
+  if (!chosen.time.empty() && !(chosen.lattice_time.empty() && chosen.continuum_time.empty()))
+    throw InputError("--time is for both sides: give it, or --lattice-time and --continuum-time");
+  const std::map<std::string, double> tolerances = read_tolerances(chosen.tolerances);
+  const auto lattice_time = time_option(chosen.time.empty() ? "--lattice-time" : "--time",
+                                        chosen.time.empty() ? chosen.lattice_time : chosen.time);
+  const auto continuum_time = time_option(chosen.time.empty() ? "--continuum-time" : "--time",
+                                          chosen.time.empty() ? chosen.continuum_time : chosen.time);
+  Stopwatch stopwatch;
+  auto reading = std::make_unique<Stopwatch::Phase>(stopwatch, "reading");
+  FrameFile lattice_file = find_frame(chosen.lattice, Side::lattice, lattice_time);
+  FrameFile continuum_file = find_frame(chosen.continuum, Side::continuum, continuum_time);
+  // Only times given for each side by itself may differ.
+  if (!chosen.time.empty())
+    lattice_file.chosen = continuum_file.chosen = false;
+  const LatticeFrame lattice = read_lattice_frame(lattice_file, lattice_time);
+  const ContinuumFrame continuum = read_continuum_frame(continuum_file, continuum_time);
+  reading.reset();
+  require_same_time(lattice, continuum);
+  require_same_bounds(lattice, continuum);
+  require_own_directory(options.output_dir, lattice);
+  require_own_directory(options.output_dir, continuum);
+  auto comparing = std::make_unique<Stopwatch::Phase>(stopwatch, "comparing");
+  const Comparison comparison = compare(lattice, continuum, MPI_COMM_WORLD);
+  const Results results = norms(lattice, continuum, comparison, tolerances);
+  comparing.reset();
+  if (options.dry_run)
+  {
+    if (!options.quiet && dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+      std::cout << "# lattice: " << lattice.file.path.string() << ", " << lattice.points.size() << " sites\n"
+                << "# continuum: " << continuum.file.path.string() << ", " << continuum.cells.size() << " cells\n";
+    return ExitCode::done;
+  }
+
+  Run run(options);
+  for (const auto &[phase, seconds] : stopwatch.times())
+    run.info().stopwatch().add(phase, seconds);
+  run.info().add("lattice_frame", lattice.file.path.string());
+  run.info().add("continuum_frame", continuum.file.path.string());
+  if (run.writes())
+  {
+    const auto phase = run.info().stopwatch().phase("output");
+    write_difference(run.directory(), lattice, continuum, comparison);
+  }
+  return run.finish(results);
+}
+
+} // namespace verification

@@ -1,0 +1,41 @@
+/// The fields that lattice and continuum frames have in common.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace verification
+{
+
+/// What lattice and continuum files say under the same name.
+struct CommonField
+{
+  const char *name; ///< of the array in the files
+  const char *unit;
+  std::size_t components; ///< in the plane: 1 scalar, 2 vector, 4 tensor row by row
+  bool from_bonds;     ///< on the lattice a sum or fit over the bonds of a site, so less of it where bonds are missing
+  bool in_motion_only; ///< on the continuum
+};
+
+inline constexpr std::array<CommonField, 6> common_fields{{{"displacement", "m", 2, false, false},
+                                                           {"velocity", "m/s", 2, false, true},
+                                                           {"deformation_gradient", "1", 4, true, false},
+                                                           {"first_piola_stress", "Pa", 4, true, false},
+                                                           {"cauchy_stress", "Pa", 4, true, false},
+                                                           {"strain_energy_density", "J/m^3", 1, true, false}}};
+
+/// Values of a field at points, those of a point one after another.
+struct FieldValues
+{
+  const CommonField *field;
+  std::vector<double> values;
+
+  const double *at(std::size_t point) const { return values.data() + point * field->components; }
+};
+
+/// Position in the plane [m].
+using Position = std::array<double, 2>;
+
+} // namespace verification
