@@ -208,7 +208,13 @@ void Multigrid::update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix,
     Level &level = *levels_[l];
     if (l + 1 == levels_.size())
       level.matrix = &fine_matrix;
-    else
+    if (levels_.size() == 1)
+    {
+      // A direct solver looks at its matrix when it is destroyed, and the caller's may be gone by then.
+      level.own_matrix.copy_from(fine_matrix);
+      level.matrix = &level.own_matrix;
+    }
+    else if (l + 1 < levels_.size())
     {
       Vector coarse_state(level.layout);
       levels_[l + 1]->to_coarser.interpolate(coarse_state, state);

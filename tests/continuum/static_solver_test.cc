@@ -385,6 +385,24 @@ TEST(StaticSolver, ConjugateGradientsAgreeWithDirectSolver)
   EXPECT_LE(most_iterations[1], 9u);
 }
 
+// An odd number of cells leaves no coarser mesh: the whole system is the coarsest level, too large for KLU.
+TEST(StaticSolver, SolvesOnAMeshThatCannotBeCoarsened)
+{
+  const continuum::MooneyRivlin law = rubber_sheet();
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::make_rectangle(mesh, rectangle(71, 37));
+  const auto conditions = bump_problem(1.3, 1.5, 0.03);
+  StaticSettings settings;
+  settings.degree = 2;
+  settings.linear.direct_limit = 0;
+  StaticSolver iterative(mesh, law, conditions, settings);
+  iterative.solve();
+  settings.linear.direct_limit = 1000000;
+  StaticSolver direct(mesh, law, conditions, settings);
+  direct.solve();
+  EXPECT_NEAR(iterative.total_energy(), direct.total_energy(), 1e-12 * direct.total_energy());
+}
+
 TEST(StaticSolver, RefusesImpossibleInput)
 {
   const continuum::CauchyBorn law = rubber_network();

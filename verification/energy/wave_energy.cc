@@ -249,7 +249,7 @@ void travelling(const Subject &subject, const Eigen::Matrix2d &F, const WaveEner
                  continuum_theory = 0.5 * rho * inertia * std::pow(closed[w].frequency * amplitude, 2);
     const double total = run.elastic + run.kinetic, element_total = elements.elastic + elements.kinetic;
     table.add({subject.name, F(0, 0), F(1, 1), 0., std::string(wave_names[w]), kd, run.elastic, run.kinetic,
-               elements.elastic, elements.kinetic, elements.micro_inertia, theory});
+               elements.elastic, elements.kinetic, elements.micro_inertia, 0.5 * theory});
     std::ostringstream where;
     where << subject.name << ", travelling " << wave_names[w] << " wave about " << state_name(F)
           << ", kd = " << std::round(1e3 * kd) / 1e3 << ": ";
