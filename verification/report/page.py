@@ -179,6 +179,9 @@ def facts(run):
         found.append(f"{info['wall_time_total_s']:.3g} s on {info.get('threads', '?')} threads")
     if isinstance(info.get("peak_memory_bytes"), (int, float)):
         found.append(f"{info['peak_memory_bytes'] / 1e6:.0f} MB")
+    verification = info.get("verification")
+    if isinstance(verification, dict) and verification.get("reused"):
+        found.append(f"verdicts of {verification.get('checked_at')}, reused")
     if run.state != "complete":
         found.append(run.state)
     return f'<p class="soft">{escape(" · ".join(found))}</p>' if found else ""
