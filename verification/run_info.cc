@@ -72,6 +72,13 @@ Json number(const double value)
   return std::isfinite(value) ? Json(value) : Json(full_precision(value));
 }
 
+Json json_of(const RunInfo::Scalar &value)
+{
+  if (const double *real = std::get_if<double>(&value))
+    return number(*real);
+  return std::visit([](const auto &v) { return Json(v); }, value);
+}
+
 Json common_facts(const std::vector<std::string> &command_line, const Stopwatch &stopwatch, const double total,
                   const std::optional<ExitCode> exit_code, const std::string &verdict)
 {
@@ -160,27 +167,31 @@ RunInfo::RunInfo(std::vector<std::string> command_line)
 
 void RunInfo::add(const std::string &key, const bool value)
 {
-  add_value(key, value);
+  add_value(key, Scalar(value));
 }
 void RunInfo::add(const std::string &key, const int value)
 {
-  add_value(key, value);
+  add_value(key, Scalar(value));
 }
 void RunInfo::add(const std::string &key, const std::uint64_t value)
 {
-  add_value(key, value);
+  add_value(key, Scalar(value));
 }
 void RunInfo::add(const std::string &key, const double value)
 {
-  add_value(key, value);
+  add_value(key, Scalar(value));
 }
 void RunInfo::add(const std::string &key, const char *value)
 {
-  add_value(key, std::string(value));
+  add_value(key, Scalar(std::string(value)));
 }
 void RunInfo::add(const std::string &key, const std::string &value)
 {
-  add_value(key, value);
+  add_value(key, Scalar(value));
+}
+void RunInfo::add(const std::string &key, const Object &object)
+{
+  add_value(key, object);
 }
 
 void RunInfo::add_value(const std::string &key, Value value)
@@ -199,10 +210,14 @@ std::string RunInfo::json(const std::optional<ExitCode> exit_code, const std::st
   const std::chrono::duration<double> total = std::chrono::steady_clock::now() - start_;
   Json document = common_facts(command_line_, stopwatch_, total.count(), exit_code, verdict);
   for (const auto &[key, value] : facts_)
-    if (const double *real = std::get_if<double>(&value))
-      document[key] = number(*real);
+    if (const auto *object = std::get_if<Object>(&value))
+    {
+      document[key] = Json::object();
+      for (const auto &[name, member] : *object)
+        document[key][name] = json_of(member);
+    }
     else
-      std::visit([&document, &key = key](const auto &v) { document[key] = v; }, value);
+      document[key] = json_of(std::get<Scalar>(value));
   // Arguments and texts may hold bytes that are not UTF-8.
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }

@@ -79,6 +79,13 @@ public:
   void add(const std::string &key, const char *value);
   void add(const std::string &key, const std::string &value);
 
+  /// The value of one fact, or of one member of an object.
+  using Scalar = std::variant<bool, int, std::uint64_t, double, std::string>;
+  using Object = std::vector<std::pair<std::string, Scalar>>;
+
+  /// Adds an object: its members are written in their order.
+  void add(const std::string &key, const Object &object);
+
   /// The content of run.json as it now stands.
   /// @param exit_code what the run ended with; empty while it is under way (null in the file)
   /// @param verdict   verdict on the claims, if any were checked
@@ -89,7 +96,7 @@ public:
   void write(const std::string &path, std::optional<ExitCode> exit_code, const std::string &verdict = "") const;
 
 private:
-  using Value = std::variant<bool, int, std::uint64_t, double, std::string>;
+  using Value = std::variant<Scalar, Object>;
   void add_value(const std::string &key, Value value);
 
   std::vector<std::string> command_line_;

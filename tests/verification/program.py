@@ -9,15 +9,19 @@ import unittest
 import xml.etree.ElementTree
 
 LATCON = sys.argv.pop(1)
+# Verdicts are stored for the time of a test alone, and never among those of the user.
+CACHE = tempfile.TemporaryDirectory()
+os.environ["XDG_CACHE_HOME"] = CACHE.name
+os.environ["MPLCONFIGDIR"] = f"{CACHE.name}/matplotlib"  # its list of fonts takes seconds to make, once is enough
 CASES = pathlib.Path(__file__).resolve().parents[2] / "verification" / "cases"
 
 
-def latcon(*arguments, **keywords):
-    return subprocess.run([LATCON, *map(str, arguments)], capture_output=True, text=True, timeout=600, **keywords)
+def latcon(*arguments, program=LATCON, **keywords):
+    return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, timeout=600, **keywords)
 
 
-def latcon_on_ranks(ranks, *arguments):
-    environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+def latcon_on_ranks(ranks, *arguments, env=None):
+    environment = dict(env or os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
     return subprocess.run(["mpirun", "--oversubscribe", "-n", str(ranks), LATCON, *map(str, arguments)],
                           capture_output=True, text=True, timeout=600, env=environment)
 

@@ -236,6 +236,13 @@ class ReportTest(unittest.TestCase):
         self.report("--quiet", expect=0)
         self.assertIn("without its material and pre-stretch having been verified", self.page()[1].text)
 
+    def test_reused_verdicts_are_said(self):
+        write_fracture(self.folder, [HOLDS, PUBLISHED])
+        verification = {"hash": "abc", "reused": True, "checked_at": "2026-01-02T03:04:05Z"}
+        (self.folder / "run.json").write_text(json.dumps({"exit_code": 0, "verification": verification}))
+        self.report("--quiet", expect=0)
+        self.assertIn("verdicts of 2026-01-02T03:04:05Z, reused", self.page()[1].text)
+
     def test_refuses_a_folder_without_a_run(self):
         self.folder.mkdir()
         self.assertIn("no run in it", self.report(expect=2)[1])

@@ -100,6 +100,7 @@ TEST(RunInfo, HoldsWhatTheRunAdds)
   run.add("time_step_s", 0.1);
   run.add("residual", std::numeric_limits<double>::infinity());
   run.add("case", "fig1.prm");
+  run.add("verification", RunInfo::Object{{"hash", "abc"}, {"reused", true}, {"residual", 0.1}});
   EXPECT_THROW(run.add("version", "mine"), std::logic_error);
   const nlohmann::json document = nlohmann::json::parse(run.json(ExitCode::done));
   EXPECT_EQ(document["skip_verification"], true);
@@ -107,6 +108,7 @@ TEST(RunInfo, HoldsWhatTheRunAdds)
   EXPECT_EQ(document["time_step_s"].get<double>(), 0.1);
   EXPECT_EQ(document["residual"], "inf");
   EXPECT_EQ(document["case"], "fig1.prm");
+  EXPECT_EQ(document["verification"], (nlohmann::json{{"hash", "abc"}, {"reused", true}, {"residual", 0.1}}));
 }
 
 TEST(RunInfo, DoesNotNameTheMachine)

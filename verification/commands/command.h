@@ -82,8 +82,22 @@ private:
   RunInfo info_;
 };
 
+/// On which lattices claims are checked.
+enum class Shells
+{
+  own,             ///< that of the case
+  own_and_nearest, ///< also that of its nearest neighbours alone, if the case has next-nearest ones
+};
+
 /// Runs the claims named, or all of them, on the subject of a case, small versions if `quick`. Collective.
-ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names, bool quick);
+ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names, bool quick, Shells shells);
+
+/// Checks the claims, in their small versions, on the case's own material, shells and pre-stretch, or takes the
+/// verdicts that are stored for exactly these inputs and this program. Says which of the two, in words and in run.json,
+/// and writes the tables. Collective; all ranks return the same.
+/// @return the rows, at least one of them checked and none failing
+/// @throws ClaimFailed if a claim fails; results.json and run.json are then written
+Results passed_claims(const Case &input, Run &run);
 
 /// Whether SIGINT or SIGTERM has come since catch_signals().
 void catch_signals();

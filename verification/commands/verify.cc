@@ -3,6 +3,7 @@
 #include <iostream>
 #include <utility>
 
+#include "verification/claim_inputs.h"
 #include "verification/commands/command.h"
 #include "verification/energy/energy_claim.h"
 #include "verification/energy/wave_energy.h"
@@ -97,14 +98,15 @@ const std::vector<std::string> &claim_names()
   return names;
 }
 
-ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names, bool quick)
+ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names, bool quick, Shells shells)
 {
-  std::vector<Subject> subjects{subject(input)};
-  if (input.has_next_nearest)
+  const Case read = claim_inputs(input);
+  std::vector<Subject> subjects{subject(read)};
+  if (read.has_next_nearest && shells == Shells::own_and_nearest)
   {
-    lattice::Material nearest_only = input.material();
+    lattice::Material nearest_only = read.material();
     nearest_only.next_nearest.reset();
-    subjects.push_back(subject(input, nearest_only));
+    subjects.push_back(subject(read, nearest_only));
   }
   ClaimOutcome outcome;
   for (const auto &[name, claim] : claims())
@@ -130,7 +132,7 @@ ExitCode verify(const Options &options)
   ClaimOutcome outcome;
   {
     const auto phase = run.info().stopwatch().phase("claims");
-    outcome = run_claims(input, options.claims, options.quick);
+    outcome = run_claims(input, options.claims, options.quick, Shells::own_and_nearest);
   }
   if (run.writes())
     outcome.write_tables(run.directory());

@@ -46,17 +46,21 @@ def read_json(path):
     return value
 
 
-def read_table(path, columns):
-    """Columns of a CSV file of numbers, {name: array}; None if there is no such file. Other columns are left out."""
+def read_table(path, columns, texts=(), finite=True):
+    """Columns of a CSV file, {name: array}; None if there is no such file. Other columns are left out.
+
+    columns: hold numbers, with `finite` none but finite ones. texts: hold words.
+    """
     text = read_text(path)
     if text is None:
         return None
     rows = list(csv.reader(text.splitlines()))
     header = rows[0] if rows else []
-    missing = [name for name in columns if name not in header]
+    missing = [name for name in (*texts, *columns) if name not in header]
     if missing:
         raise DamagedFile(path, f"has no column {missing[0]!r}")
     places = [header.index(name) for name in columns]
+    words = [[] for _ in texts]
     values = np.empty((len(rows) - 1, len(columns)))
     for line, row in enumerate(rows[1:], start=2):
         if len(row) != len(header):
@@ -65,9 +69,11 @@ def read_table(path, columns):
             values[line - 2] = [float(row[place]) for place in places]
         except ValueError as error:
             raise DamagedFile(path, f"line {line}: {error}") from error
-        if not np.isfinite(values[line - 2]).all():
+        if finite and not np.isfinite(values[line - 2]).all():
             raise DamagedFile(path, f"line {line} holds a number that is not finite")
-    return dict(zip(columns, values.T))
+        for column, name in zip(words, texts):
+            column.append(row[header.index(name)])
+    return {**dict(zip(texts, (np.array(column, dtype=object) for column in words))), **dict(zip(columns, values.T))}
 
 
 def write_file(path, write):

@@ -1,12 +1,12 @@
 """The report as one HTML file that needs nothing beside it."""
-import base64
 import json
 from html import escape
 from pathlib import Path
 
+from claim_sections import claim_links, claim_sections
+from markup import figure, number, raised, row, table, verb
 from summary import VERDICTS, comparisons, percent, ratio_text, tallies, tally_of, with_uncertainty
 
-MARKS = {"holds": "✓", "fails": "✗", "reported": "·", "interrupted": "!", "unfinished": "!"}
 CAPTIONS = {
     "sheet.png": "The sheet in its last frame, as it is: every unbroken bond is a line, the crack is the white "
                  "opening; lines across it are bonds that still hold.",
@@ -19,12 +19,16 @@ CAPTIONS = {
 }
 
 
-def page(title, runs, pictures):
-    """The whole page. `pictures`: {folder of a run: [(file name, PNG file), ...]}."""
+def page(title, runs, pictures, plots):
+    """The whole page.
+
+    pictures: of cracks, {folder of a run: [(file name, PNG file), ...]}
+    plots: of claims, {folder of a run: {plot name: (PNG file, error metrics)}}
+    """
     style = (Path(__file__).parent / "style.css").read_text(encoding="utf-8")
     versions = sorted({f"latcon {run.info['version']}" for run in runs if run.info and "version" in run.info})
     sections = [run_section(run, number, pictures.get(run.folder, [])) for number, run in enumerate(runs)]
-    links = ['<a href="#claims">Claims</a>']
+    links = ['<a href="#claims">Claims:</a>', *claim_links(runs, plots), "<span>Runs:</span>"]
     links += [f'<a href="#run-{number}">{escape(run.name)}</a>' for number, run in enumerate(runs)]
     return f"""<!DOCTYPE html>
 <html lang="en">
@@ -42,7 +46,7 @@ def page(title, runs, pictures):
 <nav>{"".join(links)}</nav>
 {overview(runs)}
 <h2 id="claims">Claims</h2>
-{claims(runs)}
+{claim_sections(runs, plots)}
 {"".join(sections)}
 </body>
 </html>
@@ -79,11 +83,6 @@ def banner(runs):
     return f'<div class="banner {kind}"><strong>{head}</strong>{f"<ul>{items}</ul>" if items else ""}</div>'
 
 
-def verb(count, one, many):
-    """The form that goes with a count."""
-    return one if count == 1 else many
-
-
 def headline(run):
     """A crack in one line."""
     found = [f"{escape(c.quantity.split(',')[0])} {with_uncertainty(c.measured, c.uncertainty)} {escape(c.unit)} "
@@ -99,7 +98,7 @@ def overview(runs):
         for tally in tallies(run):
             verdict = next((v for v in VERDICTS if tally.count[v]), "reported")
             rows.append(row(verdict, [
-                ("short", link), ("short", escape(tally.claim)),
+                ("short", link), ("short", f'<a href="#claim-{escape(tally.claim)}">{escape(tally.claim)}</a>'),
                 *(("number", str(tally.count[v])) for v in ("holds", "fails", "reported")),
                 ("number", ratio_text(tally.worst))]))
         if not run.checks:
@@ -109,50 +108,13 @@ def overview(runs):
     return table(head, rows, "narrow") if rows else ""
 
 
-def claims(runs):
-    """A table a claim, those that fail first; rows that several runs share are shown once."""
-    runs_of = {}
-    for run in runs:
-        for check in run.checks:
-            # By text, for nan is not equal to itself.
-            runs_of.setdefault(repr(check), (check, []))[1].append(run.name)
-    entries = list(runs_of.values())
-    names = list(dict.fromkeys(check.claim for check, _ in entries))
-    groups = {name: sorted((e for e in entries if e[0].claim == name), key=lambda e: VERDICTS.index(e[0].verdict))
-              for name in names}
-    parts = []
-    for name in sorted(names, key=lambda name: groups[name][0][0].verdict != "fails"):
-        tally = tally_of(None, name, [check for check, _ in groups[name]])
-        counts = ", ".join(f"{tally.count[v]} {verb(tally.count[v], one, many)}"
-                           for v, one, many in (("fails", "fails", "fail"), ("holds", "holds", "hold"),
-                                                ("reported", "reported", "reported")) if tally.count[v])
-        worst = "" if tally.worst is None else f", worst error / tolerance {ratio_text(tally.worst)}"
-        head = ["verdict", "quantity", "unit", "#lattice", "#continuum",
-                "#published" if name == "fracture" else "#theory", "#error", "#tolerance"]
-        head += ["run"] if len(runs) > 1 else []
-        rows = [claim_row(check, shared, len(runs) > 1) for check, shared in groups[name]]
-        parts.append(f"<details open><summary><b>{escape(name)}</b> <span class=\"soft\">{counts}{worst}</span>"
-                     f"</summary>{table(head, rows)}</details>")
-    return "\n".join(parts) or "<p>Nothing was checked.</p>"
-
-
-def claim_row(check, shared, show_runs):
-    """One checked quantity."""
-    cells = [("words", raised(check.quantity)), ("short", raised(check.unit))]
-    cells += [("number", number(value, ".7g")) for value in (check.lattice, check.continuum, check.theory)]
-    cells += [("number", number(check.error, ".2e")), ("number", number(check.tolerance, ".3g"))]
-    if show_runs:
-        cells.append(("short", escape(", ".join(dict.fromkeys(shared)))))
-    return row(check.verdict, cells)
-
-
 def run_section(run, position, pictures):
     """A run: its crack if it has one, then its inputs and versions."""
     parts = [f'<h2 id="run-{position}">{escape(run.name)}</h2>', facts(run)]
     if run.is_fracture:
         parts += [pattern_sentence(run), comparison_table(run)]
         shown = [name for name, _ in pictures]
-        parts += [figure(name, png, run) for name, png in pictures]
+        parts += [figure(png, f"{name} of the run {run.name}", CAPTIONS[name]) for name, png in pictures]
         missing = [name for name in CAPTIONS if name not in shown]
         if missing:
             parts.append(f'<p class="soft">Not drawn, for the run left nothing to draw: {", ".join(missing)}</p>')
@@ -179,6 +141,9 @@ def facts(run):
         found.append(f"{info['wall_time_total_s']:.3g} s on {info.get('threads', '?')} threads")
     if isinstance(info.get("peak_memory_bytes"), (int, float)):
         found.append(f"{info['peak_memory_bytes'] / 1e6:.0f} MB")
+    verification = info.get("verification")
+    if isinstance(verification, dict) and verification.get("reused"):
+        found.append(f"verdicts of {verification.get('checked_at')}, reused")
     if run.state != "complete":
         found.append(run.state)
     return f'<p class="soft">{escape(" · ".join(found))}</p>' if found else ""
@@ -202,34 +167,3 @@ def comparison_table(run):
         for c in comparisons(run)]
     head = ["verdict", "quantity", "unit", "#paper", "#latcon", "#difference"]
     return table(head, rows, "narrow") if rows else ""
-
-
-def figure(name, png, run):
-    """A picture, in the page itself."""
-    data = base64.b64encode(png.read_bytes()).decode("ascii")
-    alt = f"{name} of the run {run.name}"
-    return (f'<figure><div class="picture"><img alt="{escape(alt)}" src="data:image/png;base64,{data}"></div>'
-            f"<figcaption>{CAPTIONS[name]}</figcaption></figure>")
-
-
-def table(head, rows, kind=""):
-    """A table that scrolls in its own box; columns whose head begins with # hold numbers."""
-    cells = "".join(f'<th class="number">{name[1:]}</th>' if name[0] == "#" else f"<th>{name}</th>" for name in head)
-    body = "".join(rows)
-    return f'<div class="scroll {kind}"><table><thead><tr>{cells}</tr></thead><tbody>{body}</tbody></table></div>'
-
-
-def row(verdict, cells):
-    """A table row in the colour of its verdict, which comes first; cells are (class, HTML)."""
-    cells = [("verdict", f"{MARKS[verdict]} {verdict}"), *cells]
-    return f'<tr class="{verdict}">' + "".join(f'<td class="{kind}">{text}</td>' for kind, text in cells) + "</tr>"
-
-
-def number(value, form):
-    """A number, or a dash for none."""
-    return "–" if value is None else format(value, form)
-
-
-def raised(text):
-    """Text with its exponents raised."""
-    return escape(text).replace("^2", "²").replace("^3", "³")

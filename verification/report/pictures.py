@@ -23,8 +23,10 @@ plt.rcParams.update({
     "axes.labelsize": 10,
     "axes.titlesize": 11,
     "axes.titlelocation": "left",
+    "axes.titley": 1.0,  # where it goes anyway; to look for it takes as long as the rest
     "axes.edgecolor": "#555555",
     "axes.linewidth": 0.7,
+    "axes.formatter.useoffset": False,
     "axes.grid": True,
     "axes.axisbelow": True,
     "axes.spines.top": False,

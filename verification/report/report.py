@@ -11,6 +11,7 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True  # this folder stays as it is
 
+from claims_text import PLOTS
 from crack_path import draw_crack_path
 from files import DamagedFile, UnwritableFile, write_file
 from frame import read_last_frame
@@ -38,12 +39,23 @@ def draw_pictures(run):
     return [(name, run.folder / name) for name in drawn]
 
 
+def draw_plots(run):
+    """Plots of the claims that a run left tables of: {plot name: (PNG file, error metrics)}."""
+    made = {}
+    for plot in PLOTS:
+        if plot.name in run.tables:
+            path = run.folder / f"{plot.name}.png"
+            made[plot.name] = (path, plot.draw(run.tables, path))
+    return made
+
+
 def report(directory, quiet):
     """Everything, for the folder as the user gave it. @return exit code"""
     folder = Path(directory)
     runs = find_runs(folder)
     pictures = {run.folder: draw_pictures(run) for run in runs if run.is_fracture}
-    html = page(folder.resolve().name, runs, pictures)
+    plots = {run.folder: draw_plots(run) for run in runs}
+    html = page(folder.resolve().name, runs, pictures, plots)
     write_file(folder / "report.html", lambda beside: beside.write_text(html, encoding="utf-8"))
     if not quiet:
         sys.stdout.reconfigure(errors="replace")

@@ -4,6 +4,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
+from claim_tables import read_claim_tables
 from files import DamagedFile, read_json, read_table, read_text
 
 # Any of these makes a folder that of a run, whole or interrupted.
@@ -51,6 +52,7 @@ class Run:
     tip: dict  # crack.csv: t [s], X, Y [m] in the undeformed sheet
     broken: dict  # broken_bonds.csv: t [s], X, Y [m] in the undeformed sheet
     energy: dict  # energy.csv: t [s], the rest in J per metre of sheet thickness
+    tables: dict  # of the claims, {file name without ".csv": {column: array}}; those that are there
 
     @property
     def is_fracture(self):
@@ -118,6 +120,7 @@ def read_run(folder):
             folder / "energy.csv",
             ("t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "imbalance"),
         ),
+        tables=read_claim_tables(folder),
     )
 
 

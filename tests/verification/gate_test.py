@@ -1,0 +1,157 @@
+#!/usr/bin/python3
+"""The gate before a crack: claims are checked once for the same inputs, reuse is said, and what fails is refused.
+
+Usage: gate_test.py PATH_OF_LATCON
+"""
+import hashlib
+import json
+import os
+import re
+import sys
+import unittest
+
+sys.dont_write_bytecode = True
+from program import CASES, LATCON, TemporaryFolder, latcon, latcon_on_ranks
+
+# A strip on which a crack does not come far.
+TINY = ["--set", "Sheet/length=2.5 cm", "--set", "Sheet/height=1.5 cm", "--set", "Time/end=0.01 ms"]
+# A Mooney-Rivlin ratio with which the law loses ellipticity on the way.
+FAILING = ["--set", "Continuum/ratio=-0.2"]
+
+
+class Gate(TemporaryFolder):
+    def setUp(self):
+        super().setUp()
+        self.cache = self.folder / "cache"
+        self.environment = dict(os.environ, XDG_CACHE_HOME=str(self.cache))
+
+    def fracture(self, *arguments, expect=0, ranks=1):
+        """Runs the crack. @return (what was printed, run.json)"""
+        words = ["fracture", CASES / "quick.prm", "--output-dir", self.out, *TINY, *arguments]
+        run = (latcon(*words, env=self.environment) if ranks == 1
+               else latcon_on_ranks(ranks, *words, env=self.environment))
+        self.assertEqual(run.returncode, expect, run.stdout + run.stderr)
+        return run.stdout + run.stderr, json.loads((self.out / "run.json").read_text())
+
+    def stored(self):
+        """The files of the store."""
+        return sorted((self.cache / "latcon" / "verdicts").glob("*"))
+
+    def claims(self):
+        """Rows of results.json that are not about the crack."""
+        rows = json.loads((self.out / "results.json").read_text())["claims"]
+        return [row for row in rows if row["claim"] != "fracture"]
+
+    def test_second_run_reuses_and_says_so(self):
+        text, first = self.fracture()
+        self.assertIn("claims: checked now", text)
+        self.assertEqual(list(first["verification"]), ["hash", "reused", "checked_at"])
+        self.assertFalse(first["verification"]["reused"])
+        rows = self.claims()
+        self.assertEqual({row["claim"] for row in rows}, {"energy", "prestretch"})
+        self.assertTrue(all(row["quantity"].startswith("NN+NNN: ") for row in rows))  # the case's own shells alone
+
+        text, second = self.fracture()
+        when, key = first["verification"]["checked_at"], first["verification"]["hash"]
+        self.assertIn(f"claims: verdicts of {when}, hash {key}, reused", text)
+        self.assertEqual(second["verification"], {"hash": key, "reused": True, "checked_at": when})
+        self.assertEqual(self.claims(), rows)
+        self.assertEqual([path.name for path in self.stored()], [f"{key}.json"])
+
+    def test_file_says_what_its_verdicts_hold_for(self):
+        _, run = self.fracture()
+        document = json.loads(self.stored()[0].read_text())
+        self.assertEqual(hashlib.sha256(document["inputs"].encode()).hexdigest(), run["verification"]["hash"])
+        with open(LATCON, "rb") as file:
+            self.assertIn(f"program={hashlib.sha256(file.read()).hexdigest()}\n", document["inputs"])
+        self.assertIn("\nNearest neighbours/b=150000\n", document["inputs"])
+        self.assertEqual(document["checked_at"], run["verification"]["checked_at"])
+        for key in ("version", "git_commit", "hardware_threads"):
+            self.assertIn(key, document)
+
+    def test_constant_changed_in_its_last_digits_is_checked(self):
+        _, first = self.fracture()
+        for entry in (f"Material/density={944 * (1 + 1e-12)!r}", f"Loading/strain y={1.8 * (1 + 1e-12)!r}"):
+            text, run = self.fracture("--set", entry)
+            self.assertIn("claims: checked now", text)
+            self.assertNotEqual(run["verification"]["hash"], first["verification"]["hash"])
+        self.assertEqual(len(self.stored()), 3)
+
+    def test_what_no_claim_reads_may_change(self):
+        self.fracture()
+        text, _ = self.fracture("--set", "Lattice/noise seed=7", "--set", "Fracture/breaking stretch=3.1")
+        self.assertIn("reused", text)
+
+    def test_another_program_checks_again(self):
+        _, first = self.fracture()
+        other = self.folder / "latcon"
+        with open(LATCON, "rb") as file:
+            other.write_bytes(file.read() + b"\0")  # behind its end, where nothing looks
+        other.chmod(0o755)
+        words = ["fracture", CASES / "quick.prm", "--output-dir", self.out, *TINY]
+        self.assertEqual(latcon(*words, program=other, env=self.environment).returncode, 0)
+        second = json.loads((self.out / "run.json").read_text())
+        self.assertFalse(second["verification"]["reused"])
+        self.assertNotEqual(second["verification"]["hash"], first["verification"]["hash"])
+
+    def test_damaged_file_is_said_and_replaced(self):
+        self.fracture()
+        path = self.stored()[0]
+        whole = path.read_text()
+        for damaged in (whole[:len(whole) // 2], "", whole.replace("NN+NNN", "NN", 1)):
+            path.write_text(damaged)
+            text, run = self.fracture()
+            self.assertIn(f"{path} is not used: ", text)
+            self.assertIn("is not used", run["verification"]["note"])
+            self.assertFalse(run["verification"]["reused"])
+        self.assertTrue(self.fracture()[1]["verification"]["reused"])
+        self.assertEqual(self.stored(), [path])
+
+    def test_file_of_other_inputs_under_this_name_is_not_used(self):
+        self.fracture()
+        right = self.stored()[0]
+        self.fracture("--set", "Material/density=950")
+        wrong = next(path for path in self.stored() if path != right)
+        right.write_bytes(wrong.read_bytes())
+        text, run = self.fracture()
+        self.assertIn("it belongs to other inputs", text)
+        self.assertFalse(run["verification"]["reused"])
+
+    def test_failure_is_refused_also_from_the_store(self):
+        text, run = self.fracture(*FAILING, expect=3)
+        self.assertFalse(run["verification"]["reused"])
+        text, run = self.fracture(*FAILING, expect=3)
+        self.assertTrue(run["verification"]["reused"])
+        self.assertIn("no crack was run", text)
+        self.assertIn(f"delete {self.stored()[0]}", text)
+        self.assertTrue(any(row["verdict"] == "fails" for row in self.claims()))
+        self.assertFalse([path.name for path in self.out.iterdir() if re.match(r"crack|broken|lattice", path.name)])
+
+    def test_store_that_cannot_be_written_stops_nothing(self):
+        self.cache.write_text("in the way")
+        text, run = self.fracture()
+        self.assertIn("the verdicts are not kept: cannot write ", text)
+        self.assertIn("not kept", run["verification"]["note"])
+        self.assertTrue((self.out / "crack.json").exists())
+
+    def test_without_a_home_nothing_is_kept(self):
+        for name in ("XDG_CACHE_HOME", "HOME"):
+            self.environment.pop(name, None)
+        text, run = self.fracture()
+        self.assertIn("no verdicts are kept", text)
+        self.assertFalse(run["verification"]["reused"])
+
+    def test_all_ranks_decide_alike(self):
+        self.assertFalse(self.fracture(ranks=2)[1]["verification"]["reused"])
+        self.stored()[0].write_text("{")
+        self.assertFalse(self.fracture(ranks=2)[1]["verification"]["reused"])
+        self.assertTrue(self.fracture(ranks=2)[1]["verification"]["reused"])
+
+    def test_skipped_verification_neither_checks_nor_stores(self):
+        _, run = self.fracture("--skip-verification")
+        self.assertNotIn("verification", run)
+        self.assertEqual(self.stored(), [])
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,132 @@
+#include <iostream>
+#include <optional>
+#include <string>
+
+#include <deal.II/base/mpi.h>
+
+#include "verification/commands/command.h"
+#include "verification/verdict_store.h"
+
+namespace verification
+{
+namespace
+{
+
+constexpr bool quick = true; // a gate must be passed in seconds
+
+// What the first rank finds, and every rank must know to do the same.
+struct Stored
+{
+  std::string key;  // inputs that the verdicts depend on; empty: they cannot be told
+  std::string text; // of the stored file; empty: there is none that can be read
+  std::string note; // for the user; empty: nothing went wrong
+};
+
+std::string unused(const std::string &path, const std::string &reason)
+{
+  return path + " is not used: " + reason;
+}
+
+Stored look_up(const Case &input, const std::optional<std::string> &folder)
+{
+  Stored stored;
+  try
+  {
+    const VerdictKey key =
+      verdict_key(input, claim_names(), quick, dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD));
+    stored.key = key.text;
+    if (!folder)
+      stored.note = "neither XDG_CACHE_HOME nor HOME is set: no verdicts are kept";
+    else
+      try
+      {
+        stored.text = VerdictStore(*folder).read(key).value_or("");
+      }
+      catch (const UnusableVerdicts &error)
+      {
+        stored.note = unused(VerdictStore(*folder).path(key), error.what());
+      }
+  }
+  catch (const std::exception &error)
+  {
+    stored.note = std::string("no verdicts are kept: ") + error.what();
+  }
+  return stored;
+}
+
+// The same on all ranks.
+Stored look_up_on_first_rank(const Case &input, const Run &run, const std::optional<std::string> &folder)
+{
+  const Stored stored = run.writes() ? look_up(input, folder) : Stored();
+  const auto shared = [](const std::string &text) { return dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, text); };
+  return {shared(stored.key), shared(stored.text), shared(stored.note)};
+}
+
+void append(std::string &note, const std::string &more)
+{
+  note += (note.empty() ? "" : "; ") + more;
+}
+
+} // namespace
+
+Results passed_claims(const Case &input, Run &run)
+{
+  const auto phase = run.info().stopwatch().phase("claims");
+  const std::optional<std::string> folder = VerdictStore::folder_of_user();
+  Stored stored = look_up_on_first_rank(input, run, folder);
+  const VerdictKey key(stored.key);
+  const std::string path = folder ? VerdictStore(*folder).path(key) : "";
+
+  std::optional<Verdicts> verdicts;
+  if (!stored.text.empty())
+    try
+    {
+      verdicts = read_verdicts(key, stored.text);
+    }
+    catch (const UnusableVerdicts &error)
+    {
+      append(stored.note, unused(path, error.what()));
+    }
+  const bool reused = verdicts.has_value();
+  bool kept = false;
+  if (!reused)
+  {
+    verdicts.emplace(run_claims(input, {}, quick, Shells::own));
+    // A signal may have cut a claim short.
+    if (run.writes() && folder && !key.text.empty() && !signal_came())
+      try
+      {
+        VerdictStore(*folder).write(key, verdicts_text(key, *verdicts));
+        kept = true;
+      }
+      catch (const OutputError &error)
+      {
+        append(stored.note, std::string("the verdicts are not kept: ") + error.what());
+      }
+  }
+
+  RunInfo::Object record{
+    {"hash", key.text.empty() ? "" : key.hash}, {"reused", reused}, {"checked_at", verdicts->checked_at}};
+  if (!stored.note.empty())
+    record.emplace_back("note", stored.note);
+  run.info().add("verification", record);
+  const std::string origin = reused ? "verdicts of " + verdicts->checked_at + ", hash " + key.hash + ", reused"
+                                    : "checked now" + (kept ? ", hash " + key.hash + ", kept" : std::string());
+  if (run.talks())
+  {
+    if (!stored.note.empty())
+      std::cout << "claims: " << stored.note << "\n";
+    std::cout << "claims: " << origin << std::endl;
+  }
+  if (run.writes())
+    verdicts->write_tables(run.directory());
+  if (!verdicts->results.all_hold())
+  {
+    run.finish(verdicts->results);
+    throw ClaimFailed("the material and pre-stretch of this case fail their verification; no crack was run" +
+                      (reused ? " (" + origin + "; to have them checked again, delete " + path + ")" : ""));
+  }
+  return verdicts->results;
+}
+
+} // namespace verification

@@ -1,0 +1,229 @@
+#include "verification/verdict_store.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <system_error>
+#include <thread>
+
+#include <link.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "verification/atomic_file.h"
+#include "verification/claim_inputs.h"
+#include "verification/errors.h"
+#include "verification/run_info.h"
+#include "verification/sha256.h"
+
+namespace verification
+{
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+constexpr int format = 1;                              // of the file
+constexpr std::uintmax_t largest_file = 256UL << 20UL; // [byte]; no check leaves as much
+
+// All bytes of a file; none if it cannot be read.
+std::optional<std::string> content(const std::string &path)
+{
+  std::ifstream file(path, std::ios::binary);
+  std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  return file ? std::optional(std::move(bytes)) : std::nullopt;
+}
+
+// The program is one static file but for the libraries of the system, which are told by name, size and time of change.
+std::string hash_of_program()
+{
+  const std::optional<std::string> program = content("/proc/self/exe");
+  if (!program)
+    throw std::runtime_error("the program cannot read its own file");
+  return sha256(*program);
+}
+
+std::string hash_of_libraries()
+{
+  std::vector<std::string> libraries;
+  dl_iterate_phdr(
+    [](dl_phdr_info *info, std::size_t, void *list)
+    {
+      struct stat status
+      {
+      };
+      if (info->dlpi_name[0] != '\0' && ::stat(info->dlpi_name, &status) == 0)
+        static_cast<std::vector<std::string> *>(list)->push_back(
+          std::string(info->dlpi_name) + ' ' + std::to_string(status.st_size) + ' ' +
+          std::to_string(status.st_mtim.tv_sec) + '.' + std::to_string(status.st_mtim.tv_nsec) + '\n');
+      return 0;
+    },
+    &libraries);
+  std::sort(libraries.begin(), libraries.end()); // the order of loading is not that of the disk
+  std::string text;
+  for (const std::string &library : libraries)
+    text += library;
+  return sha256(text);
+}
+
+std::string now()
+{
+  const std::time_t seconds = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text.data();
+}
+
+std::string checksum(Json document)
+{
+  document.erase("checksum");
+  return sha256(document.dump());
+}
+
+// A number as results.json holds it.
+std::optional<double> number(const Json &value)
+{
+  if (value.is_null())
+    return {};
+  if (value == "nan")
+    return std::numeric_limits<double>::quiet_NaN();
+  if (value == "inf" || value == "-inf")
+    return value == "inf" ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
+  return value.get<double>();
+}
+
+Result row(const Json &entry)
+{
+  Result result{entry.at("claim"),           entry.at("quantity"),          entry.at("unit"),
+                number(entry.at("lattice")), number(entry.at("continuum")), number(entry.at("theory")),
+                number(entry.at("error")),   number(entry.at("tolerance"))};
+  if (entry.at("verdict") != to_string(result.verdict()))
+    throw UnusableVerdicts("a verdict in it is not that of its numbers");
+  return result;
+}
+
+} // namespace
+
+VerdictKey::VerdictKey(std::string inputs) : text(std::move(inputs)), hash(sha256(text)) {}
+
+VerdictKey verdict_key(const Case &input, const std::vector<std::string> &claims, bool quick, unsigned int n_ranks)
+{
+  std::string text = "program=" + hash_of_program() + "\nlibraries=" + hash_of_libraries() + "\n";
+  for (const std::string &claim : claims)
+    text += "claim=" + claim + "\n";
+  text += std::string("quick=") + (quick ? "true" : "false") + "\nranks=" + std::to_string(n_ranks) + "\n";
+  return VerdictKey(text + claim_inputs_text(input));
+}
+
+Verdicts::Verdicts(const ClaimOutcome &outcome) : results(outcome.results), checked_at(now())
+{
+  for (const auto &[name, table] : outcome.tables)
+    tables[name] = table.csv();
+}
+
+void Verdicts::write_tables(const std::string &folder) const
+{
+  for (const auto &[name, csv] : tables)
+    write_file((std::filesystem::path(folder) / (name + ".csv")).string(), csv);
+}
+
+std::string verdicts_text(const VerdictKey &key, const Verdicts &verdicts)
+{
+  Json document;
+  document["format"] = format;
+  document["hash"] = key.hash;
+  document["inputs"] = key.text;
+  document["checked_at"] = verdicts.checked_at;
+  document["version"] = program_version();
+  document["git_commit"] = git_commit();
+  document["hardware_threads"] = std::thread::hardware_concurrency();
+  document["results"] = Json::parse(verdicts.results.json());
+  document["tables"] = verdicts.tables;
+  document["checksum"] = checksum(document);
+  return document.dump(2) + "\n";
+}
+
+Verdicts read_verdicts(const VerdictKey &key, const std::string &text)
+{
+  Verdicts verdicts;
+  try
+  {
+    const Json document = Json::parse(text);
+    if (document.at("format") != format)
+      throw UnusableVerdicts("it has another format");
+    if (document.at("hash") != key.hash || document.at("inputs") != key.text)
+      throw UnusableVerdicts("it belongs to other inputs");
+    if (document.at("checksum") != checksum(document))
+      throw UnusableVerdicts("its checksum is wrong");
+    for (const Json &entry : document.at("results").at("claims"))
+      verdicts.results.add(row(entry));
+    verdicts.tables = document.at("tables").get<std::map<std::string, std::string>>();
+    verdicts.checked_at = document.at("checked_at");
+  }
+  catch (const Json::exception &)
+  {
+    throw UnusableVerdicts("it is damaged");
+  }
+  return verdicts;
+}
+
+std::optional<std::string> VerdictStore::folder_of_user()
+{
+  const char *cache = std::getenv("XDG_CACHE_HOME");
+  if (cache != nullptr && cache[0] == '/') // others than absolute names are to be ignored
+    return std::string(cache) + "/latcon/verdicts";
+  const char *home = std::getenv("HOME");
+  if (home != nullptr && home[0] == '/')
+    return std::string(home) + "/.cache/latcon/verdicts";
+  return {};
+}
+
+std::string VerdictStore::path(const VerdictKey &key) const
+{
+  return folder_ + "/" + key.hash + ".json";
+}
+
+std::optional<std::string> VerdictStore::read(const VerdictKey &key) const
+{
+  const std::string name = path(key);
+  std::error_code error;
+  const auto status = std::filesystem::status(name, error);
+  if (status.type() == std::filesystem::file_type::not_found)
+    return {};
+  if (!std::filesystem::is_regular_file(status) || std::filesystem::file_size(name, error) > largest_file)
+    throw UnusableVerdicts("it is no file of verdicts");
+  std::optional<std::string> text = content(name);
+  if (!text)
+    throw UnusableVerdicts("it cannot be read");
+  if (text->empty())
+    throw UnusableVerdicts("it is empty");
+  return text;
+}
+
+void VerdictStore::write(const VerdictKey &key, const std::string &text) const
+{
+  std::error_code error;
+  std::filesystem::create_directories(folder_, error);
+  if (error)
+    throw OutputError(folder_, error.message());
+  // Runs of the same inputs may end at the same time: each has a name of its own until its file is whole.
+  const std::string own = path(key) + "." + std::to_string(::getpid());
+  write_file(own, text);
+  std::filesystem::rename(own, path(key), error);
+  if (error)
+  {
+    std::error_code ignored;
+    std::filesystem::remove(own, ignored);
+    throw OutputError(path(key), error.message());
+  }
+}
+
+} // namespace verification
