@@ -3,6 +3,14 @@
 namespace lattice
 {
 
+Material without_dashpots(Material material)
+{
+  material.nearest.viscosity = 0.;
+  if (material.next_nearest)
+    material.next_nearest->viscosity = 0.;
+  return material;
+}
+
 double cross_section(const Shell &shell, const TriangularLattice &lattice)
 {
   return shell.area_factor * lattice.site_area() / lattice.spacing();

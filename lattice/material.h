@@ -38,6 +38,9 @@ struct Material
   unsigned int coordination() const { return next_nearest ? 12 : 6; }
 };
 
+/// The same bonds without their dashpots.
+Material without_dashpots(Material material);
+
 /// A0 / h = s (sqrt3 / 2) d [m], cross-section of a bond per sheet thickness (theory.md, eq. L.4).
 double cross_section(const Shell &shell, const TriangularLattice &lattice);
 

@@ -61,10 +61,7 @@ Relaxation relax(State &state, const TriangularLattice &lattice, const Material 
   constexpr double initial_mixing = 0.1, mixing_decay = 0.99, speed_up = 1.1, slow_down = 0.5;
   constexpr std::size_t patience = 5;
 
-  Material springs = material;
-  springs.nearest.viscosity = 0.;
-  if (springs.next_nearest)
-    springs.next_nearest->viscosity = 0.;
+  const Material springs = without_dashpots(material);
   constexpr double smallest_stretch = 0.5;
   const double largest_step = 0.9 * time_step_limits(lattice, springs, smallest_stretch).elastic;
 

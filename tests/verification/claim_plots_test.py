@@ -115,8 +115,7 @@ class ClaimSections(unittest.TestCase):
         for name, (_, numbers) in FORMATS.items():
             lines = (self.folder / f"{name}.csv").read_text().splitlines()
             header = lines[0].split(",")
-            kept = {"shells", "law", "wave", "F_xx", "F_yy", "k d", "angle [deg]", "viscosity factor", "R/d",
-                    "length/d", "row"}
+            kept = {"shells", "law", "wave", "F_xx", "F_yy", "k d", "angle [deg]", "R/d", "length/d", "row"}
             rows = [",".join(cell if column in kept else "nan" for column, cell in zip(header, line.split(",")))
                     for line in lines[1:]]
             (self.folder / f"{name}.csv").write_text("\n".join([lines[0], *rows]) + "\n")

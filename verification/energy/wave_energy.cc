@@ -8,6 +8,7 @@
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
 #include "verification/order_fit.h"
+#include "verification/state_name.h"
 #include "verification/wave_speeds/bloch.h"
 #include "verification/wave_speeds/lattice_waves.h"
 
@@ -25,23 +26,6 @@ constexpr double order_tolerance = 0.2;
 constexpr double order_kd[] = {0.05, 0.1, 0.2, 0.4};
 
 constexpr const char *wave_names[] = {"L", "S"};
-
-std::string state_name(const Eigen::Matrix2d &F)
-{
-  std::ostringstream text;
-  if (F.isIdentity(1e-12))
-    return "F = I";
-  text << "F = (" << F(0, 0) << ", " << F(1, 1) << ")";
-  return text.str();
-}
-
-lattice::Material springs(lattice::Material material)
-{
-  material.nearest.viscosity = 0.;
-  if (material.next_nearest)
-    material.next_nearest->viscosity = 0.;
-  return material;
-}
 
 // (1/2) d2E/de2 at e = 0 of an energy whose odd terms vanish.
 template <class Energy>
@@ -106,7 +90,7 @@ void sinusoidal(const Subject &subject, const Eigen::Matrix2d &F, const WaveEner
                 ClaimOutcome &outcome)
 {
   const Media media(subject);
-  const lattice::Material material = springs(subject.material);
+  const lattice::Material material = lattice::without_dashpots(subject.material);
   const double d = subject.spacing, l_d = subject.lengths.lattice;
   Table &table = outcome.table("sinusoidal_energy", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d", "lattice",
                                                      "local", "gradient", "filtered", "fem"});
@@ -117,14 +101,13 @@ void sinusoidal(const Subject &subject, const Eigen::Matrix2d &F, const WaveEner
     if (!(error <= largest)) // keeps a NaN
       largest = error;
   };
-  for (const auto &[along_x, along_y] : {std::array<unsigned int, 2>{1, 0}, std::array<unsigned int, 2>{1, 2}})
+  for (const WaveDirection &direction : {WaveDirection{1, 0}, WaveDirection{1, 2}})
   {
-    Eigen::Vector2d N;
+    const Eigen::Vector2d N = unit_vector(direction, subject.orientation);
     for (const double kd : options.kd)
     {
-      const WaveCell cell = wave_cell(d, subject.orientation, along_x, along_y, kd);
+      const WaveCell cell = wave_cell(d, subject.orientation, direction, kd);
       const double inertia = 1. + std::pow(l_d, 2) * cell.K.squaredNorm();
-      N = cell.K.normalized();
       // One field for all: polarised as the waves of the local continuum.
       const auto waves = plane_waves(continuum_matrices(media.local, F, cell.K), wave_normal(F, cell.K));
       for (std::size_t w = 0; w < 2; ++w)
@@ -137,7 +120,7 @@ void sinusoidal(const Subject &subject, const Eigen::Matrix2d &F, const WaveEner
                      elements = sinusoidal_energy(media.gradient, F, cell.K, p, strain / cell.K.norm(), options.mesh);
         worse(lattice_error, std::abs(measured / bloch - 1.));
         worse(element_error, std::abs(elements / gradient - 1.));
-        table.add({subject.name, F(0, 0), F(1, 1), std::atan2(N.y(), N.x()) * 180. / M_PI, std::string(wave_names[w]),
+        table.add({subject.name, F(0, 0), F(1, 1), angle(direction, subject.orientation), std::string(wave_names[w]),
                    cell.K.norm() * d, measured / local, 1., gradient / local, gradient / inertia / local,
                    elements / local});
       }
@@ -229,9 +212,9 @@ void travelling(const Subject &subject, const Eigen::Matrix2d &F, const WaveEner
                 ClaimOutcome &outcome)
 {
   const Media media(subject);
-  const lattice::Material material = springs(subject.material);
+  const lattice::Material material = lattice::without_dashpots(subject.material);
   const double d = subject.spacing, rho = material.density;
-  const WaveCell cell = wave_cell(d, subject.orientation, 1, 0, 0.25);
+  const WaveCell cell = wave_cell(d, subject.orientation, {1, 0}, 0.25);
   constexpr double travelling_strain = 1e-3;
   const double kd = cell.K.norm() * d, amplitude = travelling_strain / cell.K.norm();
   const double inertia = 1. + std::pow(subject.lengths.lattice / d * kd, 2);

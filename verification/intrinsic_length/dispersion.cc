@@ -80,7 +80,7 @@ Alpha bloch_alpha(const lattice::TriangularLattice &lattice, const lattice::Mate
   return {alpha[0], alpha[1]};
 }
 
-Alpha running_alpha(double spacing, lattice::Orientation orientation, unsigned int along_x, unsigned int along_y,
+Alpha running_alpha(double spacing, lattice::Orientation orientation, const WaveDirection &direction,
                     const lattice::Material &material, const Eigen::Matrix2d &F)
 {
   constexpr double lengths[] = {0.2, 0.4, 0.6, 0.8};
@@ -88,7 +88,7 @@ Alpha running_alpha(double spacing, lattice::Orientation orientation, unsigned i
   Eigen::Matrix<double, 4, 2> squares;
   for (int i = 0; i < 4; ++i)
   {
-    const WaveCell cell = wave_cell(spacing, orientation, along_x, along_y, lengths[i]);
+    const WaveCell cell = wave_cell(spacing, orientation, direction, lengths[i]);
     const double x = std::pow(cell.K.norm() * spacing, 2);
     powers.row(i) << 1., x, x * x, x * x * x;
     const std::array<Oscillation, 2> waves = lattice_waves(cell, material, F);

@@ -25,7 +25,7 @@ Alpha bloch_alpha(const lattice::TriangularLattice &lattice, const lattice::Mate
 
 /// Of a moving lattice: four waves of one direction, kd from 0.2 to 0.8, are run and w^2/k^2 fitted by a cubic in
 /// k^2. What the fit leaves out is 3e-6. @throws std::runtime_error if a wave does not oscillate
-Alpha running_alpha(double spacing, lattice::Orientation orientation, unsigned int along_x, unsigned int along_y,
+Alpha running_alpha(double spacing, lattice::Orientation orientation, const WaveDirection &direction,
                     const lattice::Material &material, const Eigen::Matrix2d &F);
 
 /// Of a continuum, in closed form. @param spacing d [m], the unit of length of alpha

@@ -41,14 +41,6 @@ private:
   ClaimOutcome &outcome_;
 };
 
-lattice::Material springs(lattice::Material material)
-{
-  material.nearest.viscosity = 0.;
-  if (material.next_nearest)
-    material.next_nearest->viscosity = 0.;
-  return material;
-}
-
 lattice::TriangularLattice any_sheet(const Subject &subject)
 {
   return {subject.spacing, 10. * subject.spacing, 10. * subject.spacing, subject.orientation};
@@ -59,7 +51,7 @@ void dispersion(const Subject &subject, const IntrinsicLengthOptions &options, C
 {
   const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
   const lattice::TriangularLattice sheet = any_sheet(subject);
-  const lattice::Material material = springs(subject.material);
+  const lattice::Material material = lattice::without_dashpots(subject.material);
   const double d = subject.spacing, rho = subject.material.density;
   const WaveContinuum gradient{{subject.cauchy_born, *subject.lattice_gradient}, {rho, subject.lengths.lattice}};
   const WaveContinuum isotropic{{subject.cauchy_born, *subject.isotropic_gradient},
@@ -74,8 +66,8 @@ void dispersion(const Subject &subject, const IntrinsicLengthOptions &options, C
   const auto n_angles = static_cast<int>(std::lround(180. / options.angle_step));
   for (int i = 0; i <= n_angles; ++i)
   {
-    const double degrees = 180. * i / n_angles, angle = degrees * M_PI / 180.;
-    const Eigen::Vector2d N(std::cos(angle), std::sin(angle));
+    const double degrees = 180. * i / n_angles, radians = degrees * M_PI / 180.;
+    const Eigen::Vector2d N(std::cos(radians), std::sin(radians));
     Alpha nearest{};
     const Alpha closed = lattice_alpha(sheet, material, I, N, &nearest), bloch = bloch_alpha(sheet, material, I, N),
                 continuum = continuum_alpha(gradient, I, N, d);
@@ -99,22 +91,19 @@ void dispersion(const Subject &subject, const IntrinsicLengthOptions &options, C
 
   // Directions in which waves are run.
   Table &runs = outcome.table("dispersion_runs", {"shells", "angle [deg]", "alpha_L", "alpha_S"});
-  const bool rows_along_x = subject.orientation == lattice::Orientation::rows_along_crack;
-  const std::array<std::array<unsigned int, 2>, 4> directions{{{1, 0}, {rows_along_x ? 1u : 3u, 1}, {0, 1}, {1, 2}}};
-  for (const auto &[along_x, along_y] : directions)
+  for (const WaveDirection &direction : wave_directions(subject.orientation))
   {
-    const WaveCell cell = wave_cell(d, subject.orientation, along_x, along_y, 0.5);
-    const Eigen::Vector2d N = cell.K.normalized();
+    const Eigen::Vector2d N = unit_vector(direction, subject.orientation);
+    const double degrees = angle(direction, subject.orientation);
     Alpha run{nothing, nothing};
     try
     {
-      run = running_alpha(d, subject.orientation, along_x, along_y, material, I);
+      run = running_alpha(d, subject.orientation, direction, material, I);
     }
     catch (const std::runtime_error &)
     {
       // No wave, no number: the rows fail.
     }
-    const double degrees = std::atan2(N.y(), N.x()) * 180. / M_PI;
     runs.add({subject.name, degrees, run[0], run[1]});
     const Alpha closed = lattice_alpha(sheet, material, I, N), continuum = continuum_alpha(gradient, I, N, d);
     for (std::size_t w = 0; w < 2; ++w)
@@ -184,7 +173,7 @@ void positivity(const Subject &subject, ClaimOutcome &outcome)
 void edge_layer(const Subject &subject, const IntrinsicLengthOptions &options, ClaimOutcome &outcome)
 {
   Rows rows(subject, outcome);
-  const lattice::Material material = springs(subject.material);
+  const lattice::Material material = lattice::without_dashpots(subject.material);
   EdgeLayer layer{nothing, std::vector<double>(options.edge_rows, nothing), nothing};
   try
   {

@@ -17,9 +17,8 @@ FORMATS = {
                     WAVE + ("local [m/s]", "bloch [m/s]", "lattice [m/s]", "gradient [m/s]", "isotropic [m/s]",
                             "fem [m/s]")),
     "attenuation": ({"shells": None, "wave": ("L", "S")},
-                    WAVE + ("viscosity factor",)
-                    + tuple(f"{side}_{what}" for side in ("theory", "lattice", "continuum", "fem")
-                            for what in ("frequency [rad/s]", "decay [1/s]"))),
+                    WAVE + tuple(f"{side}_{what}" for side in ("theory", "lattice", "continuum", "fem")
+                                 for what in ("frequency [rad/s]", "decay [1/s]"))),
     "dispersion": ({"shells": None}, ("angle [deg]", "alpha_L", "alpha_S", "nearest_L", "nearest_S", "isotropic_L",
                                       "isotropic_S")),
     "dispersion_runs": ({"shells": None}, ("angle [deg]", "alpha_L", "alpha_S")),

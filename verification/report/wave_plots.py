@@ -4,7 +4,7 @@ import numpy as np
 from claim_tables import fitted_order, groups, largest, range_text, sorted_by, states
 from panels import (LAW_COLOURS, MARKERS, WAVES, Grid, colours_of, entry, headroom, logarithmic, logarithmic_along_x,
                     note)
-from pictures import BLACK, GREY, save
+from pictures import BLACK, BLUE, GREY, save
 
 
 def draw_wave_speeds(tables, path):
@@ -72,28 +72,27 @@ def off(what, values, reference, of):
 def draw_attenuation(tables, path):
     """Decay rate and frequency of damped waves against k d, and what is off the theory."""
     table = tables["attenuation"]
-    colours, factors = colours_of(table["viscosity factor"], "viscosity ×")
     sides = {"lattice": "o", "continuum": "+", "fem": "x"}
     words = {"lattice": "lattice, run in time", "continuum": "continuum", "fem": "finite elements"}
     legend = [entry("theory", "--"), *(entry(words[side], "", marker=marker) for side, marker in sides.items())]
     rows = [(f"{name}, {WAVES[wave]} waves", part) for name, state in states(table)
             for (wave,), part in groups(state, "wave")]
-    grid = Grid([name for name, _ in rows], 3, legend + factors)
+    grid = Grid([name for name, _ in rows], 3, legend)
     metrics = []
     for number, (name, state) in enumerate(rows):
         panels = [grid.axes(number, column, title=title, xlabel="k d [1]") for column, title in enumerate(
             ("decay rate [1/s]", "frequency [10³ rad/s]", "off the theory, relative [1]"))]
-        for (factor, _), part in groups(state, "viscosity factor", "angle [deg]"):
+        for _, part in groups(state, "angle [deg]"):
             part = sorted_by(part, "k d")
             for axes, what, scale in zip(panels, ("decay [1/s]", "frequency [rad/s]"), (1, 1e-3)):
-                axes.plot(part["k d"], scale * part[f"theory_{what}"], "--", color=colours[factor])
+                axes.plot(part["k d"], scale * part[f"theory_{what}"], "--", color=BLUE)
                 for side, marker in sides.items():
-                    axes.plot(part["k d"], scale * part[f"{side}_{what}"], marker, color=colours[factor], markersize=6,
+                    axes.plot(part["k d"], scale * part[f"{side}_{what}"], marker, color=BLUE, markersize=6,
                               markerfacecolor="none")
             for side, marker in sides.items():
                 error = rate_error(part, side)
                 panels[2].plot(part["k d"], np.where(error > 0, error, np.nan), "-", marker=marker, markersize=5,
-                               color=colours[factor], linewidth=0.8, markerfacecolor="none")
+                               color=BLUE, linewidth=0.8, markerfacecolor="none")
         for axes in (panels[0], panels[2]):
             logarithmic(axes)
         logarithmic_along_x(panels[1])

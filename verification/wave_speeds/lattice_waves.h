@@ -15,11 +15,24 @@ struct WaveCell
   Eigen::Vector2d K; ///< referential wave vector [1/m]
 };
 
+/// Direction of a wave vector in units of the reciprocal periods of the lattice along x and y; not both 0.
+struct WaveDirection
+{
+  unsigned int along_x, along_y;
+};
+
+/// Along x, at 30 degrees to it, along y, and one off every line of symmetry.
+std::array<WaveDirection, 4> wave_directions(lattice::Orientation orientation);
+
+/// As a unit vector [-].
+Eigen::Vector2d unit_vector(const WaveDirection &direction, lattice::Orientation orientation);
+
+/// Its angle to x [degrees].
+double angle(const WaveDirection &direction, lattice::Orientation orientation);
+
 /// The smallest sheet for a wave of the length asked for, to 2 %.
-/// @param along_x,along_y direction of K in units of the reciprocal periods of the lattice along x and y; not both 0
 /// @param kd |K| d [-], > 0
-WaveCell wave_cell(double spacing, lattice::Orientation orientation, unsigned int along_x, unsigned int along_y,
-                   double kd);
+WaveCell wave_cell(double spacing, lattice::Orientation orientation, const WaveDirection &direction, double kd);
 
 /// Frequencies and decays of the longitudinal and the shear wave of a cell, measured on the moving lattice.
 ///

@@ -67,7 +67,7 @@ TEST(Bloch, IsTheResponseOfTheForceLoop)
   for (const auto orientation : {lattice::Orientation::rows_along_crack, lattice::Orientation::rows_across_crack})
   {
     const Case input = subjects::paper_case();
-    const WaveCell cell = wave_cell(input.spacing, orientation, 2, 1, 1.2);
+    const WaveCell cell = wave_cell(input.spacing, orientation, {2, 1}, 1.2);
     Eigen::Matrix2d F;
     F << 1.6, 0.2, -0.1, 1.3;
     const lattice::Material material = input.material();
@@ -156,14 +156,28 @@ TEST(Oscillation, RefusesWhatDoesNotOscillate)
 TEST(WaveCell, HoldsWholeWavelengthsNearTheLengthAskedFor)
 {
   for (const auto orientation : {lattice::Orientation::rows_along_crack, lattice::Orientation::rows_across_crack})
-    for (const auto &[along_x, along_y] : {std::array<unsigned int, 2>{1, 0}, {0, 1}, {1, 1}, {3, 1}, {1, 2}})
+    for (const WaveDirection &direction : {WaveDirection{1, 0}, {0, 1}, {1, 1}, {3, 1}, {1, 2}})
       for (const double kd : {0.05, 0.3, 1., 2.})
       {
-        const WaveCell cell = wave_cell(1e-3, orientation, along_x, along_y, kd);
+        const WaveCell cell = wave_cell(1e-3, orientation, direction, kd);
         EXPECT_NEAR(cell.K.norm() * 1e-3, kd, 0.021 * kd);
+        EXPECT_LT((cell.K.normalized() - unit_vector(direction, orientation)).norm(), 1e-14);
         for (const double turns : {cell.K.x() * cell.sheet.length(), cell.K.y() * cell.sheet.height()})
           EXPECT_NEAR(turns / (2. * M_PI), std::round(turns / (2. * M_PI)), 1e-9);
       }
+}
+
+TEST(WaveDirection, HasTheAnglesThatTheClaimsName)
+{
+  for (const auto orientation : {lattice::Orientation::rows_along_crack, lattice::Orientation::rows_across_crack})
+  {
+    const auto directions = wave_directions(orientation);
+    EXPECT_NEAR(angle(directions[0], orientation), 0., 1e-13);
+    EXPECT_NEAR(angle(directions[1], orientation), 30., 1e-13);
+    EXPECT_NEAR(angle(directions[2], orientation), 90., 1e-13);
+    const double odd = std::fmod(angle(directions[3], orientation), 30.);
+    EXPECT_GT(std::min(odd, 30. - odd), 5.);
+  }
 }
 
 TEST(WaveSpeeds, HoldsForBothShellSetsAndOrientations)
