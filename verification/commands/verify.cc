@@ -5,6 +5,7 @@
 
 #include "verification/commands/command.h"
 #include "verification/energy/energy_claim.h"
+#include "verification/prestretch/cut_study.h"
 #include "verification/prestretch/prestretch_claim.h"
 
 namespace verification
@@ -27,7 +28,17 @@ ClaimOutcome prestretch(const Subject &subject, bool quick)
     options.cells_x = 24;
     options.cells_y = 16;
   }
-  return {prestretch_claim(subject, options), {}};
+  ClaimOutcome outcome{prestretch_claim(subject, options), {}};
+  if (!subject.material.next_nearest)
+  {
+    outcome.add(cut_claim(subject, nearest_hole_study(quick)));
+    return outcome;
+  }
+  outcome.add(cut_claim(subject, hole_study(quick)));
+  outcome.add(cut_claim(subject, notch_study(quick)));
+  if (!quick && (subject.deformation - Eigen::Matrix2d::Identity()).norm() > 0.01)
+    outcome.add(cut_claim(subject, loaded_hole_study(subject.deformation)));
+  return outcome;
 }
 
 using Claim = std::function<ClaimOutcome(const Subject &, bool)>;
