@@ -190,7 +190,7 @@ std::optional<CutErrors> compare(const CutLattice &cut, const CutSheet &sheet, c
   continuum::StaticSettings settings;
   settings.degree = mesh_settings.degree;
   settings.relative_tolerance = 1e-9;
-  settings.smallest_load_step = 1. / 32.;
+  settings.smallest_load_step = 1. / 16.;
   const Points points(cut, sheet, domain);
   try
   {

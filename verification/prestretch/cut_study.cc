@@ -35,7 +35,7 @@ CutStudy hole_study(bool quick)
   return {"hole",
           sheet_with_hole,
           {stretched(1.1, 1.1), stretched(1.3, 1.1), stretched(1.5, 1.5)},
-          {8., 12., 16., 24., 32., 48., 64.},
+          {8., 12., 16., 24., 32., 64.},
           {8., 16., 32., 64.},
           hole_mesh(false),
           false,
@@ -69,7 +69,8 @@ CutStudy notch_study(bool quick)
 
 CutStudy loaded_hole_study(const Eigen::Matrix2d &F)
 {
-  return {"hole", sheet_with_hole, {F}, {8.}, {8.}, hole_mesh(false), true, {}};
+  // Coarse, since a law without an equilibrium takes many attempts to say so.
+  return {"hole", sheet_with_hole, {F}, {8.}, {8.}, hole_mesh(true), true, {}};
 }
 
 std::vector<CutResult> compare_sizes(const Subject &subject, const CutStudy &study, const Eigen::Matrix2d &F)
