@@ -12,6 +12,13 @@ namespace
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
+// Student's t that a sample with so many degrees of freedom exceeds in one case out of forty.
+double students_t(std::size_t freedom)
+{
+  constexpr double t[] = {12.71, 4.30, 3.18, 2.78, 2.57, 2.45};
+  return t[std::clamp<std::size_t>(freedom, 1, std::size(t)) - 1];
+}
+
 // Least squares of log(error) = log(factor) - order log(size), and how uncertain it is: the staircase that a lattice
 // makes of a round rim is another for every radius, and scatters the errors.
 struct PowerLaw
@@ -81,7 +88,7 @@ public:
     {
       order.theory = 1.;
       order.error = std::max(0., 1. - all.order);
-      order.tolerance = 2. * all.order_deviation;
+      order.tolerance = students_t(displacement.size() - 2) * all.order_deviation;
     }
     rows.add(order);
     const double allowed = add_expected(rows, "displacement, rms at " + largest_, displacement);
@@ -143,13 +150,14 @@ private:
     rows.add({"prestretch", where_ + quantity, "1", {}, {}, {}, error, tolerance});
   }
 
-  // The error at the largest size beside what the others let one expect there, by twice the standard deviation of that.
+  // The error at the largest size beside what the others let one expect there, as far as their scatter makes it
+  // uncertain.
   // @return what is allowed
   double add_expected(Results &rows, const std::string &quantity, const std::vector<double> &errors,
                       bool checked = true) const
   {
     const PowerLaw coarser = fit(study_.sizes, {errors.begin(), errors.end() - 1}, study_.sizes.back());
-    const double allowed = coarser.expected * std::exp(2. * coarser.deviation);
+    const double allowed = coarser.expected * std::exp(students_t(errors.size() - 3) * coarser.deviation);
     rows.add({"prestretch",
               where_ + quantity,
               "1",
