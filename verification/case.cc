@@ -48,9 +48,9 @@ void Case::declare(Parameters &p)
         "rows of nearest neighbours along x, or turned by 30 degrees so that they run along y");
 
   p.add("Sheet", "hole radius", hole_radius, NonNegative{}, "m",
-        "of a round hole in the middle of the finite element sheet, undeformed; 0: none");
+        "of a round hole in the middle of the sheet, undeformed; 0: none");
   p.add("Sheet", "notch length", notch_length, NonNegative{}, "m",
-        "of a slit in the finite element sheet, from the left edge along y = 0, undeformed; 0: none");
+        "of a slit from the left edge along y = 0, undeformed; 0: none");
 
   p.add("Material", "density", density, Positive{}, "kg/m^3", "rho of the rubber", Presence::required);
   nearest.declare(p, "Nearest neighbours");
@@ -178,7 +178,9 @@ void Case::check(Parameters &p) const
 
 lattice::TriangularLattice Case::lattice() const
 {
-  return {spacing, length, height, orientation};
+  const auto periodic = [this](std::size_t edge)
+  { return continuum.edges[edge].condition == EdgeCase::Condition::periodic; };
+  return {spacing, length, height, orientation, {periodic(0), periodic(2)}};
 }
 
 lattice::Material Case::material() const
@@ -194,14 +196,6 @@ Eigen::Matrix2d Case::deformation() const
   Eigen::Matrix2d F;
   F << 1. + strain_x, shear, 0., 1. + strain_y;
   return F;
-}
-
-void Case::require_whole_sheet(Parameters &p, const std::string &command) const
-{
-  if (hole_radius > 0.)
-    p.error("Sheet/hole radius", command + " has no use for a hole; give 0");
-  if (notch_length > 0.)
-    p.error("Sheet/notch length", command + " has no use for a notch; give 0");
 }
 
 lattice::Toughening Case::toughening_rule() const

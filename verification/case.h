@@ -103,12 +103,11 @@ struct Case
   void declare(Parameters &parameters);
   void check(Parameters &parameters) const;
 
+  /// The lattice of the sheet, periodic where its edges are.
   lattice::TriangularLattice lattice() const;
   lattice::Material material() const;
   /// Whether the sheet has an edge inside: of a hole or a notch.
   bool has_inner_edge() const { return hole_radius > 0. || notch_length > 0.; }
-  /// Refuses a hole or notch, which `command` has no use for.
-  void require_whole_sheet(Parameters &parameters, const std::string &command) const;
   /// F = [1 + eps_x, F_xy; 0, 1 + eps_y] of the loaded sheet [-].
   Eigen::Matrix2d deformation() const;
   lattice::Toughening toughening_rule() const;

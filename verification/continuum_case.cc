@@ -101,7 +101,7 @@ void EdgeCase::declare(Parameters &p, const bool can_be_periodic)
   if (can_be_periodic)
     words.emplace_back("periodic", Condition::periodic);
   p.add(name, "condition", condition, words,
-        "finite elements: held where the displacement is given, free where the traction is" +
+        "held where the displacement is given, free where the traction is" +
           std::string(can_be_periodic ? ", periodic where it follows the opposite edge" : ""));
   for (std::string *component : {&displacement_x, &displacement_y})
     p.add(name, component == &displacement_x ? "displacement x" : "displacement y", *component,

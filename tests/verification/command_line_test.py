@@ -180,6 +180,25 @@ class BothSides(TemporaryFolder):
                 b[:, 8] = a[:, 8]
             self.assertLess(abs(a - b).max(), 1e-6 * abs(a).max(), name)
 
+    def test_lattice_has_the_hole_and_the_free_sides_of_the_case(self):
+        run = latcon("lattice", CASES / "hole.prm", "--output-dir", self.out)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        dry = latcon("lattice", CASES / "hole.prm", "--dry-run")
+        sheet = read(vtk.vtkXMLPolyDataReader(), frames(self.out / "lattice.pvd")[-1][1])
+        removed = 97 * 75 - 37 - sheet.GetNumberOfPoints()  # 75 rows of 97 and 96 sites in turn
+        self.assertIn(f"# lattice: {sheet.GetNumberOfPoints()} sites, ", dry.stdout)
+        # Its area, to a third of the sites along the rim.
+        self.assertAlmostEqual(removed * math.sqrt(0.75), math.pi * 64, delta=2 * math.pi * 8 / 3)
+        held = vtk_to_numpy(sheet.GetPointData().GetArray("held")) == 1
+        y = vtk_to_numpy(sheet.GetPoints().GetData())[:, 1]
+        self.assertEqual(held.sum(), 2 * (97 + 96))
+        self.assertGreater(abs(y[held]).min(), 0.019)
+        # The sides draw in where nothing holds them: the rim of the hole is stretched along y, and so are they.
+        u = vtk_to_numpy(sheet.GetPointData().GetArray("displacement"))
+        x = vtk_to_numpy(sheet.GetPoints().GetData())[:, 0]
+        side = (x > x.max() - 1e-6) & (abs(y) < 1e-3)
+        self.assertLess(u[side, 0].max(), -1e-3)
+
     def test_motion_conserves_energy(self):
         run = latcon("lattice", CASES / "quick.prm", "--output-dir", self.out, "--set", "Lattice/solution=motion",
                      "--set", "Time/end=0.2 ms")

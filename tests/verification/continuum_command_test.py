@@ -266,9 +266,12 @@ class BadInput(TemporaryFolder):
         text.write_text("no mesh\n")
         self.refused("continuum", HOLE, [str(text)], whole, f"Continuum/mesh file={text}")
 
-    def test_lattice_has_no_hole(self):
-        for command in ["lattice", "fracture"]:
-            self.refused(command, HOLE, ["Sheet/hole radius", f"latcon {command}"])
+    def test_cracks_run_in_whole_held_sheets(self):
+        self.refused("fracture", HOLE, ["Sheet/hole radius", "Left edge/condition", "latcon fracture"])
+
+    def test_lattice_is_told_no_more_than_it_can_do(self):
+        self.refused("lattice", LAYER, ["Top edge/normal gradient", "Bottom edge/normal gradient", "latcon lattice"])
+        self.refused("lattice", HOLE, ["Top edge/displacement x"], "Top edge/displacement x=0.01*y")
 
 
 class Motion(TemporaryFolder):

@@ -5,6 +5,7 @@
 #include "verification/commands/command.h"
 #include "verification/commands/lattice_size.h"
 #include "verification/crack_record.h"
+#include "verification/lattice_sheet.h"
 #include "verification/progress.h"
 
 namespace verification
@@ -131,7 +132,7 @@ ExitCode run_fracture(const Options &options)
   Case input;
   Parameters parameters;
   read_case(options, input, parameters);
-  input.require_whole_sheet(parameters, "`latcon fracture`");
+  require_whole_held_sheet(input, parameters, "`latcon fracture`");
   if (!input.breaking_stretch)
     parameters.error("Fracture/breaking stretch", "fracture needs a breaking stretch");
   if (!(input.end_time > 0.))

@@ -7,6 +7,7 @@
 #include "verification/commands/lattice_size.h"
 #include "verification/crack_record.h"
 #include "verification/homogenisation.h"
+#include "verification/lattice_sheet.h"
 #include "verification/progress.h"
 
 namespace verification
@@ -16,7 +17,7 @@ namespace
 
 constexpr double unbreakable = std::numeric_limits<double>::infinity();
 
-// Static equilibrium of the held sheet. @return its energy density over the sites with all their bonds, and residual
+// Static equilibrium. @return its energy and residual
 Results relaxed(const Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
                 lattice::State state, Run &run)
 {
@@ -104,7 +105,7 @@ ExitCode run_lattice(const Options &options)
   Case input;
   Parameters parameters;
   read_case(options, input, parameters);
-  input.require_whole_sheet(parameters, "`latcon lattice`");
+  require_lattice_sheet(input, parameters, "`latcon lattice`");
   if (input.solution == Case::Solution::motion && !(input.end_time > 0.))
     parameters.error("Time/end", "motion needs an end time larger than 0", {"Lattice/solution"});
   parameters.finish();
@@ -121,8 +122,7 @@ ExitCode run_lattice(const Options &options)
   Results results;
   if (run.writes())
   {
-    lattice::State state =
-      lattice::homogeneous_state(sheet, material, input.deformation(), lattice::Edges::held, unbreakable);
+    lattice::State state = lattice_state(input, sheet, unbreakable);
     lattice::add_noise(state, sheet, input.noise_amplitude * input.spacing, input.noise_seed);
     results = input.solution == Case::Solution::relaxed ? relaxed(input, sheet, material, std::move(state), run)
                                                         : moved(input, sheet, material, std::move(state), run);

@@ -5,7 +5,7 @@
 
 #include <omp.h>
 
-#include "lattice/state.h"
+#include "verification/lattice_sheet.h"
 
 namespace verification
 {
@@ -23,17 +23,19 @@ std::string lattice_size(const Case &input)
   const lattice::TriangularLattice sheet = input.lattice();
   const double step = input.lattice_time_step();
   const double steps = std::ceil(input.end_time / step);
-  const auto sites = static_cast<double>(sheet.n_sites());
-  const lattice::State state =
-    lattice::homogeneous_state(sheet, input.material(), input.deformation(), lattice::Edges::held, 1.);
+  const lattice::State state = lattice_state(input, sheet, 1.);
+  std::size_t sites = 0;
+  for (std::size_t place = 0; place < sheet.n_places(); ++place)
+    sites += sheet.is_site(place) && state.removed[place] == 0;
   std::size_t bonds = 0;
   lattice::for_each_bond(state, sheet, [&](std::size_t, std::size_t, std::size_t) { ++bonds; });
   std::ostringstream out;
-  out << "# lattice: " << sheet.n_sites() << " sites, " << bonds << " bonds, " << sheet.length() << " m x "
-      << sheet.height() << " m\n"
+  out << "# lattice: " << sites << " sites, " << bonds << " bonds, " << sheet.length() << " m x " << sheet.height()
+      << " m\n"
       << "# time step: " << step << " s, " << steps << " steps at most\n"
       << "# memory: about " << std::ceil(sheet.n_places() * doubles_per_place * 8e-6) << " MB beside the libraries\n"
-      << "# time: about " << std::ceil(steps * sites * nanoseconds_per_site_step * 1e-9 / omp_get_max_threads())
+      << "# time: about "
+      << std::ceil(steps * static_cast<double>(sites) * nanoseconds_per_site_step * 1e-9 / omp_get_max_threads())
       << " s on " << omp_get_max_threads() << " threads\n";
   return out.str();
 }

@@ -8,6 +8,7 @@
 #include "verification/energy/energy_claim.h"
 #include "verification/energy/wave_energy.h"
 #include "verification/intrinsic_length/intrinsic_length_claim.h"
+#include "verification/prestretch/cut_study.h"
 #include "verification/prestretch/prestretch_claim.h"
 #include "verification/wave_speeds/wave_speeds_claim.h"
 
@@ -69,7 +70,17 @@ ClaimOutcome prestretch(const Subject &subject, bool quick)
     options.cells_x = 24;
     options.cells_y = 16;
   }
-  return {prestretch_claim(subject, options), {}};
+  ClaimOutcome outcome{prestretch_claim(subject, options), {}};
+  if (!subject.material.next_nearest)
+  {
+    outcome.add(cut_claim(subject, nearest_hole_study(quick)));
+    return outcome;
+  }
+  outcome.add(cut_claim(subject, hole_study(quick)));
+  outcome.add(cut_claim(subject, notch_study(quick)));
+  if (!quick && (subject.deformation - Eigen::Matrix2d::Identity()).norm() > 0.01)
+    outcome.add(cut_claim(subject, loaded_hole_study(subject.deformation)));
+  return outcome;
 }
 
 using Claim = std::function<ClaimOutcome(const Subject &, bool)>;

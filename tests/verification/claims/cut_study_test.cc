@@ -1,0 +1,187 @@
+// Sheets with a hole or a notch: where their edges are, and that the comparison holds, and fails for what is wrong.
+#include "verification/prestretch/cut_study.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <gtest/gtest.h>
+
+#include "tests/verification/claims/subjects.h"
+
+namespace
+{
+
+using namespace verification;
+
+constexpr lattice::Orientation orientations[] = {lattice::Orientation::rows_along_crack,
+                                                 lattice::Orientation::rows_across_crack};
+
+Subject paper_subject(lattice::Orientation orientation = lattice::Orientation::rows_along_crack)
+{
+  Case input = subjects::paper_case();
+  input.orientation = orientation;
+  return subject(input);
+}
+
+// The local law alone, of the small version.
+CutStudy local_study()
+{
+  CutStudy study = hole_study(true);
+  study.other_sizes.clear();
+  return study;
+}
+
+std::vector<std::string> failing(const ClaimOutcome &outcome)
+{
+  std::vector<std::string> names;
+  for (const Result &row : outcome.results.rows())
+    if (row.verdict() == Verdict::fails)
+      names.push_back(row.quantity);
+  return names;
+}
+
+bool any_has(const std::vector<std::string> &names, const std::string &part)
+{
+  return std::any_of(names.begin(), names.end(),
+                     [&](const std::string &name) { return name.find(part) != std::string::npos; });
+}
+
+// With nearest neighbours the outermost row of sites, held, is the edge; with both shells the second row is held too,
+// and the displacement it forces on the first free one has a boundary layer: 0.72 of a row pitch across and all of it
+// along the edge, by hand from the characteristic equation of the chain.
+TEST(EquivalentSheet, HeldLayerIsAnEdgeAtTheDepthOfItsChain)
+{
+  const Case input = subjects::paper_case();
+  const lattice::TriangularLattice lattice = input.lattice();
+  const double p = std::sqrt(0.75) * input.spacing;
+  EXPECT_NEAR(held_depth(lattice, subjects::nearest_only(input), {0., 1.}), 0., 1e-12 * p);
+  const double k1 = 1.5 + 0.5 / std::sqrt(3.), k2 = 1. / std::sqrt(3.);
+  const double c = -2. - k1 / k2, r = 0.5 * (c + std::sqrt(c * c - 4.));
+  EXPECT_NEAR(held_depth(lattice, input.material(), {0., 1.}), 0.5 * p * ((1. + r / (1. - r)) + 1.), 1e-9 * p);
+}
+
+TEST(EquivalentSheet, RimRecedesByAFixedPartOfABond)
+{
+  const Case input = subjects::paper_case();
+  const lattice::TriangularLattice lattice = input.lattice();
+  const double part = 23. / (45. * M_PI);
+  EXPECT_NEAR(rim_recession(lattice, subjects::nearest_only(input)), part * input.spacing, 1e-12 * input.spacing);
+  // Lengths 1 and sqrt3, weighted with volumes of bonds that are as long.
+  EXPECT_NEAR(rim_recession(lattice, input.material()), part * 4. / (1. + std::sqrt(3.)) * input.spacing,
+              1e-12 * input.spacing);
+}
+
+// Turning the lattice by 90 degrees with the sheet changes nothing.
+TEST(EquivalentSheet, IsTheSameInBothOrientations)
+{
+  const Subject along = paper_subject(orientations[0]), across = paper_subject(orientations[1]);
+  const double R = 8. * along.spacing;
+  const lattice::TriangularLattice a(along.spacing, 5. * R, 4. * R, along.orientation);
+  const lattice::TriangularLattice b(along.spacing, 4. * R, 5. * R, across.orientation);
+  EXPECT_NEAR(held_depth(a, along.material, {1., 0.}), held_depth(b, along.material, {0., 1.}), 1e-12 * R);
+  EXPECT_NEAR(held_depth(a, along.material, {0., 1.}), held_depth(b, along.material, {1., 0.}), 1e-12 * R);
+}
+
+TEST(CutStudy, HoldsWithAHoleInBothOrientationsAndForBothShellSets)
+{
+  for (const lattice::Orientation orientation : orientations)
+  {
+    const ClaimOutcome outcome = cut_claim(paper_subject(orientation), local_study());
+    EXPECT_TRUE(outcome.results.all_hold());
+    for (const std::string &name : failing(outcome))
+      ADD_FAILURE() << name;
+  }
+  const Case input = subjects::paper_case();
+  for (const std::string &name : failing(cut_claim(subject(input, subjects::nearest_only(input)), local_study())))
+    ADD_FAILURE() << name;
+}
+
+TEST(CutStudy, HoldsWithANotch)
+{
+  for (const std::string &name : failing(cut_claim(paper_subject(), notch_study(true))))
+    ADD_FAILURE() << name;
+}
+
+// What the report reads by name.
+TEST(CutStudy, TablesHaveTheirColumns)
+{
+  CutStudy study = hole_study(true);
+  study.sizes = {6., 8., 10., 12.};
+  study.other_sizes = {6.};
+  const ClaimOutcome outcome = cut_claim(paper_subject(), study);
+  const Table &table = outcome.tables.at("hole");
+  const std::vector<std::string> first = {"shells",       "F_xx",   "F_yy",   "law",      "R/d",
+                                          "displacement", "stress", "energy", "reaction", "shape"};
+  ASSERT_GE(table.columns().size(), first.size());
+  EXPECT_TRUE(std::equal(first.begin(), first.end(), table.columns().begin()));
+  EXPECT_EQ(table.rows().size(), 4u + 4u);
+  for (const auto &row : table.rows())
+  {
+    EXPECT_EQ(std::get<std::string>(row[0]), "NN+NNN");
+    EXPECT_LT(std::get<double>(row[5]), 0.1);
+  }
+}
+
+struct Fault
+{
+  const char *name;
+  std::function<void(Subject &, CutStudy &)> plant;
+  std::vector<std::string> caught_by; // parts of the names of rows, each of which has to fail
+};
+
+std::ostream &operator<<(std::ostream &out, const Fault &fault)
+{
+  return out << fault.name;
+}
+
+class PlantedFault : public testing::TestWithParam<Fault>
+{
+};
+
+void scale_weights(Subject &subject, double factor)
+{
+  std::vector<continuum::FibreFamily> families = subject.cauchy_born.families();
+  for (continuum::FibreFamily &family : families)
+    family.weight *= factor;
+  subject.cauchy_born = continuum::CauchyBorn(families);
+}
+
+// Positions and directions of the lattice with x and y exchanged, as a comparison would see them that mixes them up.
+void exchange_axes(CutLattice &cut)
+{
+  for (std::size_t place = 0; place < cut.lattice.n_places(); ++place)
+  {
+    const Eigen::Vector2d X = cut.lattice.reference(place);
+    const double ux = cut.state.x[place] - X.x(), uy = cut.state.y[place] - X.y();
+    cut.state.x[place] = X.x() + uy;
+    cut.state.y[place] = X.y() + ux;
+    cut.fields.first_piola_stress[place] = cut.fields.first_piola_stress[place].reverse().eval();
+  }
+  std::swap(cut.reaction_change.x(), cut.reaction_change.y());
+  cut.homogeneous_P = cut.homogeneous_P.reverse().eval();
+}
+
+INSTANTIATE_TEST_SUITE_P(CutStudy, PlantedFault,
+                         testing::Values(Fault{"NextNearestStifferByOnePercent",
+                                               [](Subject &s, CutStudy &)
+                                               { s.material.next_nearest->area_factor *= 1.01; },
+                                               {"stress, all in one", "reactions"}},
+                                         Fault{"WrongAreaOfASite",
+                                               [](Subject &s, CutStudy &) { scale_weights(s, 2. / std::sqrt(3.)); },
+                                               {"stress, all in one", "energy", "reactions"}},
+                                         Fault{"AxesExchanged",
+                                               [](Subject &, CutStudy &study) { study.spoil = exchange_axes; },
+                                               {"order", "reactions", "shape"}}),
+                         [](const auto &instance) { return instance.param.name; });
+
+TEST_P(PlantedFault, FailsTheClaim)
+{
+  Subject wrong = paper_subject();
+  CutStudy study = local_study();
+  GetParam().plant(wrong, study);
+  const std::vector<std::string> names = failing(cut_claim(wrong, study));
+  for (const std::string &part : GetParam().caught_by)
+    EXPECT_TRUE(any_has(names, part)) << part;
+}
+
+} // namespace

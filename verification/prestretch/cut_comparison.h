@@ -1,0 +1,54 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "continuum/constitution.h"
+#include "verification/prestretch/cut_lattice.h"
+#include "verification/prestretch/equivalent_sheet.h"
+
+namespace verification
+{
+
+/// A law of the continuum that a claim sets beside the lattice.
+struct NamedLaw
+{
+  std::string name; ///< "local", "lattice", "isotropic" (gradient energies beside the local law), "mooney-rivlin"
+  continuum::Constitution constitution;
+};
+
+/// How the finite element sheet is solved.
+struct CutMesh
+{
+  unsigned int degree = 3;
+  unsigned int refinements = 0;     ///< of the whole coarse mesh
+  unsigned int rim_refinements = 1; ///< of the cells around a hole
+  unsigned int cycles = 1;          ///< of refinement where the error seems largest, each followed by an equilibrium
+  double fraction = 0.3;            ///< of the cells, in each cycle [-]
+};
+
+/// Differences between a lattice and a continuum that hold the same sheet, all relative [-]. Positive where the lattice
+/// has more, if they have a sign.
+struct CutErrors
+{
+  double displacement;     ///< rms over the sites with all their bonds, over |F - I| times the size of the cut
+  double displacement_all; ///< rms over all free sites: at a rim, one that few bonds hold is far off by itself
+  double displacement_max; ///< largest of all
+  double stress;           ///< first Piola, rms over the sites with all their bonds, over the rms of the continuum's
+  double cauchy_stress;    ///< likewise
+  double stress_scale;     ///< of all these stresses at once: sum P_lattice : P / sum P : P - 1
+  double energy;           ///< total
+  double reaction; ///< force on the right edge along x and on the top edge along y, as a vector, along the continuum's
+  double reaction_vector; ///< length of the difference of both
+  double shape;           ///< opening of the hole along x and y, or of the mouth of the notch, likewise as a vector
+  double fem;             ///< change of the displacement in the last cycle, as `displacement`
+  double unknowns;
+};
+
+/// The finite element sheet of a law beside a lattice; empty if it finds no equilibrium, with the reason in `failure`.
+/// Collective.
+std::optional<CutErrors> compare(const CutLattice &lattice, const CutSheet &sheet, const EquivalentSheet &domain,
+                                 const continuum::Constitution &law, const CutMesh &mesh, std::string &failure);
+
+} // namespace verification
