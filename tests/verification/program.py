@@ -16,8 +16,8 @@ os.environ["MPLCONFIGDIR"] = f"{CACHE.name}/matplotlib"  # its list of fonts tak
 CASES = pathlib.Path(__file__).resolve().parents[2] / "verification" / "cases"
 
 
-def latcon(*arguments, program=LATCON, **keywords):
-    return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, timeout=600, **keywords)
+def latcon(*arguments, program=LATCON, timeout=600, **keywords):
+    return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, timeout=timeout, **keywords)
 
 
 def latcon_on_ranks(ranks, *arguments, env=None):

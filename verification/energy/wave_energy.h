@@ -20,7 +20,7 @@ namespace verification
 struct WaveEnergyOptions
 {
   std::vector<Eigen::Matrix2d> states;        ///< homogeneous F [-]
-  std::vector<double> kd{0.1, 0.25, 0.5, 1.}; ///< of the sinusoidal fields [-]
+  std::vector<double> kd{0.1, 0.25, 0.5, 1.}; ///< of the fields [-]; travelling waves are judged at 0.25
   WaveMesh mesh;                              ///< of the finite elements
 };
 

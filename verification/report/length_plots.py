@@ -166,17 +166,22 @@ def draw_cut(table, size, label, path):
                 axes.plot(1 / part[size], np.where(error > 0, error, np.nan), "-o", color=colours[law], markersize=4)
                 order = fitted_order(1 / part[size], error)
                 if order is not None:
-                    panels[-1][1].append((f"{order:.2f}", colours[law]))
                     orders[law].append(f"{what} {order:.2f}")
-            logarithmic(axes)
+                    if law == laws[0]:  # the others' are below the picture
+                        panels[-1][1].append((f"{law}: order {order:.2f}", colours[law]))
             if first is None:
                 first = axes
                 axes.set_ylabel("relative difference\nfrom the lattice [1]")
             else:
                 axes.tick_params(labelleft=False)
-        headroom(first, 0.4 + 0.5 * len(laws))
         for axes, lines in panels:
-            note(axes, [("order", BLACK), *lines] if lines else [])
+            logarithmic(axes)
+            note(axes, lines)
+        errors = np.abs(np.concatenate([state[what] for what in shown]))
+        errors = errors[np.isfinite(errors) & (errors > 0)]
+        if len(errors):
+            first.set_ylim(errors.min() / 2, errors.max() * 2)
+            headroom(first, 0.5)
         metrics += [f"{name}, {law}: order of {', '.join(orders[law])}" for law in laws if orders[law]]
     save(grid.page.figure, path)
     return metrics

@@ -1,0 +1,50 @@
+#!/usr/bin/python3
+"""Every claim holds on the shipped case, through the command line: in the quick versions, or with --full in the full ones.
+
+Usage: verify_test.py LATCON [--full]
+"""
+import json
+import sys
+import unittest
+
+from program import TemporaryFolder, latcon
+
+# What each claim must have said something about, whatever its wording beside it.
+SUBJECTS = {
+    "energy": ("energy density, Cauchy-Born", "c_L at F = I", "calibrated ratio", "lattice against Bloch",
+               "local continuum and lattice agree", "over 1 + l_d^2 k^2 and the lattice's", "travelling L", "travelling S"),
+    "wave-speeds": ("long-wave speed, L", "long-wave speed, S", "lattice run against Bloch", "against their continuum",
+                    "at kd = 0.25", "local continuum's error", "gradient continuum's error", "damped frequency", "decay"),
+    "intrinsic-length": ("alpha of L waves at 0 degrees", "alpha of S waves at 90 degrees", "softening", "hardening",
+                         "shortest length", "1 % below", "no edge layer", "decay from row to row"),
+    "prestretch": ("edge traction", "hole", "notch"),
+}
+TABLES = ("wave_speeds", "attenuation", "dispersion", "dispersion_runs", "edge_layer", "hole", "notch", "sinusoidal_energy",
+          "travelling_waves")
+
+
+class Verify(TemporaryFolder):
+    def test_every_claim_holds(self):
+        # The full versions are to take less than ten minutes on two idle cores, and these may not be idle.
+        result = latcon("verify", *VERSION, "--output-dir", self.out, timeout=1800)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        rows = json.loads((self.out / "results.json").read_text())["claims"]
+        self.assertEqual({row["claim"] for row in rows}, set(SUBJECTS))
+        for claim, subjects in SUBJECTS.items():
+            quantities = [row["quantity"] for row in rows if row["claim"] == claim]
+            for subject in subjects:
+                self.assertTrue(any(subject in quantity for quantity in quantities), f"{claim}: {subject}")
+            for shells in ("NN+NNN", "NN"):
+                self.assertTrue(any(quantity.startswith((f"{shells}:", f"{shells},")) for quantity in quantities), claim)
+        for name in TABLES:
+            self.assertGreater(len((self.out / f"{name}.csv").read_text().splitlines()), 4, name)
+        report = latcon("report", self.out, "--quiet")
+        self.assertEqual(report.returncode, 0, report.stderr)
+        page = (self.out / "report.html").read_text()
+        self.assertGreaterEqual(page.count("<img "), len(TABLES) - 1)  # dispersion and its runs share one
+
+
+VERSION = [] if "--full" in sys.argv else ["--quick"]
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])
