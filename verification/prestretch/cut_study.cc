@@ -48,8 +48,9 @@ CutStudy nearest_hole_study(bool quick)
   study.other_sizes.clear();
   if (!quick)
   {
-    study.sizes = {8., 12., 16., 24., 32.};
-    study.other_sizes = {8., 16., 32.};
+    // More radii than with both shells: the rim of nearest neighbours alone scatters more from one to the next.
+    study.sizes = {8., 12., 16., 24., 32., 48., 64.};
+    study.other_sizes = {8., 16., 32., 64.};
     study.mesh = hole_mesh(false);
   }
   return study;

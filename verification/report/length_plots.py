@@ -174,14 +174,12 @@ def draw_cut(table, size, label, path):
                 axes.set_ylabel("relative difference\nfrom the lattice [1]")
             else:
                 axes.tick_params(labelleft=False)
+        errors = np.abs(np.concatenate([state[what] for what in shown]))
+        errors = errors[np.isfinite(errors) & (errors > 0)]
+        first.set_ylim(*((errors.min() / 2, errors.max() * 6) if len(errors) else (1e-3, 1)))  # room for the note
         for axes, lines in panels:
             logarithmic(axes)
             note(axes, lines)
-        errors = np.abs(np.concatenate([state[what] for what in shown]))
-        errors = errors[np.isfinite(errors) & (errors > 0)]
-        if len(errors):
-            first.set_ylim(errors.min() / 2, errors.max() * 2)
-            headroom(first, 0.5)
         metrics += [f"{name}, {law}: order of {', '.join(orders[law])}" for law in laws if orders[law]]
     save(grid.page.figure, path)
     return metrics
