@@ -156,6 +156,10 @@ void FieldWriter::add_frame(const State &state)
   const auto time = array("TimeValue", 1, 1);
   time->SetValue(0, state.time);
   sheet->GetFieldData()->AddArray(time);
+  // The sites of a periodic sheet stop short of its ends.
+  const auto bounds = array("SheetBounds", 4, 1);
+  bounds->SetTuple4(0, 0., lattice_.length(), -0.5 * lattice_.height(), 0.5 * lattice_.height());
+  sheet->GetFieldData()->AddArray(bounds);
 
   char name[32];
   std::snprintf(name, sizeof(name), "lattice-%04zu.vtp", frames_.size());

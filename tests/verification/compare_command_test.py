@@ -17,8 +17,8 @@ sys.dont_write_bytecode = True
 from program import CASES, TemporaryFolder, frames, latcon, latcon_on_ranks, read, read_csv
 
 FIELDS = ["displacement", "deformation_gradient", "first_piola_stress", "cauchy_stress", "strain_energy_density"]
-SMALL = ["--set", "Sheet/length=2 cm", "--set", "Sheet/height=1.5 cm", "--set", "Loading/strain x=0.1", "--set",
-         "Loading/strain y=0.3"]
+SHEET = ["--set", "Sheet/length=2 cm", "--set", "Sheet/height=1.5 cm", "--set", "Loading/strain y=0.3"]
+SMALL = [*SHEET, "--set", "Loading/strain x=0.1"]
 MOTION = ["--set", "Time/end=0.02 ms", "--set", "Output/frame interval=0"]
 
 
@@ -67,6 +67,17 @@ class Compare(TemporaryFolder):
         self.assertEqual(run.returncode, 2, run.stderr)
         for part in parts:
             self.assertIn(part, run.stderr)
+
+    # The sites of a periodic lattice stop half a spacing or a whole one short of its ends.
+    def test_periodic_sheets_are_the_same_sheet(self):
+        periodic = [word for side in ("Left", "Right") for word in ("--set", f"{side} edge/condition=periodic")]
+        for command in ("lattice", "continuum"):
+            run = latcon(command, CASES / "quick.prm", "--quiet", "--output-dir", self.folder / command, *SHEET, *periodic,
+                         "--set", "Loading/strain x=0")
+            self.assertEqual(run.returncode, 0, run.stderr)
+        run = self.compare(self.folder / "lattice", self.folder / "continuum", "--tolerance", "displacement=1e-6")
+        self.assertEqual(run.returncode, 0, run.stderr + run.stdout)
+        self.assertEqual(found(self.out)["sites outside the finite element sheet"]["lattice"], "0")
 
     def test_equal_sheets_agree(self):
         tolerances = [word for name in FIELDS for word in ("--tolerance", f"{name}=1e-6")]

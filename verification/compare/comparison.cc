@@ -193,7 +193,9 @@ void require_same_time(const LatticeFrame &lattice, const ContinuumFrame &contin
 
 void require_same_bounds(const LatticeFrame &lattice, const ContinuumFrame &continuum)
 {
-  const Bounds here = bounds(lattice.points);
+  Bounds here = bounds(lattice.points);
+  if (const auto &given = lattice.sheet_bounds)
+    here = {{{(*given)[0], (*given)[2]}}, {{(*given)[1], (*given)[3]}}};
   const Bounds there = bounds(continuum.points);
   const double tolerance = position_tolerance(continuum);
   double largest = 0.;

@@ -152,6 +152,13 @@ LatticeFrame read_lattice_frame(const FrameFile &file, std::optional<double> tim
   frame.data = read_data<vtkXMLPolyDataReader>(file);
   frame.time = frame_time(file, *frame.data, "TimeValue", time);
   frame.points = read_points(file, *frame.data);
+  if (vtkDataArray *const bounds = frame.data->GetFieldData()->GetArray("SheetBounds"))
+  {
+    if (bounds->GetNumberOfComponents() != 4 || bounds->GetNumberOfTuples() != 1)
+      fail(file, "its field data 'SheetBounds' are not four numbers");
+    frame.sheet_bounds.emplace();
+    bounds->GetTuple(0, frame.sheet_bounds->data());
+  }
   for (const CommonField &field : common_fields)
     frame.fields.push_back(read_field(file, *frame.data, field));
   const std::vector<double> &velocity = frame.find("velocity")->values;

@@ -45,6 +45,8 @@ struct LatticeFrame : Frame
   std::vector<std::uint8_t> held;    ///< 1 where the motion is prescribed
   std::vector<unsigned int> n_bonds; ///< of each site
   double spacing = 0.;               ///< length of the shortest undeformed bond [m]
+  /// Bounds of the undeformed sheet if the file says them: X from, to, Y from, to [m].
+  std::optional<std::array<double, 4>> sheet_bounds;
 };
 
 /// A quadrilateral of degree p, whose geometry and fields are Lagrange polynomials between (p + 1)^2 equidistant nodes.
