@@ -17,7 +17,7 @@ SUBJECTS = {
                     "at kd = 0.25", "local continuum's error", "gradient continuum's error", "damped frequency", "decay"),
     "intrinsic-length": ("alpha of L waves at 0 degrees", "alpha of S waves at 90 degrees", "softening", "hardening",
                          "shortest length", "1 % below", "no edge layer", "decay from row to row"),
-    "prestretch": ("edge traction", "hole", "notch"),
+    "prestretch": ("traction on the right edge", "hole", "notch"),
 }
 TABLES = ("wave_speeds", "attenuation", "dispersion", "dispersion_runs", "edge_layer", "hole", "notch", "sinusoidal_energy",
           "travelling_waves")

@@ -46,7 +46,7 @@ ClaimOutcome wave_speeds(const Subject &subject, bool quick)
   options.damped_states = states(subject, true);
   if (quick)
   {
-    options.kd = {0.1, 0.25, 0.5};
+    options.kd = {0.1, 0.5};
     options.mesh.cells = 4;
     options.damped_states = {subject.deformation};
   }

@@ -262,7 +262,7 @@ void attenuation_at(const Subject &subject, const Eigen::Matrix2d &F, ClaimOutco
   }
   std::ostringstream where;
   where << subject.name << ", " << state_name(F) << ", kd = " << std::round(1e4 * k * subject.spacing) / 1e4 << ": ";
-  // Both sides step with (w h)^4 left over after extrapolation: 2e-6 for 40 steps a period, and at a third of critical
+  // Both sides step with (w h)^4 left over after extrapolation: 1e-5 for 28 steps a period, and at a third of critical
   // damping the decay has a third of the frequency's digits.
   constexpr double tolerance = 1e-4;
   for (std::size_t w = 0; w < 2; ++w)

@@ -1,8 +1,6 @@
-#include <functional>
-
 #include <gtest/gtest.h>
 
-#include "tests/verification/claims/subjects.h"
+#include "tests/verification/claims/faults.h"
 #include "verification/energy/energy_claim.h"
 #include "verification/prestretch/prestretch_claim.h"
 
@@ -59,16 +57,7 @@ TEST(Prestretch, HoldsForBothShellSetsAndOrientations)
 }
 
 // A claim that cannot fail claims nothing: every constant of the lattice, wrong by 1 % against laws that are right.
-struct Fault
-{
-  const char *name;
-  std::function<void(Subject &)> plant;
-};
-
-std::ostream &operator<<(std::ostream &out, const Fault &fault)
-{
-  return out << fault.name;
-}
+using faults::Fault;
 
 lattice::MooneyRivlinBond &bond(lattice::Shell &shell)
 {
