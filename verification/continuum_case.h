@@ -41,7 +41,7 @@ struct FieldCase
   std::shared_ptr<dealii::FunctionParser<2>> field(double extent) const;
 };
 
-/// What is done to one edge of the finite element sheet.
+/// What is done to one edge of the sheet. The lattice takes a part of it, see require_lattice_sheet.
 struct EdgeCase
 {
   enum class Condition
