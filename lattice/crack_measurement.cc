@@ -235,6 +235,13 @@ CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vec
   }
   else
     decide_oscillating_or_straight(m, settled.is_long_enough, options);
+  if (m.pattern == CrackPattern::oscillating)
+  {
+    m.crest_amplitude = crest_amplitude(steady, options.lattice_spacing, m.sinusoid->curve);
+    if (m.crest_amplitude)
+      m.crest_amplitude->uncertainty =
+        std::hypot(m.crest_amplitude->uncertainty, site_error * options.lattice_spacing);
+  }
   return m;
 }
 

@@ -86,7 +86,10 @@ struct CrackMeasurement
   std::optional<Measured> speed_laboratory; ///< dx/dt [m/s]; none likewise
 
   std::optional<Measured> wavelength; ///< reference [m]; oscillating cracks only
-  std::optional<Measured> amplitude;  ///< half of peak to peak, reference [m]; oscillating cracks only
+  std::optional<Measured> amplitude;  ///< of the nearest sinusoid, reference [m]; oscillating cracks only
+  /// Half the height from trough to crest, reference [m]; oscillating cracks of two wavelengths or more only. What one
+  /// reads off a drawn path: a zigzag is higher than its nearest sinusoid, up to pi^2 / 8 = 1.23 times.
+  std::optional<Measured> crest_amplitude;
 
   /// The sinusoid nearest to the path, whether or not it means anything; none where the window is too short.
   std::optional<SinusoidFit> sinusoid;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iterator>
+#include <limits>
 #include <utility>
 
 #include <Eigen/QR>
@@ -121,6 +122,32 @@ SteadyPart find_steady_part(const std::vector<TipRecord> &tip, double X_begin, d
       return result;
     result.X_begin = settled;
   }
+}
+
+std::optional<Measured> crest_amplitude(const std::vector<TipRecord> &tip, double spacing, const Sinusoid &curve)
+{
+  if (tip.empty())
+    return std::nullopt;
+  const ColumnMeans path = column_means(tip, spacing);
+  const auto n_waves = static_cast<Eigen::Index>((tip.back().X - tip.front().X) / curve.wavelength);
+  Eigen::ArrayXd highest = Eigen::ArrayXd::Constant(n_waves, -std::numeric_limits<double>::infinity());
+  Eigen::ArrayXd lowest = -highest;
+  for (Eigen::Index i = 0; i < path.size(); ++i)
+  {
+    const double X = path.X()(i);
+    const auto wave = static_cast<Eigen::Index>((X - tip.front().X) / curve.wavelength);
+    if (wave >= n_waves)
+      break;
+    const double Y = path.Y()(i) - curve.slope * (X - curve.origin);
+    highest(wave) = std::max(highest(wave), Y);
+    lowest(wave) = std::min(lowest(wave), Y);
+  }
+  const Eigen::ArrayXd half_heights = 0.5 * (highest - lowest);
+  if (n_waves < 2 || !half_heights.isFinite().all())
+    return std::nullopt;
+  const double mean = half_heights.mean();
+  const double variance = (half_heights - mean).square().sum() / static_cast<double>(n_waves - 1);
+  return Measured{mean, std::sqrt(variance / static_cast<double>(n_waves))};
 }
 
 std::optional<Measured> steady_speed(const std::vector<TipRecord> &tip, double spacing, double TipRecord::*coordinate)

@@ -34,6 +34,14 @@ std::vector<TipRecord> part_between(const std::vector<TipRecord> &tip, double X_
 SteadyPart find_steady_part(const std::vector<TipRecord> &tip, double X_begin, double X_end,
                             const SteadyPartRule &rule);
 
+/// Half the height from trough to crest, mean over the whole wavelengths of a path, its drift taken off [m]; the
+/// uncertainty is that of the mean. The path is averaged over columns of 2 d first, so that a single hop is no crest.
+/// @param tip records of the steady part
+/// @param spacing d [m], > 0
+/// @param curve the sinusoid nearest to the path
+/// @return none for fewer than two wavelengths, or where one holds no record
+std::optional<Measured> crest_amplitude(const std::vector<TipRecord> &tip, double spacing, const Sinusoid &curve);
+
 /// Steady speed of a coordinate of the tip [m/s]: slope of the straight line through its position over time.
 ///
 /// The tip rests between records, so its mean position over equal spans of time is known without interpolation, and

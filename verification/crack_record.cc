@@ -160,6 +160,7 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory,
   put("speed_laboratory", measurement.speed_laboratory);
   put("wavelength", measurement.wavelength);
   put("amplitude", measurement.amplitude);
+  put("crest_amplitude", measurement.crest_amplitude);
   json["periods"] = measurement.periods;
   json["window_begin"] = measurement.X_begin;
   json["window_end"] = measurement.X_end;

@@ -84,6 +84,38 @@ TEST(CrackMeasurement, PureSinusoidIsExact)
   EXPECT_NEAR(m.sinusoid->curve(0.05), crack.path(0.05), 1e-5 * amplitude);
 }
 
+TEST(CrackMeasurement, ZigzagIsHigherThanItsSinusoid)
+{
+  SyntheticCrack crack;
+  crack.path = [](double X) { return 0.02 * X + amplitude * 2. / pi * std::asin(std::sin(2. * pi * X / wavelength)); };
+  crack.on_sites = false;
+  const CrackMeasurement m = measure(crack);
+  ASSERT_TRUE(m.crest_amplitude) << m.reason;
+  // The first term of the Fourier series; the mean over a column that holds a crest is lower by at most half the
+  // column's width times the slope, and so is what lies between two columns.
+  EXPECT_NEAR(m.amplitude->value, 8. / (pi * pi) * amplitude, 0.02 * amplitude);
+  const double column = 2. * d;
+  EXPECT_LE(m.crest_amplitude->value, amplitude * (1. + 1e-3));
+  EXPECT_GE(m.crest_amplitude->value, amplitude - 0.5 * column * 4. * amplitude / wavelength);
+}
+
+TEST(CrackMeasurement, CrestsOfASinusoidAreItsAmplitude)
+{
+  SyntheticCrack crack;
+  crack.path = sinusoid(wavelength, amplitude);
+  for (unsigned int seed = 1; seed <= 20; ++seed)
+  {
+    const CrackMeasurement m = measure(crack, seed);
+    ASSERT_TRUE(m.crest_amplitude) << m.reason;
+    // The highest of a wavelength's 18 columns, each off by d / 2 over the root of its two or three entries: at most
+    // two standard deviations too high.
+    EXPECT_NEAR(m.crest_amplitude->value, amplitude, 2. * 0.5 * d / std::sqrt(2.));
+    EXPECT_GT(m.crest_amplitude->uncertainty, 0.09 * d);
+  }
+  crack.path = straight;
+  EXPECT_FALSE(measure(crack).crest_amplitude);
+}
+
 TEST(CrackMeasurement, ShortWavesAreNotFlattenedByAveraging)
 {
   // Columns of 2 d would take (pi 2 d / wavelength)^2 / 6 = 6 % off this amplitude if the model were not averaged too.
