@@ -170,7 +170,7 @@ void Forces::bonds_from_below(const Motion &motion, std::ptrdiff_t row, BondRows
   else
     for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
       for (std::size_t component = 0; component < 2; ++component)
-        std::fill_n(bonds.at(row, kind, component), lattice_.columns(), 0.);
+        std::fill_n(bonds.at(row, kind, component) - 2, lattice_.stride(), 0.);
 }
 
 // The bonds of row `from` as those of `row`: the same, or below the edge of a periodic sheet.
