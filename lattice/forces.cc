@@ -5,18 +5,12 @@
 
 #include <omp.h>
 
+#include "lattice/instruction_sets.h"
+
 namespace lattice
 {
 namespace
 {
-
-// One copy of each loop per instruction set, chosen at run time. Without contraction to fused multiply-add all copies
-// round alike; the sanitizers cannot run before such a choice is made.
-#if defined(__SANITIZE_ADDRESS__) || defined(__clang__)
-#define LATCON_PER_INSTRUCTION_SET
-#else
-#define LATCON_PER_INSTRUCTION_SET __attribute__((target_clones("default", "arch=x86-64-v3", "arch=x86-64-v4")))
-#endif
 
 // A bond's force where it is computed, in the loop over a row and for a single bond: so both have the same bits.
 template <class Law>
