@@ -1,7 +1,6 @@
 #pragma once
 
 #include <array>
-#include <cstdint>
 #include <vector>
 
 #include "lattice/state.h"
@@ -12,9 +11,11 @@ namespace lattice
 /// Forces on all sites from all bonds: the hot loop, and the one place to make faster.
 ///
 /// A bond pulls with A0 psi'(lam) + A0 eta (v_rel . n) / l along its current direction n (theory.md, eq. L.3).
-/// Two passes over the rows: every bond once, then every site gathers its twelve bonds in an order that is symmetric
-/// under both mirrors of the lattice. So the bits of a result depend neither on the number of threads nor on which side
-/// of a symmetry line a site stands.
+/// Every thread takes a band of rows from its lower to its upper end. It computes the bonds that start in a row, keeps
+/// those of the last three rows, and lets the sites of the row gather their twelve bonds while these are in cache.
+/// Bonds that reach into a band from below are computed once more there. The order of a gather is symmetric under both
+/// mirrors of the lattice, so the bits of a result depend neither on the number of threads nor on which side of a
+/// symmetry line a site stands.
 class Forces
 {
 public:
@@ -38,29 +39,81 @@ public:
   /// Whether a row holds bonds that were stretched past their limit (or retracted) at the last evaluation.
   bool row_has_events(std::size_t row) const { return row_events_[row] > 0.; }
 
-  /// Takes a bond that has just broken out of the last evaluation, as if it had been absent there.
+  /// Takes a bond that has just broken out of the last evaluation, as if it had been absent there: the forces on its
+  /// two ends are summed anew, over the bonds that they have by now.
+  /// @param state as at that evaluation, but for the bond's breaking stretch, which is 0
+  /// @param vx,vy velocities of that evaluation
   void remove_bond(const State &state, const Field &vx, const Field &vy, std::size_t place, std::size_t kind);
 
+  /// What the bonds of one kind have in common.
+  struct Bond
+  {
+    double rest_length;             // l [m]
+    double cross_section;           // A0 / h [m]
+    double damping;                 // A0 eta / (h l)
+    double retraction_stretch = 0.; // 0: not watched
+  };
+
+  struct BondForce
+  {
+    double x, y; // on the near end, the opposite on the far end
+    double stretch;
+    double viscous_power;
+  };
+
+  /// Sums over the bonds that start in a row.
+  struct RowSums
+  {
+    double viscous_power = 0.;
+    double events = 0.; // a count; SSE2 has no 64-bit integer comparisons to vectorise with
+  };
+
 private:
-  void bonds_of_row(std::size_t row, const State &state, const Field &vx, const Field &vy);
-  void gather_row(std::size_t row);
+  /// Forces on the near ends of the bonds that start in the last three rows, which is as far down as neighbours are.
+  class BondRows
+  {
+  public:
+    explicit BondRows(std::size_t stride) : stride_(stride), values_(n_rows * n_bond_kinds * 2 * stride, 0.) {}
+
+    /// The x (0) or y (1) component for the bonds of a kind that start in a row >= -2: column 0, with two places of
+    /// margin on either side.
+    double *at(std::ptrdiff_t row, std::size_t kind, std::size_t component)
+    {
+      const std::size_t slot = static_cast<std::size_t>(row + n_rows) % n_rows;
+      return &values_[((slot * n_bond_kinds + kind) * 2 + component) * stride_ + 2];
+    }
+
+  private:
+    static constexpr std::ptrdiff_t n_rows = 3;
+    std::size_t stride_;
+    Field values_;
+  };
+
+  /// What an evaluation depends on.
+  struct Motion
+  {
+    const State &state;
+    const Field &vx, &vy;
+  };
+
+  void evaluate_band(const Motion &motion, std::ptrdiff_t begin, std::ptrdiff_t end, BondRows &bonds);
+  void bonds_from_below(const Motion &motion, std::ptrdiff_t row, BondRows &bonds) const;
+  RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, BondRows &bonds) const;
+  void gather_row(std::ptrdiff_t row, BondRows &bonds);
+  BondForce single_bond(const Motion &motion, std::size_t place, std::size_t kind, double breaking_stretch) const;
+  void sum_site(const Motion &motion, std::size_t place);
 
   const TriangularLattice &lattice_;
-  struct Kind
-  {
-    const Shell *shell; // nullptr: no such bonds
-    double rest_length;
-    double cross_section;
-    double damping; // A0 eta / l
-    double retraction_stretch = 0.;
-  };
-  std::array<Kind, n_bond_kinds> kinds_;
+  std::array<const Shell *, n_bond_kinds> shells_; // nullptr: no such bonds
+  std::array<Bond, n_bond_kinds> kinds_;
   double initial_breaking_stretch_ = 0.;
+  bool rows_repeat_;    // periodic across the rows
+  bool columns_repeat_; // periodic along them
 
-  std::array<Field, n_bond_kinds> bond_fx_, bond_fy_;
+  std::vector<BondRows> bond_rows_; // one a thread
   Field fx_, fy_;
   Field row_viscous_power_;
-  std::vector<double> row_events_;
+  Field row_events_;
   double viscous_power_ = 0.;
 };
 

@@ -2,6 +2,8 @@
 
 #include <stdexcept>
 
+#include "lattice/instruction_sets.h"
+
 namespace lattice
 {
 namespace
@@ -17,6 +19,34 @@ void for_each_row(const TriangularLattice &lattice, const RowOperation &operatio
   {
     const std::size_t first = lattice.index(static_cast<std::size_t>(row), 0);
     operation(first, first + lattice.columns());
+  }
+}
+
+// One component of n sites: their velocities at half a step, their positions and predicted velocities after it.
+LATCON_PER_INSTRUCTION_SET void drift(double h, std::size_t n, const double *__restrict acceleration,
+                                      double *__restrict velocity, double *__restrict position,
+                                      double *__restrict predicted)
+{
+#pragma omp simd
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const double kick = 0.5 * h * acceleration[i];
+    velocity[i] += kick;
+    position[i] += h * velocity[i];
+    predicted[i] = velocity[i] + kick;
+  }
+}
+
+// And their accelerations and velocities from the forces at its end.
+LATCON_PER_INSTRUCTION_SET void kick(double h, std::size_t n, const double *__restrict force,
+                                     const double *__restrict inverse_mass, double *__restrict acceleration,
+                                     double *__restrict velocity)
+{
+#pragma omp simd
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    acceleration[i] = force[i] * inverse_mass[i];
+    velocity[i] += 0.5 * h * acceleration[i];
   }
 }
 
@@ -55,34 +85,11 @@ void VelocityVerlet::update_accelerations(State &state) const
 void VelocityVerlet::step(State &state)
 {
   const double h = time_step_;
-  const auto drift =
-    [h](double *position, double *velocity, double *predicted, const double *acceleration, std::size_t n)
-  {
-#pragma omp simd
-    for (std::size_t i = 0; i < n; ++i)
-    {
-      const double kick = 0.5 * h * acceleration[i];
-      velocity[i] += kick;
-      position[i] += h * velocity[i];
-      predicted[i] = velocity[i] + kick;
-    }
-  };
-  const auto kick =
-    [h](double *velocity, double *acceleration, const double *force, const double *inverse_mass, std::size_t n)
-  {
-#pragma omp simd
-    for (std::size_t i = 0; i < n; ++i)
-    {
-      acceleration[i] = force[i] * inverse_mass[i];
-      velocity[i] += 0.5 * h * acceleration[i];
-    }
-  };
-
   for_each_row(lattice_,
                [&](std::size_t begin, std::size_t end)
                {
-                 drift(&state.x[begin], &state.vx[begin], &predicted_vx_[begin], &state.ax[begin], end - begin);
-                 drift(&state.y[begin], &state.vy[begin], &predicted_vy_[begin], &state.ay[begin], end - begin);
+                 drift(h, end - begin, &state.ax[begin], &state.vx[begin], &state.x[begin], &predicted_vx_[begin]);
+                 drift(h, end - begin, &state.ay[begin], &state.vy[begin], &state.y[begin], &predicted_vy_[begin]);
                });
   update_images(state, lattice_);
   for (const TriangularLattice::Image &image : lattice_.images())
@@ -91,12 +98,13 @@ void VelocityVerlet::step(State &state)
     predicted_vy_[image.place] = predicted_vy_[image.site];
   }
   forces_.evaluate(state, predicted_vx_, predicted_vy_);
+  // Other forces than those of bonds would be added here, before the sites take any of them up.
   for_each_row(
     lattice_,
     [&](std::size_t begin, std::size_t end)
     {
-      kick(&state.vx[begin], &state.ax[begin], &forces_.fx()[begin], &state.inverse_mass[begin], end - begin);
-      kick(&state.vy[begin], &state.ay[begin], &forces_.fy()[begin], &state.inverse_mass[begin], end - begin);
+      kick(h, end - begin, &forces_.fx()[begin], &state.inverse_mass[begin], &state.ax[begin], &state.vx[begin]);
+      kick(h, end - begin, &forces_.fy()[begin], &state.inverse_mass[begin], &state.ay[begin], &state.vy[begin]);
     });
   update_images(state, lattice_);
   state.time += h;

@@ -1,10 +1,15 @@
 #include "lattice/forces.h"
 
+#include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <random>
 
 #include <gtest/gtest.h>
+#include <omp.h>
 
 #include "lattice/energy.h"
+#include "tests/lattice/reference_forces.h"
 #include "tests/lattice/sheets.h"
 
 namespace
@@ -171,6 +176,183 @@ TEST(Forces, ReportRowsWithOverstretchedBonds)
   noisy.forces.evaluate(noisy.state, noisy.state.vx, noisy.state.vy);
   for (std::size_t row = 0; row < noisy.sheet.rows(); ++row)
     EXPECT_EQ(noisy.forces.row_has_events(row), row == 5);
+}
+
+// What a sheet can be: material, orientation, which way it repeats itself, and how many sites a row has.
+struct Subject
+{
+  Material material;
+  Orientation orientation;
+  Periodic periodic;
+  double columns;
+};
+
+Material linear()
+{
+  Material material = sheets::rubber();
+  material.nearest.law = LinearBond{2e5};
+  material.next_nearest->law = LinearBond{3e5};
+  return material;
+}
+
+std::vector<Subject> subjects()
+{
+  std::vector<Subject> all;
+  // Few and many columns, of all remainders that a vector of up to eight sites leaves.
+  for (const double columns : {3., 10., 11., 12., 13., 14., 15., 16., 17., 40.})
+    for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
+      for (const Material &material : {sheets::rubber(), sheets::nearest_only(), linear()})
+        for (const Periodic periodic : {Periodic{}, Periodic{true, false}, Periodic{false, true}, Periodic{true, true}})
+          all.push_back({material, orientation, periodic, columns});
+  return all;
+}
+
+TriangularLattice sheet_of(const Subject &subject, double rows = 11.)
+{
+  const double along = subject.columns * sheets::spacing, across = rows * sheets::spacing;
+  const bool along_x = subject.orientation == Orientation::rows_along_crack;
+  return {sheets::spacing, along_x ? along : across, along_x ? across : along, subject.orientation, subject.periodic};
+}
+
+constexpr double first_limit = 2.6; // breaking stretch of most bonds in a random state
+
+// Sites all over the place at random velocities, bonds that are broken, overstretched or toughened, sites removed with
+// a neighbour on the very spot.
+State random_state(const TriangularLattice &sheet, const Material &material, unsigned int seed)
+{
+  std::mt19937 random(seed);
+  const auto uniform = [&] { return std::uniform_real_distribution<double>(0., 1.)(random); };
+  State state = homogeneous_state(sheet, material, sheets::stretched(1.6, 1.9), Edges::free, first_limit);
+  for (std::size_t place = 0; place < sheet.n_places(); ++place)
+  {
+    if (!sheet.is_site(place))
+      continue;
+    state.x[place] += 0.5 * sheets::spacing * (uniform() - 0.5);
+    state.y[place] += 0.5 * sheets::spacing * (uniform() - 0.5);
+    state.vx[place] = 40. * (uniform() - 0.5);
+    state.vy[place] = 40. * (uniform() - 0.5);
+    for (Field &limits : state.breaking_stretch)
+    {
+      const double lot = uniform();
+      if (limits[place] > 0.)
+        limits[place] = lot < 0.1 ? 0. : lot < 0.11 ? 1.5 : lot < 0.2 ? 10. : first_limit;
+    }
+  }
+  const std::size_t removed = sheet.index(sheet.rows() / 2, 1), neighbour = removed + 1;
+  std::vector<std::pair<std::size_t, std::size_t>> bonds;
+  for_each_bond_of_site(state, sheet, removed,
+                        [&](std::size_t near, std::size_t kind) { bonds.emplace_back(near, kind); });
+  for (const auto &[near, kind] : bonds)
+    state.breaking_stretch[kind][near] = 0.;
+  state.x[removed] = state.x[neighbour];
+  state.y[removed] = state.y[neighbour];
+  update_images(state, sheet);
+  return state;
+}
+
+constexpr std::array<double, n_bond_kinds> retraction{{1.3, 1.35, 1.4, 1.3, 1.35, 1.4}};
+
+TEST(Forces, AreThoseOfTheReference)
+{
+  bool some_retract_alone = false;
+  for (const Subject &subject : subjects())
+  {
+    const TriangularLattice sheet = sheet_of(subject);
+    SCOPED_TRACE(testing::Message() << sheet.rows() << " rows of " << sheet.columns() << ", periodic "
+                                    << subject.periodic.x << subject.periodic.y << ", "
+                                    << subject.material.coordination() << " neighbours");
+    const State state = random_state(sheet, subject.material, 1);
+    Forces forces(sheet, subject.material);
+    for (const bool watch : {false, true})
+    {
+      if (watch)
+        forces.watch_retraction(retraction, first_limit);
+      forces.evaluate(state, state.vx, state.vy);
+      const ReferenceForces expected = watch ? reference_forces(state, sheet, subject.material, retraction, first_limit)
+                                             : reference_forces(state, sheet, subject.material);
+      for (std::size_t place = 0; place < sheet.n_places(); ++place)
+      {
+        // A bond takes some 20 roundings, a sum of twelve takes 12, and the reference as many.
+        const double tolerance = 64. * std::numeric_limits<double>::epsilon() * expected.magnitude[place];
+        ASSERT_NEAR(forces.fx()[place], expected.fx[place], tolerance) << place;
+        ASSERT_NEAR(forces.fy()[place], expected.fy[place], tolerance);
+      }
+      // All terms are positive, so the sum is as good as its terms and its number of additions: a few thousand.
+      ASSERT_NEAR(forces.viscous_power(), expected.viscous_power, 1e-12 * expected.viscous_power);
+      for (std::size_t row = 0; row < sheet.rows(); ++row)
+        ASSERT_EQ(forces.row_has_events(row), expected.row_has_events[row]) << row;
+      if (watch)
+        some_retract_alone |=
+          expected.row_has_events != reference_forces(state, sheet, subject.material).row_has_events;
+    }
+  }
+  EXPECT_TRUE(some_retract_alone);
+}
+
+bool same_bits(const Field &a, const Field &b)
+{
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+TEST(Forces, BitsDoNotDependOnThreads)
+{
+  const int before = omp_get_max_threads();
+  for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
+    for (const Periodic periodic : {Periodic{}, Periodic{true, true}})
+      for (const double rows : {20., 90.})
+      {
+        const Material material = sheets::rubber();
+        const TriangularLattice sheet = sheet_of({material, orientation, periodic, 5000. / rows}, rows);
+        ASSERT_GE(sheet.n_places(), worth_threads);
+        const State state = random_state(sheet, material, 2);
+        Forces one(sheet, material), many(sheet, material);
+        omp_set_num_threads(1);
+        one.evaluate(state, state.vx, state.vy);
+        for (const int threads : {2, 3, 4, 40}) // at last more of them than rows
+        {
+          omp_set_num_threads(threads);
+          many.evaluate(state, state.vx, state.vy);
+          EXPECT_TRUE(same_bits(many.fx(), one.fx()));
+          EXPECT_TRUE(same_bits(many.fy(), one.fy()));
+          EXPECT_EQ(many.viscous_power(), one.viscous_power());
+          for (std::size_t row = 0; row < sheet.rows(); ++row)
+            EXPECT_EQ(many.row_has_events(row), one.row_has_events(row));
+        }
+      }
+  omp_set_num_threads(before);
+}
+
+// Bonds taken out one by one, in whatever order, leave the forces of a sheet that never had them.
+TEST(Forces, AfterRemovingBondsAreThoseWithoutThem)
+{
+  for (const Subject &subject : subjects())
+  {
+    const TriangularLattice sheet = sheet_of(subject);
+    const State before = random_state(sheet, subject.material, 3);
+    std::vector<std::pair<std::size_t, std::size_t>> bonds;
+    for_each_bond(before, sheet,
+                  [&](std::size_t place, std::size_t kind, std::size_t)
+                  {
+                    if ((7 * place + kind) % 10 < 3)
+                      bonds.emplace_back(place, kind);
+                  });
+    std::mt19937 random(4);
+    std::shuffle(bonds.begin(), bonds.end(), random);
+    State state = before;
+    Forces forces(sheet, subject.material), without(sheet, subject.material);
+    forces.evaluate(state, state.vx, state.vy);
+    const double power = forces.viscous_power();
+    for (const auto &[place, kind] : bonds)
+    {
+      state.breaking_stretch[kind][place] = 0.;
+      forces.remove_bond(state, state.vx, state.vy, place, kind);
+    }
+    without.evaluate(state, state.vx, state.vy);
+    ASSERT_EQ(forces.fx(), without.fx());
+    ASSERT_EQ(forces.fy(), without.fy());
+    ASSERT_LT(without.viscous_power(), 0.9 * power);
+    ASSERT_NEAR(forces.viscous_power(), without.viscous_power(), 1e-12 * power);
+  }
 }
 
 } // namespace
