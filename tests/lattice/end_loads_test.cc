@@ -137,6 +137,16 @@ TEST_P(Ends, AbsorbPulsesAndHeldOnesReflectThem)
   }
 }
 
+// Linear springs without dashpots leave the least room for those of the end: their stiffness, and so the stable step,
+// does not depend on the stretch, and at large stretch their waves are fastest.
+TEST(EndLoads, KeepTheTimeStepStableWhereItHasLeastRoom)
+{
+  Material material = sheets::nearest_only(0.);
+  material.nearest.law = LinearBond{1e5};
+  for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
+    EXPECT_LT(reflection(material, orientation, Eigen::Vector2d(1., 0.), 8., false), 0.1);
+}
+
 TEST(EndLoads, NeedWavesToAbsorb)
 {
   const TriangularLattice sheet = sheets::square(10);
