@@ -21,11 +21,13 @@ struct EnergyBalance
   double kinetic;       ///< of the free sites
   double viscous;       ///< dissipated by the dashpots since the start
   double broken;        ///< elastic energy that bonds held when they broke or were cut
-  double boundary_work; ///< done on the sheet by the held sites since the start
+  double contact;       ///< that contacts took from the motion since the start: stored in them or dissipated by them
+  double boundary_work; ///< done on the sheet by held sites and by loads on its ends since the start
   double initial;       ///< elastic + kinetic before the seed was cut
 
-  /// elastic + kinetic + viscous + broken - initial - boundary_work; zero up to the error of the time stepping.
-  double imbalance() const { return elastic + kinetic + viscous + broken - initial - boundary_work; }
+  /// elastic + kinetic + viscous + broken + contact - initial - boundary_work; zero up to the error of the time
+  /// stepping.
+  double imbalance() const { return elastic + kinetic + viscous + broken + contact - initial - boundary_work; }
 };
 
 } // namespace lattice

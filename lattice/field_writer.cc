@@ -17,6 +17,7 @@
 #include <vtkUnsignedCharArray.h>
 #include <vtkXMLPolyDataWriter.h>
 
+#include "lattice/fragments.h"
 #include "lattice/site_fields.h"
 
 namespace lattice
@@ -98,6 +99,10 @@ void FieldWriter::add_frame(const State &state)
   vtkNew<vtkIdTypeArray> site;
   site->SetName("site");
   site->SetNumberOfTuples(n_points);
+  vtkNew<vtkIdTypeArray> fragment;
+  fragment->SetName("fragment");
+  fragment->SetNumberOfTuples(n_points);
+  const Fragments fragments = find_fragments(state, lattice_);
   for (vtkIdType id = 0; id < n_points; ++id)
   {
     const std::size_t place = places[static_cast<std::size_t>(id)];
@@ -113,6 +118,7 @@ void FieldWriter::add_frame(const State &state)
     damage->SetValue(id, fields.damage[place]);
     held->SetValue(id, state.held[place]);
     site->SetValue(id, static_cast<vtkIdType>(lattice_.site_number(place)));
+    fragment->SetValue(id, static_cast<vtkIdType>(fragments.number[place]));
   }
 
   vtkNew<vtkCellArray> lines;
@@ -148,7 +154,7 @@ void FieldWriter::add_frame(const State &state)
         static_cast<vtkDataArray *>(deformation_gradient.Get()), static_cast<vtkDataArray *>(first_piola_stress.Get()),
         static_cast<vtkDataArray *>(cauchy_stress.Get()), static_cast<vtkDataArray *>(strain_energy_density.Get()),
         static_cast<vtkDataArray *>(damage.Get()), static_cast<vtkDataArray *>(held.Get()),
-        static_cast<vtkDataArray *>(site.Get())})
+        static_cast<vtkDataArray *>(site.Get()), static_cast<vtkDataArray *>(fragment.Get())})
     sheet->GetPointData()->AddArray(data);
   for (vtkDataArray *data : {static_cast<vtkDataArray *>(bond_stretch.Get()), static_cast<vtkDataArray *>(shell.Get()),
                              static_cast<vtkDataArray *>(toughened.Get())})

@@ -18,8 +18,38 @@ Simulation::Simulation(const TriangularLattice &lattice, const Material &materia
 
 void Simulation::restart()
 {
+  if (contact_)
+    contact_->find_candidates(state_);
   integrator_.initialise(state_);
+  note_powers();
+}
+
+void Simulation::note_powers()
+{
+  contact_power_ = 0.;
   boundary_power_ = edges_move_ ? boundary_power(state_, lattice_, forces_) : 0.;
+  if (contact_)
+  {
+    // A held site that moves pushes with what the contact pushes it.
+    contact_power_ = -power(contact_->last(), state_, false) - power(contact_->last(), state_, true);
+    boundary_power_ -= power(contact_->last(), state_, true);
+  }
+  if (end_loads_)
+    boundary_power_ += power(end_loads_->last(), state_, false);
+}
+
+void Simulation::let_touch(const ContactLaw &law)
+{
+  contact_.emplace(lattice_, law);
+  integrator_.add(*contact_);
+  restart();
+}
+
+void Simulation::load_ends(const Eigen::Matrix2d &F, EndLoads::End left, EndLoads::End right)
+{
+  end_loads_.emplace(lattice_, material_, state_, F, left, right);
+  integrator_.add(*end_loads_);
+  restart();
 }
 
 void Simulation::cut(const std::vector<std::size_t> &places)
@@ -66,12 +96,10 @@ const std::vector<BrokenBond> &Simulation::step()
 
   // Powers are taken before bonds break, so that each interval of the trapezoidal rule sees one set of bonds.
   viscous_ += 0.5 * h * (viscous_power_before + forces_.viscous_power());
-  if (edges_move_)
-  {
-    const double before = boundary_power_;
-    boundary_power_ = boundary_power(state_, lattice_, forces_);
-    boundary_work_ += 0.5 * h * (before + boundary_power_);
-  }
+  const double contact_power_before = contact_power_, boundary_power_before = boundary_power_;
+  note_powers();
+  contact_energy_ += 0.5 * h * (contact_power_before + contact_power_);
+  boundary_work_ += 0.5 * h * (boundary_power_before + boundary_power_);
   if (!fracture_)
     return no_bonds_;
 
@@ -82,9 +110,14 @@ const std::vector<BrokenBond> &Simulation::step()
     for (const BrokenBond &bond : broken)
       broken_ += bond.energy;
     n_broken_ += broken.size();
+    if (contact_)
+    {
+      // From this instant on, as the bonds are gone from it.
+      contact_->note(state_, broken);
+      contact_->evaluate(state_, integrator_.evaluated_vx(), integrator_.evaluated_vy());
+    }
     integrator_.update_accelerations(state_);
-    if (edges_move_)
-      boundary_power_ = boundary_power(state_, lattice_, forces_);
+    note_powers();
   }
   return broken;
 }
@@ -100,6 +133,7 @@ EnergyBalance Simulation::energies() const
           kinetic_energy(state_, lattice_),
           viscous_,
           broken_,
+          contact_energy_,
           boundary_work_,
           initial_energy_};
 }

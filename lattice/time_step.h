@@ -5,6 +5,8 @@
 namespace lattice
 {
 
+struct ContactLaw;
+
 /// Largest stable time steps of velocity Verlet with predicted velocities [s] (theory.md, eqs. L.8 to L.10).
 struct TimeStepLimits
 {
@@ -20,5 +22,11 @@ struct TimeStepLimits
 /// by a factor of 2 for the dashpots (attained by the shortest waves), of sqrt2 for the springs.
 /// @param smallest_stretch lam_min [-] in (0, 1]; the stiffness of every law here grows as a bond shortens
 TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch);
+
+/// The same for a sheet whose sites may touch (theory.md, eq. L.14): a site with all its bonds, as they are in the
+/// undeformed lattice, and six contacts around it. Differs only for contacts that are stiffer or more viscous than the
+/// bonds they stand for.
+TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
+                                const ContactLaw &contact);
 
 } // namespace lattice

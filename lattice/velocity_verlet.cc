@@ -65,8 +65,28 @@ void VelocityVerlet::initialise(State &state)
   update_images(state, lattice_);
   predicted_vx_ = state.vx;
   predicted_vy_ = state.vy;
-  forces_.evaluate(state, predicted_vx_, predicted_vy_);
+  evaluate(state);
   update_accelerations(state);
+}
+
+void VelocityVerlet::evaluate(State &state)
+{
+  forces_.evaluate(state, predicted_vx_, predicted_vy_);
+  for (SiteForces *forces : site_forces_)
+    forces->evaluate(state, predicted_vx_, predicted_vy_);
+}
+
+void VelocityVerlet::add_site_forces(State &state, double duration) const
+{
+  for (const SiteForces *forces : site_forces_)
+    for (const auto &[place, force] : forces->last())
+    {
+      const Eigen::Vector2d acceleration = state.inverse_mass[place] * force;
+      state.ax[place] += acceleration.x();
+      state.ay[place] += acceleration.y();
+      state.vx[place] += duration * acceleration.x();
+      state.vy[place] += duration * acceleration.y();
+    }
 }
 
 void VelocityVerlet::update_accelerations(State &state) const
@@ -80,6 +100,7 @@ void VelocityVerlet::update_accelerations(State &state) const
                    state.ay[i] = forces_.fy()[i] * state.inverse_mass[i];
                  }
                });
+  add_site_forces(state, 0.);
 }
 
 void VelocityVerlet::step(State &state)
@@ -97,8 +118,7 @@ void VelocityVerlet::step(State &state)
     predicted_vx_[image.place] = predicted_vx_[image.site];
     predicted_vy_[image.place] = predicted_vy_[image.site];
   }
-  forces_.evaluate(state, predicted_vx_, predicted_vy_);
-  // Other forces than those of bonds would be added here, before the sites take any of them up.
+  evaluate(state);
   for_each_row(
     lattice_,
     [&](std::size_t begin, std::size_t end)
@@ -106,6 +126,7 @@ void VelocityVerlet::step(State &state)
       kick(h, end - begin, &forces_.fx()[begin], &state.inverse_mass[begin], &state.ax[begin], &state.vx[begin]);
       kick(h, end - begin, &forces_.fy()[begin], &state.inverse_mass[begin], &state.ay[begin], &state.vy[begin]);
     });
+  add_site_forces(state, 0.5 * h);
   update_images(state, lattice_);
   state.time += h;
 }

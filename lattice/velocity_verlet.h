@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lattice/forces.h"
+#include "lattice/site_forces.h"
 
 namespace lattice
 {
@@ -18,6 +19,9 @@ public:
 
   double time_step() const { return time_step_; }
 
+  /// Has forces act besides those of the bonds, at the same positions and velocities; they must outlive this object.
+  void add(SiteForces &forces) { site_forces_.push_back(&forces); }
+
   /// Computes the accelerations a state starts with; needed once, and again after a change from outside.
   void initialise(State &state);
 
@@ -28,13 +32,18 @@ public:
   const Field &evaluated_vx() const { return predicted_vx_; }
   const Field &evaluated_vy() const { return predicted_vy_; }
 
-  /// Accelerations anew from the forces as they stand, after bonds were taken out of them.
+  /// Accelerations anew from the forces as they stand, after bonds were taken out of them or site forces changed.
   void update_accelerations(State &state) const;
 
 private:
+  void evaluate(State &state);
+  /// Adds the site forces to the accelerations, and what they change of the velocities in `duration` [s].
+  void add_site_forces(State &state, double duration) const;
+
   const TriangularLattice &lattice_;
   Forces &forces_;
   double time_step_;
+  std::vector<SiteForces *> site_forces_;
   Field predicted_vx_, predicted_vy_;
 };
 

@@ -3,12 +3,36 @@
 #include <algorithm>
 #include <cmath>
 #include <sstream>
+#include <stdexcept>
 
+#include "lattice/contact.h"
+#include "lattice/seed.h"
 #include "lattice/time_step.h"
 #include "verification/atomic_file.h"
 
 namespace verification
 {
+namespace
+{
+
+void check_seed(const Case &input, Parameters &p, const lattice::TriangularLattice &sheet)
+{
+  const std::string extent =
+    input.seed_shape == Case::SeedShape::sites ? "Fracture/seed sites" : "Fracture/seed length";
+  const std::vector<std::string> others{"Fracture/seed position", "Fracture/seed offset", "Fracture/seed height",
+                                        "Fracture/stop position", "Sheet/length",         "Sheet/height"};
+  try
+  {
+    if (sheet.reference(input.seed(sheet).back()).x() + sheet.spacing() > input.stop_position * sheet.length())
+      p.error(extent, "the seed crack must end before the stop position", others);
+  }
+  catch (const std::invalid_argument &problem)
+  {
+    p.error(extent, std::string("the seed crack does not fit: ") + problem.what(), others);
+  }
+}
+
+} // namespace
 
 void ShellCase::declare(Parameters &parameters, const std::string &section)
 {
@@ -80,12 +104,34 @@ void Case::declare(Parameters &p)
   p.add("Fracture", "fraction", toughening_fraction, Between{0.01, 0.999}, "1",
         "retraction toughens bonds that come below this fraction of their stretch in the loaded sheet");
   p.add("Fracture", "factor", toughening_factor, AtLeast{1.}, "1", "toughened bonds break at this times lam_f");
-  p.add("Fracture", "seed sites", seed_sites, Between{1., 1000.},
-        "number of sites removed in a line along y = 0 as seed crack");
+  p.add("Fracture", "seed shape", seed_shape, {{"sites", SeedShape::sites}, {"slit", SeedShape::slit}},
+        "what is removed as seed crack: sites in a line along x, or all sites in a rectangle");
+  p.add("Fracture", "seed sites", seed_sites, Between{1., 1000.}, "number of sites of a seed of sites");
+  p.add("Fracture", "seed length", seed_length, NonNegative{}, "m", "extent of a slit along x, undeformed");
+  p.add("Fracture", "seed height", seed_height, NonNegative{}, "m", "extent of a slit along y, undeformed");
   p.add("Fracture", "seed position", seed_position, Between{0.01, 0.9}, "1",
         "left end of the seed crack, as a fraction of the length");
+  p.add("Fracture", "seed offset", seed_offset, Any{}, "m",
+        "undeformed y of the centre line of the seed crack; a seed of sites takes the line of sites nearest to it");
   p.add("Fracture", "stop position", stop_position, Between{0.05, 0.99}, "1",
         "the run ends when the tip has come this fraction of the length");
+  const std::vector<std::pair<std::string, End>> ends{
+    {"held", End::held}, {"free", End::free}, {"absorbing", End::absorbing}};
+  p.add(
+    "Fracture", "left end", left_end, ends,
+    "short end on the left: held, free under the dead load of the loaded sheet, or, besides, with dashpots that take "
+    "up waves");
+  p.add("Fracture", "right end", right_end, ends, "short end on the right, likewise");
+
+  p.add("Contact", "present", has_contact,
+        "whether sites of a breaking sheet that are not bonded repel each other when they come close");
+  // Next-nearest neighbours of a lattice without bonds between them stand at 1.73 d.
+  p.add("Contact", "distance", contact_distance, Range({0., false}, {1.7, false}), "1",
+        "distance below which sites touch, over d");
+  p.add("Contact", "stiffness", contact_stiffness, Positive{}, "1",
+        "stiffness of a contact over that of a nearest-neighbour bond at rest");
+  p.add("Contact", "viscosity", contact_viscosity, NonNegative{}, "1",
+        "dashpot of a contact over that of a nearest-neighbour bond");
 
   p.add("Time", "end", end_time, NonNegative{}, "s", "the motion ends here at the latest");
   p.add("Time", "step", time_step, Positive{}, "s",
@@ -157,10 +203,7 @@ void Case::check(Parameters &p) const
            << " by the loading alone and would all break; the breaking stretch must be larger than that";
       p.error("Fracture/breaking stretch", text.str(), {"Loading/strain x", "Loading/strain y"});
     }
-    const double seed_pitch = orientation == lattice::Orientation::rows_along_crack ? spacing : std::sqrt(3.) * spacing;
-    if (seed_position * sheet.length() + (seed_sites + 1) * seed_pitch > stop_position * sheet.length())
-      p.error("Fracture/seed sites", "the seed crack must end before the stop position",
-              {"Fracture/seed position", "Fracture/stop position", "Sheet/length"});
+    check_seed(*this, p, sheet);
   }
   if (toughening != Toughening::none && toughening_factor == 1.)
     p.error("Fracture/factor",
@@ -174,6 +217,14 @@ void Case::check(Parameters &p) const
       p.error("Time/step", "beyond " + full_precision(limit) + " s the time stepping is unstable; auto is safe",
               {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity", "Sheet/spacing"});
   }
+}
+
+std::vector<std::size_t> Case::seed(const lattice::TriangularLattice &sheet) const
+{
+  const double position = seed_position * sheet.length();
+  if (seed_shape == SeedShape::slit)
+    return lattice::seed_sites(sheet, lattice::SeedSlit{position, seed_offset, seed_length, seed_height});
+  return lattice::seed_sites(sheet, lattice::SeedLine{position, seed_offset, seed_sites});
 }
 
 lattice::TriangularLattice Case::lattice() const
@@ -216,6 +267,20 @@ double Case::lattice_time_step() const
   if (time_step)
     return *time_step;
   return safety_factor * lattice::time_step_limits(lattice(), material(), smallest_stable_stretch).combined;
+}
+
+lattice::ContactLaw Case::contact_law() const
+{
+  return lattice::contact_like_nearest_bond(lattice(), material(), contact_distance * spacing, contact_stiffness,
+                                            contact_viscosity);
+}
+
+double Case::fracture_time_step() const
+{
+  if (time_step || !has_contact)
+    return lattice_time_step();
+  return safety_factor *
+         lattice::time_step_limits(lattice(), material(), smallest_stable_stretch, contact_law()).combined;
 }
 
 } // namespace verification

@@ -3,11 +3,17 @@
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "lattice/fracture.h"
 #include "lattice/material.h"
 #include "verification/continuum_case.h"
 #include "verification/parameters.h"
+
+namespace lattice
+{
+struct ContactLaw;
+}
 
 namespace verification
 {
@@ -78,9 +84,33 @@ struct Case
   double toughening_distance = 0.;  ///< delta [m]
   double toughening_fraction = 0.9; ///< of the initial stretch [-]
   double toughening_factor = 1.;    ///< [-]
+  enum class SeedShape
+  {
+    sites, ///< sites in a line
+    slit   ///< all sites in a rectangle
+  };
+  SeedShape seed_shape = SeedShape::sites;
   unsigned int seed_sites = 8;
-  double seed_position = 0.1;  ///< of the length [-]
+  double seed_length = 0.;     ///< of a slit [m]
+  double seed_height = 0.;     ///< of a slit [m]
+  double seed_position = 0.1;  ///< left end, of the length [-]
+  double seed_offset = 0.;     ///< Y of the seed's centre line [m]
   double stop_position = 0.93; ///< of the length [-]
+  /// What stands at a short end of a sheet that breaks.
+  enum class End
+  {
+    held,
+    free,     ///< pulled as in the loaded, unbroken sheet
+    absorbing ///< likewise, with dashpots that take up waves
+  };
+  End left_end = End::held;
+  End right_end = End::held;
+
+  // Contact, of sheets that break
+  bool has_contact = true;
+  double contact_distance = 1.;  ///< of d [-]
+  double contact_stiffness = 1.; ///< of that of a nearest bond at rest [-]
+  double contact_viscosity = 1.; ///< of the dashpot of a nearest bond [-]
 
   // Time
   double end_time = 0.;            ///< [s]
@@ -111,8 +141,13 @@ struct Case
   /// F = [1 + eps_x, F_xy; 0, 1 + eps_y] of the loaded sheet [-].
   Eigen::Matrix2d deformation() const;
   lattice::Toughening toughening_rule() const;
+  /// Places of the sites that the seed crack removes, by increasing X. @throws std::invalid_argument if there are none
+  std::vector<std::size_t> seed(const lattice::TriangularLattice &sheet) const;
+  lattice::ContactLaw contact_law() const;
   /// Time step of the lattice [s]: the stated one, or safety factor times the limit.
   double lattice_time_step() const;
+  /// The same for a sheet that breaks, whose sites may touch.
+  double fracture_time_step() const;
 };
 
 /// Stretch down to which the automatic time step is stable [-]; shorter bonds do not occur in a sheet under tension.

@@ -2,11 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <numeric>
 #include <ostream>
 #include <sstream>
 
 #include <nlohmann/json.hpp>
 
+#include "lattice/fragments.h"
 #include "verification/atomic_file.h"
 #include "verification/errors.h"
 
@@ -130,21 +132,22 @@ void CrackRecord::write_tables(const std::filesystem::path &directory) const
                  out << '\n';
                }
              });
-  write_file(directory / "energy.csv",
-             [this](std::ostream &out)
-             {
-               out << "t,elastic,kinetic,viscous,broken,boundary_work,contact,imbalance\n";
-               // Nothing touches in this model, so contact holds no energy.
-               for (const auto &[time, e] : energies_)
-               {
-                 write_row(out, {time, e.elastic, e.kinetic, e.viscous, e.broken, e.boundary_work, 0., e.imbalance()});
-                 out << '\n';
-               }
-             });
+  write_file(
+    directory / "energy.csv",
+    [this](std::ostream &out)
+    {
+      out << "t,elastic,kinetic,viscous,broken,boundary_work,contact,imbalance\n";
+      for (const auto &[time, e] : energies_)
+      {
+        write_row(out, {time, e.elastic, e.kinetic, e.viscous, e.broken, e.boundary_work, e.contact, e.imbalance()});
+        out << '\n';
+      }
+    });
 }
 
 void CrackRecord::write_measurement(const std::filesystem::path &directory,
-                                    const lattice::CrackMeasurement &measurement, bool skip_verification) const
+                                    const lattice::CrackMeasurement &measurement, double seed_tip_X,
+                                    double breaking_stretch, bool skip_verification) const
 {
   nlohmann::ordered_json json;
   json["pattern"] = lattice::to_string(measurement.pattern);
@@ -166,6 +169,15 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory,
   json["window_end"] = measurement.X_end;
   json["branched_fraction"] = measurement.branched_fraction;
   json["bonds_broken"] = simulation_.n_broken();
+  const lattice::Fragments fragments = lattice::find_fragments(simulation_.state(), simulation_.lattice());
+  json["detached_sites"] = std::accumulate(fragments.sizes.begin(), fragments.sizes.end(), std::size_t{0});
+  json["detached_fragments"] = fragments.sizes.size();
+  json["largest_fragment"] = fragments.sizes.empty() ? 0 : fragments.sizes.front();
+  const std::size_t bridging = lattice::n_bridging_bonds(simulation_.state(), simulation_.lattice(), breaking_stretch);
+  json["bridging_bonds"] = bridging;
+  const double grown = tip_X() - seed_tip_X;
+  json["bridging_bonds_per_m"] =
+    grown > 0. ? nlohmann::ordered_json(static_cast<double>(bridging) / grown) : nlohmann::ordered_json(nullptr);
   json["end_time"] = simulation_.state().time;
   json["energy_imbalance"] = largest_imbalance();
   json["skip_verification"] = skip_verification;

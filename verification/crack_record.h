@@ -36,9 +36,12 @@ public:
   /// Writes crack.csv, broken_bonds.csv and energy.csv. @throws OutputError
   void write_tables(const std::filesystem::path &directory) const;
 
-  /// Writes crack.json. @param skip_verification whether the material went unverified @throws OutputError
+  /// Writes crack.json.
+  /// @param seed_tip_X where the crack started [m]
+  /// @param breaking_stretch lam_f of a bond that has not been toughened [-]
+  /// @param skip_verification whether the material went unverified @throws OutputError
   void write_measurement(const std::filesystem::path &directory, const lattice::CrackMeasurement &measurement,
-                         bool skip_verification) const;
+                         double seed_tip_X, double breaking_stretch, bool skip_verification) const;
 
 private:
   void note_tip();

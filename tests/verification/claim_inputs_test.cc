@@ -38,9 +38,19 @@ const std::set<std::string> no_claim_reads{
   "Fracture/distance",
   "Fracture/fraction",
   "Fracture/factor",
+  "Fracture/seed shape",
   "Fracture/seed sites",
+  "Fracture/seed length",
+  "Fracture/seed height",
   "Fracture/seed position",
+  "Fracture/seed offset",
   "Fracture/stop position",
+  "Fracture/left end",
+  "Fracture/right end",
+  "Contact/present",
+  "Contact/distance",
+  "Contact/stiffness",
+  "Contact/viscosity",
   "Time/end",
   "Time/step",
   "Time/safety factor",
@@ -94,7 +104,7 @@ std::optional<Case> with_another(const std::string &key, const std::string &valu
   {
   }
   for (const char *other :
-       {"1e-12", "1", "0.5", "2", "false", "true", "rows-across-crack", "linear", "motion", "behind-tip",
+       {"1e-12", "1", "0.5", "2", "false", "true", "rows-across-crack", "linear", "motion", "behind-tip", "slit",
         "mooney-rivlin", "isotropic", "generalised-alpha", "free", "held", "clamped", "undeformed", "other.msh"})
     candidates.emplace_back(other);
   for (const std::string &candidate : candidates)

@@ -69,7 +69,18 @@ class Fracture(unittest.TestCase):
         for name in ["speed_lagrangian", "speed_laboratory", "wavelength", "amplitude"]:
             self.assertIn(name, crack)
             self.assertIn(name + "_uncertainty", crack)
+        last = read(vtk.vtkXMLPolyDataReader(), frames(self.out / "lattice.pvd")[-1][1])
+        fragments = [int(last.GetPointData().GetArray("fragment").GetTuple1(i)) for i in range(last.GetNumberOfPoints())]
+        self.assertEqual(crack["detached_sites"], sum(number > 0 for number in fragments))
+        self.assertEqual(crack["detached_fragments"], max(fragments))
+        self.assertEqual(crack["largest_fragment"], fragments.count(1))
+        stretch = last.GetCellData().GetArray("stretch")
+        bridges = sum(stretch.GetTuple1(i) > 3.05 for i in range(stretch.GetNumberOfTuples()))
+        self.assertEqual(crack["bridging_bonds"], bridges)
         tip = read_csv(self.out / "crack.csv")
+        grown = float(tip[-1]["X"]) - float(tip[0]["X"])
+        # The first tip stands at most two spacings beyond the seed.
+        self.assertAlmostEqual(crack["bridging_bonds_per_m"] * grown / bridges, 1., delta=2. * 0.625e-3 / grown)
         self.assertEqual(list(tip[0]), ["t", "X", "Y", "x", "y", "speed", "bonds_broken"])
         position = [float(row["X"]) for row in tip]
         self.assertEqual(position, sorted(position))
@@ -88,7 +99,8 @@ class Fracture(unittest.TestCase):
         initial = first["elastic"] + first["broken"]
         for row in rows:
             e = {name: float(value) for name, value in row.items()}
-            balance = e["elastic"] + e["kinetic"] + e["viscous"] + e["broken"] - initial - e["boundary_work"]
+            balance = (e["elastic"] + e["kinetic"] + e["viscous"] + e["broken"] + e["contact"] - initial -
+                       e["boundary_work"])
             self.assertAlmostEqual(balance / initial, e["imbalance"] / initial, delta=1e-12)
             self.assertLess(abs(balance), 1e-4 * initial)
         self.assertGreater(float(rows[-1]["viscous"]), 0.)
@@ -107,7 +119,7 @@ class Fracture(unittest.TestCase):
             points = sheet.GetPointData()
             names = [points.GetArrayName(i) for i in range(points.GetNumberOfArrays())]
             self.assertEqual(names, ["displacement", "velocity", "deformation_gradient", "first_piola_stress",
-                                     "cauchy_stress", "strain_energy_density", "damage", "held", "site"])
+                                     "cauchy_stress", "strain_energy_density", "damage", "held", "site", "fragment"])
             self.assertEqual([sheet.GetCellData().GetArrayName(i) for i in range(3)], ["stretch", "shell", "toughened"])
             self.assertEqual(sheet.GetCellData().GetArray("stretch").GetNumberOfTuples(), sheet.GetNumberOfCells())
             lines = sheet.GetNumberOfLines()
@@ -242,6 +254,30 @@ class ExitCodes(TemporaryFolder):
             self.assertIn(part, run.stderr)
         self.assertFalse(self.out.exists())
         self.assertEqual(latcon("lattice", self.folder / "none.prm", "--output-dir", self.out).returncode, 2)
+
+    def test_seed_that_does_not_fit_is_2(self):
+        for key, value, part in [("seed offset", "2 cm", "within two spacings"), ("seed position", "0.9", "right end"),
+                                 ("seed sites", "34", "stop position"), ("seed shape", "slit", "no site")]:
+            run = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, *TINY, "--set",
+                         f"Fracture/{key}={value}", "--set", "Fracture/seed offset=0.1 mm" if key == "seed shape" else
+                         "Output/frame interval=0")
+            self.assertEqual(run.returncode, 2, key)
+            self.assertIn(part, run.stderr)
+            self.assertIn("Fracture/seed ", run.stderr)
+
+    def test_slit_runs_between_ends_that_absorb(self):
+        run = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, *TINY, "--skip-verification", "--set",
+                     "Fracture/left end=free", "--set", "Fracture/right end=absorbing", "--set",
+                     "Fracture/seed shape=slit", "--set", "Fracture/seed length=4 mm", "--set",
+                     "Fracture/seed height=2 mm")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        crack = json.loads((self.out / "crack.json").read_text())
+        self.assertLess(crack["energy_imbalance"], 1e-5)
+        rows = read_csv(self.out / "energy.csv")
+        self.assertNotEqual(float(rows[-1]["boundary_work"]), 0.)
+        first = read(vtk.vtkXMLPolyDataReader(), self.out / "lattice-0000.vtp").GetPointData()
+        held = [first.GetArray("held").GetTuple1(i) for i in range(first.GetNumberOfTuples())]
+        self.assertEqual(sum(held), 2 * (41 + 40))  # two rows below and two above
 
     def test_fracture_needs_what_breaks_it(self):
         case = (CASES / "quick.prm").read_text().replace("  set breaking stretch = 3.05\n", "")

@@ -13,20 +13,17 @@ namespace verification
 namespace
 {
 
-// Sites along y = 0 from the seed position on: of the middle row, or, where the rows run across the crack, the middle
-// sites of every second row.
-std::vector<std::size_t> seed_crack(const Case &input, const lattice::TriangularLattice &sheet)
+lattice::EndLoads::End end_load(Case::End end)
 {
-  const bool along = sheet.orientation() == lattice::Orientation::rows_along_crack;
-  const double pitch = along ? sheet.spacing() : std::sqrt(3.) / 2. * sheet.spacing();
-  const auto first = static_cast<std::size_t>(std::lround(input.seed_position * sheet.length() / pitch));
-  std::vector<std::size_t> places;
-  for (std::size_t i = 0; i < input.seed_sites; ++i)
-    if (along)
-      places.push_back(sheet.index(sheet.rows() / 2, first + i));
-    else
-      places.push_back(sheet.index(first + first % 2 + 2 * i, sheet.columns() / 2));
-  return places;
+  switch (end)
+  {
+  case Case::End::free:
+    return lattice::EndLoads::End::free;
+  case Case::End::absorbing:
+    return lattice::EndLoads::End::absorbing;
+  default:
+    return lattice::EndLoads::End::held;
+  }
 }
 
 // The imbalance of the energy ledger that a run may end with, over the energy it was given.
@@ -77,13 +74,18 @@ std::string progress_text(const lattice::Simulation &simulation, const CrackReco
 Results break_sheet(const Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
                     bool skip_verification, Run &run)
 {
+  const lattice::Edges edges{input.left_end == Case::End::held, input.right_end == Case::End::held, true, true};
   lattice::State state =
-    lattice::homogeneous_state(sheet, material, input.deformation(), lattice::Edges::held, *input.breaking_stretch);
+    lattice::homogeneous_state(sheet, material, input.deformation(), edges, *input.breaking_stretch);
   lattice::add_noise(state, sheet, input.noise_amplitude * input.spacing, input.noise_seed);
   lattice::Simulation simulation(
-    sheet, material, std::move(state), input.lattice_time_step(),
+    sheet, material, std::move(state), input.fracture_time_step(),
     lattice::Fracture(sheet, material, *input.breaking_stretch, input.toughening_rule(), input.deformation()));
-  const std::vector<std::size_t> seed = seed_crack(input, sheet);
+  if (!edges.left || !edges.right)
+    simulation.load_ends(input.deformation(), end_load(input.left_end), end_load(input.right_end));
+  if (input.has_contact)
+    simulation.let_touch(input.contact_law());
+  const std::vector<std::size_t> seed = input.seed(sheet);
   simulation.cut(seed);
 
   CrackRecord record(simulation);
@@ -119,7 +121,7 @@ Results break_sheet(const Case &input, const lattice::TriangularLattice &sheet, 
   fields.add_frame(simulation.state());
   record.write_tables(run.directory());
   const lattice::CrackMeasurement crack = record.measure(seed_tip);
-  record.write_measurement(run.directory(), crack, skip_verification);
+  record.write_measurement(run.directory(), crack, seed_tip, *input.breaking_stretch, skip_verification);
   if (run.talks())
     std::cout << "The crack is " << lattice::to_string(crack.pattern) << ": " << crack.reason << "\n";
   return measured_results(input, record, crack);
@@ -144,7 +146,7 @@ ExitCode run_fracture(const Options &options)
   if (options.dry_run)
   {
     if (!options.quiet)
-      std::cout << parameters.resolved_text() << lattice_size(input);
+      std::cout << parameters.resolved_text() << lattice_size(input, input.fracture_time_step());
     return ExitCode::done;
   }
 

@@ -115,7 +115,7 @@ ExitCode run_lattice(const Options &options)
   if (options.dry_run)
   {
     if (!options.quiet)
-      std::cout << parameters.resolved_text() << lattice_size(input);
+      std::cout << parameters.resolved_text() << lattice_size(input, input.lattice_time_step());
     return ExitCode::done;
   }
   Run run(options, parameters);

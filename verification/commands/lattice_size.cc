@@ -18,11 +18,10 @@ constexpr double nanoseconds_per_site_step = 15.;
 
 } // namespace
 
-std::string lattice_size(const Case &input)
+std::string lattice_size(const Case &input, double time_step)
 {
   const lattice::TriangularLattice sheet = input.lattice();
-  const double step = input.lattice_time_step();
-  const double steps = std::ceil(input.end_time / step);
+  const double steps = std::ceil(input.end_time / time_step);
   const lattice::State state = lattice_state(input, sheet, 1.);
   std::size_t sites = 0;
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
@@ -32,7 +31,7 @@ std::string lattice_size(const Case &input)
   std::ostringstream out;
   out << "# lattice: " << sites << " sites, " << bonds << " bonds, " << sheet.length() << " m x " << sheet.height()
       << " m\n"
-      << "# time step: " << step << " s, " << steps << " steps at most\n"
+      << "# time step: " << time_step << " s, " << steps << " steps at most\n"
       << "# memory: about " << std::ceil(sheet.n_places() * doubles_per_place * 8e-6) << " MB beside the libraries\n"
       << "# time: about "
       << std::ceil(steps * static_cast<double>(sites) * nanoseconds_per_site_step * 1e-9 / omp_get_max_threads())

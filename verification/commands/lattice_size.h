@@ -8,6 +8,6 @@ namespace verification
 {
 
 /// What `--dry-run` says of the lattice of a case: sites, bonds, time step, steps, memory and time it will take.
-std::string lattice_size(const Case &input);
+std::string lattice_size(const Case &input, double time_step);
 
 } // namespace verification

@@ -1,0 +1,89 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "lattice/fracture.h"
+#include "lattice/link_cells.h"
+#include "lattice/site_forces.h"
+
+namespace lattice
+{
+
+/// Repulsion of two sites at distance r: max(0, k o + c do/dt), o = distance - r > 0 being their overlap (theory.md,
+/// eq. L.12). It never attracts.
+struct ContactLaw
+{
+  double distance;  ///< delta [m], > 0: sites touch below it
+  double stiffness; ///< k per sheet thickness [Pa], > 0
+  double viscosity; ///< c per sheet thickness [Pa s], >= 0
+};
+
+/// A contact at `distance` [m] whose spring is `stiffness` times that of a nearest-neighbour bond at rest,
+/// A0 psi''(1) / l, and whose dashpot is `viscosity` times the bond's A0 eta / l.
+ContactLaw contact_like_nearest_bond(const TriangularLattice &lattice, const Material &material, double distance,
+                                     double stiffness, double viscosity);
+
+/// Contact between sites that have lost bonds: debris, crack faces.
+///
+/// Candidates are the sites that have lost at least one bond and were not cut out; held ones may be among them. Two of
+/// them touch when they are close and no bond joins them. Pairs come from a Verlet list: all that were closer than
+/// distance + skin when it was made, which holds until a candidate has moved half the skin. The list is made anew then,
+/// with link cells; a site that becomes a candidate is added to it. Pairs are kept sorted by place and summed one after
+/// the other.
+class Contact : public SiteForces
+{
+public:
+  /// @throws std::invalid_argument for a law out of its range or a periodic sheet
+  Contact(const TriangularLattice &lattice, const ContactLaw &law);
+
+  /// Finds the candidates among all sites; for a state that was cut or loaded from outside.
+  void find_candidates(const State &state);
+
+  /// Takes note of bonds that broke: their ends may touch others from now on, and each other.
+  void note(const State &state, const std::vector<BrokenBond> &broken);
+
+  const std::vector<SiteForce> &evaluate(const State &state, const Field &vx, const Field &vy) override;
+
+  /// Energy stored in the springs, per sheet thickness [J/m].
+  double elastic_energy(const State &state) const;
+
+  std::size_t n_candidates() const { return candidates_.size(); }
+  /// Pairs that overlapped at the last evaluation.
+  std::size_t n_touching() const { return n_touching_; }
+  /// How often the list was made anew because candidates had moved.
+  std::size_t n_rebuilt() const { return n_rebuilt_; }
+
+private:
+  struct Candidate
+  {
+    std::size_t place;
+    double x, y; // where it was when its pairs were found
+  };
+  struct Pair
+  {
+    std::size_t first, second; // places, first < second
+    bool operator<(const Pair &other) const
+    {
+      return first != other.first ? first < other.first : second < other.second;
+    }
+  };
+
+  bool has_moved(const State &state) const;
+  void rebuild(const State &state);
+  void add_candidate(const State &state, std::size_t place);
+  bool bonded(const State &state, std::size_t first, std::size_t second) const;
+  void insert_pair(std::size_t a, std::size_t b);
+
+  const TriangularLattice &lattice_;
+  ContactLaw law_;
+  double skin_;
+  LinkCells cells_; // of candidates, by their index
+  std::vector<Candidate> candidates_;
+  std::vector<std::uint8_t> is_candidate_; // by place
+  std::vector<Pair> pairs_;
+  std::size_t n_touching_ = 0;
+  std::size_t n_rebuilt_ = 0;
+};
+
+} // namespace lattice

@@ -1,0 +1,105 @@
+#include "lattice/end_loads.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <Eigen/Eigenvalues>
+
+namespace lattice
+{
+namespace
+{
+
+// Whether a site is the outermost of those that stand side by side at an end: of its row if rows run along x, of the
+// first or last row if they run across.
+bool outermost(const TriangularLattice &lattice, std::size_t place, bool left)
+{
+  const std::size_t row = lattice.row_of(place);
+  if (lattice.orientation() == Orientation::rows_across_crack)
+    return row == (left ? 0 : lattice.rows() - 1);
+  return lattice.column_of(place) == (left ? 0 : lattice.sites_in_row(row) - 1);
+}
+
+// Force of the bonds that a site lacks, as they would be in the sheet at x = F X.
+Eigen::Vector2d missing_force(const TriangularLattice &lattice, const Material &material, std::size_t place,
+                              const Eigen::Matrix2d &F)
+{
+  const std::size_t row = lattice.row_of(place);
+  Eigen::Vector2d force = Eigen::Vector2d::Zero();
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  {
+    const Shell *shell = material.shell(kind);
+    if (shell == nullptr)
+      continue;
+    const Eigen::Vector2d bond = F * lattice.bond_vector(kind);
+    const double length = bond.norm();
+    const double axial =
+      cross_section(*shell, lattice) * lattice::force(shell->law, length / lattice.rest_length(kind));
+    // The bond from below starts in a row of the other parity, except along the row and two rows down.
+    const std::size_t near_row = (kind == 0 || kind == n_bond_kinds - 1) ? row : row + 1;
+    if (!lattice.is_occupied(place + static_cast<std::size_t>(lattice.shift(kind, row))))
+      force += axial / length * bond;
+    if (!lattice.is_occupied(place - static_cast<std::size_t>(lattice.shift(kind, near_row))))
+      force -= axial / length * bond;
+  }
+  return force;
+}
+
+} // namespace
+
+Eigen::Matrix2d tangent_along_x(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F)
+{
+  Eigen::Matrix2d tangent = Eigen::Matrix2d::Zero();
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+    if (const Shell *shell = material.shell(kind))
+    {
+      const Eigen::Vector2d R = lattice.bond_vector(kind);
+      const double l = lattice.rest_length(kind);
+      const double stretch = (F * R).norm() / l;
+      const Eigen::Vector2d n = (F * R).normalized();
+      const Eigen::Matrix2d along = n * n.transpose();
+      const Eigen::Matrix2d h = stiffness(shell->law, stretch) * along +
+                                force(shell->law, stretch) / stretch * (Eigen::Matrix2d::Identity() - along);
+      tangent += cross_section(*shell, lattice) * l / lattice.site_area() * (R.x() / l) * (R.x() / l) * h;
+    }
+  return tangent;
+}
+
+EndLoads::EndLoads(const TriangularLattice &lattice, const Material &material, const State &state,
+                   const Eigen::Matrix2d &F, End left, End right)
+  : impedance_(Eigen::Matrix2d::Zero())
+{
+  for (std::size_t row = 0; row < lattice.rows(); ++row)
+    for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
+    {
+      const std::size_t place = lattice.index(row, column);
+      const bool on_left = lattice.reference(place).x() < 0.5 * lattice.length();
+      const End end = on_left ? left : right;
+      if (state.held[place] != 0 || end == End::held)
+        continue;
+      unsigned int bonds = 0;
+      for_each_bond_of_site(state, lattice, place, [&](std::size_t, std::size_t) { ++bonds; });
+      if (bonds == material.coordination())
+        continue;
+      dead_.push_back({place, missing_force(lattice, material, place, F)});
+      if (end == End::absorbing && outermost(lattice, place, on_left))
+        absorbing_.push_back(place);
+    }
+  if (absorbing_.empty())
+    return;
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> modes(material.density * tangent_along_x(lattice, material, F));
+  if (!(modes.eigenvalues().minCoeff() > 0.))
+    throw std::invalid_argument("no waves run along x in the loaded sheet, so that an end cannot absorb them");
+  const bool along = lattice.orientation() == Orientation::rows_along_crack;
+  impedance_ = (along ? std::sqrt(3.) / 2. : 1.) * lattice.spacing() * modes.operatorSqrt();
+}
+
+const std::vector<SiteForce> &EndLoads::evaluate(const State &, const Field &vx, const Field &vy)
+{
+  forces_ = dead_;
+  for (const std::size_t place : absorbing_)
+    forces_.push_back({place, -impedance_ * Eigen::Vector2d(vx[place], vy[place])});
+  return forces_;
+}
+
+} // namespace lattice

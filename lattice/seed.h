@@ -1,0 +1,37 @@
+#pragma once
+
+#include <variant>
+#include <vector>
+
+#include "lattice/triangular_lattice.h"
+
+namespace lattice
+{
+
+/// `n` sites in a line along x: the line nearest to Y = offset, from its site nearest to X = position on. Of two that
+/// are equally near, the one with the larger coordinate.
+struct SeedLine
+{
+  double position; ///< X of the left end [m]
+  double offset;   ///< Y [m]
+  std::size_t n;   ///< > 0
+};
+
+/// All sites in the closed rectangle from X = position to position + length, Y = offset - height / 2 to
+/// offset + height / 2.
+struct SeedSlit
+{
+  double position; ///< X of the left end [m]
+  double offset;   ///< Y of the centre line [m]
+  double length;   ///< [m], >= 0
+  double height;   ///< [m], >= 0
+};
+
+using Seed = std::variant<SeedLine, SeedSlit>;
+
+/// Places of the sites that a seed crack removes from a sheet, by increasing X, then Y.
+/// @throws std::invalid_argument if there are none, or fewer than wanted, or one is less than two spacings from the
+/// lower or the upper edge, where sites are held
+std::vector<std::size_t> seed_sites(const TriangularLattice &lattice, const Seed &seed);
+
+} // namespace lattice

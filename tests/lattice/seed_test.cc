@@ -1,0 +1,73 @@
+#include "lattice/seed.h"
+
+#include <cmath>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+namespace
+{
+
+using namespace lattice;
+
+// 21 columns; rows 0 to 22 at Y = (row - 11) sqrt3 / 2, odd ones (the middle among them) shifted by half a spacing.
+TriangularLattice along()
+{
+  return {1., 20., 19.1, Orientation::rows_along_crack};
+}
+
+std::vector<std::size_t> places_in_row(const TriangularLattice &sheet, std::size_t row, std::size_t first,
+                                       std::size_t n)
+{
+  std::vector<std::size_t> places;
+  for (std::size_t i = 0; i < n; ++i)
+    places.push_back(sheet.index(row, first + i));
+  return places;
+}
+
+TEST(Seed, LineTakesTheNearestRowFromTheNearestSite)
+{
+  const TriangularLattice sheet = along();
+  ASSERT_EQ(sheet.rows(), 23u);
+  EXPECT_EQ(seed_sites(sheet, SeedLine{3.1, 0., 4}), places_in_row(sheet, 11, 3, 4));  // X = 3.5, 4.5 ...
+  EXPECT_EQ(seed_sites(sheet, SeedLine{3., 0., 1}), places_in_row(sheet, 11, 3, 1));   // as near to 2.5: the larger
+  EXPECT_EQ(seed_sites(sheet, SeedLine{3.1, 0.8, 2}), places_in_row(sheet, 12, 3, 2)); // X = 3, 4
+  EXPECT_EQ(seed_sites(sheet, SeedLine{3.1, -0.5, 2}), places_in_row(sheet, 10, 3, 2));
+  EXPECT_EQ(seed_sites(sheet, SeedLine{3.1, std::sqrt(3.) / 4., 2}), places_in_row(sheet, 12, 3, 2)); // the larger
+}
+
+// Rows run along y, sqrt3 / 2 apart along x; a line along x has a site in every second one.
+TEST(Seed, LineAcrossRowsTakesASiteOfEverySecondRow)
+{
+  const TriangularLattice sheet(1., 20., 20., Orientation::rows_across_crack);
+  const std::size_t middle = sheet.columns() / 2;
+  ASSERT_EQ(sheet.reference(sheet.index(0, middle)).y(), 0.);
+  EXPECT_EQ(seed_sites(sheet, SeedLine{3.4, 0., 3}),
+            (std::vector<std::size_t>{sheet.index(4, middle), sheet.index(6, middle), sheet.index(8, middle)}));
+  // Half a spacing up stand the odd rows.
+  EXPECT_EQ(seed_sites(sheet, SeedLine{3.4, 0.4, 2}),
+            (std::vector<std::size_t>{sheet.index(3, middle), sheet.index(5, middle)}));
+}
+
+// Rows 10 to 12 are within 0.9 of Y = 0; X from 4 to 6, ends included.
+TEST(Seed, SlitTakesTheSitesOfAClosedRectangle)
+{
+  const TriangularLattice sheet = along();
+  EXPECT_EQ(seed_sites(sheet, SeedSlit{4., 0., 2., 1.8}),
+            (std::vector<std::size_t>{sheet.index(10, 4), sheet.index(12, 4), sheet.index(11, 4), sheet.index(10, 5),
+                                      sheet.index(12, 5), sheet.index(11, 5), sheet.index(10, 6), sheet.index(12, 6)}));
+  EXPECT_EQ(seed_sites(sheet, SeedSlit{4., 0., 2., 0.}), places_in_row(sheet, 11, 4, 2));
+  EXPECT_EQ(seed_sites(sheet, SeedSlit{4., std::sqrt(3.) / 2., 2., 0.}), places_in_row(sheet, 12, 4, 3));
+}
+
+TEST(Seed, RefusesWhatDoesNotFit)
+{
+  const TriangularLattice sheet = along();
+  EXPECT_THROW(seed_sites(sheet, SeedLine{18., 0., 4}), std::invalid_argument);
+  EXPECT_THROW(seed_sites(sheet, SeedLine{3., 9., 4}), std::invalid_argument);
+  EXPECT_THROW(seed_sites(sheet, SeedSlit{4., 0.3, 2., 0.1}), std::invalid_argument); // between two rows
+  EXPECT_THROW(seed_sites(sheet, SeedSlit{4., 0., 2., 16.}), std::invalid_argument);  // into the held rows
+  EXPECT_THROW(seed_sites(sheet, SeedSlit{30., 0., 2., 2.}), std::invalid_argument);
+}
+
+} // namespace
