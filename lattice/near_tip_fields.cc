@@ -176,7 +176,7 @@ NearTipField NearTipSums::mean() const
 NearTipSampler::NearTipSampler(const TriangularLattice &lattice, const Material &material,
                                const NearTipOptions &options)
   : lattice_(lattice), material_(material), options_(options), grid_(make_grid(lattice, options)),
-    gradient_fit_(lattice), plain_(grid_), folded_(n_blocks, NearTipSums(grid_))
+    evaluator_(lattice, material), gradient_fit_(lattice), plain_(grid_), folded_(n_blocks, NearTipSums(grid_))
 {
   if (!(options.X_end >= options.X_begin))
     throw std::invalid_argument("the stretch in which samples are taken near the tip must end after it begins");
@@ -241,7 +241,7 @@ NearTipSample NearTipSampler::look(const State &state, const Axis &axis)
     const std::size_t place = places_[s];
     if (state.removed[place] != 0)
       continue;
-    const SiteValues site = site_values(state, lattice_, material_, place);
+    const SiteValues site = evaluator_.at(state, place);
     if (2 * site.bonds < material_.coordination())
       continue;
     const Eigen::Vector2d position(state.x[place], state.y[place]);

@@ -149,6 +149,7 @@ private:
   const Material &material_;
   NearTipOptions options_;
   NearTipGrid grid_;
+  SiteEvaluator evaluator_;
   StrainGradientFit gradient_fit_;
   std::vector<std::size_t> places_;         // of all sites
   std::vector<Eigen::Vector2d> references_; // of all sites [m]

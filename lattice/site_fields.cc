@@ -7,44 +7,55 @@
 namespace lattice
 {
 
-SiteValues site_values(const State &state, const TriangularLattice &lattice, const Material &material,
-                       std::size_t place)
+SiteEvaluator::SiteEvaluator(const TriangularLattice &lattice, const Material &material) : lattice_(lattice)
+{
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  {
+    const Shell *shell = material.shell(kind);
+    const Eigen::Vector2d R = lattice.bond_vector(kind);
+    kinds_[kind] = {shell,
+                    R,
+                    R * R.transpose(),
+                    lattice.rest_length(kind),
+                    shell != nullptr ? cross_section(*shell, lattice) : 0.,
+                    {{lattice.shift(kind, 0), lattice.shift(kind, 1)}}};
+  }
+}
+
+SiteValues SiteEvaluator::at(const State &state, std::size_t place) const
 {
   SiteValues values;
   // Normal equations of the fit of F: F (sum R R^T) = sum r R^T.
   Eigen::Matrix2d reference_moment = Eigen::Matrix2d::Zero();
   Eigen::Matrix2d mixed_moment = Eigen::Matrix2d::Zero();
-  for_each_bond_of_site(state, lattice, place,
-                        [&](std::size_t near, std::size_t kind)
-                        {
-                          const Shell &shell = *material.shell(kind);
-                          const double rest_length = lattice.rest_length(kind);
-                          const double section = cross_section(shell, lattice);
-                          const Eigen::Vector2d reference = lattice.bond_vector(kind);
-                          const std::size_t far =
-                            near + static_cast<std::size_t>(lattice.shift(kind, lattice.row_of(near)));
-                          const Eigen::Vector2d bond(state.x[far] - state.x[near], state.y[far] - state.y[near]);
-                          const Eigen::Vector2d rate(state.vx[far] - state.vx[near], state.vy[far] - state.vy[near]);
-                          const double length = bond.norm();
-                          const Eigen::Vector2d direction = bond / length;
-                          const double stretch = length / rest_length;
-                          const double axial =
-                            section * (force(shell.law, stretch) + shell.viscosity * rate.dot(direction) / rest_length);
-                          ++values.bonds;
-                          values.strain_energy_density += 0.5 * section * rest_length * energy(shell.law, stretch);
-                          values.first_piola_stress += 0.5 * axial * direction * reference.transpose();
-                          reference_moment += reference * reference.transpose();
-                          mixed_moment += bond * reference.transpose();
-                        });
+  for_each_bond_of_site(
+    state, lattice_, place,
+    [&](std::size_t near, std::size_t number)
+    {
+      const Kind &kind = kinds_[number];
+      const std::size_t far = near + static_cast<std::size_t>(kind.shift[lattice_.row_of(near) % 2]);
+      const Eigen::Vector2d bond(state.x[far] - state.x[near], state.y[far] - state.y[near]);
+      const Eigen::Vector2d rate(state.vx[far] - state.vx[near], state.vy[far] - state.vy[near]);
+      const double length = bond.norm();
+      const Eigen::Vector2d direction = bond / length;
+      const double stretch = length / kind.rest_length;
+      const double axial = kind.section * (force(kind.shell->law, stretch) +
+                                           kind.shell->viscosity * rate.dot(direction) / kind.rest_length);
+      ++values.bonds;
+      values.strain_energy_density += 0.5 * kind.section * kind.rest_length * energy(kind.shell->law, stretch);
+      values.first_piola_stress += 0.5 * axial * direction * kind.reference.transpose();
+      reference_moment += kind.reference_moment;
+      mixed_moment += bond * kind.reference.transpose();
+    });
 
-  const double area = lattice.site_area();
+  const double area = lattice_.site_area();
   values.strain_energy_density /= area;
   values.first_piola_stress /= area;
   if (values.bonds + state.lost_bonds[place] > 0)
     values.damage = static_cast<double>(state.lost_bonds[place]) / (values.bonds + state.lost_bonds[place]);
 
   // Bonds along one line leave the moment singular; d^4 is the scale of its determinant.
-  const double d2 = lattice.spacing() * lattice.spacing();
+  const double d2 = lattice_.spacing() * lattice_.spacing();
   if (!(reference_moment.determinant() > 1e-6 * d2 * d2))
     return values;
   const Eigen::Matrix2d F = mixed_moment * reference_moment.inverse();
@@ -64,11 +75,12 @@ SiteFields site_fields(const State &state, const TriangularLattice &lattice, con
   fields.first_piola_stress.assign(n, zero);
   fields.cauchy_stress.assign(n, zero);
   fields.deformation_gradient.assign(n, zero);
+  const SiteEvaluator evaluator(lattice, material);
   for (std::size_t row = 0; row < lattice.rows(); ++row)
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
     {
       const std::size_t place = lattice.index(row, column);
-      const SiteValues values = site_values(state, lattice, material, place);
+      const SiteValues values = evaluator.at(state, place);
       fields.strain_energy_density[place] = values.strain_energy_density;
       fields.deformation_gradient[place] = values.deformation_gradient;
       fields.first_piola_stress[place] = values.first_piola_stress;

@@ -30,9 +30,27 @@ struct SiteValues
   double damage = 0.;
 };
 
-/// @param place of a site, not in the margin
-SiteValues site_values(const State &state, const TriangularLattice &lattice, const Material &material,
-                       std::size_t place);
+/// Evaluates SiteValues, with what depends on lattice and material alone at hand.
+class SiteEvaluator
+{
+public:
+  SiteEvaluator(const TriangularLattice &lattice, const Material &material);
+
+  /// @param place of a site, not in the margin
+  SiteValues at(const State &state, std::size_t place) const;
+
+private:
+  struct Kind
+  {
+    const Shell *shell; // null: there are no such bonds
+    Eigen::Vector2d reference;
+    Eigen::Matrix2d reference_moment;
+    double rest_length, section;
+    std::array<std::ptrdiff_t, 2> shift; // from even and odd rows
+  };
+  const TriangularLattice &lattice_;
+  std::array<Kind, n_bond_kinds> kinds_;
+};
 
 /// SiteValues at every place. Zero in the margin and at removed sites, but for F there.
 struct SiteFields

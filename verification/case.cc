@@ -140,6 +140,12 @@ void Case::check(Parameters &p) const
             {"Sheet/hole radius", "Sheet/notch length"});
   continuum.check(p, has_inner_edge());
 
+  for (const auto &[name, extent] : {std::pair{"ahead", near_tip_ahead}, std::pair{"behind", near_tip_behind},
+                                     std::pair{"half height", near_tip_half_height}})
+    if (extent != 0. && (extent < spacing || extent > std::max(length, height)))
+      p.error(std::string("Near tip/") + name, "it must be at least a spacing and no more than the sheet, or 0",
+              {"Sheet/spacing", "Sheet/length", "Sheet/height"});
+
   if (breaking_stretch && height >= 8. * spacing && length >= 8. * spacing)
   {
     const lattice::TriangularLattice sheet = lattice();
