@@ -94,7 +94,7 @@ struct Case
   double frame_interval = 0.; ///< [s]; 0: first and last frame only
   unsigned int energy_interval = 200;
 
-  // Near tip: the window that moves with the tip, undeformed; 0: a number of spacings, see near_tip_window()
+  // Near tip: the window that moves with the tip, undeformed; 0: a number of spacings
   double near_tip_ahead = 0.;           ///< [m]
   double near_tip_behind = 0.;          ///< [m]
   double near_tip_half_height = 0.;     ///< [m]
