@@ -63,14 +63,14 @@ class NearTip(TemporaryFolder):
             for measured, expected in zip((*image.GetSpacing()[:2], *image.GetOrigin()[:2]),
                                           (d, math.sqrt(0.75) * d, -16 * d, -16 * math.sqrt(0.75) * d)):
                 self.assertAlmostEqual(measured, expected, delta=1e-12)
-            # Ahead of the tip the sheet is whole, and what the gradient of the mean position is, F is.
-            whole = arrays["occupancy"].reshape(rows, columns)[:, 18:]
-            self.assertTrue((abs(whole - 1) < 1e-12).all())
-            u = arrays["displacement"].reshape(rows, columns, 3)
-            F = arrays["deformation_gradient"].reshape(rows, columns, 9)
-            difference = (u[:, 20:, 0] - u[:, 18:-2, 0]) / (2 * d) + 1 - F[:, 19:-1, 0]
-            self.assertLess(abs(difference[2:-2]).max(), 0.1)  # both are averages over a spacing or two
-            self.assertGreater(F[..., 0][:, 18:].min(), 1.5)
+            # From 2 d to 7 d ahead of the tip, which the strip always reaches, the sheet is whole, and F is the gradient
+            # of the mean position: both are averages over a spacing or two.
+            whole = arrays["occupancy"].reshape(rows, columns)[:, 18:24]
+            self.assertLess(abs(whole - 1).max(), 1e-12)
+            u = arrays["displacement"].reshape(rows, columns, 3)[:, 18:24, 0]
+            F = arrays["deformation_gradient"].reshape(rows, columns, 9)[:, 19:23, 0]
+            self.assertLess(abs((u[:, 2:] - u[:, :-2]) / (2 * d) + 1 - F).max(), 0.1)
+            self.assertGreater(F.min(), 1.5)
         self.assertTrue((self.out / "near_tip_velocity.png").exists())
         self.assertTrue((self.out / "near_tip_stress.png").exists())
 
