@@ -7,6 +7,64 @@
 namespace lattice
 {
 
+SiteEvaluator::SiteEvaluator(const TriangularLattice &lattice, const Material &material) : lattice_(lattice)
+{
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  {
+    const Shell *shell = material.shell(kind);
+    const Eigen::Vector2d R = lattice.bond_vector(kind);
+    kinds_[kind] = {shell,
+                    R,
+                    R * R.transpose(),
+                    lattice.rest_length(kind),
+                    shell != nullptr ? cross_section(*shell, lattice) : 0.,
+                    {{lattice.shift(kind, 0), lattice.shift(kind, 1)}}};
+  }
+}
+
+SiteValues SiteEvaluator::at(const State &state, std::size_t place) const
+{
+  SiteValues values;
+  // Normal equations of the fit of F: F (sum R R^T) = sum r R^T.
+  Eigen::Matrix2d reference_moment = Eigen::Matrix2d::Zero();
+  Eigen::Matrix2d mixed_moment = Eigen::Matrix2d::Zero();
+  for_each_bond_of_site(
+    state, lattice_, place,
+    [&](std::size_t near, std::size_t number)
+    {
+      const Kind &kind = kinds_[number];
+      const std::size_t far = near + static_cast<std::size_t>(kind.shift[lattice_.row_of(near) % 2]);
+      const Eigen::Vector2d bond(state.x[far] - state.x[near], state.y[far] - state.y[near]);
+      const Eigen::Vector2d rate(state.vx[far] - state.vx[near], state.vy[far] - state.vy[near]);
+      const double length = bond.norm();
+      const Eigen::Vector2d direction = bond / length;
+      const double stretch = length / kind.rest_length;
+      const double axial = kind.section * (force(kind.shell->law, stretch) +
+                                           kind.shell->viscosity * rate.dot(direction) / kind.rest_length);
+      ++values.bonds;
+      values.strain_energy_density += 0.5 * kind.section * kind.rest_length * energy(kind.shell->law, stretch);
+      values.first_piola_stress += 0.5 * axial * direction * kind.reference.transpose();
+      reference_moment += kind.reference_moment;
+      mixed_moment += bond * kind.reference.transpose();
+    });
+
+  const double area = lattice_.site_area();
+  values.strain_energy_density /= area;
+  values.first_piola_stress /= area;
+  if (values.bonds + state.lost_bonds[place] > 0)
+    values.damage = static_cast<double>(state.lost_bonds[place]) / (values.bonds + state.lost_bonds[place]);
+
+  // Bonds along one line leave the moment singular; d^4 is the scale of its determinant.
+  const double d2 = lattice_.spacing() * lattice_.spacing();
+  if (!(reference_moment.determinant() > 1e-6 * d2 * d2))
+    return values;
+  const Eigen::Matrix2d F = mixed_moment * reference_moment.inverse();
+  values.deformation_gradient = F;
+  if (F.determinant() > 0.)
+    values.cauchy_stress = values.first_piola_stress * F.transpose() / F.determinant();
+  return values;
+}
+
 SiteFields site_fields(const State &state, const TriangularLattice &lattice, const Material &material)
 {
   const std::size_t n = lattice.n_places();
@@ -17,55 +75,17 @@ SiteFields site_fields(const State &state, const TriangularLattice &lattice, con
   fields.first_piola_stress.assign(n, zero);
   fields.cauchy_stress.assign(n, zero);
   fields.deformation_gradient.assign(n, zero);
-
-  // Normal equations of the fit of F: F (sum R R^T) = sum r R^T.
-  TensorField reference_moment(n, zero);
-  TensorField mixed_moment(n, zero);
-
-  for_each_bond(state, lattice,
-                [&](std::size_t near, std::size_t kind, std::size_t far)
-                {
-                  const Shell &shell = *material.shell(kind);
-                  const double rest_length = lattice.rest_length(kind);
-                  const double section = cross_section(shell, lattice);
-                  const Eigen::Vector2d reference = lattice.bond_vector(kind);
-                  const Eigen::Vector2d bond(state.x[far] - state.x[near], state.y[far] - state.y[near]);
-                  const Eigen::Vector2d rate(state.vx[far] - state.vx[near], state.vy[far] - state.vy[near]);
-                  const double bond_stretch = stretch(state, lattice, near, kind);
-                  const Eigen::Vector2d direction = bond.normalized();
-                  const double axial =
-                    section * (force(shell.law, bond_stretch) + shell.viscosity * rate.dot(direction) / rest_length);
-                  const double half_energy = 0.5 * section * rest_length * energy(shell.law, bond_stretch);
-                  const Eigen::Matrix2d half_virial = 0.5 * axial * direction * reference.transpose();
-                  for (const std::size_t end : {near, lattice.home(far)})
-                  {
-                    fields.strain_energy_density[end] += half_energy;
-                    fields.first_piola_stress[end] += half_virial;
-                    reference_moment[end] += reference * reference.transpose();
-                    mixed_moment[end] += bond * reference.transpose();
-                  }
-                });
-
-  const double area = lattice.site_area();
+  const SiteEvaluator evaluator(lattice, material);
   for (std::size_t row = 0; row < lattice.rows(); ++row)
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
     {
       const std::size_t place = lattice.index(row, column);
-      unsigned int bonds = 0;
-      for_each_bond_of_site(state, lattice, place, [&](std::size_t, std::size_t) { ++bonds; });
-      fields.strain_energy_density[place] /= area;
-      fields.first_piola_stress[place] /= area;
-      if (bonds + state.lost_bonds[place] > 0)
-        fields.damage[place] = static_cast<double>(state.lost_bonds[place]) / (bonds + state.lost_bonds[place]);
-
-      Eigen::Matrix2d &F = fields.deformation_gradient[place];
-      const Eigen::Matrix2d &moment = reference_moment[place];
-      // Bonds along one line leave the moment singular; d^4 is the scale of its determinant.
-      const double d2 = lattice.spacing() * lattice.spacing();
-      const bool fixed = moment.determinant() > 1e-6 * d2 * d2;
-      F = fixed ? Eigen::Matrix2d(mixed_moment[place] * moment.inverse()) : Eigen::Matrix2d::Identity();
-      if (fixed && F.determinant() > 0.)
-        fields.cauchy_stress[place] = fields.first_piola_stress[place] * F.transpose() / F.determinant();
+      const SiteValues values = evaluator.at(state, place);
+      fields.strain_energy_density[place] = values.strain_energy_density;
+      fields.deformation_gradient[place] = values.deformation_gradient;
+      fields.first_piola_stress[place] = values.first_piola_stress;
+      fields.cauchy_stress[place] = values.cauchy_stress;
+      fields.damage[place] = values.damage;
     }
   return fields;
 }

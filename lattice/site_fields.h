@@ -8,22 +8,57 @@ namespace lattice
 /// A 2 x 2 tensor at every place.
 using TensorField = std::vector<Eigen::Matrix2d>;
 
-/// Continuum quantities at the sites, from the bonds a site has. Zero in the margin and at removed sites.
+/// Continuum quantities at one site, from the bonds it has.
 ///
 /// The area of a site is that of its reference Voronoi cell, (sqrt3 / 2) d^2, also at the edges of the sheet and at
 /// cracks, where a site has fewer bonds and the values are sums over those.
+struct SiteValues
+{
+  /// W [J/m^3]: half the energy of every bond of the site over its reference volume. Exact in a homogeneous
+  /// deformation.
+  double strain_energy_density = 0.;
+  /// F_iJ [-]: least-squares fit of x_j - x_i = F (X_j - X_i) over the bonds of the site; identity where they do not
+  /// fix it.
+  Eigen::Matrix2d deformation_gradient = Eigen::Matrix2d::Identity();
+  /// P_iJ = (1 / 2V) sum_j f_i R_J [Pa]: virial first Piola stress of elastic and viscous bond forces, R reference.
+  Eigen::Matrix2d first_piola_stress = Eigen::Matrix2d::Zero();
+  /// P F^T / det F [Pa]: force per current length and reference thickness (a lattice has no thickness to change). Zero
+  /// where F is not fixed or has det F <= 0.
+  Eigen::Matrix2d cauchy_stress = Eigen::Matrix2d::Zero();
+  unsigned int bonds = 0; ///< that the site has
+  /// Share of its bonds the site has lost [-], 0 to 1.
+  double damage = 0.;
+};
+
+/// Evaluates SiteValues, with what depends on lattice and material alone at hand.
+class SiteEvaluator
+{
+public:
+  SiteEvaluator(const TriangularLattice &lattice, const Material &material);
+
+  /// @param place of a site, not in the margin
+  SiteValues at(const State &state, std::size_t place) const;
+
+private:
+  struct Kind
+  {
+    const Shell *shell; // null: there are no such bonds
+    Eigen::Vector2d reference;
+    Eigen::Matrix2d reference_moment;
+    double rest_length, section;
+    std::array<std::ptrdiff_t, 2> shift; // from even and odd rows
+  };
+  const TriangularLattice &lattice_;
+  std::array<Kind, n_bond_kinds> kinds_;
+};
+
+/// SiteValues at every place. Zero in the margin and at removed sites, but for F there.
 struct SiteFields
 {
-  /// W [J/m^3]: half the energy of every bond of a site over its reference volume. Exact in a homogeneous deformation.
   Field strain_energy_density;
-  /// F_iJ [-]: least-squares fit of x_j - x_i = F (X_j - X_i) over the bonds of a site; identity where they do not fix
-  /// it.
   TensorField deformation_gradient;
-  /// P_iJ = (1 / 2V) sum_j f_i R_J [Pa]: virial first Piola stress of elastic and viscous bond forces, R reference.
   TensorField first_piola_stress;
-  /// P F^T / det F [Pa]: force per current length and reference thickness (a lattice has no thickness to change).
   TensorField cauchy_stress;
-  /// Share of its bonds a site has lost [-], 0 to 1.
   Field damage;
 };
 

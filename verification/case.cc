@@ -145,6 +145,13 @@ void Case::declare(Parameters &p)
         "time between frames of the lattice; 0: first and last frame alone");
   p.add("Output", "energy interval", energy_interval, AtLeast{1.}, "time steps between rows of energy.csv");
 
+  p.add("Near tip", "ahead", near_tip_ahead, NonNegative{}, "m",
+        "how far the window in which fields are averaged reaches ahead of the tip, undeformed; 0: 32 spacings");
+  p.add("Near tip", "behind", near_tip_behind, NonNegative{}, "m", "how far behind it; 0: 40 spacings");
+  p.add("Near tip", "half height", near_tip_half_height, NonNegative{}, "m", "how far to either side; 0: 32 spacings");
+  p.add("Near tip", "interval", near_tip_interval, Between{0., 1e6},
+        "time steps between samples of the fields near the tip; 0: none are taken");
+
   p.add("Reference", "wavelength", reference_wavelength, Positive{}, "m",
         "published wavelength of the crack path, undeformed, to set the measured one beside; auto: none");
   p.add("Reference", "amplitude", reference_amplitude, Positive{}, "m",
@@ -178,6 +185,12 @@ void Case::check(Parameters &p) const
     p.error("Continuum/mesh file", "a mesh from a file has its own holes; give hole radius = 0 and notch length = 0",
             {"Sheet/hole radius", "Sheet/notch length"});
   continuum.check(p, has_inner_edge());
+
+  for (const auto &[name, extent] : {std::pair{"ahead", near_tip_ahead}, std::pair{"behind", near_tip_behind},
+                                     std::pair{"half height", near_tip_half_height}})
+    if (extent != 0. && (extent < spacing || extent > std::max(length, height)))
+      p.error(std::string("Near tip/") + name, "it must be at least a spacing and no more than the sheet, or 0",
+              {"Sheet/spacing", "Sheet/length", "Sheet/height"});
 
   if (breaking_stretch && height >= 8. * spacing && length >= 8. * spacing)
   {

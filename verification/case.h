@@ -124,6 +124,12 @@ struct Case
   double frame_interval = 0.; ///< [s]; 0: first and last frame only
   unsigned int energy_interval = 200;
 
+  // Near tip: the window that moves with the tip, undeformed; 0: a number of spacings
+  double near_tip_ahead = 0.;           ///< [m]
+  double near_tip_behind = 0.;          ///< [m]
+  double near_tip_half_height = 0.;     ///< [m]
+  unsigned int near_tip_interval = 100; ///< time steps between samples; 0: none are taken
+
   // Reference: published values to set the measured ones beside; none where there are none
   std::optional<double> reference_wavelength; ///< [m]
   std::optional<double> reference_amplitude;  ///< [m]

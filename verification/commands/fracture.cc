@@ -6,6 +6,7 @@
 #include "verification/commands/lattice_size.h"
 #include "verification/crack_record.h"
 #include "verification/lattice_sheet.h"
+#include "verification/near_tip_record.h"
 #include "verification/progress.h"
 
 namespace verification
@@ -95,6 +96,7 @@ Results break_sheet(const Case &input, const lattice::TriangularLattice &sheet, 
 
   const double stop = input.stop_position * sheet.length();
   const double seed_tip = sheet.reference(seed.back()).x();
+  NearTipRecord near_tip(input, simulation, seed_tip);
   double next_frame = input.frame_interval;
   Progress progress(run.talks());
   {
@@ -103,6 +105,7 @@ Results break_sheet(const Case &input, const lattice::TriangularLattice &sheet, 
          ++step)
     {
       record.step(simulation.step());
+      near_tip.step(step);
       if (step % input.energy_interval == 0)
         record.energies();
       if (input.frame_interval > 0. && simulation.state().time >= next_frame)
@@ -122,6 +125,7 @@ Results break_sheet(const Case &input, const lattice::TriangularLattice &sheet, 
   record.write_tables(run.directory());
   const lattice::CrackMeasurement crack = record.measure(seed_tip);
   record.write_measurement(run.directory(), crack, seed_tip, *input.breaking_stretch, skip_verification);
+  near_tip.write(run.directory(), crack);
   if (run.talks())
     std::cout << "The crack is " << lattice::to_string(crack.pattern) << ": " << crack.reason << "\n";
   return measured_results(input, record, crack);

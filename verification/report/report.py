@@ -15,6 +15,7 @@ from claims_text import PLOTS
 from crack_path import draw_crack_path
 from files import DamagedFile, UnwritableFile, write_file
 from frame import read_last_frame
+from near_tip_plots import opening_stress_picture, velocity_picture
 from page import page
 from pictures import draw_energy, draw_sheet
 from runs import find_runs, has_rows
@@ -36,6 +37,11 @@ def draw_pictures(run):
     if has_rows(run.energy, 2):
         drawn.append("energy.png")
         draw_energy(run.energy, run.folder / drawn[-1])
+    means = run.folder / "near_tip_folded.vti"
+    if means.exists():
+        drawn += ["near_tip_velocity.png", "near_tip_stress.png"]
+        velocity_picture(means, run.folder / drawn[-2], crack_speed=(run.crack or {}).get("speed_laboratory"))
+        opening_stress_picture(means, run.folder / drawn[-1])
     return [(name, run.folder / name) for name in drawn]
 
 

@@ -1,0 +1,313 @@
+#include "lattice/near_tip_fields.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+namespace lattice
+{
+namespace
+{
+
+// The path's direction is that from its mean here to its mean there, on either side of a sample [d].
+constexpr double heading_from = 2.5, heading_to = 7.5;
+// Calls after which a tip that has not moved is at rest.
+constexpr std::size_t calls_of_rest = 10;
+
+// 1 for components that keep their sign in a mirror image Y -> -Y, -1 for those with an odd number of indices y.
+const NearTipSums::Values &value_signs()
+{
+  static const NearTipSums::Values signs = []
+  {
+    NearTipSums::Values s;
+    s << 1, -1, 1, -1, 1, -1, // velocity and the two displacements
+      1, -1, -1, 1, 1, -1, -1, 1, 1, -1, -1, 1;
+    return s;
+  }();
+  return signs;
+}
+
+const NearTipSums::Gradients &gradient_signs()
+{
+  static const NearTipSums::Gradients signs = []
+  {
+    NearTipSums::Gradients s;
+    s << 1, -1, 1, -1, 1, -1; // xXX, xXY, xYY, yXX, yXY, yYY
+    return s;
+  }();
+  return signs;
+}
+
+template <typename Array>
+Eigen::Vector2d vector_in(const Array &values, Eigen::Index first)
+{
+  return {values[first], values[first + 1]};
+}
+
+template <typename Array>
+Eigen::Matrix2d tensor_in(const Array &values, Eigen::Index first)
+{
+  Eigen::Matrix2d tensor;
+  tensor << values[first], values[first + 1], values[first + 2], values[first + 3];
+  return tensor;
+}
+
+template <typename Array>
+Eigen::Matrix2d symmetric_in(const Array &values, Eigen::Index first)
+{
+  Eigen::Matrix2d tensor;
+  tensor << values[first], values[first + 1], values[first + 1], values[first + 2];
+  return tensor;
+}
+
+NearTipGrid make_grid(const TriangularLattice &lattice, const NearTipOptions &options)
+{
+  const double d = lattice.spacing(), across = lattice.site_area() / d;
+  NearTipGrid grid;
+  const bool along = lattice.orientation() == Orientation::rows_along_crack;
+  grid.pitch_X = along ? d : across;
+  grid.pitch_Y = along ? across : d;
+  const auto points = [](double extent, double pitch)
+  {
+    if (!(extent >= pitch) || !std::isfinite(extent))
+      throw std::invalid_argument("the window around the tip must reach one lattice row at least");
+    return static_cast<int>(std::floor(extent / pitch * (1. + 1e-12)));
+  };
+  grid.behind = points(options.behind, grid.pitch_X);
+  grid.ahead = points(options.ahead, grid.pitch_X);
+  grid.half_height = points(options.half_height, grid.pitch_Y);
+  return grid;
+}
+
+} // namespace
+
+NearTipField::NearTipField(const NearTipGrid &grid_of_points) : grid(grid_of_points), occupancy(grid.size(), 0.)
+{
+  const double none = std::numeric_limits<double>::quiet_NaN();
+  for (auto *vectors : {&velocity, &displacement, &loading_displacement})
+    vectors->assign(grid.size(), Eigen::Vector2d::Constant(none));
+  for (TensorField *tensors :
+       {&deformation_gradient, &first_piola_stress, &cauchy_stress, &strain_gradient_x, &strain_gradient_y})
+    tensors->assign(grid.size(), Eigen::Matrix2d::Constant(none));
+}
+
+NearTipSums::NearTipSums(const NearTipGrid &grid) : grid_(grid)
+{
+  const auto n = static_cast<Eigen::Index>(grid.size());
+  values_.setZero(n_values, n);
+  gradients_.setZero(n_gradients, n);
+  weights_.setZero(n);
+  gradient_weights_.setZero(n);
+}
+
+void NearTipSums::add_site(int i2, int j2, const Values &values, const std::optional<Gradients> &gradients)
+{
+  // An odd number is half-way between two points; the lattice has no site that is so both ways.
+  const auto low = [](int twice) { return twice >= 0 ? twice / 2 : -((1 - twice) / 2); };
+  const int i_low = low(i2), i_high = low(i2 + 1), j_low = low(j2), j_high = low(j2 + 1);
+  const double weight = (i_low == i_high ? 1. : 0.5) * (j_low == j_high ? 1. : 0.5);
+  for (int j = j_low; j <= j_high; ++j)
+    for (int i = i_low; i <= i_high; ++i)
+    {
+      if (!grid_.contains(i, j))
+        continue;
+      const auto point = static_cast<Eigen::Index>(grid_.point(i, j));
+      values_.col(point) += weight * values;
+      weights_[point] += weight;
+      if (!gradients)
+        continue;
+      gradients_.col(point) += weight * *gradients;
+      gradient_weights_[point] += weight;
+    }
+}
+
+void NearTipSums::add(const NearTipSums &other, bool mirrored)
+{
+  samples_ += other.samples_;
+  if (!mirrored)
+  {
+    values_ += other.values_;
+    gradients_ += other.gradients_;
+    weights_ += other.weights_;
+    gradient_weights_ += other.gradient_weights_;
+    return;
+  }
+  for (int j = -grid_.half_height; j <= grid_.half_height; ++j)
+    for (int i = -grid_.behind; i <= grid_.ahead; ++i)
+    {
+      const auto to = static_cast<Eigen::Index>(grid_.point(i, j));
+      const auto from = static_cast<Eigen::Index>(grid_.point(i, -j));
+      values_.col(to) += value_signs() * other.values_.col(from);
+      gradients_.col(to) += gradient_signs() * other.gradients_.col(from);
+      weights_[to] += other.weights_[from];
+      gradient_weights_[to] += other.gradient_weights_[from];
+    }
+}
+
+NearTipField NearTipSums::mean() const
+{
+  NearTipField field(grid_);
+  field.samples = samples_;
+  for (std::size_t point = 0; point < grid_.size(); ++point)
+  {
+    const auto p = static_cast<Eigen::Index>(point);
+    if (weights_[p] > 0.)
+    {
+      const Values mean = values_.col(p) / weights_[p];
+      field.occupancy[point] = weights_[p] / static_cast<double>(samples_);
+      field.velocity[point] = vector_in(mean, 0);
+      field.displacement[point] = vector_in(mean, 2);
+      field.loading_displacement[point] = vector_in(mean, 4);
+      field.deformation_gradient[point] = tensor_in(mean, 6);
+      field.first_piola_stress[point] = tensor_in(mean, 10);
+      field.cauchy_stress[point] = tensor_in(mean, 14);
+    }
+    if (gradient_weights_[p] > 0.)
+    {
+      const Gradients mean = gradients_.col(p) / gradient_weights_[p];
+      field.strain_gradient_x[point] = symmetric_in(mean, 0);
+      field.strain_gradient_y[point] = symmetric_in(mean, 3);
+    }
+  }
+  return field;
+}
+
+NearTipSampler::NearTipSampler(const TriangularLattice &lattice, const Material &material,
+                               const NearTipOptions &options)
+  : lattice_(lattice), material_(material), options_(options), grid_(make_grid(lattice, options)),
+    evaluator_(lattice, material), gradient_fit_(lattice), plain_(grid_), folded_(n_blocks, NearTipSums(grid_))
+{
+  if (!(options.X_end >= options.X_begin))
+    throw std::invalid_argument("the stretch in which samples are taken near the tip must end after it begins");
+  for (std::size_t row = 0; row < lattice.rows(); ++row)
+    for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
+    {
+      places_.push_back(lattice.index(row, column));
+      references_.push_back(lattice.reference(places_.back()));
+    }
+}
+
+const NearTipSample *NearTipSampler::sample(const State &state, std::size_t tip)
+{
+  calls_at_rest_ = last_tip_ == tip ? calls_at_rest_ + 1 : 0;
+  last_tip_ = tip;
+  const Axis now = axis(state, tip);
+  path_.push_back(now.reference);
+  fold_until(now.reference.x() - heading_to * lattice_.spacing());
+  if (now.reference.x() < options_.X_begin || now.reference.x() > options_.X_end || calls_at_rest_ >= calls_of_rest)
+    return nullptr;
+  pending_.push_back(look(state, now));
+  ++taken_;
+  plain_.add(pending_.back().sums, false);
+  return &pending_.back();
+}
+
+NearTipSampler::Axis NearTipSampler::axis(const State &state, std::size_t tip) const
+{
+  // Sites at the X of the tip are two rows apart, or neighbours in the row across.
+  const bool along = lattice_.orientation() == Orientation::rows_along_crack;
+  const auto step = static_cast<std::ptrdiff_t>(along ? 2 * lattice_.stride() : 1);
+  std::size_t lowest = tip, highest = tip;
+  for (std::ptrdiff_t n = -2; n <= 2; ++n)
+  {
+    const auto place = static_cast<std::size_t>(static_cast<std::ptrdiff_t>(tip) + n * step);
+    if (place >= lattice_.n_places() || !lattice_.is_site(place) || state.removed[place] != 0 ||
+        state.lost_bonds[place] != state.lost_bonds[tip])
+      continue;
+    lowest = std::min(lowest, place);
+    highest = std::max(highest, place);
+  }
+  const Eigen::Vector2d low(state.x[lowest], state.y[lowest]), high(state.x[highest], state.y[highest]);
+  return {0.5 * (lattice_.reference(lowest) + lattice_.reference(highest)), 0.5 * (low + high)};
+}
+
+NearTipSample NearTipSampler::look(const State &state, const Axis &axis)
+{
+  const double part = (axis.reference.x() - options_.X_begin) / (options_.X_end - options_.X_begin);
+  NearTipSample sample{axis.reference.x(),
+                       axis.reference.y(),
+                       part > 0. ? std::min(n_blocks - 1, static_cast<std::size_t>(part * n_blocks)) : 0,
+                       NearTipSums(grid_),
+                       {}};
+  sample.sums.add_sample();
+  for (std::size_t s = 0; s < places_.size(); ++s)
+  {
+    const Eigen::Vector2d offset = references_[s] - axis.reference;
+    // Half a pitch more than the grid: sites there count half at its rim.
+    if (offset.x() < -(grid_.behind + 0.75) * grid_.pitch_X || offset.x() > (grid_.ahead + 0.75) * grid_.pitch_X ||
+        std::abs(offset.y()) > (grid_.half_height + 0.75) * grid_.pitch_Y)
+      continue;
+    const std::size_t place = places_[s];
+    if (state.removed[place] != 0)
+      continue;
+    const SiteValues site = evaluator_.at(state, place);
+    if (2 * site.bonds < material_.coordination())
+      continue;
+    const Eigen::Vector2d position(state.x[place], state.y[place]);
+    const Eigen::Vector2d displacement = position - axis.current - offset;
+    const Eigen::Vector2d from_loading = position - options_.deformation * references_[s];
+    const Eigen::Matrix2d &F = site.deformation_gradient, &P = site.first_piola_stress, &sigma = site.cauchy_stress;
+    NearTipSums::Values values;
+    values << state.vx[place], state.vy[place], displacement.x(), displacement.y(), from_loading.x(), from_loading.y(),
+      F(0, 0), F(0, 1), F(1, 0), F(1, 1), P(0, 0), P(0, 1), P(1, 0), P(1, 1), sigma(0, 0), sigma(0, 1), sigma(1, 0),
+      sigma(1, 1);
+    std::optional<NearTipSums::Gradients> gradients;
+    if (const std::optional<StrainGradient> G = gradient_fit_.at(state, place))
+    {
+      gradients.emplace();
+      *gradients << G->x(0, 0), G->x(0, 1), G->x(1, 1), G->y(0, 0), G->y(0, 1), G->y(1, 1);
+    }
+    const auto twice = [](double length, double pitch) { return static_cast<int>(std::lround(2. * length / pitch)); };
+    sample.sums.add_site(twice(offset.x(), grid_.pitch_X), twice(offset.y(), grid_.pitch_Y), values, gradients);
+    sample.sites.push_back(position - axis.current);
+  }
+  return sample;
+}
+
+bool NearTipSampler::descends(double X) const
+{
+  double before = 0., after = 0.;
+  int n_before = 0, n_after = 0;
+  const double from = heading_from * lattice_.spacing(), to = heading_to * lattice_.spacing();
+  for (auto point = path_.rbegin(); point != path_.rend() && point->x() >= X - to; ++point)
+  {
+    const double distance = point->x() - X;
+    if (distance <= -from)
+    {
+      before += point->y();
+      ++n_before;
+    }
+    else if (distance >= from && distance <= to)
+    {
+      after += point->y();
+      ++n_after;
+    }
+  }
+  return n_before > 0 && n_after > 0 && after / n_after < before / n_before;
+}
+
+void NearTipSampler::fold_until(double X)
+{
+  while (!pending_.empty() && pending_.front().X <= X)
+  {
+    const NearTipSample &sample = pending_.front();
+    folded_[sample.block].add(sample.sums, descends(sample.X));
+    pending_.pop_front();
+  }
+}
+
+void NearTipSampler::finish()
+{
+  fold_until(std::numeric_limits<double>::infinity());
+}
+
+NearTipField NearTipSampler::folded() const
+{
+  NearTipSums all(grid_);
+  for (const NearTipSums &block : folded_)
+    all.add(block, false);
+  return all.mean();
+}
+
+} // namespace lattice

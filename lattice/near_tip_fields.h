@@ -1,0 +1,165 @@
+#pragma once
+
+#include <deque>
+#include <optional>
+#include <vector>
+
+#include "lattice/site_fields.h"
+#include "lattice/strain_gradient.h"
+
+namespace lattice
+{
+
+/// A regular grid in the reference configuration that moves with the tip: points at (X, Y) - (X_tip, Y_tip), the tip
+/// among them. Its pitch is that of the lattice, d along the rows and (sqrt3 / 2) d across them, so that each point
+/// stands for the area of one site.
+struct NearTipGrid
+{
+  double pitch_X = 0., pitch_Y = 0.; ///< [m]
+  int behind = 0;                    ///< points behind the tip
+  int ahead = 0;                     ///< points ahead of it
+  int half_height = 0;               ///< points on either side of it
+
+  int columns() const { return behind + 1 + ahead; }
+  int rows() const { return 2 * half_height + 1; }
+  std::size_t size() const { return static_cast<std::size_t>(columns()) * static_cast<std::size_t>(rows()); }
+  /// Number of the point i pitches ahead of the tip and j above it; -behind <= i <= ahead, |j| <= half_height. Rows of
+  /// constant Y follow each other from below, as in vtkImageData.
+  std::size_t point(int i, int j) const
+  {
+    return static_cast<std::size_t>(j + half_height) * static_cast<std::size_t>(columns()) +
+           static_cast<std::size_t>(i + behind);
+  }
+  bool contains(int i, int j) const { return i >= -behind && i <= ahead && j >= -half_height && j <= half_height; }
+  /// (X, Y) - (X_tip, Y_tip) of a point [m].
+  Eigen::Vector2d reference(int i, int j) const { return {i * pitch_X, j * pitch_Y}; }
+};
+
+/// Means over samples at the points of a grid. A site between two points counts half at each. Values are not-a-number
+/// where no sample had a site.
+struct NearTipField
+{
+  NearTipGrid grid;
+  std::size_t samples = 0;
+  /// Fraction of samples in which there was a site with at least half its bonds [-], 0 to 1.
+  std::vector<double> occupancy;
+  std::vector<Eigen::Vector2d> velocity; ///< of the laboratory [m/s]
+  /// (x - x_tip) - (X - X_tip) [m]: what moves the grid into the current configuration, the tip at the origin.
+  std::vector<Eigen::Vector2d> displacement;
+  std::vector<Eigen::Vector2d> loading_displacement; ///< x - F X [m], F that of the loaded sheet
+  TensorField deformation_gradient;                  ///< see SiteValues
+  TensorField first_piola_stress;                    ///< [Pa], likewise
+  TensorField cauchy_stress;                         ///< [Pa], likewise
+  TensorField strain_gradient_x, strain_gradient_y;  ///< [1/m], see StrainGradient; over the samples that fix it
+
+  explicit NearTipField(const NearTipGrid &grid);
+  /// Whether material was at a point of the grid more often than not: what lies off the crack.
+  bool holds(int i, int j) const { return grid.contains(i, j) && occupancy[grid.point(i, j)] >= 0.5; }
+  /// Current position of a point relative to the tip [m].
+  Eigen::Vector2d position(int i, int j) const { return grid.reference(i, j) + displacement[grid.point(i, j)]; }
+};
+
+/// Sums over samples, which may be added to each other, as they are or mirrored in Y.
+class NearTipSums
+{
+public:
+  explicit NearTipSums(const NearTipGrid &grid);
+
+  /// Components of everything that is averaged, in the order of NearTipField.
+  static constexpr Eigen::Index n_values = 18, n_gradients = 6;
+  using Values = Eigen::Array<double, n_values, 1>;
+  using Gradients = Eigen::Array<double, n_gradients, 1>;
+
+  /// Adds a site at twice its place in pitches, (i2, j2); what falls beyond the grid is dropped.
+  void add_site(int i2, int j2, const Values &values, const std::optional<Gradients> &gradients);
+  void add_sample() { ++samples_; }
+  void add(const NearTipSums &other, bool mirrored);
+  std::size_t samples() const { return samples_; }
+  NearTipField mean() const;
+
+private:
+  NearTipGrid grid_;
+  std::size_t samples_ = 0;
+  Eigen::Array<double, n_values, Eigen::Dynamic> values_;
+  Eigen::Array<double, n_gradients, Eigen::Dynamic> gradients_;
+  Eigen::ArrayXd weights_, gradient_weights_;
+};
+
+/// One look at the neighbourhood of the tip.
+struct NearTipSample
+{
+  double X, Y;       ///< of the tip, Y that of the axis of symmetry, reference [m]
+  std::size_t block; ///< quarter of the stretch in which samples are taken, 0 to 3
+  NearTipSums sums;
+  std::vector<Eigen::Vector2d>
+    sites; ///< current positions relative to the tip [m], sites with at least half their bonds
+};
+
+/// Where and of what samples are taken.
+struct NearTipOptions
+{
+  double behind = 0., ahead = 0., half_height = 0.; ///< extent of the grid [m], > 0
+  double X_begin = 0., X_end = 0.;                  ///< samples are taken while the tip is between these, reference [m]
+  Eigen::Matrix2d deformation = Eigen::Matrix2d::Identity(); ///< F of the loaded sheet
+};
+
+/// Averages the fields around a running tip (theory.md, section "Near the tip").
+///
+/// There are two averages: the plain one, and a folded one, in which samples from where the path descends are mirrored
+/// in Y first, so that what an oscillating crack has on one side of its path stays on one side. The path descends if
+/// its mean Y between 2.5 and 7.5 d ahead of the sample's tip is below that between 2.5 and 7.5 d behind it.
+///
+/// A tip that is one of several sites at the same X, all with as many lost bonds, is in the middle of them, so that a
+/// state that is its own mirror image has its axis on the grid's.
+class NearTipSampler
+{
+public:
+  static constexpr std::size_t n_blocks = 4;
+
+  NearTipSampler(const TriangularLattice &lattice, const Material &material, const NearTipOptions &options);
+
+  /// To be called at equal intervals of time, wherever the tip is. @param tip its place
+  /// @return the sample, until the next call; null where none is taken: away from the stretch between X_begin and
+  /// X_end, or because the tip has rested for the last ten calls and is no running one
+  const NearTipSample *sample(const State &state, std::size_t tip);
+
+  /// Folds the last samples by what is known of the path. To be called once, when there is no more to come.
+  void finish();
+
+  std::size_t samples() const { return taken_; }
+  const NearTipGrid &grid() const { return grid_; }
+  /// Mean over all samples.
+  NearTipField plain() const { return plain_.mean(); }
+  /// Folded mean over all samples that are folded already.
+  NearTipField folded() const;
+  /// Folded sums of one block.
+  const NearTipSums &folded_block(std::size_t block) const { return folded_[block]; }
+
+private:
+  struct Axis
+  {
+    Eigen::Vector2d reference, current; // of the tip [m]
+  };
+  Axis axis(const State &state, std::size_t tip) const;
+  NearTipSample look(const State &state, const Axis &axis);
+  bool descends(double X) const;
+  void fold_until(double X);
+
+  const TriangularLattice &lattice_;
+  const Material &material_;
+  NearTipOptions options_;
+  NearTipGrid grid_;
+  SiteEvaluator evaluator_;
+  StrainGradientFit gradient_fit_;
+  std::vector<std::size_t> places_;         // of all sites
+  std::vector<Eigen::Vector2d> references_; // of all sites [m]
+  std::vector<Eigen::Vector2d> path_;       // of the tip at all calls, reference [m]
+  NearTipSums plain_;
+  std::vector<NearTipSums> folded_;   // a sum for each block
+  std::deque<NearTipSample> pending_; // not folded yet
+  std::optional<std::size_t> last_tip_;
+  std::size_t calls_at_rest_ = 0;
+  std::size_t taken_ = 0;
+};
+
+} // namespace lattice

@@ -1,0 +1,116 @@
+#!/usr/bin/python3
+"""Pictures of made-up fields around a tip: what they show of a known field, and which files they refuse."""
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+
+import numpy as np
+from PIL import Image
+from vtkmodules.util.numpy_support import numpy_to_vtk
+from vtkmodules.vtkCommonDataModel import vtkImageData
+from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification" / "report"))
+
+from files import DamagedFile
+from near_tip_plots import opening_stress_picture, read_near_tip, triangulation, velocity_picture
+
+PITCH, BEHIND, AHEAD, HALF = 1e-3, 20, 16, 18
+STRETCH = 2.0  # of the made-up sheet along x and y
+GREEN = np.array((0x00, 0x9E, 0x73))
+
+
+def write_field(path, backward=3.0, without=()):
+    """A crack open behind the tip, and a disc of 5 mm ahead of it that moves back."""
+    columns, rows = BEHIND + 1 + AHEAD, 2 * HALF + 1
+    X, Y = np.meshgrid(PITCH * np.arange(-BEHIND, AHEAD + 1), PITCH * np.arange(-HALF, HALF + 1))
+    zero = np.zeros_like(X)
+    disc = np.hypot(X - 8e-3, Y) < 5e-3
+    fields = {
+        "displacement": np.stack(((STRETCH - 1) * X, (STRETCH - 1) * Y, zero), axis=-1),
+        "velocity": np.stack((np.where(disc, -backward, np.where(X < -2e-3, 10.0, 0.0)), 10 * np.sign(Y), zero), axis=-1),
+        "cauchy_stress": np.stack([*[zero] * 4, 1e5 * (1 + np.exp(-(X**2 + Y**2) / 1e-5)), *[zero] * 4], axis=-1),
+    }
+    occupancy = np.where((X < 0) & (np.abs(Y) < 2.5e-3), 0.2, 1.0)
+    for values in fields.values():
+        values[occupancy == 0.2] = np.nan
+    image = vtkImageData()
+    image.SetDimensions(columns, rows, 1)
+    image.SetSpacing(PITCH, PITCH, 1.0)
+    image.SetOrigin(-BEHIND * PITCH, -HALF * PITCH, 0.0)
+    for name, values in {**fields, "occupancy": occupancy[..., None]}.items():
+        if name in without:
+            continue
+        array = numpy_to_vtk(values.reshape(rows * columns, -1), deep=True)
+        array.SetName(name)
+        image.GetPointData().AddArray(array)
+    samples = numpy_to_vtk(np.array([7.0]), deep=True)
+    samples.SetName("Samples")
+    image.GetFieldData().AddArray(samples)
+    writer = vtkXMLImageDataWriter()
+    writer.SetFileName(str(path))
+    writer.SetInputData(image)
+    writer.EncodeAppendedDataOff()
+    writer.Write()
+
+
+class NearTipPlots(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.vti, self.png = Path(folder.name) / "near_tip.vti", Path(folder.name) / "picture.png"
+
+    def pixels(self):
+        picture = np.asarray(Image.open(self.png).convert("RGB"), dtype=float)
+        self.assertEqual(picture.shape[1], 1600)
+        return picture
+
+    def green(self):
+        """Number of pixels in the colour of the outline."""
+        return np.count_nonzero(np.abs(self.pixels() - GREEN).max(axis=2) < 30)
+
+    def test_reads_places_and_components(self):
+        write_field(self.vti)
+        tip = read_near_tip(self.vti)
+        self.assertEqual(tip.samples, 7)
+        row, column = HALF + 4, BEHIND + 3
+        np.testing.assert_allclose(tip.position[row, column], (3e-3 * STRETCH, 4e-3 * STRETCH), rtol=1e-12)
+        np.testing.assert_allclose(tip.velocity[row, column + 4], (-3.0, 10.0))
+        np.testing.assert_allclose(tip.cauchy_stress[HALF, BEHIND], ((0, 0), (0, 2e5)))
+        self.assertFalse(tip.holds[HALF, BEHIND - 1])
+        # The opening is in no triangle: 20 columns of cells by the five rows of points in it and one more on each side.
+        cells = (BEHIND + AHEAD) * 2 * HALF - BEHIND * 6
+        self.assertEqual(len(triangulation(tip).triangles), 2 * cells)
+
+    def test_outlines_what_moves_back(self):
+        write_field(self.vti)
+        velocity_picture(self.vti, self.png, crack_speed=50.0)
+        outlined = self.green()
+        self.assertGreater(outlined, 500)  # a circle of some 300 pixels' radius
+        write_field(self.vti, backward=0.4)  # slower than 1 % of the crack
+        velocity_picture(self.vti, self.png, crack_speed=50.0)
+        self.assertLess(self.green(), outlined / 20)
+
+    def test_shows_the_stress_where_it_is(self):
+        write_field(self.vti)
+        opening_stress_picture(self.vti, self.png)
+        picture = self.pixels()
+        # The peak is at the tip in yellow, the far field is another colour.
+        yellow = (picture[..., 0] > 200) & (picture[..., 1] > 200) & (picture[..., 2] < 120)
+        rows, columns = np.nonzero(yellow[:int(0.75 * len(picture))])
+        self.assertGreater(len(rows), 100)
+        width = (10 - 0.85 - 0.25) * 160
+        tip_column = 0.85 * 160 + width * BEHIND / (BEHIND + AHEAD)
+        self.assertAlmostEqual(np.median(columns), tip_column, delta=0.06 * width)
+
+    def test_names_what_is_wrong(self):
+        self.vti.write_bytes(b"nothing of the kind")
+        self.assertRaises(DamagedFile, read_near_tip, self.vti)
+        write_field(self.vti, without=("velocity",))
+        self.assertRaisesRegex(DamagedFile, "velocity", read_near_tip, self.vti)
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,99 @@
+#!/usr/bin/python3
+"""What `latcon fracture` leaves of the fields near the tip, on a strip of a few thousand sites.
+
+Usage: near_tip_test.py PATH_OF_LATCON
+"""
+import json
+import math
+import shutil
+import unittest
+
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLImageDataReader
+
+from program import CASES, TemporaryFolder, latcon, read
+
+STRIP = ["--skip-verification", "--quiet", "--threads", "1", "--set", "Sheet/length=4 cm", "--set",
+         "Sheet/height=2.5 cm", "--set", "Output/frame interval=0", "--set", "Near tip/ahead=8 mm", "--set",
+         "Near tip/behind=10 mm", "--set", "Near tip/half height=9 mm"]
+COMPONENTS = {"displacement": 3, "loading_displacement": 3, "velocity": 3, "deformation_gradient": 9,
+              "first_piola_stress": 9, "cauchy_stress": 9, "strain_gradient_x": 9, "strain_gradient_y": 9,
+              "occupancy": 1}
+
+
+def fracture(folder, *options):
+    """A crack in the strip. Its numbers need not be the paper's, so the verdict may be 3."""
+    run = latcon("fracture", CASES / "fig1.prm", "--output-dir", folder, *STRIP, *options)
+    assert run.returncode in (0, 3), run.stderr
+    return json.loads((folder / "near_tip.json").read_text())
+
+
+class NearTip(TemporaryFolder):
+    def test_writes_numbers_and_fields_of_a_running_crack(self):
+        found = fracture(self.out)
+        self.assertGreater(found["samples"], 10)
+        self.assertEqual(found["reason"], "")
+        for name, value in found.items():
+            if not name.endswith("_uncertainty") and name + "_uncertainty" in found and "vortex" not in name:
+                self.assertIsNotNone(value, name)
+        crack = json.loads((self.out / "crack.json").read_text())
+        ratio = crack["speed_lagrangian"] / found["shear_speed"]
+        self.assertAlmostEqual(found["speed_over_shear"], ratio, places=12)
+        # The speed of long shear waves along x, from the bonds by hand (theory.md, eqs. W.1 and W.2).
+        stiffness = 0.
+        for s, length, angles in ((2 / 3, 1., (0, 60, 120)), (0.75, math.sqrt(3), (30, 90, 150))):
+            for angle in angles:
+                X, Y = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+                stretch = math.hypot(2.3 * X, 2.8 * Y)
+                force = 1e5 * (stretch - stretch**-2) + 1.5e5 * (1 - stretch**-3)
+                tangent = 1e5 * (1 + 2 * stretch**-3) + 4.5e5 * stretch**-4
+                across = (2.8 * Y / stretch)**2  # of the bond's direction, squared
+                stiffness += s * length * X**2 * (tangent * across + force / stretch * (1 - across))
+        self.assertAlmostEqual(found["shear_speed"] / math.sqrt(stiffness / 944), 1, delta=1e-6)
+
+        for name in ("near_tip.vti", "near_tip_folded.vti"):
+            image = read(vtkXMLImageDataReader(), self.out / name)
+            points = image.GetPointData()
+            arrays = {points.GetArrayName(i): vtk_to_numpy(points.GetArray(i)) for i in range(points.GetNumberOfArrays())}
+            self.assertEqual({n: a.size // len(arrays["occupancy"]) for n, a in arrays.items()}, COMPONENTS)
+            self.assertEqual(image.GetFieldData().GetArray("Samples").GetValue(0), found["samples"])
+            columns, rows, _ = image.GetDimensions()
+            d = 0.625e-3
+            self.assertEqual((columns, rows), (16 + 1 + 12, 2 * 16 + 1))
+            for measured, expected in zip((*image.GetSpacing()[:2], *image.GetOrigin()[:2]),
+                                          (d, math.sqrt(0.75) * d, -16 * d, -16 * math.sqrt(0.75) * d)):
+                self.assertAlmostEqual(measured, expected, delta=1e-12)
+            # From 2 d to 7 d ahead of the tip, which the strip always reaches, the sheet is whole, and F is the gradient
+            # of the mean position: both are averages over a spacing or two.
+            whole = arrays["occupancy"].reshape(rows, columns)[:, 18:24]
+            self.assertLess(abs(whole - 1).max(), 1e-12)
+            u = arrays["displacement"].reshape(rows, columns, 3)[:, 18:24, 0]
+            F = arrays["deformation_gradient"].reshape(rows, columns, 9)[:, 19:23, 0]
+            self.assertLess(abs((u[:, 2:] - u[:, :-2]) / (2 * d) + 1 - F).max(), 0.1)
+            self.assertGreater(F.min(), 1.5)
+        self.assertTrue((self.out / "near_tip_velocity.png").exists())
+        self.assertTrue((self.out / "near_tip_stress.png").exists())
+
+    def test_says_when_there_was_no_running_crack(self):
+        found = fracture(self.out, "--set", "Time/end=0.05 ms")
+        self.assertEqual(found["samples"], 0)
+        self.assertIn("no crack ran", found["reason"])
+        self.assertIsNone(found["negative_zone_area"])
+        self.assertIsNone(found["wedge_angle"])
+        self.assertGreater(found["shear_speed"], 0)
+        self.assertFalse((self.out / "near_tip.vti").exists())
+        shutil.rmtree(self.out)
+        run = latcon("fracture", CASES / "fig1.prm", "--output-dir", self.out, *STRIP, "--set", "Time/end=0.05 ms",
+                     "--set", "Near tip/interval=0")
+        self.assertIn(run.returncode, (0, 3), run.stderr)
+        self.assertEqual([path.name for path in self.out.glob("near_tip*")], [])
+
+    def test_refuses_a_window_that_holds_no_site(self):
+        run = latcon("fracture", CASES / "fig1.prm", "--output-dir", self.out, "--set", "Near tip/ahead=0.1 mm")
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("Near tip/ahead", run.stderr)
+        self.assertFalse(self.out.exists())
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <filesystem>
+#include <optional>
+#include <vector>
+
+#include "lattice/crack_measurement.h"
+#include "lattice/near_tip_measurement.h"
+#include "lattice/simulation.h"
+#include "verification/case.h"
+
+namespace verification
+{
+
+/// Speeds of long waves along x in the loaded sheet, dashpots left out (theory.md, eq. W.2).
+struct WaveSpeeds
+{
+  double longitudinal, shear; ///< referential [m/s]: of the laboratory over the stretch along x
+};
+
+WaveSpeeds wave_speeds_along_crack(const Case &input);
+
+/// The fields around the tip of a fracture run, and what is measured of them.
+///
+/// Samples are taken while the tip is between 40 and 90 % of the way from the seed to the stop position: the crack has
+/// forgotten the seed, and the held edge behind the stop is far.
+class NearTipRecord
+{
+public:
+  /// @param seed_tip_X of the seed crack, reference [m]
+  NearTipRecord(const Case &input, const lattice::Simulation &simulation, double seed_tip_X);
+
+  /// To be called after every step. @param step counted from 1
+  void step(std::size_t step);
+
+  /// Writes near_tip.json and, if there are samples, near_tip.vti and near_tip_folded.vti; nothing if no samples were
+  /// asked for. To be called once, at the end. @throws OutputError, std::filesystem::filesystem_error
+  void write(const std::filesystem::path &directory, const lattice::CrackMeasurement &crack);
+
+private:
+  /// Sums over the samples of a block of what single samples say.
+  struct Sum
+  {
+    double value = 0.;
+    std::size_t samples = 0;
+    void add(double number)
+    {
+      value += number;
+      ++samples;
+    }
+  };
+  struct Block
+  {
+    Sum asymmetry, wedge_angle;
+  };
+  std::string measurements(const lattice::CrackMeasurement &crack) const;
+
+  const lattice::Simulation &simulation_;
+  std::size_t interval_;
+  Eigen::Matrix2d deformation_;
+  WaveSpeeds waves_;
+  double X_begin_, X_end_;
+  lattice::NearTipSampler sampler_;
+  std::array<Block, lattice::NearTipSampler::n_blocks> blocks_;
+};
+
+} // namespace verification

@@ -1,0 +1,150 @@
+"""Pictures of the fields around a crack tip, in the current configuration, as latcon averaged them."""
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.colors import TwoSlopeNorm
+from matplotlib.ticker import MaxNLocator
+from matplotlib.tri import Triangulation
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkObject
+from vtkmodules.vtkIOXML import vtkXMLImageDataReader
+
+from files import DamagedFile
+from pictures import BLACK, COLOUR_MAP, GREEN, WIDTH, Page, save
+
+LEFT, TOP, FOOT, BAR = 0.85, 0.45, 0.62, 1.25  # margins and the room of the colour bar [in]
+NEGATIVE = 0.01  # of the crack's speed: what moves back faster is outlined, as near_tip.json counts it
+FIELDS = {"displacement": 3, "velocity": 3, "cauchy_stress": 9, "occupancy": 1}
+
+
+@dataclass(frozen=True)
+class NearTip:
+    """Means at the points of a grid, arrays (rows along Y, columns along X, components); SI units."""
+
+    X: np.ndarray  # (columns) undeformed, relative to the tip
+    Y: np.ndarray  # (rows)
+    position: np.ndarray  # (rows, columns, 2) current, relative to the tip
+    velocity: np.ndarray  # (rows, columns, 2) of the laboratory
+    cauchy_stress: np.ndarray  # (rows, columns, 2, 2)
+    occupancy: np.ndarray  # (rows, columns)
+    samples: int
+
+    @property
+    def holds(self):
+        """Where there was material more often than not."""
+        return self.occupancy >= 0.5
+
+
+def read_near_tip(path):
+    """A file near_tip.vti or near_tip_folded.vti."""
+    vtkObject.GlobalWarningDisplayOff()  # what is wrong is said once, below
+    reader = vtkXMLImageDataReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    image = reader.GetOutput()
+    columns, rows, _ = image.GetDimensions()
+    arrays = {}
+    for name, components in FIELDS.items():
+        array = image.GetPointData().GetArray(name)
+        if array is None or array.GetNumberOfComponents() != components or array.GetNumberOfTuples() != rows * columns:
+            raise DamagedFile(path, f"no VTK image of the fields near a tip: it has no array {name!r} as it should be")
+        arrays[name] = vtk_to_numpy(array).reshape(rows, columns, components)
+    samples = image.GetFieldData().GetArray("Samples")
+    if samples is None or not np.isfinite(arrays["occupancy"]).all():
+        raise DamagedFile(path, "its samples or their occupancy make no sense")
+    (X_0, Y_0, _), (dX, dY, _) = image.GetOrigin(), image.GetSpacing()
+    X, Y = X_0 + dX * np.arange(columns), Y_0 + dY * np.arange(rows)
+    reference = np.stack(np.meshgrid(X, Y), axis=-1)
+    return NearTip(X, Y, reference + arrays["displacement"][..., :2], arrays["velocity"][..., :2],
+                   arrays["cauchy_stress"].reshape(rows, columns, 3, 3)[..., :2, :2], arrays["occupancy"][..., 0],
+                   int(samples.GetValue(0)))
+
+
+def velocity_picture(vti_path, out_png, title="velocity around the tip", crack_speed=None):
+    """Arrows and colour of v_x; what moves against the crack is outlined.
+
+    crack_speed: of the laboratory [m/s]; without it the outline is where v_x changes its sign
+    """
+    tip = read_near_tip(vti_path)
+    v = tip.velocity[..., 0]
+    ahead = np.where(tip.holds & (tip.X > 0), v, np.inf)
+    limit = -NEGATIVE * crack_speed if crack_speed else 0.0
+    colours = TwoSlopeNorm(0.0, min(v[tip.holds].min(), -1e-3), max(np.percentile(v[tip.holds], 99.5), 1e-3))
+    page, axes = axes_around(tip)
+    mesh = axes.tripcolor(triangulation(tip), np.nan_to_num(v).ravel(), shading="gouraud", rasterized=True,
+                          cmap="RdBu_r", norm=colours)
+    goes_back = ahead < limit
+    if goes_back.any():
+        axes.tricontour(triangulation(tip), np.where(tip.X > 0, np.nan_to_num(v), 0.0).ravel(), levels=[limit],
+                        colors=[GREEN], linewidths=1.4, linestyles="solid")
+    every = slice(None, None, 2)
+    shown = tip.holds[every, every]
+    place, arrow = 1e3 * tip.position[every, every][shown], tip.velocity[every, every][shown]
+    speed = np.linalg.norm(arrow, axis=1)
+    fastest = max(np.percentile(speed, 99), 1e-3)
+    arrows = axes.quiver(*place.T, *arrow.T, color=BLACK, angles="xy", width=0.0012, scale=22 * fastest,
+                         scale_units="width")
+    axes.quiverkey(arrows, 0.86, 1.025, fastest, f"{fastest:.3g} m/s", labelpos="E", fontproperties={"size": 9})
+    what = f"green: v_x < {limit:.2g} m/s ahead of the tip" if goes_back.any() else "nothing moves back ahead of the tip"
+    finish(page, axes, mesh, tip, title, f"v_x [m/s] in the laboratory, along the crack; {what}")
+    save(page.figure, out_png)
+
+
+def opening_stress_picture(vti_path, out_png, title="opening stress around the tip"):
+    """Filled contours of the Cauchy stress sigma_yy."""
+    tip = read_near_tip(vti_path)
+    stress = 1e-6 * tip.cauchy_stress[..., 1, 1]
+    low, high = np.percentile(stress[tip.holds & (tip.X > 0)], (1, 99.9))  # flanks have extremes of their own
+    levels = MaxNLocator(18).tick_values(min(low, 0.0), max(high, low + 1e-6))
+    page, axes = axes_around(tip)
+    cells = triangulation(tip)
+    mesh = axes.tricontourf(cells, np.nan_to_num(stress).ravel(), levels=levels, cmap=COLOUR_MAP, extend="both")
+    axes.tricontour(cells, np.nan_to_num(stress).ravel(), levels=levels, colors="white", linewidths=0.35)
+    finish(page, axes, mesh, tip, title, "Cauchy stress across the crack [MPa], force per current length and "
+           "undeformed thickness")
+    save(page.figure, out_png)
+
+
+def triangulation(tip):
+    """Two triangles for each cell of the grid that is material, in the current configuration [mm].
+
+    Cells of more than three times the area of those ahead of the tip span the opening, by fibrils or by flanks that lie
+    elsewhere in every sample.
+    """
+    rows, columns = tip.holds.shape
+    number = np.arange(rows * columns).reshape(rows, columns)
+    corners = np.stack((number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]))
+    x, y = position = 1e3 * np.nan_to_num(tip.position).reshape(-1, 2).T  # places without material are in no triangle
+    (ax, ay), (bx, by) = (position[:, corners[i + 2]] - position[:, corners[i]] for i in (0, 1))
+    area = 0.5 * np.abs(ax * by - ay * bx)
+    whole = tip.holds.ravel()[corners].all(axis=0)
+    ahead = whole & (tip.X[None, :-1] > 0)
+    a, b, c, d = corners[:, whole & (area < 3 * np.median(area[ahead if ahead.any() else whole]))]
+    return Triangulation(x, y, np.concatenate((np.column_stack((a, b, c)), np.column_stack((a, c, d)))))
+
+
+def axes_around(tip):
+    """A page and axes of equal scales for the neighbourhood of the tip."""
+    x, y = 1e3 * tip.position[tip.holds].T
+    # Single points of a flank may lie anywhere; far above and below the tip there is little to see.
+    left, right = np.percentile(x, (0.2, 100))
+    half_height = min(np.percentile(np.abs(y), 99.9), 0.38 * (right - left))
+    bottom, top = -half_height, half_height
+    width = WIDTH - LEFT - 0.25
+    height = width * (top - bottom) / (right - left)
+    page = Page(TOP + height + FOOT + BAR - 0.55)
+    axes = page.axes(LEFT, TOP, width, height)
+    axes.set(xlim=(left, right), ylim=(bottom, top), aspect="equal", xlabel="x from the tip [mm]",
+             ylabel="y from the tip [mm]")
+    axes.grid(False)
+    return page, axes
+
+
+def finish(page, axes, mesh, tip, title, label):
+    """Tip, title and colour bar."""
+    axes.plot(0, 0, "+", color=BLACK, markersize=11, markeredgewidth=1.6)
+    axes.set_title(f"{title}: mean of {tip.samples} samples, current configuration")
+    bar = page.figure.colorbar(mesh, cax=page.axes(LEFT, page.height - 0.62, WIDTH - LEFT - 0.25, 0.14),
+                               orientation="horizontal")
+    bar.set_label(label)
+    bar.outline.set_visible(False)
