@@ -75,7 +75,7 @@ def draw_sweep(study, row, path):
         return False
     unit, name = AGAINST.get(row["against"], (1, f"{row['against']} [SI]"))
     points = [(unit * x, seeds) for x, seeds in points]
-    panels = Panels(len(ALONG), 2, 2.6, top=0.35)
+    panels = Panels(len(ALONG), 2, 2.6, top=0.1)
     for number, (quantity, scale, label) in enumerate(ALONG):
         axes = panels.axes(number)
         for x, seeds in points:
@@ -85,7 +85,8 @@ def draw_sweep(study, row, path):
             axes.errorbar(x, y, yerr=error, marker=marker, color=colour, capsize=3, markersize=6, linestyle="none",
                           markerfacecolor=colour if found else "white")
         axes.set(xlabel=name, ylabel=label)
-        axes.set_ylim(0, max(axes.get_ylim()[1], 0.1))
+        top = max(axes.get_ylim()[1], 0.01)
+        axes.set_ylim(-0.04 * top, top)
         if min(x for x, _ in points) > 0 and max(x for x, _ in points) > DECADES * min(x for x, _ in points):
             axes.set_xscale("log")
     shown = {next(iter(patterns_of(seeds))) for _, seeds in points}

@@ -32,15 +32,31 @@ std::vector<Quantity> all_quantities()
   all.push_back({"bonds_broken", "1", Source::crack});
   all.push_back({"end_time", "s", Source::crack});
   all.push_back({"energy_imbalance", "1", Source::crack});
-  add_measured(all, "negative_zone_area", "m^2", Source::near_tip);
-  add_measured(all, "negative_zone_depth", "m/s", Source::near_tip);
-  add_measured(all, "velocity_asymmetry", "1", Source::near_tip);
-  add_measured(all, "process_zone_length", "m", Source::near_tip);
-  add_measured(all, "opening_stress_angle_4d", "rad", Source::near_tip);
-  add_measured(all, "opening_stress_ratio_4d", "1", Source::near_tip);
-  add_measured(all, "wedge_angle", "rad", Source::near_tip);
-  add_measured(all, "speed_over_shear", "1", Source::near_tip);
-  add_measured(all, "speed_over_longitudinal", "1", Source::near_tip);
+  const auto add_near_tip = [&all](const std::vector<std::string> &names, const std::string &unit)
+  {
+    for (const std::string &name : names)
+      add_measured(all, name, unit, Source::near_tip);
+  };
+  all.push_back({"samples", "1", Source::near_tip});
+  add_near_tip({"negative_zone_area"}, "m^2");
+  add_near_tip({"negative_zone_length", "negative_zone_distance"}, "m");
+  add_near_tip({"negative_zone_depth"}, "m/s");
+  add_near_tip({"negative_zone_depth_X", "negative_zone_depth_Y"}, "m");
+  add_near_tip({"velocity_asymmetry", "velocity_asymmetry_of_samples", "vortices"}, "1");
+  add_near_tip({"vortex_distance"}, "m");
+  add_near_tip({"vortex_circulation", "tip_circulation"}, "m^2/s");
+  add_near_tip({"process_zone_length"}, "m");
+  add_near_tip({"process_zone_fastest"}, "m/s");
+  for (const std::string radius : {"4d", "8d"})
+  {
+    add_near_tip({"opening_stress_angle_" + radius}, "degrees");
+    add_near_tip({"opening_stress_ratio_" + radius}, "1");
+    add_near_tip({"opening_stress_peak_" + radius}, "Pa");
+  }
+  add_near_tip({"wedge_angle"}, "degrees");
+  add_near_tip({"speed_over_shear", "speed_over_longitudinal"}, "1");
+  for (const std::string name : {"shear_speed", "longitudinal_speed", "process_zone_speed"})
+    all.push_back({name, "m/s", Source::near_tip});
   return all;
 }
 

@@ -20,7 +20,7 @@ struct Quantity
   };
 
   std::string name;
-  std::string unit; ///< SI, "1" for a pure number
+  std::string unit; ///< SI, "1" for a pure number; angles in "degrees"
   Source source;
 };
 

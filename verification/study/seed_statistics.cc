@@ -25,8 +25,8 @@ Display display(const std::string &unit)
     return {1e6, " mm²"};
   if (unit == "s")
     return {1e3, " ms"};
-  if (unit == "rad")
-    return {180. / M_PI, "°"};
+  if (unit == "degrees")
+    return {1., "°"};
   return {1., unit == "1" ? "" : " " + unit};
 }
 

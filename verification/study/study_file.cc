@@ -244,7 +244,7 @@ private:
     const bool along = row.rule == Rule::rises || row.rule == Rule::falls || row.rule == Rule::bracket;
     if (along && row.against.empty())
       place.problem("this rule needs \"against\"");
-    if (along && row.runs.size() < 2)
+    if (along && row.runs.size() == 1)
       place.problem("this rule needs two runs or more");
   }
 
@@ -281,7 +281,7 @@ private:
         break;
       }
       row.bound = place.number();
-      if (row.rule == Rule::is_near && row.bound == 0.)
+      if (row.rule == Rule::is_near && place.value().is_number() && row.bound == 0.)
         place.problem("the tolerance is relative, so this must not be 0");
     }
   }

@@ -94,7 +94,7 @@ struct ClaimResult
 [[nodiscard]] std::vector<ClaimResult> judge(const Study &study, const std::vector<PlannedRun> &plan,
                                              const std::vector<RunOutcome> &outcomes);
 
-/// A number with its unit as a reader wants it: lengths in cm, areas in mm^2, times in ms, angles in degrees.
+/// A number with its unit as a reader wants it: lengths in cm, areas in mm^2, times in ms.
 /// @param deviation standard deviation in the same unit, or none
 [[nodiscard]] std::string quantity_text(double value, std::optional<double> deviation, const std::string &unit);
 
