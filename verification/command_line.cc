@@ -108,6 +108,16 @@ ExitCode run_program(int argc, char **argv)
   add_case_command("continuum", "equilibrium or motion of the finite element sheet", run_continuum);
   add_case_command("fracture", "verify the case's material and pre-stretch, then run its crack", run_fracture)
     ->add_flag("--skip-verification", options.skip_verification, "run the crack unverified; noted in every output");
+  app.get_subcommand("fracture")->add_flag("--no-report", options.no_report, "draw neither pictures nor page");
+
+  std::string study;
+  CLI::App *study_command = app.add_subcommand("study", "a sweep of cracks, set beside what a source states");
+  study_command->add_option("STUDY", study, "study file (.json), or a shipped one: paper")->required()->type_name("");
+  study_command->add_flag("--quick", options.quick, "small version");
+  study_command->add_flag("--resume", options.resume, "keep the runs that are there and would come out the same");
+  study_command->add_flag("--skip-verification", options.skip_verification,
+                          "run the cracks unverified; noted in every output");
+  study_command->callback([&] { command = [&] { return run_study(options, study); }; });
 
   CompareOptions chosen;
   CLI::App *compare_command = app.add_subcommand("compare", "a lattice frame beside a continuum frame, site by site");

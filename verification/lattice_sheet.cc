@@ -90,6 +90,15 @@ void require_whole_held_sheet(const Case &input, Parameters &p, const std::strin
     check_edge(edge, p, command);
 }
 
+void require_fracture_case(const Case &input, Parameters &p)
+{
+  require_whole_held_sheet(input, p, "`latcon fracture`");
+  if (!input.breaking_stretch)
+    p.error("Fracture/breaking stretch", "fracture needs a breaking stretch");
+  if (!(input.end_time > 0.))
+    p.error("Time/end", "fracture needs an end time larger than 0");
+}
+
 lattice::State lattice_state(const Case &input, const lattice::TriangularLattice &sheet, double breaking_stretch)
 {
   const auto held = [&](std::size_t id) { return input.continuum.edges[id].condition == Condition::held; };

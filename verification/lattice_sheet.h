@@ -17,6 +17,9 @@ void require_lattice_sheet(const Case &input, Parameters &parameters, const std:
 /// bonds.
 void require_whole_held_sheet(const Case &input, Parameters &parameters, const std::string &command);
 
+/// Refuses, besides, cases that `latcon fracture` cannot run for want of a breaking stretch or an end time.
+void require_fracture_case(const Case &input, Parameters &parameters);
+
 /// The sheet at the homogeneous deformation of the case, at rest and without noise; hole or notch cut out, its edges
 /// held or free as the case says.
 /// @param sheet input.lattice()

@@ -74,19 +74,28 @@ ExitCode Run::end(const Results &results, ExitCode exit_code)
     results.write(directory_);
     info_.write(directory_ + "/run.json", exit_code, to_string(results.verdict()));
   }
+  return exit_code;
+}
+
+void Run::print(const Results &results) const
+{
   if (talks_)
     results.print(std::cout);
-  return exit_code;
 }
 
 ExitCode Run::finish(const Results &results)
 {
-  return end(results, results.verdict() == Verdict::fails ? ExitCode::claim_failed : ExitCode::done);
+  const ExitCode exit_code =
+    end(results, results.verdict() == Verdict::fails ? ExitCode::claim_failed : ExitCode::done);
+  print(results);
+  return exit_code;
 }
 
 ExitCode Run::interrupted(const Results &results)
 {
-  return end(results, ExitCode::interrupted);
+  end(results, ExitCode::interrupted);
+  print(results);
+  return ExitCode::interrupted;
 }
 
 } // namespace verification

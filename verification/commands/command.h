@@ -25,6 +25,8 @@ struct Options
   bool quiet = false;
   bool dry_run = false;
   bool skip_verification = false;
+  bool no_report = false; ///< of a crack: neither pictures nor page
+  bool resume = false;    ///< of a study: take the runs that are there
 };
 
 /// What `latcon compare` was asked. Times are texts, with a unit or in s, or load factors; empty: the last frame.
@@ -46,6 +48,10 @@ ExitCode run_continuum(const Options &options);
 ExitCode run_fracture(const Options &options);
 ExitCode compare_frames(const Options &options, const CompareOptions &chosen);
 ExitCode report(const Options &options, const std::string &directory);
+ExitCode run_study(const Options &options, const std::string &study);
+
+/// Draws the page of a study, study.html, from the files in its output directory. @throws OutputError
+void study_page(const std::string &directory);
 
 /// Reads and checks the case that the options name. @throws InputError
 void read_case(const Options &options, Case &input, Parameters &parameters);
@@ -73,9 +79,12 @@ public:
   /// The same for a run that was stopped by a signal: what is known is written.
   ExitCode interrupted(const Results &results);
 
+  /// Writes results.json, results.csv and the final run.json, prints nothing. @return `exit_code`
+  ExitCode end(const Results &results, ExitCode exit_code);
+
 private:
   Run(const Options &options, const Parameters *parameters);
-  ExitCode end(const Results &results, ExitCode exit_code);
+  void print(const Results &results) const;
 
   std::string directory_;
   bool writes_, talks_;

@@ -138,11 +138,7 @@ ExitCode run_fracture(const Options &options)
   Case input;
   Parameters parameters;
   read_case(options, input, parameters);
-  require_whole_held_sheet(input, parameters, "`latcon fracture`");
-  if (!input.breaking_stretch)
-    parameters.error("Fracture/breaking stretch", "fracture needs a breaking stretch");
-  if (!(input.end_time > 0.))
-    parameters.error("Time/end", "fracture needs an end time larger than 0");
+  require_fracture_case(input, parameters);
   parameters.finish();
 
   const lattice::TriangularLattice sheet = input.lattice();
@@ -163,6 +159,8 @@ ExitCode run_fracture(const Options &options)
   if (run.writes())
     results.add(break_sheet(input, sheet, material, options.skip_verification, run));
   const ExitCode exit_code = signal_came() ? run.interrupted(results) : run.finish(results);
+  if (options.no_report)
+    return exit_code;
   Options silent = options;
   silent.quiet = true;
   report(silent, run.directory()); // pictures and page; the verdict in them is the one returned here

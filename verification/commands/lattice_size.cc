@@ -33,10 +33,14 @@ std::string lattice_size(const Case &input, double time_step)
       << " m\n"
       << "# time step: " << time_step << " s, " << steps << " steps at most\n"
       << "# memory: about " << std::ceil(sheet.n_places() * doubles_per_place * 8e-6) << " MB beside the libraries\n"
-      << "# time: about "
-      << std::ceil(steps * static_cast<double>(sites) * nanoseconds_per_site_step * 1e-9 / omp_get_max_threads())
+      << "# time: about " << std::ceil(core_seconds(steps * static_cast<double>(sites)) / omp_get_max_threads())
       << " s on " << omp_get_max_threads() << " threads\n";
   return out.str();
+}
+
+double core_seconds(double site_steps)
+{
+  return site_steps * nanoseconds_per_site_step * 1e-9;
 }
 
 } // namespace verification

@@ -17,9 +17,9 @@ def table(head, rows, kind=""):
     return f'<div class="scroll {kind}"><table><thead><tr>{cells}</tr></thead><tbody>{body}</tbody></table></div>'
 
 
-def row(verdict, cells):
-    """A table row in the colour of its verdict, which comes first; cells are (class, HTML)."""
-    cells = [("verdict", f"{MARKS[verdict]} {verdict}"), *cells]
+def row(verdict, cells, word=None):
+    """A table row in the colour of its verdict, which comes first, or `word` for it; cells are (class, HTML)."""
+    cells = [("verdict", f"{MARKS[verdict]} {word or verdict}"), *cells]
     return f'<tr class="{verdict}">' + "".join(f'<td class="{kind}">{text}</td>' for kind, text in cells) + "</tr>"
 
 

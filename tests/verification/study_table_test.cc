@@ -1,0 +1,316 @@
+// The rules of a study, each both ways, on made-up values; and what is said of seeds and runs without a value.
+#include <cmath>
+#include <sstream>
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "verification/study/study_output.h"
+
+using namespace verification;
+
+namespace
+{
+
+// Runs with values along zeta = 1, 2, 3 ... in the order in which they were added.
+class Table
+{
+public:
+  // Seeds of a run with values of the wavelength [m]; NaN: straight, none measured.
+  void add(const std::string &run, const std::vector<double> &wavelengths)
+  {
+    for (const double wavelength : wavelengths)
+    {
+      RunOutcome &outcome = add_seed(run, std::isnan(wavelength) ? "straight" : "oscillating");
+      if (!std::isnan(wavelength))
+        outcome.values["wavelength"] = wavelength;
+    }
+  }
+
+  RunOutcome &add_seed(const std::string &run, const std::string &pattern)
+  {
+    const bool known = !plan.empty() && plan.back().run == run;
+    PlannedRun planned;
+    planned.run = run;
+    planned.seed = known ? plan.back().seed + 1 : 1;
+    planned.zeta = known ? *plan.back().zeta : plan.empty() ? 1. : *plan.back().zeta + 1.;
+    plan.push_back(planned);
+    RunOutcome outcome;
+    outcome.run = run;
+    outcome.seed = planned.seed;
+    outcome.state = RunState::measured;
+    outcome.pattern = pattern;
+    outcome.conclusive = true;
+    outcomes.push_back(outcome);
+    return outcomes.back();
+  }
+
+  RowOutcome judged(const StudyRow &row, const std::vector<std::string> &left_out = {}) const
+  {
+    return judge(row, plan, outcomes, left_out);
+  }
+
+  std::vector<PlannedRun> plan;
+  std::vector<RunOutcome> outcomes;
+};
+
+StudyRow row_of(const std::vector<std::string> &runs, Rule rule, double bound = 0., double tolerance = 0.)
+{
+  StudyRow row;
+  row.runs = runs;
+  row.quantity = "wavelength";
+  row.rule = rule;
+  row.bound = bound;
+  row.tolerance = tolerance;
+  if (rule == Rule::rises || rule == Rule::falls)
+    row.against = "zeta";
+  return row;
+}
+
+StudyRow pattern_row(const std::vector<std::string> &runs, const std::string &pattern)
+{
+  StudyRow row = row_of(runs, Rule::is);
+  row.quantity = pattern_quantity;
+  row.pattern = pattern;
+  return row;
+}
+
+StudyRow bracket_row(const std::vector<std::string> &runs)
+{
+  StudyRow row = pattern_row(runs, "");
+  row.rule = Rule::bracket;
+  row.from = "straight";
+  row.to = "oscillating";
+  row.against = "zeta";
+  return row;
+}
+
+#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
+} // namespace
+
+TEST(StudyTable, MeanAndStandardDeviationOverSeeds)
+{
+  Table table;
+  table.add("a", {0.02, 0.022, 0.024});
+  const SeedStatistics seeds = statistics("a", "wavelength", table.outcomes);
+  EXPECT_DOUBLE_EQ(seeds.mean.value(), 0.022);
+  EXPECT_NEAR(seeds.deviation.value(), 0.002, 1e-15);
+  EXPECT_NEAR(seeds.standard_error, 0.002 / std::sqrt(3.), 1e-15);
+  EXPECT_EQ(seeds.text("m"), "2.20 ± 0.20 cm (3)");
+}
+
+TEST(StudyTable, UncertaintyOfASingleMeasurementCountsAsError)
+{
+  Table table;
+  table.add("a", {0.02});
+  EXPECT_DOUBLE_EQ(statistics("a", "wavelength", table.outcomes).standard_error, 0.);
+  table.outcomes[0].values["wavelength_uncertainty"] = 0.003;
+  EXPECT_DOUBLE_EQ(statistics("a", "wavelength", table.outcomes).standard_error, 0.003);
+}
+
+TEST(StudyTable, IsNearHoldsWithinItsTolerance)
+{
+  Table table;
+  table.add("a", {0.02, 0.022});
+  EXPECT_EQ(table.judged(row_of({"a"}, Rule::is_near, 0.0229, 0.1)).verdict, RowVerdict::holds);
+  EXPECT_EQ(table.judged(row_of({"a"}, Rule::is_near, 0.0229, 0.08)).verdict, RowVerdict::does_not_hold);
+  EXPECT_EQ(table.judged(row_of({"a"}, Rule::is_near, 0.0195, 0.07)).verdict, RowVerdict::does_not_hold);
+}
+
+TEST(StudyTable, AboveAndBelow)
+{
+  Table table;
+  table.add("a", {0.02, 0.022});
+  EXPECT_EQ(table.judged(row_of({"a"}, Rule::above, 0.0209)).verdict, RowVerdict::holds);
+  EXPECT_EQ(table.judged(row_of({"a"}, Rule::above, 0.0211)).verdict, RowVerdict::does_not_hold);
+  EXPECT_EQ(table.judged(row_of({"a"}, Rule::below, 0.0211)).verdict, RowVerdict::holds);
+  EXPECT_EQ(table.judged(row_of({"a"}, Rule::below, 0.0209)).verdict, RowVerdict::does_not_hold);
+}
+
+TEST(StudyTable, BoundMayBeThatOfAnotherRun)
+{
+  Table table;
+  table.add("a", {0.02});
+  table.add("b", {0.03});
+  table.add("none", {NAN});
+  StudyRow row = row_of({"a"}, Rule::below);
+  row.bound_run = "b";
+  EXPECT_EQ(table.judged(row).verdict, RowVerdict::holds);
+  row.rule = Rule::above;
+  EXPECT_EQ(table.judged(row).verdict, RowVerdict::does_not_hold);
+  row.bound_run = "none";
+  EXPECT_EQ(table.judged(row).verdict, RowVerdict::not_measured);
+  EXPECT_HAS(table.judged(row).note, "none, to compare with");
+}
+
+TEST(StudyTable, ARuleForEachRunWantsAllOfThem)
+{
+  Table table;
+  table.add("a", {0.02});
+  table.add("b", {0.03});
+  EXPECT_EQ(table.judged(row_of({"a", "b"}, Rule::above, 0.01)).verdict, RowVerdict::holds);
+  EXPECT_EQ(table.judged(row_of({"a", "b"}, Rule::above, 0.025)).verdict, RowVerdict::does_not_hold);
+}
+
+TEST(StudyTable, PatternHoldsIfEverySeedShowsIt)
+{
+  Table table;
+  table.add("a", {0.02, 0.02, 0.02});
+  EXPECT_EQ(table.judged(pattern_row({"a"}, "oscillating")).verdict, RowVerdict::holds);
+  EXPECT_EQ(table.judged(pattern_row({"a"}, "oscillating")).measured, "oscillating 3/3");
+  table.outcomes[1].pattern = "straight";
+  const RowOutcome mixed = table.judged(pattern_row({"a"}, "oscillating"));
+  EXPECT_EQ(mixed.verdict, RowVerdict::does_not_hold);
+  EXPECT_EQ(mixed.measured, "oscillating 2/3, straight 1/3");
+  EXPECT_NEAR(mixed.number.value(), 2. / 3., 1e-15);
+}
+
+TEST(StudyTable, PatternsThatAreNotConclusiveDoNotCount)
+{
+  Table table;
+  table.add("a", {0.02, 0.02, 0.02});
+  table.outcomes[2].conclusive = false;
+  const RowOutcome one = table.judged(pattern_row({"a"}, "oscillating"));
+  EXPECT_EQ(one.verdict, RowVerdict::holds);
+  EXPECT_EQ(one.measured, "oscillating 2/3, oscillating 1/3 (not conclusive)");
+  EXPECT_HAS(one.note, "a: not measured in 1 of 3 (seed 3 oscillating, not conclusive)");
+  table.outcomes[1].conclusive = false;
+  EXPECT_EQ(table.judged(pattern_row({"a"}, "oscillating")).verdict, RowVerdict::not_measured);
+}
+
+TEST(StudyTable, SeedsWithoutTheNumberAreNamedAndHalfOfThemAreTooMany)
+{
+  Table table;
+  table.add("a", {0.02, NAN, 0.022});
+  const RowOutcome some = table.judged(row_of({"a"}, Rule::is_near, 0.021, 0.1));
+  EXPECT_EQ(some.verdict, RowVerdict::holds);
+  EXPECT_HAS(some.measured, "(2)");
+  EXPECT_EQ(some.note, "a: not measured in 1 of 3 (seed 2 straight)");
+  RunOutcome &failed = table.add_seed("a", "");
+  failed.state = RunState::failed;
+  const RowOutcome half = table.judged(row_of({"a"}, Rule::is_near, 0.021, 0.1));
+  EXPECT_EQ(half.verdict, RowVerdict::not_measured);
+  EXPECT_HAS(half.note, "seed 4 failed");
+  EXPECT_FALSE(half.result("c").has_value());
+}
+
+TEST(StudyTable, RisesAndFalls)
+{
+  Table table;
+  table.add("a", {0.010, 0.011});
+  table.add("b", {0.020, 0.021});
+  table.add("c", {0.0205, 0.0206}); // saturated
+  EXPECT_EQ(table.judged(row_of({"c", "a", "b"}, Rule::rises)).verdict, RowVerdict::holds);
+  EXPECT_EQ(table.judged(row_of({"c", "a", "b"}, Rule::falls)).verdict, RowVerdict::does_not_hold);
+  table.add("d", {0.012, 0.013}); // above the first, but clearly below the others
+  EXPECT_EQ(table.judged(row_of({"a", "b", "c", "d"}, Rule::rises)).verdict, RowVerdict::does_not_hold);
+}
+
+TEST(StudyTable, NoRiseThatIsWithinTheErrors)
+{
+  Table table;
+  table.add("a", {0.010, 0.020});
+  table.add("b", {0.012, 0.022});
+  EXPECT_EQ(table.judged(row_of({"a", "b"}, Rule::rises)).verdict, RowVerdict::does_not_hold);
+}
+
+TEST(StudyTable, ExponentOfATrend)
+{
+  Table table;
+  for (const double zeta : {1., 2., 3., 4.})
+    table.add("z" + std::to_string(int(zeta)), {0.01 * std::sqrt(zeta)});
+  const RowOutcome row = table.judged(row_of({"z1", "z2", "z3", "z4"}, Rule::rises));
+  EXPECT_NEAR(row.number.value(), 0.5, 1e-12);
+}
+
+TEST(StudyTable, TrendLeavesOutRunsWithoutTheNumberAndSaysSo)
+{
+  Table table;
+  table.add("a", {NAN, NAN});
+  table.add("b", {0.020, 0.021});
+  table.add("c", {0.030, 0.031});
+  const RowOutcome row = table.judged(row_of({"a", "b", "c"}, Rule::rises));
+  EXPECT_EQ(row.verdict, RowVerdict::holds);
+  EXPECT_HAS(row.note, "a: not measured in 2 of 2");
+  EXPECT_EQ(table.judged(row_of({"a", "b"}, Rule::rises)).verdict, RowVerdict::not_measured);
+}
+
+TEST(StudyTable, BracketLiesBetweenTheTwoPatterns)
+{
+  Table table;
+  for (const char *run : {"a", "b"})
+    table.add(run, {NAN, NAN});
+  table.add("mixed", {NAN, 0.02});
+  for (const char *run : {"d", "e"})
+    table.add(run, {0.02, 0.02});
+  const RowOutcome row = table.judged(bracket_row({"e", "d", "mixed", "b", "a"}));
+  EXPECT_EQ(row.verdict, RowVerdict::holds);
+  EXPECT_DOUBLE_EQ(row.number.value(), 3.);
+  EXPECT_HAS(row.measured, "zeta between 2 and 4");
+  EXPECT_EQ(table.judged(bracket_row({"a", "b", "mixed"})).verdict, RowVerdict::does_not_hold);
+  EXPECT_EQ(table.judged(bracket_row({"mixed", "d", "e"})).verdict, RowVerdict::does_not_hold);
+
+  Table reversed;
+  reversed.add("a", {0.02});
+  reversed.add("b", {NAN});
+  EXPECT_EQ(reversed.judged(bracket_row({"a", "b"})).verdict, RowVerdict::does_not_hold);
+}
+
+TEST(StudyTable, RunsThatTheQuickStudyLeavesOut)
+{
+  Table table;
+  table.add("a", {0.010});
+  table.add("b", {0.020});
+  const RowOutcome alone = table.judged(row_of({"big"}, Rule::above, 0.), {"big"});
+  EXPECT_EQ(alone.verdict, RowVerdict::not_measured);
+  EXPECT_EQ(alone.note, "big is not part of the quick study");
+  EXPECT_EQ(table.judged(row_of({"a", "b", "big"}, Rule::rises), {"big"}).verdict, RowVerdict::holds);
+}
+
+TEST(StudyTable, ResultsHaveTheVerdictsOfTheTable)
+{
+  Table table;
+  table.add("a", {0.010, 0.011});
+  table.add("b", {0.020, 0.021});
+  table.add("s", {NAN, NAN});
+  for (const StudyRow &row :
+       {row_of({"a"}, Rule::is_near, 0.0105, 0.01), row_of({"a"}, Rule::is_near, 0.02, 0.1),
+        row_of({"a"}, Rule::above, 1.), row_of({"a"}, Rule::below, 1.), row_of({"a", "b"}, Rule::rises),
+        row_of({"a", "b"}, Rule::falls), pattern_row({"a"}, "oscillating"), pattern_row({"a"}, "straight"),
+        bracket_row({"a", "s"}), row_of({"a"}, Rule::reported)})
+  {
+    const RowOutcome outcome = table.judged(row);
+    const Verdict verdict = outcome.result("c").value().verdict();
+    EXPECT_EQ(verdict == Verdict::holds, outcome.verdict == RowVerdict::holds) << outcome.expected;
+    EXPECT_EQ(verdict == Verdict::fails, outcome.verdict == RowVerdict::does_not_hold) << outcome.expected;
+  }
+}
+
+TEST(StudyTable, OutputsHoldEveryRunAndRow)
+{
+  Table table;
+  table.add("a", {0.010, NAN});
+  StudyResults results;
+  results.study.title = "T";
+  results.study.runs = {{"a", "", {{"Sheet/height", "2 cm"}}, {}, {1, 2}}};
+  results.study.claims = {{"claim", "paper", "", {row_of({"a"}, Rule::reported), pattern_row({"a"}, "oscillating")}}};
+  results.plan = table.plan;
+  results.outcomes = table.outcomes;
+  results.outcomes[1].state = RunState::failed;
+  results.outcomes[1].problem = "the state blew up";
+  results.claims = judge(results.study, results.plan, results.outcomes);
+
+  const std::string csv = study_csv(results);
+  EXPECT_HAS(csv, "wavelength [m]");
+  EXPECT_HAS(csv, "a,1,Sheet/height=2 cm,measured,oscillating,true,");
+  EXPECT_HAS(csv, "a,2,Sheet/height=2 cm,failed,");
+  const auto json = nlohmann::json::parse(study_json(results));
+  EXPECT_EQ(json["seeds"][0]["values"]["wavelength"], 0.010);
+  EXPECT_TRUE(json["seeds"][0]["values"]["amplitude"].is_null());
+  EXPECT_EQ(json["claims"][0]["rows"].size(), 2u);
+  std::ostringstream out;
+  print_table(out, results);
+  EXPECT_HAS(out.str(), "a, seed 2: failed: the state blew up");
+}

@@ -1,0 +1,201 @@
+#!/usr/bin/python3
+"""latcon study: runs, exit codes, files, resuming, being killed, and what is refused.
+
+Usage: study_test.py PATH_OF_LATCON
+"""
+import copy
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+sys.dont_write_bytecode = True
+from program import CASES, LATCON, TemporaryFolder, latcon, read_csv
+
+# Strips so small that a crack is through in a moment, of nearest neighbours alone, which are checked sooner.
+TINY = {
+    "title": "A tiny study",
+    "base": str(CASES / "quick.prm"),
+    "set": {"Sheet/length": "2.5 cm", "Sheet/height": "1.5 cm", "Time/end": "1 ms",
+            "Next-nearest neighbours/present": False},
+    "quick": {"set": {"Time/end": "0.5 ms"}},
+    "runs": {
+        "base": {"seeds": [1, 2]},
+        "low": {"set": {"Sheet/height": "1 cm"}},
+        "thin": {"set": {"Nearest neighbours/viscosity": 40}, "quick": False},
+    },
+    "claims": [
+        {"claim": "The crack runs", "paper": "It does.", "rows": [
+            {"run": "base", "quantity": "speed_lagrangian", "above": 1},
+            {"runs": ["low", "base"], "quantity": "speed_lagrangian", "against": "Sheet/height"},
+            {"run": "base", "quantity": "pattern"},
+            {"run": "base", "quantity": "wavelength", "above": 0}]},
+    ],
+    "pictures": ["base"],
+}
+FOLDERS = ["base-1", "base-2", "low-1", "thin-1"]
+
+
+class Study(TemporaryFolder):
+    def study(self, *arguments, change=None, expect=0, skip=True, **keywords):
+        """Runs the tiny study after `change` has changed it. @return what was printed"""
+        document = copy.deepcopy(TINY)
+        if change:
+            change(document)
+        path = self.folder / "tiny.json"
+        path.write_text(json.dumps(document))
+        words = ["study", path, "--output-dir", self.out, *(["--skip-verification"] if skip else []), *arguments]
+        run = latcon(*words, **keywords)
+        self.assertEqual(run.returncode, expect, run.stdout + run.stderr)
+        return run.stdout + run.stderr
+
+    def text(self, name):
+        return (self.out / name).read_text()
+
+    def times(self):
+        """When the runs were made."""
+        return {name: (self.out / "runs" / name / "crack.json").stat().st_mtime_ns for name in FOLDERS}
+
+    def test_runs_everything_and_leaves_every_file(self):
+        environment = {name: value for name, value in os.environ.items() if not name.startswith("OMPI_")}
+        printed = self.study(env=environment)
+        self.assertIn("[4/4]", printed)
+        self.assertLessEqual(max(map(len, printed.splitlines())), 120)
+        self.assertEqual(sorted(path.name for path in (self.out / "runs").iterdir()), FOLDERS)
+        self.assertNotIn("report.html", os.listdir(self.out / "runs" / "base-1"))
+        document = json.loads(self.text("study.json"))
+        rows = document["claims"][0]["rows"]
+        self.assertEqual([row["verdict"] for row in rows], ["holds", "reported", "reported", "not measured"])
+        self.assertEqual(rows[0]["values"][0]["n"], 2)
+        self.assertEqual(document["verification"], "none (--skip-verification)")
+        lines = read_csv(self.out / "study.csv")
+        self.assertEqual([(line["run"], line["seed"]) for line in lines],
+                         [("base", "1"), ("base", "2"), ("low", "1"), ("thin", "1")])
+        crack = json.loads(self.text("runs/low-1/crack.json"))
+        self.assertEqual(float(lines[2]["speed_lagrangian [m/s]"]), crack["speed_lagrangian"])
+        self.assertEqual(json.loads(self.text("results.json"))["verdict"], "holds")
+        page = self.text("study.html")
+        for part in ("The crack runs", "not measured", "data:image/png", "It does."):
+            self.assertIn(part, page)
+        self.assertNotIn("http", page.replace("http://www.w3.org", ""))
+
+    def test_row_that_does_not_hold_is_3(self):
+        def change(document):
+            document["claims"][0]["rows"][0]["above"] = 1000
+        self.assertIn("does not hold", self.study(change=change, expect=3))
+
+    def test_child_that_fails_is_4_and_stops_no_other(self):
+        def change(document):  # a step that squeezed bonds, which are stiffer, do not bear
+            document["runs"]["low"]["set"].update({"Time/step": 1e-5, "Nearest neighbours/viscosity": 0,
+                                                   "Loading/strain x": -0.6, "Loading/strain y": -0.6})
+        printed = self.study(change=change, expect=4)
+        self.assertIn("failed", printed)
+        states = {line["run"]: line["state"] for line in read_csv(self.out / "study.csv")}
+        self.assertEqual(states, {"base": "measured", "low": "failed", "thin": "measured"})
+        self.assertIn("low, seed 1", self.text("study.html"))
+
+    def test_material_that_is_refused_is_told(self):
+        def change(document):
+            document["runs"] = {"base": {"set": {"Continuum/ratio": -0.2}}}
+            document["claims"][0]["rows"] = [{"run": "base", "quantity": "pattern"}]
+        self.assertIn("refused: verification", self.study(change=change, skip=False))
+        self.assertIn("refused: verification", self.text("study.csv"))
+
+    def test_resume_repeats_nothing_and_gives_the_same_files(self):
+        self.study()
+        before, first = self.times(), {name: self.text(name) for name in ("study.json", "study.csv", "results.json")}
+        self.assertIn("0 runs, 4 are there already", self.study("--resume"))
+        self.assertEqual(self.times(), before)
+        self.assertEqual({name: self.text(name) for name in first}, first)
+
+    def test_resume_repeats_what_would_come_out_differently(self):
+        self.study()
+        before = self.times()
+
+        def change(document):
+            document["runs"]["low"]["set"]["Sheet/height"] = "1.1 cm"
+        info = self.out / "runs" / "thin-1" / "run.json"
+        document = json.loads(info.read_text())
+        info.write_text(json.dumps(dict(document, git_commit="0" * 40)))
+        self.assertIn("2 runs, 2 are there already", self.study("--resume", change=change))
+        after = self.times()
+        self.assertEqual([name for name in FOLDERS if after[name] != before[name]], ["low-1", "thin-1"])
+
+    def test_without_resume_everything_runs_anew(self):
+        self.study()
+        before = self.times()
+        self.study()
+        self.assertFalse([name for name, when in self.times().items() if when == before[name]])
+
+    def test_killed_and_resumed_is_as_if_never_stopped(self):
+        def longer(document):
+            document["set"]["Sheet/length"] = "4 cm"
+            document["set"]["Time/end"] = "3 ms"
+        self.study(change=longer)
+        whole = self.text("study.csv")
+        for number, expected in ((signal.SIGTERM, 130), (signal.SIGKILL, -signal.SIGKILL)):
+            subprocess.run(["rm", "-r", self.out], check=True)
+            process = subprocess.Popen([LATCON, "study", self.folder / "tiny.json", "--output-dir", self.out, "--quiet",
+                                        "--skip-verification", "--threads", "1"])
+            runs = self.out / "runs"
+            deadline = time.time() + 60
+            while not (runs.exists() and any(p.suffix != ".part" for p in runs.iterdir())) and time.time() < deadline:
+                time.sleep(0.01)
+            time.sleep(0.1)
+            process.send_signal(number)
+            self.assertEqual(process.wait(60), expected)
+            time.sleep(0.5 if number == signal.SIGKILL else 0)
+            self.assertTrue([path for path in runs.iterdir() if path.suffix == ".part"])
+            if number == signal.SIGTERM:
+                self.assertIn("not run", self.text("study.csv"))
+            printed = self.study("--resume", change=longer)
+            self.assertNotIn("4 runs, 0 are", printed)
+            self.assertEqual(self.text("study.csv"), whole)
+            self.assertFalse([path for path in runs.iterdir() if path.suffix == ".part"])
+
+    def test_quick_study_verifies_the_base_case_once(self):
+        printed = self.study("--quick", skip=False)
+        self.assertIn("claims: checked now", printed)
+        document = json.loads(self.text("study.json"))
+        self.assertTrue(document["quick"])
+        self.assertEqual(document["left_out"], ["thin"])
+        self.assertIn("base case alone", document["verification"])
+        info = json.loads(self.text("runs/low-1/run.json"))
+        self.assertTrue(info["skip_verification"])
+        self.assertFalse(json.loads(self.text("run.json"))["skip_verification"])
+        self.assertIn("base case alone", self.text("study.html"))
+
+    def test_quick_study_of_a_refused_base_runs_nothing(self):
+        def change(document):
+            document["set"]["Continuum/ratio"] = -0.2
+        self.study("--quick", change=change, skip=False, expect=3)
+        self.assertFalse((self.out / "runs").exists())
+
+    def test_bad_input_is_2_and_writes_nothing(self):
+        def unknown(document):
+            document["runs"]["low"]["set"]["Sheet/hight"] = 1
+        printed = self.study(change=unknown, expect=2)
+        self.assertIn("tiny.json: runs/low/set/Sheet/hight: no entry of a case; nearest: Sheet/height", printed)
+
+        def out_of_range(document):
+            document["runs"]["low"]["set"]["Sheet/height"] = "1 mm"
+        self.assertIn("runs/low", self.study(change=out_of_range, expect=2))
+        self.study("--set", "Sheet/hight=1", expect=2)
+        self.study("--set", "Lattice/noise seed=1", expect=2)
+        self.assertEqual(latcon("study", self.folder / "none.json", "--output-dir", self.out).returncode, 2)
+        self.assertFalse(self.out.exists())
+
+    def test_dry_run_lists_the_runs(self):
+        printed = self.study("--dry-run")
+        for name in FOLDERS:
+            self.assertIn(name, printed)
+        self.assertIn("4 runs", printed)
+        self.assertFalse(self.out.exists())
+        self.assertIn("fig1-5", latcon("study", "paper", "--dry-run").stdout)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,218 @@
+#include <algorithm>
+#include <filesystem>
+#include <iostream>
+#include <system_error>
+#include <thread>
+
+#include <deal.II/base/mpi.h>
+
+#include "verification/atomic_file.h"
+#include "verification/commands/command.h"
+#include "verification/progress.h"
+#include "verification/study/process_pool.h"
+#include "verification/study/study_output.h"
+
+namespace verification
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+
+// A run's directory, and the one beside it that takes its place once the run has ended.
+struct Folders
+{
+  std::string whole, part;
+};
+
+Folders folders_of(const Run &run, const PlannedRun &planned)
+{
+  const std::string whole = run.directory() + "/runs/" + planned.folder();
+  return {whole, whole + ".part"};
+}
+
+void replace(const Folders &folders)
+{
+  fs::remove_all(folders.whole);
+  fs::rename(folders.part, folders.whole);
+}
+
+std::vector<std::string> command_of(const PlannedRun &planned, const Study &study, const std::string &folder,
+                                    bool skip_verification)
+{
+  // This program, whatever has become of its file since it was started.
+  std::vector<std::string> command{"/proc/self/exe", "fracture",  study.base, "--output-dir",
+                                   folder,           "--threads", "1",        "--no-report"};
+  if (skip_verification)
+    command.emplace_back("--skip-verification");
+  for (const std::string &setting : planned.overrides)
+    command.insert(command.end(), {"--set", setting});
+  return command;
+}
+
+std::string result_line(const RunOutcome &outcome)
+{
+  if (outcome.state != RunState::measured)
+    return to_string(outcome.state) + ": " + outcome.problem;
+  return outcome.pattern + (outcome.conclusive ? "" : " (not conclusive)");
+}
+
+// Shows how far the pool is: by the cost of the runs that have ended, for they differ.
+class PoolProgress
+{
+public:
+  PoolProgress(const std::vector<PlannedRun> &plan, const std::vector<std::size_t> &jobs, bool wanted)
+    : plan_(plan), jobs_(jobs), line_(wanted), talks_(wanted), start_(std::chrono::steady_clock::now())
+  {
+    for (const std::size_t run : jobs)
+      total_ += plan[run].cost();
+  }
+
+  void ended(std::size_t run, const RunOutcome &outcome)
+  {
+    ++n_ended_;
+    done_ += plan_[run].cost();
+    if (talks_)
+      std::cout << "[" << n_ended_ << "/" << jobs_.size() << "] " << plan_[run].folder() << ": " << result_line(outcome)
+                << ", " << std::lround(outcome.wall_time) << " s" << std::endl;
+  }
+
+  void show(const std::vector<std::size_t> &running)
+  {
+    if (!line_.due())
+      return;
+    std::string names;
+    for (const std::size_t job : running)
+      names += (names.empty() ? "" : ", ") + plan_[jobs_[job]].folder();
+    const double elapsed = std::chrono::duration<double>(std::chrono::steady_clock::now() - start_).count();
+    line_.show(std::to_string(n_ended_) + "/" + std::to_string(jobs_.size()) + " runs, now " + names + ", " +
+                 std::to_string(std::lround(elapsed)) + " s so far",
+               done_ / total_);
+  }
+
+private:
+  const std::vector<PlannedRun> &plan_;
+  const std::vector<std::size_t> &jobs_;
+  Progress line_;
+  bool talks_;
+  std::chrono::steady_clock::time_point start_;
+  std::size_t n_ended_ = 0;
+  double done_ = 0., total_ = 0.;
+};
+
+// Runs what is not there yet. @return whether all of it ended
+bool run_children(StudyResults &results, const Options &options, bool skip_verification, std::size_t n_cores, Run &run)
+{
+  const auto phase = run.info().stopwatch().phase("runs");
+  std::vector<std::size_t> jobs;
+  for (const std::size_t i : longest_first(results.plan))
+  {
+    const PlannedRun &planned = results.plan[i];
+    const std::string folder = folders_of(run, planned).whole;
+    results.outcomes[i].run = planned.run;
+    results.outcomes[i].seed = planned.seed;
+    if (options.resume && is_finished(planned, folder, skip_verification))
+      results.outcomes[i] = read_outcome(planned, folder);
+    else
+      jobs.push_back(i);
+  }
+  if (run.talks())
+    std::cout << jobs.size() << " runs, " << results.plan.size() - jobs.size() << " are there already" << std::endl;
+
+  PoolProgress progress(results.plan, jobs, run.talks());
+  ProcessPool pool;
+  pool.n_jobs = jobs.size();
+  pool.limit = n_cores;
+  pool.start = [&](std::size_t job) -> ProcessPool::Job
+  {
+    const PlannedRun &planned = results.plan[jobs[job]];
+    const std::string folder = folders_of(run, planned).part;
+    fs::remove_all(folder);
+    fs::create_directories(folder);
+    return {command_of(planned, results.study, folder, skip_verification), folder + "/log.txt"};
+  };
+  pool.ended = [&](std::size_t job, int status)
+  {
+    const PlannedRun &planned = results.plan[jobs[job]];
+    const Folders folders = folders_of(run, planned);
+    replace(folders);
+    results.outcomes[jobs[job]] = read_outcome(planned, folders.whole, status);
+    progress.ended(jobs[job], results.outcomes[jobs[job]]);
+  };
+  pool.waiting = [&](const std::vector<std::size_t> &running) { progress.show(running); };
+  pool.stop = signal_came;
+  return run_processes(pool);
+}
+
+// Checks the claims on the base case, small version, in the place of the runs. @throws ClaimFailed
+void verify_base(const Study &study, const std::vector<std::string> &settings, Run &run)
+{
+  Options base;
+  base.case_file = study.base;
+  Settings all = study.settings;
+  for (const std::string &setting : settings)
+    override_settings(all, {{setting.substr(0, setting.find('=')), setting.substr(setting.find('=') + 1)}});
+  for (const auto &[key, value] : all)
+    base.overrides.push_back(key + "=" + value);
+  Case input;
+  Parameters parameters;
+  read_case(base, input, parameters);
+  parameters.finish();
+  (void)passed_claims(input, run);
+}
+
+ExitCode exit_code_of(const StudyResults &results, const Results &rows)
+{
+  const auto failed = [](const RunOutcome &outcome) { return outcome.state == RunState::failed; };
+  if (std::any_of(results.outcomes.begin(), results.outcomes.end(), failed))
+    return ExitCode::solver_failed;
+  return rows.verdict() == Verdict::fails ? ExitCode::claim_failed : ExitCode::done;
+}
+
+} // namespace
+
+ExitCode run_study(const Options &options, const std::string &name)
+{
+  if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+    throw InputError("`latcon study` starts its own processes, one a core; run it without mpirun");
+  StudyResults results;
+  results.study = read_study_file(study_path(name), options.quick);
+  results.plan = plan_runs(results.study, options.overrides);
+  results.outcomes.resize(results.plan.size());
+  results.quick = options.quick;
+  const std::size_t n_cores = options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  if (options.dry_run)
+  {
+    if (!options.quiet)
+      print_plan(std::cout, results.plan, n_cores);
+    return ExitCode::done;
+  }
+
+  Run run(options);
+  run.info().add("skip_verification", options.skip_verification);
+  run.info().add("study", results.study.title);
+  const bool skip_verification = options.skip_verification || options.quick;
+  results.verification = options.skip_verification ? "none (--skip-verification)"
+                         : options.quick           ? "material and pre-stretch of the base case alone (--quick)"
+                                                   : "material and pre-stretch of every run";
+  if (options.quick && !options.skip_verification)
+    verify_base(results.study, options.overrides, run);
+  const bool complete = run_children(results, options, skip_verification, n_cores, run);
+
+  results.claims = judge(results.study, results.plan, results.outcomes);
+  const Results rows = study_rows(results);
+  write_file(run.directory() + "/study.json", study_json(results));
+  write_file(run.directory() + "/study.csv", study_csv(results));
+  if (run.talks())
+    print_table(std::cout, results);
+  const ExitCode exit_code = run.end(rows, complete ? exit_code_of(results, rows) : ExitCode::interrupted);
+  if (complete)
+  {
+    study_page(run.directory());
+    if (run.talks())
+      std::cout << run.directory() << "/study.html" << std::endl;
+  }
+  return exit_code;
+}
+
+} // namespace verification

@@ -1,0 +1,154 @@
+"""Plots of a study: paths of cracks, what they measure along a sweep, speeds by pattern, the velocity about the tip."""
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.lines import Line2D
+
+from pictures import BLACK, BLUE, GREEN, GREY, RED, SKY, WIDTH, Page, save
+from study_runs import mean_of, patterns_of, tip_path, tip_velocity
+
+PATTERNS = {"oscillating": ("o", BLUE), "straight": ("s", GREEN), "branching": ("v", RED), "arrested": ("X", GREY)}
+LEFT, RIGHT, GAP = 0.75, 0.2, 0.75  # of a grid of panels [in]
+SEED_COLOURS = [BLUE, RED, GREEN, SKY, BLACK, GREY]
+# Abscissas: scale to the unit shown, label; others are in SI.
+AGAINST = {"zeta": (1, "ζ = (η/a) / (d √(ρ/a))"), "Sheet/spacing": (1e3, "d [mm]"),
+           "Sheet/height": (100, "height of the sheet, undeformed [cm]"),
+           "Sheet/length": (100, "length of the sheet, undeformed [cm]"),
+           "Lattice/noise amplitude": (1, "noise amplitude / d")}
+DECADES = 30.0  # from this ratio of the largest to the smallest abscissa on, the axis is logarithmic
+# Quantity, scale to the unit shown, label.
+ALONG = (("wavelength", 100, "wavelength [cm]"), ("amplitude", 100, "amplitude [cm]"))
+
+
+class Panels:
+    """Equal axes in rows and columns, each with room for a title and labels."""
+
+    def __init__(self, count, columns, height, top=0.1):
+        self.columns, self.height, self.top = columns, height, top
+        rows = -(-count // columns)
+        self.width = (WIDTH - LEFT - RIGHT - GAP * (columns - 1)) / columns
+        self.pitch = height + 0.85
+        self.page = Page(top + rows * self.pitch)
+
+    def axes(self, number):
+        row, column = divmod(number, self.columns)
+        return self.page.axes(LEFT + column * (self.width + GAP), self.top + 0.3 + row * self.pitch, self.width,
+                              self.height)
+
+
+def draw_paths(study, names, path):
+    """Paths of the tip, a panel for each run, its seeds on top of each other. @return whether there is any"""
+    paths = {name: [(seed, way) for seed in study.runs[name][2] if (way := tip_path(seed)) is not None]
+             for name in names}
+    paths = {name: ways for name, ways in paths.items() if ways}
+    if not paths:
+        return False
+    everything = [way for ways in paths.values() for _, way in ways]
+    right = 105 * max(X.max() for X, _ in everything)
+    half = 115 * max(max(np.abs(Y).max() for _, Y in everything), 1e-3)
+    columns = min(2, len(paths))
+    panels = Panels(len(paths), columns, 1.5 if columns == 2 else 2.4)
+    for number, (name, ways) in enumerate(paths.items()):
+        axes = panels.axes(number)
+        for place, (seed, (X, Y)) in enumerate(ways):
+            axes.plot(100 * X, 100 * Y, color=SEED_COLOURS[place % len(SEED_COLOURS)], linewidth=1.1,
+                      label=f"seed {seed.seed}")
+        axes.set(xlim=(0, right), ylim=(-half, half), title=f"{name}: {pattern_text(study.runs[name][2])}",
+                 xlabel="X [cm]", ylabel="Y [cm]")
+        axes.title.set_fontsize(9.5)
+    save(panels.page.figure, path)
+    return True
+
+
+def pattern_text(seeds):
+    """Patterns of a run with their counts."""
+    doubts = sum(seed.pattern is not None and not seed.conclusive for seed in seeds)
+    words = [f"{pattern} {count}/{len(seeds)}" for pattern, count in patterns_of(seeds).items()]
+    return ", ".join(words + ([f"{doubts} not conclusive"] if doubts else [])) or "not run"
+
+
+def draw_sweep(study, row, path):
+    """Wavelength and amplitude along what a row varies. @return whether any run was measured"""
+    points = [(value["against"], study.runs[value["run"]][2]) for value in row["values"]
+              if value["against"] is not None]
+    points = [(x, seeds) for x, seeds in points if patterns_of(seeds)]
+    if not points:
+        return False
+    unit, name = AGAINST.get(row["against"], (1, f"{row['against']} [SI]"))
+    points = [(unit * x, seeds) for x, seeds in points]
+    panels = Panels(len(ALONG), 2, 2.6, top=0.1)
+    for number, (quantity, scale, label) in enumerate(ALONG):
+        axes = panels.axes(number)
+        for x, seeds in points:
+            marker, colour = PATTERNS[next(iter(patterns_of(seeds)))]
+            found = mean_of(seeds, quantity)
+            y, error = (scale * found.mean, scale * found.deviation) if found else (0.0, 0.0)
+            axes.errorbar(x, y, yerr=error, marker=marker, color=colour, capsize=3, markersize=6, linestyle="none",
+                          markerfacecolor=colour if found else "white")
+        axes.set(xlabel=name, ylabel=label)
+        top = max(axes.get_ylim()[1], 0.01)
+        axes.set_ylim(-0.04 * top, top)
+        if min(x for x, _ in points) > 0 and max(x for x, _ in points) > DECADES * min(x for x, _ in points):
+            axes.set_xscale("log")
+    shown = {next(iter(patterns_of(seeds))) for _, seeds in points}
+    panels.page.figure.legend(handles=[legend_entry(pattern) for pattern in PATTERNS if pattern in shown],
+                              loc="upper left", bbox_to_anchor=(LEFT / WIDTH, 1), ncol=4)
+    save(panels.page.figure, path)
+    return True
+
+
+def legend_entry(pattern):
+    """Symbol and colour of a pattern."""
+    marker, colour = PATTERNS[pattern]
+    return Line2D([], [], linestyle="none", marker=marker, color=colour, label=pattern)
+
+
+def draw_speeds(study, path):
+    """Crack speed over the shear speed of the stretched sheet, by pattern. @return whether it was measured at all"""
+    points = [(seed.pattern, seed.values["speed_over_shear"]) for seed in study.seeds
+              if seed.pattern and seed.values["speed_over_shear"] is not None]
+    if not points:
+        return False
+    panels = Panels(1, 1, 2.8)
+    axes = panels.axes(0)
+    shown = [pattern for pattern in PATTERNS if any(p == pattern for p, _ in points)]
+    for place, pattern in enumerate(shown):
+        marker, colour = PATTERNS[pattern]
+        values = np.array([value for p, value in points if p == pattern])
+        aside = np.linspace(-0.25, 0.25, len(values)) if len(values) > 1 else np.zeros(1)
+        axes.plot(place + aside, values, marker, color=colour, markersize=5, alpha=0.8)
+    axes.axhline(1, color=BLACK, linestyle="--", linewidth=1)
+    axes.set(xticks=range(len(shown)), xticklabels=shown, xlim=(-0.6, len(shown) - 0.4),
+             ylabel="crack speed /\nshear speed")
+    save(panels.page.figure, path)
+    return True
+
+
+def draw_velocities(study, names, path):
+    """v_x about the tip, in the direction of the crack, of the first measured seed of some runs. @return any there"""
+    maps = []
+    for name in names:
+        for seed in study.runs[name][2]:
+            field = tip_velocity(seed) if seed.state == "measured" else None
+            if field is not None:
+                maps.append((f"{name}, seed {seed.seed}: {seed.pattern}", field))
+                break
+    if not maps:
+        return False
+    columns = min(2, len(maps))
+    panels = Panels(len(maps), columns, 3.4)
+    for number, (title, (X, Y, velocity)) in enumerate(maps):
+        axes = panels.axes(number)
+        largest = np.nanpercentile(np.abs(velocity), 99) or 1.0
+        image = axes.pcolormesh(1e3 * X, 1e3 * Y, velocity, cmap="RdBu_r", vmin=-largest, vmax=largest,
+                                shading="nearest", rasterized=True)
+        if np.nanmin(velocity) < 0 < np.nanmax(velocity):
+            axes.contour(1e3 * X, 1e3 * Y, velocity, levels=[0.0], colors=BLACK, linewidths=0.6)
+        axes.plot(0, 0, "+", color=BLACK, markersize=9)
+        axes.set(aspect="equal", title=title, xlabel="X − X of the tip [mm]", ylabel="Y − Y of the tip [mm]")
+        axes.grid(False)
+        bar = panels.page.figure.colorbar(image, ax=axes, fraction=0.046, pad=0.03)
+        bar.set_label("v_x [m/s]")
+        bar.outline.set_visible(False)
+    save(panels.page.figure, path)
+    plt.close("all")
+    return True

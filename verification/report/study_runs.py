@@ -1,0 +1,120 @@
+"""A study as its study.json tells it, and what its runs left in their folders."""
+import math
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkCommonCore import vtkObject
+from vtkmodules.vtkIOXML import vtkXMLImageDataReader
+
+from files import DamagedFile, read_json, read_table
+
+
+@dataclass(frozen=True)
+class Seed:
+    """One run with one seed."""
+
+    run: str
+    seed: int
+    folder: Path
+    state: str  # "measured", "refused: verification", "failed", "not run"
+    problem: str
+    pattern: str  # None if not measured
+    conclusive: bool
+    wall_time: float  # [s]
+    values: dict  # {quantity: number or None}, SI
+
+
+@dataclass(frozen=True)
+class Study:
+    """Everything that the page shows."""
+
+    folder: Path
+    document: dict  # study.json
+    runs: dict  # {name: (about, {entry: value}, [Seed, ...])}, in the order of the study
+
+    @property
+    def claims(self):
+        return self.document["claims"]
+
+    @property
+    def seeds(self):
+        return [seed for _, _, seeds in self.runs.values() for seed in seeds]
+
+
+@dataclass(frozen=True)
+class Mean:
+    """A quantity over the seeds of a run."""
+
+    mean: float
+    deviation: float  # 0 for a single seed
+    n: int
+
+
+def read_study(folder):
+    """The study in a folder. @raises DamagedFile"""
+    path = folder / "study.json"
+    document = read_json(path)
+    if document is None:
+        raise DamagedFile(path, "no study was run here")
+    try:
+        seeds = [Seed(s["run"], s["seed"], folder / s["folder"], s["state"], s["problem"], s["pattern"],
+                      s["conclusive"], s["wall_time_s"], s["values"]) for s in document["seeds"]]
+        runs = {run["run"]: (run["about"], run["set"], [seed for seed in seeds if seed.run == run["run"]])
+                for run in document["runs"]}
+    except (KeyError, TypeError) as error:
+        raise DamagedFile(path, f"lacks {error}") from error
+    return Study(folder, document, runs)
+
+
+def mean_of(seeds, quantity):
+    """Mean over the seeds that have a quantity; None if none has."""
+    values = np.array([s.values[quantity] for s in seeds if s.state == "measured" and s.values[quantity] is not None])
+    if not len(values):
+        return None
+    return Mean(values.mean(), values.std(ddof=1) if len(values) > 1 else 0.0, len(values))
+
+
+def patterns_of(seeds):
+    """How many seeds showed each pattern, the most frequent first: {pattern: count}."""
+    found = [seed.pattern for seed in seeds if seed.pattern]
+    return {pattern: found.count(pattern) for pattern in sorted(set(found), key=lambda p: (-found.count(p), p))}
+
+
+def tip_path(seed):
+    """Path of the tip in the undeformed sheet, (X, Y) in m; None if the run left none."""
+    table = read_table(seed.folder / "crack.csv", ("X", "Y"))
+    return None if table is None or len(table["X"]) < 2 else (table["X"], table["Y"])
+
+
+def tip_velocity(seed):
+    """v_x about the tip: (X - X_tip, Y - Y_tip [m], each 1-D; v_x [m/s], shape (rows of Y, columns of X)).
+
+    None if the run left no near_tip.vti.
+    """
+    path = seed.folder / "near_tip.vti"
+    if not path.exists():
+        return None
+    vtkObject.GlobalWarningDisplayOff()
+    reader = vtkXMLImageDataReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    image = reader.GetOutput()
+    array = image.GetPointData().GetArray("velocity")
+    if array is None:
+        raise DamagedFile(path, "it has no point array 'velocity'")
+    columns, rows, _ = image.GetDimensions()
+    origin, spacing = image.GetOrigin(), image.GetSpacing()
+    velocity = vtk_to_numpy(array).reshape(rows, columns, -1)[:, :, 0]
+    return origin[0] + spacing[0] * np.arange(columns), origin[1] + spacing[1] * np.arange(rows), velocity
+
+
+def value_text(mean, scale=1.0):
+    """Mean and standard deviation in few words: "2.29 ± 0.04 (5)"; a dash for none."""
+    if mean is None:
+        return "–"
+    value, deviation = scale * mean.mean, scale * mean.deviation
+    digits = max(0, 1 - math.floor(math.log10(deviation))) if deviation > 0 else None
+    text = f"{value:.4g}" if digits is None else f"{value:.{digits}f} ± {deviation:.{digits}f}"
+    return f"{text} ({mean.n})"

@@ -1,0 +1,94 @@
+#include "verification/study/quantities.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+namespace verification
+{
+namespace
+{
+
+// A measured number and its uncertainty, one standard deviation.
+void add_measured(std::vector<Quantity> &all, const std::string &name, const std::string &unit, Quantity::Source source)
+{
+  all.push_back({name, unit, source});
+  all.push_back({name + "_uncertainty", unit, source});
+}
+
+std::vector<Quantity> all_quantities()
+{
+  using Source = Quantity::Source;
+  std::vector<Quantity> all{{"zeta", "1", Source::derived}};
+  for (const char *name : {"speed_lagrangian", "speed_laboratory"})
+    add_measured(all, name, "m/s", Source::crack);
+  for (const char *name : {"wavelength", "amplitude"})
+    add_measured(all, name, "m", Source::crack);
+  for (const char *name : {"wavelength_over_d", "amplitude_over_d"})
+    add_measured(all, name, "1", Source::derived);
+  all.push_back({"periods", "1", Source::crack});
+  all.push_back({"window_begin", "m", Source::crack});
+  all.push_back({"window_end", "m", Source::crack});
+  all.push_back({"branched_fraction", "1", Source::crack});
+  all.push_back({"bonds_broken", "1", Source::crack});
+  all.push_back({"end_time", "s", Source::crack});
+  all.push_back({"energy_imbalance", "1", Source::crack});
+  const auto add_near_tip = [&all](const std::vector<std::string> &names, const std::string &unit)
+  {
+    for (const std::string &name : names)
+      add_measured(all, name, unit, Source::near_tip);
+  };
+  all.push_back({"samples", "1", Source::near_tip});
+  add_near_tip({"negative_zone_area"}, "m^2");
+  add_near_tip({"negative_zone_length", "negative_zone_distance"}, "m");
+  add_near_tip({"negative_zone_depth"}, "m/s");
+  add_near_tip({"negative_zone_depth_X", "negative_zone_depth_Y"}, "m");
+  add_near_tip({"velocity_asymmetry", "velocity_asymmetry_of_samples", "vortices"}, "1");
+  add_near_tip({"vortex_distance"}, "m");
+  add_near_tip({"vortex_circulation", "tip_circulation"}, "m^2/s");
+  add_near_tip({"process_zone_length"}, "m");
+  add_near_tip({"process_zone_fastest"}, "m/s");
+  for (const std::string radius : {"4d", "8d"})
+  {
+    add_near_tip({"opening_stress_angle_" + radius}, "degrees");
+    add_near_tip({"opening_stress_ratio_" + radius}, "1");
+    add_near_tip({"opening_stress_peak_" + radius}, "Pa");
+  }
+  add_near_tip({"wedge_angle"}, "degrees");
+  add_near_tip({"speed_over_shear", "speed_over_longitudinal"}, "1");
+  for (const std::string name : {"shear_speed", "longitudinal_speed", "process_zone_speed"})
+    all.push_back({name, "m/s", Source::near_tip});
+  return all;
+}
+
+} // namespace
+
+const std::vector<Quantity> &quantities()
+{
+  static const std::vector<Quantity> all = all_quantities();
+  return all;
+}
+
+const std::vector<std::string> &pattern_words()
+{
+  static const std::vector<std::string> words{"straight", "oscillating", "branching", "arrested"};
+  return words;
+}
+
+std::string unit_of(const std::string &quantity)
+{
+  const auto found = std::find_if(quantities().begin(), quantities().end(),
+                                  [&quantity](const Quantity &known) { return known.name == quantity; });
+  if (found == quantities().end())
+    throw std::logic_error("study: '" + quantity + "' is no quantity");
+  return found->unit;
+}
+
+void add_derived(Values &values, const double spacing)
+{
+  for (const std::string name : {"wavelength", "amplitude"})
+    for (const std::string suffix : {"", "_uncertainty"})
+      if (const auto found = values.find(name + suffix); found != values.end())
+        values[name + "_over_d" + suffix] = found->second / spacing;
+}
+
+} // namespace verification

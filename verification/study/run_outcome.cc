@@ -1,0 +1,118 @@
+#include "verification/study/run_outcome.h"
+
+#include <cmath>
+#include <fstream>
+#include <iterator>
+
+#include <nlohmann/json.hpp>
+
+#include "verification/case_text.h"
+#include "verification/errors.h"
+#include "verification/run_info.h"
+
+namespace verification
+{
+namespace
+{
+
+using Json = nlohmann::json;
+
+std::string content(const std::string &path)
+{
+  std::ifstream file(path, std::ios::binary);
+  return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
+}
+
+// The object in a file; an empty one if it is missing or damaged.
+Json object_in(const std::string &path)
+{
+  Json document = Json::parse(content(path), nullptr, false);
+  return document.is_object() ? document : Json::object();
+}
+
+template <typename Value>
+Value value_or(const Json &object, const std::string &key, const Value &otherwise)
+{
+  try
+  {
+    return object.value(key, otherwise);
+  }
+  catch (const Json::exception &) // of another type, or null
+  {
+    return otherwise;
+  }
+}
+
+void read_numbers(const Json &object, const Quantity::Source source, Values &values)
+{
+  for (const Quantity &quantity : quantities())
+    if (quantity.source == source && object.contains(quantity.name) && object[quantity.name].is_number())
+      values[quantity.name] = object[quantity.name].get<double>();
+}
+
+std::string last_line(const std::string &text)
+{
+  const std::string all = trimmed(text);
+  const std::size_t line_break = all.find_last_of("\r\n");
+  return printable(line_break == std::string::npos ? all : all.substr(line_break + 1), 300);
+}
+
+} // namespace
+
+std::string to_string(const RunState state)
+{
+  switch (state)
+  {
+  case RunState::measured:
+    return "measured";
+  case RunState::refused:
+    return "refused: verification";
+  case RunState::failed:
+    return "failed";
+  default:
+    return "not run";
+  }
+}
+
+RunOutcome read_outcome(const PlannedRun &run, const std::string &folder, const std::optional<int> exit_code)
+{
+  RunOutcome outcome;
+  outcome.run = run.run;
+  outcome.seed = run.seed;
+  if (run.zeta)
+    outcome.values["zeta"] = *run.zeta;
+  const Json info = object_in(folder + "/run.json");
+  outcome.exit_code = exit_code.value_or(value_or(info, "exit_code", -1));
+  outcome.wall_time = value_or(info, "wall_time_total_s", 0.);
+  const Json crack = object_in(folder + "/crack.json");
+  const bool ended = outcome.exit_code == static_cast<int>(ExitCode::done) ||
+                     outcome.exit_code == static_cast<int>(ExitCode::claim_failed);
+  outcome.pattern = value_or(crack, "pattern", std::string());
+  // A crack that differs from its published values ends with the same exit code as a refused one, but was measured.
+  if (ended && !outcome.pattern.empty())
+  {
+    outcome.state = RunState::measured;
+    outcome.conclusive = value_or(crack, "conclusive", false);
+    outcome.reason = value_or(crack, "reason", std::string());
+    read_numbers(crack, Quantity::Source::crack, outcome.values);
+    read_numbers(object_in(folder + "/near_tip.json"), Quantity::Source::near_tip, outcome.values);
+    add_derived(outcome.values, run.spacing);
+    return outcome;
+  }
+  outcome.pattern.clear();
+  outcome.state = outcome.exit_code == static_cast<int>(ExitCode::claim_failed) ? RunState::refused : RunState::failed;
+  outcome.problem = last_line(content(folder + "/log.txt"));
+  return outcome;
+}
+
+bool is_finished(const PlannedRun &run, const std::string &folder, const bool skip_verification)
+{
+  const Json info = object_in(folder + "/run.json");
+  return content(folder + "/case.prm") == run.case_text &&
+         value_or(info, "version", std::string()) == program_version() &&
+         value_or(info, "git_commit", std::string()) == git_commit() &&
+         value_or(info, "skip_verification", !skip_verification) == skip_verification &&
+         read_outcome(run, folder).state == RunState::measured;
+}
+
+} // namespace verification

@@ -1,0 +1,137 @@
+#include "verification/study/study_table.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+
+namespace verification
+{
+namespace
+{
+
+// Units that a reader is used to.
+struct Display
+{
+  double scale;
+  std::string unit;
+};
+
+Display display(const std::string &unit)
+{
+  if (unit == "m")
+    return {1e2, " cm"};
+  if (unit == "m^2")
+    return {1e6, " mm²"};
+  if (unit == "s")
+    return {1e3, " ms"};
+  if (unit == "degrees")
+    return {1., "°"};
+  return {1., unit == "1" ? "" : " " + unit};
+}
+
+std::string formatted(const char *format, int digits, double value)
+{
+  std::array<char, 64> text{};
+  std::snprintf(text.data(), text.size(), format, digits, value);
+  return text.data();
+}
+
+void add_mean(SeedStatistics &seeds, const std::vector<double> &values, const std::vector<double> &uncertainties)
+{
+  const auto n = static_cast<double>(values.size());
+  double sum = 0.;
+  for (const double value : values)
+    sum += value;
+  seeds.mean = sum / n;
+  if (values.size() > 1)
+  {
+    double squares = 0.;
+    for (const double value : values)
+      squares += (value - *seeds.mean) * (value - *seeds.mean);
+    seeds.deviation = std::sqrt(squares / (n - 1.));
+    seeds.standard_error = *seeds.deviation / std::sqrt(n);
+  }
+  double squares = 0.;
+  for (const double uncertainty : uncertainties)
+    squares += uncertainty * uncertainty;
+  seeds.standard_error = std::max(seeds.standard_error, std::sqrt(squares) / n);
+}
+
+} // namespace
+
+SeedStatistics statistics(const std::string &run, const std::string &quantity, const std::vector<RunOutcome> &outcomes)
+{
+  SeedStatistics seeds;
+  seeds.run = run;
+  std::vector<double> values;
+  std::vector<double> uncertainties;
+  for (const RunOutcome &outcome : outcomes)
+  {
+    if (outcome.run != run)
+      continue;
+    ++seeds.n_seeds;
+    const std::string seed = "seed " + std::to_string(outcome.seed) + " ";
+    if (outcome.state != RunState::measured)
+    {
+      seeds.missing.push_back(seed + to_string(outcome.state));
+      continue;
+    }
+    if (quantity == pattern_quantity)
+    {
+      ++(outcome.conclusive ? seeds.patterns : seeds.unsettled)[outcome.pattern];
+      if (outcome.conclusive)
+        ++seeds.n;
+      else
+        seeds.missing.push_back(seed + outcome.pattern + ", not conclusive");
+      continue;
+    }
+    const auto value = outcome.values.find(quantity);
+    if (value == outcome.values.end())
+    {
+      seeds.missing.push_back(seed + outcome.pattern); // such a crack has no such number
+      continue;
+    }
+    ++seeds.n;
+    values.push_back(value->second);
+    if (const auto found = outcome.values.find(quantity + "_uncertainty"); found != outcome.values.end())
+      uncertainties.push_back(found->second);
+  }
+  if (!values.empty())
+    add_mean(seeds, values, uncertainties);
+  return seeds;
+}
+
+bool SeedStatistics::shows(const std::string &pattern) const
+{
+  return is_measured() && patterns.size() == 1 && patterns.count(pattern) == 1;
+}
+
+std::string SeedStatistics::text(const std::string &unit) const
+{
+  if (mean)
+    return quantity_text(*mean, deviation, unit) + " (" + std::to_string(n) + ")";
+  std::string words;
+  const auto add = [&](const std::map<std::string, std::size_t> &counts, const std::string &doubt)
+  {
+    for (const auto &[pattern, count] : counts)
+      words +=
+        (words.empty() ? "" : ", ") + pattern + " " + std::to_string(count) + "/" + std::to_string(n_seeds) + doubt;
+  };
+  add(patterns, "");
+  add(unsettled, " (not conclusive)");
+  return words.empty() ? "not measured" : words;
+}
+
+std::string quantity_text(const double value, const std::optional<double> deviation, const std::string &unit)
+{
+  const Display shown = display(unit);
+  if (!deviation || !(*deviation > 0.))
+    return formatted("%.*g", 4, shown.scale * value) + shown.unit;
+  // Two digits of the deviation, and the value to the same place.
+  const double spread = shown.scale * *deviation;
+  const int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(spread))), 0, 12);
+  return formatted("%.*f", digits, shown.scale * value) + " ± " + formatted("%.*f", digits, spread) + shown.unit;
+}
+
+} // namespace verification

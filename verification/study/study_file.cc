@@ -1,0 +1,354 @@
+#include "verification/study/study_file.h"
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+#include <map>
+#include <set>
+#include <stdexcept>
+
+#include "verification/case.h"
+#include "verification/case_text.h"
+#include "verification/errors.h"
+#include "verification/study/quantities.h"
+#include "verification/study/study_json.h"
+
+namespace verification
+{
+namespace
+{
+
+std::vector<std::string> case_entries()
+{
+  Case input;
+  Parameters parameters;
+  input.declare(parameters);
+  std::vector<std::string> entries;
+  for (const auto &item : read_prm(parameters.resolved_text(), "case"))
+    if (const auto *assignment = std::get_if<Assignment>(&item))
+      entries.push_back(assignment->section + "/" + assignment->name);
+  return entries;
+}
+
+// Settings and seeds as an object of the file gives them; none where it gives none.
+struct Change
+{
+  Settings set;
+  std::vector<std::uint64_t> seeds;
+};
+
+class Reader
+{
+public:
+  Reader(const std::string &path, bool quick) : quick_(quick), entries_(case_entries()) { study_.file = path; }
+
+  Study read(const std::string &text)
+  {
+    const nlohmann::ordered_json document = parse_json(text, study_.file);
+    const JsonPlace top(document, study_.file, "", problems_);
+    top.is_object({"title", "base", "set", "seeds", "quick", "runs", "claims", "pictures"});
+    if (const auto title = top.required("title"))
+      study_.title = title->text();
+    if (const auto base = top.required("base"))
+      study_.base = (std::filesystem::path(study_.file).parent_path() / base->text()).lexically_normal();
+    whole_ = change(top);
+    if (top.has("quick"))
+    {
+      top.at("quick").is_object({"set", "seeds"});
+      quick_change_ = change(top.at("quick"));
+    }
+    study_.settings = whole_.set;
+    if (quick_)
+      override_settings(study_.settings, quick_change_.set);
+    if (const auto runs = top.required("runs"))
+    {
+      for (const auto &[name, place] : runs->members())
+        run(name, place);
+      if (study_.runs.empty() && problems_.empty())
+        runs->problem("no run is left");
+    }
+    if (const auto claims = top.required("claims"))
+      for (const JsonPlace &place : claims->list())
+        claim(place);
+    if (top.has("pictures"))
+      for (const JsonPlace &place : top.at("pictures").list())
+        study_.pictures.push_back(known_run(place));
+    if (!problems_.empty())
+      throw InputError(problems_);
+    return std::move(study_);
+  }
+
+private:
+  Change change(const JsonPlace &place)
+  {
+    Change found;
+    if (place.has("set"))
+      found.set = settings(place.at("set"));
+    if (place.has("seeds"))
+      found.seeds = seeds(place.at("seeds"));
+    return found;
+  }
+
+  Settings settings(const JsonPlace &place)
+  {
+    Settings found;
+    for (const auto &[key, value] : place.members())
+    {
+      if (std::find(entries_.begin(), entries_.end(), key) == entries_.end())
+        value.problem("no entry of a case" + nearest_hint(key, entries_));
+      else if (key == seed_entry)
+        value.problem("is what \"seeds\" stands for");
+      else if (value.value().is_string())
+        found.emplace_back(key, value.text());
+      else if (value.value().is_number() || value.value().is_boolean())
+        found.emplace_back(key, value.value().dump());
+      else
+        value.problem("must be a text, a number, true or false");
+    }
+    return found;
+  }
+
+  static std::vector<std::uint64_t> seeds(const JsonPlace &place)
+  {
+    std::vector<std::uint64_t> found;
+    for (const JsonPlace &seed : place.list())
+      if (!seed.value().is_number_unsigned())
+        seed.problem("must be a whole number, 0 or more");
+      else if (std::find(found.begin(), found.end(), seed.value().get<std::uint64_t>()) != found.end())
+        seed.problem("this seed is there already");
+      else
+        found.push_back(seed.value().get<std::uint64_t>());
+    return found;
+  }
+
+  void run(const std::string &name, const JsonPlace &place)
+  {
+    const auto allowed = [](const unsigned char c) { return std::isalnum(c) != 0 || c == '.' || c == '_' || c == '-'; };
+    if (name.empty() || name.front() == '.' || !std::all_of(name.begin(), name.end(), allowed))
+      place.problem("a run's name is made of letters, digits, '.', '_' and '-', and does not begin with '.'");
+    names_.push_back(name);
+    if (!place.is_object({"about", "set", "seeds", "quick"}))
+      return;
+    StudyRun run{name, place.has("about") ? place.at("about").text() : "", {}, {}, {}};
+    const Change own = change(place);
+    Change small;
+    bool left_out = false;
+    if (place.has("quick"))
+    {
+      const JsonPlace quick = place.at("quick");
+      if (quick.value().is_boolean())
+        left_out = !quick.boolean();
+      else if (quick.is_object({"set", "seeds"}))
+        small = change(quick);
+    }
+    run.own = own.set;
+    const auto first = [](std::initializer_list<const Change *> changes) -> std::vector<std::uint64_t>
+    {
+      for (const Change *change : changes)
+        if (!change->seeds.empty())
+          return change->seeds;
+      return {1};
+    };
+    if (quick_)
+    {
+      override_settings(run.own, small.set);
+      run.seeds = first({&small, &quick_change_, &own, &whole_});
+    }
+    else
+      run.seeds = first({&own, &whole_});
+    run.all = study_.settings;
+    override_settings(run.all, run.own);
+    if (quick_ && left_out)
+      study_.left_out.push_back(name);
+    else
+      study_.runs.push_back(std::move(run));
+  }
+
+  std::string known_run(const JsonPlace &place) const { return place.word(names_, "run"); }
+
+  void claim(const JsonPlace &place)
+  {
+    if (!place.is_object({"claim", "paper", "rows", "note"}))
+      return;
+    StudyClaim claim;
+    if (const auto text = place.required("claim"))
+      claim.claim = text->text();
+    if (const auto text = place.required("paper"))
+      claim.paper = text->text();
+    if (place.has("note"))
+      claim.note = place.at("note").text();
+    if (const auto rows = place.required("rows"))
+      for (const JsonPlace &row : rows->list())
+        claim.rows.push_back(read_row(row));
+    study_.claims.push_back(std::move(claim));
+  }
+
+  StudyRow read_row(const JsonPlace &place)
+  {
+    StudyRow row;
+    row.place = place.place();
+    if (!place.is_object({"run", "runs", "quantity", "is", "is near", "tolerance", "above", "below", "rises", "falls",
+                          "bracket", "against", "quick"}))
+      return row;
+    if (place.has("run") == place.has("runs"))
+      place.problem("a row has either \"run\" or \"runs\"");
+    else if (place.has("run"))
+      row.runs = {known_run(place.at("run"))};
+    else
+      for (const JsonPlace &run : place.at("runs").list())
+        row.runs.push_back(known_run(run));
+    if (const auto quantity = place.required("quantity"))
+      row.quantity = quantity->word(quantity_names(), "quantity");
+    if (place.has("against"))
+    {
+      std::vector<std::string> known = entries_;
+      known.insert(known.begin(), "zeta");
+      const JsonPlace against = place.at("against");
+      row.against = against.text();
+      if (std::find(known.begin(), known.end(), row.against) == known.end())
+        against.problem("neither zeta nor an entry of a case" + nearest_hint(row.against, known));
+    }
+    read_rule(place, row);
+    if (place.has("quick") && !place.at("quick").boolean() && quick_)
+      row.rule = Rule::reported;
+    return row;
+  }
+
+  void read_rule(const JsonPlace &place, StudyRow &row)
+  {
+    static const std::map<std::string, Rule> rules{
+      {"is", Rule::is},       {"is near", Rule::is_near}, {"above", Rule::above},    {"below", Rule::below},
+      {"rises", Rule::rises}, {"falls", Rule::falls},     {"bracket", Rule::bracket}};
+    for (const auto &[key, rule] : rules)
+      if (place.has(key))
+      {
+        if (row.rule != Rule::reported)
+          place.problem("a row has one rule; this one has two, the second is \"" + key + "\"");
+        row.rule = rule;
+        read_rule_value(place.at(key), row);
+      }
+    const bool of_patterns = row.rule == Rule::is || row.rule == Rule::bracket;
+    if (row.rule != Rule::reported && !row.quantity.empty() && of_patterns != (row.quantity == pattern_quantity))
+      place.problem(of_patterns ? "this rule is for the quantity \"pattern\""
+                                : "this rule is for numbers, not patterns");
+    if (place.has("tolerance") != (row.rule == Rule::is_near))
+      place.problem("\"is near\" and \"tolerance\" go together");
+    else if (row.rule == Rule::is_near)
+    {
+      row.tolerance = place.at("tolerance").number();
+      if (!(row.tolerance > 0.))
+        place.at("tolerance").problem("must be larger than 0");
+    }
+    const bool along = row.rule == Rule::rises || row.rule == Rule::falls || row.rule == Rule::bracket;
+    if (along && row.against.empty())
+      place.problem("this rule needs \"against\"");
+    if (along && row.runs.size() == 1)
+      place.problem("this rule needs two runs or more");
+  }
+
+  void read_rule_value(const JsonPlace &place, StudyRow &row)
+  {
+    switch (row.rule)
+    {
+    case Rule::is:
+      row.pattern = place.word(pattern_words(), "pattern");
+      break;
+    case Rule::bracket:
+      if (place.is_object({"from", "to"}))
+      {
+        if (const auto from = place.required("from"))
+          row.from = from->word(pattern_words(), "pattern");
+        if (const auto to = place.required("to"))
+          row.to = to->word(pattern_words(), "pattern");
+        if (row.from == row.to && !row.from.empty())
+          place.problem("the two patterns must differ");
+      }
+      break;
+    case Rule::rises:
+    case Rule::falls:
+      if (!place.value().is_boolean() || !place.boolean())
+        place.problem("must be true");
+      break;
+    default:
+      if (place.value().is_object())
+      {
+        if (place.is_object({"run"}) && place.has("run"))
+          row.bound_run = known_run(place.at("run"));
+        else
+          place.problem("must be a number or {\"run\": NAME}");
+        break;
+      }
+      row.bound = place.number();
+      if (row.rule == Rule::is_near && place.value().is_number() && row.bound == 0.)
+        place.problem("the tolerance is relative, so this must not be 0");
+    }
+  }
+
+  static std::vector<std::string> quantity_names()
+  {
+    std::vector<std::string> names{pattern_quantity};
+    for (const Quantity &quantity : quantities())
+      names.push_back(quantity.name);
+    return names;
+  }
+
+  bool quick_;
+  std::vector<std::string> entries_;
+  std::vector<std::string> names_; // of all runs of the file
+  std::vector<std::string> problems_;
+  Change whole_, quick_change_;
+  Study study_;
+};
+
+} // namespace
+
+void override_settings(Settings &settings, const Settings &others)
+{
+  for (const auto &[key, value] : others)
+  {
+    const auto same = [&key = key](const auto &setting) { return setting.first == key; };
+    const auto found = std::find_if(settings.begin(), settings.end(), same);
+    if (found == settings.end())
+      settings.emplace_back(key, value);
+    else
+      found->second = value;
+  }
+}
+
+std::string StudyRow::unit() const
+{
+  return quantity == pattern_quantity ? "1" : unit_of(quantity);
+}
+
+const StudyRun &Study::run(const std::string &name) const
+{
+  const auto found = std::find_if(runs.begin(), runs.end(), [&name](const StudyRun &run) { return run.name == name; });
+  if (found == runs.end())
+    throw std::logic_error("study: '" + name + "' is no run");
+  return *found;
+}
+
+std::string study_path(const std::string &name)
+{
+  const std::string shipped = std::string(LATCON_DATA_DIR) + "/studies/" + name + ".json";
+  const bool is_word = name.find_first_of("/.") == std::string::npos;
+  return is_word && !std::filesystem::exists(name) && std::filesystem::exists(shipped) ? shipped : name;
+}
+
+Study read_study(const std::string &text, const std::string &path, const bool quick)
+{
+  return Reader(path, quick).read(text);
+}
+
+Study read_study_file(const std::string &path, const bool quick)
+{
+  std::error_code status;
+  std::ifstream file(path, std::ios::binary);
+  if (std::filesystem::is_directory(path, status) || !file)
+    throw InputError(printable(path) + ": cannot read the study; give a file, or the name of a shipped one: paper");
+  return read_study({std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()}, path, quick);
+}
+
+} // namespace verification

@@ -1,0 +1,129 @@
+#include "verification/study/study_json.h"
+
+#include <algorithm>
+#include <set>
+
+#include "verification/case_text.h"
+#include "verification/errors.h"
+#include "verification/spelling.h"
+
+namespace verification
+{
+
+nlohmann::ordered_json parse_json(const std::string &text, const std::string &file)
+{
+  using Json = nlohmann::ordered_json;
+  std::vector<std::set<std::string>> open; // keys of the objects around the place being parsed
+  std::vector<std::string> problems;
+  const auto check = [&](int, Json::parse_event_t event, Json &value)
+  {
+    if (event == Json::parse_event_t::object_start)
+      open.emplace_back();
+    else if (event == Json::parse_event_t::object_end)
+      open.pop_back();
+    else if (event == Json::parse_event_t::key && !open.back().insert(value.get<std::string>()).second)
+      problems.push_back(file + ": the key '" + printable(value.get<std::string>()) + "' is there twice in one object");
+    return true;
+  };
+  Json document;
+  try
+  {
+    document = Json::parse(text, check);
+  }
+  catch (const Json::parse_error &error)
+  {
+    // "[json.exception.parse_error.101] parse error at line 1, column 2: ...": the words after the bracket.
+    const std::string what = error.what();
+    throw InputError(file + ": not JSON: " + what.substr(std::min(what.size(), what.find(']') + 2)));
+  }
+  if (!document.is_object())
+    problems.push_back(file + ": a study is a JSON object");
+  if (!problems.empty())
+    throw InputError(problems);
+  return document;
+}
+
+std::string nearest_hint(const std::string &given, const std::vector<std::string> &known)
+{
+  const std::string nearest = nearest_word(given, known);
+  return nearest.empty() ? "" : "; nearest: " + nearest;
+}
+
+bool JsonPlace::is_object(const std::vector<std::string> &known) const
+{
+  if (!value_->is_object())
+  {
+    problem("must be an object with the keys " + comma_separated(known));
+    return false;
+  }
+  for (const auto &[key, member] : value_->items())
+    if (std::find(known.begin(), known.end(), key) == known.end())
+      problem("unknown key '" + printable(key) + "'" + nearest_hint(key, known) + "; known: " + comma_separated(known));
+  return true;
+}
+
+std::optional<JsonPlace> JsonPlace::required(const std::string &key) const
+{
+  if (has(key))
+    return at(key);
+  problem("the key '" + key + "' is missing");
+  return {};
+}
+
+std::string JsonPlace::text() const
+{
+  if (value_->is_string() && !value_->get_ref<const std::string &>().empty())
+    return value_->get<std::string>();
+  problem("must be a text that is not empty, not " + printable(value_->dump()));
+  return {};
+}
+
+double JsonPlace::number() const
+{
+  if (value_->is_number())
+    return value_->get<double>();
+  problem("must be a number, not " + printable(value_->dump()));
+  return 0.;
+}
+
+bool JsonPlace::boolean() const
+{
+  if (value_->is_boolean())
+    return value_->get<bool>();
+  problem("must be true or false, not " + printable(value_->dump()));
+  return false;
+}
+
+std::vector<JsonPlace> JsonPlace::list() const
+{
+  std::vector<JsonPlace> places;
+  if (value_->is_array() && !value_->empty())
+    for (std::size_t i = 0; i < value_->size(); ++i)
+      places.push_back(child((*value_)[i], std::to_string(i + 1)));
+  else
+    problem("must be a list that is not empty, not " + printable(value_->dump()));
+  return places;
+}
+
+std::vector<std::pair<std::string, JsonPlace>> JsonPlace::members() const
+{
+  std::vector<std::pair<std::string, JsonPlace>> all;
+  if (value_->is_object())
+    for (const auto &[key, member] : value_->items())
+      all.emplace_back(key, child(member, key));
+  else
+    problem("must be an object, not " + printable(value_->dump()));
+  return all;
+}
+
+std::string JsonPlace::word(const std::vector<std::string> &known, const std::string &what) const
+{
+  const std::string given = text();
+  if (given.empty() || std::find(known.begin(), known.end(), given) != known.end())
+    return given;
+  problem("'" + printable(given) + "' is no " + what + nearest_hint(given, known) +
+          "; known: " + comma_separated(known));
+  return {};
+}
+
+} // namespace verification

@@ -1,0 +1,228 @@
+#include "verification/study/study_output.h"
+
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <ostream>
+
+#include <nlohmann/json.hpp>
+
+#include "verification/commands/lattice_size.h"
+#include "verification/csv.h"
+#include "verification/run_info.h"
+#include "verification/text_wrap.h"
+
+namespace verification
+{
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+Json json_of(const std::optional<double> &value)
+{
+  return value ? Json(*value) : Json(nullptr);
+}
+
+Json json_of(const Settings &settings)
+{
+  Json object = Json::object();
+  for (const auto &[key, value] : settings)
+    object[key] = value;
+  return object;
+}
+
+Json json_of(const PlannedRun &planned, const RunOutcome &outcome)
+{
+  Json run;
+  run["run"] = outcome.run;
+  run["seed"] = outcome.seed;
+  run["folder"] = "runs/" + planned.folder();
+  run["state"] = to_string(outcome.state);
+  run["exit_code"] = outcome.exit_code;
+  run["problem"] = outcome.problem;
+  run["pattern"] = outcome.pattern.empty() ? Json(nullptr) : Json(outcome.pattern);
+  run["conclusive"] = outcome.conclusive;
+  run["reason"] = outcome.reason;
+  run["sites"] = planned.sites;
+  run["wall_time_s"] = outcome.wall_time;
+  run["values"] = Json::object();
+  for (const Quantity &quantity : quantities())
+  {
+    const auto found = outcome.values.find(quantity.name);
+    run["values"][quantity.name] = found == outcome.values.end() ? Json(nullptr) : Json(found->second);
+  }
+  return run;
+}
+
+Json json_of(const SeedStatistics &seeds)
+{
+  Json run;
+  run["run"] = seeds.run;
+  run["against"] = json_of(seeds.abscissa);
+  run["seeds"] = seeds.n_seeds;
+  run["n"] = seeds.n;
+  run["mean"] = json_of(seeds.mean);
+  run["standard_deviation"] = json_of(seeds.deviation);
+  run["patterns"] = seeds.patterns;
+  run["not_conclusive"] = seeds.unsettled;
+  return run;
+}
+
+Json json_of(const RowOutcome &outcome)
+{
+  Json row;
+  row["runs"] = outcome.row.runs;
+  row["quantity"] = outcome.row.quantity;
+  row["unit"] = outcome.row.unit();
+  row["against"] = outcome.row.against.empty() ? Json(nullptr) : Json(outcome.row.against);
+  row["expected"] = outcome.expected;
+  row["measured"] = outcome.measured;
+  row["number"] = json_of(outcome.number);
+  row["note"] = outcome.note;
+  row["verdict"] = to_string(outcome.verdict);
+  row["values"] = Json::array();
+  for (const SeedStatistics &seeds : outcome.runs)
+    row["values"].push_back(json_of(seeds));
+  return row;
+}
+
+std::string list_of(const std::vector<std::string> &names)
+{
+  std::string text;
+  for (const std::string &name : names)
+    text += (text.empty() ? "" : ", ") + name;
+  return text;
+}
+
+} // namespace
+
+std::string study_json(const StudyResults &results)
+{
+  Json document;
+  document["title"] = results.study.title;
+  document["version"] = program_version();
+  document["git_commit"] = git_commit();
+  document["quick"] = results.quick;
+  document["verification"] = results.verification;
+  document["settings"] = json_of(results.study.settings);
+  document["units"] = Json::object();
+  for (const Quantity &quantity : quantities())
+    document["units"][quantity.name] = quantity.unit;
+  document["runs"] = Json::array();
+  for (const StudyRun &run : results.study.runs)
+    document["runs"].push_back({{"run", run.name}, {"about", run.about}, {"set", json_of(run.own)}});
+  document["left_out"] = results.study.left_out;
+  document["pictures"] = results.study.pictures;
+  document["seeds"] = Json::array();
+  for (std::size_t i = 0; i < results.plan.size(); ++i)
+    document["seeds"].push_back(json_of(results.plan[i], results.outcomes[i]));
+  document["claims"] = Json::array();
+  for (const ClaimResult &claim : results.claims)
+  {
+    Json rows = Json::array();
+    for (const RowOutcome &row : claim.rows)
+      rows.push_back(json_of(row));
+    document["claims"].push_back({{"claim", claim.claim.claim},
+                                  {"paper", claim.claim.paper},
+                                  {"note", claim.claim.note},
+                                  {"verdict", to_string(claim.verdict())},
+                                  {"rows", rows}});
+  }
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+std::string study_csv(const StudyResults &results)
+{
+  std::vector<std::string> columns{"run", "seed", "set", "state", "pattern", "conclusive"};
+  for (const Quantity &quantity : quantities())
+    columns.push_back(quantity.name + " [" + quantity.unit + "]");
+  Table table(columns);
+  for (const RunOutcome &outcome : results.outcomes)
+  {
+    std::string set;
+    for (const auto &[key, value] : results.study.run(outcome.run).own)
+      set += (set.empty() ? "" : "; ") + key + "=" + value;
+    std::vector<Table::Cell> row{outcome.run,
+                                 std::to_string(outcome.seed),
+                                 set,
+                                 to_string(outcome.state),
+                                 outcome.pattern,
+                                 std::string(outcome.state != RunState::measured ? ""
+                                             : outcome.conclusive                ? "true"
+                                                                                 : "false")};
+    for (const Quantity &quantity : quantities())
+    {
+      const auto found = outcome.values.find(quantity.name);
+      row.push_back(found == outcome.values.end() ? Table::Cell(std::string()) : Table::Cell(found->second));
+    }
+    table.add(row);
+  }
+  return table.csv();
+}
+
+Results study_rows(const StudyResults &results)
+{
+  Results rows;
+  for (const ClaimResult &claim : results.claims)
+    for (const RowOutcome &row : claim.rows)
+      if (const auto result = row.result(claim.claim.claim))
+        rows.add(*result);
+  return rows;
+}
+
+void print_table(std::ostream &out, const StudyResults &results)
+{
+  constexpr std::size_t width = 120;
+  constexpr std::size_t verdict_width = 15;
+  const auto paragraph = [&out](const std::string &text, const std::string &first, const std::string &indent)
+  {
+    std::string lead = first;
+    for (const std::string &line : wrapped(text, width - width_of(indent)))
+    {
+      out << lead << line << '\n';
+      lead = indent;
+    }
+  };
+  for (const ClaimResult &claim : results.claims)
+  {
+    paragraph(claim.claim.claim + ": " + to_string(claim.verdict()), "", "");
+    for (const RowOutcome &row : claim.rows)
+    {
+      std::string lead = "  " + to_string(row.verdict);
+      lead.resize(verdict_width + 2, ' ');
+      std::string text = list_of(row.row.runs) + ", " + row.row.quantity + ": " + row.measured;
+      if (!row.expected.empty())
+        text += " [" + row.expected + "]";
+      if (!row.note.empty())
+        text += " - " + row.note;
+      paragraph(text, lead, std::string(lead.size(), ' '));
+    }
+  }
+  for (const RunOutcome &outcome : results.outcomes)
+    if (outcome.state != RunState::measured)
+      paragraph(outcome.run + ", seed " + std::to_string(outcome.seed) + ": " + to_string(outcome.state) +
+                  (outcome.problem.empty() ? "" : ": " + outcome.problem),
+                "", "  ");
+}
+
+void print_plan(std::ostream &out, const std::vector<PlannedRun> &plan, const std::size_t n_cores)
+{
+  std::size_t widest = 4;
+  for (const PlannedRun &run : plan)
+    widest = std::max(widest, run.folder().size());
+  out << std::left << std::setw(static_cast<int>(widest)) << "run" << std::right << std::setw(10) << "sites"
+      << std::setw(10) << "steps" << std::setw(12) << "core time" << '\n';
+  double total = 0.;
+  for (const PlannedRun &run : plan)
+  {
+    const double seconds = core_seconds(run.cost());
+    total += seconds;
+    out << std::left << std::setw(static_cast<int>(widest)) << run.folder() << std::right << std::setw(10) << run.sites
+        << std::setw(10) << std::llround(run.steps) << std::setw(10) << std::llround(std::ceil(seconds)) << " s\n";
+  }
+  out << plan.size() << " runs, about " << std::llround(std::ceil(total / 60.)) << " core minutes, "
+      << std::llround(std::ceil(total / 60. / static_cast<double>(n_cores))) << " minutes on " << n_cores << " cores\n";
+}
+
+} // namespace verification

@@ -1,0 +1,165 @@
+#include "verification/study/study_plan.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <numeric>
+
+#include "verification/case.h"
+#include "verification/case_text.h"
+#include "verification/errors.h"
+#include "verification/homogenisation.h"
+#include "verification/lattice_sheet.h"
+
+namespace verification
+{
+namespace
+{
+
+std::map<std::string, double> numbers_in(const std::string &case_text)
+{
+  std::map<std::string, double> numbers;
+  for (const auto &item : read_prm(case_text, "case"))
+    if (const auto *assignment = std::get_if<Assignment>(&item))
+    {
+      char *end = nullptr;
+      const double value = std::strtod(assignment->value.c_str(), &end);
+      if (!assignment->value.empty() && *end == '\0' && std::isfinite(value))
+        numbers[assignment->section + "/" + assignment->name] = value;
+    }
+  return numbers;
+}
+
+double expected_steps(const Case &input, const lattice::TriangularLattice &sheet)
+{
+  const double way = (input.stop_position - input.seed_position) * sheet.length();
+  const double passage = way / small_strain(sheet, input.material()).shear_speed;
+  return std::ceil(std::min(input.end_time, passage) / input.lattice_time_step());
+}
+
+PlannedRun plan_run(const Study &study, const StudyRun &run, const std::uint64_t seed, const Settings &settings)
+{
+  PlannedRun planned;
+  planned.run = run.name;
+  planned.seed = seed;
+  Settings all = run.all;
+  override_settings(all, settings);
+  override_settings(all, {{seed_entry, std::to_string(seed)}, {"Output/frame interval", "0"}});
+  for (const auto &[key, value] : all)
+    planned.overrides.push_back(key + "=" + value);
+
+  Case input;
+  Parameters parameters;
+  input.declare(parameters);
+  parameters.read_file(study.base);
+  parameters.read_overrides(planned.overrides);
+  input.check(parameters);
+  require_fracture_case(input, parameters);
+  parameters.finish();
+
+  const lattice::TriangularLattice sheet = input.lattice();
+  planned.case_text = parameters.resolved_text();
+  planned.spacing = input.spacing;
+  planned.zeta = zeta(input);
+  planned.entries = numbers_in(planned.case_text);
+  planned.sites = sheet.n_sites();
+  planned.steps = expected_steps(input, sheet);
+  return planned;
+}
+
+// A row along something that none of its runs has a number of.
+void check_abscissas(const Study &study, const std::vector<PlannedRun> &runs, std::vector<std::string> &problems)
+{
+  for (const StudyClaim &claim : study.claims)
+    for (const StudyRow &row : claim.rows)
+    {
+      if (row.against.empty())
+        continue;
+      const auto has_number = [&row](const PlannedRun &run)
+      {
+        return std::find(row.runs.begin(), row.runs.end(), run.run) != row.runs.end() &&
+               run.value(row.against).has_value();
+      };
+      const auto is_left_out = [&study](const std::string &run)
+      { return std::find(study.left_out.begin(), study.left_out.end(), run) != study.left_out.end(); };
+      if (std::none_of(runs.begin(), runs.end(), has_number) &&
+          !std::all_of(row.runs.begin(), row.runs.end(), is_left_out))
+        problems.push_back(row.place + "/against: " + row.against + " is no number in any of these runs");
+    }
+}
+
+// "Section/Name=value" taken apart; what is wrong with it is found when the case reads it.
+Settings parsed(const std::vector<std::string> &texts)
+{
+  Settings settings;
+  for (const std::string &text : texts)
+  {
+    const std::size_t equals = text.find('=');
+    if (equals == std::string::npos)
+      throw InputError("--set: not understood: '" + printable(text) + "'; allowed: --set Section/Name=value");
+    override_settings(settings, {{trimmed(text.substr(0, equals)), trimmed(text.substr(equals + 1))}});
+  }
+  for (const auto &[key, value] : settings)
+    if (key == seed_entry)
+      throw InputError("--set: " + key + " is what the seeds of the study stand for");
+  return settings;
+}
+
+} // namespace
+
+std::optional<double> zeta(const Case &input)
+{
+  const ShellCase &bond = input.nearest;
+  if (bond.law != ShellCase::Law::mooney_rivlin || !(bond.a > 0.))
+    return {};
+  return bond.viscosity / bond.a * std::sqrt(bond.a / input.density) / input.spacing;
+}
+
+std::optional<double> PlannedRun::value(const std::string &against) const
+{
+  if (against == "zeta")
+    return zeta;
+  const auto found = entries.find(against);
+  return found == entries.end() ? std::nullopt : std::optional<double>(found->second);
+}
+
+std::vector<PlannedRun> plan_runs(const Study &study, const std::vector<std::string> &settings)
+{
+  const Settings overrides = parsed(settings);
+  std::vector<PlannedRun> runs;
+  std::vector<std::string> problems;
+  for (const StudyRun &run : study.runs)
+    try
+    {
+      for (const std::uint64_t seed : run.seeds)
+        runs.push_back(plan_run(study, run, seed, overrides));
+    }
+    catch (const InputError &error)
+    {
+      // What is wrong with the base case is wrong in every run: told once.
+      for (const std::string &problem : error.problems())
+      {
+        const std::string text = ": " + problem;
+        const auto ends_alike = [&text](const std::string &known)
+        { return known.size() >= text.size() && known.compare(known.size() - text.size(), text.size(), text) == 0; };
+        if (std::none_of(problems.begin(), problems.end(), ends_alike))
+          problems.push_back(study.file + ": runs/" + run.name + text);
+      }
+    }
+  if (problems.empty())
+    check_abscissas(study, runs, problems);
+  if (!problems.empty())
+    throw InputError(problems);
+  return runs;
+}
+
+std::vector<std::size_t> longest_first(const std::vector<PlannedRun> &runs)
+{
+  std::vector<std::size_t> order(runs.size());
+  std::iota(order.begin(), order.end(), 0);
+  std::stable_sort(order.begin(), order.end(),
+                   [&runs](std::size_t a, std::size_t b) { return runs[a].cost() > runs[b].cost(); });
+  return order;
+}
+
+} // namespace verification

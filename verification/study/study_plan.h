@@ -1,0 +1,51 @@
+/// The runs of a study, resolved: every case is checked before anything is run.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "verification/study/quantities.h"
+#include "verification/study/study_file.h"
+
+namespace verification
+{
+
+/// One fracture run: a case with one seed.
+struct PlannedRun
+{
+  std::string run;
+  std::uint64_t seed = 0;
+  std::vector<std::string> overrides;    ///< `Section/Name=value` of the base case
+  std::string case_text;                 ///< the case.prm it will write
+  double spacing = 0.;                   ///< d [m]
+  std::optional<double> zeta;            ///< see zeta()
+  std::map<std::string, double> entries; ///< those entries of the case that are numbers, in SI
+  std::size_t sites = 0;
+  double steps = 0.; ///< expected [-]: until a crack as fast as the shear waves of the unloaded sheet is through
+
+  std::string folder() const { return run + "-" + std::to_string(seed); }
+  double cost() const { return static_cast<double>(sites) * steps; } ///< site-steps [-]
+  /// Value of "zeta" or of an entry `Section/Name`; none if it has no number.
+  std::optional<double> value(const std::string &against) const;
+};
+
+struct Case;
+
+/// zeta = (eta / a) / (d / sqrt(a / rho)) of the nearest-neighbour bonds [-]: the retardation time over the time in
+/// which a wave passes one spacing (theory.md, section "The lattice"). None for linear bonds, which have no a.
+[[nodiscard]] std::optional<double> zeta(const Case &input);
+
+/// All runs of a study with all their seeds, in the order of the file. The noise seed and `Output/frame interval = 0`
+/// are set here.
+/// @param settings `Section/Name=value` for all runs, over those of the study
+/// @throws InputError with the problems of every case, and of rows whose `against` has no number in any of their runs
+[[nodiscard]] std::vector<PlannedRun> plan_runs(const Study &study, const std::vector<std::string> &settings);
+
+/// Indices of the runs, the most expensive first; equal ones in their order.
+[[nodiscard]] std::vector<std::size_t> longest_first(const std::vector<PlannedRun> &runs);
+
+} // namespace verification

@@ -1,0 +1,101 @@
+/// The table of a study: what each row measured, and whether it holds.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "verification/results.h"
+#include "verification/study/run_outcome.h"
+#include "verification/study/study_file.h"
+
+namespace verification
+{
+
+/// Verdict of a row.
+enum class RowVerdict
+{
+  holds,
+  does_not_hold,
+  reported,    ///< the row has no rule
+  not_measured ///< too few seeds or runs have what the rule needs
+};
+
+/// "holds", "does not hold", "reported", "not measured".
+[[nodiscard]] std::string to_string(RowVerdict verdict);
+
+/// A quantity of one run over its seeds.
+struct SeedStatistics
+{
+  std::string run;
+  std::size_t n_seeds = 0;        ///< that were to be run
+  std::size_t n = 0;              ///< that have the quantity
+  std::optional<double> abscissa; ///< value of the row's `against`
+
+  std::optional<double> mean;      ///< none if n = 0 or for the pattern
+  std::optional<double> deviation; ///< standard deviation over the seeds, n - 1; none if n < 2
+  /// One standard error of the mean, from the spread over the seeds or from the uncertainties of the single
+  /// measurements, whichever is more; 0 where neither is known.
+  double standard_error = 0.;
+  std::map<std::string, std::size_t> patterns;  ///< how many seeds showed each, conclusively
+  std::map<std::string, std::size_t> unsettled; ///< likewise, not conclusively: these do not have the pattern
+  std::vector<std::string> missing;             ///< "seed 3 failed", for each seed without the quantity
+
+  /// Whether more than half of the seeds have it: what every rule asks of a run.
+  bool is_measured() const { return 2 * n > n_seeds; }
+  /// Whether it is measured, and all seeds that have a pattern have this one.
+  bool shows(const std::string &pattern) const;
+  /// "2.29 ± 0.04 cm (5)", "oscillating 4/5, straight 1/5 (not conclusive)", or "not measured".
+  std::string text(const std::string &unit) const;
+};
+
+/// A row, judged.
+struct RowOutcome
+{
+  StudyRow row;
+  std::optional<double> bound; ///< of the rules that have one; none if the run that gives it was not measured
+  RowVerdict verdict = RowVerdict::not_measured;
+  std::string expected;             ///< the rule in words; empty if there is none
+  std::string measured;             ///< what came out, in words
+  std::string note;                 ///< seeds and runs that are missing; empty if none is
+  std::vector<SeedStatistics> runs; ///< in the order of the row, or of `against` if it has one
+  std::optional<double> number; ///< of the row as a whole: mean, share of seeds with the pattern, exponent, middle of
+                                ///< the bracket
+  std::optional<double> misfit; ///< holds if not larger than allowed(); none unless the row was judged
+  double allowed() const { return row.rule == Rule::is_near ? row.tolerance : 0.; }
+
+  /// As a row of results.json; none if the row has no number and was not judged.
+  std::optional<Result> result(const std::string &claim) const;
+};
+
+/// A claim, judged.
+struct ClaimResult
+{
+  StudyClaim claim;
+  std::vector<RowOutcome> rows;
+  /// "does not hold" if a row does not, else "holds" if one does, else "not measured" if one was to be judged.
+  RowVerdict verdict() const;
+};
+
+/// Statistics of one quantity over the seeds of a run.
+[[nodiscard]] SeedStatistics statistics(const std::string &run, const std::string &quantity,
+                                        const std::vector<RunOutcome> &outcomes);
+
+/// Judges a row (docs/reference.md, "Studies").
+/// @param plan the runs, for the values of `against`
+/// @param outcomes of these runs, in the same order
+/// @param left_out runs that this size of the study does without
+[[nodiscard]] RowOutcome judge(const StudyRow &row, const std::vector<PlannedRun> &plan,
+                               const std::vector<RunOutcome> &outcomes, const std::vector<std::string> &left_out);
+
+/// Judges all rows of a study.
+[[nodiscard]] std::vector<ClaimResult> judge(const Study &study, const std::vector<PlannedRun> &plan,
+                                             const std::vector<RunOutcome> &outcomes);
+
+/// A number with its unit as a reader wants it: lengths in cm, areas in mm^2, times in ms.
+/// @param deviation standard deviation in the same unit, or none
+[[nodiscard]] std::string quantity_text(double value, std::optional<double> deviation, const std::string &unit);
+
+} // namespace verification
