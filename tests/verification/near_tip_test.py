@@ -54,7 +54,8 @@ class NearTip(TemporaryFolder):
         for name in ("near_tip.vti", "near_tip_folded.vti"):
             image = read(vtkXMLImageDataReader(), self.out / name)
             points = image.GetPointData()
-            arrays = {points.GetArrayName(i): vtk_to_numpy(points.GetArray(i)) for i in range(points.GetNumberOfArrays())}
+            arrays = {points.GetArrayName(i): vtk_to_numpy(points.GetArray(i))
+                      for i in range(points.GetNumberOfArrays())}
             self.assertEqual({n: a.size // len(arrays["occupancy"]) for n, a in arrays.items()}, COMPONENTS)
             self.assertEqual(image.GetFieldData().GetArray("Samples").GetValue(0), found["samples"])
             columns, rows, _ = image.GetDimensions()
@@ -63,8 +64,8 @@ class NearTip(TemporaryFolder):
             for measured, expected in zip((*image.GetSpacing()[:2], *image.GetOrigin()[:2]),
                                           (d, math.sqrt(0.75) * d, -16 * d, -16 * math.sqrt(0.75) * d)):
                 self.assertAlmostEqual(measured, expected, delta=1e-12)
-            # From 2 d to 7 d ahead of the tip, which the strip always reaches, the sheet is whole, and F is the gradient
-            # of the mean position: both are averages over a spacing or two.
+            # From 2 d to 7 d ahead of the tip, which the strip always reaches, the sheet is whole, and F is the
+            # gradient of the mean position: both are averages over a spacing or two.
             whole = arrays["occupancy"].reshape(rows, columns)[:, 18:24]
             self.assertLess(abs(whole - 1).max(), 1e-12)
             u = arrays["displacement"].reshape(rows, columns, 3)[:, 18:24, 0]

@@ -85,7 +85,7 @@ def velocity_picture(vti_path, out_png, title="velocity around the tip", crack_s
     arrows = axes.quiver(*place.T, *arrow.T, color=BLACK, angles="xy", width=0.0012, scale=22 * fastest,
                          scale_units="width")
     axes.quiverkey(arrows, 0.86, 1.025, fastest, f"{fastest:.3g} m/s", labelpos="E", fontproperties={"size": 9})
-    what = f"green: v_x < {limit:.2g} m/s ahead of the tip" if goes_back.any() else "nothing moves back ahead of the tip"
+    what = f"green: v_x < {limit:.2g} m/s ahead of the tip" if goes_back.any() else "nothing moves back ahead of it"
     finish(page, axes, mesh, tip, title, f"v_x [m/s] in the laboratory, along the crack; {what}")
     save(page.figure, out_png)
 

@@ -17,11 +17,11 @@ CAPTIONS = {
                   "dashed line is what the bonds gave; the areas are what was found elsewhere; the small axis is the "
                   "difference, over the energy given to the sheet.",
     "near_tip_velocity.png": "Velocity of the material around the tip (cross), mean over samples; where the path "
-                             "descends, samples were mirrored first, so that the two sides of an oscillating crack stay "
-                             "apart. White: the opening, or fewer than half the samples had material there. Numbers are "
-                             "in near_tip.json.",
-    "near_tip_stress.png": "Stress across the crack, in the same mean. Two lobes off the axis are what is called kidney "
-                           "shaped.",
+                             "descends, samples were mirrored first, so that the two sides of an oscillating crack "
+                             "stay apart. White: the opening, or fewer than half the samples had material there. "
+                             "Numbers are in near_tip.json.",
+    "near_tip_stress.png": "Stress across the crack, in the same mean. Two lobes off the axis are what is called "
+                           "kidney shaped.",
 }
 
 
