@@ -1,7 +1,9 @@
 #include "verification/crack_oracle/crack_run.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
+#include <optional>
 #include <stdexcept>
 
 #include "lattice/relaxation.h"
@@ -113,7 +115,7 @@ void Run::cut(lattice::State &state, double length) const
 // Near the tip alone, where it is.
 double Run::largest_elsewhere(const lattice::State &state, std::size_t tip) const
 {
-  constexpr std::size_t reach = 4;
+  const std::size_t reach = std::min<std::size_t>(4, options_.strip.free_rows);
   double largest = 0.;
   for (std::size_t row = row_below_crack() - reach; row <= row_below_crack() + reach; ++row)
     for (std::size_t column = sheet_.column_of(tip) - 2 * reach; column <= sheet_.column_of(tip) + 2 * reach; ++column)

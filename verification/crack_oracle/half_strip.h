@@ -1,9 +1,8 @@
 #pragma once
 
 #include <complex>
+#include <cstddef>
 #include <vector>
-
-#include <Eigen/Core>
 
 namespace verification
 {

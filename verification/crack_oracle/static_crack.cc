@@ -1,8 +1,8 @@
 #include "verification/crack_oracle/static_crack.h"
 
-#include <array>
 #include <cmath>
 #include <stdexcept>
+#include <vector>
 
 #include <Eigen/SparseCholesky>
 
