@@ -15,21 +15,28 @@ void add_measured(std::vector<Quantity> &all, const std::string &name, const std
   all.push_back({name + "_uncertainty", unit, source});
 }
 
+// Known in m, and over d as well.
+const std::vector<std::string> lengths_of_oscillation{"wavelength", "amplitude", "crest_amplitude"};
+
 std::vector<Quantity> all_quantities()
 {
   using Source = Quantity::Source;
   std::vector<Quantity> all{{"zeta", "1", Source::derived}};
   for (const char *name : {"speed_lagrangian", "speed_laboratory"})
     add_measured(all, name, "m/s", Source::crack);
-  for (const char *name : {"wavelength", "amplitude"})
+  for (const std::string &name : lengths_of_oscillation)
+  {
     add_measured(all, name, "m", Source::crack);
-  for (const char *name : {"wavelength_over_d", "amplitude_over_d"})
-    add_measured(all, name, "1", Source::derived);
+    add_measured(all, name + "_over_d", "1", Source::derived);
+  }
   all.push_back({"periods", "1", Source::crack});
   all.push_back({"window_begin", "m", Source::crack});
   all.push_back({"window_end", "m", Source::crack});
   all.push_back({"branched_fraction", "1", Source::crack});
-  all.push_back({"bonds_broken", "1", Source::crack});
+  for (const char *name :
+       {"bonds_broken", "detached_sites", "detached_fragments", "largest_fragment", "bridging_bonds"})
+    all.push_back({name, "1", Source::crack});
+  all.push_back({"bridging_bonds_per_m", "1/m", Source::crack});
   all.push_back({"end_time", "s", Source::crack});
   all.push_back({"energy_imbalance", "1", Source::crack});
   const auto add_near_tip = [&all](const std::vector<std::string> &names, const std::string &unit)
@@ -85,7 +92,7 @@ std::string unit_of(const std::string &quantity)
 
 void add_derived(Values &values, const double spacing)
 {
-  for (const std::string name : {"wavelength", "amplitude"})
+  for (const std::string &name : lengths_of_oscillation)
     for (const std::string suffix : {"", "_uncertainty"})
       if (const auto found = values.find(name + suffix); found != values.end())
         values[name + "_over_d" + suffix] = found->second / spacing;
