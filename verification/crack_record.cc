@@ -173,11 +173,10 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory,
   json["detached_sites"] = std::accumulate(fragments.sizes.begin(), fragments.sizes.end(), std::size_t{0});
   json["detached_fragments"] = fragments.sizes.size();
   json["largest_fragment"] = fragments.sizes.empty() ? 0 : fragments.sizes.front();
-  const std::size_t bridging = lattice::n_bridging_bonds(simulation_.state(), simulation_.lattice(), breaking_stretch);
-  json["bridging_bonds"] = bridging;
-  const double grown = tip_X() - seed_tip_X;
-  json["bridging_bonds_per_m"] =
-    grown > 0. ? nlohmann::ordered_json(static_cast<double>(bridging) / grown) : nlohmann::ordered_json(nullptr);
+  json["overstretched_bonds"] =
+    lattice::n_overstretched_bonds(simulation_.state(), simulation_.lattice(), breaking_stretch);
+  json["bridged_length"] =
+    lattice::bridged_length(simulation_.state(), simulation_.lattice(), seed_tip_X, tip_X());
   json["end_time"] = simulation_.state().time;
   json["energy_imbalance"] = largest_imbalance();
   json["skip_verification"] = skip_verification;

@@ -107,19 +107,61 @@ TEST(Fragments, GoOnAcrossAPeriodicEdge)
 }
 
 // Bonds beyond lam_f count, toughened or not.
-TEST_F(Cut, BridgesAreBondsThatOnlyTougheningKept)
+TEST_F(Cut, OverstretchedBondsAreThoseThatOnlyTougheningKept)
 {
-  EXPECT_EQ(n_bridging_bonds(state, sheet, 2.), 0u);
+  EXPECT_EQ(n_overstretched_bonds(state, sheet, 2.), 0u);
   // One site moved far up: its bonds are long, whatever they would break at.
   const std::size_t place = sheet.index(8, 8);
   state.y[place] += 6. * sheets::spacing;
   std::size_t n = 0;
   for_each_bond_of_site(state, sheet, place, [&](std::size_t, std::size_t) { ++n; });
   EXPECT_EQ(n, 12u);
-  EXPECT_EQ(n_bridging_bonds(state, sheet, 2.), 12u);
-  EXPECT_EQ(n_bridging_bonds(state, sheet, 20.), 0u);
+  EXPECT_EQ(n_overstretched_bonds(state, sheet, 2.), 12u);
+  EXPECT_EQ(n_overstretched_bonds(state, sheet, 20.), 0u);
   cut_around({place});
-  EXPECT_EQ(n_bridging_bonds(state, sheet, 2.), 0u); // broken ones bridge nothing
+  EXPECT_EQ(n_overstretched_bonds(state, sheet, 2.), 0u);
+}
+
+// A crack between two rows, from X = 2 d to 14 d: three strips. The sheet is 16 d long.
+TEST_F(Cut, FibrilsBridgeTheStripsTheyAreIn)
+{
+  const double d = sheets::spacing;
+  const auto middle = sheet.rows() / 2;
+  const auto crosses = [&](std::size_t near, std::size_t far)
+  {
+    const std::size_t lower = std::min(sheet.row_of(near), sheet.row_of(far));
+    const std::size_t upper = std::max(sheet.row_of(near), sheet.row_of(far));
+    return lower <= middle && upper > middle;
+  };
+  EXPECT_DOUBLE_EQ(bridged_length(state, sheet, 2. * d, 14. * d), 12. * d);
+  EXPECT_DOUBLE_EQ(bridged_length(state, sheet, 2. * d, 13.9 * d), 8. * d);
+  EXPECT_EQ(bridged_length(state, sheet, 2. * d, 2. * d), 0.);
+  std::vector<std::pair<std::size_t, std::size_t>> cut;
+  for_each_bond(state, sheet,
+                [&](std::size_t near, std::size_t kind, std::size_t far)
+                {
+                  if (crosses(near, far))
+                    cut.emplace_back(near, kind);
+                });
+  std::vector<double> limits;
+  for (const auto &[near, kind] : cut)
+  {
+    limits.push_back(state.breaking_stretch[kind][near]);
+    state.breaking_stretch[kind][near] = 0.;
+  }
+  EXPECT_EQ(bridged_length(state, sheet, 2. * d, 14. * d), 0.);
+  // One bond, from site to site within the strip from 6 d to 10 d, bridges that one alone.
+  for (std::size_t i = 0; i < cut.size(); ++i)
+  {
+    const auto &[near, kind] = cut[i];
+    const double X = sheet.reference(near).x() / d;
+    if (kind != 1 || X < 7. || X > 8.)
+      continue;
+    state.breaking_stretch[kind][near] = limits[i];
+    EXPECT_DOUBLE_EQ(bridged_length(state, sheet, 2. * d, 14. * d), 4. * d);
+    return;
+  }
+  FAIL() << "no such bond";
 }
 
 } // namespace

@@ -34,9 +34,9 @@ std::vector<Quantity> all_quantities()
   all.push_back({"window_end", "m", Source::crack});
   all.push_back({"branched_fraction", "1", Source::crack});
   for (const char *name :
-       {"bonds_broken", "detached_sites", "detached_fragments", "largest_fragment", "bridging_bonds"})
+       {"bonds_broken", "detached_sites", "detached_fragments", "largest_fragment", "overstretched_bonds"})
     all.push_back({name, "1", Source::crack});
-  all.push_back({"bridging_bonds_per_m", "1/m", Source::crack});
+  all.push_back({"bridged_length", "m", Source::crack});
   all.push_back({"end_time", "s", Source::crack});
   all.push_back({"energy_imbalance", "1", Source::crack});
   const auto add_near_tip = [&all](const std::vector<std::string> &names, const std::string &unit)
