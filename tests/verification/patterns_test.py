@@ -1,0 +1,44 @@
+#!/usr/bin/python3
+"""What decides the pattern of a crack, in strips of a few thousand sites: the study `patterns`.
+
+Usage: patterns_test.py PATH_OF_LATCON
+"""
+import json
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+import unittest
+
+LATCON = sys.argv[1]
+
+
+def study(folder, *options):
+    """Runs the study. @return exit code, study.json"""
+    run = subprocess.run([LATCON, "study", "patterns", "--skip-verification", "--quiet", "--output-dir", folder,
+                          *options], check=False)
+    return run.returncode, json.loads((pathlib.Path(folder) / "study.json").read_text(encoding="utf-8"))
+
+
+class Patterns(unittest.TestCase):
+    def test_are_those_of_the_paper(self):
+        with tempfile.TemporaryDirectory() as folder:
+            exit_code, document = study(folder)
+        for claim in document["claims"]:
+            print(claim["claim"], [(row["quantity"], row["measured"], row["verdict"]) for row in claim["rows"]])
+            self.assertEqual(claim["verdict"], "holds")
+        self.assertEqual(exit_code, 0)
+
+    def test_without_what_decides_them_the_study_fails(self):
+        # Next to no viscosity in every run: the crack that shall oscillate runs straight.
+        with tempfile.TemporaryDirectory() as folder:
+            exit_code, document = study(folder, "--quick", "--set", "Nearest neighbours/viscosity=10", "--set",
+                                        "Next-nearest neighbours/viscosity=30")
+        self.assertEqual(document["claims"][0]["rows"][0]["verdict"], "does not hold")
+        self.assertEqual(exit_code, 3)
+
+
+if __name__ == "__main__":
+    os.environ.setdefault("OMP_NUM_THREADS", "1")
+    unittest.main(argv=sys.argv[:1], verbosity=2)
