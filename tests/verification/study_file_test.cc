@@ -112,6 +112,15 @@ TEST(StudyFile, RowsHaveTheirRules)
   EXPECT_EQ(rows[5].rule, Rule::reported);
 }
 
+TEST(StudyFile, ChecksAreThoseOfBothSizes)
+{
+  nlohmann::ordered_json document = example();
+  EXPECT_TRUE(read(document).checks.empty());
+  document["checks"] = {"steady-crack"};
+  for (const bool quick : {false, true})
+    EXPECT_EQ(read(document, quick).checks, std::vector<std::string>{"steady-crack"});
+}
+
 TEST(StudyFile, PlanResolvesEveryCase)
 {
   const std::vector<PlannedRun> plan = plan_runs(read(example()), {"Fracture/seed sites=3"});
@@ -161,6 +170,8 @@ TEST(StudyFile, UnknownWordsAreNamedWithTheirPlaceAndTheNearestKnownOne)
   EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][4]["is"] = "wavy"; }), "'wavy' is no pattern");
   EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][1]["against"] = "zetta"; }), "nearest: zeta");
   EXPECT_HAS(problem_after([](Json &d) { d["pictures"][0] = "nothing"; }), "pictures/1: 'nothing' is no run");
+  EXPECT_HAS(problem_after([](Json &d) { d["checks"] = {"stady-crack"}; }),
+             "checks/1: 'stady-crack' is no check; nearest: steady-crack");
 }
 
 TEST(StudyFile, WrongTypesAndMissingKeysAreNamed)
@@ -170,6 +181,12 @@ TEST(StudyFile, WrongTypesAndMissingKeysAreNamed)
   EXPECT_HAS(problem_after([](Json &d) { d["seeds"] = 3; }), "seeds: must be a list");
   EXPECT_HAS(problem_after([](Json &d) { d["runs"]["one"]["seeds"][1] = 1.5; }), "runs/one/seeds/2: must be a whole");
   EXPECT_HAS(problem_after([](Json &d) { d["runs"]["one"]["seeds"][1] = 3; }), "this seed is there already");
+  EXPECT_HAS(problem_after([](Json &d) { d["checks"] = "steady-crack"; }), "checks: must be a list");
+  EXPECT_HAS(problem_after(
+               [](Json &d) {
+                 d["checks"] = {"steady-crack", "steady-crack"};
+               }),
+             "checks/2: this check is there already");
   EXPECT_HAS(problem_after([](Json &d) { d["runs"]["one"]["set"]["Lattice/noise seed"] = 3; }), "\"seeds\" stands for");
   EXPECT_HAS(problem_after([](Json &d) { d["runs"]["../x"] = Json::object(); }), "a run's name");
   EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][0]["is near"] = "2 cm"; }), "must be a number");

@@ -14,7 +14,7 @@ namespace
 {
 
 // Runs with values along zeta = 1, 2, 3 ... in the order in which they were added.
-class Table
+class MadeUpStudy
 {
 public:
   // Seeds of a run with values of the wavelength [m]; NaN: straight, none measured.
@@ -92,7 +92,7 @@ StudyRow bracket_row(const std::vector<std::string> &runs)
 
 TEST(StudyTable, MeanAndStandardDeviationOverSeeds)
 {
-  Table table;
+  MadeUpStudy table;
   table.add("a", {0.02, 0.022, 0.024});
   const SeedStatistics seeds = statistics("a", "wavelength", table.outcomes);
   EXPECT_DOUBLE_EQ(seeds.mean.value(), 0.022);
@@ -103,7 +103,7 @@ TEST(StudyTable, MeanAndStandardDeviationOverSeeds)
 
 TEST(StudyTable, UncertaintyOfASingleMeasurementCountsAsError)
 {
-  Table table;
+  MadeUpStudy table;
   table.add("a", {0.02});
   EXPECT_DOUBLE_EQ(statistics("a", "wavelength", table.outcomes).standard_error, 0.);
   table.outcomes[0].values["wavelength_uncertainty"] = 0.003;
@@ -112,7 +112,7 @@ TEST(StudyTable, UncertaintyOfASingleMeasurementCountsAsError)
 
 TEST(StudyTable, IsNearHoldsWithinItsTolerance)
 {
-  Table table;
+  MadeUpStudy table;
   table.add("a", {0.02, 0.022});
   EXPECT_EQ(table.judged(row_of({"a"}, Rule::is_near, 0.0229, 0.1)).verdict, RowVerdict::holds);
   EXPECT_EQ(table.judged(row_of({"a"}, Rule::is_near, 0.0229, 0.08)).verdict, RowVerdict::does_not_hold);
@@ -121,7 +121,7 @@ TEST(StudyTable, IsNearHoldsWithinItsTolerance)
 
 TEST(StudyTable, AboveAndBelow)
 {
-  Table table;
+  MadeUpStudy table;
   table.add("a", {0.02, 0.022});
   EXPECT_EQ(table.judged(row_of({"a"}, Rule::above, 0.0209)).verdict, RowVerdict::holds);
   EXPECT_EQ(table.judged(row_of({"a"}, Rule::above, 0.0211)).verdict, RowVerdict::does_not_hold);
@@ -131,7 +131,7 @@ TEST(StudyTable, AboveAndBelow)
 
 TEST(StudyTable, BoundMayBeThatOfAnotherRun)
 {
-  Table table;
+  MadeUpStudy table;
   table.add("a", {0.02});
   table.add("b", {0.03});
   table.add("none", {NAN});
@@ -147,7 +147,7 @@ TEST(StudyTable, BoundMayBeThatOfAnotherRun)
 
 TEST(StudyTable, ARuleForEachRunWantsAllOfThem)
 {
-  Table table;
+  MadeUpStudy table;
   table.add("a", {0.02});
   table.add("b", {0.03});
   EXPECT_EQ(table.judged(row_of({"a", "b"}, Rule::above, 0.01)).verdict, RowVerdict::holds);
@@ -156,7 +156,7 @@ TEST(StudyTable, ARuleForEachRunWantsAllOfThem)
 
 TEST(StudyTable, PatternHoldsIfEverySeedShowsIt)
 {
-  Table table;
+  MadeUpStudy table;
   table.add("a", {0.02, 0.02, 0.02});
   EXPECT_EQ(table.judged(pattern_row({"a"}, "oscillating")).verdict, RowVerdict::holds);
   EXPECT_EQ(table.judged(pattern_row({"a"}, "oscillating")).measured, "oscillating 3/3");
@@ -169,7 +169,7 @@ TEST(StudyTable, PatternHoldsIfEverySeedShowsIt)
 
 TEST(StudyTable, PatternsThatAreNotConclusiveDoNotCount)
 {
-  Table table;
+  MadeUpStudy table;
   table.add("a", {0.02, 0.02, 0.02});
   table.outcomes[2].conclusive = false;
   const RowOutcome one = table.judged(pattern_row({"a"}, "oscillating"));
@@ -182,7 +182,7 @@ TEST(StudyTable, PatternsThatAreNotConclusiveDoNotCount)
 
 TEST(StudyTable, SeedsWithoutTheNumberAreNamedAndHalfOfThemAreTooMany)
 {
-  Table table;
+  MadeUpStudy table;
   table.add("a", {0.02, NAN, 0.022});
   const RowOutcome some = table.judged(row_of({"a"}, Rule::is_near, 0.021, 0.1));
   EXPECT_EQ(some.verdict, RowVerdict::holds);
@@ -198,7 +198,7 @@ TEST(StudyTable, SeedsWithoutTheNumberAreNamedAndHalfOfThemAreTooMany)
 
 TEST(StudyTable, RisesAndFalls)
 {
-  Table table;
+  MadeUpStudy table;
   table.add("a", {0.010, 0.011});
   table.add("b", {0.020, 0.021});
   table.add("c", {0.0205, 0.0206}); // saturated
@@ -210,7 +210,7 @@ TEST(StudyTable, RisesAndFalls)
 
 TEST(StudyTable, NoRiseThatIsWithinTheErrors)
 {
-  Table table;
+  MadeUpStudy table;
   table.add("a", {0.010, 0.020});
   table.add("b", {0.012, 0.022});
   EXPECT_EQ(table.judged(row_of({"a", "b"}, Rule::rises)).verdict, RowVerdict::does_not_hold);
@@ -218,7 +218,7 @@ TEST(StudyTable, NoRiseThatIsWithinTheErrors)
 
 TEST(StudyTable, ExponentOfATrend)
 {
-  Table table;
+  MadeUpStudy table;
   for (const double zeta : {1., 2., 3., 4.})
     table.add("z" + std::to_string(int(zeta)), {0.01 * std::sqrt(zeta)});
   const RowOutcome row = table.judged(row_of({"z1", "z2", "z3", "z4"}, Rule::rises));
@@ -227,7 +227,7 @@ TEST(StudyTable, ExponentOfATrend)
 
 TEST(StudyTable, TrendLeavesOutRunsWithoutTheNumberAndSaysSo)
 {
-  Table table;
+  MadeUpStudy table;
   table.add("a", {NAN, NAN});
   table.add("b", {0.020, 0.021});
   table.add("c", {0.030, 0.031});
@@ -239,7 +239,7 @@ TEST(StudyTable, TrendLeavesOutRunsWithoutTheNumberAndSaysSo)
 
 TEST(StudyTable, BracketLiesBetweenTheTwoPatterns)
 {
-  Table table;
+  MadeUpStudy table;
   for (const char *run : {"a", "b"})
     table.add(run, {NAN, NAN});
   table.add("mixed", {NAN, 0.02});
@@ -252,7 +252,7 @@ TEST(StudyTable, BracketLiesBetweenTheTwoPatterns)
   EXPECT_EQ(table.judged(bracket_row({"a", "b", "mixed"})).verdict, RowVerdict::does_not_hold);
   EXPECT_EQ(table.judged(bracket_row({"mixed", "d", "e"})).verdict, RowVerdict::does_not_hold);
 
-  Table reversed;
+  MadeUpStudy reversed;
   reversed.add("a", {0.02});
   reversed.add("b", {NAN});
   EXPECT_EQ(reversed.judged(bracket_row({"a", "b"})).verdict, RowVerdict::does_not_hold);
@@ -260,7 +260,7 @@ TEST(StudyTable, BracketLiesBetweenTheTwoPatterns)
 
 TEST(StudyTable, RunsThatTheQuickStudyLeavesOut)
 {
-  Table table;
+  MadeUpStudy table;
   table.add("a", {0.010});
   table.add("b", {0.020});
   const RowOutcome alone = table.judged(row_of({"big"}, Rule::above, 0.), {"big"});
@@ -271,7 +271,7 @@ TEST(StudyTable, RunsThatTheQuickStudyLeavesOut)
 
 TEST(StudyTable, ResultsHaveTheVerdictsOfTheTable)
 {
-  Table table;
+  MadeUpStudy table;
   table.add("a", {0.010, 0.011});
   table.add("b", {0.020, 0.021});
   table.add("s", {NAN, NAN});
@@ -290,7 +290,7 @@ TEST(StudyTable, ResultsHaveTheVerdictsOfTheTable)
 
 TEST(StudyTable, OutputsHoldEveryRunAndRow)
 {
-  Table table;
+  MadeUpStudy table;
   table.add("a", {0.010, NAN});
   StudyResults results;
   results.study.title = "T";
@@ -301,6 +301,9 @@ TEST(StudyTable, OutputsHoldEveryRunAndRow)
   results.outcomes[1].state = RunState::failed;
   results.outcomes[1].problem = "the state blew up";
   results.claims = judge(results.study, results.plan, results.outcomes);
+  results.checks = {{"steady-crack", "about it", {}}};
+  results.checks[0].rows.add({"steady-crack", "speed", "1", 0.51, {}, 0.5, 0.02, 0.01});
+  results.checks[0].rows.add({"steady-crack", "energy", "1", 2.5, {}, {}, {}, {}});
 
   const std::string csv = study_csv(results);
   EXPECT_HAS(csv, "wavelength [m]");
@@ -310,7 +313,15 @@ TEST(StudyTable, OutputsHoldEveryRunAndRow)
   EXPECT_EQ(json["seeds"][0]["values"]["wavelength"], 0.010);
   EXPECT_TRUE(json["seeds"][0]["values"]["amplitude"].is_null());
   EXPECT_EQ(json["claims"][0]["rows"].size(), 2u);
+  EXPECT_EQ(json["checks"][0]["about"], "about it");
+  EXPECT_EQ(json["checks"][0]["rows"][0]["theory"], 0.5);
+  EXPECT_EQ(json["checks"][0]["rows"][0]["verdict"], "does not hold");
+  EXPECT_EQ(json["checks"][0]["rows"][1]["verdict"], "reported");
+  EXPECT_EQ(study_rows(results).rows().back().quantity, "energy");
+  EXPECT_EQ(study_rows(results).verdict(), Verdict::fails);
   std::ostringstream out;
   print_table(out, results);
+  EXPECT_HAS(out.str(), "Check steady-crack: does not hold");
+  EXPECT_HAS(out.str(), "does not hold  speed: 0.51, exact 0.5, error 0.02 [at most 0.01]");
   EXPECT_HAS(out.str(), "a, seed 2: failed: the state blew up");
 }

@@ -77,7 +77,7 @@ class Study(TemporaryFolder):
         self.assertEqual(float(lines[1]["speed_lagrangian [m/s]"]), crack["speed_lagrangian"])
         self.assertEqual(json.loads(self.text("results.json"))["verdict"], "holds")
         page = self.text("study.html")
-        self.assertTrue((self.out / "pictures" / "sheet-base.png").exists())
+        self.assertTrue((self.out / "pictures" / "base-sheet.png").exists())
         for part in ("The crack runs", "not measured", "data:image/png", "It does."):
             self.assertIn(part, page)
         self.assertNotIn("http", page.replace("http://www.w3.org", ""))
@@ -136,6 +136,8 @@ class Study(TemporaryFolder):
         whole = self.text("study.csv")
         for number, expected in ((signal.SIGTERM, 130), (signal.SIGKILL, -signal.SIGKILL)):
             subprocess.run(["rm", "-r", self.out], check=True)
+            path = self.folder / "tiny.json"
+            path.write_text(json.dumps(dict(json.loads(path.read_text()), checks=["steady-crack"])))
             process = subprocess.Popen([LATCON, "study", self.folder / "tiny.json", "--output-dir", self.out, "--quiet",
                                         "--skip-verification", "--threads", "1"])
             runs = self.out / "runs"
@@ -149,13 +151,14 @@ class Study(TemporaryFolder):
             self.assertTrue([path for path in runs.iterdir() if path.suffix == ".part"])
             if number == signal.SIGTERM:
                 self.assertIn("not run", self.text("study.csv"))
+                self.assertEqual(json.loads(self.text("study.json"))["checks"], [])
             printed = self.study("--resume", change=longer)
             self.assertNotIn("4 runs, 0 are", printed)
             self.assertEqual(self.text("study.csv"), whole)
             self.assertFalse([path for path in runs.iterdir() if path.suffix == ".part"])
 
     def test_quick_study_verifies_the_base_case_once(self):
-        printed = self.study("--quick", skip=False)
+        printed = self.study("--quick", skip=False, change=lambda document: document.update(checks=["steady-crack"]))
         self.assertIn("claims: checked now", printed)
         document = json.loads(self.text("study.json"))
         self.assertTrue(document["quick"])
@@ -165,6 +168,18 @@ class Study(TemporaryFolder):
         self.assertTrue(info["skip_verification"])
         self.assertFalse(json.loads(self.text("run.json"))["skip_verification"])
         self.assertIn("base case alone", self.text("study.html"))
+
+        self.assertIn("Check steady-crack: holds", printed)
+        (check,) = document["checks"]
+        judged = [row["verdict"] for row in check["rows"] if row["verdict"] != "reported"]
+        self.assertGreater(len(judged), 20)
+        self.assertEqual(set(judged), {"holds"})
+        results = json.loads(self.text("results.json"))["claims"]
+        self.assertEqual([row["lattice"] for row in results if row["claim"] == "steady-crack"],
+                         [row["lattice"] for row in check["rows"]])
+        speeds = [float(line["lattice speed"]) for line in read_csv(self.out / "steady_crack.csv")]
+        self.assertEqual(speeds, [row["lattice"] for row in check["rows"] if row["quantity"].startswith("crack speed")])
+        self.assertTrue((self.out / "pictures" / "steady-crack.png").exists())
 
     def test_quick_study_of_a_refused_base_runs_nothing(self):
         def change(document):

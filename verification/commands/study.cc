@@ -144,6 +144,21 @@ bool run_children(StudyResults &results, const Options &options, bool skip_verif
   return run_processes(pool);
 }
 
+// @return whether no signal came before or meanwhile
+bool run_checks(StudyResults &results, bool quick, Run &run)
+{
+  const auto phase = run.info().stopwatch().phase("checks");
+  for (const std::string &name : results.study.checks)
+  {
+    if (signal_came())
+      return false;
+    if (run.talks())
+      std::cout << "check " << name << std::endl;
+    results.checks.push_back(run_check(name, quick, run.directory()));
+  }
+  return !signal_came();
+}
+
 // Checks the claims on the base case, small version, in the place of the runs. @throws ClaimFailed
 void verify_base(const Study &study, const std::vector<std::string> &settings, Run &run)
 {
@@ -197,7 +212,8 @@ ExitCode run_study(const Options &options, const std::string &name)
                                                    : "material and pre-stretch of every run";
   if (options.quick && !options.skip_verification)
     verify_base(results.study, options.overrides, run);
-  const bool complete = run_children(results, options, skip_verification, n_cores, run);
+  bool complete = run_children(results, options, skip_verification, n_cores, run);
+  complete = complete && run_checks(results, options.quick, run);
 
   results.claims = judge(results.study, results.plan, results.outcomes);
   const Results rows = study_rows(results);

@@ -42,11 +42,24 @@ plt.rcParams.update({
 def save(figure, path):
     """Writes a picture as PNG and closes it."""
     figure.canvas.draw()
-    # 256 colours are a quarter of the bytes, each within 10 of 255 of what it stands for.
-    colours = Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB")
-    picture = colours.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    save_png(Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB"), path)
     plt.close(figure)
-    write_file(path, lambda beside: picture.save(beside, format="PNG", optimize=True))
+
+
+def save_png(picture, path):
+    """Writes a PIL picture as PNG. 256 colours are a quarter of the bytes, each within 10 of 255 of what it is for."""
+    few = picture.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    write_file(path, lambda beside: few.save(beside, format="PNG", optimize=True))
+
+
+def shrink(path, most):
+    """Makes a PNG smaller, in pixels, until it has no more than so many bytes."""
+    with Image.open(path) as picture:
+        whole = picture.convert("RGB")
+    width = whole.width
+    while path.stat().st_size > most and width > 400:
+        width = round(0.85 * width)
+        save_png(whole.resize((width, round(whole.height * width / whole.width)), Image.Resampling.LANCZOS), path)
 
 
 class Page:

@@ -9,15 +9,18 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True  # this folder stays as it is
 
+from check_plots import PLOTS
 from files import DamagedFile, UnwritableFile, write_file
 from frame import read_last_frame
-from pictures import draw_sheet
+from near_tip_plots import opening_stress_picture, velocity_picture
+from pictures import draw_sheet, shrink
 from runs import read_run
 from study_page import page
-from study_plots import draw_paths, draw_speeds, draw_sweep, draw_velocities
-from study_runs import read_study
+from study_plots import draw_paths, draw_speeds, draw_sweep
+from study_runs import first_measured, read_study
 
 DONE, BAD_INPUT, IO_FAILED = 0, 2, 5
+LARGEST_PICTURE = 400_000  # [bytes], of a run: the page holds all of them
 
 
 def draw_pictures(study):
@@ -27,7 +30,7 @@ def draw_pictures(study):
         folder.mkdir(exist_ok=True)
     except OSError as error:
         raise UnwritableFile(folder, error.strerror) from error
-    drawn = {"paths": {}, "sweeps": {}, "speeds": None, "velocities": None, "sheets": []}
+    drawn = {"paths": {}, "sweeps": {}, "speeds": None, "checks": {}, "runs": []}
     for number, claim in enumerate(study.claims):
         names = list(dict.fromkeys(name for row in claim["rows"] for name in row["runs"] if name in study.runs))
         png = folder / f"paths-{number + 1}.png"
@@ -37,10 +40,15 @@ def draw_pictures(study):
     shown = [name for name in study.document["pictures"] if name in study.runs]
     if draw_speeds(study, folder / "speeds.png"):
         drawn["speeds"] = folder / "speeds.png"
-    if draw_velocities(study, shown, folder / "velocities.png"):
-        drawn["velocities"] = folder / "velocities.png"
+    for check in study.checks:
+        draw, caption = PLOTS.get(check["name"], (None, ""))
+        png = folder / f"{check['name']}.png"
+        if draw and draw(study.folder, png):
+            drawn["checks"][check["name"]] = (caption, png)
     for name in shown:
-        drawn["sheets"] += draw_first_sheet(study, name, folder)
+        seed = first_measured(study, name)
+        if seed is not None:
+            drawn["runs"].append((name, seed.seed, draw_run(seed, folder, LARGEST_PICTURE)))
     return drawn
 
 
@@ -51,28 +59,35 @@ def draw_sweeps(study, number, claim, folder):
         key = (row["against"], tuple(row["runs"]))
         png = folder / f"sweep-{number + 1}-{len(drawn) + 1}.png"
         if row["against"] and key not in drawn and draw_sweep(study, row, png):
-            drawn[key] = (f"Wavelength and amplitude against {row['against']}: mean and standard deviation over the "
+            drawn[key] = (f"Wavelength and amplitudes against {row['against']}: mean and standard deviation over the "
                           "seeds. Open symbols at 0: the crack has none.", png)
     return list(drawn.values())
 
 
-def draw_first_sheet(study, name, folder):
-    """The sheet of the first seed that was measured: [(run, seed, PNG)], empty if there is none."""
-    for seed in study.runs[name][2]:
-        frame = read_last_frame(seed.folder) if seed.state == "measured" else None
-        if frame is not None:
-            png = folder / f"sheet-{name}.png"
-            draw_sheet(frame, read_run(seed.folder).input_number("Fracture", "breaking stretch"), png)
-            return [(name, seed.seed, png)]
-    return []
+def draw_run(seed, folder, most):
+    """The sheet of a run and the fields near its tip, as far as it left them: {kind: PNG of at most `most` bytes}."""
+    drawn = {}
+    frame = read_last_frame(seed.folder)
+    if frame is not None:
+        drawn["sheet"] = folder / f"{seed.run}-sheet.png"
+        draw_sheet(frame, read_run(seed.folder).input_number("Fracture", "breaking stretch"), drawn["sheet"])
+    means = seed.folder / "near_tip_folded.vti"
+    if means.exists():
+        drawn["velocity"] = folder / f"{seed.run}-velocity.png"
+        velocity_picture(means, drawn["velocity"], crack_speed=seed.values["speed_laboratory"])
+        drawn["stress"] = folder / f"{seed.run}-stress.png"
+        opening_stress_picture(means, drawn["stress"])
+    for png in drawn.values():
+        shrink(png, most)
+    return drawn
 
 
-def main():
-    """The command line. @return exit code"""
+def main(words=None):
+    """The command line; `words` in place of that of the process. @return exit code"""
     parser = argparse.ArgumentParser(description="Draw the plots of a study and write study.html.")
     parser.add_argument("directory", metavar="DIR", help="output directory of latcon study")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
-    arguments = parser.parse_args()
+    arguments = parser.parse_args(words)
     try:
         study = read_study(Path(arguments.directory))
         html = page(study, draw_pictures(study))

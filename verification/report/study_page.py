@@ -1,11 +1,30 @@
 """The page of a study: the table of its claims, their plots, its runs. One HTML file that needs nothing beside it."""
+import re
 from html import escape
 from pathlib import Path
 
-from markup import figure, row, table, verb
+from markup import figure, number, row, table, verb
 from study_plots import pattern_text
 from study_runs import mean_of, value_text
 
+RUN_PICTURES = {
+    "sheet": "The sheet in its last frame, as it is.",
+    "velocity": "Velocity of the material around the tip (cross), mean over samples that are mirrored where the path "
+                "descends. Blue: against the way of the crack.",
+    "stress": "Stress across the crack, in the same mean.",
+}
+# Columns of tables of runs: quantity, scale to the unit shown, head.
+MEASURED = (("speed_lagrangian", 1, "speed<br>[m/s]"), ("wavelength", 100, "wavelength<br>[cm]"),
+            ("amplitude", 100, "amplitude of<br>sinusoid [cm]"),
+            ("crest_amplitude", 100, "half trough<br>to crest [cm]"),
+            ("bridging_bonds", 1, "bonds across<br>the wake"), ("detached_sites", 1, "detached<br>sites"))
+NEAR_TIP = (("speed_over_shear", 1, "speed over<br>shear speed"),
+            ("negative_zone_area", 1e6, "area moving<br>back [mm²]"),
+            ("negative_zone_depth", 1, "most negative<br>v_x [m/s]"),
+            ("velocity_asymmetry", 1, "asymmetry<br>of velocity"),
+            ("process_zone_length", 1e3, "process<br>zone [mm]"),
+            ("opening_stress_ratio_4d", 1, "σ_yy at 4 d:<br>peak / ahead"),
+            ("opening_stress_angle_4d", 1, "angle of<br>the peak [°]"), ("wedge_angle", 1, "wedge<br>angle [°]"))
 KINDS = {"holds": "holds", "does not hold": "fails", "reported": "reported", "not measured": "reported"}
 
 
@@ -13,7 +32,7 @@ def page(study, pictures):
     """The whole page.
 
     pictures: {"paths": {claim number: PNG}, "sweeps": {claim number: [(caption, PNG), ...]}, "speeds": PNG or None,
-    "velocities": PNG or None, "sheets": [(run, seed, PNG), ...]}
+    "checks": {name: (caption, PNG)}, "runs": [(run, seed, {kind of RUN_PICTURES: PNG}), ...]}
     """
     document = study.document
     style = (Path(__file__).parent / "style.css").read_text(encoding="utf-8")
@@ -35,9 +54,14 @@ def page(study, pictures):
 <h2 id="summary">Claims</h2>
 {overview(study)}
 {"".join(sections)}
+{"".join(check_section(check, pictures) for check in study.checks)}
 {common_pictures(pictures)}
 <h2 id="runs">Runs</h2>
 {runs_table(study)}
+<p class="soft">Means and standard deviations over the seeds, with their number:</p>
+{measured_table(study, MEASURED)}
+<h3>Near the tip</h3>
+{measured_table(study, NEAR_TIP)}
 {settings(document)}
 </body>
 </html>
@@ -55,14 +79,20 @@ def facts(study):
                        f"verified: {document['verification']}"])
 
 
-def rows_of(study, verdict):
-    """How many rows have a verdict."""
-    return sum(r["verdict"] == verdict for claim in study.claims for r in claim["rows"])
+def counts(rows):
+    """How many rows have each verdict: {verdict: count}."""
+    return {verdict: sum(r["verdict"] == verdict for r in rows) for verdict in KINDS}
+
+
+def verdict_of(check):
+    """The verdict over all rows of a check."""
+    count = counts(check["rows"])
+    return next((verdict for verdict in ("does not hold", "holds") if count[verdict]), "reported")
 
 
 def banner(study):
     """What all rows amount to, and what a reader must know first."""
-    count = {verdict: rows_of(study, verdict) for verdict in KINDS}
+    count = counts([r for judged in (*study.claims, *study.checks) for r in judged["rows"]])
     judged = count["holds"] + count["does not hold"]
     broken = [seed for seed in study.seeds if seed.state != "measured"]
     if count["does not hold"]:
@@ -83,13 +113,14 @@ def banner(study):
 
 
 def overview(study):
-    """A line for each claim."""
-    lines = []
-    for number, claim in enumerate(study.claims):
-        count = {verdict: sum(r["verdict"] == verdict for r in claim["rows"]) for verdict in KINDS}
-        lines.append(row(KINDS[claim["verdict"]], [
-            ("words", f'<a href="#claim-{number}">{escape(claim["claim"])}</a>'),
-            *(("number", str(count[verdict])) for verdict in KINDS)], claim["verdict"]))
+    """A line for each claim and check."""
+    judged = [(f"claim-{number}", claim["claim"], claim["verdict"], claim["rows"])
+              for number, claim in enumerate(study.claims)]
+    judged += [(f"check-{check['name']}", f"Check {check['name']}", verdict_of(check), check["rows"])
+               for check in study.checks]
+    lines = [row(KINDS[verdict], [("words", f'<a href="#{escape(place)}">{escape(heading)}</a>'),
+                                  *(("number", str(count)) for count in counts(rows).values())], verdict)
+             for place, heading, verdict, rows in judged]
     return table(["verdict", "claim", "#hold", "#do not", "#reported", "#not measured"], lines, "narrow")
 
 
@@ -113,6 +144,28 @@ def claim_section(number, claim, pictures):
     return "".join(parts) + "</section>"
 
 
+def check_section(check, pictures):
+    """A check: what it is, its plot, its rows."""
+    lines = [row(KINDS[r["verdict"]], [
+        *zip(("words", "number", "number"), (escape(text) or "–" for text in parts_of(r["quantity"]))),
+        *(("number", number(r[key], ".4g")) for key in ("lattice", "theory")),
+        *(("number", number(r[key], ".2g")) for key in ("error", "tolerance"))], r["verdict"]) for r in check["rows"]]
+    parts = [f'<section id="check-{escape(check["name"])}"><h2>Check {escape(check["name"])}</h2>',
+             f'<p>{escape(check["about"])}</p>']
+    if check["name"] in pictures["checks"]:
+        caption, png = pictures["checks"][check["name"]]
+        parts.append(figure(png, f"check {check['name']}", escape(caption)))
+    parts.append(table(["verdict", "quantity", "#viscosity β", "#driving Δ/Δ_G", "#simulator", "#exact", "#error",
+                        "#tolerance"], lines))
+    return "".join(parts) + "</section>"
+
+
+def parts_of(quantity):
+    """A quantity of a check, its viscosity and its driving; empty where it has none."""
+    match = re.fullmatch(r"(.*), beta (\S+), Delta/Delta_G (\S+)", quantity)
+    return match.groups() if match else (quantity, "", "")
+
+
 def broken(text):
     """A list in words, an entry a line."""
     return escape(text).replace("; ", "<br>")
@@ -125,12 +178,9 @@ def common_pictures(pictures):
         parts.append(figure(pictures["speeds"], "speeds by pattern",
                             "Speed of every crack over the shear speed of the stretched sheet, by its pattern. Above "
                             "the dashed line cracks are supersonic."))
-    if pictures["velocities"]:
-        parts.append(figure(pictures["velocities"], "velocity about the tip",
-                            "Velocity along x about the tip (+), averaged over time, in the undeformed sheet. Blue: "
-                            "against the way of the crack; the line is where it changes sign."))
-    for run, seed, png in pictures["sheets"]:
-        parts.append(figure(png, f"sheet of {run}", f"The sheet of {escape(run)}, seed {seed}, in its last frame."))
+    for run, seed, drawn in pictures["runs"]:
+        parts.append(f"<h3>{escape(run)}, seed {seed}</h3>")
+        parts += [figure(png, f"{kind} of {run}", escape(RUN_PICTURES[kind])) for kind, png in drawn.items()]
     return f'<h2 id="pictures">Pictures</h2>{"".join(parts)}' if parts else ""
 
 
@@ -141,12 +191,17 @@ def runs_table(study):
         changes = "<br>".join(f"{escape(key)} = {escape(value)}" for key, value in changed.items()) or "–"
         lines.append("<tr>" + "".join(f'<td class="{kind}">{text}</td>' for kind, text in (
             ("short", escape(name)), ("words", escape(about)), ("words", changes),
-            ("short", ", ".join(str(seed.seed) for seed in seeds)), ("short", escape(pattern_text(seeds))),
-            ("number", value_text(mean_of(seeds, "speed_lagrangian"))),
-            ("number", value_text(mean_of(seeds, "wavelength"), 100)),
-            ("number", value_text(mean_of(seeds, "amplitude"), 100)))) + "</tr>")
-    return table(["run", "about", "changes", "seeds", "pattern", "#speed [m/s]", "#wavelength [cm]",
-                  "#amplitude [cm]"], lines)
+            ("short", ", ".join(str(seed.seed) for seed in seeds)))) + "</tr>")
+    return table(["run", "about", "changes", "seeds"], lines)
+
+
+def measured_table(study, columns):
+    """A line for each case with its pattern and the means of some quantities."""
+    lines = ["<tr>" + "".join(f'<td class="{kind}">{text}</td>' for kind, text in (
+        ("short", escape(name)), ("words", escape(pattern_text(seeds))),
+        *(("number", value_text(mean_of(seeds, quantity), scale)) for quantity, scale, _ in columns))) + "</tr>"
+             for name, (_, _, seeds) in study.runs.items()]
+    return table(["run", "pattern", *(f"#{head}" for *_, head in columns)], lines)
 
 
 def settings(document):

@@ -1,10 +1,9 @@
-"""Plots of a study: paths of cracks, what they measure along a sweep, speeds by pattern, the velocity about the tip."""
-import matplotlib.pyplot as plt
+"""Plots of a study: paths of cracks, what they measure along a sweep, speeds by pattern, checks."""
 import numpy as np
 from matplotlib.lines import Line2D
 
 from pictures import BLACK, BLUE, GREEN, GREY, RED, SKY, WIDTH, Page, save
-from study_runs import mean_of, patterns_of, tip_path, tip_velocity
+from study_runs import mean_of, patterns_of, tip_path
 
 PATTERNS = {"oscillating": ("o", BLUE), "straight": ("s", GREEN), "branching": ("v", RED), "arrested": ("X", GREY)}
 LEFT, RIGHT, GAP = 0.75, 0.2, 0.75  # of a grid of panels [in]
@@ -16,7 +15,8 @@ AGAINST = {"zeta": (1, "ζ = (η/a) / (d √(ρ/a))"), "Sheet/spacing": (1e3, "d
            "Lattice/noise amplitude": (1, "noise amplitude / d")}
 DECADES = 30.0  # from this ratio of the largest to the smallest abscissa on, the axis is logarithmic
 # Quantity, scale to the unit shown, label.
-ALONG = (("wavelength", 100, "wavelength [cm]"), ("amplitude", 100, "amplitude [cm]"))
+ALONG = (("wavelength", 100, "wavelength [cm]"), ("amplitude", 100, "amplitude of sinusoid [cm]"),
+         ("crest_amplitude", 100, "half trough to crest [cm]"))
 
 
 class Panels:
@@ -67,7 +67,7 @@ def pattern_text(seeds):
 
 
 def draw_sweep(study, row, path):
-    """Wavelength and amplitude along what a row varies. @return whether any run was measured"""
+    """Wavelength and amplitudes along what a row varies. @return whether any run was measured"""
     points = [(value["against"], study.runs[value["run"]][2]) for value in row["values"]
               if value["against"] is not None]
     points = [(x, seeds) for x, seeds in points if patterns_of(seeds)]
@@ -75,7 +75,7 @@ def draw_sweep(study, row, path):
         return False
     unit, name = AGAINST.get(row["against"], (1, f"{row['against']} [SI]"))
     points = [(unit * x, seeds) for x, seeds in points]
-    panels = Panels(len(ALONG), 2, 2.6, top=0.1)
+    panels = Panels(len(ALONG), len(ALONG), 2.2)
     for number, (quantity, scale, label) in enumerate(ALONG):
         axes = panels.axes(number)
         for x, seeds in points:
@@ -120,35 +120,4 @@ def draw_speeds(study, path):
     axes.set(xticks=range(len(shown)), xticklabels=shown, xlim=(-0.6, len(shown) - 0.4),
              ylabel="crack speed /\nshear speed")
     save(panels.page.figure, path)
-    return True
-
-
-def draw_velocities(study, names, path):
-    """v_x about the tip, in the direction of the crack, of the first measured seed of some runs. @return any there"""
-    maps = []
-    for name in names:
-        for seed in study.runs[name][2]:
-            field = tip_velocity(seed) if seed.state == "measured" else None
-            if field is not None:
-                maps.append((f"{name}, seed {seed.seed}: {seed.pattern}", field))
-                break
-    if not maps:
-        return False
-    columns = min(2, len(maps))
-    panels = Panels(len(maps), columns, 3.4)
-    for number, (title, (X, Y, velocity)) in enumerate(maps):
-        axes = panels.axes(number)
-        largest = np.nanpercentile(np.abs(velocity), 99) or 1.0
-        image = axes.pcolormesh(1e3 * X, 1e3 * Y, velocity, cmap="RdBu_r", vmin=-largest, vmax=largest,
-                                shading="nearest", rasterized=True)
-        if np.nanmin(velocity) < 0 < np.nanmax(velocity):
-            axes.contour(1e3 * X, 1e3 * Y, velocity, levels=[0.0], colors=BLACK, linewidths=0.6)
-        axes.plot(0, 0, "+", color=BLACK, markersize=9)
-        axes.set(aspect="equal", title=title, xlabel="X − X of the tip [mm]", ylabel="Y − Y of the tip [mm]")
-        axes.grid(False)
-        bar = panels.page.figure.colorbar(image, ax=axes, fraction=0.046, pad=0.03)
-        bar.set_label("v_x [m/s]")
-        bar.outline.set_visible(False)
-    save(panels.page.figure, path)
-    plt.close("all")
     return True

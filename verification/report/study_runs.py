@@ -4,9 +4,6 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-from vtkmodules.util.numpy_support import vtk_to_numpy
-from vtkmodules.vtkCommonCore import vtkObject
-from vtkmodules.vtkIOXML import vtkXMLImageDataReader
 
 from files import DamagedFile, read_json, read_table
 
@@ -37,6 +34,10 @@ class Study:
     @property
     def claims(self):
         return self.document["claims"]
+
+    @property
+    def checks(self):
+        return self.document["checks"]
 
     @property
     def seeds(self):
@@ -88,26 +89,9 @@ def tip_path(seed):
     return None if table is None or len(table["X"]) < 2 else (table["X"], table["Y"])
 
 
-def tip_velocity(seed):
-    """v_x about the tip: (X - X_tip, Y - Y_tip [m], each 1-D; v_x [m/s], shape (rows of Y, columns of X)).
-
-    None if the run left no near_tip.vti.
-    """
-    path = seed.folder / "near_tip.vti"
-    if not path.exists():
-        return None
-    vtkObject.GlobalWarningDisplayOff()
-    reader = vtkXMLImageDataReader()
-    reader.SetFileName(str(path))
-    reader.Update()
-    image = reader.GetOutput()
-    array = image.GetPointData().GetArray("velocity")
-    if array is None:
-        raise DamagedFile(path, "it has no point array 'velocity'")
-    columns, rows, _ = image.GetDimensions()
-    origin, spacing = image.GetOrigin(), image.GetSpacing()
-    velocity = vtk_to_numpy(array).reshape(rows, columns, -1)[:, :, 0]
-    return origin[0] + spacing[0] * np.arange(columns), origin[1] + spacing[1] * np.arange(rows), velocity
+def first_measured(study, name):
+    """The first seed of a run that was measured; None if there is none."""
+    return next((seed for seed in study.runs[name][2] if seed.state == "measured"), None)
 
 
 def value_text(mean, scale=1.0):

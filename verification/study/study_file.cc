@@ -13,6 +13,7 @@
 #include "verification/case_text.h"
 #include "verification/errors.h"
 #include "verification/study/quantities.h"
+#include "verification/study/study_check.h"
 #include "verification/study/study_json.h"
 
 namespace verification
@@ -48,7 +49,7 @@ public:
   {
     const nlohmann::ordered_json document = parse_json(text, study_.file);
     const JsonPlace top(document, study_.file, "", problems_);
-    top.is_object({"title", "base", "set", "seeds", "quick", "runs", "claims", "pictures"});
+    top.is_object({"title", "base", "set", "seeds", "quick", "runs", "claims", "checks", "pictures"});
     if (const auto title = top.required("title"))
       study_.title = title->text();
     if (const auto base = top.required("base"))
@@ -72,6 +73,8 @@ public:
     if (const auto claims = top.required("claims"))
       for (const JsonPlace &place : claims->list())
         claim(place);
+    if (top.has("checks"))
+      checks(top.at("checks"));
     if (top.has("pictures"))
       for (const JsonPlace &place : top.at("pictures").list())
         study_.pictures.push_back(known_run(place));
@@ -164,6 +167,20 @@ private:
       study_.left_out.push_back(name);
     else
       study_.runs.push_back(std::move(run));
+  }
+
+  void checks(const JsonPlace &place)
+  {
+    std::vector<std::string> known;
+    for (const StudyCheck &check : study_checks())
+      known.push_back(check.name);
+    for (const JsonPlace &name : place.list())
+    {
+      const std::string check = name.word(known, "check");
+      if (std::find(study_.checks.begin(), study_.checks.end(), check) != study_.checks.end())
+        name.problem("this check is there already");
+      study_.checks.push_back(check);
+    }
   }
 
   std::string known_run(const JsonPlace &place) const { return place.word(names_, "run"); }

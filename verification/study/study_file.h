@@ -76,6 +76,7 @@ struct Study
   std::vector<StudyRun> runs;
   std::vector<std::string> left_out; ///< runs of the file that the quick version does without
   std::vector<StudyClaim> claims;
+  std::vector<std::string> checks;   ///< see study_checks()
   std::vector<std::string> pictures; ///< runs whose sheet and near-tip field are shown
 
   /// @throws std::logic_error for a name that is none of `runs`

@@ -87,6 +87,45 @@ Json json_of(const RowOutcome &outcome)
   return row;
 }
 
+// The words of the table for rows of checks.
+RowVerdict row_verdict(const Verdict verdict)
+{
+  return verdict == Verdict::holds   ? RowVerdict::holds
+         : verdict == Verdict::fails ? RowVerdict::does_not_hold
+                                     : RowVerdict::reported;
+}
+
+// "0.5321, exact 0.533, error 0.0017 [at most 0.01]"
+std::string values_text(const Result &row)
+{
+  std::string text;
+  const auto append = [&text](const std::string &name, const std::optional<double> &value, const std::string &unit)
+  {
+    if (value)
+      text += (text.empty() ? "" : ", ") + name + quantity_text(*value, {}, unit);
+  };
+  append("", row.lattice, row.unit);
+  append("exact ", row.theory, row.unit);
+  append("error ", row.error, "1");
+  if (row.tolerance)
+    text += " [at most " + quantity_text(*row.tolerance, {}, "1") + "]";
+  return text;
+}
+
+Json json_of(const CheckResult &check)
+{
+  Json rows = Json::array();
+  for (const Result &row : check.rows.rows())
+    rows.push_back({{"quantity", row.quantity},
+                    {"unit", row.unit},
+                    {"lattice", json_of(row.lattice)},
+                    {"theory", json_of(row.theory)},
+                    {"error", json_of(row.error)},
+                    {"tolerance", json_of(row.tolerance)},
+                    {"verdict", to_string(row_verdict(row.verdict()))}});
+  return {{"name", check.name}, {"about", check.about}, {"rows", rows}};
+}
+
 std::string list_of(const std::vector<std::string> &names)
 {
   std::string text;
@@ -129,6 +168,9 @@ std::string study_json(const StudyResults &results)
                                   {"verdict", to_string(claim.verdict())},
                                   {"rows", rows}});
   }
+  document["checks"] = Json::array();
+  for (const CheckResult &check : results.checks)
+    document["checks"].push_back(json_of(check));
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -168,13 +210,14 @@ Results study_rows(const StudyResults &results)
     for (const RowOutcome &row : claim.rows)
       if (const auto result = row.result(claim.claim.claim))
         rows.add(*result);
+  for (const CheckResult &check : results.checks)
+    rows.add(check.rows);
   return rows;
 }
 
 void print_table(std::ostream &out, const StudyResults &results)
 {
   constexpr std::size_t width = 120;
-  constexpr std::size_t verdict_width = 15;
   const auto paragraph = [&out](const std::string &text, const std::string &first, const std::string &indent)
   {
     std::string lead = first;
@@ -184,20 +227,30 @@ void print_table(std::ostream &out, const StudyResults &results)
       lead = indent;
     }
   };
+  const auto judged = [&paragraph](const RowVerdict verdict, const std::string &text)
+  {
+    std::string lead = "  " + to_string(verdict);
+    lead.resize(17, ' ');
+    paragraph(text, lead, std::string(lead.size(), ' '));
+  };
   for (const ClaimResult &claim : results.claims)
   {
     paragraph(claim.claim.claim + ": " + to_string(claim.verdict()), "", "");
     for (const RowOutcome &row : claim.rows)
     {
-      std::string lead = "  " + to_string(row.verdict);
-      lead.resize(verdict_width + 2, ' ');
       std::string text = list_of(row.row.runs) + ", " + row.row.quantity + ": " + row.measured;
       if (!row.expected.empty())
         text += " [" + row.expected + "]";
       if (!row.note.empty())
         text += " - " + row.note;
-      paragraph(text, lead, std::string(lead.size(), ' '));
+      judged(row.verdict, text);
     }
+  }
+  for (const CheckResult &check : results.checks)
+  {
+    paragraph("Check " + check.name + ": " + to_string(row_verdict(check.rows.verdict())), "", "");
+    for (const Result &row : check.rows.rows())
+      judged(row_verdict(row.verdict()), row.quantity + ": " + values_text(row));
   }
   for (const RunOutcome &outcome : results.outcomes)
     if (outcome.state != RunState::measured)

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "verification/study/study_check.h"
 #include "verification/study/study_table.h"
 
 namespace verification
@@ -17,6 +18,7 @@ struct StudyResults
   std::vector<PlannedRun> plan;
   std::vector<RunOutcome> outcomes; ///< of the plan, in its order
   std::vector<ClaimResult> claims;
+  std::vector<CheckResult> checks; ///< those of the study, unless it was interrupted before
   bool quick = false;
   std::string verification; ///< what was verified, in words
 };
@@ -27,8 +29,8 @@ struct StudyResults
 /// study.csv: a line for each run and seed, units in the header, empty fields for what was not measured.
 [[nodiscard]] std::string study_csv(const StudyResults &results);
 
-/// The rows that have a number or were judged, in the form that all commands have. A row holds here if it does in the
-/// table; what was not measured is left out.
+/// The rows that have a number or were judged, in the form that all commands have, then those of the checks. A row
+/// holds here if it does in the table; what was not measured is left out.
 [[nodiscard]] Results study_rows(const StudyResults &results);
 
 /// Prints the table, at most 120 columns wide.

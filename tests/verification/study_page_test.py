@@ -1,0 +1,237 @@
+#!/usr/bin/python3
+"""The page and the gallery of a study made up here: its checks, pictures of runs, numbers, and which cracks are shown."""
+import contextlib
+import io
+import json
+import re
+import sys
+import tempfile
+import unittest
+from pathlib import Path
+from unittest import mock
+
+import numpy as np
+from PIL import Image
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification" / "report"))
+
+import gallery
+import study
+from check_plots import draw_steady_crack
+from near_tip_plots_test import write_field
+from pictures import shrink
+from report_test import Page, write_fracture
+from study_page import MEASURED, NEAR_TIP
+from study_plots import draw_sweep
+from study_runs import read_study
+
+QUANTITIES = {quantity: None for quantity, *_ in MEASURED + NEAR_TIP} | {"speed_laboratory": 40.0}
+WITHOUT = {"Next-nearest neighbours/present": "false"}
+BLUE = np.array((0x00, 0x72, 0xB2))
+
+
+def made_up_seed(run, seed, pattern, conclusive=True, state="measured", **values):
+    """A seed as study.json has it."""
+    return {"run": run, "seed": seed, "folder": f"runs/{run}-{seed}", "state": state, "problem": "", "exit_code": 0,
+            "pattern": pattern, "conclusive": conclusive, "reason": "", "sites": 96, "wall_time_s": 1.0,
+            "values": {**QUANTITIES, **values}}
+
+
+def made_up_row(runs, quantity, verdict="reported", against=None, **more):
+    """A row of a claim."""
+    values = [{"run": run, "against": place} for place, run in enumerate(runs, start=1)] if against else []
+    return {"runs": runs, "quantity": quantity, "against": against, "expected": "", "measured": "", "note": "",
+            "verdict": verdict, "values": values, **more}
+
+
+def made_up_study():
+    """study.json: an oscillating crack, a straight one, and two without next-nearest neighbours."""
+    names = {"wavy": {}, "calm": {}, "along": WITHOUT, "across": WITHOUT}
+    return {
+        "title": "Made up", "version": "1.2.3", "git_commit": "0" * 40, "quick": False, "verification": "none",
+        "settings": {}, "left_out": [], "pictures": ["along", "wavy", "calm", "across"],
+        "runs": [{"run": name, "about": f"the {name} one", "set": changed} for name, changed in names.items()],
+        "seeds": [
+            made_up_seed("wavy", 1, None, state="failed"),
+            made_up_seed("wavy", 2, "oscillating", wavelength=0.021, amplitude=1e-3, crest_amplitude=1.5e-3,
+                         negative_zone_area=13e-6, bridging_bonds=17),
+            made_up_seed("wavy", 3, "oscillating", wavelength=0.023, negative_zone_area=15e-6),
+            made_up_seed("calm", 1, "straight", opening_stress_ratio_4d=1.07),
+            made_up_seed("along", 1, "oscillating"), made_up_seed("across", 1, "straight", wedge_angle=33.0)],
+        "claims": [{"claim": "It winds", "paper": "It does.", "note": "", "verdict": "holds", "rows": [
+            made_up_row(["wavy"], "pattern", "holds"),
+            made_up_row(["calm", "wavy"], "wavelength", "holds", "zeta", measured="exponent 0.77")]}],
+        "checks": [{"name": "steady-crack", "about": "simulator and solution", "rows": [
+            {"quantity": "crack speed, beta 0.25, Delta/Delta_G 1.57", "unit": "1", "lattice": 0.4321, "theory": 0.4567,
+             "error": 0.054, "tolerance": 0.01, "verdict": "does not hold"},
+            {"quantity": "at rest", "unit": "1", "lattice": None, "theory": 1.0, "error": 1e-9, "tolerance": 1e-8,
+             "verdict": "holds"}]}],
+    }
+
+
+def write_steady_crack(folder, curve=True):
+    """Tables of the check."""
+    (folder / "steady_crack.csv").write_text("beta,driving,breaking elongation,lattice speed,exact speed\n"
+                                             "0.5,1.6,1.01,0.43,0.43\n0.5,1.9,1.01,0.67,0.66\n3,2,1,0.2,0.2\n")
+    if curve:
+        (folder / "steady_crack_curve.csv").write_text(
+            "beta,speed,driving,largest before,largest elsewhere,exists\n" +
+            "".join(f"0.5,{v / 50},{1.2 + v / 50},1,1,{'yes' if v < 30 else 'no'}\n" for v in range(5, 40)))
+
+
+class MadeUpStudy(unittest.TestCase):
+    def setUp(self):
+        temporary = tempfile.TemporaryDirectory()
+        self.addCleanup(temporary.cleanup)
+        self.folder = Path(temporary.name)
+        self.document = made_up_study()
+        for name in ("wavy-2", "calm-1", "along-1", "across-1"):
+            write_fracture(self.folder / "runs" / name, [])
+            write_field(self.folder / "runs" / name / "near_tip_folded.vti")
+
+    def read(self):
+        (self.folder / "study.json").write_text(json.dumps(self.document))
+        return read_study(self.folder)
+
+    def page(self, pictures=()):
+        """The page as it is read, with the pictures of some runs, and its HTML."""
+        self.document["pictures"] = list(pictures)
+        self.read()
+        self.assertEqual(study.main([str(self.folder), "--quiet"]), 0)
+        html = (self.folder / "study.html").read_text(encoding="utf-8")
+        page = Page(html)
+        self.assertEqual(page.open, [])
+        return page, html
+
+    def near(self, png, colour):
+        """Number of pixels of a colour."""
+        pixels = np.asarray(Image.open(png).convert("RGB"), dtype=float)
+        return np.count_nonzero(np.abs(pixels - colour).max(axis=2) < 30)
+
+
+class StudyPage(MadeUpStudy):
+    def test_shows_checks_with_their_rows_and_plot(self):
+        write_steady_crack(self.folder)
+        page, html = self.page()
+        self.assertIn("1 of 4 rows does not hold", page.text)
+        section = html[html.index('<section id="check-steady-crack">'):]
+        section = re.sub(r"base64,[^\"]*", "", section[:section.index("</section>")])
+        self.assertIn("simulator and solution", section)
+        self.assertIn("<img", section)
+        lines = re.findall(r"<tr class=.*?</tr>", section)
+        cells = [re.findall(r"<td[^>]*>(.*?)</td>", line) for line in lines]
+        self.assertEqual(cells, [["✗ does not hold", "crack speed", "0.25", "1.57", "0.4321", "0.4567", "0.054", "0.01"],
+                                 ["✓ holds", "at rest", "–", "–", "–", "1", "1e-09", "1e-08"]])
+
+    def test_check_without_tables_has_no_plot(self):
+        page, _ = self.page()
+        self.assertIn("Check steady-crack", page.text)
+        self.assertFalse((self.folder / "pictures" / "steady-crack.png").exists())
+
+    def test_exact_curve_is_drawn_where_there_is_one(self):
+        png = self.folder / "check.png"
+        self.assertFalse(draw_steady_crack(self.folder, png))
+        write_steady_crack(self.folder, curve=False)
+        self.assertTrue(draw_steady_crack(self.folder, png))
+        points = self.near(png, BLUE)
+        write_steady_crack(self.folder)
+        self.assertTrue(draw_steady_crack(self.folder, png))
+        self.assertGreater(points, 100)
+        self.assertGreater(self.near(png, BLUE), points + 500)
+
+    def test_pictures_of_a_run_are_of_its_first_measured_seed_and_small(self):
+        page, _ = self.page(["wavy", "calm"])
+        pictures = self.folder / "pictures"
+        for run in ("wavy", "calm"):
+            for kind in ("sheet", "velocity", "stress"):
+                self.assertTrue((pictures / f"{run}-{kind}.png").exists(), run)
+        self.assertIn("wavy, seed 2", page.text)
+        largest = max(png.stat().st_size for png in pictures.glob("wavy-*.png"))
+        with mock.patch.object(study, "LARGEST_PICTURE", largest // 2):
+            self.page(["wavy"])
+        for png in pictures.glob("wavy-*.png"):
+            self.assertLessEqual(png.stat().st_size, largest // 2)
+
+    def test_numbers_of_runs_are_means_over_seeds(self):
+        page, _ = self.page()
+        for words in ("2.20 ± 0.14 (2)", "14.0 ± 1.4 (2)", "17 (1)", "1.07 (1)", "33 (1)", "0.15 (1)"):
+            self.assertIn(words, page.text)
+
+    def test_sweeps_show_both_amplitudes(self):
+        row = self.document["claims"][0]["rows"][1]
+        pictures = []
+        for crest in (1.5e-3, None):
+            self.document["seeds"][1]["values"]["crest_amplitude"] = crest
+            self.assertTrue(draw_sweep(self.read(), row, self.folder / "sweep.png"))
+            pictures.append(np.asarray(Image.open(self.folder / "sweep.png").convert("RGB"), dtype=float))
+        columns = np.nonzero(np.abs(pictures[0] - pictures[1]).max(axis=(0, 2)) > 30)[0]
+        self.assertGreater(columns.min(), 0.6 * pictures[0].shape[1])
+
+
+class Pictures(MadeUpStudy):
+    def size(self, png):
+        with Image.open(png) as picture:
+            return picture.size
+
+    def test_shrinks_as_far_as_asked_and_no_further(self):
+        png = self.folder / "noise.png"
+        Image.fromarray(np.random.default_rng(1).integers(0, 255, (300, 900, 3), np.uint8)).save(png)
+        shrink(png, 10**7)
+        self.assertEqual(self.size(png), (900, 300))
+        shrink(png, 150_000)
+        self.assertLessEqual(png.stat().st_size, 150_000)
+        width, height = self.size(png)
+        self.assertGreater(width, 400)
+        self.assertAlmostEqual(width / height, 3, delta=0.02)
+
+
+class Gallery(MadeUpStudy):
+    def gallery(self, expect=0):
+        """@return the page, and what was printed as an error"""
+        error = io.StringIO()
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(error):
+            self.assertEqual(gallery.main([str(self.folder), str(self.folder / "docs")]), expect)
+        path = self.folder / "docs" / "gallery.md"
+        return path.read_text(encoding="utf-8") if path.exists() else "", error.getvalue()
+
+    def shown(self):
+        return [(heading, seed.run, seed.seed) for heading, seed in gallery.cases_of(self.read())]
+
+    def test_shows_the_first_run_of_each_kind(self):
+        self.assertEqual(self.shown(), [("Oscillating", "wavy", 2), ("Straight, with next-nearest neighbours", "calm", 1),
+                                        ("Without next-nearest neighbours", "across", 1)])
+        self.document["seeds"][3]["conclusive"] = False  # calm: not known to be straight
+        self.document["seeds"][5]["pattern"] = "branching"  # across: so that none is straight there
+        self.assertEqual(self.shown(), [("Oscillating", "wavy", 2), ("Without next-nearest neighbours", "along", 1)])
+
+    def test_states_the_numbers_of_the_study(self):
+        self.read()
+        text, _ = self.gallery()
+        text = " ".join(text.split())
+        for words in ("## Oscillating: `wavy`", "The wavy one.", "Pictures of seed 2: oscillating",
+                      "wavelength 2.1 cm (over 2 seeds 2.20 ± 0.14 cm)", "bonds across the wake 17",
+                      "area that moves back ahead 13 mm² (over 2 seeds 14.0 ± 1.4 mm²)",
+                      "peak at 4 d over the value straight ahead 1.07", "angle of the wedge 33°", "exponent 0.77"):
+            self.assertIn(words, text)
+
+    def test_pictures_are_those_of_the_page_and_small(self):
+        self.read()
+        stale = self.folder / "docs" / "pictures" / "stale.png"
+        stale.parent.mkdir(parents=True)
+        stale.write_bytes(b"")
+        text, _ = self.gallery()
+        named = re.findall(r"!\[[^]]*\]\((.*?)\)", text)
+        self.assertEqual(len(named), 3 * 4 + 1)
+        self.assertEqual({f"pictures/{png.name}" for png in stale.parent.glob("*")}, set(named))
+        self.assertLessEqual(max(png.stat().st_size for png in stale.parent.glob("*")), 250_000)
+
+    def test_without_a_study_it_says_what_makes_one(self):
+        text, error = self.gallery(expect=2)
+        self.assertEqual(text, "")
+        self.assertIn("no study was run here; `latcon study paper` makes one", error)
+        self.assertFalse((self.folder / "docs").exists())
+
+
+if __name__ == "__main__":
+    unittest.main()

@@ -1,0 +1,170 @@
+#!/usr/bin/python3
+"""Draws the cracks of a finished study and writes a page of them, gallery.md, its pictures in pictures/ beside it.
+
+Exit codes, those of latcon: 0 done; 2 no study there, or a damaged file; 5 a file cannot be written.
+"""
+import argparse
+import sys
+import textwrap
+from pathlib import Path
+
+sys.dont_write_bytecode = True  # this folder stays as it is
+
+from crack_path import draw_crack_path
+from files import DamagedFile, UnwritableFile, write_file
+from pictures import shrink
+from runs import has_rows, read_run
+from study import BAD_INPUT, DONE, IO_FAILED, draw_run
+from study_page import RUN_PICTURES
+from study_plots import draw_sweep, pattern_text
+from study_runs import mean_of, read_study, value_text
+
+LARGEST_PICTURE = 250_000  # [bytes]
+SWEEPS = ("zeta", "Sheet/height")  # what cracks are plotted against
+SHELLS = "Next-nearest neighbours/present"
+# What is shown: heading, pattern, whether there are next-nearest neighbours.
+CASES = (("Oscillating", "oscillating", True), ("Straight, with next-nearest neighbours", "straight", True),
+         ("Without next-nearest neighbours", "straight", False))
+# Pictures of a run in their order: what is said of each, and the numbers beside it: quantity, name, scale, unit.
+CAPTIONS = {
+    "sheet": (RUN_PICTURES["sheet"], (("speed_lagrangian", "speed", 1, " m/s"),
+                                      ("speed_over_shear", "speed over that of shear waves", 1, ""),
+                                      ("bridging_bonds", "bonds across the wake", 1, ""),
+                                      ("detached_sites", "detached sites", 1, ""))),
+    "path": ("Above: path of the tip in the undeformed sheet. Below: where bonds broke, coloured by time.",
+             (("wavelength", "wavelength", 100, " cm"), ("amplitude", "amplitude of the sinusoid", 100, " cm"),
+              ("crest_amplitude", "half the height from trough to crest", 100, " cm"))),
+    "velocity": (RUN_PICTURES["velocity"], (("negative_zone_area", "area that moves back ahead", 1e6, " mm²"),
+                                            ("negative_zone_depth", "most negative velocity there", 1, " m/s"),
+                                            ("velocity_asymmetry", "asymmetry", 1, ""),
+                                            ("process_zone_length", "length of what follows the tip", 1e3, " mm"))),
+    "stress": (RUN_PICTURES["stress"], (("opening_stress_ratio_4d", "peak at 4 d over the value straight ahead", 1, ""),
+                                        ("opening_stress_angle_4d", "angle of that peak", 1, "°"),
+                                        ("wedge_angle", "angle of the wedge", 1, "°"))),
+}
+
+
+def cases_of(study):
+    """[(heading, seed), ...]: of each case the first run in `pictures` that shows it, and of that the first such seed.
+
+    Without next-nearest neighbours any pattern will do if no run is straight.
+    """
+    shown = [name for name in study.document["pictures"] if name in study.runs]
+    found = []
+    for heading, pattern, has_both_shells in CASES:
+        seeds = [seed for name in shown if (study.runs[name][1].get(SHELLS) != "false") == has_both_shells
+                 for seed in study.runs[name][2] if seed.state == "measured"]
+        fitting = [seed for seed in seeds if seed.pattern == pattern and seed.conclusive]
+        fitting += [] if has_both_shells else seeds
+        found += [(heading, seed) for seed in fitting[:1]]
+    return found
+
+
+def draw_case(seed, folder):
+    """All pictures of a run, as far as it left what they need: {kind of CAPTIONS: PNG}."""
+    drawn = draw_run(seed, folder, LARGEST_PICTURE)
+    run = read_run(seed.folder)
+    if has_rows(run.tip, 2):
+        drawn["path"] = folder / f"{seed.run}-path.png"
+        draw_crack_path(run, drawn["path"])
+        shrink(drawn["path"], LARGEST_PICTURE)
+    return drawn
+
+
+def numbers_text(seed, seeds, numbers):
+    """Numbers of one seed, and over all seeds of the run where there are more."""
+    words = []
+    for quantity, name, scale, unit in numbers:
+        value, mean = seed.values[quantity], mean_of(seeds, quantity)
+        here = "none" if value is None else f"{scale * value:.4g}{unit}"
+        if mean is not None:
+            over = f" (over {mean.n} seeds {value_text(mean, scale).rpartition(' (')[0]}{unit})" if mean.n > 1 else ""
+            words.append(f"{name} {here}{over}")
+    return "; ".join(words)
+
+
+def case_section(study, heading, seed, drawn):
+    """A crack: what it is, its pictures with their numbers."""
+    about, changed, seeds = study.runs[seed.run]
+    changes = ", ".join(f"{entry} = {value}" for entry, value in changed.items())
+    lines = [f"## {heading}: `{seed.run}`", "", f"{about[:1].upper()}{about[1:]}{'. ' if about else ''}"
+             f"{'Changed: ' + changes + '. ' if changes else ''}Patterns of its seeds: {pattern_text(seeds)}. "
+             f"Pictures of seed {seed.seed}: {seed.pattern}{'' if seed.conclusive else ', not conclusive'}."]
+    for kind, (text, numbers) in CAPTIONS.items():
+        if kind in drawn:
+            found = numbers_text(seed, seeds, numbers)
+            caption = f"{text}{f' Measured: {found}.' if found else ''}"
+            lines += ["", f"![{kind} of {seed.run}](pictures/{drawn[kind].name})", "", caption]
+    return lines
+
+
+def sweep_sections(study, folder):
+    """Sweeps, one for each set of runs along one abscissa: [(lines, PNG), ...]."""
+    sections, known = [], set()
+    for claim in study.claims:
+        rows = [row for row in claim["rows"] if row["against"] in SWEEPS]
+        for row in rows:
+            key = (row["against"], tuple(row["runs"]))
+            png = folder / f"sweep-{len(sections) + 1}.png"
+            if key in known or not draw_sweep(study, row, png):
+                continue
+            known.add(key)
+            words = [f"- {r['quantity']}, {r['expected'] or 'for information'}: **{r['verdict']}**. {r['measured']}"
+                     for r in rows if (r["against"], tuple(r["runs"])) == key]
+            sections.append(([f"## {claim['claim']}", "", f"![sweep](pictures/{png.name})", "", "Means and standard "
+                              "deviations over the seeds; open symbols at 0: the crack has none.", "", *words], png))
+    return sections
+
+
+def gallery(study, docs):
+    """Draws everything and writes the page."""
+    folder = docs / "pictures"
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UnwritableFile(folder, error.strerror) from error
+    document = study.document
+    lines = ["# Gallery", "", "Made by `cmake --build build/release --target gallery` from the study "
+             f"\"{document['title']}\" (latcon {document['version']}, commit {document['git_commit'][:12]}, "
+             f"{len(study.seeds)} runs{', quick version' if document['quick'] else ''}); do not edit. Numbers are those "
+             "of its `study.json`: of the seed shown, and mean ± standard deviation over all seeds."]
+    pictures = set()
+    for heading, seed in cases_of(study):
+        drawn = draw_case(seed, folder)
+        pictures |= set(drawn.values())
+        lines += ["", *case_section(study, heading, seed, drawn)]
+    for section, png in sweep_sections(study, folder):
+        pictures.add(png)
+        lines += ["", *section]
+    write_file(docs / "gallery.md", lambda beside: beside.write_text(wrapped(lines), encoding="utf-8"))
+    for png in set(folder.glob("*.png")) - pictures:
+        png.unlink()  # of another study
+
+
+def wrapped(lines):
+    """Text of lines that are broken where they are longer than a line of the other pages."""
+    return "".join(line + "\n" if line.startswith(("!", "#")) else textwrap.fill(
+        line, 120, subsequent_indent="  " if line.startswith("- ") else "", break_long_words=False,
+        break_on_hyphens=False) + "\n" for line in lines)
+
+
+def main(words=None):
+    """The command line; `words` in place of that of the process. @return exit code"""
+    parser = argparse.ArgumentParser(description="Draw the cracks of a study and write gallery.md.")
+    parser.add_argument("directory", metavar="STUDY", help="output directory of latcon study")
+    parser.add_argument("docs", metavar="DOCS", help="where to write gallery.md and pictures/")
+    arguments = parser.parse_args(words)
+    try:
+        gallery(read_study(Path(arguments.directory)), Path(arguments.docs))
+    except DamagedFile as error:
+        print(f"error: {error}; `latcon study paper` makes one", file=sys.stderr)
+        return BAD_INPUT
+    except UnwritableFile as error:
+        print(f"error: {error}", file=sys.stderr)
+        return IO_FAILED
+    print(Path(arguments.docs) / "gallery.md")
+    return DONE
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,40 @@
+#include "verification/study/study_check.h"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include <omp.h>
+
+#include "verification/crack_oracle/steady_crack_study.h"
+
+namespace verification
+{
+
+const std::vector<StudyCheck> &study_checks()
+{
+  static const std::vector<StudyCheck> all{
+    {"steady-crack",
+     "The simulator against the exact solution of a steady crack between linear nearest-neighbour bonds with Kelvin "
+     "dashpots at infinitesimal strain. In the same strip under the same load a crack of the simulator must have the "
+     "speed of the solution, and release and dissipate the same energy for each broken bond. Tolerances come from runs "
+     "with half the time step, half the strain and a longer strip.",
+     steady_crack_study}};
+  return all;
+}
+
+CheckResult run_check(const std::string &name, const bool quick, const std::string &folder)
+{
+  const auto check = std::find_if(study_checks().begin(), study_checks().end(),
+                                  [&name](const StudyCheck &known) { return known.name == name; });
+  if (check == study_checks().end())
+    throw std::logic_error("study: '" + name + "' is no check");
+  // The lattices are so small that threads wait for each other more than they share.
+  const int threads = omp_get_max_threads();
+  omp_set_num_threads(1);
+  const ClaimOutcome outcome = check->run(quick);
+  omp_set_num_threads(threads);
+  outcome.write_tables(folder);
+  return {check->name, check->about, outcome.results};
+}
+
+} // namespace verification
