@@ -181,7 +181,7 @@ std::optional<double> circulation(const NearTipField &field, const Eigen::Vector
   return sum;
 }
 
-std::vector<Vortex> vortices(const NearTipField &field, double slowest)
+std::vector<Vortex> vortices(const NearTipField &field, double slowest, double within)
 {
   const NearTipGrid &grid = field.grid;
   const double radius = vortex_radius * std::max(grid.pitch_X, grid.pitch_Y);
@@ -192,7 +192,8 @@ std::vector<Vortex> vortices(const NearTipField &field, double slowest)
   for (int j = -grid.half_height; j < grid.half_height; ++j)
     for (int i = -grid.behind; i < grid.ahead; ++i)
     {
-      if (!field.holds(i, j) || !field.holds(i + 1, j) || !field.holds(i + 1, j + 1) || !field.holds(i, j + 1))
+      if (grid.reference(i, j).squaredNorm() > within * within || !field.holds(i, j) || !field.holds(i + 1, j) ||
+          !field.holds(i + 1, j + 1) || !field.holds(i, j + 1))
         continue;
       std::array<Eigen::Vector2d, 4> v, x;
       const std::array<std::array<int, 2>, 4> corners{{{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}};

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -44,7 +45,9 @@ struct Vortex
 /// Critical points v = 0 of the laboratory velocity with Poincare index +1 and complex eigenvalues of dv/dx, whose
 /// circle of radius 2 d lies in material. Nearest to the tip first.
 /// @param slowest speed along the circle [m/s], >= 0; what turns no faster is left out
-std::vector<Vortex> vortices(const NearTipField &field, double slowest);
+/// @param within distance of their cells from the tip, reference [m]
+std::vector<Vortex> vortices(const NearTipField &field, double slowest,
+                             double within = std::numeric_limits<double>::infinity());
 
 /// Material behind the tip that follows the crack.
 struct ProcessZone

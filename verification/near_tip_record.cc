@@ -138,9 +138,8 @@ void NearTipRecord::step(std::size_t step)
   if (const auto asymmetry = lattice::velocity_asymmetry(field))
     block.asymmetry.add(*asymmetry);
   block.vortices.emplace_back();
-  for (const lattice::Vortex &vortex : lattice::vortices(field, 0.))
-    if (vortex.position.norm() <= vortices_within * d)
-      block.vortices.back().push_back(vortex.speed);
+  for (const lattice::Vortex &vortex : lattice::vortices(field, 0., vortices_within * d))
+    block.vortices.back().push_back(vortex.speed);
   const Eigen::Vector2d pitch(deformation_(0, 0) * sampler_.grid().pitch_X,
                               deformation_(1, 1) * sampler_.grid().pitch_Y);
   const double stretch = deformation_(0, 0);

@@ -144,6 +144,9 @@ TEST(Vortices, AreFoundWithPlaceAndSense)
   const double exact = 2. * M_PI * 4. * d * d * 20. / width * std::exp(-4. / 18.);
   EXPECT_NEAR(a.circulation, exact, 0.06 * exact);
   EXPECT_NEAR(b.circulation, -0.5 * exact, 0.03 * exact);
+  EXPECT_NEAR(a.speed, a.circulation / (4. * M_PI * d), 1e-12 * a.speed);
+  EXPECT_EQ(vortices(field, slow, 15 * d).size(), 2u); // they stand at 13.2 d
+  EXPECT_EQ(vortices(field, slow, 11 * d).size(), 0u);
 }
 
 TEST(Vortices, AreNeitherNodesNorSaddlesNorSlowNorInTheOpening)
