@@ -197,6 +197,9 @@ class ReportTest(unittest.TestCase):
             (self.folder / "near_tip.json").write_text(json.dumps({"samples": samples, "reason": "it <rested>"}))
             self.report(expect=0)
             self.assertIn(words, self.page()[1].text)
+        for damaged in ({"samples": 84}, {"samples": 84, "reason": "", "wedge_angle": "wide"}):
+            (self.folder / "near_tip.json").write_text(json.dumps(damaged))
+            self.assertRegex(self.report(expect=2)[1], r"near_tip.json: (gives no \"reason\"|wedge_angle is 'wide')")
         (self.folder / "near_tip.json").unlink()
         self.report(expect=0)
         self.assertNotIn("Near the tip", self.page()[1].text)

@@ -178,7 +178,7 @@ def read_near_tip(path):
         return None
     if not isinstance(near_tip.get("reason"), str):
         raise DamagedFile(path, 'gives no "reason"')
-    return {key: value if isinstance(value, str) else value
+    return {key: value if key in ("reason", "units") else checked_number(path, key, value)
             for key, value in near_tip.items()}
 
 
