@@ -15,25 +15,25 @@ constexpr double heading_from = 2.5, heading_to = 7.5;
 // Calls after which a tip that has not moved is at rest.
 constexpr std::size_t calls_of_rest = 10;
 
-// 1 for components that keep their sign in a mirror image Y -> -Y, -1 for those with an odd number of indices y.
-const NearTipSums::Values &value_signs()
-{
-  static const NearTipSums::Values signs = []
-  {
-    NearTipSums::Values s;
-    s << 1, -1, 1, -1, 1, -1, // velocity and the two displacements
-      1, -1, -1, 1, 1, -1, -1, 1, 1, -1, -1, 1;
-    return s;
-  }();
-  return signs;
-}
+// Of the samples one in so many has stresses and gradients.
+constexpr std::size_t samples_for_tensors = 4;
 
-const NearTipSums::Gradients &gradient_signs()
+// 1 for components that keep their sign in a mirror image Y -> -Y, -1 for those with an odd number of indices y.
+struct MirrorSigns
 {
-  static const NearTipSums::Gradients signs = []
+  NearTipSums::Motion motion;
+  NearTipSums::Tensors tensors;
+  NearTipSums::Gradients gradients;
+};
+
+const MirrorSigns &mirror_signs()
+{
+  static const MirrorSigns signs = []
   {
-    NearTipSums::Gradients s;
-    s << 1, -1, 1, -1, 1, -1; // xXX, xXY, xYY, yXX, yXY, yYY
+    MirrorSigns s;
+    s.motion << 1, -1, 1, -1, 1, -1;
+    s.tensors << 1, -1, -1, 1, 1, -1, -1, 1, 1, -1, -1, 1;
+    s.gradients << 1, -1, 1, -1, 1, -1; // xXX, xXY, xYY, yXX, yXY, yYY
     return s;
   }();
   return signs;
@@ -92,17 +92,64 @@ NearTipField::NearTipField(const NearTipGrid &grid_of_points) : grid(grid_of_poi
     tensors->assign(grid.size(), Eigen::Matrix2d::Constant(none));
 }
 
-NearTipSums::NearTipSums(const NearTipGrid &grid) : grid_(grid)
+template <int n>
+void NearTipSums::Sum<n>::make_room(const NearTipGrid &grid)
 {
-  const auto n = static_cast<Eigen::Index>(grid.size());
-  values_.setZero(n_values, n);
-  gradients_.setZero(n_gradients, n);
-  weights_.setZero(n);
-  gradient_weights_.setZero(n);
+  if (weights.size() > 0)
+    return;
+  values.setZero(n, static_cast<Eigen::Index>(grid.size()));
+  weights.setZero(static_cast<Eigen::Index>(grid.size()));
 }
 
-void NearTipSums::add_site(int i2, int j2, const Values &values, const std::optional<Gradients> &gradients)
+template <int n>
+void NearTipSums::Sum<n>::add(std::size_t point, double weight, const Values &site)
 {
+  const auto p = static_cast<Eigen::Index>(point);
+  values.col(p) += weight * site;
+  weights[p] += weight;
+}
+
+template <int n>
+void NearTipSums::Sum<n>::add(const Sum &other, const NearTipGrid &grid, const Values *signs)
+{
+  if (other.weights.size() == 0)
+    return;
+  make_room(grid);
+  if (signs == nullptr)
+  {
+    values += other.values;
+    weights += other.weights;
+    return;
+  }
+  for (int j = -grid.half_height; j <= grid.half_height; ++j)
+    for (int i = -grid.behind; i <= grid.ahead; ++i)
+    {
+      const auto to = static_cast<Eigen::Index>(grid.point(i, j));
+      const auto from = static_cast<Eigen::Index>(grid.point(i, -j));
+      values.col(to) += *signs * other.values.col(from);
+      weights[to] += other.weights[from];
+    }
+}
+
+template <int n>
+auto NearTipSums::Sum<n>::mean(std::size_t point) const -> std::optional<Values>
+{
+  const auto p = static_cast<Eigen::Index>(point);
+  if (weights.size() == 0 || !(weights[p] > 0.))
+    return std::nullopt;
+  return Values(values.col(p) / weights[p]);
+}
+
+NearTipSums::NearTipSums(const NearTipGrid &grid) : grid_(grid) {}
+
+void NearTipSums::add_site(int i2, int j2, const Motion &motion, const std::optional<Tensors> &tensors,
+                           const std::optional<Gradients> &gradients)
+{
+  motion_.make_room(grid_);
+  if (tensors)
+    tensors_.make_room(grid_);
+  if (gradients)
+    gradients_.make_room(grid_);
   // An odd number is half-way between two points; the lattice has no site that is so both ways.
   const auto low = [](int twice) { return twice >= 0 ? twice / 2 : -((1 - twice) / 2); };
   const int i_low = low(i2), i_high = low(i2 + 1), j_low = low(j2), j_high = low(j2 + 1);
@@ -112,37 +159,21 @@ void NearTipSums::add_site(int i2, int j2, const Values &values, const std::opti
     {
       if (!grid_.contains(i, j))
         continue;
-      const auto point = static_cast<Eigen::Index>(grid_.point(i, j));
-      values_.col(point) += weight * values;
-      weights_[point] += weight;
-      if (!gradients)
-        continue;
-      gradients_.col(point) += weight * *gradients;
-      gradient_weights_[point] += weight;
+      const std::size_t point = grid_.point(i, j);
+      motion_.add(point, weight, motion);
+      if (tensors)
+        tensors_.add(point, weight, *tensors);
+      if (gradients)
+        gradients_.add(point, weight, *gradients);
     }
 }
 
 void NearTipSums::add(const NearTipSums &other, bool mirrored)
 {
   samples_ += other.samples_;
-  if (!mirrored)
-  {
-    values_ += other.values_;
-    gradients_ += other.gradients_;
-    weights_ += other.weights_;
-    gradient_weights_ += other.gradient_weights_;
-    return;
-  }
-  for (int j = -grid_.half_height; j <= grid_.half_height; ++j)
-    for (int i = -grid_.behind; i <= grid_.ahead; ++i)
-    {
-      const auto to = static_cast<Eigen::Index>(grid_.point(i, j));
-      const auto from = static_cast<Eigen::Index>(grid_.point(i, -j));
-      values_.col(to) += value_signs() * other.values_.col(from);
-      gradients_.col(to) += gradient_signs() * other.gradients_.col(from);
-      weights_[to] += other.weights_[from];
-      gradient_weights_[to] += other.gradient_weights_[from];
-    }
+  motion_.add(other.motion_, grid_, mirrored ? &mirror_signs().motion : nullptr);
+  tensors_.add(other.tensors_, grid_, mirrored ? &mirror_signs().tensors : nullptr);
+  gradients_.add(other.gradients_, grid_, mirrored ? &mirror_signs().gradients : nullptr);
 }
 
 NearTipField NearTipSums::mean() const
@@ -151,23 +182,23 @@ NearTipField NearTipSums::mean() const
   field.samples = samples_;
   for (std::size_t point = 0; point < grid_.size(); ++point)
   {
-    const auto p = static_cast<Eigen::Index>(point);
-    if (weights_[p] > 0.)
+    if (const std::optional<Motion> mean = motion_.mean(point))
     {
-      const Values mean = values_.col(p) / weights_[p];
-      field.occupancy[point] = weights_[p] / static_cast<double>(samples_);
-      field.velocity[point] = vector_in(mean, 0);
-      field.displacement[point] = vector_in(mean, 2);
-      field.loading_displacement[point] = vector_in(mean, 4);
-      field.deformation_gradient[point] = tensor_in(mean, 6);
-      field.first_piola_stress[point] = tensor_in(mean, 10);
-      field.cauchy_stress[point] = tensor_in(mean, 14);
+      field.occupancy[point] = motion_.weights[static_cast<Eigen::Index>(point)] / static_cast<double>(samples_);
+      field.velocity[point] = vector_in(*mean, 0);
+      field.displacement[point] = vector_in(*mean, 2);
+      field.loading_displacement[point] = vector_in(*mean, 4);
     }
-    if (gradient_weights_[p] > 0.)
+    if (const std::optional<Tensors> mean = tensors_.mean(point))
     {
-      const Gradients mean = gradients_.col(p) / gradient_weights_[p];
-      field.strain_gradient_x[point] = symmetric_in(mean, 0);
-      field.strain_gradient_y[point] = symmetric_in(mean, 3);
+      field.deformation_gradient[point] = tensor_in(*mean, 0);
+      field.first_piola_stress[point] = tensor_in(*mean, 4);
+      field.cauchy_stress[point] = tensor_in(*mean, 8);
+    }
+    if (const std::optional<Gradients> mean = gradients_.mean(point))
+    {
+      field.strain_gradient_x[point] = symmetric_in(*mean, 0);
+      field.strain_gradient_y[point] = symmetric_in(*mean, 3);
     }
   }
   return field;
@@ -197,7 +228,7 @@ const NearTipSample *NearTipSampler::sample(const State &state, std::size_t tip)
   fold_until(now.reference.x() - heading_to * lattice_.spacing());
   if (now.reference.x() < options_.X_begin || now.reference.x() > options_.X_end || calls_at_rest_ >= calls_of_rest)
     return nullptr;
-  pending_.push_back(look(state, now));
+  pending_.push_back(look(state, now, taken_ % samples_for_tensors == 0));
   ++taken_;
   plain_.add(pending_.back().sums, false);
   return &pending_.back();
@@ -222,7 +253,7 @@ NearTipSampler::Axis NearTipSampler::axis(const State &state, std::size_t tip) c
   return {0.5 * (lattice_.reference(lowest) + lattice_.reference(highest)), 0.5 * (low + high)};
 }
 
-NearTipSample NearTipSampler::look(const State &state, const Axis &axis)
+NearTipSample NearTipSampler::look(const State &state, const Axis &axis, bool with_tensors)
 {
   const double part = (axis.reference.x() - options_.X_begin) / (options_.X_end - options_.X_begin);
   NearTipSample sample{axis.reference.x(),
@@ -239,27 +270,31 @@ NearTipSample NearTipSampler::look(const State &state, const Axis &axis)
         std::abs(offset.y()) > (grid_.half_height + 0.75) * grid_.pitch_Y)
       continue;
     const std::size_t place = places_[s];
-    if (state.removed[place] != 0)
-      continue;
-    const SiteValues site = evaluator_.at(state, place);
-    if (2 * site.bonds < material_.coordination())
+    if (state.removed[place] != 0 || 2u * state.lost_bonds[place] > material_.coordination())
       continue;
     const Eigen::Vector2d position(state.x[place], state.y[place]);
     const Eigen::Vector2d displacement = position - axis.current - offset;
     const Eigen::Vector2d from_loading = position - options_.deformation * references_[s];
-    const Eigen::Matrix2d &F = site.deformation_gradient, &P = site.first_piola_stress, &sigma = site.cauchy_stress;
-    NearTipSums::Values values;
-    values << state.vx[place], state.vy[place], displacement.x(), displacement.y(), from_loading.x(), from_loading.y(),
-      F(0, 0), F(0, 1), F(1, 0), F(1, 1), P(0, 0), P(0, 1), P(1, 0), P(1, 1), sigma(0, 0), sigma(0, 1), sigma(1, 0),
-      sigma(1, 1);
+    NearTipSums::Motion motion;
+    motion << state.vx[place], state.vy[place], displacement.x(), displacement.y(), from_loading.x(), from_loading.y();
+    std::optional<NearTipSums::Tensors> tensors;
     std::optional<NearTipSums::Gradients> gradients;
-    if (const std::optional<StrainGradient> G = gradient_fit_.at(state, place))
+    if (with_tensors)
     {
-      gradients.emplace();
-      *gradients << G->x(0, 0), G->x(0, 1), G->x(1, 1), G->y(0, 0), G->y(0, 1), G->y(1, 1);
+      const SiteValues site = evaluator_.at(state, place);
+      const Eigen::Matrix2d &F = site.deformation_gradient, &P = site.first_piola_stress, &sigma = site.cauchy_stress;
+      tensors.emplace();
+      *tensors << F(0, 0), F(0, 1), F(1, 0), F(1, 1), P(0, 0), P(0, 1), P(1, 0), P(1, 1), sigma(0, 0), sigma(0, 1),
+        sigma(1, 0), sigma(1, 1);
+      if (const std::optional<StrainGradient> G = gradient_fit_.at(state, place))
+      {
+        gradients.emplace();
+        *gradients << G->x(0, 0), G->x(0, 1), G->x(1, 1), G->y(0, 0), G->y(0, 1), G->y(1, 1);
+      }
     }
     const auto twice = [](double length, double pitch) { return static_cast<int>(std::lround(2. * length / pitch)); };
-    sample.sums.add_site(twice(offset.x(), grid_.pitch_X), twice(offset.y(), grid_.pitch_Y), values, gradients);
+    sample.sums.add_site(twice(offset.x(), grid_.pitch_X), twice(offset.y(), grid_.pitch_Y), motion, tensors,
+                         gradients);
     sample.sites.push_back(position - axis.current);
   }
   return sample;

@@ -47,10 +47,11 @@ struct NearTipField
   /// (x - x_tip) - (X - X_tip) [m]: what moves the grid into the current configuration, the tip at the origin.
   std::vector<Eigen::Vector2d> displacement;
   std::vector<Eigen::Vector2d> loading_displacement; ///< x - F X [m], F that of the loaded sheet
-  TensorField deformation_gradient;                  ///< see SiteValues
-  TensorField first_piola_stress;                    ///< [Pa], likewise
-  TensorField cauchy_stress;                         ///< [Pa], likewise
-  TensorField strain_gradient_x, strain_gradient_y;  ///< [1/m], see StrainGradient; over the samples that fix it
+  // Over every fourth sample, from the first on: they cost more than the rest and change as slowly.
+  TensorField deformation_gradient;                 ///< see SiteValues
+  TensorField first_piola_stress;                   ///< [Pa], likewise
+  TensorField cauchy_stress;                        ///< [Pa], likewise
+  TensorField strain_gradient_x, strain_gradient_y; ///< [1/m], see StrainGradient; where its bonds fix it
 
   explicit NearTipField(const NearTipGrid &grid);
   /// Whether material was at a point of the grid more often than not: what lies off the crack.
@@ -65,24 +66,39 @@ class NearTipSums
 public:
   explicit NearTipSums(const NearTipGrid &grid);
 
-  /// Components of everything that is averaged, in the order of NearTipField.
-  static constexpr Eigen::Index n_values = 18, n_gradients = 6;
-  using Values = Eigen::Array<double, n_values, 1>;
-  using Gradients = Eigen::Array<double, n_gradients, 1>;
+  // Components in the order of NearTipField.
+  using Motion = Eigen::Array<double, 6, 1>;    ///< velocity and both displacements
+  using Tensors = Eigen::Array<double, 12, 1>;  ///< deformation gradient and both stresses
+  using Gradients = Eigen::Array<double, 6, 1>; ///< of strain
 
   /// Adds a site at twice its place in pitches, (i2, j2); what falls beyond the grid is dropped.
-  void add_site(int i2, int j2, const Values &values, const std::optional<Gradients> &gradients);
+  void add_site(int i2, int j2, const Motion &motion, const std::optional<Tensors> &tensors,
+                const std::optional<Gradients> &gradients);
   void add_sample() { ++samples_; }
   void add(const NearTipSums &other, bool mirrored);
   std::size_t samples() const { return samples_; }
   NearTipField mean() const;
 
 private:
+  /// Weighted sums of n components at the points. Takes no memory, and no time, before the first site.
+  template <int n>
+  struct Sum
+  {
+    using Values = Eigen::Array<double, n, 1>;
+    Eigen::Array<double, n, Eigen::Dynamic> values;
+    Eigen::ArrayXd weights;
+
+    void make_room(const NearTipGrid &grid);
+    void add(std::size_t point, double weight, const Values &site);
+    /// @param signs of the components in a mirror image in Y; null: `other` is added as it is
+    void add(const Sum &other, const NearTipGrid &grid, const Values *signs);
+    std::optional<Values> mean(std::size_t point) const;
+  };
+
   NearTipGrid grid_;
   std::size_t samples_ = 0;
-  Eigen::Array<double, n_values, Eigen::Dynamic> values_;
-  Eigen::Array<double, n_gradients, Eigen::Dynamic> gradients_;
-  Eigen::ArrayXd weights_, gradient_weights_;
+  Sum<6> motion_, gradients_;
+  Sum<12> tensors_;
 };
 
 /// One look at the neighbourhood of the tip.
@@ -141,7 +157,7 @@ private:
     Eigen::Vector2d reference, current; // of the tip [m]
   };
   Axis axis(const State &state, std::size_t tip) const;
-  NearTipSample look(const State &state, const Axis &axis);
+  NearTipSample look(const State &state, const Axis &axis, bool with_tensors);
   bool descends(double X) const;
   void fold_until(double X);
 

@@ -39,6 +39,26 @@ auto interpolate(const NearTipField &field, const Eigen::Vector2d &X, const Valu
          t * ((1. - s) * value(i, j + 1) + s * value(i + 1, j + 1));
 }
 
+double fastest(const NearTipField &field)
+{
+  double square = 0.;
+  for (std::size_t point = 0; point < field.grid.size(); ++point)
+    if (field.occupancy[point] >= 0.5)
+      square = std::max(square, field.velocity[point].squaredNorm());
+  return std::sqrt(square);
+}
+
+// Whether both components change their sign from corner to corner: rules out nearly every cell at little cost.
+bool may_surround_zero(const std::array<Eigen::Vector2d, 4> &corners)
+{
+  const auto changes_sign = [&](Eigen::Index k)
+  {
+    return std::any_of(corners.begin() + 1, corners.end(),
+                       [&](const Eigen::Vector2d &v) { return (v[k] > 0.) != (corners[0][k] > 0.); });
+  };
+  return changes_sign(0) && changes_sign(1);
+}
+
 // Turns of a vector over its corner values, once around: the Poincare index of what is inside.
 int winding(const std::array<Eigen::Vector2d, 4> &corners)
 {
@@ -161,18 +181,19 @@ std::optional<double> circulation(const NearTipField &field, const Eigen::Vector
   return sum;
 }
 
-std::vector<Vortex> vortices(const NearTipField &field, double laboratory_speed, double fraction)
+std::vector<Vortex> vortices(const NearTipField &field, double slowest, double within)
 {
   const NearTipGrid &grid = field.grid;
   const double radius = vortex_radius * std::max(grid.pitch_X, grid.pitch_Y);
   const Eigen::Vector2d pitch(grid.pitch_X, grid.pitch_Y);
   // A zero in a corner belongs to one of the cells around it: whichever this nudge puts it into.
-  const Eigen::Vector2d nudge = 1e-12 * laboratory_speed * Eigen::Vector2d(1., std::sqrt(2.));
+  const Eigen::Vector2d nudge = 1e-12 * fastest(field) * Eigen::Vector2d(1., std::sqrt(2.));
   std::vector<Vortex> found;
   for (int j = -grid.half_height; j < grid.half_height; ++j)
     for (int i = -grid.behind; i < grid.ahead; ++i)
     {
-      if (!field.holds(i, j) || !field.holds(i + 1, j) || !field.holds(i + 1, j + 1) || !field.holds(i, j + 1))
+      if (grid.reference(i, j).squaredNorm() > within * within || !field.holds(i, j) || !field.holds(i + 1, j) ||
+          !field.holds(i + 1, j + 1) || !field.holds(i, j + 1))
         continue;
       std::array<Eigen::Vector2d, 4> v, x;
       const std::array<std::array<int, 2>, 4> corners{{{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}};
@@ -181,7 +202,7 @@ std::vector<Vortex> vortices(const NearTipField &field, double laboratory_speed,
         v[c] = field.velocity[grid.point(corners[c][0], corners[c][1])] + nudge;
         x[c] = field.position(corners[c][0], corners[c][1]);
       }
-      if (winding(v) != 1)
+      if (!may_surround_zero(v) || winding(v) != 1)
         continue;
       const Eigen::Matrix2d dv = cell_derivatives(v), dx = cell_derivatives(x);
       const Eigen::Matrix2d L = dv * dx.inverse(); // dv/dx: the pitches cancel
@@ -196,8 +217,9 @@ std::vector<Vortex> vortices(const NearTipField &field, double laboratory_speed,
         continue;
       // Length of the circle in the current configuration, to the accuracy that a limit needs.
       const double length = 2. * M_PI * radius * std::sqrt(std::abs(dx.determinant()) / pitch.prod());
-      if (std::abs(*turning) > fraction * laboratory_speed * length)
-        found.push_back({place, *turning});
+      const double speed = std::abs(*turning) / length;
+      if (speed > slowest)
+        found.push_back({place, *turning, speed});
     }
   std::sort(found.begin(), found.end(),
             [](const Vortex &a, const Vortex &b) { return a.position.norm() < b.position.norm(); });

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -38,11 +39,15 @@ struct Vortex
 {
   Eigen::Vector2d position; ///< reference, relative to the tip [m]
   double circulation;       ///< on the circle of radius 2 d around it [m^2/s]; > 0: counter-clockwise
+  double speed;             ///< mean along that circle [m/s], >= 0
 };
 
-/// Critical points v = 0 with Poincare index +1 and complex eigenvalues of dv/dx, whose circle of radius 2 d lies in
-/// material and turns at more than `fraction` of the crack speed in the mean. Nearest to the tip first.
-std::vector<Vortex> vortices(const NearTipField &field, double laboratory_speed, double fraction = 0.01);
+/// Critical points v = 0 of the laboratory velocity with Poincare index +1 and complex eigenvalues of dv/dx, whose
+/// circle of radius 2 d lies in material. Nearest to the tip first.
+/// @param slowest speed along the circle [m/s], >= 0; what turns no faster is left out
+/// @param within distance of their cells from the tip, reference [m]
+std::vector<Vortex> vortices(const NearTipField &field, double slowest,
+                             double within = std::numeric_limits<double>::infinity());
 
 /// Material behind the tip that follows the crack.
 struct ProcessZone

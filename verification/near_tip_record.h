@@ -53,6 +53,7 @@ private:
   struct Block
   {
     Sum asymmetry, wedge_angle;
+    std::vector<std::vector<double>> vortices; ///< of each sample: their speeds [m/s]; which count is known at the end
   };
   std::string measurements(const lattice::CrackMeasurement &crack) const;
 

@@ -206,10 +206,11 @@ TEST(NearTipSums, MirrorComponents)
 {
   NearTipGrid grid{d, d, 2, 2, 2};
   NearTipSums one(grid), once(grid), twice(grid);
-  NearTipSums::Values values = NearTipSums::Values::LinSpaced(1., 18.);
-  NearTipSums::Gradients gradients = NearTipSums::Gradients::LinSpaced(1., 6.);
+  const NearTipSums::Motion motion = NearTipSums::Motion::LinSpaced(1., 6.);
+  const NearTipSums::Tensors tensors = NearTipSums::Tensors::LinSpaced(7., 18.);
+  const NearTipSums::Gradients gradients = NearTipSums::Gradients::LinSpaced(1., 6.);
   one.add_sample();
-  one.add_site(2, 3, values, gradients); // half-way between the points (1, 1) and (1, 2)
+  one.add_site(2, 3, motion, tensors, gradients); // half-way between the points (1, 1) and (1, 2)
   once.add(one, true);
   twice.add(once, true);
   const NearTipField f = one.mean(), m = once.mean(), back = twice.mean();
@@ -231,6 +232,29 @@ TEST(NearTipSums, MirrorComponents)
     EXPECT_EQ(back.velocity[p], f.velocity[p]);
     EXPECT_EQ(back.strain_gradient_y[p], f.strain_gradient_y[p]);
   }
+}
+
+// Samples without tensors leave the means of those that have them alone.
+TEST(NearTipSums, TensorsAreMeansOverTheSamplesThatHaveThem)
+{
+  NearTipGrid grid{d, d, 2, 2, 2};
+  NearTipSums with(grid), without(grid), all(grid);
+  const NearTipSums::Tensors tensors = NearTipSums::Tensors::LinSpaced(7., 18.);
+  with.add_sample();
+  with.add_site(2, 2, NearTipSums::Motion::Constant(3.), tensors, std::nullopt);
+  without.add_sample();
+  without.add_site(2, 2, NearTipSums::Motion::Constant(1.), std::nullopt, std::nullopt);
+  const std::size_t point = grid.point(1, 1);
+  EXPECT_TRUE(std::isnan(without.mean().cauchy_stress[point](0, 0)));
+  for (const NearTipSums *sums : {&with, &without, &without})
+    all.add(*sums, false);
+  const NearTipField mean = all.mean();
+  EXPECT_EQ(mean.samples, 3u);
+  EXPECT_EQ(mean.occupancy[point], 1.);
+  EXPECT_DOUBLE_EQ(mean.velocity[point].x(), 5. / 3.);
+  EXPECT_EQ(mean.deformation_gradient[point](0, 0), 7.);
+  EXPECT_EQ(mean.cauchy_stress[point](1, 1), 18.);
+  EXPECT_TRUE(std::isnan(mean.strain_gradient_x[point](0, 0)));
 }
 
 // A site with fewer than half its bonds is debris, and a tip at rest is no running crack.

@@ -36,6 +36,9 @@ class NearTip(TemporaryFolder):
         for name, value in found.items():
             if not name.endswith("_uncertainty") and name + "_uncertainty" in found and "vortex" not in name:
                 self.assertIsNotNone(value, name)
+        self.assertLessEqual(0, found["samples_with_vortex"])
+        self.assertLessEqual(found["samples_with_vortex"], found["vortices_of_samples"])
+        self.assertLessEqual(found["samples_with_vortex"], 1)
         crack = json.loads((self.out / "crack.json").read_text())
         ratio = crack["speed_lagrangian"] / found["shear_speed"]
         self.assertAlmostEqual(found["speed_over_shear"], ratio, places=12)

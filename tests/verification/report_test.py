@@ -81,6 +81,11 @@ def write_fracture(folder, rows):
              "wavelength": WAVELENGTH, "wavelength_uncertainty": 1.5e-4, "amplitude": AMPLITUDE,
              "amplitude_uncertainty": 1e-4}
     (folder / "crack.json").write_text(json.dumps(crack))
+    near_tip = {"samples": 84, "reason": "", "negative_zone_area": 1.4546e-5, "negative_zone_area_uncertainty": 1.88e-6,
+                "samples_with_vortex": 0.25, "samples_with_vortex_uncertainty": 0.13,
+                "opening_stress_peak_4d": 660930.0, "opening_stress_peak_4d_uncertainty": None, "wedge_angle": None,
+                "wedge_angle_uncertainty": None, "units": "SI"}
+    (folder / "near_tip.json").write_text(json.dumps(near_tip))
     write_sheet(folder)
 
 
@@ -178,6 +183,27 @@ class ReportTest(unittest.TestCase):
         self.assertRegex(out, r"verify +energy +1 +0 +1 +0\.2\n")
         self.assertRegex(out, r"fig +wavelength +cm +2\.1 +2\.000 \+- 0\.015 +-4\.8 % +holds")
 
+    def test_shows_what_was_measured_near_the_tip(self):
+        write_fracture(self.folder, [HOLDS])
+        self.report(expect=0)
+        text = " ".join(self.page()[1].text.split())
+        self.assertIn("Near the tip, from 84 samples", text)
+        for row in ("negative velocity, area 14.5 ± 1.9 mm²", "samples with a vortex 25 ± 13 %",
+                    "opening stress, peak 0.6609 MPa", "wedge angle – degrees"):
+            self.assertIn(row, text)
+        self.assertNotIn("asymmetry 0", text)  # not in the file
+        for samples, words in ((0, "Nothing was measured: it <rested>."),
+                               (3, "Not all could be measured: it <rested>.")):
+            (self.folder / "near_tip.json").write_text(json.dumps({"samples": samples, "reason": "it <rested>"}))
+            self.report(expect=0)
+            self.assertIn(words, self.page()[1].text)
+        for damaged in ({"samples": 84}, {"samples": 84, "reason": "", "wedge_angle": "wide"}):
+            (self.folder / "near_tip.json").write_text(json.dumps(damaged))
+            self.assertRegex(self.report(expect=2)[1], r"near_tip.json: (gives no \"reason\"|wedge_angle is 'wide')")
+        (self.folder / "near_tip.json").unlink()
+        self.report(expect=0)
+        self.assertNotIn("Near the tip", self.page()[1].text)
+
     def test_a_failing_row_is_first_and_exits_3(self):
         write_verification(self.folder, [HOLDS, FAILS, check_row("energy", "lost", "fails", error="nan", tolerance=1)])
         out, _ = self.report(expect=3)
@@ -251,8 +277,8 @@ class ReportTest(unittest.TestCase):
     def test_names_the_damaged_file(self):
         write_fracture(self.folder, [HOLDS])
         intact = {name: (self.folder / name).read_bytes()
-                  for name in ("results.json", "crack.json", "crack.csv", "energy.csv", "lattice.pvd",
-                               "lattice-0000.vtp")}
+                  for name in ("results.json", "crack.json", "near_tip.json", "crack.csv", "energy.csv",
+                               "lattice.pvd", "lattice-0000.vtp")}
         for name, content in intact.items():
             for damaged in (content[:len(content) * 2 // 3], b"\xff\xfe"):
                 with self.subTest(name=name, length=len(damaged)):

@@ -23,6 +23,11 @@ def row(verdict, cells, word=None):
     return f'<tr class="{verdict}">' + "".join(f'<td class="{kind}">{text}</td>' for kind, text in cells) + "</tr>"
 
 
+def plain_row(cells):
+    """A table row without a verdict; cells are (class, HTML)."""
+    return "<tr>" + "".join(f'<td class="{kind}">{text}</td>' for kind, text in cells) + "</tr>"
+
+
 def figure(png, alt, caption):
     """A PNG file, in the page itself; the caption is HTML."""
     data = base64.b64encode(png.read_bytes()).decode("ascii")

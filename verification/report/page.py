@@ -5,6 +5,7 @@ from pathlib import Path
 
 from claim_sections import claim_links, claim_sections
 from markup import figure, number, raised, row, table, verb
+from near_tip_table import near_tip_table
 from summary import VERDICTS, comparisons, percent, ratio_text, tallies, tally_of, with_uncertainty
 
 CAPTIONS = {
@@ -19,7 +20,7 @@ CAPTIONS = {
     "near_tip_velocity.png": "Velocity of the material around the tip (cross), mean over samples; where the path "
                              "descends, samples were mirrored first, so that the two sides of an oscillating crack "
                              "stay apart. White: the opening, or fewer than half the samples had material there. "
-                             "Numbers are in near_tip.json.",
+                             "Numbers are in the table below.",
     "near_tip_stress.png": "Stress across the crack, in the same mean. Two lobes off the axis are what is called "
                            "kidney shaped.",
 }
@@ -121,6 +122,8 @@ def run_section(run, position, pictures):
         parts += [pattern_sentence(run), comparison_table(run)]
         shown = [name for name, _ in pictures]
         parts += [figure(png, f"{name} of the run {run.name}", CAPTIONS[name]) for name, png in pictures]
+        if run.near_tip is not None:
+            parts.append(near_tip_table(run.near_tip))
         missing = [name for name in CAPTIONS if name not in shown]
         if missing:
             parts.append(f'<p class="soft">Not drawn, for the run left nothing to draw: {", ".join(missing)}</p>')

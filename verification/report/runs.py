@@ -49,6 +49,7 @@ class Run:
     info: dict  # run.json
     case_text: str  # case.prm
     crack: dict  # crack.json, SI units
+    near_tip: dict  # near_tip.json, SI units
     tip: dict  # crack.csv: t [s], X, Y [m] in the undeformed sheet
     broken: dict  # broken_bonds.csv: t [s], X, Y [m] in the undeformed sheet
     energy: dict  # energy.csv: t [s], the rest in J per metre of sheet thickness
@@ -114,6 +115,7 @@ def read_run(folder):
         info=read_json(folder / "run.json"),
         case_text=read_text(folder / "case.prm"),
         crack=read_crack(folder / "crack.json"),
+        near_tip=read_near_tip(folder / "near_tip.json"),
         tip=read_table(folder / "crack.csv", ("t", "X", "Y")),
         broken=read_table(folder / "broken_bonds.csv", ("t", "X", "Y")),
         energy=read_table(
@@ -167,6 +169,17 @@ def read_crack(path):
     for key in measured + tuple(f"{name}_uncertainty" for name in measured) + ("window_begin", "window_end"):
         crack[key] = checked_number(path, key, crack.get(key))
     return crack
+
+
+def read_near_tip(path):
+    """near_tip.json, its numbers checked; None if there is none."""
+    near_tip = read_json(path)
+    if near_tip is None:
+        return None
+    if not isinstance(near_tip.get("reason"), str):
+        raise DamagedFile(path, 'gives no "reason"')
+    return {key: value if key in ("reason", "units") else checked_number(path, key, value)
+            for key, value in near_tip.items()}
 
 
 def checked_number(path, what, value):

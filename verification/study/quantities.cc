@@ -49,7 +49,9 @@ std::vector<Quantity> all_quantities()
   add_near_tip({"negative_zone_length", "negative_zone_distance"}, "m");
   add_near_tip({"negative_zone_depth"}, "m/s");
   add_near_tip({"negative_zone_depth_X", "negative_zone_depth_Y"}, "m");
-  add_near_tip({"velocity_asymmetry", "velocity_asymmetry_of_samples", "vortices"}, "1");
+  add_near_tip(
+    {"velocity_asymmetry", "velocity_asymmetry_of_samples", "vortices", "vortices_of_samples", "samples_with_vortex"},
+    "1");
   add_near_tip({"vortex_distance"}, "m");
   add_near_tip({"vortex_circulation", "tip_circulation"}, "m^2/s");
   add_near_tip({"process_zone_length"}, "m");
