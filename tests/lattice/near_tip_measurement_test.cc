@@ -163,6 +163,8 @@ TEST(Vortices, AreNeitherNodesNorSaddlesNorSlowNorInTheOpening)
   EXPECT_EQ(vortices(cracked, slow).size(), 0u);
   L << 1e4, 0., 0., 2e4; // node
   EXPECT_EQ(vortices(around(L), slow).size(), 0u);
+  L << 1e4, -2e3, 2e3, 2e4; // node with circulation: 9e8 = trace^2 > 4 det = 8.2e8
+  EXPECT_EQ(vortices(around(L), slow).size(), 0u);
   L << 1e4, 0., 0., -1e4; // saddle
   EXPECT_EQ(vortices(around(L), slow).size(), 0u);
   // With its zero on a point of the grid it is one vortex, not four and not none.
