@@ -3,6 +3,8 @@
 #include <charconv>
 #include <cstdio>
 #include <fstream>
+#include <limits>
+#include <optional>
 #include <system_error>
 
 #include <vtkCellArray.h>
@@ -19,6 +21,7 @@
 
 #include "lattice/fragments.h"
 #include "lattice/site_fields.h"
+#include "lattice/strain_gradient.h"
 
 namespace lattice
 {
@@ -91,6 +94,10 @@ void FieldWriter::add_frame(const State &state)
   const auto deformation_gradient = array("deformation_gradient", 9, n_points);
   const auto first_piola_stress = array("first_piola_stress", 9, n_points);
   const auto cauchy_stress = array("cauchy_stress", 9, n_points);
+  const auto strain_gradient_x = array("strain_gradient_x", 9, n_points);
+  const auto strain_gradient_y = array("strain_gradient_y", 9, n_points);
+  StrainGradientFit gradient_fit(lattice_);
+  const Eigen::Matrix2d unknown = Eigen::Matrix2d::Constant(std::numeric_limits<double>::quiet_NaN());
   const auto strain_energy_density = array("strain_energy_density", 1, n_points);
   const auto damage = array("damage", 1, n_points);
   vtkNew<vtkUnsignedCharArray> held;
@@ -114,6 +121,9 @@ void FieldWriter::add_frame(const State &state)
     set_tensor(*deformation_gradient, id, fields.deformation_gradient[place]);
     set_tensor(*first_piola_stress, id, fields.first_piola_stress[place]);
     set_tensor(*cauchy_stress, id, fields.cauchy_stress[place]);
+    const std::optional<StrainGradient> gradient = gradient_fit.at(state, place);
+    set_tensor(*strain_gradient_x, id, gradient ? gradient->x : unknown);
+    set_tensor(*strain_gradient_y, id, gradient ? gradient->y : unknown);
     strain_energy_density->SetValue(id, fields.strain_energy_density[place]);
     damage->SetValue(id, fields.damage[place]);
     held->SetValue(id, state.held[place]);
@@ -152,7 +162,8 @@ void FieldWriter::add_frame(const State &state)
   for (vtkDataArray *data :
        {static_cast<vtkDataArray *>(displacement.Get()), static_cast<vtkDataArray *>(velocity.Get()),
         static_cast<vtkDataArray *>(deformation_gradient.Get()), static_cast<vtkDataArray *>(first_piola_stress.Get()),
-        static_cast<vtkDataArray *>(cauchy_stress.Get()), static_cast<vtkDataArray *>(strain_energy_density.Get()),
+        static_cast<vtkDataArray *>(cauchy_stress.Get()), static_cast<vtkDataArray *>(strain_gradient_x.Get()),
+        static_cast<vtkDataArray *>(strain_gradient_y.Get()), static_cast<vtkDataArray *>(strain_energy_density.Get()),
         static_cast<vtkDataArray *>(damage.Get()), static_cast<vtkDataArray *>(held.Get()),
         static_cast<vtkDataArray *>(site.Get()), static_cast<vtkDataArray *>(fragment.Get())})
     sheet->GetPointData()->AddArray(data);

@@ -13,7 +13,8 @@ namespace lattice
 ///
 /// Points are the sites at their reference positions [m]; warp by `displacement` for the current ones. Cells are the
 /// sites themselves (vertices) and the bonds (lines). Point data: displacement [m], velocity [m/s],
-/// deformation_gradient [-], first_piola_stress [Pa], cauchy_stress [Pa], strain_energy_density [J/m^3], damage [-],
+/// deformation_gradient [-], first_piola_stress [Pa], cauchy_stress [Pa], strain_gradient_x and _y [1/m] (not a
+/// number where the bonds left do not fix one, see StrainGradientFit), strain_energy_density [J/m^3], damage [-],
 /// held, site (row-wise number), fragment (0 the sheet, 1, 2 ... detached, see Fragments). Cell data: stretch [-] (1 at
 /// vertices), shell (0 vertex, 1 nearest, 2 next-nearest), toughened (0 or 1); bonds across a periodic edge are left
 /// out. The field data arrays TimeValue and SheetBounds hold the time [s] and the bounds of the undeformed sheet, a

@@ -120,7 +120,8 @@ class Fracture(unittest.TestCase):
             points = sheet.GetPointData()
             names = [points.GetArrayName(i) for i in range(points.GetNumberOfArrays())]
             self.assertEqual(names, ["displacement", "velocity", "deformation_gradient", "first_piola_stress",
-                                     "cauchy_stress", "strain_energy_density", "damage", "held", "site", "fragment"])
+                                     "cauchy_stress", "strain_gradient_x", "strain_gradient_y",
+                                     "strain_energy_density", "damage", "held", "site", "fragment"])
             self.assertEqual([sheet.GetCellData().GetArrayName(i) for i in range(3)], ["stretch", "shell", "toughened"])
             self.assertEqual(sheet.GetCellData().GetArray("stretch").GetNumberOfTuples(), sheet.GetNumberOfCells())
             lines = sheet.GetNumberOfLines()
