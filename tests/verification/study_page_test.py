@@ -55,7 +55,7 @@ def made_up_study():
         "seeds": [
             made_up_seed("wavy", 1, None, state="failed"),
             made_up_seed("wavy", 2, "oscillating", wavelength=0.021, amplitude=1e-3, crest_amplitude=1.5e-3,
-                         negative_zone_area=13e-6, bridging_bonds=17),
+                         negative_zone_area=13e-6, bridged_length=0.0175),
             made_up_seed("wavy", 3, "oscillating", wavelength=0.023, negative_zone_area=15e-6),
             made_up_seed("calm", 1, "straight", opening_stress_ratio_4d=1.07),
             made_up_seed("along", 1, "oscillating"), made_up_seed("across", 1, "straight", wedge_angle=33.0)],
@@ -155,7 +155,7 @@ class StudyPage(MadeUpStudy):
 
     def test_numbers_of_runs_are_means_over_seeds(self):
         page, _ = self.page()
-        for words in ("2.20 ± 0.14 (2)", "14.0 ± 1.4 (2)", "17 (1)", "1.07 (1)", "33 (1)", "0.15 (1)"):
+        for words in ("2.20 ± 0.14 (2)", "14.0 ± 1.4 (2)", "1.75 (1)", "1.07 (1)", "33 (1)", "0.15 (1)"):
             self.assertIn(words, page.text)
 
     def test_sweeps_show_both_amplitudes(self):
@@ -210,10 +210,14 @@ class Gallery(MadeUpStudy):
         text, _ = self.gallery()
         text = " ".join(text.split())
         for words in ("## Oscillating: `wavy`", "The wavy one.", "Pictures of seed 2: oscillating",
-                      "wavelength 2.1 cm (over 2 seeds 2.20 ± 0.14 cm)", "bonds across the wake 17",
+                      "wavelength 2.1 cm (over 2 seeds 2.20 ± 0.14 cm)", "length of crack that fibrils bridge 1.75 cm",
                       "area that moves back ahead 13 mm² (over 2 seeds 14.0 ± 1.4 mm²)",
                       "peak at 4 d over the value straight ahead 1.07", "angle of the wedge 33°", "exponent 0.77"):
             self.assertIn(words, text)
+        for claim in self.document["claims"]:
+            self.assertIn(f"**{claim['claim']}** ({claim['verdict']}). The paper: {claim['paper']}", text)
+            for row in claim["rows"]:
+                self.assertIn(f"- {row['verdict']}: {', '.join(row['runs'])}; {row['quantity']}: {row['measured']}", text)
 
     def test_pictures_are_those_of_the_page_and_small(self):
         self.read()

@@ -29,7 +29,7 @@ CASES = (("Oscillating", "oscillating", True), ("Straight, with next-nearest nei
 CAPTIONS = {
     "sheet": (RUN_PICTURES["sheet"], (("speed_lagrangian", "speed", 1, " m/s"),
                                       ("speed_over_shear", "speed over that of shear waves", 1, ""),
-                                      ("bridging_bonds", "bonds across the wake", 1, ""),
+                                      ("bridged_length", "length of crack that fibrils bridge", 100, " cm"),
                                       ("detached_sites", "detached sites", 1, ""))),
     "path": ("Above: path of the tip in the undeformed sheet. Below: where bonds broke, coloured by time.",
              (("wavelength", "wavelength", 100, " cm"), ("amplitude", "amplitude of the sinusoid", 100, " cm"),
@@ -116,6 +116,18 @@ def sweep_sections(study, folder):
     return sections
 
 
+def claims_section(study):
+    """What the source says, what was measured, whether it holds: a line a row."""
+    lines = ["## What the paper says, and what latcon measures", ""]
+    for claim in study.claims:
+        lines += [f"**{claim['claim']}** ({claim['verdict']}). The paper: {claim['paper']}"
+                  f"{' Note: ' + claim['note'] if claim['note'] else ''}", ""]
+        lines += [f"- {row['verdict']}: {', '.join(row['runs'])}; {row['quantity']}: {row['measured']}"
+                  f"{' [' + row['expected'] + ']' if row['expected'] else ''}" for row in claim["rows"]]
+        lines.append("")
+    return lines
+
+
 def gallery(study, docs):
     """Draws everything and writes the page."""
     folder = docs / "pictures"
@@ -136,6 +148,7 @@ def gallery(study, docs):
     for section, png in sweep_sections(study, folder):
         pictures.add(png)
         lines += ["", *section]
+    lines += ["", *claims_section(study)[:-1]]
     write_file(docs / "gallery.md", lambda beside: beside.write_text(wrapped(lines), encoding="utf-8"))
     for png in set(folder.glob("*.png")) - pictures:
         png.unlink()  # of another study

@@ -17,7 +17,7 @@ RUN_PICTURES = {
 MEASURED = (("speed_lagrangian", 1, "speed<br>[m/s]"), ("wavelength", 100, "wavelength<br>[cm]"),
             ("amplitude", 100, "amplitude of<br>sinusoid [cm]"),
             ("crest_amplitude", 100, "half trough<br>to crest [cm]"),
-            ("bridging_bonds", 1, "bonds across<br>the wake"), ("detached_sites", 1, "detached<br>sites"))
+            ("bridged_length", 100, "bridged<br>length [cm]"), ("detached_sites", 1, "detached<br>sites"))
 NEAR_TIP = (("speed_over_shear", 1, "speed over<br>shear speed"),
             ("negative_zone_area", 1e6, "area moving<br>back [mm²]"),
             ("negative_zone_depth", 1, "most negative<br>v_x [m/s]"),
