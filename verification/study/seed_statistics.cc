@@ -131,6 +131,8 @@ std::string quantity_text(const double value, const std::optional<double> deviat
   // Two digits of the deviation, and the value to the same place.
   const double spread = shown.scale * *deviation;
   const int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(spread))), 0, 12);
+  if (digits > 6 && std::abs(shown.scale * value) < 1e-3)
+    return formatted("%.*e", 1, shown.scale * value) + " ± " + formatted("%.*e", 1, spread) + shown.unit;
   return formatted("%.*f", digits, shown.scale * value) + " ± " + formatted("%.*f", digits, spread) + shown.unit;
 }
 

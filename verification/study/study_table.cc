@@ -30,7 +30,7 @@ std::string expectation(const StudyRow &row, const std::optional<double> &bound)
   const auto value = [&]
   {
     const std::string number = bound ? quantity_text(*bound, {}, row.unit()) : "";
-    return row.bound_run.empty() ? number : "that of " + row.bound_run + (bound ? ", " + number + "," : "");
+    return row.bound_run.empty() ? number : "that of " + row.bound_run + (bound ? " (" + number + ")" : "");
   };
   switch (row.rule)
   {
