@@ -183,6 +183,18 @@ class ReportTest(unittest.TestCase):
         self.assertRegex(out, r"verify +energy +1 +0 +1 +0\.2\n")
         self.assertRegex(out, r"fig +wavelength +cm +2\.1 +2\.000 \+- 0\.015 +-4\.8 % +holds")
 
+    def test_leaves_out_studies_beside_runs(self):
+        write_verification(self.folder, [FAILS])
+        (self.folder / "study.json").write_text("{}")
+        write_verification(self.folder / "verify", [HOLDS])
+        out, _ = self.report(expect=0)
+        self.assertIn("energy", out)
+        self.assertNotIn("prestretch", out)
+        (self.folder / "verify" / "results.json").unlink()
+        (self.folder / "verify" / "run.json").unlink()
+        out, _ = self.report(expect=3)  # there is nothing else
+        self.assertIn("prestretch", out)
+
     def test_shows_what_was_measured_near_the_tip(self):
         write_fracture(self.folder, [HOLDS])
         self.report(expect=0)

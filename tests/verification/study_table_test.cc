@@ -282,7 +282,9 @@ TEST(StudyTable, ResultsHaveTheVerdictsOfTheTable)
         bracket_row({"a", "s"}), row_of({"a"}, Rule::reported)})
   {
     const RowOutcome outcome = table.judged(row);
-    const Verdict verdict = outcome.result("c").value().verdict();
+    const Result result = outcome.result("c").value();
+    const Verdict verdict = result.verdict();
+    EXPECT_GE(result.error.value_or(0.), 0.) << outcome.expected; // an error is no sign of how far inside a bound it is
     EXPECT_EQ(verdict == Verdict::holds, outcome.verdict == RowVerdict::holds) << outcome.expected;
     EXPECT_EQ(verdict == Verdict::fails, outcome.verdict == RowVerdict::does_not_hold) << outcome.expected;
   }

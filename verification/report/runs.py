@@ -93,10 +93,15 @@ def has_rows(table, at_least=1):
 
 
 def find_runs(folder):
-    """The run in `folder` and those in its sub-folders, runs without a crack first."""
+    """The run in `folder` and those in its sub-folders, runs without a crack first.
+
+    Studies have a page of their own and are left out where there is anything else.
+    """
     try:
         candidates = [folder] + sorted(path for path in folder.iterdir() if path.is_dir())
-        runs = [read_run(path) for path in candidates if any((path / sign).exists() for sign in SIGNS_OF_A_RUN)]
+        candidates = [path for path in candidates if any((path / sign).exists() for sign in SIGNS_OF_A_RUN)]
+        plain = [path for path in candidates if not (path / "study.json").exists()]
+        runs = [read_run(path) for path in plain or candidates]
     except OSError as error:
         raise DamagedFile(folder, error.strerror) from error
     if not runs:

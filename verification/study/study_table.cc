@@ -286,7 +286,7 @@ std::optional<Result> RowOutcome::result(const std::string &claim) const
   }
   if (misfit)
   {
-    result.error = misfit;
+    result.error = std::max(*misfit, 0.); // beyond the bound; not how far inside
     result.tolerance = allowed();
   }
   return result;
