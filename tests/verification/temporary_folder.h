@@ -13,7 +13,8 @@ class TemporaryFolder
 public:
   TemporaryFolder()
   {
-    std::string name = (std::filesystem::temp_directory_path() / "latcon_test_XXXXXX").string();
+    // mkdtemp replaces the last six letters, which must be X.
+    std::string name = (std::filesystem::temp_directory_path() / "latcon_test_").string() + std::string(6, 'X');
     if (mkdtemp(name.data()) == nullptr)
       throw std::runtime_error("no temporary folder");
     path_ = name;

@@ -2,6 +2,7 @@
 import csv
 import json
 import os
+import sys
 
 import numpy as np
 
@@ -18,6 +19,25 @@ class UnwritableFile(Exception):
 
     def __init__(self, path, problem):
         super().__init__(f"cannot write {path}: {problem}")
+
+
+# Exit codes, those of latcon.
+DONE, BAD_INPUT, CLAIM_FAILS, IO_FAILED = 0, 2, 3, 5
+
+
+def exit_code_of(action, hint=""):
+    """Does what a script is for. @return its exit code, or that of a file that is damaged or cannot be written
+
+    hint: what to say after the message of a damaged file.
+    """
+    try:
+        return action()
+    except DamagedFile as error:
+        print(f"error: {error}{hint}", file=sys.stderr)
+        return BAD_INPUT
+    except UnwritableFile as error:
+        print(f"error: {error}", file=sys.stderr)
+        return IO_FAILED
 
 
 def read_text(path):

@@ -11,10 +11,10 @@ from pathlib import Path
 sys.dont_write_bytecode = True  # this folder stays as it is
 
 from crack_path import draw_crack_path
-from files import DamagedFile, UnwritableFile, write_file
+from files import DONE, UnwritableFile, exit_code_of, write_file
 from pictures import shrink
 from runs import has_rows, read_run
-from study import BAD_INPUT, DONE, IO_FAILED, draw_run
+from study import draw_run
 from study_page import RUN_PICTURES
 from study_plots import draw_sweep, pattern_text
 from study_runs import mean_of, read_study, value_text
@@ -152,6 +152,8 @@ def gallery(study, docs):
     write_file(docs / "gallery.md", lambda beside: beside.write_text(wrapped(lines), encoding="utf-8"))
     for png in set(folder.glob("*.png")) - pictures:
         png.unlink()  # of another study
+    print(docs / "gallery.md")
+    return DONE
 
 
 def wrapped(lines):
@@ -167,16 +169,8 @@ def main(words=None):
     parser.add_argument("directory", metavar="STUDY", help="output directory of latcon study")
     parser.add_argument("docs", metavar="DOCS", help="where to write gallery.md and pictures/")
     arguments = parser.parse_args(words)
-    try:
-        gallery(read_study(Path(arguments.directory)), Path(arguments.docs))
-    except DamagedFile as error:
-        print(f"error: {error}; `latcon study paper` makes one", file=sys.stderr)
-        return BAD_INPUT
-    except UnwritableFile as error:
-        print(f"error: {error}", file=sys.stderr)
-        return IO_FAILED
-    print(Path(arguments.docs) / "gallery.md")
-    return DONE
+    return exit_code_of(lambda: gallery(read_study(Path(arguments.directory)), Path(arguments.docs)),
+                        hint="; `latcon study paper` makes one")
 
 
 if __name__ == "__main__":

@@ -13,15 +13,13 @@ sys.dont_write_bytecode = True  # this folder stays as it is
 
 from claims_text import PLOTS
 from crack_path import draw_crack_path
-from files import DamagedFile, UnwritableFile, write_file
+from files import CLAIM_FAILS, DONE, exit_code_of, write_file
 from frame import read_last_frame
 from near_tip_plots import opening_stress_picture, velocity_picture
 from page import page
 from pictures import draw_energy, draw_sheet
 from runs import find_runs, has_rows
 from summary import text_summary
-
-DONE, BAD_INPUT, CLAIM_FAILS, IO_FAILED = 0, 2, 3, 5
 
 
 def draw_pictures(run):
@@ -76,14 +74,7 @@ def main(words=None):
     parser.add_argument("directory", metavar="DIR", help="output directory of a run, or a folder of several")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     arguments = parser.parse_args(words)
-    try:
-        return report(arguments.directory, arguments.quiet)
-    except DamagedFile as error:
-        print(f"error: {error}", file=sys.stderr)
-        return BAD_INPUT
-    except UnwritableFile as error:
-        print(f"error: {error}", file=sys.stderr)
-        return IO_FAILED
+    return exit_code_of(lambda: report(arguments.directory, arguments.quiet))
 
 
 if __name__ == "__main__":

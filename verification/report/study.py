@@ -10,7 +10,7 @@ from pathlib import Path
 sys.dont_write_bytecode = True  # this folder stays as it is
 
 from check_plots import PLOTS
-from files import DamagedFile, UnwritableFile, write_file
+from files import DONE, UnwritableFile, exit_code_of, write_file
 from frame import read_last_frame
 from near_tip_plots import opening_stress_picture, velocity_picture
 from pictures import draw_sheet, shrink
@@ -19,7 +19,6 @@ from study_page import page
 from study_plots import draw_paths, draw_speeds, draw_sweep
 from study_runs import first_measured, read_study
 
-DONE, BAD_INPUT, IO_FAILED = 0, 2, 5
 LARGEST_PICTURE = 400_000  # [bytes], of a run: the page holds all of them
 
 
@@ -82,25 +81,23 @@ def draw_run(seed, folder, most):
     return drawn
 
 
+def study_page(folder, quiet):
+    """Draws and writes everything."""
+    study = read_study(folder)
+    html = page(study, draw_pictures(study))
+    write_file(study.folder / "study.html", lambda beside: beside.write_text(html, encoding="utf-8"))
+    if not quiet:
+        print(study.folder / "study.html")
+    return DONE
+
+
 def main(words=None):
     """The command line; `words` in place of that of the process. @return exit code"""
     parser = argparse.ArgumentParser(description="Draw the plots of a study and write study.html.")
     parser.add_argument("directory", metavar="DIR", help="output directory of latcon study")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     arguments = parser.parse_args(words)
-    try:
-        study = read_study(Path(arguments.directory))
-        html = page(study, draw_pictures(study))
-        write_file(study.folder / "study.html", lambda beside: beside.write_text(html, encoding="utf-8"))
-    except DamagedFile as error:
-        print(f"error: {error}", file=sys.stderr)
-        return BAD_INPUT
-    except UnwritableFile as error:
-        print(f"error: {error}", file=sys.stderr)
-        return IO_FAILED
-    if not arguments.quiet:
-        print(study.folder / "study.html")
-    return DONE
+    return exit_code_of(lambda: study_page(Path(arguments.directory), arguments.quiet))
 
 
 if __name__ == "__main__":

@@ -115,14 +115,21 @@ double excess(const SeedStatistics &earlier, const SeedStatistics &later, double
 
 constexpr double clear_excess = 2.; // standard errors, some 95 %
 
-// Along `against` the last mean must clearly exceed the first one, and none may clearly fall short of an earlier one;
-// a quantity that saturates still rises.
-void judge_trend(RowOutcome &outcome)
+// What was measured along `against`, in the order of the row.
+std::vector<const SeedStatistics *> measured_along(const RowOutcome &outcome)
 {
   std::vector<const SeedStatistics *> points;
   for (const SeedStatistics &run : outcome.runs)
     if (run.is_measured() && run.abscissa)
       points.push_back(&run);
+  return points;
+}
+
+// Along `against` the last mean must clearly exceed the first one, and none may clearly fall short of an earlier one;
+// a quantity that saturates still rises.
+void judge_trend(RowOutcome &outcome)
+{
+  const std::vector<const SeedStatistics *> points = measured_along(outcome);
   if (points.size() < 2)
     return;
   const double sign = outcome.row.rule == Rule::rises ? 1. : -1.;
@@ -140,10 +147,7 @@ void judge_trend(RowOutcome &outcome)
 // lies between the two belongs to the bracket, whatever it shows.
 void judge_bracket(RowOutcome &outcome)
 {
-  std::vector<const SeedStatistics *> points;
-  for (const SeedStatistics &run : outcome.runs)
-    if (run.is_measured() && run.abscissa)
-      points.push_back(&run);
+  const std::vector<const SeedStatistics *> points = measured_along(outcome);
   if (points.size() < 2)
     return;
   const auto low = std::find_if_not(points.begin(), points.end(),
