@@ -36,12 +36,15 @@ double kinetic_energy(const State &state, const TriangularLattice &lattice)
   return total;
 }
 
-double boundary_power(const State &state, const TriangularLattice &lattice, const Forces &forces)
+double boundary_power(const State &state, const Forces &forces, const Field &vx, const Field &vy)
 {
   double power = 0.;
-  for (std::size_t place = 0; place < lattice.n_places(); ++place)
+  for (std::size_t place = 0; place < state.held.size(); ++place)
     if (state.held[place] != 0)
-      power -= forces.fx()[place] * state.vx[place] + forces.fy()[place] * state.vy[place];
+    {
+      const Eigen::Vector2d force = forces.on_site(state, vx, vy, place);
+      power -= force.x() * state.vx[place] + force.y() * state.vy[place];
+    }
   return power;
 }
 

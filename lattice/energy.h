@@ -12,7 +12,8 @@ double elastic_energy(const State &state, const TriangularLattice &lattice, cons
 double kinetic_energy(const State &state, const TriangularLattice &lattice);
 
 /// Power the held sites put into the sheet, -sum f . v over them, f being the force of the bonds on a site [W/m].
-double boundary_power(const State &state, const TriangularLattice &lattice, const Forces &forces);
+/// @param vx,vy velocities that the dashpots see [m/s]
+double boundary_power(const State &state, const Forces &forces, const Field &vx, const Field &vy);
 
 /// Where the energy of a sheet is and where it went, all per sheet thickness [J/m] (theory.md, eq. L.11).
 struct EnergyBalance

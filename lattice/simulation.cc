@@ -11,7 +11,7 @@ Simulation::Simulation(const TriangularLattice &lattice, const Material &materia
     integrator_(lattice, forces_, time_step), fracture_(std::move(fracture))
 {
   if (fracture_)
-    fracture_->watch(forces_);
+    fracture_->watch(state_, forces_);
   initial_energy_ = elastic_energy(state_, lattice_, material_) + kinetic_energy(state_, lattice_);
   restart();
 }
@@ -27,7 +27,8 @@ void Simulation::restart()
 void Simulation::note_powers()
 {
   contact_power_ = 0.;
-  boundary_power_ = edges_move_ ? boundary_power(state_, lattice_, forces_) : 0.;
+  boundary_power_ =
+    edges_move_ ? boundary_power(state_, forces_, integrator_.evaluated_vx(), integrator_.evaluated_vy()) : 0.;
   if (contact_)
   {
     // A held site that moves pushes with what the contact pushes it.
@@ -116,7 +117,10 @@ const std::vector<BrokenBond> &Simulation::step()
       contact_->note(state_, broken);
       contact_->evaluate(state_, integrator_.evaluated_vx(), integrator_.evaluated_vy());
     }
-    integrator_.update_accelerations(state_);
+    std::vector<std::size_t> ends;
+    for (const BrokenBond &bond : broken)
+      ends.insert(ends.end(), {bond.near, bond.far});
+    integrator_.update_accelerations(state_, ends);
     note_powers();
   }
   return broken;

@@ -76,9 +76,10 @@ State homogeneous_state(const TriangularLattice &lattice, const Material &materi
     state.y[place] = position.y();
   }
 
+  state.bonds.clear(n);
+  state.breaking_stretch = state.toughened_stretch = breaking_stretch;
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
   {
-    state.breaking_stretch[kind].assign(n, 0.);
     if (material.shell(kind) == nullptr)
       continue;
     for (std::size_t row = 0; row < lattice.rows(); ++row)
@@ -86,7 +87,7 @@ State homogeneous_state(const TriangularLattice &lattice, const Material &materi
       {
         const std::size_t place = lattice.index(row, column);
         if (lattice.is_occupied(place + static_cast<std::size_t>(lattice.shift(kind, row))))
-          state.breaking_stretch[kind][place] = breaking_stretch;
+          state.bonds.add(place, kind);
       }
   }
 
@@ -108,14 +109,17 @@ State homogeneous_state(const TriangularLattice &lattice, const Material &materi
 void add_noise(State &state, const TriangularLattice &lattice, double amplitude, std::uint64_t seed)
 {
   const std::uint64_t stream = splitmix64(seed);
+  // Sites are numbered with two places between rows and before them, whatever the storage.
+  const auto number = [&](std::size_t row, std::size_t column)
+  { return (row + 2) * (lattice.columns() + 4) + column + 2; };
   for (std::size_t row = 0; row < lattice.rows(); ++row)
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
     {
       const std::size_t place = lattice.index(row, column);
       if (state.held[place] != 0)
         continue;
-      state.x[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * place));
-      state.y[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * place + 1));
+      state.x[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * number(row, column)));
+      state.y[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * number(row, column) + 1));
     }
   update_images(state, lattice);
 }

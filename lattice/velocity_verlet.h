@@ -32,11 +32,16 @@ public:
   const Field &evaluated_vx() const { return predicted_vx_; }
   const Field &evaluated_vy() const { return predicted_vy_; }
 
-  /// Accelerations anew from the forces as they stand, after bonds were taken out of them or site forces changed.
-  void update_accelerations(State &state) const;
+  /// Accelerations at the end of the last step anew for the sites at `places`, each of which lost bonds then, and for
+  /// those that site forces act on by now, which may have become more.
+  void update_accelerations(State &state, const std::vector<std::size_t> &places) const;
 
 private:
-  void evaluate(State &state);
+  /// Positions and predicted velocities of a row at the end of a step, velocities half way.
+  void drift(State &state, std::size_t row);
+  /// Accelerations and velocities of a row at the end of a step, from the forces there.
+  void kick(State &state, std::size_t row, const double *fx, const double *fy, double duration) const;
+  void evaluate_site_forces(const State &state);
   /// Adds the site forces to the accelerations, and what they change of the velocities in `duration` [s].
   void add_site_forces(State &state, double duration) const;
 

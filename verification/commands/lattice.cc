@@ -15,13 +15,11 @@ namespace verification
 namespace
 {
 
-constexpr double unbreakable = std::numeric_limits<double>::infinity();
-
 // Static equilibrium. @return its energy and residual
 Results relaxed(const Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
                 lattice::State state, Run &run)
 {
-  lattice::FieldWriter fields(sheet, material, run.directory(), unbreakable);
+  lattice::FieldWriter fields(sheet, material, run.directory());
   fields.add_frame(state);
   lattice::Relaxation relaxation{};
   try
@@ -52,7 +50,7 @@ Results relaxed(const Case &input, const lattice::TriangularLattice &sheet, cons
 Results moved(const Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
               lattice::State state, Run &run)
 {
-  lattice::FieldWriter fields(sheet, material, run.directory(), unbreakable);
+  lattice::FieldWriter fields(sheet, material, run.directory());
   fields.add_frame(state);
   double time_step = input.lattice_time_step();
   if (!input.time_step)
@@ -122,7 +120,7 @@ ExitCode run_lattice(const Options &options)
   Results results;
   if (run.writes())
   {
-    lattice::State state = lattice_state(input, sheet, unbreakable);
+    lattice::State state = lattice_state(input, sheet, lattice::unbreakable);
     lattice::add_noise(state, sheet, input.noise_amplitude * input.spacing, input.noise_seed);
     results = input.solution == Case::Solution::relaxed ? relaxed(input, sheet, material, std::move(state), run)
                                                         : moved(input, sheet, material, std::move(state), run);
