@@ -56,13 +56,18 @@ void Forces::evaluate_band(const Motion &motion, std::ptrdiff_t begin, std::ptrd
     return;
   bonds_from_below(motion, begin - 2, scratch.bonds);
   bonds_from_below(motion, begin - 1, scratch.bonds);
+  std::vector<const double *> ahead;
   for (std::ptrdiff_t row = begin; row < end; ++row)
   {
     const auto index = static_cast<std::size_t>(row);
     // As far up as bonds of this row reach, and where this has not been done for the band next to it.
     if (work.before && row + 2 * reach < end)
       work.before(index + reach);
-    const kernels::RowSums sums = bonds_of_row(motion, index, row, scratch.bonds);
+    ahead.clear();
+    if (row + 2 * reach + 1 < end)
+      for (const Field *field : work.fields)
+        ahead.push_back(&(*field)[lattice_.index(index + reach + 1, 0)]);
+    const kernels::RowSums sums = bonds_of_row(motion, index, row, scratch.bonds, ahead);
     row_viscous_power_[index] = sums.viscous_power;
     row_events_[index] = sums.has_events ? 1 : 0;
     gather_row(row, scratch);
@@ -83,7 +88,8 @@ void Forces::bonds_from_below(const Motion &motion, std::ptrdiff_t row, BondRows
 }
 
 // The bonds of row `from` as those of `row`: the same, or below the edge of a periodic sheet.
-kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, BondRows &bonds) const
+kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, BondRows &bonds,
+                                      const std::vector<const double *> &ahead) const
 {
   const std::size_t columns = lattice_.columns(), near = lattice_.index(from, 0);
   const State &state = motion.state;
@@ -96,7 +102,8 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
                           {},
                           state.breaking_stretch,
                           state.toughened_stretch,
-                          {}};
+                          {},
+                          ahead};
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
   {
     all.shift[kind] = lattice_.shift(kind, from);
@@ -143,7 +150,7 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy)
     std::copy_n(fx, lattice_.columns(), &fx_[lattice_.index(row, 0)]);
     std::copy_n(fy, lattice_.columns(), &fy_[lattice_.index(row, 0)]);
   };
-  evaluate(state, vx, vy, {{}, keep});
+  evaluate(state, vx, vy, {{}, {}, keep});
 }
 
 void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, std::size_t place, std::size_t kind)

@@ -34,6 +34,8 @@ public:
     /// Before any bond of the row is looked at; may give the row its positions and velocities to be evaluated. Not for
     /// sheets that are periodic, whose images must be there too. May be empty.
     std::function<void(std::size_t row)> before;
+    /// Fields that `before` works on; they are fetched from memory while the row before is computed.
+    std::vector<const Field *> fields;
     /// Takes the forces on the sites of the row [N/m]; may change all but those positions and velocities.
     std::function<void(std::size_t row, const double *fx, const double *fy)> after;
   };
@@ -102,7 +104,8 @@ private:
   void evaluate_band(const Motion &motion, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
                      const RowWork &work);
   void bonds_from_below(const Motion &motion, std::ptrdiff_t row, BondRows &bonds) const;
-  kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, BondRows &bonds) const;
+  kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, BondRows &bonds,
+                                const std::vector<const double *> &ahead = {}) const;
   void gather_row(std::ptrdiff_t row, Scratch &scratch) const;
   kernels::BondForce single_bond(const Motion &motion, std::size_t place, std::size_t kind) const;
 

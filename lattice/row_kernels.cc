@@ -1,6 +1,8 @@
 #include "lattice/row_kernels.h"
 
+#include <algorithm>
 #include <cmath>
+#include <stdexcept>
 #include <type_traits>
 
 // This file is compiled once per instruction set. Those between SSSE3, AVX2 and AVX-512 would gain nothing.
@@ -8,6 +10,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lattice/row_kernels.cc"
 #include <hwy/foreach_target.h>
+#include <hwy/cache_control.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -110,8 +113,8 @@ struct Sites
   hn::Vec<Bits> bonds;
 };
 
-// Lengths and inverse lengths of the bonds that start at these sites, 0 for the inverse of an absent one: it has no
-// direction, hence no force. Root and quotient take as long as all the rest, in units of the processor that do nothing
+// Lengths and inverse lengths of the bonds that start at these sites, both 0 for an absent one: it has no direction,
+// hence no force. Root and quotient take as long as all the rest, in units of the processor that do nothing
 // else: they are begun one vector of sites ahead of their use, so that the rest goes on meanwhile.
 struct Lengths
 {
@@ -129,35 +132,51 @@ HWY_INLINE void find_lengths(const RowOfBonds &row, std::size_t site, Lengths &l
     const std::size_t far = site + static_cast<std::size_t>(row.shift[kind]);
     const Lanes dx = load(row.x + far) - near.x, dy = load(row.y + far) - near.y;
     const Lanes length = square_root(dx * dx + dy * dy);
-    store(length, lengths.length[kind]);
-    store({hn::IfThenElseZero(near.present(kind), reciprocal(length).v)}, lengths.inverse[kind]);
+    const auto present = near.present(kind);
+    store({hn::IfThenElseZero(present, length.v)}, lengths.length[kind]);
+    store({hn::IfThenElseZero(present, reciprocal(length).v)}, lengths.inverse[kind]);
   }
 }
 
-template <std::size_t kind, bool watches_retraction, class Law>
-HWY_INLINE void bonds_of_kind(const Law &law, const SheetConstants &sheet, const RowOfBonds &row, const Sites &near,
-                              Lanes vx, Lanes vy, const Lengths &lengths, Lanes &power, hn::Mask<D> &events)
+HWY_INLINE Lanes stretch_of(const BondConstants &bond, std::size_t kind, const Lengths &lengths)
+{
+  return (1. / bond.rest_length) * load(lengths.length[kind]);
+}
+
+// Whether one of the bonds is past its own limit, or has retracted.
+template <std::size_t n_kinds>
+bool any_event(const SheetConstants &sheet, const RowOfBonds &row, std::size_t site, const Lengths &lengths)
+{
+  const Sites near(row, site);
+  auto events = hn::FirstN(D(), 0);
+  for (std::size_t kind = 0; kind < n_kinds; ++kind)
+  {
+    const auto present = near.present(kind), toughened = near.toughened(kind);
+    const Lanes stretch = stretch_of(sheet.shell(kind), kind, lengths);
+    const Lanes limit{hn::IfThenElse(toughened, lanes(row.toughened_stretch).v, lanes(row.breaking_stretch).v)};
+    const auto retracted = hn::AndNot(toughened, hn::Lt(stretch.v, lanes(sheet.retraction_stretch[kind]).v));
+    events = hn::Or(events, hn::And(present, hn::Or(hn::Gt(stretch.v, limit.v), retracted)));
+  }
+  return !hn::AllFalse(D(), events);
+}
+
+// Forces of the bonds of a kind. @return their stretch
+template <std::size_t kind, class Law>
+HWY_INLINE Lanes bonds_of_kind(const Law &law, const SheetConstants &sheet, const RowOfBonds &row, const Sites &near,
+                               Lanes vx, Lanes vy, const Lengths &lengths, Lanes &power)
 {
   const BondConstants &bond = sheet.shells[kind < n_nearest_kinds ? 0 : 1];
   const std::size_t far = near.first + static_cast<std::size_t>(row.shift[kind]);
-  const Lanes length = load(lengths.length[kind]), inverse = load(lengths.inverse[kind]);
+  const Lanes inverse = load(lengths.inverse[kind]);
   const Lanes nx = (load(row.x + far) - near.x) * inverse, ny = (load(row.y + far) - near.y) * inverse;
   const Lanes rate = (load(row.vx + far) - vx) * nx + (load(row.vy + far) - vy) * ny;
-  const Lanes stretch = (1. / bond.rest_length) * length;
+  const Lanes stretch = stretch_of(bond, kind, lengths);
   const Lanes viscous = bond.damping * rate;
   const Lanes axial = bond.cross_section * force(law, stretch, bond.rest_length * inverse) + viscous;
   store(axial * nx, row.force[kind][0] + near.first);
   store(axial * ny, row.force[kind][1] + near.first);
   power = power + viscous * rate;
-
-  const auto present = near.present(kind), toughened = near.toughened(kind);
-  const Lanes limit{hn::IfThenElse(toughened, lanes(row.toughened_stretch).v, lanes(row.breaking_stretch).v)};
-  events = hn::Or(events, hn::And(present, hn::Gt(stretch.v, limit.v)));
-  if constexpr (watches_retraction)
-  {
-    const auto retracted = hn::Lt(stretch.v, lanes(sheet.retraction_stretch[kind]).v);
-    events = hn::Or(events, hn::And(hn::AndNot(toughened, present), retracted));
-  }
+  return stretch;
 }
 
 struct NoBonds
@@ -166,15 +185,18 @@ struct NoBonds
 
 template <bool watches_retraction, class Nearest, class NextNearest>
 RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, const SheetConstants sheet,
-                      const RowOfBonds row)
+                      const RowOfBonds &given)
 {
+  const RowOfBonds row = given; // a copy, which no store can change
+  const double *const *const ahead = row.ahead.data();
+  const std::size_t n_ahead = row.ahead.size();
   constexpr bool has_next_nearest = !std::is_same_v<NextNearest, NoBonds>;
   constexpr std::size_t n_kinds = has_next_nearest ? n_bond_kinds : n_nearest_kinds;
-  const D d;
+  const double first_limit = std::min(row.breaking_stretch, row.toughened_stretch);
   Lanes power[block];
   for (Lanes &sum : power)
     sum = lanes(0.);
-  auto events = hn::FirstN(d, 0);
+  bool has_events = false;
   const std::size_t end = (row.n + block - 1) / block * block;
   Lengths lengths[2];
   find_lengths<n_kinds>(row, 0, lengths[0]);
@@ -183,19 +205,27 @@ RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, con
   {
     // Beyond the last site the first is done again, for nothing.
     find_lengths<n_kinds>(row, site + width() < end ? site + width() : 0, lengths[1 - turn]);
+    if (site % block == 0)
+      for (std::size_t i = 0; i < n_ahead; ++i)
+        hwy::Prefetch(ahead[i] + site);
     const Sites near(row, site);
     const Lanes vx = load(row.vx + site), vy = load(row.vy + site);
     Lanes &sum = power[site % block / width()];
     const Lengths &here = lengths[turn];
-    bonds_of_kind<0, watches_retraction>(nearest, sheet, row, near, vx, vy, here, sum, events);
-    bonds_of_kind<1, watches_retraction>(nearest, sheet, row, near, vx, vy, here, sum, events);
-    bonds_of_kind<2, watches_retraction>(nearest, sheet, row, near, vx, vy, here, sum, events);
+    const auto larger = [](Lanes a, Lanes b) { return Lanes{hn::Max(a.v, b.v)}; };
+    Lanes longest = bonds_of_kind<0>(nearest, sheet, row, near, vx, vy, here, sum);
+    longest = larger(longest, bonds_of_kind<1>(nearest, sheet, row, near, vx, vy, here, sum));
+    longest = larger(longest, bonds_of_kind<2>(nearest, sheet, row, near, vx, vy, here, sum));
     if constexpr (has_next_nearest)
     {
-      bonds_of_kind<3, watches_retraction>(next_nearest, sheet, row, near, vx, vy, here, sum, events);
-      bonds_of_kind<4, watches_retraction>(next_nearest, sheet, row, near, vx, vy, here, sum, events);
-      bonds_of_kind<5, watches_retraction>(next_nearest, sheet, row, near, vx, vy, here, sum, events);
+      longest = larger(longest, bonds_of_kind<3>(next_nearest, sheet, row, near, vx, vy, here, sum));
+      longest = larger(longest, bonds_of_kind<4>(next_nearest, sheet, row, near, vx, vy, here, sum));
+      longest = larger(longest, bonds_of_kind<5>(next_nearest, sheet, row, near, vx, vy, here, sum));
     }
+    // Few bonds are near a limit, so whose it is can be asked then.
+    if (HWY_UNLIKELY(!has_events &&
+                     (watches_retraction || !hn::AllFalse(D(), hn::Gt(longest.v, lanes(first_limit).v)))))
+      has_events = any_event<n_kinds>(sheet, row, site, here);
     turn = 1 - turn;
   }
   alignas(64) double sums[block];
@@ -204,7 +234,7 @@ RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, con
   double total = 0.;
   for (const double sum : sums)
     total += sum;
-  return {total, !hn::AllFalse(d, events)};
+  return {total, has_events};
 }
 
 RowSums BondsOfRow(const SheetConstants &sheet, const RowOfBonds &row)
@@ -286,6 +316,21 @@ HWY_EXPORT(Drift);
 HWY_EXPORT(Kick);
 HWY_EXPORT(InstructionSet);
 
+namespace
+{
+
+// Those that this processor has and the loops exist for.
+std::vector<std::int64_t> targets()
+{
+  static const std::int64_t all = hwy::SupportedTargets() & HWY_TARGETS;
+  std::vector<std::int64_t> each;
+  for (std::int64_t rest = all; rest != 0; rest &= rest - 1)
+    each.push_back(rest & -rest);
+  return each;
+}
+
+} // namespace
+
 RowSums bonds_of_row(const SheetConstants &sheet, const RowOfBonds &row)
 {
   return HWY_DYNAMIC_DISPATCH(BondsOfRow)(sheet, row);
@@ -308,7 +353,28 @@ void kick(double duration, std::size_t n, const double *force, const double *inv
   HWY_DYNAMIC_DISPATCH(Kick)(duration, n, force, inverse_mass, acceleration, velocity);
 }
 
-const char *instruction_set()
+std::vector<std::string> instruction_sets()
+{
+  std::vector<std::string> names;
+  // Better ones have lower bits.
+  for (const std::int64_t target : targets())
+    names.emplace_back(hwy::TargetName(target));
+  return names;
+}
+
+void use_instruction_set(const std::string &name)
+{
+  for (const std::int64_t target : targets())
+    if (hwy::TargetName(target) == name)
+    {
+      hwy::SetSupportedTargetsForTest(target);
+      hwy::GetChosenTarget().Update(target);
+      return;
+    }
+  throw std::invalid_argument("there is no instruction set " + name + " here");
+}
+
+std::string instruction_set()
 {
   return HWY_DYNAMIC_DISPATCH(InstructionSet)();
 }

@@ -3,7 +3,9 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <string>
 #include <variant>
+#include <vector>
 
 #include "lattice/bond_law.h"
 #include "lattice/bond_states.h"
@@ -44,6 +46,8 @@ struct RowOfBonds
   double breaking_stretch, toughened_stretch;     ///< as in State
   /// Forces on the near ends [N/m], x (0) and y (1) for each kind: what is computed.
   std::array<std::array<double *, 2>, n_bond_kinds> force;
+  /// As many places of other arrays that are fetched from memory meanwhile, since they are worked on next.
+  std::vector<const double *> ahead;
 };
 
 /// Sums over the bonds that start in a row.
@@ -69,8 +73,13 @@ void drift(double h, std::size_t n, const double *acceleration, double *velocity
 void kick(double duration, std::size_t n, const double *force, const double *inverse_mass, double *acceleration,
           double *velocity);
 
-/// Name of the instruction set in use.
-const char *instruction_set();
+/// Names of the instruction sets that this processor has and the loops exist for, the best first; "SCALAR" is none.
+std::vector<std::string> instruction_sets();
+/// Has the loops use one of these from now on, instead of the best. Not while others compute.
+/// @throws std::invalid_argument for another name
+void use_instruction_set(const std::string &name);
+/// Name of the one in use.
+std::string instruction_set();
 
 /// A bond's force, one at a time: the operations of bonds_of_row, so that both have the same bits.
 struct BondForce

@@ -34,8 +34,9 @@ void VelocityVerlet::initialise(State &state)
   update_images(state, lattice_);
   predicted_vx_ = state.vx;
   predicted_vy_ = state.vy;
-  forces_.evaluate(state, predicted_vx_, predicted_vy_,
-                   {{}, [&](std::size_t row, const double *fx, const double *fy) { kick(state, row, fx, fy, 0.); }});
+  forces_.evaluate(
+    state, predicted_vx_, predicted_vy_,
+    {{}, {}, [&](std::size_t row, const double *fx, const double *fy) { kick(state, row, fx, fy, 0.); }});
   evaluate_site_forces(state);
   add_site_forces(state, 0.);
 }
@@ -96,7 +97,10 @@ void VelocityVerlet::step(State &state)
   const auto after = [&](std::size_t row, const double *fx, const double *fy)
   { kick(state, row, fx, fy, 0.5 * time_step_); };
   if (lattice_.images().empty())
-    forces_.evaluate(state, predicted_vx_, predicted_vy_, {before, after});
+    forces_.evaluate(state, predicted_vx_, predicted_vy_,
+                     {before,
+                      {&state.x, &state.y, &state.vx, &state.vy, &state.ax, &state.ay, &predicted_vx_, &predicted_vy_},
+                      after});
   else
   {
     for_each_row(lattice_, before);
@@ -106,7 +110,7 @@ void VelocityVerlet::step(State &state)
       predicted_vx_[image.place] = predicted_vx_[image.site];
       predicted_vy_[image.place] = predicted_vy_[image.site];
     }
-    forces_.evaluate(state, predicted_vx_, predicted_vy_, {{}, after});
+    forces_.evaluate(state, predicted_vx_, predicted_vy_, {{}, {}, after});
   }
   evaluate_site_forces(state);
   add_site_forces(state, 0.5 * time_step_);

@@ -327,6 +327,36 @@ TEST(Forces, BitsDoNotDependOnThreads)
   omp_set_num_threads(before);
 }
 
+TEST(Forces, BitsDoNotDependOnTheInstructionSet)
+{
+  const std::vector<std::string> sets = kernels::instruction_sets();
+  EXPECT_EQ(kernels::instruction_set(), sets.front());
+  EXPECT_EQ(sets.back(), "SCALAR");
+  EXPECT_THROW(kernels::use_instruction_set("none"), std::invalid_argument);
+  for (const Subject &subject : subjects())
+  {
+    const TriangularLattice sheet = sheet_of(subject);
+    const State state = random_state(sheet, subject.material, 5);
+    Forces best(sheet, subject.material), other(sheet, subject.material);
+    for (Forces *forces : {&best, &other})
+      forces->watch_retraction(retraction);
+    kernels::use_instruction_set(sets.front());
+    best.evaluate(state, state.vx, state.vy);
+    for (const std::string &set : sets)
+    {
+      kernels::use_instruction_set(set);
+      ASSERT_EQ(kernels::instruction_set(), set);
+      other.evaluate(state, state.vx, state.vy);
+      ASSERT_TRUE(same_bits(other.fx(), best.fx())) << set;
+      ASSERT_TRUE(same_bits(other.fy(), best.fy())) << set;
+      ASSERT_EQ(other.viscous_power(), best.viscous_power()) << set;
+      for (std::size_t row = 0; row < sheet.rows(); ++row)
+        ASSERT_EQ(other.row_has_events(row), best.row_has_events(row)) << set;
+    }
+  }
+  kernels::use_instruction_set(sets.front());
+}
+
 // Bonds taken out one by one, in whatever order, leave the power of a sheet that never had them, and single sites feel
 // the forces of an evaluation of all, to the last bit.
 TEST(Forces, AfterRemovingBondsAreThoseWithoutThem)
