@@ -1,13 +1,19 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing, then configures and builds.
-# Usage: cmake/set-up.sh PRESET [TARGET...]   (run from anywhere; ./run and ./test call it)
+# Usage: cmake/set-up.sh [--benchmarks] PRESET [TARGET...]   (run from anywhere; ./run, ./test and tests/benchmarks/run call it)
+# --benchmarks: with the packages that only the benchmarks need.
 # With every package in place nothing is installed and no privilege is needed.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+lists=("$root/cmake/packages.txt")
+if [ "$1" = --benchmarks ]; then
+  lists+=("$root/cmake/packages-benchmarks.txt")
+  shift
+fi
 preset=$1
 shift
 
-mapfile -t wanted < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "$root/cmake/packages.txt")
+mapfile -t wanted < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "${lists[@]}")
 missing=()
 for package in "${wanted[@]}"; do
   status=$(dpkg-query -W -f='${db:Status-Status}' "$package" 2>/dev/null || true)

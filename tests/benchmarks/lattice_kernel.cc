@@ -1,42 +1,29 @@
-// Time of a force evaluation and of a step, per site, beside that of the reference evaluation; sizes from what fits
-// into the second-level cache to what fits into none.
+// Time of a step, per site, beside that of a force evaluation bond by bond; sizes from what fits into the second-level
+// cache to what fits into none.
+#include <iostream>
+
 #include <benchmark/benchmark.h>
 #include <omp.h>
 
+#include "tests/benchmarks/instruction_sets.h"
+#include "tests/benchmarks/sheets.h"
 #include "tests/lattice/reference_forces.h"
-#include "tests/lattice/sheets.h"
 
 namespace
 {
 
-using namespace lattice;
+using benchmarks::Motion;
+using benchmarks::Work;
 
-struct Sheet
+// Calls work(motion) over and over; the argument is the number of sites, about.
+template <class Call>
+void measure(benchmark::State &run, Work work, const Call &call)
 {
-  explicit Sheet(double sites)
-    : sheet(sheets::square(std::sqrt(sites))), material(sheets::rubber()),
-      state(homogeneous_state(sheet, material, sheets::stretched(2.3, 2.8), Edges::held, sheets::unbreakable)),
-      forces(sheet, material), verlet(sheet, forces, 1e-8)
-  {
-    add_noise(state, sheet, 0.01 * sheets::spacing, 1);
-    verlet.initialise(state);
-  }
-  TriangularLattice sheet;
-  Material material;
-  State state;
-  Forces forces;
-  VelocityVerlet verlet;
-};
-
-// Calls work(sheet) over and over; arguments are the number of sites, about, and of threads.
-template <class Work>
-void measure(benchmark::State &run, const Work &work)
-{
-  omp_set_num_threads(static_cast<int>(run.range(1)));
-  Sheet sheet(static_cast<double>(run.range(0)));
+  omp_set_num_threads(1);
+  Motion motion(work, static_cast<double>(run.range(0)));
   for ([[maybe_unused]] auto _ : run)
-    work(sheet);
-  const auto sites = static_cast<double>(sheet.sheet.n_sites());
+    call(motion);
+  const auto sites = static_cast<double>(motion.sheet.n_sites());
   run.counters["sites"] = sites;
   run.counters["s/site"] =
     benchmark::Counter(sites, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);
@@ -44,27 +31,56 @@ void measure(benchmark::State &run, const Work &work)
 
 void reference(benchmark::State &run)
 {
-  measure(run, [](Sheet &s) { benchmark::DoNotOptimize(reference_forces(s.state, s.sheet, s.material)); });
+  measure(run, Work::everything,
+          [](Motion &m) { benchmark::DoNotOptimize(reference_forces(m.simulation.state(), m.sheet, m.bonds)); });
 }
 
-void evaluation(benchmark::State &run)
+void step(benchmark::State &run, Work work)
 {
-  measure(run, [](Sheet &s) { s.forces.evaluate(s.state, s.state.vx, s.state.vy); });
+  measure(run, work, [](Motion &m) { m.simulation.step(); });
 }
 
-void step(benchmark::State &run)
+// One thread, by its own time, which other work on the machine disturbs less than the clock's.
+void one_thread(benchmark::internal::Benchmark *registered)
 {
-  measure(run, [](Sheet &s) { s.verlet.step(s.state); });
+  registered->ArgsProduct({{10'000, 25'000, 100'000, 1'000'000}})->Unit(benchmark::kMillisecond);
 }
 
-// One thread by its own time, which other work on the machine disturbs less; several by the clock.
-const std::vector<std::int64_t> sizes{10'000, 45'000, 200'000, 1'000'000};
-
-BENCHMARK(reference)->ArgsProduct({sizes, {1}})->Unit(benchmark::kMillisecond);
-BENCHMARK(evaluation)->ArgsProduct({sizes, {1}})->Unit(benchmark::kMillisecond);
-BENCHMARK(step)->ArgsProduct({sizes, {1}})->Unit(benchmark::kMillisecond);
-BENCHMARK(step)->ArgsProduct({sizes, {2, 4}})->UseRealTime()->Unit(benchmark::kMillisecond);
+BENCHMARK(reference)->ArgsProduct({{10'000, 100'000}})->Unit(benchmark::kMillisecond);
+BENCHMARK_CAPTURE(step, everything, Work::everything)->Apply(one_thread);
+BENCHMARK_CAPTURE(step, nearest, Work::nearest)->Apply(one_thread);
+BENCHMARK_CAPTURE(step, linear, Work::linear)->Apply(one_thread);
 
 } // namespace
 
-BENCHMARK_MAIN();
+// lattice_kernel --targets               prints the instruction sets that the kernel can be held to here, one a line
+// lattice_kernel [--target=NAME] ARGS    ARGS are those of Google Benchmark
+int main(int argc, char **argv)
+{
+  const std::string target = "--target=";
+  std::vector<char *> arguments;
+  for (int i = 0; i < argc; ++i)
+  {
+    const std::string argument = argv[i];
+    if (argument == "--targets")
+    {
+      for (const std::string &name : benchmarks::instruction_sets())
+        std::cout << name << "\n";
+      return 0;
+    }
+    if (argument.rfind(target, 0) != 0)
+      arguments.push_back(argv[i]);
+    else if (!benchmarks::hold_to(argument.substr(target.size())))
+    {
+      std::cerr << "lattice_kernel: no such instruction set here: " << argument << "; see --targets\n";
+      return 2;
+    }
+  }
+  int n_arguments = static_cast<int>(arguments.size());
+  benchmark::AddCustomContext("instruction_set", benchmarks::instruction_set());
+  benchmark::Initialize(&n_arguments, arguments.data());
+  if (benchmark::ReportUnrecognizedArguments(n_arguments, arguments.data()))
+    return 2;
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
+}

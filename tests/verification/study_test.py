@@ -6,6 +6,7 @@ Usage: study_test.py PATH_OF_LATCON
 import copy
 import json
 import os
+import pathlib
 import signal
 import subprocess
 import sys
@@ -36,6 +37,34 @@ TINY = {
     ],
 }
 FOLDERS = ["base-1", "base-2", "low-1", "thin-1"]
+
+
+def children(process):
+    """Processes that a process has started and that have not ended."""
+    try:
+        return pathlib.Path(f"/proc/{process}/task/{process}/children").read_text().split()
+    except OSError:
+        return []
+
+
+def words_of(process):
+    """Its command line."""
+    try:
+        return pathlib.Path(f"/proc/{process}/cmdline").read_text().split("\0")
+    except OSError:
+        return []
+
+
+def seconds_of_threads(process):
+    """Processor time of each of its threads [s], of those that have not ended."""
+    seconds = {}
+    for path in pathlib.Path(f"/proc/{process}/task").glob("*/stat"):
+        try:
+            fields = path.read_text().rsplit(")", 1)[1].split()
+        except OSError:
+            continue
+        seconds[path.parent.name] = (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+    return seconds
 
 
 class Study(TemporaryFolder):
@@ -156,6 +185,30 @@ class Study(TemporaryFolder):
             self.assertNotIn("4 runs, 0 are", printed)
             self.assertEqual(self.text("study.csv"), whole)
             self.assertFalse([path for path in runs.iterdir() if path.suffix == ".part"])
+
+    def test_runs_fill_the_cores_and_keep_to_one_each(self):
+        document = dict(TINY, runs={"base": {"seeds": [1, 2]}})
+        document["claims"] = [dict(TINY["claims"][0], rows=TINY["claims"][0]["rows"][:1])]
+        # Enough sites for a lattice to be worth several threads; claims are checked too, with their linear algebra.
+        document["set"] = dict(TINY["set"], **{"Sheet/length": "6 cm", "Sheet/height": "4 cm", "Time/end": "0.5 ms"})
+        path = self.folder / "tiny.json"
+        path.write_text(json.dumps(document))
+        process = subprocess.Popen([LATCON, "study", path, "--output-dir", self.out, "--quiet", "--threads", "2"])
+        most_at_once, times = 0, {}
+        while process.poll() is None:
+            runs = [child for child in children(process.pid) if "fracture" in words_of(child)]
+            most_at_once = max(most_at_once, len(runs))
+            for child in runs:
+                times.setdefault(child, {}).update(seconds_of_threads(child))
+            time.sleep(0.02)
+        self.assertEqual(process.returncode, 0)
+        self.assertEqual(most_at_once, 2)
+        self.assertEqual(len(times), 2)
+        for of_run in times.values():
+            *others, busiest = sorted(of_run.values())
+            self.assertGreater(busiest, 1.)
+            # Threads that libraries start and leave idle wait for work a moment, 2^26 cycles in OpenBLAS, and go to sleep.
+            self.assertLess(max(others, default=0.), 0.1)
 
     def test_quick_study_verifies_the_base_case_once(self):
         printed = self.study("--quick", skip=False, change=lambda document: document.update(checks=["steady-crack"]))

@@ -1,0 +1,244 @@
+#!/usr/bin/python3
+"""What the benchmarks read, derive and show, from numbers made up here."""
+import copy
+import pathlib
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+
+import cost_model
+import lammps
+import machine
+import measure
+import page
+import parts
+import summary
+
+LOG = """Per MPI rank memory allocation (min/avg/max) = 5.355 | 5.355 | 5.355 Mbytes
+Step PotEng KinEng 
+       0 38.5 0 
+      10 35.25 2.5 
+Loop time of 0.5 on 1 procs for 10 steps with 10192 atoms
+
+100.0% CPU use with 1 MPI tasks x 1 OpenMP threads
+run 10
+Step PotEng KinEng 
+      10 35.25 2.5 
+      20 35.764000872804388 -2.5e-3 
+Loop time of 0.25 on 1 procs for 10 steps with 10192 atoms
+Total wall time: 0:00:01
+"""
+
+HELP = """Large-scale Atomic/Molecular Massively Parallel Simulator - 29 Sep 2021 - Update 2
+
+* Pair styles:
+
+harmonic/cut    morse/opt
+
+* Bond styles:
+
+class2          fene            harmonic        harmonic/intel
+harmonic/omp    harmonic/shift  zero            
+
+* Angle styles:
+
+harmonic        harmonic/opt
+"""
+
+LSCPU = {"lscpu": [
+    {"field": "Architecture:", "data": "x86_64", "children": [{"field": "CPU(s):", "data": "2"}]},
+    {"field": "Vendor ID:", "data": "X", "children": [{"field": "Model name:", "data": "Swift 9", "children": [
+        {"field": "CPU family:", "data": "26"}, {"field": "Flags:", "data": "sse2 avx2"}]}]},
+    {"field": "Caches (sum of all):", "data": None, "children": [{"field": "L2 cache:", "data": "2 MiB (2 instances)"}]}]}
+
+KERNEL = {"context": {"instruction_set": "AVX2"}, "benchmarks": [
+    {"run_type": "iteration", "run_name": "step/everything/10000", "name": "x", "sites": 10192., "s/site": 9e-9},
+    {"run_type": "iteration", "run_name": "reference/10000", "name": "x", "sites": 10192., "s/site": 3e-7},
+    {"run_type": "iteration", "run_name": "step/everything/10000", "name": "x", "sites": 10192., "s/site": 8e-9},
+    {"run_type": "aggregate", "run_name": "step/everything/10000", "name": "x_mean", "sites": 10192., "s/site": 8.5e-9}]}
+
+
+def sizes_row(sites, threads, nanoseconds, memory):
+    best = 1e-8 * nanoseconds * sites
+    return {"sites": sites, "threads": threads, "steps": 10, "seconds": [1.1 * best, best], "peak_memory_bytes": memory}
+
+
+SIZES = {"rows": [sizes_row(1_000_000, 1, 8., 250e6), sizes_row(1_000_000, 2, 5., 260e6), sizes_row(10_000, 1, 4., 5e6),
+                  sizes_row(10_000, 2, 2., 5e6), sizes_row(100_000, 1, 7., 70e6), sizes_row(100_000, 2, 3.5, 70e6)]}
+
+AGREEMENT = {"lammps": 1., "latcon": 1., "difference": 3e-13}
+DOCUMENT = {
+    "machine": {"date": "2000-01-01", "commit": "abc", "processor": machine.processor(LSCPU), "memory_bytes": 2**34,
+                "compiler": "c++ 1", "build_type": "Release"},
+    "quick": False, "skipped": {"messages-of-old": "no reason"},
+    "parts": {
+        "kernel": {"rows": parts.kernel_rows(KERNEL, "")},
+        "lammps": {"version": "2021", "suffixes": ["none", "omp"], "rows": [
+            {"sites": 1000, "steps": 100, "suffix": "omp", "lammps_seconds": {"none": [0.01], "omp": [0.009, 0.008]},
+             "linear_seconds": [0.0005, 0.0006], "everything_seconds": [0.001], "tolerance": 1e-12,
+             "potential_energy": AGREEMENT, "kinetic_energy": dict(AGREEMENT, difference=4e-13)}]},
+        "sizes": SIZES,
+        "ranks": {"steps_of_the_sheet": 40, "rows": [
+            {"command": "lattice", "case": "a.prm", "ranks": ranks, "threads": threads, "seconds": seconds}
+            for ranks, threads, seconds in ((1, 1, [4., 4.4]), (1, 2, [2.5]), (2, 1, [2.]))]},
+        "fig1": {"case": "fig1.prm", "rows": [
+            {"command": "crack alone", "seconds": [16., 15.5], "phases": {"fracture": 10.}}]},
+        "integrator": {"case": "fig1.prm", "rows": [
+            {"integrator": name, "seconds": [seconds], "facts": {"force_evaluations": count},
+             "crack": {"pattern": "oscillating", "speed_lagrangian": {"value": 20.25, "uncertainty": 1.},
+                       "wavelength": 0.023, "amplitude": None}}
+            for name, seconds, count in (("velocity Verlet", 10., 900), ("Runge-Kutta-Chebyshev", 4., 300))]},
+        "fem": {"problems": [
+            {"unknowns": 100_000, "degree": 2, "ratio": 4., "energy_difference": 2e-9,
+             "latcon": {"seconds": 5., "krylov_iterations": [3, 4], "bytes_per_unknown": 900.}, "latcon_2_ranks": {"seconds": 2.5},
+             "dolfinx": {"seconds": 20., "bytes_per_unknown": 2500.}},
+            {"unknowns": 400_000, "degree": 2, "latcon": {"seconds": 5., "krylov_iterations": [3], "bytes_per_unknown": 900.}}]},
+        "messages": {"allreduce_seconds": [2e-7], "exchanges": [{"bytes": 8, "seconds": [3e-7, 2e-7]},
+                                                                 {"bytes": 65536, "seconds": [2e-5, 1e-5]}]}}}
+
+
+class Lammps(unittest.TestCase):
+    def test_a_log_gives_each_run_with_its_last_energies(self):
+        first, second = lammps.read_log(LOG)
+        self.assertEqual(first, {"steps": 10, "seconds": 0.5, "potential_energy": 35.25, "kinetic_energy": 2.5})
+        self.assertEqual(second, {"steps": 10, "seconds": 0.25, "potential_energy": 35.764000872804388,
+                                  "kinetic_energy": -2.5e-3})
+
+    def test_a_log_that_is_not_whole_or_of_several_processes_is_refused(self):
+        for text in ("", LOG.replace("Total wall time", "ERROR"), LOG.replace("1 procs", "2 procs")):
+            with self.assertRaises(measure.Failed):
+                lammps.read_log(text)
+
+    def test_versions_of_the_bond_style_are_those_of_bonds(self):
+        self.assertEqual(lammps.suffixes(HELP), ["none", "intel", "omp"])
+        self.assertEqual(lammps.version(HELP), "29 Sep 2021 - Update 2")
+        with self.assertRaises(measure.Failed):
+            lammps.suffixes("* Pair styles:\n\nharmonic\n")
+
+    def test_input_has_the_same_step_to_the_last_bit_and_one_run_more_than_is_timed(self):
+        text = lammps.input_text("sheet.data", 0.1 + 0.2, 50, 3)
+        self.assertIn("timestep 0.30000000000000004\n", text)
+        self.assertEqual(text.count("\nrun 50"), 4)
+        self.assertIn("read_data sheet.data\n", text)
+
+    def test_energies_may_differ_by_round_off(self):
+        self.assertEqual(lammps.energy_tolerance(1000, 10, 100), (6000 + 4000) * 2.**-53)
+
+
+class Numbers(unittest.TestCase):
+    def test_google_benchmark_gives_repetitions_of_each_case(self):
+        self.assertEqual(parts.kernel_rows(KERNEL, "avx2"), [
+            {"work": "everything", "sites": 10192, "target": "avx2", "used": "AVX2", "seconds_per_site": [9e-9, 8e-9]},
+            {"work": "reference", "sites": 10192, "target": "avx2", "used": "AVX2", "seconds_per_site": [3e-7]}])
+        broken = copy.deepcopy(KERNEL)
+        broken["benchmarks"][1].update(error_occurred=True, error_message="no memory")
+        with self.assertRaisesRegex(measure.Failed, "no memory"):
+            parts.kernel_rows(broken, "")
+
+    def test_variants_take_turns(self):
+        calls = []
+        results = measure.interleaved({name: lambda name=name: calls.append(name) or len(calls) for name in "ab"}, 2)
+        self.assertEqual(calls, ["a", "b", "a", "b"])
+        self.assertEqual(results, {"a": [1, 3], "b": [2, 4]})
+
+    def test_spread_is_that_of_the_median(self):
+        self.assertAlmostEqual(measure.spread([2., 5., 2.5]), 0.25, delta=1e-15)
+
+    def test_programs_that_are_not_there_are_skipped_and_those_that_fail_are_not(self):
+        with self.assertRaisesRegex(measure.Skipped, "not installed"):
+            measure.run(["/no/such/program"])
+        with self.assertRaisesRegex(measure.Failed, "ended with 3: oh no"):
+            measure.run(["/bin/sh", "-c", "echo oh no >&2; exit 3"])
+
+    def test_growth_and_memory_are_those_of_one_thread(self):
+        self.assertEqual(list(summary.by_size(SIZES)), [10_000, 100_000, 1_000_000])
+        self.assertAlmostEqual(summary.per_site(SIZES["rows"][0]), 8e-9, delta=1e-23)
+        self.assertAlmostEqual(summary.growth(SIZES), 8. / 7. - 1., delta=1e-14)
+        self.assertAlmostEqual(summary.bytes_per_site(SIZES), 200., delta=1e-12)
+
+    def test_what_falls_short_is_said(self):
+        rows = {row[0]: row[1:] for row in summary.rows(DOCUMENT["parts"])}
+        self.assertEqual(rows["ns per site and step, everything on, 10,192 sites"], ["8", "<= 10", ""])
+        self.assertEqual(rows["LAMMPS over latcon, linear bonds, 1,000 sites"], ["16", ">= 10", ""])
+        self.assertEqual(rows["speed-up on 2 threads, 100,000 sites"], ["2", ">= 1.8", ""])
+        self.assertEqual(rows["speed-up on 2 threads, 1,000,000 sites"], ["1.6", ">= 1.8", "missed"])
+        self.assertEqual(rows["speed-up on 2 ranks, latcon lattice, a.prm"], ["2", ">= 1.8", ""])
+        self.assertEqual(rows["fig1.prm, crack alone [s]"], ["15.5", "<= 15", "missed"])
+        self.assertEqual(rows["dolfinx over latcon, 100,000 unknowns"], ["4", ">= 3", ""])
+        self.assertNotIn("dolfinx over latcon, 400,000 unknowns", rows)
+
+    def test_processor_is_found_at_any_depth(self):
+        self.assertEqual(machine.processor(LSCPU), {
+            "model": "Swift 9", "family": "26", "cores": 2, "threads_per_core": 1,
+            "caches": {"L2": "2 MiB (2 instances)"}, "vectors": "AVX2"})
+
+
+class CostModel(unittest.TestCase):
+    def test_a_step_costs_sites_halo_and_sum(self):
+        here = cost_model.Machine(site_seconds=1e-8, latency=1e-6, bandwidth=1e9, reduction=2e-6)
+        # 64 kB to either side take 65 us with the latency, and the sum over eight ranks three rounds.
+        self.assertAlmostEqual(cost_model.step_seconds(here, 10_000, 1000, 8), 100e-6 + 2 * 65e-6 + 6e-6, delta=1e-15)
+        self.assertAlmostEqual(cost_model.efficiency(here, 10_000, 1000, 8), 100. / 236., delta=1e-12)
+        self.assertEqual(cost_model.efficiency(here, 10_000, 1000, 1), 1.)
+
+    def test_bandwidth_is_that_of_a_halo(self):
+        latency, bandwidth = cost_model.message_times([(8, 2e-7), (32768, 4e-6), (524288, 1e-4), (8388608, 1.)])
+        self.assertEqual(latency, 2e-7)
+        self.assertAlmostEqual(bandwidth, 5.24288e9, delta=1e-3)
+
+
+class Page(unittest.TestCase):
+    def test_tables_show_the_shortest_times_and_their_ratios(self):
+        text = page.markdown(DOCUMENT)
+        for line in ("| everything | AVX2 | 10,192 | 8.0 | 6 % |",
+                     "| 1,000 | 100 | 80.0 | 5.0 | 10.0 | 16.0 | 8.0 | 4e-13 | 1e-12 |",
+                     "| 100,000 | 7.0 | 3.5 | 2.00 | 5 % | 5 % | 67 |", "200 bytes a site",
+                     "| `latcon lattice`, a.prm | 4.00 | 1.60 | 2.00 | 5 % |",
+                     "| crack alone | 15.50 | 2 % | fracture 10.00 |",
+                     "| Runge-Kutta-Chebyshev | 4.00 | 2.50 | force_evaluations 300 | oscillating | 20.25 | 0.023 | - |",
+                     "| 100,000 | 2 | 5.00 | 2.00 | 20.00 | 4.0 | 3 4 | 900 | 2500 | 2e-09 |",
+                     "| 400,000 | 2 | 5.00 | - | - | - | 3 | 900 | - | - |", "| 65,536 | 10.00 | 6.55 |",
+                     "Not measured: `messages-of-old`, no reason.",
+                     "versions of harmonic bonds in it: plain, `-suffix omp`", "Swift 9 (family 26, AVX2), 2 cores, "
+                     "L2 2 MiB (2 instances), 16 GiB; c++ 1, Release; commit abc, 2000-01-01."):
+            self.assertIn(line, text)
+        # 10^5 sites of 10 ns beside two messages of 0.2 us + 64 kB / (6.5536 GB/s) and four rounds of 0.2 us.
+        self.assertIn(f"| 1,000 | 10,000 | {page.per_cent(100. / (100. + 2 * (0.2 + 64e3 / 6553.6) + 0.8))} |", text)
+
+    def test_the_model_needs_its_numbers(self):
+        document = copy.deepcopy(DOCUMENT)
+        del document["parts"]["messages"]
+        self.assertNotIn("Predicted", page.markdown(document))
+
+    def test_terminal_has_the_same_numbers_in_columns(self):
+        text = page.text(dict(DOCUMENT, quick=True))
+        self.assertIn("small versions, which say nothing", text)
+        self.assertRegex(text, r"(?m)^everything +AVX2 +10,192 +8\.0 +6 %$")
+
+    def test_the_hand_written_part_of_the_page_is_left_alone(self):
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "performance.md"
+            path.write_text(f"# Why\n\n{page.BEGIN}\nold\n{page.END}\n\nend\n", encoding="utf-8")
+            page.write_docs(path, DOCUMENT)
+            once = path.read_text(encoding="utf-8")
+            self.assertTrue(once.startswith(f"# Why\n\n{page.BEGIN}\n"))
+            self.assertTrue(once.endswith(f"\n{page.END}\n\nend\n"))
+            self.assertNotIn("old\n", once)
+            page.write_docs(path, DOCUMENT)
+            self.assertEqual(path.read_text(encoding="utf-8"), once)
+            for text in ("# Why\n", page.END, f"{page.END}\n{page.BEGIN}\n", f"{page.BEGIN}\n{page.BEGIN}\n{page.END}\n"):
+                path.write_text(text, encoding="utf-8")
+                with self.assertRaisesRegex(ValueError, "performance.md"):
+                    page.write_docs(path, DOCUMENT)
+
+    def test_the_page_of_this_repository_can_be_written(self):
+        path = pathlib.Path(__file__).resolve().parents[2] / "docs" / "performance.md"
+        text = path.read_text(encoding="utf-8")
+        self.assertLess(text.index(page.BEGIN), text.index(page.END))
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

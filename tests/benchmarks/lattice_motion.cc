@@ -1,0 +1,86 @@
+// Moves a sheet by a number of steps and prints what that took, as JSON: what whole programs are compared by.
+//
+// lattice_motion WORK SITES STEPS REPETITIONS THREADS [LAMMPS_DATA]
+//   WORK         everything, nearest or linear
+//   SITES        number of sites, about
+//   STEPS        steps of a repetition; as many come before the first and are not timed
+//   LAMMPS_DATA  file that gets the sheet as LAMMPS reads it, before it moves; linear bonds alone
+#include <chrono>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <stdexcept>
+
+#include <nlohmann/json.hpp>
+#include <omp.h>
+#include <sys/resource.h>
+
+#include "tests/benchmarks/lammps_data.h"
+#include "tests/benchmarks/sheets.h"
+
+namespace
+{
+
+double peak_memory()
+{
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return 1024. * static_cast<double>(usage.ru_maxrss); // Linux counts in kibibytes
+}
+
+nlohmann::ordered_json moved(benchmarks::Motion &motion, std::size_t steps, std::size_t repetitions)
+{
+  const auto advance = [&]
+  {
+    const auto start = std::chrono::steady_clock::now();
+    for (std::size_t step = 0; step < steps; ++step)
+      motion.simulation.step();
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  };
+  advance();
+  std::vector<double> seconds;
+  for (std::size_t i = 0; i < repetitions; ++i)
+    seconds.push_back(advance());
+  const lattice::EnergyBalance energies = motion.simulation.energies();
+  return {{"sites", motion.sheet.n_sites()},
+          {"columns", motion.sheet.columns()},
+          {"steps", steps},
+          {"time_step", motion.simulation.time_step()},
+          {"seconds", seconds},
+          {"potential_energy", energies.elastic},
+          {"kinetic_energy", energies.kinetic},
+          {"broken", motion.simulation.n_broken()},
+          {"peak_memory_bytes", peak_memory()}};
+}
+
+int run(const std::vector<std::string> &arguments)
+{
+  if (arguments.size() < 5)
+    throw std::invalid_argument("lattice_motion WORK SITES STEPS REPETITIONS THREADS [LAMMPS_DATA]");
+  omp_set_num_threads(std::stoi(arguments[4]));
+  const benchmarks::Work work = benchmarks::work_of(arguments[0]);
+  benchmarks::Motion motion(work, std::stod(arguments[1]));
+  if (arguments.size() > 5)
+  {
+    if (work != benchmarks::Work::linear)
+      throw std::invalid_argument("LAMMPS' bonds are the linear ones");
+    benchmarks::write_lammps_data(motion.simulation, arguments[5]);
+  }
+  std::cout << moved(motion, std::stoul(arguments[2]), std::stoul(arguments[3])).dump() << "\n";
+  return 0;
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  try
+  {
+    return run({argv + 1, argv + argc});
+  }
+  catch (const std::exception &error)
+  {
+    std::cerr << "lattice_motion: " << error.what() << "\n";
+    return 2;
+  }
+}

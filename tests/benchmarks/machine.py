@@ -1,0 +1,54 @@
+"""What the numbers depend on: processor, compiler, commit, date."""
+import datetime
+import json
+import re
+import subprocess
+
+from measure import ROOT
+
+
+def output_of(*command):
+    try:
+        return subprocess.run(command, capture_output=True, text=True, check=True, cwd=ROOT).stdout.strip()
+    except (OSError, subprocess.CalledProcessError):
+        return "unknown"
+
+
+def processor(lscpu):
+    """Model, cores, caches and widest vectors from what `lscpu --json` says."""
+    fields = {}
+
+    def collect(entries):
+        for entry in entries:
+            fields[entry["field"].rstrip(":")] = entry["data"]
+            collect(entry.get("children", []))
+
+    collect(lscpu["lscpu"])
+    flags = fields.get("Flags", "").split()
+    widest = (("avx512f", "AVX-512"), ("avx2", "AVX2"), ("sse2", "SSE2"))
+    vectors = next((name for flag, name in widest if flag in flags), "unknown")
+    return {"model": fields.get("Model name", "unknown"), "family": fields.get("CPU family"),
+            "cores": int(fields.get("CPU(s)", 0)), "threads_per_core": int(fields.get("Thread(s) per core", 1) or 1),
+            "caches": {name.split()[0]: value for name, value in fields.items()
+                       if re.fullmatch(r"L\d[di]? cache", name)},
+            "vectors": vectors}
+
+
+def memory():
+    """Of the machine [byte]."""
+    with open("/proc/meminfo", encoding="ascii") as file:
+        return 1024 * int(re.search(r"MemTotal:\s+(\d+)", file.read()).group(1))
+
+
+def compiler(build):
+    """Compiler and flags of a build folder."""
+    cache = dict(re.findall(r"^(\w+):\w+=(.*)$", (build / "CMakeCache.txt").read_text(encoding="utf-8"), re.MULTILINE))
+    return {"compiler": output_of(cache["CMAKE_CXX_COMPILER"], "--version").split("\n")[0],
+            "build_type": cache.get("CMAKE_BUILD_TYPE", "")}
+
+
+def facts(build):
+    return {"date": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%d"),
+            "commit": output_of("git", "describe", "--always", "--abbrev=12", "--dirty", "--exclude=*"),
+            "processor": processor(json.loads(output_of("lscpu", "--json"))), "memory_bytes": memory(),
+            **compiler(build)}

@@ -1,0 +1,59 @@
+"""Running programs and keeping what they took."""
+import json
+import os
+import pathlib
+import statistics
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+# Open MPI refuses root, and more ranks than cores, unless told otherwise.
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                   OMPI_MCA_rmaps_base_oversubscribe="1")
+
+
+class Skipped(Exception):
+    """A part that cannot be measured here, and why."""
+
+
+class Failed(Exception):
+    """A program that did not do what it was asked."""
+
+
+def run(command, environment=None, folder=None):
+    """Runs a program. @return its standard output; raises Failed with the end of its words if it fails"""
+    command = list(map(str, command))
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, cwd=folder, env=environment or ENVIRONMENT)
+    except FileNotFoundError as error:
+        raise Skipped(f"{command[0]} is not installed") from error
+    if done.returncode != 0:
+        raise Failed(f"{' '.join(command)} ended with {done.returncode}: {(done.stderr or done.stdout)[-2000:]}")
+    return done.stdout
+
+
+def run_json(command, **keywords):
+    return json.loads(run(command, **keywords))
+
+
+def on_ranks(ranks, command):
+    return ["mpirun", "--oversubscribe", "--bind-to", "none", "-n", ranks, *command]
+
+
+def interleaved(variants, rounds):
+    """Calls each of the variants (name -> function) in turn, so that what disturbs the machine disturbs all alike.
+    @return name -> results of the rounds"""
+    results = {name: [] for name in variants}
+    for _ in range(rounds):
+        for name, call in variants.items():
+            results[name].append(call())
+    return results
+
+
+def best(seconds):
+    """The shortest of several times: other work on the machine only ever adds."""
+    return min(seconds)
+
+
+def spread(seconds):
+    """Median over minimum, less one [-]: how much the machine was disturbed."""
+    return statistics.median(seconds) / min(seconds) - 1.

@@ -1,0 +1,205 @@
+"""Tables of what was measured, for the terminal and for docs/performance.md."""
+import dataclasses
+
+import summary
+from cost_model import Machine, efficiency, message_times
+from measure import best, spread
+
+BEGIN, END = "<!-- measured -->", "<!-- end of measured -->"
+
+
+@dataclasses.dataclass(frozen=True)
+class Table:
+    title: str
+    header: list
+    rows: list
+    note: str = ""
+
+    def text(self):
+        """For a terminal: the first column to the left, the others to the right."""
+        lines = [self.header, *self.rows]
+        widths = [max(len(line[i]) for line in lines) for i in range(len(self.header))]
+        cells = ["  ".join([line[0].ljust(widths[0]), *(c.rjust(w) for c, w in zip(line[1:], widths[1:]))]).rstrip()
+                 for line in lines]
+        return "\n".join([self.title, "", cells[0], "-" * max(map(len, cells)), *cells[1:],
+                          *(["", self.note] if self.note else [])]) + "\n"
+
+    def markdown(self):
+        lines = [self.header, [":--"] + ["--:"] * (len(self.header) - 1), *self.rows]
+        parts = [f"### {self.title}", "\n".join("| " + " | ".join(line) + " |" for line in lines)]
+        return "\n\n".join(parts + ([self.note] if self.note else [])) + "\n"
+
+
+def number(value):
+    return f"{value:,}"
+
+
+def ns(seconds):
+    return f"{1e9 * seconds:.1f}"
+
+
+def per_cent(value):
+    return f"{100. * value:.0f} %"
+
+
+def seconds_text(seconds):
+    return f"{seconds:.2f}" if seconds < 100 else f"{seconds:.0f}"
+
+
+def kernel_table(part):
+    rows = [[row["work"], row["target"] or row["used"], number(row["sites"]), ns(best(row["seconds_per_site"])),
+             per_cent(spread(row["seconds_per_site"]))] for row in part["rows"]]
+    note = ("`everything`: Mooney-Rivlin bonds to twelve neighbours, dashpots, breaking and toughening watched; `nearest`: "
+            "the same with six; `linear`: linear bonds to twelve and nothing else; `reference`: forces alone, bond by bond.")
+    return [Table("Kernel, one core", ["bonds", "instruction set", "sites", "ns per site and step", "spread"], rows, note)]
+
+
+def lammps_table(part):
+    rows = []
+    for row in part["rows"]:
+        numbers = summary.lammps_row(row)
+        energy = max(row[name]["difference"] for name in ("potential_energy", "kinetic_energy"))
+        rows.append([number(row["sites"]), number(row["steps"]), ns(numbers["lammps"]), ns(numbers["linear"]),
+                     ns(numbers["everything"]), f"{numbers['lammps'] / numbers['linear']:.1f}",
+                     f"{numbers['lammps'] / numbers['everything']:.1f}", f"{energy:.0e}", f"{row['tolerance']:.0e}"])
+    suffixes = ", ".join("plain" if suffix == "none" else f"`-suffix {suffix}`" for suffix in part["suffixes"])
+    header = ["sites", "steps", "LAMMPS", "linear", "everything", "LAMMPS / linear", "LAMMPS / everything",
+              "energies differ", "allowed"]
+    note = (f"LAMMPS {part['version']}; versions of harmonic bonds in it: {suffixes}. Times in ns per site and step. "
+            "Energies differ by no more than round-off allows.")
+    return [Table("Against LAMMPS, one core", header, rows, note)]
+
+
+def sizes_table(part):
+    rows = []
+    for sites, threads in summary.by_size(part).items():
+        one, two = threads[1], threads[2]
+        rows.append([number(sites), ns(summary.per_site(one)), ns(summary.per_site(two)),
+                     f"{summary.per_site(one) / summary.per_site(two):.2f}", per_cent(spread(one["seconds"])),
+                     per_cent(spread(two["seconds"])), f"{one['peak_memory_bytes'] / 2**20:.0f}"])
+    header = ["sites", "1 thread [ns]", "2 threads [ns]", "speed-up", "spread, 1", "spread, 2", "peak memory [MiB]"]
+    note = (f"Everything on. {summary.bytes_per_site(part):.0f} bytes a site, from the growth of the peak memory between "
+            "the two largest sheets.")
+    return [Table("Sizes and threads", header, rows, note)]
+
+
+def ranks_table(part):
+    rows = []
+    for (command, case), times in summary.by_command(part).items():
+        one = best(times[1, 1])
+        rows.append([f"`latcon {command}`, {case}", seconds_text(one), f"{one / best(times[1, 2]):.2f}",
+                     f"{one / best(times[2, 1]):.2f}", per_cent(max(map(spread, times.values())))])
+    header = ["command", "1 core [s]", "speed-up, 2 threads", "speed-up, 2 ranks", "largest spread"]
+    return [Table("Whole programs on threads and ranks", header, rows, "Time of the motion, without set-up.")]
+
+
+def fig1_table(part):
+    rows = [[row["command"], seconds_text(best(row["seconds"])), per_cent(spread(row["seconds"])),
+             ", ".join(f"{name} {seconds_text(value)}" for name, value in row["phases"].items())] for row in part["rows"]]
+    header = ["command", "[s]", "spread", "phases of the last run [s]"]
+    return [Table(f"The crack of {part['case']} on two threads", header, rows)]
+
+
+def integrator_table(part):
+    first = best(part["rows"][0]["seconds"])
+    rows = []
+    for row in part["rows"]:
+        crack = row["crack"]
+        counted = ", ".join(f"{name} {value:g}" for name, value in row["facts"].items()) or "-"
+        rows.append([row["integrator"], seconds_text(best(row["seconds"])), f"{first / best(row['seconds']):.2f}",
+                     counted, str(crack["pattern"]),
+                     *(summary.measured_text(crack[name]) for name in ("speed_lagrangian", "wavelength", "amplitude"))])
+    header = ["integrator", "[s]", "gain", "counted", "pattern", "speed [m/s]", "wavelength [m]", "amplitude [m]"]
+    return [Table(f"Integrators, {part['case']}, one thread", header, rows)]
+
+
+def fem_table(part):
+    rows = []
+    for problem in part["problems"]:
+        ours, two, theirs = problem["latcon"], problem.get("latcon_2_ranks"), problem.get("dolfinx")
+        rows.append([number(problem["unknowns"]), str(problem["degree"]), seconds_text(ours["seconds"]),
+                     f"{ours['seconds'] / two['seconds']:.2f}" if two else "-",
+                     seconds_text(theirs["seconds"]) if theirs else "-",
+                     f"{problem['ratio']:.1f}" if theirs else "-", " ".join(map(str, ours["krylov_iterations"])),
+                     f"{ours['bytes_per_unknown']:.0f}", f"{theirs['bytes_per_unknown']:.0f}" if theirs else "-",
+                     f"{problem['energy_difference']:.0e}" if theirs else "-"])
+    header = ["unknowns", "degree", "latcon [s]", "speed-up, 2 ranks", "dolfinx [s]", "dolfinx / latcon",
+              "Krylov iterations", "bytes per unknown", "dolfinx's", "energies differ"]
+    return [Table("Finite elements against dolfinx", header, rows)]
+
+
+def messages_table(part):
+    rows = [[number(entry["bytes"]), f"{1e6 * best(entry['seconds']):.2f}",
+             f"{1e-9 * entry['bytes'] / best(entry['seconds']):.2f}"] for entry in part["exchanges"]]
+    return [Table("Messages between two ranks of this machine", ["bytes each way", "[us]", "[GB/s]"], rows,
+                  f"Sum of one number over both: {1e6 * best(part['allreduce_seconds']):.2f} us.")]
+
+
+def model_tables(parts):
+    """Predictions of cost_model.py; none if a part of what it needs was not measured."""
+    if "sizes" not in parts or "messages" not in parts:
+        return []
+    exchanges = [(entry["bytes"], best(entry["seconds"])) for entry in parts["messages"]["exchanges"]]
+    latency, bandwidth = message_times(exchanges)
+    # Both cores at work, as on a node of a cluster: they share the memory.
+    largest = max(summary.by_size(parts["sizes"]).items())[1][2]
+    site_seconds = 2. * summary.per_site(largest)
+    here = Machine(site_seconds, latency, bandwidth, best(parts["messages"]["allreduce_seconds"]))
+    network = Machine(site_seconds, 2e-6, 5e9, 4e-6)
+    rows = []
+    for columns in (1_000, 10_000):
+        for sites in (10_000, 100_000, 1_000_000):
+            rows.append([number(columns), number(sites),
+                         *(per_cent(efficiency(machine, sites, columns, ranks))
+                           for machine in (here, network) for ranks in (16, 1024))])
+    note = (f"Of the model above with t_site = {ns(site_seconds)} ns (two threads at work, largest sheet), and messages as "
+            f"measured here (latency {1e6 * latency:.2f} us, {1e-9 * bandwidth:.2f} GB/s, reduction "
+            f"{1e6 * here.reduction:.2f} us) or as assumed of a network (2 us, 5 GB/s, 4 us).")
+    header = ["sites a row", "sites a rank", "16 ranks", "1024 ranks", "16, network", "1024, network"]
+    return [Table("Predicted efficiency on many ranks", header, rows, note)]
+
+
+TABLES = {"kernel": kernel_table, "lammps": lammps_table, "sizes": sizes_table, "ranks": ranks_table, "fig1": fig1_table,
+          "integrator": integrator_table, "fem": fem_table, "messages": messages_table}
+
+
+def tables(document):
+    """All tables of a document (see run.py), what is asked for first."""
+    parts = document["parts"]
+    result = [Table("What is asked for", ["quantity", "measured", "aim", ""], summary.rows(parts))]
+    for name, part in parts.items():
+        result += TABLES[name](part)
+    return result + model_tables(parts)
+
+
+def machine_text(document):
+    machine = document["machine"]
+    processor = machine["processor"]
+    caches = ", ".join(f"{name} {size}" for name, size in processor["caches"].items())
+    size = ", small versions, which say nothing" if document["quick"] else ""
+    return (f"{processor['model']} (family {processor['family']}, {processor['vectors']}), {processor['cores']} cores, "
+            f"{caches}, {machine['memory_bytes'] / 2**30:.0f} GiB; {machine['compiler']}, {machine['build_type']}; commit "
+            f"{machine['commit']}, {machine['date']}{size}.")
+
+
+def text(document):
+    """For the terminal."""
+    notes = [f"{name}: not measured, {reason}" for name, reason in document["skipped"].items()]
+    return "\n".join([machine_text(document) + "\n", *(table.text() for table in tables(document)), *notes])
+
+
+def markdown(document):
+    """The generated part of docs/performance.md."""
+    notes = [f"Not measured: `{name}`, {reason}.\n" for name, reason in document["skipped"].items()]
+    intro = ("Made by `tests/benchmarks/run --write-docs`; do not edit. Each time is the shortest of several, taken in turns "
+             "with what it is compared with; the spread is the median over the shortest, less one.\n")
+    return "\n".join([intro, machine_text(document) + "\n", *(table.markdown() for table in tables(document)), *notes])
+
+
+def write_docs(path, document):
+    """Replaces the generated part of a page, and nothing else."""
+    page = path.read_text(encoding="utf-8")
+    if page.count(BEGIN) != 1 or page.count(END) != 1 or page.index(BEGIN) > page.index(END):
+        raise ValueError(f"{path}: needs one line {BEGIN} and one line {END} below it")
+    head, tail = page[:page.index(BEGIN)], page[page.index(END):]
+    path.write_text(f"{head}{BEGIN}\n\n{markdown(document)}\n{tail}", encoding="utf-8")

@@ -1,0 +1,241 @@
+"""What is measured. A part returns its raw numbers, or raises Skipped where it cannot be measured.
+
+Each takes a Plan and may write into a folder of its own, plan.folder(NAME)."""
+import dataclasses
+import json
+import pathlib
+import re
+import shutil
+
+import lammps
+from measure import ENVIRONMENT, ROOT, Failed, Skipped, interleaved, on_ranks, run, run_json
+
+CASES = ROOT / "verification" / "cases"
+STABILISED = "Time/integrator=Runge-Kutta-Chebyshev"
+
+
+@dataclasses.dataclass(frozen=True)
+class Plan:
+    build: pathlib.Path   # folder of the programs
+    output: pathlib.Path  # folder for what they write
+    quick: bool
+
+    @property
+    def rounds(self):
+        return 2 if self.quick else 5
+
+    def program(self, name):
+        path = self.build / ("verification" if name == "latcon" else "tests/benchmarks") / name
+        if not path.exists():
+            raise Failed(f"{path} is not built")
+        return path
+
+    def folder(self, name):
+        """An empty folder."""
+        path = self.output / name
+        shutil.rmtree(path, ignore_errors=True)
+        path.mkdir(parents=True)
+        return path
+
+    def steps(self, sites):
+        """Steps that take LAMMPS some seconds, the same for all programs."""
+        return max(5, round((1e6 if self.quick else 2e7) / sites))
+
+
+def motion(plan, work, sites, steps, threads, *data):
+    """One repetition of a motion of the sheet by lattice_motion."""
+    return run_json([plan.program("lattice_motion"), work, sites, steps, 1, threads, *data])
+
+
+def kernel(plan):
+    """Steps on one thread by each kind of bonds and each instruction set, beside a force evaluation bond by bond."""
+    program = plan.program("lattice_kernel")
+    filters = {"": "^(reference/.*|step/.*/(10000|25000))$" if plan.quick else "."}
+    for target in run([program, "--targets"]).split():
+        filters[target] = "^step/everything/25000$" if plan.quick else "^step/.*/(25000|1000000)$"
+    rows = []
+    for target, expression in filters.items():
+        path = plan.folder("kernel") / "kernel.json"
+        run([program, *([f"--target={target}"] if target else []), f"--benchmark_filter={expression}",
+             f"--benchmark_repetitions={plan.rounds}", "--benchmark_enable_random_interleaving=true",
+             f"--benchmark_min_time={0.02 if plan.quick else 0.3}", f"--benchmark_out={path}",
+             "--benchmark_out_format=json"])
+        rows += kernel_rows(json.loads(path.read_text(encoding="utf-8")), target)
+    order = ("everything", "nearest", "linear", "reference")
+    return {"rows": sorted(rows, key=lambda row: (order.index(row["work"]), row["target"], row["sites"]))}
+
+
+def kernel_rows(document, target):
+    """Of Google Benchmark's output: a row for each kind of bonds and size, its repetitions as seconds a site and step.
+    @param target instruction set asked for; "" if none was, then the one that the program chose"""
+    rows = {}
+    for entry in document["benchmarks"]:
+        if entry["run_type"] != "iteration":
+            continue
+        if entry.get("error_occurred"):
+            raise Failed(f"{entry['name']}: {entry['error_message']}")
+        row = rows.setdefault(entry["run_name"], {
+            "work": entry["run_name"].rsplit("/", 1)[0].removeprefix("step/"), "sites": round(entry["sites"]),
+            "target": target, "used": document["context"].get("instruction_set", ""), "seconds_per_site": []})
+        row["seconds_per_site"].append(entry["s/site"])
+    return list(rows.values())
+
+
+def against_lammps(plan):
+    """Linear bonds without dashpots in LAMMPS and in latcon, the same steps of the same sheet on one core; latcon with
+    everything on beside them."""
+    help_text = run(["lmp", "-h"])
+    rows = []
+    for sites in (1e4, 1e5) if plan.quick else (1e4, 2.5e4, 1e5, 1e6):
+        steps = plan.steps(sites)
+        folder = plan.folder("lammps")
+        first = motion(plan, "linear", sites, steps, 1, folder / "sheet.data")
+        (folder / "in.sheet").write_text(lammps.input_text("sheet.data", first["time_step"], steps, 1))
+        variants = {suffix: lambda suffix=suffix: lammps.move(folder, suffix)[-1]
+                    for suffix in lammps.suffixes(help_text)}
+        variants["linear"] = lambda: motion(plan, "linear", sites, steps, 1)
+        variants["everything"] = lambda: motion(plan, "everything", sites, steps, 1)
+        results = interleaved(variants, plan.rounds)
+        ours = {work: results.pop(work) for work in ("linear", "everything")}
+        fastest = min(results, key=lambda suffix: min(result["seconds"] for result in results[suffix]))
+        row = {"sites": first["sites"], "steps": steps, "suffix": fastest,
+               "lammps_seconds": {suffix: [r["seconds"] for r in results[suffix]] for suffix in results},
+               **{f"{work}_seconds": [r["seconds"][0] for r in ours[work]] for work in ours},
+               "tolerance": lammps.energy_tolerance(first["sites"], first["columns"], 2 * steps)}
+        theirs, mine = results[fastest][0], ours["linear"][0]
+        # Both as parts of the potential energy: the total is conserved, so an error in one is an error in the other.
+        for energy in ("potential_energy", "kinetic_energy"):
+            row[energy] = {"lammps": theirs[energy], "latcon": mine[energy],
+                           "difference": abs(theirs[energy] - mine[energy]) / mine["potential_energy"]}
+            if not row[energy]["difference"] <= row["tolerance"]:
+                raise Failed(f"{sites:g} sites: LAMMPS and latcon differ in {energy}: {row[energy]}")
+        rows.append(row)
+        shutil.rmtree(folder)  # a data file has 200 bytes a site
+    return {"version": lammps.version(help_text), "suffixes": lammps.suffixes(help_text), "rows": rows}
+
+
+def sizes(plan):
+    """Steps with everything on, on one thread and two, for sheets of all sizes; memory."""
+    rows = []
+    for sites in (1e4, 1e5, 2e5) if plan.quick else (2.5e4, 1e5, 1e6, 1e7):
+        steps = plan.steps(sites)
+        variants = {threads: lambda threads=threads: motion(plan, "everything", sites, steps, threads)
+                    for threads in (1, 2)}
+        for threads, results in interleaved(variants, plan.rounds).items():
+            rows.append({"sites": results[0]["sites"], "steps": steps, "threads": threads,
+                         "seconds": [result["seconds"][0] for result in results],
+                         "peak_memory_bytes": max(result["peak_memory_bytes"] for result in results)})
+    return {"rows": rows}
+
+
+def latcon(plan, command, case, folder, *arguments, ranks=1, environment=None):
+    """Runs latcon on a case. @return its run.json"""
+    words = [plan.program("latcon"), command, case, "--quiet", "--output-dir", folder, *arguments]
+    run(words if ranks == 1 else on_ranks(ranks, words), environment=environment)
+    return json.loads((folder / "run.json").read_text(encoding="utf-8"))
+
+
+def moving_sheet(plan):
+    """Arguments of `latcon lattice` for a moving sheet, and its number of steps."""
+    side, steps = (100, 40) if plan.quick else (600, 400)
+    entries = {"Sheet/length": f"{0.625 * side} mm", "Sheet/height": f"{0.625 * 0.866 * side} mm",
+               "Lattice/solution": "motion", "Time/step": "5e-8 s", "Time/end": f"{5e-8 * steps} s",
+               "Output/frame interval": "0 s", "Output/energy interval": "1000000"}
+    return [word for entry in entries.items() for word in ("--set", "=".join(entry))], steps
+
+
+def ranks(plan):
+    """latcon on one core, on two threads and on two ranks: a moving sheet and a crack."""
+    folder = plan.folder("ranks")
+    sheet, steps = moving_sheet(plan)
+    crack = ["--skip-verification", "--no-report"]
+    rows = []
+    for command, case, phase, arguments in (("lattice", "quick.prm", "motion", sheet),
+                                            ("fracture", "quick.prm" if plan.quick else "fig1.prm", "fracture", crack)):
+        def once(n_ranks, threads):
+            info = latcon(plan, command, CASES / case, folder / "run", *arguments, "--threads", threads, ranks=n_ranks)
+            return info["wall_time_s"][phase]
+
+        variants = {key: lambda key=key: once(*key) for key in ((1, 1), (1, 2), (2, 1))}
+        for (n_ranks, threads), seconds in interleaved(variants, plan.rounds).items():
+            rows.append({"command": command, "case": case, "ranks": n_ranks, "threads": threads, "seconds": seconds})
+    shutil.rmtree(folder)
+    return {"rows": rows, "steps_of_the_sheet": steps}
+
+
+def hyperfine(plan, folder, commands, prepare):
+    """Times whole commands with hyperfine: name -> command line. @return name -> seconds of each run"""
+    path = folder / "hyperfine.json"
+    words = ["hyperfine", "--runs", plan.rounds, "--style", "none", "--export-json", path, "--prepare", prepare]
+    for name, command in commands.items():
+        words += ["--command-name", name, command]
+    run(words, environment=dict(ENVIRONMENT, XDG_CACHE_HOME=str(folder / "cache")))
+    results = json.loads(path.read_text(encoding="utf-8"))["results"]
+    return {result["command"]: result["times"] for result in results}
+
+
+def fig1(plan):
+    """The crack of Fig. 1 from the command line: alone, with the claims that come before it, and with its report."""
+    folder = plan.folder("fig1")
+    case = CASES / ("quick.prm" if plan.quick else "fig1.prm")
+    words = {"crack alone": "--skip-verification --no-report", "with the claims": "--no-report",
+             **({} if plan.quick else {"with the claims and the report": ""})}
+    outputs = {name: folder / str(i) for i, name in enumerate(words)}
+    fracture = f"'{plan.program('latcon')}' fracture '{case}' --quiet --threads 2"
+    commands = {name: f"{fracture} --output-dir '{outputs[name]}' {word}" for name, word in words.items()}
+    # Verdicts that are stored would be reused.
+    times = hyperfine(plan, folder, commands, f"rm -rf '{folder / 'cache'}'")
+    rows = []
+    for name in words:
+        info = json.loads((outputs[name] / "run.json").read_text(encoding="utf-8"))
+        rows.append({"command": name, "seconds": times[name], "phases": info["wall_time_s"]})
+    return {"case": case.name, "rows": rows}
+
+
+def integrator(plan):
+    """The crack of Fig. 1 with velocity Verlet and with the stabilised integrator, on one thread."""
+    case = CASES / ("quick.prm" if plan.quick else "fig1.prm")
+    folder = plan.folder("integrator")
+    try:
+        run([plan.program("latcon"), "fracture", case, "--dry-run", "--quiet", "--set", STABILISED])
+    except Failed as error:
+        raise Skipped(f"`{STABILISED}` is refused") from error
+
+    def once(*settings):
+        info = latcon(plan, "fracture", case, folder, "--skip-verification", "--no-report", "--threads", "1", *settings)
+        crack = json.loads((folder / "crack.json").read_text(encoding="utf-8"))
+        return {"seconds": info["wall_time_s"]["fracture"], "facts": {k: v for k, v in info.items() if is_count(k, v)},
+                "crack": {name: crack.get(name) for name in ("pattern", "speed_lagrangian", "wavelength", "amplitude")}}
+
+    variants = {"velocity Verlet": once, "Runge-Kutta-Chebyshev": lambda: once("--set", STABILISED)}
+    results = interleaved(variants, plan.rounds)
+    return {"case": case.name,
+            "rows": [{"integrator": name, "seconds": [r["seconds"] for r in runs], "facts": runs[0]["facts"],
+                      "crack": runs[0]["crack"]} for name, runs in results.items()]}
+
+
+def is_count(key, value):
+    """Whether an entry of run.json counts steps or force evaluations."""
+    return isinstance(value, (int, float)) and re.search(r"steps|evaluations", key) is not None
+
+
+def fem(plan):
+    """Finite elements against dolfinx: the same mesh, degree and tolerance."""
+    script = pathlib.Path(__file__).resolve().parent / "fem_against_dolfinx.py"
+    if not script.exists():
+        raise Skipped("there is no fem_against_dolfinx.py")
+    path = plan.folder("fem") / "fem.json"
+    run(["/usr/bin/python3", script, "--output", path, *(["--quick"] if plan.quick else [])])
+    return json.loads(path.read_text(encoding="utf-8"))
+
+
+def messages(plan):
+    """Messages between two ranks on this machine."""
+    results = [run_json(on_ranks(2, [plan.program("messages")])) for _ in range(plan.rounds)]
+    return {"exchanges": [{"bytes": same[0]["bytes"], "seconds": [entry["seconds"] for entry in same]}
+                          for same in zip(*(result["exchanges"] for result in results))],
+            "allreduce_seconds": [result["allreduce_seconds"] for result in results]}
+
+
+PARTS = {"kernel": kernel, "lammps": against_lammps, "sizes": sizes, "ranks": ranks, "fig1": fig1,
+         "integrator": integrator, "fem": fem, "messages": messages}

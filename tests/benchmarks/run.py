@@ -1,0 +1,65 @@
+#!/usr/bin/python3
+"""Measures latcon on this machine, beside LAMMPS and dolfinx, and prints tables.
+
+tests/benchmarks/run installs and builds what is needed and calls this. All numbers go to benchmarks.json in the output
+directory; --write-docs puts the tables into docs/performance.md. Nothing else should run on the machine.
+"""
+import argparse
+import json
+import pathlib
+import sys
+import time
+
+sys.dont_write_bytecode = True
+
+import machine
+import page
+from measure import ROOT, Failed, Skipped
+from parts import PARTS, Plan
+
+
+def arguments():
+    parser = argparse.ArgumentParser(prog="tests/benchmarks/run", description=__doc__,
+                                     formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--quick", action="store_true", help="small versions: whether all of it runs, in a minute")
+    parser.add_argument("--only", nargs="+", choices=PARTS, metavar="PART", help="of " + " ".join(PARTS))
+    parser.add_argument("--output-dir", type=pathlib.Path, default=ROOT / "output" / "benchmarks")
+    parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build" / "release", help="folder of the programs")
+    parser.add_argument("--from-json", type=pathlib.Path, metavar="FILE", help="measure nothing, show these numbers")
+    parser.add_argument("--write-docs", action="store_true", help="write docs/performance.md")
+    return parser.parse_args()
+
+
+def measured(options):
+    """Measures the parts one after another; what was measured is on disk after each."""
+    output = options.output_dir.resolve()
+    output.mkdir(parents=True, exist_ok=True)
+    plan = Plan(options.build.resolve(), output, options.quick)
+    document = {"machine": machine.facts(plan.build), "quick": options.quick, "parts": {}, "skipped": {}}
+    for name in options.only or PARTS:
+        start = time.monotonic()
+        print(f"{name} ...", end="", file=sys.stderr, flush=True)
+        try:
+            document["parts"][name] = PARTS[name](plan)
+        except Skipped as reason:
+            document["skipped"][name] = str(reason)
+        print(f" {time.monotonic() - start:.0f} s", file=sys.stderr)
+        (output / "benchmarks.json").write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
+    return document
+
+
+def main():
+    options = arguments()
+    try:
+        document = json.loads(options.from_json.read_text(encoding="utf-8")) if options.from_json else measured(options)
+    except (Failed, OSError) as error:
+        print(f"tests/benchmarks/run: {error}", file=sys.stderr)
+        return 1
+    print(page.text(document))
+    if options.write_docs:
+        page.write_docs(ROOT / "docs" / "performance.md", document)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,79 @@
+#pragma once
+
+#include <map>
+#include <string>
+
+#include "lattice/simulation.h"
+#include "lattice/time_step.h"
+#include "tests/lattice/sheets.h"
+
+/// Sheets whose motion the benchmarks time: stretched, a little disturbed, all edges held, and no bond near breaking.
+namespace benchmarks
+{
+
+/// What the sheet is made of and what is watched in every step.
+enum class Work
+{
+  everything, ///< Mooney-Rivlin bonds to twelve neighbours, dashpots, breaking and toughening watched
+  nearest,    ///< the same with six neighbours
+  linear      ///< linear bonds to twelve neighbours, and nothing else
+};
+
+/// @throws std::out_of_range for another name
+inline Work work_of(const std::string &name)
+{
+  static const std::map<std::string, Work> names{
+    {"everything", Work::everything}, {"nearest", Work::nearest}, {"linear", Work::linear}};
+  return names.at(name);
+}
+
+inline lattice::Material material(Work work)
+{
+  if (work == Work::nearest)
+    return sheets::nearest_only();
+  if (work == Work::everything)
+    return sheets::rubber();
+  const lattice::LinearBond bond{6e5};
+  return {944., {bond, 2. / 3., 0.}, lattice::Shell{bond, 2. / 3., 0.}};
+}
+
+/// A square sheet that is ready to move.
+struct Motion
+{
+  /// @param n_sites about [-]; rounded to whole rows and columns
+  Motion(Work work, double n_sites)
+    : sheet(sheets::square(std::sqrt(n_sites * std::sqrt(0.75)))), bonds(material(work)),
+      // Stable while no bond contracts to half of its length, and none does.
+      simulation(sheet, bonds, loaded(work), 0.5 * time_step_limits(sheet, bonds, 0.5).combined, rules(work))
+  {
+  }
+
+  lattice::TriangularLattice sheet;
+  lattice::Material bonds;
+  lattice::Simulation simulation;
+
+private:
+  static Eigen::Matrix2d deformation(Work work)
+  {
+    return work == Work::linear ? sheets::stretched(1.05, 1.1) : sheets::stretched(2.3, 2.8);
+  }
+
+  lattice::State loaded(Work work) const
+  {
+    const double limit = work == Work::linear ? sheets::unbreakable : breaking_stretch;
+    lattice::State state = homogeneous_state(sheet, bonds, deformation(work), lattice::Edges::held, limit);
+    add_noise(state, sheet, 0.05 * sheets::spacing, 1);
+    return state;
+  }
+
+  std::optional<lattice::Fracture> rules(Work work) const
+  {
+    if (work == Work::linear)
+      return std::nullopt;
+    return lattice::Fracture(sheet, bonds, breaking_stretch, lattice::RetractionToughening{0.5, 3.}, deformation(work));
+  }
+
+  static constexpr double breaking_stretch = 5.;
+};
+
+} // namespace benchmarks
