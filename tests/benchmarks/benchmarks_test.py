@@ -81,7 +81,7 @@ DOCUMENT = {
              "linear_seconds": [0.0005, 0.0006], "everything_seconds": [0.001], "tolerance": 1e-12,
              "potential_energy": AGREEMENT, "kinetic_energy": dict(AGREEMENT, difference=4e-13)}]},
         "sizes": SIZES,
-        "ranks": {"steps_of_the_sheet": 40, "rows": [
+        "ranks": {"rows": [
             {"command": "lattice", "case": "a.prm", "ranks": ranks, "threads": threads, "seconds": seconds}
             for ranks, threads, seconds in ((1, 1, [4., 4.4]), (1, 2, [2.5]), (2, 1, [2.]))]},
         "fig1": {"case": "fig1.prm", "rows": [

@@ -128,39 +128,40 @@ def sizes(plan):
     return {"rows": rows}
 
 
-def latcon(plan, command, case, folder, *arguments, ranks=1, environment=None):
+def latcon(plan, command, case, folder, *arguments, ranks=1):
     """Runs latcon on a case. @return its run.json"""
     words = [plan.program("latcon"), command, case, "--quiet", "--output-dir", folder, *arguments]
-    run(words if ranks == 1 else on_ranks(ranks, words), environment=environment)
+    run(words if ranks == 1 else on_ranks(ranks, words))
     return json.loads((folder / "run.json").read_text(encoding="utf-8"))
 
 
 def moving_sheet(plan):
-    """Arguments of `latcon lattice` for a moving sheet, and its number of steps."""
+    """Arguments of `latcon lattice` for a moving sheet, and what it is."""
     side, steps = (100, 40) if plan.quick else (600, 400)
     entries = {"Sheet/length": f"{0.625 * side} mm", "Sheet/height": f"{0.625 * 0.866 * side} mm",
                "Lattice/solution": "motion", "Time/step": "5e-8 s", "Time/end": f"{5e-8 * steps} s",
                "Output/frame interval": "0 s", "Output/energy interval": "1000000"}
-    return [word for entry in entries.items() for word in ("--set", "=".join(entry))], steps
+    return [word for entry in entries.items() for word in ("--set", "=".join(entry))], f"{steps} steps of {side**2:,} sites"
 
 
 def ranks(plan):
     """latcon on one core, on two threads and on two ranks: a moving sheet and a crack."""
     folder = plan.folder("ranks")
-    sheet, steps = moving_sheet(plan)
-    crack = ["--skip-verification", "--no-report"]
+    sheet, what = moving_sheet(plan)
+    crack = "quick.prm" if plan.quick else "fig1.prm"
     rows = []
-    for command, case, phase, arguments in (("lattice", "quick.prm", "motion", sheet),
-                                            ("fracture", "quick.prm" if plan.quick else "fig1.prm", "fracture", crack)):
+    for command, case, name, phase, arguments in (
+            ("lattice", "quick.prm", what, "motion", sheet),
+            ("fracture", crack, crack, "fracture", ["--skip-verification", "--no-report"])):
         def once(n_ranks, threads):
             info = latcon(plan, command, CASES / case, folder / "run", *arguments, "--threads", threads, ranks=n_ranks)
             return info["wall_time_s"][phase]
 
         variants = {key: lambda key=key: once(*key) for key in ((1, 1), (1, 2), (2, 1))}
         for (n_ranks, threads), seconds in interleaved(variants, plan.rounds).items():
-            rows.append({"command": command, "case": case, "ranks": n_ranks, "threads": threads, "seconds": seconds})
+            rows.append({"command": command, "case": name, "ranks": n_ranks, "threads": threads, "seconds": seconds})
     shutil.rmtree(folder)
-    return {"rows": rows, "steps_of_the_sheet": steps}
+    return {"rows": rows}
 
 
 def hyperfine(plan, folder, commands, prepare):

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <map>
+#include <stdexcept>
 #include <string>
 
 #include "lattice/simulation.h"
@@ -19,12 +20,15 @@ enum class Work
   linear      ///< linear bonds to twelve neighbours, and nothing else
 };
 
-/// @throws std::out_of_range for another name
+/// @throws std::invalid_argument for another name
 inline Work work_of(const std::string &name)
 {
   static const std::map<std::string, Work> names{
     {"everything", Work::everything}, {"nearest", Work::nearest}, {"linear", Work::linear}};
-  return names.at(name);
+  const auto found = names.find(name);
+  if (found == names.end())
+    throw std::invalid_argument("\"" + name + "\" is none of everything, nearest, linear");
+  return found->second;
 }
 
 inline lattice::Material material(Work work)
