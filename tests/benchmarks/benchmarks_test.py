@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """What the benchmarks read, derive and show, from numbers made up here."""
 import copy
+import json
 import pathlib
 import sys
 import tempfile
@@ -15,6 +16,7 @@ import machine
 import measure
 import page
 import parts
+import run
 import summary
 
 LOG = """Per MPI rank memory allocation (min/avg/max) = 5.355 | 5.355 | 5.355 Mbytes
@@ -73,7 +75,7 @@ AGREEMENT = {"lammps": 1., "latcon": 1., "difference": 3e-13}
 DOCUMENT = {
     "machine": {"date": "2000-01-01", "commit": "abc", "processor": machine.processor(LSCPU), "memory_bytes": 2**34,
                 "compiler": "c++ 1", "build_type": "Release"},
-    "quick": False, "skipped": {"messages-of-old": "no reason"},
+    "quick": False, "skipped": {"smoke": "no reason"}, "failed": {"mirrors": "all broken"},
     "parts": {
         "kernel": {"rows": parts.kernel_rows(KERNEL, "")},
         "lammps": {"version": "2021", "suffixes": ["none", "omp"], "rows": [
@@ -176,6 +178,21 @@ class Numbers(unittest.TestCase):
             "caches": {"L2": "2 MiB (2 instances)"}, "vectors": "AVX2"})
 
 
+class Run(unittest.TestCase):
+    def test_parts_measured_before_stay_under_the_same_conditions_alone(self):
+        conditions = {"machine": DOCUMENT["machine"], "quick": False}
+        with tempfile.TemporaryDirectory() as folder:
+            path = pathlib.Path(folder) / "benchmarks.json"
+            empty = dict(conditions, parts={}, skipped={}, failed={})
+            self.assertEqual(run.begun(path, conditions, ["kernel"]), empty)
+            path.write_text(json.dumps(DOCUMENT), encoding="utf-8")
+            kept = run.begun(path, conditions, ["kernel", "smoke"])
+            self.assertEqual(list(kept["parts"]), [name for name in DOCUMENT["parts"] if name != "kernel"])
+            self.assertEqual((kept["skipped"], kept["failed"]), ({}, DOCUMENT["failed"]))
+            other = dict(conditions, machine=dict(conditions["machine"], commit="def"))
+            self.assertEqual(run.begun(path, other, ["kernel"]), dict(empty, **other))
+
+
 class CostModel(unittest.TestCase):
     def test_a_step_costs_sites_halo_and_sum(self):
         here = cost_model.Machine(site_seconds=1e-8, latency=1e-6, bandwidth=1e9, reduction=2e-6)
@@ -201,7 +218,7 @@ class Page(unittest.TestCase):
                      "| Runge-Kutta-Chebyshev | 4.00 | 2.50 | force_evaluations 300 | oscillating | 20.25 | 0.023 | - |",
                      "| 100,000 | 2 | 5.00 | 2.00 | 20.00 | 4.0 | 3 4 | 900 | 2500 | 2e-09 |",
                      "| 400,000 | 2 | 5.00 | - | - | - | 3 | 900 | - | - |", "| 65,536 | 10.00 | 6.55 |",
-                     "Not measured: `messages-of-old`, no reason.",
+                     "Not measured: `smoke`, no reason.", "Not measured: `mirrors`, all broken.",
                      "versions of harmonic bonds in it: plain, `-suffix omp`", "Swift 9 (family 26, AVX2), 2 cores, "
                      "L2 2 MiB (2 instances), 16 GiB; c++ 1, Release; commit abc, 2000-01-01."):
             self.assertIn(line, text)

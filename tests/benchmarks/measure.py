@@ -32,7 +32,11 @@ def run(command, environment=None, folder=None):
 
 
 def run_json(command, **keywords):
-    return json.loads(run(command, **keywords))
+    text = run(command, **keywords)
+    try:
+        return json.loads(text)
+    except ValueError as error:
+        raise Failed(f"{command[0]} printed no JSON but {text[:200]!r}") from error
 
 
 def on_ranks(ranks, command):

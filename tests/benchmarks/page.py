@@ -166,9 +166,11 @@ TABLES = {"kernel": kernel_table, "lammps": lammps_table, "sizes": sizes_table, 
 def tables(document):
     """All tables of a document (see run.py), what is asked for first."""
     parts = document["parts"]
-    result = [Table("What is asked for", ["quantity", "measured", "aim", ""], summary.rows(parts))]
-    for name, part in parts.items():
-        result += TABLES[name](part)
+    asked = summary.rows(parts)
+    result = [Table("What is asked for", ["quantity", "measured", "aim", ""], asked)] if asked else []
+    for name, make in TABLES.items():
+        if name in parts:
+            result += make(parts[name])
     return result + model_tables(parts)
 
 
@@ -182,15 +184,20 @@ def machine_text(document):
             f"{machine['commit']}, {machine['date']}{size}.")
 
 
+def not_measured(document):
+    """(part, reason) of those that could not be measured and of those that failed."""
+    return [*document["skipped"].items(), *document["failed"].items()]
+
+
 def text(document):
     """For the terminal."""
-    notes = [f"{name}: not measured, {reason}" for name, reason in document["skipped"].items()]
+    notes = [f"{name}: not measured, {reason}" for name, reason in not_measured(document)]
     return "\n".join([machine_text(document) + "\n", *(table.text() for table in tables(document)), *notes])
 
 
 def markdown(document):
     """The generated part of docs/performance.md."""
-    notes = [f"Not measured: `{name}`, {reason}.\n" for name, reason in document["skipped"].items()]
+    notes = [f"Not measured: `{name}`, {reason}.\n" for name, reason in not_measured(document)]
     intro = ("Made by `tests/benchmarks/run --write-docs`; do not edit. Each time is the shortest of several, taken in turns "
              "with what it is compared with; the spread is the median over the shortest, less one.\n")
     return "\n".join([intro, machine_text(document) + "\n", *(table.markdown() for table in tables(document)), *notes])

@@ -22,20 +22,34 @@ def arguments():
     parser = argparse.ArgumentParser(prog="tests/benchmarks/run", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--quick", action="store_true", help="small versions: whether all of it runs, in a minute")
-    parser.add_argument("--only", nargs="+", choices=PARTS, metavar="PART", help="of " + " ".join(PARTS))
+    parser.add_argument("--only", nargs="+", choices=PARTS, metavar="PART", help="of " + " ".join(PARTS) +
+                        "; others stay as measured before by the same commit on the same day")
     parser.add_argument("--output-dir", type=pathlib.Path, default=ROOT / "output" / "benchmarks")
     parser.add_argument("--build", type=pathlib.Path, default=ROOT / "build" / "release", help="folder of the programs")
     parser.add_argument("--from-json", type=pathlib.Path, metavar="FILE", help="measure nothing, show these numbers")
     parser.add_argument("--write-docs", action="store_true", help="write docs/performance.md")
-    return parser.parse_args()
+    options = parser.parse_args()
+    if options.write_docs and options.quick:
+        parser.error("--write-docs: small versions say nothing")
+    return options
+
+
+def begun(path, conditions, names):
+    """What was measured before under the same conditions, without the parts to be measured."""
+    document = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
+    if any(document.get(key) != value for key, value in conditions.items()):
+        document = conditions
+    return {**conditions, **{kind: {name: value for name, value in document.get(kind, {}).items() if name not in names}
+                             for kind in ("parts", "skipped", "failed")}}
 
 
 def measured(options):
-    """Measures the parts one after another; what was measured is on disk after each."""
+    """Measures the parts one after another, whatever becomes of one; what was measured is on disk after each."""
     output = options.output_dir.resolve()
     output.mkdir(parents=True, exist_ok=True)
     plan = Plan(options.build.resolve(), output, options.quick)
-    document = {"machine": machine.facts(plan.build), "quick": options.quick, "parts": {}, "skipped": {}}
+    path = output / "benchmarks.json"
+    document = begun(path, {"machine": machine.facts(plan.build), "quick": options.quick}, options.only or PARTS)
     for name in options.only or PARTS:
         start = time.monotonic()
         print(f"{name} ...", end="", file=sys.stderr, flush=True)
@@ -43,8 +57,10 @@ def measured(options):
             document["parts"][name] = PARTS[name](plan)
         except Skipped as reason:
             document["skipped"][name] = str(reason)
+        except Failed as error:
+            document["failed"][name] = str(error)
         print(f" {time.monotonic() - start:.0f} s", file=sys.stderr)
-        (output / "benchmarks.json").write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
+        path.write_text(json.dumps(document, indent=1) + "\n", encoding="utf-8")
     return document
 
 
@@ -52,13 +68,13 @@ def main():
     options = arguments()
     try:
         document = json.loads(options.from_json.read_text(encoding="utf-8")) if options.from_json else measured(options)
-    except (Failed, OSError) as error:
+    except (OSError, ValueError) as error:
         print(f"tests/benchmarks/run: {error}", file=sys.stderr)
         return 1
     print(page.text(document))
     if options.write_docs:
         page.write_docs(ROOT / "docs" / "performance.md", document)
-    return 0
+    return 1 if document["failed"] else 0
 
 
 if __name__ == "__main__":

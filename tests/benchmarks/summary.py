@@ -95,8 +95,8 @@ ROWS = {"kernel": kernel_rows, "lammps": lammps_rows, "sizes": sizes_rows, "rank
 def rows(parts):
     """Rows (quantity, measured, aim, "" or "missed") of whatever was measured."""
     result = []
-    for name, part in parts.items():
-        for quantity, value, aim, sense in ROWS.get(name, lambda _: [])(part):
+    for name in (name for name in ROWS if name in parts):
+        for quantity, value, aim, sense in ROWS[name](parts[name]):
             reached = value <= aim if sense == "most" else value >= aim
             sign = "<=" if sense == "most" else ">="
             result.append([quantity, f"{value:.3g}", f"{sign} {aim:g}", "" if reached else "missed"])
