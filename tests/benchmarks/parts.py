@@ -179,8 +179,9 @@ def fig1(plan):
     """The crack of Fig. 1 from the command line: alone, with the claims that come before it, and with its report."""
     folder = plan.folder("fig1")
     case = CASES / ("quick.prm" if plan.quick else "fig1.prm")
-    words = {"crack alone": "--skip-verification --no-report", "with the claims": "--no-report",
-             **({} if plan.quick else {"with the claims and the report": ""})}
+    words = {"crack alone": "--skip-verification --no-report"}
+    if not plan.quick:
+        words.update({"with the claims": "--no-report", "with the claims and the report": ""})
     outputs = {name: folder / str(i) for i, name in enumerate(words)}
     fracture = f"'{plan.program('latcon')}' fracture '{case}' --quiet --threads 2"
     commands = {name: f"{fracture} --output-dir '{outputs[name]}' {word}" for name, word in words.items()}
@@ -226,7 +227,8 @@ def fem(plan):
     if not script.exists():
         raise Skipped("there is no fem_against_dolfinx.py")
     path = plan.folder("fem") / "fem.json"
-    run(["/usr/bin/python3", script, "--output", path, *(["--quick"] if plan.quick else [])])
+    run(["/usr/bin/python3", script, "--latcon", plan.program("latcon"), "--output", path,
+         *(["--quick"] if plan.quick else [])])
     return json.loads(path.read_text(encoding="utf-8"))
 
 
