@@ -90,10 +90,10 @@ DOCUMENT = {
         "fig1": {"case": "fig1.prm", "rows": [
             {"command": "crack alone", "seconds": [16., 15.5], "phases": {"fracture": 10.}}]},
         "integrator": {"case": "fig1.prm", "rows": [
-            {"integrator": name, "seconds": [seconds], "facts": {"force_evaluations": count},
-             "crack": {"pattern": "oscillating", "speed_lagrangian": {"value": 20.25, "uncertainty": 1.},
-                       "wavelength": 0.023, "amplitude": None}}
-            for name, seconds, count in (("velocity Verlet", 10., 900), ("Runge-Kutta-Chebyshev", 4., 300))]},
+            {"integrator": name, "seconds": [seconds], "time_step": step, "stages": stages,
+             "crack": {"pattern": "oscillating", "end_time": 2e-3, "speed_lagrangian": 20.25,
+                       "speed_lagrangian_uncertainty": 1., "wavelength": 0.023, "wavelength_uncertainty": 2e-4}}
+            for name, seconds, step, stages in (("velocity-verlet", 10., 1e-7, 1), ("runge-kutta-chebyshev", 4., 1e-6, 3))]},
         "fem": {"problems": [
             {"unknowns": 100_000, "degree": 2, "ratio": 4., "energy_difference": 2e-9,
              "latcon": dict(FEM, krylov_iterations=[3, 4]), "latcon_2_ranks": {"seconds": 2.5},
@@ -140,6 +140,13 @@ class Numbers(unittest.TestCase):
         broken["benchmarks"][1].update(error_occurred=True, error_message="no memory")
         with self.assertRaisesRegex(measure.Failed, "no memory"):
             parts.kernel_rows(broken, "")
+
+    def test_time_stepping_is_read_from_the_plan_of_a_run(self):
+        text = "set x = 1\n# lattice: 3 sites\n# time step: 1.28e-07 s, 78125 steps at most{}\n# memory: about 1 MB\n"
+        self.assertEqual(parts.time_stepping(text.format("")), {"time_step": 1.28e-7, "stages": 1})
+        self.assertEqual(parts.time_stepping(text.format(" of 12 stages each")), {"time_step": 1.28e-7, "stages": 12})
+        with self.assertRaises(measure.Failed):
+            parts.time_stepping("# memory: about 1 MB\n")
 
     def test_variants_take_turns(self):
         calls = []
@@ -216,7 +223,7 @@ class Page(unittest.TestCase):
                      "| 100,000 | 7.0 | 3.5 | 2.00 | 5 % | 5 % | 67 |", "200 bytes a site",
                      "| `latcon lattice`, a.prm | 4.00 | 1.60 | 2.00 | 5 % |",
                      "| crack alone | 15.50 | 2 % | fracture 10.00 |",
-                     "| Runge-Kutta-Chebyshev | 4.00 | 2.50 | force_evaluations 300 | oscillating | 20.25 | 0.023 | - |",
+                     "| runge-kutta-chebyshev | 4.00 | 2.50 | 1e-06 | 3 | 6,000 | oscillating | 20.25 ± 1 | 0.023 ± 0.0002 | - |",
                      "| 100,000 | 2 | 5.00 | 1.00 + 1.50 + 2.00 | 2.00 | 20.00 | 4.0 | 3 4 | 900 | 2500 | 2e-09 |",
                      "| 400,000 | 2 | 5.00 | 1.00 + 1.50 + 2.00 | - | - | - | 3 | 900 | - | - |", "| 65,536 | 10.00 | 6.55 |",
                      "Not measured: `smoke`, no reason.", "Not measured: `mirrors`, all broken.",

@@ -105,11 +105,12 @@ def integrator_table(part):
     rows = []
     for row in part["rows"]:
         crack = row["crack"]
-        counted = ", ".join(f"{name} {value:g}" for name, value in row["facts"].items()) or "-"
+        evaluations = round(crack["end_time"] / row["time_step"] * row["stages"])
         rows.append([row["integrator"], seconds_text(best(row["seconds"])), f"{first / best(row['seconds']):.2f}",
-                     counted, str(crack["pattern"]),
-                     *(summary.measured_text(crack[name]) for name in ("speed_lagrangian", "wavelength", "amplitude"))])
-    header = ["integrator", "[s]", "gain", "counted", "pattern", "speed [m/s]", "wavelength [m]", "amplitude [m]"]
+                     f"{row['time_step']:.3g}", str(row["stages"]), number(evaluations), str(crack["pattern"]),
+                     *(summary.measured_text(crack, name) for name in ("speed_lagrangian", "wavelength", "amplitude"))])
+    header = ["integrator", "[s]", "gain", "time step [s]", "stages", "evaluations", "pattern", "speed [m/s]",
+              "wavelength [m]", "amplitude [m]"]
     return [Table(f"Integrators, {part['case']}, one thread", header, rows)]
 
 

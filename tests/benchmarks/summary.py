@@ -42,11 +42,9 @@ def by_command(part):
     return result
 
 
-def measured_text(value):
-    """A quantity of crack.json: a number, one with its uncertainty, or none."""
-    if isinstance(value, dict):
-        value = value.get("value")
-    return "-" if value is None else f"{value:.4g}"
+def measured_text(crack, name):
+    """A quantity of crack.json with its uncertainty, if it was measured."""
+    return "-" if crack.get(name) is None else f"{crack[name]:.4g} ± {crack[name + '_uncertainty']:.1g}"
 
 
 def kernel_rows(part):
