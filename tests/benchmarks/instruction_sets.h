@@ -1,28 +1,50 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
-/// Instruction sets that the compiled loops of the lattice have copies for.
+#include <hwy/targets.h>
+
+#include "lattice/row_kernels.h"
+
+/// Instruction sets that the hot loops of the lattice have copies for.
 namespace benchmarks
 {
 
-/// Those that the kernel can be held to on this machine; none: it cannot.
-inline std::vector<std::string> instruction_sets()
+/// Has the loops use an instruction set from here on. @return whether they have a copy for it that this machine can run
+inline bool hold_to(std::int64_t target)
 {
-  return {};
+  hwy::SetSupportedTargetsForTest(target);
+  // Without a copy they fall back to another.
+  return hwy::TargetName(target) == std::string(lattice::kernels::instruction_set());
 }
 
-/// Has the kernel use one of instruction_sets() from now on. @return whether there is one of that name
-inline bool hold_to(const std::string &)
+/// Has the loops use all that there is.
+inline void release()
 {
+  hwy::SetSupportedTargetsForTest(0);
+}
+
+/// Those that the loops can be held to on this machine, best first, as numbers of google-highway.
+inline std::vector<std::int64_t> instruction_sets()
+{
+  release();
+  std::vector<std::int64_t> found;
+  for (const std::int64_t target : hwy::SupportedAndGeneratedTargets())
+    if (hold_to(target))
+      found.push_back(target);
+  release();
+  return found;
+}
+
+/// The same by a name, AVX3 or AVX2 for instance. @return whether there is one of that name
+inline bool hold_to(const std::string &name)
+{
+  for (const std::int64_t target : instruction_sets())
+    if (name == hwy::TargetName(target))
+      return hold_to(target);
   return false;
-}
-
-/// The one in use.
-inline std::string instruction_set()
-{
-  return __builtin_cpu_supports("avx512f") ? "x86-64-v4" : __builtin_cpu_supports("avx2") ? "x86-64-v3" : "x86-64";
 }
 
 } // namespace benchmarks

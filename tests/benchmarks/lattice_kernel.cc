@@ -64,8 +64,8 @@ int main(int argc, char **argv)
     const std::string argument = argv[i];
     if (argument == "--targets")
     {
-      for (const std::string &name : benchmarks::instruction_sets())
-        std::cout << name << "\n";
+      for (const std::int64_t set : benchmarks::instruction_sets())
+        std::cout << hwy::TargetName(set) << "\n";
       return 0;
     }
     if (argument.rfind(target, 0) != 0)
@@ -77,7 +77,7 @@ int main(int argc, char **argv)
     }
   }
   int n_arguments = static_cast<int>(arguments.size());
-  benchmark::AddCustomContext("instruction_set", benchmarks::instruction_set());
+  benchmark::AddCustomContext("instruction_set", lattice::kernels::instruction_set());
   benchmark::Initialize(&n_arguments, arguments.data());
   if (benchmark::ReportUnrecognizedArguments(n_arguments, arguments.data()))
     return 2;
