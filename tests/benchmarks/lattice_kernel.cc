@@ -5,7 +5,6 @@
 #include <benchmark/benchmark.h>
 #include <omp.h>
 
-#include "tests/benchmarks/instruction_sets.h"
 #include "tests/benchmarks/sheets.h"
 #include "tests/lattice/reference_forces.h"
 
@@ -64,17 +63,22 @@ int main(int argc, char **argv)
     const std::string argument = argv[i];
     if (argument == "--targets")
     {
-      for (const std::int64_t set : benchmarks::instruction_sets())
-        std::cout << hwy::TargetName(set) << "\n";
+      for (const std::string &set : lattice::kernels::instruction_sets())
+        std::cout << set << "\n";
       return 0;
     }
     if (argument.rfind(target, 0) != 0)
       arguments.push_back(argv[i]);
-    else if (!benchmarks::hold_to(argument.substr(target.size())))
-    {
-      std::cerr << "lattice_kernel: no such instruction set here: " << argument << "; see --targets\n";
-      return 2;
-    }
+    else
+      try
+      {
+        lattice::kernels::use_instruction_set(argument.substr(target.size()));
+      }
+      catch (const std::invalid_argument &error)
+      {
+        std::cerr << "lattice_kernel: " << error.what() << "; see --targets\n";
+        return 2;
+      }
   }
   int n_arguments = static_cast<int>(arguments.size());
   benchmark::AddCustomContext("instruction_set", lattice::kernels::instruction_set());
