@@ -100,16 +100,16 @@ LATCON_PER_INSTRUCTION_SET void gather_bonds(std::size_t n, const BondsOfKinds s
 
 } // namespace
 
-Forces::Forces(const TriangularLattice &lattice, const Material &material)
-  : lattice_(lattice), rows_repeat_(lattice.is_occupied(lattice.index(0, 0) - lattice.stride())),
-    columns_repeat_(lattice.is_occupied(lattice.index(0, 0) - 1)), fx_(lattice.n_places(), 0.),
-    fy_(lattice.n_places(), 0.), row_viscous_power_(lattice.rows(), 0.), row_events_(lattice.rows(), 0.)
+Forces::Forces(const RowBand &band, const Material &material)
+  : band_(band), lattice_(band.lattice()), rows_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - lattice_.stride())),
+    columns_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - 1)), fx_(lattice_.n_places()), fy_(lattice_.n_places()),
+    row_viscous_power_(lattice_.rows(), 0.), row_events_(lattice_.rows(), 0.)
 {
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
   {
     const Shell *shell = material.shell(kind);
-    const double rest_length = lattice.rest_length(kind);
-    const double section = shell != nullptr ? cross_section(*shell, lattice) : 0.;
+    const double rest_length = lattice_.rest_length(kind);
+    const double section = shell != nullptr ? cross_section(*shell, lattice_) : 0.;
     const double viscosity = shell != nullptr ? shell->viscosity : 0.;
     shells_[kind] = shell;
     kinds_[kind] = {rest_length, section, section * viscosity / rest_length};
@@ -129,17 +129,23 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy)
   bond_rows_.resize(threads ? static_cast<std::size_t>(omp_get_max_threads()) : 1, BondRows(lattice_.stride()));
 #pragma omp parallel if (threads)
   {
-    const auto rows = static_cast<std::ptrdiff_t>(lattice_.rows());
+    const auto first = static_cast<std::ptrdiff_t>(band_.rows().begin);
+    const auto rows = static_cast<std::ptrdiff_t>(band_.rows().end) - first;
     const std::ptrdiff_t n = omp_get_num_threads(), i = omp_get_thread_num();
-    evaluate_band({state, vx, vy}, rows * i / n, rows * (i + 1) / n, bond_rows_[static_cast<std::size_t>(i)]);
+    evaluate_rows({state, vx, vy}, first + rows * i / n, first + rows * (i + 1) / n,
+                  bond_rows_[static_cast<std::size_t>(i)]);
   }
-  // Summed row after row, whatever thread did which.
-  viscous_power_ = 0.;
-  for (const double power : row_viscous_power_)
-    viscous_power_ += power;
 }
 
-void Forces::evaluate_band(const Motion &motion, std::ptrdiff_t begin, std::ptrdiff_t end, BondRows &bonds)
+double Forces::viscous_power() const
+{
+  double sum = 0.;
+  for (const double power : row_viscous_power_)
+    sum += power;
+  return sum;
+}
+
+void Forces::evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrdiff_t end, BondRows &bonds)
 {
   if (begin == end)
     return;
@@ -237,10 +243,12 @@ void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, s
   const Motion motion{state, vx, vy};
   const std::size_t far = place + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(place)));
   constexpr double present = 1.; // it no longer is by its limit
-  viscous_power_ -= single_bond(motion, place, kind, present).viscous_power;
+  if (band_.owns(place))
+    row_viscous_power_[lattice_.row_of(place)] -= single_bond(motion, place, kind, present).viscous_power;
   // Subtracting from the totals would leave round-off that depends on the order of breaking.
-  sum_site(motion, place);
-  sum_site(motion, lattice_.home(far));
+  for (const std::size_t end : {place, lattice_.home(far)})
+    if (band_.owns(end))
+      sum_site(motion, end);
 }
 
 Forces::BondForce Forces::single_bond(const Motion &motion, std::size_t place, std::size_t kind,

@@ -1,0 +1,49 @@
+#pragma once
+
+#include <cstdlib>
+#include <new>
+#include <type_traits>
+#include <utility>
+
+namespace lattice
+{
+
+/// Allocator of zeros that take memory only where they are touched: a large vector made as `Vector(n)` is zero pages,
+/// which the operating system replaces by memory at the first write. So a process may hold a field over a sheet of
+/// which it moves a few rows, at the places it has in the whole.
+///
+/// Elements that are made without a value are what the memory holds, zero in a vector that was made with its size. They
+/// are not zero where a vector shrinks and grows again.
+template <class T>
+struct ZeroPages
+{
+  static_assert(std::is_arithmetic_v<T>);
+  using value_type = T;
+
+  ZeroPages() = default;
+  template <class U>
+  ZeroPages(const ZeroPages<U> &)
+  {
+  }
+
+  T *allocate(std::size_t n)
+  {
+    void *const memory = std::calloc(n, sizeof(T));
+    if (memory == nullptr)
+      throw std::bad_alloc();
+    return static_cast<T *>(memory);
+  }
+  void deallocate(T *memory, std::size_t) { std::free(memory); }
+
+  void construct(T *) {}
+  template <class... Values>
+  void construct(T *element, Values &&...values)
+  {
+    ::new (static_cast<void *>(element)) T(std::forward<Values>(values)...);
+  }
+
+  friend bool operator==(const ZeroPages &, const ZeroPages &) { return true; }
+  friend bool operator!=(const ZeroPages &, const ZeroPages &) { return false; }
+};
+
+} // namespace lattice
