@@ -5,10 +5,14 @@
 /// @file
 /// Bond laws. A law is energy, force and stiffness as functions of the bond stretch, and nothing else.
 ///
+/// Formulas of forces are in bond_force.inc, since the hot loop needs them for vectors as well.
+///
 /// A bond of rest length l and cross-section A0 stores A0 l psi(lam), lam = |x_j - x_i| / l > 0 being its stretch, and
 /// pulls with the axial force A0 psi'(lam), tension positive. A law gives psi, psi' and psi'' in Pa.
 namespace lattice
 {
+
+#include "lattice/bond_force.inc"
 
 /// Uniaxial incompressible Mooney-Rivlin rod (theory.md, eqs. L.2 and L.3), with a = 2 C1 and b = 2 C2 in Pa:
 ///   psi  = a (lam^2 / 2 + 1 / lam - 3/2) + b (lam + 1 / (2 lam^2) - 3/2)
@@ -29,11 +33,7 @@ struct MooneyRivlinBond
   double force(double stretch) const { return force(stretch, 1. / stretch); }
 
   /// The same for a caller that has 1 / lam at hand; the hot loop does.
-  double force(double stretch, double inverse) const
-  {
-    const double inverse_square = inverse * inverse;
-    return a * (stretch - inverse_square) + b * (1. - inverse_square * inverse);
-  }
+  double force(double stretch, double inverse) const { return mooney_rivlin_force(a, b, stretch, inverse); }
 
   /// psi''(lam) [Pa], axial tangent stiffness per reference cross-section.
   double stiffness(double stretch) const
@@ -53,7 +53,7 @@ struct LinearBond
   double energy(double stretch) const { return 0.5 * modulus * (stretch - 1.) * (stretch - 1.); }
 
   /// psi'(lam) [Pa].
-  double force(double stretch) const { return modulus * (stretch - 1.); }
+  double force(double stretch) const { return linear_force(modulus, stretch); }
 
   /// The same; the linear law has no use for 1 / lam.
   double force(double stretch, double /*inverse*/) const { return force(stretch); }

@@ -61,7 +61,7 @@ void cut_out(State &state, const TriangularLattice &lattice, const Cutout &cutou
                 {
                   if (state.removed[near] != 0 || state.removed[far] != 0 ||
                       shape.crosses(lattice.reference(near), lattice.bond_vector(kind)))
-                    state.breaking_stretch[kind][near] = 0.;
+                    state.bonds.remove(near, kind);
                 });
 }
 

@@ -35,14 +35,17 @@ double kinetic_energy(const State &state, const RowBand &band)
   return band.sum(of_rows);
 }
 
-double boundary_power(const State &state, const TriangularLattice &lattice, const Forces &forces, std::size_t row)
+double boundary_power(const State &state, const TriangularLattice &lattice, const Forces &forces, const Field &vx,
+                      const Field &vy, std::size_t row)
 {
   double power = 0.;
   for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
   {
     const std::size_t place = lattice.index(row, column);
-    if (state.held[place] != 0)
-      power -= forces.fx()[place] * state.vx[place] + forces.fy()[place] * state.vy[place];
+    if (state.held[place] == 0)
+      continue;
+    const Eigen::Vector2d force = forces.on_site(state, vx, vy, place);
+    power -= force.x() * state.vx[place] + force.y() * state.vy[place];
   }
   return power;
 }

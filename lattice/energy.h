@@ -16,7 +16,9 @@ double kinetic_energy(const State &state, const RowBand &band);
 
 /// Power the held sites of a row put into the sheet, -sum f . v over them, f being the force of the bonds on a site
 /// [W/m].
-double boundary_power(const State &state, const TriangularLattice &lattice, const Forces &forces, std::size_t row);
+/// @param vx,vy velocities that the dashpots see [m/s]
+double boundary_power(const State &state, const TriangularLattice &lattice, const Forces &forces, const Field &vx,
+                      const Field &vy, std::size_t row);
 
 /// Where the energy of a sheet is and where it went, all per sheet thickness [J/m] (theory.md, eq. L.11).
 struct EnergyBalance

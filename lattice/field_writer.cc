@@ -62,10 +62,8 @@ void set_tensor(vtkDoubleArray &values, vtkIdType id, const Eigen::Matrix2d &t)
 
 } // namespace
 
-FieldWriter::FieldWriter(const TriangularLattice &lattice, const Material &material, std::filesystem::path directory,
-                         double initial_breaking_stretch)
-  : lattice_(lattice), material_(material), directory_(std::move(directory)),
-    initial_breaking_stretch_(initial_breaking_stretch)
+FieldWriter::FieldWriter(const TriangularLattice &lattice, const Material &material, std::filesystem::path directory)
+  : lattice_(lattice), material_(material), directory_(std::move(directory))
 {
 }
 
@@ -152,7 +150,7 @@ void FieldWriter::add_frame(const State &state)
                   lines->InsertNextCell(2, ends.data());
                   bond_stretch->InsertNextValue(stretch(state, lattice_, near, kind));
                   shell->InsertNextValue(TriangularLattice::is_nearest(kind) ? 1 : 2);
-                  toughened->InsertNextValue(state.breaking_stretch[kind][near] > initial_breaking_stretch_ ? 1 : 0);
+                  toughened->InsertNextValue(state.bonds.toughened(near, kind) ? 1 : 0);
                 });
 
   vtkNew<vtkPolyData> sheet;

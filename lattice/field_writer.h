@@ -22,9 +22,7 @@ namespace lattice
 class FieldWriter
 {
 public:
-  /// @param initial_breaking_stretch lam_f of a bond that has not been toughened [-]
-  FieldWriter(const TriangularLattice &lattice, const Material &material, std::filesystem::path directory,
-              double initial_breaking_stretch);
+  FieldWriter(const TriangularLattice &lattice, const Material &material, std::filesystem::path directory);
 
   /// Adds the state as the next frame. @throws std::filesystem::filesystem_error if a file cannot be written
   void add_frame(const State &state);
@@ -35,7 +33,6 @@ private:
   const TriangularLattice &lattice_;
   const Material &material_;
   std::filesystem::path directory_;
-  double initial_breaking_stretch_;
   struct Frame
   {
     double time;

@@ -1,94 +1,89 @@
 #pragma once
 
 #include <array>
+#include <functional>
 #include <vector>
 
+#include "lattice/row_kernels.h"
 #include "lattice/state.h"
 
 namespace lattice
 {
 
-/// Forces on all sites from all bonds: the hot loop, and the one place to make faster.
+/// Forces on all sites from all bonds. The loops over a row are in row_kernels.h.
 ///
 /// A bond pulls with A0 psi'(lam) + A0 eta (v_rel . n) / l along its current direction n (theory.md, eq. L.3).
 /// Every thread takes some of the rows from its lower to its upper end. It computes the bonds that start in a row,
 /// keeps those of the last three rows, and lets the sites of the row gather their twelve bonds while these are in
-/// cache. Bonds that reach into a band from below are computed once more there. The order of a gather is symmetric
-/// under both mirrors of the lattice, so the bits of a result depend neither on the number of threads nor on which side
-/// of a symmetry line a site stands.
+/// cache. Bonds that reach into these from below are computed once more there. The order of a gather is symmetric under
+/// both mirrors of the lattice, so the bits of a result depend neither on the number of threads nor on which side of a
+/// symmetry line a site stands.
 class Forces
 {
 public:
   /// @param band rows whose sites are to get their forces, of the whole sheet or of the share of a rank
   Forces(const RowBand &band, const Material &material);
 
-  /// Bonds below this stretch, still unbroken at their first breaking stretch, count as events too, per kind.
-  /// For toughening on retraction; 0 (no such event) by default. `initial_breaking_stretch` tells toughened bonds
-  /// apart.
-  void watch_retraction(const std::array<double, n_bond_kinds> &stretch, double initial_breaking_stretch);
+  /// Bonds below this stretch that are not toughened count as events too, per kind: all positive, or all 0 (no such
+  /// event), which is the default. For toughening on retraction.
+  void watch_retraction(const std::array<double, n_bond_kinds> &stretch) { constants_.retraction_stretch = stretch; }
+
+  /// What an integrator does with each row of the band during an evaluation, while it is in cache: once, in any order
+  /// of rows, by several threads.
+  struct RowWork
+  {
+    /// Before any bond of the row is looked at; may give the row its positions and velocities to be evaluated. Not for
+    /// sheets that are periodic, whose images must be there too. May be empty.
+    std::function<void(std::size_t row)> before;
+    /// Takes the forces on the sites of the row [N/m]; may change all but those positions and velocities.
+    std::function<void(std::size_t row, const double *fx, const double *fy)> after;
+  };
 
   /// Computes the force on every site of the band at positions state.x, y and the given velocities [m/s], those of
   /// images included. Forces at held sites are those the bonds exert on them.
+  void evaluate(const State &state, const Field &vx, const Field &vy, const RowWork &work);
+  /// The same, into fx() and fy().
   void evaluate(const State &state, const Field &vx, const Field &vy);
 
   const Field &fx() const { return fx_; } ///< force per sheet thickness [N/m]
   const Field &fy() const { return fy_; }
 
+  /// Force on one site [N/m] at the given velocities, by the operations of an evaluation of all.
+  Eigen::Vector2d on_site(const State &state, const Field &vx, const Field &vy, std::size_t place) const;
+
   /// Power the dashpots dissipated at the last evaluation, sum of A0 eta (v_rel . n)^2 / l [W/m] over the bonds that
-  /// start in each row, row by row.
-  const std::vector<double> &row_viscous_power() const { return row_viscous_power_; }
-  /// The same of the band.
+  /// start in a row of the band.
+  double viscous_power(std::size_t row) const { return row_viscous_power_[row]; }
+  /// The same over all its rows.
   double viscous_power() const;
 
   /// Whether a row holds bonds that were stretched past their limit (or retracted) at the last evaluation.
-  bool row_has_events(std::size_t row) const { return row_events_[row] > 0.; }
+  bool row_has_events(std::size_t row) const { return row_events_[row] != 0; }
 
-  /// Takes a bond that has just broken out of the last evaluation, as if it had been absent there: the forces on those
-  /// of its two ends that are in the band are summed anew, over the bonds that they have by now.
-  /// @param state as at that evaluation, but for the bond's breaking stretch, which is 0
+  /// Takes a bond that has just broken out of viscous_power(), if it is there.
+  /// @param state as at the last evaluation
   /// @param vx,vy velocities of that evaluation
   void remove_bond(const State &state, const Field &vx, const Field &vy, std::size_t place, std::size_t kind);
 
-  /// What the bonds of one kind have in common.
-  struct Bond
-  {
-    double rest_length;             // l [m]
-    double cross_section;           // A0 / h [m]
-    double damping;                 // A0 eta / (h l)
-    double retraction_stretch = 0.; // 0: not watched
-  };
-
-  struct BondForce
-  {
-    double x, y; // on the near end, the opposite on the far end
-    double stretch;
-    double viscous_power;
-  };
-
-  /// Sums over the bonds that start in a row.
-  struct RowSums
-  {
-    double viscous_power = 0.;
-    double events = 0.; // a count; SSE2 has no 64-bit integer comparisons to vectorise with
-  };
-
 private:
-  /// Forces on the near ends of the bonds that start in the last three rows, which is as far down as neighbours are.
+  /// Forces on the near ends of the bonds that start in the last rows: in as many as the neighbours of a site through
+  /// bonds of that kind are down, and in its own.
   class BondRows
   {
   public:
-    explicit BondRows(std::size_t stride) : stride_(stride), values_(n_rows * n_bond_kinds * 2 * stride, 0.) {}
+    explicit BondRows(std::size_t stride) : stride_(stride), values_(n_rows * 2 * stride, 0.) {}
 
-    /// The x (0) or y (1) component for the bonds of a kind that start in a row >= -2: column 0, with two places of
-    /// margin on either side.
+    /// The x (0) or y (1) component for the bonds of a kind that start in a row >= -2: column 0, with
+    /// TriangularLattice::row_alignment places before it.
     double *at(std::ptrdiff_t row, std::size_t kind, std::size_t component)
     {
-      const std::size_t slot = static_cast<std::size_t>(row + n_rows) % n_rows;
-      return &values_[((slot * n_bond_kinds + kind) * 2 + component) * stride_ + 2];
+      const std::size_t slot = first[kind] + static_cast<std::size_t>(row + 6) % (first[kind + 1] - first[kind]);
+      return &values_[(2 * slot + component) * stride_ + TriangularLattice::row_alignment];
     }
 
   private:
-    static constexpr std::ptrdiff_t n_rows = 3;
+    static constexpr std::array<std::size_t, n_bond_kinds + 1> first{{0, 1, 3, 5, 7, 9, 12}};
+    static constexpr std::size_t n_rows = first.back();
     std::size_t stride_;
     Field values_;
   };
@@ -100,25 +95,31 @@ private:
     const Field &vx, &vy;
   };
 
-  void evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrdiff_t end, BondRows &bonds);
+  /// What a thread computes with.
+  struct Scratch
+  {
+    explicit Scratch(std::size_t stride) : bonds(stride), fx(stride, 0.), fy(stride, 0.) {}
+    BondRows bonds;
+    Field fx, fy; // forces on the sites of a row
+  };
+
+  void evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
+                     const RowWork &work);
   void bonds_from_below(const Motion &motion, std::ptrdiff_t row, BondRows &bonds) const;
-  RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, BondRows &bonds) const;
-  void gather_row(std::ptrdiff_t row, BondRows &bonds);
-  BondForce single_bond(const Motion &motion, std::size_t place, std::size_t kind, double breaking_stretch) const;
-  void sum_site(const Motion &motion, std::size_t place);
+  kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, BondRows &bonds) const;
+  void gather_row(std::ptrdiff_t row, Scratch &scratch) const;
+  kernels::BondForce single_bond(const Motion &motion, std::size_t place, std::size_t kind) const;
 
   RowBand band_;
   const TriangularLattice &lattice_;
-  std::array<const Shell *, n_bond_kinds> shells_; // nullptr: no such bonds
-  std::array<Bond, n_bond_kinds> kinds_;
-  double initial_breaking_stretch_ = 0.;
+  kernels::SheetConstants constants_;
   bool rows_repeat_;    // periodic across the rows
   bool columns_repeat_; // periodic along them
 
-  std::vector<BondRows> bond_rows_; // one a thread
+  std::vector<Scratch> scratch_; // one a thread
   Field fx_, fy_;
-  std::vector<double> row_viscous_power_;
-  std::vector<double> row_events_;
+  Field row_viscous_power_;
+  std::vector<std::uint8_t> row_events_;
 };
 
 } // namespace lattice

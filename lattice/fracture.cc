@@ -37,9 +37,13 @@ Fracture::Fracture(const RowBand &band, const Material &material, double breakin
   }
 }
 
-void Fracture::watch(Forces &forces) const
+void Fracture::watch(State &state, Forces &forces) const
 {
-  forces.watch_retraction(retraction_stretch_, breaking_stretch_);
+  if (const auto *behind = std::get_if<BehindTipToughening>(&toughening_))
+    state.toughened_stretch = breaking_stretch_ * behind->factor;
+  if (const auto *retraction = std::get_if<RetractionToughening>(&toughening_))
+    state.toughened_stretch = breaking_stretch_ * retraction->factor;
+  forces.watch_retraction(retraction_stretch_);
 }
 
 double Fracture::bond_energy(const State &state, std::size_t place, std::size_t kind) const
@@ -74,7 +78,7 @@ std::vector<BrokenBond> Fracture::lose_bonds(State &state, const std::vector<Los
     const std::size_t far =
       bond.place + static_cast<std::size_t>(lattice_.shift(bond.kind, lattice_.row_of(bond.place)));
     const Eigen::Vector2d midpoint = lattice_.reference(bond.place) + 0.5 * lattice_.bond_vector(bond.kind);
-    state.breaking_stretch[bond.kind][bond.place] = 0.;
+    state.bonds.remove(bond.place, bond.kind);
     ++state.lost_bonds[bond.place];
     ++state.lost_bonds[far];
     state.held[bond.place] = bond.near_held;
@@ -129,14 +133,13 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
       const std::size_t place = lattice_.index(row, column);
       for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
       {
-        double &limit = state.breaking_stretch[kind][place];
-        if (!(limit > 0.))
+        if (!state.bonds.present(place, kind))
           continue;
         const double current = stretch(state, lattice_, place, kind);
-        if (current > limit)
+        if (current > limit(state, place, kind))
           own.push_back(loss(state, place, kind));
-        else if (retraction != nullptr && limit == breaking_stretch_ && current < retraction_stretch_[kind])
-          limit *= retraction->factor;
+        else if (retraction != nullptr && current < retraction_stretch_[kind])
+          state.bonds.toughen(place, kind);
       }
     }
   }
@@ -194,10 +197,9 @@ void Fracture::toughen_behind_tip(State &state)
   for_each_bond(state, lattice_, band_.rows(),
                 [&](std::size_t place, std::size_t kind, std::size_t)
                 {
-                  double &limit = state.breaking_stretch[kind][place];
                   const double midpoint_x = lattice_.reference(place).x() + 0.5 * lattice_.bond_vector(kind).x();
-                  if (limit == breaking_stretch_ && midpoint_x < boundary)
-                    limit *= behind->factor;
+                  if (midpoint_x < boundary)
+                    state.bonds.toughen(place, kind);
                 });
 }
 

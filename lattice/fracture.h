@@ -59,8 +59,8 @@ public:
   Fracture(const RowBand &band, const Material &material, double breaking_stretch, Toughening toughening,
            const Eigen::Matrix2d &deformation);
 
-  /// Has `forces` report the bonds this object wants to hear of.
-  void watch(Forces &forces) const;
+  /// Tells `state` what toughened bonds stand, and has `forces` report the bonds this object wants to hear of.
+  void watch(State &state, Forces &forces) const;
 
   /// Cuts sites and their bonds out of the sheet. Collective.
   /// @return elastic energy of the bonds removed, per sheet thickness [J/m]

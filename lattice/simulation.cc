@@ -12,7 +12,7 @@ Simulation::Simulation(const RowBand &band, const Material &material, State init
     work_(lattice_.rows())
 {
   if (fracture_)
-    fracture_->watch(forces_);
+    fracture_->watch(state_, forces_);
   restart();
   initial_energy_ = elastic_energy(state_, band_, material_) + kinetic_energy(state_, band_);
 }
@@ -29,9 +29,11 @@ void Simulation::note_powers()
 {
   for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
   {
-    powers_.viscous[row] = forces_.row_viscous_power()[row];
+    powers_.viscous[row] = forces_.viscous_power(row);
     powers_.contact[row] = 0.;
-    powers_.boundary[row] = edges_move_ ? boundary_power(state_, lattice_, forces_, row) : 0.;
+    powers_.boundary[row] = edges_move_ ? boundary_power(state_, lattice_, forces_, integrator_.evaluated_vx(),
+                                                         integrator_.evaluated_vy(), row)
+                                        : 0.;
   }
   const auto power = [this](const SiteForce &on)
   { return on.force.dot(Eigen::Vector2d(state_.vx[on.place], state_.vy[on.place])); };
@@ -127,17 +129,17 @@ const std::vector<BrokenBond> &Simulation::step()
     for (const BrokenBond &bond : broken)
       broken_ += bond.energy;
     n_broken_ += broken.size();
+    std::vector<std::size_t> ends;
+    for (const BrokenBond &bond : broken)
+      ends.insert(ends.end(), {bond.near, bond.far});
     if (contact_)
     {
       // From this instant on, as the bonds are gone from it.
-      std::vector<std::size_t> ends;
-      for (const BrokenBond &bond : broken)
-        ends.insert(ends.end(), {bond.near, bond.far});
       band_.share(ends, {&state_.x, &state_.y});
       contact_->note(state_, broken);
       integrator_.evaluate_site_forces(state_);
     }
-    integrator_.update_accelerations(state_);
+    integrator_.update_accelerations(state_, ends);
     note_powers();
   }
   return broken;
@@ -160,8 +162,7 @@ const State &Simulation::gather(Rows rows)
 {
   for (Field *field : {&state_.x, &state_.y, &state_.vx, &state_.vy})
     band_.gather(*field, rows);
-  for (Field &limits : state_.breaking_stretch)
-    band_.gather(limits, rows);
+  band_.gather(state_.bonds.storage(), rows);
   for (Marks *marks : {&state_.held, &state_.removed, &state_.lost_bonds})
     band_.gather(*marks, rows);
   if (band_.is_first())

@@ -42,8 +42,7 @@ bool reaches_beyond(const TriangularLattice &lattice, const Material &material, 
 }
 
 // Gives a site the bonds that start there. @return how many it has, those that end there included
-unsigned int add_bonds(State &state, const TriangularLattice &lattice, const Material &material, std::size_t place,
-                       double breaking_stretch)
+unsigned int add_bonds(State &state, const TriangularLattice &lattice, const Material &material, std::size_t place)
 {
   const std::size_t row = lattice.row_of(place);
   unsigned int bonds = 0;
@@ -53,7 +52,7 @@ unsigned int add_bonds(State &state, const TriangularLattice &lattice, const Mat
       continue;
     if (lattice.is_occupied(place + static_cast<std::size_t>(lattice.shift(kind, row))))
     {
-      state.breaking_stretch[kind][place] = breaking_stretch;
+      state.bonds.add(place, kind);
       ++bonds;
     }
     // The bond from below starts in a row of the other parity, except along the row and two rows down.
@@ -88,10 +87,10 @@ State homogeneous_state(const RowBand &band, const Material &material, const Eig
   State state;
   for (Field *field : {&state.x, &state.y, &state.vx, &state.vy, &state.ax, &state.ay, &state.inverse_mass})
     *field = Field(n);
-  for (Field &limits : state.breaking_stretch)
-    limits = Field(n);
   for (Marks *marks : {&state.held, &state.removed, &state.lost_bonds})
     *marks = Marks(n);
+  state.bonds.clear(n);
+  state.breaking_stretch = state.toughened_stretch = breaking_stretch;
 
   state.periods = F;
   for (std::size_t place = 0; place < n; ++place)
@@ -109,7 +108,7 @@ State homogeneous_state(const RowBand &band, const Material &material, const Eig
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
     {
       const std::size_t place = lattice.index(row, column);
-      const unsigned int bonds = add_bonds(state, lattice, material, place, breaking_stretch);
+      const unsigned int bonds = add_bonds(state, lattice, material, place);
       const bool held = bonds < material.coordination() && reaches_beyond(lattice, material, place, edges);
       state.held[place] = held ? 1 : 0;
       state.inverse_mass[place] = held ? 0. : inverse_mass;
@@ -122,14 +121,17 @@ void add_noise(State &state, const RowBand &band, double amplitude, std::uint64_
 {
   const TriangularLattice &lattice = band.lattice();
   const std::uint64_t stream = splitmix64(seed);
+  // Sites are numbered with two places between rows and before them, whatever the storage.
+  const auto number = [&](std::size_t row, std::size_t column)
+  { return (row + 2) * (lattice.columns() + 4) + column + 2; };
   for (const std::size_t row : band.known_rows())
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
     {
       const std::size_t place = lattice.index(row, column);
       if (state.held[place] != 0)
         continue;
-      state.x[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * place));
-      state.y[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * place + 1));
+      state.x[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * number(row, column)));
+      state.y[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * number(row, column) + 1));
     }
   update_images(state, band);
 }

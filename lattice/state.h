@@ -2,10 +2,12 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include <Eigen/Core>
 
+#include "lattice/bond_states.h"
 #include "lattice/material.h"
 #include "lattice/row_band.h"
 
@@ -16,24 +18,28 @@ namespace lattice
 /// the same bits either way.
 inline constexpr std::size_t worth_threads = 4096;
 
+/// A breaking stretch that no bond reaches.
+inline constexpr double unbreakable = std::numeric_limits<double>::infinity();
+
 /// Everything that changes while a sheet moves and breaks, as a structure of arrays over the places of the lattice.
 /// Positions and velocities are current ones.
 ///
 /// On a rank that shares the sheet with others values are those of the rows it knows (see RowBand), and of these some
-/// of its own rows alone: velocities, accelerations, breaking stretches that toughening has raised. Removed sites, lost
-/// bonds and which bonds have broken are known everywhere.
+/// of its own rows alone: velocities, accelerations, which bonds are toughened. Removed sites, lost bonds and which
+/// bonds have broken are known everywhere.
 struct State
 {
-  double time = 0.; ///< [s]
-  Field x, y;       ///< current position [m]
-  Field vx, vy;     ///< velocity [m/s]
-  Field ax, ay;     ///< acceleration [m/s^2]; 0 at held sites and in the margin
-  /// Stretch beyond which the bond of kind k that starts at a place breaks; 0: there is no bond (any more).
-  std::array<Field, n_bond_kinds> breaking_stretch;
-  Field inverse_mass; ///< h / m [m/kg]; 0 at held and removed sites and in the margin
-  Marks held;         ///< 1 at sites whose motion is prescribed
-  Marks removed;      ///< 1 at sites cut out as seed crack
-  Marks lost_bonds;   ///< bonds a site has lost, to breaking or to removed neighbours
+  double time = 0.;                       ///< [s]
+  Field x, y;                             ///< current position [m]
+  Field vx, vy;                           ///< velocity [m/s]
+  Field ax, ay;                           ///< acceleration [m/s^2]; 0 at held sites and in the margin
+  BondStates bonds;                       ///< by the place where they start
+  double breaking_stretch = unbreakable;  ///< lam_f [-], beyond which a bond breaks
+  double toughened_stretch = unbreakable; ///< that of toughened bonds [-]
+  Field inverse_mass;                     ///< h / m [m/kg]; 0 at held and removed sites and in the margin
+  Marks held;                             ///< 1 at sites whose motion is prescribed
+  Marks removed;                          ///< 1 at sites cut out as seed crack
+  Marks lost_bonds;                       ///< bonds a site has lost, to breaking or to removed neighbours
   Eigen::Matrix2d periods = Eigen::Matrix2d::Identity(); ///< F that takes reference periods to current ones [-]
 };
 
@@ -53,9 +59,15 @@ inline constexpr Edges Edges::free{false, false, false, false};
 
 /// The unbroken sheet at the homogeneous deformation x = F X, at rest, in the rows that `band` knows. Edges across
 /// which the sheet is periodic do not exist, whatever `edges` says of them.
-/// @param breaking_stretch lam_f [-] of every bond; infinity for a sheet that never breaks
+/// @param breaking_stretch lam_f [-] of every bond, toughened or not
 State homogeneous_state(const RowBand &band, const Material &material, const Eigen::Matrix2d &F, Edges edges,
-                        double breaking_stretch);
+                        double breaking_stretch = unbreakable);
+
+/// Stretch beyond which a bond that is present breaks [-].
+inline double limit(const State &state, std::size_t place, std::size_t kind)
+{
+  return state.bonds.toughened(place, kind) ? state.toughened_stretch : state.breaking_stretch;
+}
 
 /// Moves every free site in the rows that `band` knows by a random displacement, uniform in [-amplitude, amplitude]
 /// along x and y. The displacement of a site depends on (seed, place) alone, so it is the same on every machine and in
@@ -76,7 +88,7 @@ void for_each_bond(const State &state, const TriangularLattice &lattice, Rows ro
     {
       const std::size_t place = lattice.index(row, column);
       for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
-        if (state.breaking_stretch[kind][place] > 0.)
+        if (state.bonds.present(place, kind))
           visit(place, kind, place + static_cast<std::size_t>(lattice.shift(kind, row)));
     }
 }
@@ -96,12 +108,12 @@ void for_each_bond_of_site(const State &state, const TriangularLattice &lattice,
   const std::size_t row = lattice.row_of(place);
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
   {
-    if (state.breaking_stretch[kind][place] > 0.)
+    if (state.bonds.present(place, kind))
       visit(place, kind);
     // The bond from below starts in a row of the other parity, except along the row and two rows down.
     const std::size_t near_row = (kind == 0 || kind == n_bond_kinds - 1) ? row : row + 1;
     const std::size_t near = lattice.home(place - static_cast<std::size_t>(lattice.shift(kind, near_row)));
-    if (state.breaking_stretch[kind][near] > 0.)
+    if (state.bonds.present(near, kind))
       visit(near, kind);
   }
 }

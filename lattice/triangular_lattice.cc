@@ -57,6 +57,7 @@ TriangularLattice::TriangularLattice(double spacing, double length, double heigh
   // The margin of a periodic sheet is filled from the sheet once around, so it must not be wider.
   if (columns_ < (periodic_along_ ? margin : 3) || rows_ < 2)
     throw std::invalid_argument("the sheet is too small for its lattice spacing: fewer than two rows or three columns");
+  stride_ = row_alignment * (1 + (columns_ + margin + row_alignment - 1) / row_alignment);
   find_images();
 }
 
@@ -89,9 +90,9 @@ bool TriangularLattice::is_site(std::size_t place) const
 {
   const std::size_t padded_row = place / stride();
   const std::size_t padded_column = place % stride();
-  if (padded_row < margin || padded_row >= rows_ + margin || padded_column < margin)
+  if (padded_row < margin || padded_row >= rows_ + margin || padded_column < row_alignment)
     return false;
-  return padded_column - margin < sites_in_row(padded_row - margin);
+  return padded_column - row_alignment < sites_in_row(padded_row - margin);
 }
 
 void TriangularLattice::find_images()
@@ -101,7 +102,9 @@ void TriangularLattice::find_images()
   {
     const std::size_t padded_row = place / width, padded_column = place % width;
     const bool below = padded_row < margin, above = padded_row >= rows_ + margin;
-    const bool left = padded_column < margin, right = padded_column >= columns_ + margin;
+    const bool left = padded_column < row_alignment, right = padded_column >= columns_ + row_alignment;
+    if (padded_column + margin < row_alignment || padded_column >= columns_ + row_alignment + margin)
+      continue;
     if ((!below && !above && !left && !right) || ((below || above) && !periodic_across_) ||
         ((left || right) && !periodic_along_))
       continue;
@@ -135,7 +138,7 @@ std::size_t TriangularLattice::home(std::size_t place) const
 Eigen::Vector2d TriangularLattice::reference(std::size_t place) const
 {
   const auto row = static_cast<std::ptrdiff_t>(place / stride()) - static_cast<std::ptrdiff_t>(margin);
-  const auto column = static_cast<std::ptrdiff_t>(place % stride()) - static_cast<std::ptrdiff_t>(margin);
+  const auto column = static_cast<std::ptrdiff_t>(place % stride()) - static_cast<std::ptrdiff_t>(row_alignment);
   const double along = static_cast<double>(column) + (row % 2 != 0 ? 0.5 : 0.);
   const double across = static_cast<double>(row);
   // Centring before scaling keeps mirror sites at exactly opposite y.

@@ -38,10 +38,12 @@ inline constexpr std::size_t n_nearest_kinds = 3;
 ///     row 1      o     o     o           odd rows:  one site fewer
 ///     row 0   o     o     o     o
 ///
-/// Storage is row by row with a margin of two places on every side, so that the neighbour of a site through a bond of
-/// kind k is always at index + shift(k, row), whether that neighbour exists or not. The margin is empty, except where
-/// the sheet is periodic: there it holds images of the sites at the other end. In a sheet that is periodic along its
-/// rows all rows have `columns()` sites; one that is periodic across them has an even number of rows.
+/// Storage is row by row with a margin of at least two places on every side, so that the neighbour of a site through a
+/// bond of kind k is always at index + shift(k, row), whether that neighbour exists or not. Rows begin at multiples of
+/// `row_alignment` places, and as many may be worked on at once. The margin is empty, except where the sheet is
+/// periodic: there the two places next to the sheet hold images of the sites at the other end. In a sheet that is
+/// periodic along its rows all rows have `columns()` sites; one that is periodic across them has an even number of
+/// rows.
 class TriangularLattice
 {
 public:
@@ -71,13 +73,17 @@ public:
     return row * columns_ - (periodic_along_ ? 0 : row / 2) + column_of(place);
   }
   std::size_t n_sites() const { return rows_ * columns_ - (periodic_along_ ? 0 : rows_ / 2); }
-  std::size_t stride() const { return columns_ + 2 * margin; }             ///< places per row, margin included
+  std::size_t stride() const { return stride_; }                           ///< places per row, margin included
   std::size_t n_places() const { return (rows_ + 2 * margin) * stride(); } ///< length of every field, margin included
+  static constexpr std::size_t row_alignment = 8;                          ///< in places: 64 bytes of a field
 
   /// Place of a site in every field; column < sites_in_row(row).
-  std::size_t index(std::size_t row, std::size_t column) const { return (row + margin) * stride() + margin + column; }
+  std::size_t index(std::size_t row, std::size_t column) const
+  {
+    return (row + margin) * stride() + row_alignment + column;
+  }
   std::size_t row_of(std::size_t place) const { return place / stride() - margin; }
-  std::size_t column_of(std::size_t place) const { return place % stride() - margin; }
+  std::size_t column_of(std::size_t place) const { return place % stride() - row_alignment; }
   /// Whether a place, margin included, holds a site that is no image.
   bool is_site(std::size_t place) const;
 
@@ -108,7 +114,7 @@ public:
   static bool is_nearest(std::size_t kind) { return kind < n_nearest_kinds; }
 
 private:
-  static constexpr std::size_t margin = 2;
+  static constexpr std::size_t margin = 2; // how far neighbours are, in rows and in places along a row
 
   Eigen::Vector2d from_row_frame(double along, double across) const;
   const Image *site_of_image(std::size_t place) const;
@@ -120,6 +126,7 @@ private:
   bool periodic_across_; // the rows
   std::size_t rows_;
   std::size_t columns_;
+  std::size_t stride_;
   std::vector<Image> images_;
 };
 

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "lattice/instruction_sets.h"
+#include "lattice/row_kernels.h"
 
 namespace lattice
 {
@@ -17,38 +17,7 @@ void for_each_row(const TriangularLattice &lattice, Rows rows, const RowOperatio
   const auto end = static_cast<std::ptrdiff_t>(rows.end);
 #pragma omp parallel for schedule(static) if ((rows.end - rows.begin) * lattice.stride() >= worth_threads)
   for (auto row = static_cast<std::ptrdiff_t>(rows.begin); row < end; ++row)
-  {
-    const std::size_t first = lattice.index(static_cast<std::size_t>(row), 0);
-    operation(first, first + lattice.columns());
-  }
-}
-
-// One component of n sites: their velocities at half a step, their positions and predicted velocities after it.
-LATCON_PER_INSTRUCTION_SET void drift(double h, std::size_t n, const double *__restrict acceleration,
-                                      double *__restrict velocity, double *__restrict position,
-                                      double *__restrict predicted)
-{
-#pragma omp simd
-  for (std::size_t i = 0; i < n; ++i)
-  {
-    const double kick = 0.5 * h * acceleration[i];
-    velocity[i] += kick;
-    position[i] += h * velocity[i];
-    predicted[i] = velocity[i] + kick;
-  }
-}
-
-// And their accelerations and velocities from the forces at its end.
-LATCON_PER_INSTRUCTION_SET void kick(double h, std::size_t n, const double *__restrict force,
-                                     const double *__restrict inverse_mass, double *__restrict acceleration,
-                                     double *__restrict velocity)
-{
-#pragma omp simd
-  for (std::size_t i = 0; i < n; ++i)
-  {
-    acceleration[i] = force[i] * inverse_mass[i];
-    velocity[i] += 0.5 * h * acceleration[i];
-  }
+    operation(static_cast<std::size_t>(row));
 }
 
 } // namespace
@@ -64,15 +33,19 @@ VelocityVerlet::VelocityVerlet(const RowBand &band, Forces &forces, double time_
 void VelocityVerlet::initialise(State &state)
 {
   for_each_row(lattice_, band_.rows(),
-               [&](std::size_t begin, std::size_t end)
+               [&](std::size_t row)
                {
-                 std::copy(&state.vx[begin], &state.vx[end], &predicted_vx_[begin]);
-                 std::copy(&state.vy[begin], &state.vy[end], &predicted_vy_[begin]);
+                 const std::size_t first = lattice_.index(row, 0), n = lattice_.columns();
+                 std::copy_n(&state.vx[first], n, &predicted_vx_[first]);
+                 std::copy_n(&state.vy[first], n, &predicted_vy_[first]);
                });
   halo_.start(evaluated_fields(state));
   halo_.finish();
-  evaluate(state);
-  update_accelerations(state);
+  update_all_images(state);
+  forces_.evaluate(state, predicted_vx_, predicted_vy_,
+                   {{}, [&](std::size_t row, const double *fx, const double *fy) { kick(state, row, fx, fy, 0.); }});
+  evaluate_site_forces(state);
+  add_site_forces(state, 0.);
 }
 
 std::vector<Field *> VelocityVerlet::evaluated_fields(State &state)
@@ -80,7 +53,7 @@ std::vector<Field *> VelocityVerlet::evaluated_fields(State &state)
   return {&state.x, &state.y, &predicted_vx_, &predicted_vy_};
 }
 
-void VelocityVerlet::evaluate(State &state)
+void VelocityVerlet::update_all_images(State &state)
 {
   update_images(state, band_);
   for (const TriangularLattice::Image &image : lattice_.images())
@@ -89,8 +62,6 @@ void VelocityVerlet::evaluate(State &state)
       predicted_vx_[image.place] = predicted_vx_[image.site];
       predicted_vy_[image.place] = predicted_vy_[image.site];
     }
-  forces_.evaluate(state, predicted_vx_, predicted_vy_);
-  evaluate_site_forces(state);
 }
 
 void VelocityVerlet::evaluate_site_forces(State &state)
@@ -115,45 +86,69 @@ void VelocityVerlet::add_site_forces(State &state, double duration) const
     }
 }
 
-void VelocityVerlet::update_accelerations(State &state) const
+void VelocityVerlet::update_accelerations(State &state, const std::vector<std::size_t> &places) const
 {
-  for_each_row(lattice_, band_.rows(),
-               [&](std::size_t begin, std::size_t end)
-               {
-                 for (std::size_t i = begin; i < end; ++i)
-                 {
-                   state.ax[i] = forces_.fx()[i] * state.inverse_mass[i];
-                   state.ay[i] = forces_.fy()[i] * state.inverse_mass[i];
-                 }
-               });
+  const auto of_bonds = [&](std::size_t place)
+  {
+    const Eigen::Vector2d force = forces_.on_site(state, predicted_vx_, predicted_vy_, place);
+    state.ax[place] = force.x() * state.inverse_mass[place];
+    state.ay[place] = force.y() * state.inverse_mass[place];
+  };
+  for (const std::size_t place : places)
+    if (band_.owns(place))
+      of_bonds(place);
+  for (const SiteForces *forces : site_forces_)
+    for (const SiteForce &force : forces->last())
+      of_bonds(force.place);
   add_site_forces(state, 0.);
+}
+
+void VelocityVerlet::drift(State &state, std::size_t row)
+{
+  const std::size_t begin = lattice_.index(row, 0), n = lattice_.columns();
+  kernels::drift(time_step_, n, &state.ax[begin], &state.vx[begin], &state.x[begin], &predicted_vx_[begin]);
+  kernels::drift(time_step_, n, &state.ay[begin], &state.vy[begin], &state.y[begin], &predicted_vy_[begin]);
+}
+
+void VelocityVerlet::kick(State &state, std::size_t row, const double *fx, const double *fy, double duration) const
+{
+  const std::size_t begin = lattice_.index(row, 0), n = lattice_.columns();
+  const double *const inverse_mass = &state.inverse_mass[begin];
+  kernels::kick(duration, n, fx, inverse_mass, &state.ax[begin], &state.vx[begin]);
+  kernels::kick(duration, n, fy, inverse_mass, &state.ay[begin], &state.vy[begin]);
 }
 
 void VelocityVerlet::step(State &state)
 {
-  const double h = time_step_;
-  const auto drift_row = [&](std::size_t begin, std::size_t end)
-  {
-    drift(h, end - begin, &state.ax[begin], &state.vx[begin], &state.x[begin], &predicted_vx_[begin]);
-    drift(h, end - begin, &state.ay[begin], &state.vy[begin], &state.y[begin], &predicted_vy_[begin]);
-  };
+  const auto drift_row = [&](std::size_t row) { drift(state, row); };
+  const auto after = [&](std::size_t row, const double *fx, const double *fy)
+  { kick(state, row, fx, fy, 0.5 * time_step_); };
   const Rows own = band_.rows(), interior = halo_.interior();
   for_each_row(lattice_, {own.begin, interior.begin}, drift_row);
   for_each_row(lattice_, {interior.end, own.end}, drift_row);
   halo_.start(evaluated_fields(state));
-  for_each_row(lattice_, interior, drift_row);
-  halo_.finish();
-  evaluate(state);
-  for_each_row(
-    lattice_, own,
-    [&](std::size_t begin, std::size_t end)
+  // Forces on the rows next to the halo apart from the others would take longer than waiting for it.
+  if (lattice_.images().empty())
+  {
+    const auto before = [&](std::size_t row)
     {
-      kick(h, end - begin, &forces_.fx()[begin], &state.inverse_mass[begin], &state.ax[begin], &state.vx[begin]);
-      kick(h, end - begin, &forces_.fy()[begin], &state.inverse_mass[begin], &state.ay[begin], &state.vy[begin]);
-    });
-  add_site_forces(state, 0.5 * h);
+      if (row >= interior.begin && row < interior.end)
+        drift(state, row);
+    };
+    halo_.finish();
+    forces_.evaluate(state, predicted_vx_, predicted_vy_, {before, after});
+  }
+  else
+  {
+    for_each_row(lattice_, interior, drift_row);
+    halo_.finish();
+    update_all_images(state);
+    forces_.evaluate(state, predicted_vx_, predicted_vy_, {{}, after});
+  }
+  evaluate_site_forces(state);
+  add_site_forces(state, 0.5 * time_step_);
   update_images(state, band_);
-  state.time += h;
+  state.time += time_step_;
 }
 
 } // namespace lattice

@@ -12,8 +12,8 @@ namespace lattice
 /// The dashpots see v_pred = v + h a, a second-order prediction of v', so the scheme stays explicit, takes one force
 /// evaluation a step and converges at second order with and without viscosity. Without it, it is plain velocity Verlet.
 ///
-/// Moves the rows of a band. Of the halo it brings positions and predicted velocities up to date before each
-/// evaluation, while the rows that no other rank needs move.
+/// Moves the rows of a band, and brings positions and predicted velocities in its halo up to date before each
+/// evaluation.
 class VelocityVerlet
 {
 public:
@@ -32,19 +32,24 @@ public:
   /// Advances by one time step. Sites with zero inverse mass keep their velocity. Collective.
   void step(State &state);
 
-  /// Evaluates the added forces anew, at the last positions and velocities. Collective.
-  void evaluate_site_forces(State &state);
-
   /// Velocities the last force evaluation was made with [m/s].
   const Field &evaluated_vx() const { return predicted_vx_; }
   const Field &evaluated_vy() const { return predicted_vy_; }
 
-  /// Accelerations anew from the forces as they stand, after bonds were taken out of them or site forces changed.
-  void update_accelerations(State &state) const;
+  /// Evaluates the added forces anew, at the last positions and velocities. Collective.
+  void evaluate_site_forces(State &state);
+
+  /// Accelerations at the end of the last step anew for those sites at `places` that are in the band, each of which
+  /// lost bonds then, and for those that site forces act on by now, which may have become more.
+  void update_accelerations(State &state, const std::vector<std::size_t> &places) const;
 
 private:
+  /// Positions and predicted velocities of a row at the end of a step, velocities half way.
+  void drift(State &state, std::size_t row);
+  /// Accelerations and velocities of a row at the end of a step, from the forces there.
+  void kick(State &state, std::size_t row, const double *fx, const double *fy, double duration) const;
   std::vector<Field *> evaluated_fields(State &state);
-  void evaluate(State &state);
+  void update_all_images(State &state);
   /// Adds the site forces to the accelerations, and what they change of the velocities in `duration` [s].
   void add_site_forces(State &state, double duration) const;
 

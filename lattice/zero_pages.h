@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <cstdlib>
 #include <new>
 #include <type_traits>
@@ -13,12 +14,13 @@ namespace lattice
 /// which it moves a few rows, at the places it has in the whole.
 ///
 /// Elements that are made without a value are what the memory holds, zero in a vector that was made with its size. They
-/// are not zero where a vector shrinks and grows again.
+/// are not zero where a vector shrinks and grows again. Vectors begin at a multiple of 64 bytes, a cache line.
 template <class T>
 struct ZeroPages
 {
   static_assert(std::is_arithmetic_v<T>);
   using value_type = T;
+  static constexpr std::size_t alignment = 64; // of a cache line
 
   ZeroPages() = default;
   template <class U>
@@ -28,12 +30,16 @@ struct ZeroPages
 
   T *allocate(std::size_t n)
   {
-    void *const memory = std::calloc(n, sizeof(T));
+    // calloc, as the only way to zero pages, knows no alignment: room for that, and for where its memory begins.
+    void *const memory = std::calloc(n * sizeof(T) + 2 * alignment, 1);
     if (memory == nullptr)
       throw std::bad_alloc();
-    return static_cast<T *>(memory);
+    const auto address = reinterpret_cast<std::uintptr_t>(memory);
+    const auto aligned = reinterpret_cast<void **>((address / alignment + 2) * alignment);
+    aligned[-1] = memory;
+    return reinterpret_cast<T *>(aligned);
   }
-  void deallocate(T *memory, std::size_t) { std::free(memory); }
+  void deallocate(T *memory, std::size_t) { std::free(reinterpret_cast<void **>(memory)[-1]); }
 
   void construct(T *) {}
   template <class... Values>

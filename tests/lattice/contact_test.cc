@@ -20,8 +20,7 @@ using namespace lattice;
 State loose_sites(const TriangularLattice &sheet, const Material &material, const std::vector<std::size_t> &places)
 {
   State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::free, sheets::unbreakable);
-  for (auto &limits : state.breaking_stretch)
-    std::fill(limits.begin(), limits.end(), 0.);
+  state.bonds.clear(sheet.n_places());
   const double inverse_mass = 1. / site_mass(material, sheet);
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
   {
@@ -192,7 +191,7 @@ TEST(Contact, OfBondedOrWholeSitesThereIsNone)
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
     state.lost_bonds[place] = sheet.is_site(place) ? 1 : 0;
   EXPECT_EQ(n_touching(), 0u); // bonded
-  state.breaking_stretch[0][a] = 0.;
+  state.bonds.remove(a, 0);
   EXPECT_EQ(n_touching(), 1u);
   state.lost_bonds[a] = 0;
   EXPECT_EQ(n_touching(), 0u); // a site that has lost none is no candidate
@@ -297,7 +296,8 @@ TEST(Contact, LedgerClosesWhereAPairOverlapsFromTheStart)
   const auto balance = [&](double time_step)
   {
     State state = loose_sites(sheet, material, {left, right});
-    state.breaking_stretch[0][left] = 0.5;
+    state.bonds.add(left, 0);
+    state.breaking_stretch = 0.5;
     state.x[right] = state.x[left] + 0.8 * sheets::spacing;
     Simulation simulation(sheet, material, std::move(state), time_step,
                           Fracture(sheet, material, 0.5, NoToughening{}, Eigen::Matrix2d::Identity()));

@@ -148,10 +148,8 @@ TEST(Forces, AreTheBondLawAndDashpotOfOneBond)
   const Material material = sheets::rubber();
   State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::free, sheets::unbreakable);
   const std::size_t left = sheet.index(6, 6), right = left + 1;
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
-    for (double &limit : state.breaking_stretch[kind])
-      limit = 0.;
-  state.breaking_stretch[0][left] = sheets::unbreakable;
+  state.bonds.clear(sheet.n_places());
+  state.bonds.add(left, 0);
   state.x[right] += sheets::spacing; // stretch 2
   state.vx[right] = 5.;
   Forces forces(sheet, material);
@@ -172,7 +170,9 @@ TEST(Forces, ReportRowsWithOverstretchedBonds)
   noisy.forces.evaluate(noisy.state, noisy.state.vx, noisy.state.vy);
   for (std::size_t row = 0; row < noisy.sheet.rows(); ++row)
     EXPECT_FALSE(noisy.forces.row_has_events(row));
-  noisy.state.breaking_stretch[4][noisy.sheet.index(5, 7)] = 1.5;
+  // The limits exchanged: toughened bonds alone are past theirs.
+  noisy.state.toughened_stretch = 1.5;
+  noisy.state.bonds.toughen(noisy.sheet.index(5, 7), 4);
   noisy.forces.evaluate(noisy.state, noisy.state.vx, noisy.state.vy);
   for (std::size_t row = 0; row < noisy.sheet.rows(); ++row)
     EXPECT_EQ(noisy.forces.row_has_events(row), row == 5);
@@ -214,7 +214,7 @@ TriangularLattice sheet_of(const Subject &subject, double rows = 11.)
   return {sheets::spacing, along_x ? along : across, along_x ? across : along, subject.orientation, subject.periodic};
 }
 
-constexpr double first_limit = 2.6; // breaking stretch of most bonds in a random state
+constexpr double first_limit = 2.6, toughened_limit = 4.; // breaking stretches in a random state
 
 // Sites all over the place at random velocities, bonds that are broken, overstretched or toughened, sites removed with
 // a neighbour on the very spot.
@@ -223,6 +223,7 @@ State random_state(const TriangularLattice &sheet, const Material &material, uns
   std::mt19937 random(seed);
   const auto uniform = [&] { return std::uniform_real_distribution<double>(0., 1.)(random); };
   State state = homogeneous_state(sheet, material, sheets::stretched(1.6, 1.9), Edges::free, first_limit);
+  state.toughened_stretch = toughened_limit;
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
   {
     if (!sheet.is_site(place))
@@ -231,11 +232,15 @@ State random_state(const TriangularLattice &sheet, const Material &material, uns
     state.y[place] += 0.5 * sheets::spacing * (uniform() - 0.5);
     state.vx[place] = 40. * (uniform() - 0.5);
     state.vy[place] = 40. * (uniform() - 0.5);
-    for (Field &limits : state.breaking_stretch)
+    for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
     {
       const double lot = uniform();
-      if (limits[place] > 0.)
-        limits[place] = lot < 0.1 ? 0. : lot < 0.11 ? 1.5 : lot < 0.2 ? 10. : first_limit;
+      if (!state.bonds.present(place, kind))
+        continue;
+      if (lot < 0.1)
+        state.bonds.remove(place, kind);
+      else if (lot < 0.2)
+        state.bonds.toughen(place, kind);
     }
   }
   const std::size_t removed = sheet.index(sheet.rows() / 2, 1), neighbour = removed + 1;
@@ -243,7 +248,7 @@ State random_state(const TriangularLattice &sheet, const Material &material, uns
   for_each_bond_of_site(state, sheet, removed,
                         [&](std::size_t near, std::size_t kind) { bonds.emplace_back(near, kind); });
   for (const auto &[near, kind] : bonds)
-    state.breaking_stretch[kind][near] = 0.;
+    state.bonds.remove(near, kind);
   state.x[removed] = state.x[neighbour];
   state.y[removed] = state.y[neighbour];
   update_images(state, sheet);
@@ -266,9 +271,9 @@ TEST(Forces, AreThoseOfTheReference)
     for (const bool watch : {false, true})
     {
       if (watch)
-        forces.watch_retraction(retraction, first_limit);
+        forces.watch_retraction(retraction);
       forces.evaluate(state, state.vx, state.vy);
-      const ReferenceForces expected = watch ? reference_forces(state, sheet, subject.material, retraction, first_limit)
+      const ReferenceForces expected = watch ? reference_forces(state, sheet, subject.material, retraction)
                                              : reference_forces(state, sheet, subject.material);
       for (std::size_t place = 0; place < sheet.n_places(); ++place)
       {
@@ -322,7 +327,8 @@ TEST(Forces, BitsDoNotDependOnThreads)
   omp_set_num_threads(before);
 }
 
-// Bonds taken out one by one, in whatever order, leave the forces of a sheet that never had them.
+// Bonds taken out one by one, in whatever order, leave the power of a sheet that never had them, and single sites feel
+// the forces of an evaluation of all, to the last bit.
 TEST(Forces, AfterRemovingBondsAreThoseWithoutThem)
 {
   for (const Subject &subject : subjects())
@@ -344,12 +350,17 @@ TEST(Forces, AfterRemovingBondsAreThoseWithoutThem)
     const double power = forces.viscous_power();
     for (const auto &[place, kind] : bonds)
     {
-      state.breaking_stretch[kind][place] = 0.;
+      state.bonds.remove(place, kind);
       forces.remove_bond(state, state.vx, state.vy, place, kind);
     }
     without.evaluate(state, state.vx, state.vy);
-    ASSERT_EQ(forces.fx(), without.fx());
-    ASSERT_EQ(forces.fy(), without.fy());
+    for (std::size_t place = 0; place < sheet.n_places(); ++place)
+      if (sheet.is_site(place))
+      {
+        const Eigen::Vector2d force = forces.on_site(state, state.vx, state.vy, place);
+        ASSERT_EQ(force.x(), without.fx()[place]);
+        ASSERT_EQ(force.y(), without.fy()[place]);
+      }
     ASSERT_LT(without.viscous_power(), 0.9 * power);
     ASSERT_NEAR(forces.viscous_power(), without.viscous_power(), 1e-12 * power);
   }

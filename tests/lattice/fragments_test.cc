@@ -30,7 +30,7 @@ protected:
                   [&](std::size_t near, std::size_t kind, std::size_t far)
                   {
                     if (is_inner(near) != is_inner(far))
-                      state.breaking_stretch[kind][near] = 0.;
+                      state.bonds.remove(near, kind);
                   });
   }
 
@@ -101,7 +101,7 @@ TEST(Fragments, GoOnAcrossAPeriodicEdge)
                 [&](std::size_t near, std::size_t kind, std::size_t far)
                 {
                   if (is_inner(near) != is_inner(far))
-                    state.breaking_stretch[kind][near] = 0.;
+                    state.bonds.remove(near, kind);
                 });
   EXPECT_EQ(find_fragments(state, sheet).sizes, std::vector<std::size_t>{2});
 }
@@ -143,21 +143,16 @@ TEST_F(Cut, FibrilsBridgeTheStripsTheyAreIn)
                   if (crosses(near, far))
                     cut.emplace_back(near, kind);
                 });
-  std::vector<double> limits;
   for (const auto &[near, kind] : cut)
-  {
-    limits.push_back(state.breaking_stretch[kind][near]);
-    state.breaking_stretch[kind][near] = 0.;
-  }
+    state.bonds.remove(near, kind);
   EXPECT_EQ(bridged_length(state, sheet, 2. * d, 14. * d), 0.);
   // One bond, from site to site within the strip from 6 d to 10 d, bridges that one alone.
-  for (std::size_t i = 0; i < cut.size(); ++i)
+  for (const auto &[near, kind] : cut)
   {
-    const auto &[near, kind] = cut[i];
     const double X = sheet.reference(near).x() / d;
     if (kind != 1 || X < 7. || X > 8.)
       continue;
-    state.breaking_stretch[kind][near] = limits[i];
+    state.bonds.add(near, kind);
     EXPECT_DOUBLE_EQ(bridged_length(state, sheet, 2. * d, 14. * d), 4. * d);
     return;
   }

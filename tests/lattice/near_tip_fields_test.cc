@@ -53,7 +53,7 @@ struct SlitSheet
 
   void break_bond(std::size_t near, std::size_t kind)
   {
-    state.breaking_stretch[kind][near] = 0.;
+    state.bonds.remove(near, kind);
     ++state.lost_bonds[near];
     ++state.lost_bonds[near + static_cast<std::size_t>(sheet.shift(kind, sheet.row_of(near)))];
   }

@@ -14,11 +14,10 @@ struct ReferenceForces
   std::vector<bool> row_has_events;
 };
 
-/// @param retraction_stretch,initial_breaking_stretch as in Forces::watch_retraction
+/// @param retraction_stretch as in Forces::watch_retraction
 inline ReferenceForces reference_forces(const lattice::State &state, const lattice::TriangularLattice &sheet,
                                         const lattice::Material &material,
-                                        const std::array<double, lattice::n_bond_kinds> &retraction_stretch = {},
-                                        double initial_breaking_stretch = 0.)
+                                        const std::array<double, lattice::n_bond_kinds> &retraction_stretch = {})
 {
   using Eigen::Vector2d;
   const lattice::Field zero(sheet.n_places(), 0.);
@@ -44,8 +43,8 @@ inline ReferenceForces reference_forces(const lattice::State &state, const latti
       result.magnitude[place] += magnitude;
     }
     result.viscous_power += section * shell.viscosity * rate * rate / rest_length;
-    const double limit = state.breaking_stretch[kind][near];
-    if (stretch > limit || (limit == initial_breaking_stretch && stretch < retraction_stretch[kind]))
+    if (stretch > limit(state, near, kind) ||
+        (!state.bonds.toughened(near, kind) && stretch < retraction_stretch[kind]))
       result.row_has_events[sheet.row_of(near)] = true;
   };
   for_each_bond(state, sheet, visit);

@@ -94,9 +94,8 @@ TEST(VelocityVerlet, DampingLimitOfOneDashpotIsOne)
   {
     State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::free, sheets::unbreakable);
     const std::size_t left = sheet.index(3, 2);
-    for (auto &limits : state.breaking_stretch)
-      std::fill(limits.begin(), limits.end(), 0.);
-    state.breaking_stretch[0][left] = sheets::unbreakable;
+    state.bonds.clear(sheet.n_places());
+    state.bonds.add(left, 0);
     state.vx[left] = -1e-6;
     state.vx[left + 1] = 1e-6;
     Forces forces(sheet, material);

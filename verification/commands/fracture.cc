@@ -91,7 +91,7 @@ Results break_sheet(const Case &input, const lattice::TriangularLattice &sheet, 
   simulation.cut(seed);
 
   CrackRecord record(simulation);
-  lattice::FieldWriter fields(sheet, material, run.directory(), *input.breaking_stretch);
+  lattice::FieldWriter fields(sheet, material, run.directory());
   const auto add_frame = [&]
   {
     const lattice::State &whole = simulation.gather();

@@ -15,13 +15,11 @@ namespace verification
 namespace
 {
 
-constexpr double unbreakable = std::numeric_limits<double>::infinity();
-
 // Static equilibrium. @return its energy and residual
 Results relaxed(const Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
                 lattice::State state, Run &run)
 {
-  lattice::FieldWriter fields(sheet, material, run.directory(), unbreakable);
+  lattice::FieldWriter fields(sheet, material, run.directory());
   fields.add_frame(state);
   lattice::Relaxation relaxation{};
   try
@@ -57,7 +55,7 @@ Results moved(const Case &input, const lattice::RowBand &band, const lattice::Ma
   if (!input.time_step)
     time_step = input.end_time / std::ceil(input.end_time / time_step); // so that the last step ends at the end
   lattice::Simulation simulation(band, material, std::move(state), time_step);
-  lattice::FieldWriter fields(band.lattice(), material, run.directory(), unbreakable);
+  lattice::FieldWriter fields(band.lattice(), material, run.directory());
   const auto add_frame = [&]
   {
     const lattice::State &whole = simulation.gather();
@@ -132,7 +130,7 @@ ExitCode run_lattice(const Options &options)
   Results results;
   const auto state_of = [&](const lattice::RowBand &band)
   {
-    lattice::State state = lattice_state(input, band, unbreakable);
+    lattice::State state = lattice_state(input, band, lattice::unbreakable);
     lattice::add_noise(state, band, input.noise_amplitude * input.spacing, input.noise_seed);
     return state;
   };

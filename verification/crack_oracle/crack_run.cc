@@ -89,6 +89,7 @@ lattice::State Run::seeded_strip(const Eigen::Matrix2d &F) const
     state.held[sheet_.index(1, column)] = 1;
     state.inverse_mass[sheet_.index(1, column)] = 0.;
   }
+  state.toughened_stretch = lattice::unbreakable;
   cut(state, options_.seed);
   constexpr double at_rest = 1e-4;
   lattice::relax(state, sheet_, material_, at_rest * scales_.force);
@@ -97,7 +98,7 @@ lattice::State Run::seeded_strip(const Eigen::Matrix2d &F) const
                          [&](std::size_t place, std::size_t kind, std::size_t)
                          {
                            if (!crosses_crack(place, kind) && midpoint(place, kind) < options_.guided)
-                             state.breaking_stretch[kind][place] = std::numeric_limits<double>::infinity();
+                             state.bonds.toughen(place, kind);
                          });
   return state;
 }
@@ -108,7 +109,7 @@ void Run::cut(lattice::State &state, double length) const
                          [&](std::size_t place, std::size_t kind, std::size_t)
                          {
                            if (crosses_crack(place, kind) && midpoint(place, kind) < length)
-                             state.breaking_stretch[kind][place] = 0.;
+                             state.bonds.remove(place, kind);
                          });
 }
 
@@ -122,7 +123,7 @@ double Run::largest_elsewhere(const lattice::State &state, std::size_t tip) cons
       for (std::size_t kind = 0; kind < lattice::n_nearest_kinds; ++kind)
       {
         const std::size_t place = sheet_.index(row, column);
-        if (!crosses_crack(place, kind) && state.breaking_stretch[kind][place] > 0.)
+        if (!crosses_crack(place, kind) && state.bonds.present(place, kind))
           largest = std::max(largest, lattice::stretch(state, sheet_, place, kind) - 1.);
       }
   return largest / options_.breaking_strain;

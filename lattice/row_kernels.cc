@@ -1,0 +1,337 @@
+#include "lattice/row_kernels.h"
+
+#include <cmath>
+#include <type_traits>
+
+// This file is compiled once per instruction set. Those between SSSE3, AVX2 and AVX-512 would gain nothing.
+#define HWY_DISABLED_TARGETS (HWY_SSE4 | HWY_AVX3_DL)
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "lattice/row_kernels.cc"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace lattice::kernels::HWY_NAMESPACE
+{
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+// At most a block, so that sums over a block are the same for all widths.
+constexpr std::size_t block = TriangularLattice::row_alignment;
+using D = hn::CappedTag<double, block>;
+using Bits = hn::RebindToUnsigned<D>;
+using HalfBits = hn::Rebind<std::uint32_t, D>;
+using Words = hn::Rebind<BondStates::Word, D>;
+using Vector = hn::Vec<D>;
+HWY_INLINE std::size_t width()
+{
+  return hn::Lanes(D());
+}
+
+// Numbers to the formulas that are written for any.
+struct Lanes
+{
+  Vector v;
+};
+HWY_INLINE Lanes operator+(Lanes a, Lanes b)
+{
+  return {hn::Add(a.v, b.v)};
+}
+HWY_INLINE Lanes operator-(Lanes a, Lanes b)
+{
+  return {hn::Sub(a.v, b.v)};
+}
+HWY_INLINE Lanes operator*(Lanes a, Lanes b)
+{
+  return {hn::Mul(a.v, b.v)};
+}
+HWY_INLINE Lanes lanes(double a)
+{
+  return {hn::Set(D(), a)};
+}
+HWY_INLINE Lanes operator*(double a, Lanes b)
+{
+  return lanes(a) * b;
+}
+HWY_INLINE Lanes operator-(double a, Lanes b)
+{
+  return lanes(a) - b;
+}
+HWY_INLINE Lanes operator-(Lanes a, double b)
+{
+  return a - lanes(b);
+}
+HWY_INLINE Lanes load(const double *from)
+{
+  return {hn::LoadU(D(), from)};
+}
+HWY_INLINE void store(Lanes a, double *to)
+{
+  hn::StoreU(a.v, D(), to);
+}
+HWY_INLINE Lanes square_root(Lanes a)
+{
+  return {hn::Sqrt(a.v)};
+}
+HWY_INLINE Lanes reciprocal(Lanes a)
+{
+  return {hn::Div(hn::Set(D(), 1.), a.v)};
+}
+
+#include "lattice/bond_force.inc"
+
+HWY_INLINE Lanes force(const MooneyRivlinBond &law, Lanes stretch, Lanes inverse)
+{
+  return mooney_rivlin_force(law.a, law.b, stretch, inverse);
+}
+HWY_INLINE Lanes force(const LinearBond &law, Lanes stretch, Lanes)
+{
+  return linear_force(law.modulus, stretch);
+}
+
+HWY_INLINE auto mask_of_bit(hn::Vec<Bits> words, unsigned int bit)
+{
+  return hn::RebindMask(D(), hn::TestBit(words, hn::Set(Bits(), bit)));
+}
+
+// As many sites as a vector holds, from one on: near ends of bonds.
+struct Sites
+{
+  Sites(const RowOfBonds &row, std::size_t site)
+    : first(site), x(load(row.x + site)), y(load(row.y + site)),
+      bonds(hn::PromoteTo(Bits(), hn::PromoteTo(HalfBits(), hn::LoadU(Words(), row.bonds + site))))
+  {
+  }
+  auto present(std::size_t kind) const { return mask_of_bit(bonds, BondStates::bit(kind)); }
+  auto toughened(std::size_t kind) const { return mask_of_bit(bonds, BondStates::toughened_bit(kind)); }
+
+  std::size_t first;
+  Lanes x, y;
+  hn::Vec<Bits> bonds;
+};
+
+// Lengths and inverse lengths of the bonds that start at these sites, 0 for the inverse of an absent one: it has no
+// direction, hence no force. Root and quotient take as long as all the rest, in units of the processor that do nothing
+// else: they are begun one vector of sites ahead of their use, so that the rest goes on meanwhile.
+struct Lengths
+{
+  alignas(64) double length[n_bond_kinds][block];
+  alignas(64) double inverse[n_bond_kinds][block];
+};
+
+template <std::size_t n_kinds>
+HWY_INLINE void find_lengths(const RowOfBonds &row, std::size_t site, Lengths &lengths)
+{
+  const Sites near(row, site);
+  HWY_UNROLL(6)
+  for (std::size_t kind = 0; kind < n_kinds; ++kind)
+  {
+    const std::size_t far = site + static_cast<std::size_t>(row.shift[kind]);
+    const Lanes dx = load(row.x + far) - near.x, dy = load(row.y + far) - near.y;
+    const Lanes length = square_root(dx * dx + dy * dy);
+    store(length, lengths.length[kind]);
+    store({hn::IfThenElseZero(near.present(kind), reciprocal(length).v)}, lengths.inverse[kind]);
+  }
+}
+
+template <std::size_t kind, bool watches_retraction, class Law>
+HWY_INLINE void bonds_of_kind(const Law &law, const SheetConstants &sheet, const RowOfBonds &row, const Sites &near,
+                              Lanes vx, Lanes vy, const Lengths &lengths, Lanes &power, hn::Mask<D> &events)
+{
+  const BondConstants &bond = sheet.shells[kind < n_nearest_kinds ? 0 : 1];
+  const std::size_t far = near.first + static_cast<std::size_t>(row.shift[kind]);
+  const Lanes length = load(lengths.length[kind]), inverse = load(lengths.inverse[kind]);
+  const Lanes nx = (load(row.x + far) - near.x) * inverse, ny = (load(row.y + far) - near.y) * inverse;
+  const Lanes rate = (load(row.vx + far) - vx) * nx + (load(row.vy + far) - vy) * ny;
+  const Lanes stretch = (1. / bond.rest_length) * length;
+  const Lanes viscous = bond.damping * rate;
+  const Lanes axial = bond.cross_section * force(law, stretch, bond.rest_length * inverse) + viscous;
+  store(axial * nx, row.force[kind][0] + near.first);
+  store(axial * ny, row.force[kind][1] + near.first);
+  power = power + viscous * rate;
+
+  const auto present = near.present(kind), toughened = near.toughened(kind);
+  const Lanes limit{hn::IfThenElse(toughened, lanes(row.toughened_stretch).v, lanes(row.breaking_stretch).v)};
+  events = hn::Or(events, hn::And(present, hn::Gt(stretch.v, limit.v)));
+  if constexpr (watches_retraction)
+  {
+    const auto retracted = hn::Lt(stretch.v, lanes(sheet.retraction_stretch[kind]).v);
+    events = hn::Or(events, hn::And(hn::AndNot(toughened, present), retracted));
+  }
+}
+
+struct NoBonds
+{
+};
+
+template <bool watches_retraction, class Nearest, class NextNearest>
+RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, const SheetConstants sheet,
+                      const RowOfBonds row)
+{
+  constexpr bool has_next_nearest = !std::is_same_v<NextNearest, NoBonds>;
+  constexpr std::size_t n_kinds = has_next_nearest ? n_bond_kinds : n_nearest_kinds;
+  const D d;
+  Lanes power[block];
+  for (Lanes &sum : power)
+    sum = lanes(0.);
+  auto events = hn::FirstN(d, 0);
+  const std::size_t end = (row.n + block - 1) / block * block;
+  Lengths lengths[2];
+  find_lengths<n_kinds>(row, 0, lengths[0]);
+  std::size_t turn = 0;
+  for (std::size_t site = 0; site < end; site += width())
+  {
+    // Beyond the last site the first is done again, for nothing.
+    find_lengths<n_kinds>(row, site + width() < end ? site + width() : 0, lengths[1 - turn]);
+    const Sites near(row, site);
+    const Lanes vx = load(row.vx + site), vy = load(row.vy + site);
+    Lanes &sum = power[site % block / width()];
+    const Lengths &here = lengths[turn];
+    bonds_of_kind<0, watches_retraction>(nearest, sheet, row, near, vx, vy, here, sum, events);
+    bonds_of_kind<1, watches_retraction>(nearest, sheet, row, near, vx, vy, here, sum, events);
+    bonds_of_kind<2, watches_retraction>(nearest, sheet, row, near, vx, vy, here, sum, events);
+    if constexpr (has_next_nearest)
+    {
+      bonds_of_kind<3, watches_retraction>(next_nearest, sheet, row, near, vx, vy, here, sum, events);
+      bonds_of_kind<4, watches_retraction>(next_nearest, sheet, row, near, vx, vy, here, sum, events);
+      bonds_of_kind<5, watches_retraction>(next_nearest, sheet, row, near, vx, vy, here, sum, events);
+    }
+    turn = 1 - turn;
+  }
+  alignas(64) double sums[block];
+  for (std::size_t part = 0; part < block / width(); ++part)
+    store(power[part], sums + part * width());
+  double total = 0.;
+  for (const double sum : sums)
+    total += sum;
+  return {total, !hn::AllFalse(d, events)};
+}
+
+RowSums BondsOfRow(const SheetConstants &sheet, const RowOfBonds &row)
+{
+  const auto of_laws = [&](const auto &nearest, const auto &next_nearest)
+  {
+    return sheet.retraction_stretch[0] > 0. ? bonds_of_laws<true>(nearest, next_nearest, sheet, row)
+                                            : bonds_of_laws<false>(nearest, next_nearest, sheet, row);
+  };
+  const auto of_nearest = [&](const auto &nearest)
+  {
+    if (!(sheet.shells[1].cross_section > 0.))
+      return of_laws(nearest, NoBonds());
+    return std::visit([&](const auto &next_nearest) { return of_laws(nearest, next_nearest); }, sheet.shells[1].law);
+  };
+  return std::visit(of_nearest, sheet.shells[0].law);
+}
+
+// Pairs that a mirror exchanges are added first: exchanging the terms of a sum of two leaves its bits as they are.
+template <class Number>
+HWY_INLINE Number sum(const Number (&s)[n_bond_kinds], const Number (&e)[n_bond_kinds])
+{
+  return ((s[0] - e[0]) + (s[5] - e[5])) + (((s[1] - e[2]) + (s[2] - e[1])) + ((s[3] - e[4]) + (s[4] - e[3])));
+}
+
+void GatherRow(std::size_t n, const std::array<const double *, n_bond_kinds> &start,
+               const std::array<const double *, n_bond_kinds> &end, double *total)
+{
+  for (std::size_t i = 0; i < n; i += width())
+  {
+    Lanes s[n_bond_kinds], e[n_bond_kinds];
+    for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+    {
+      s[kind] = load(start[kind] + i);
+      e[kind] = load(end[kind] + i);
+    }
+    store(sum(s, e), total + i);
+  }
+}
+
+void Drift(double h, std::size_t n, const double *acceleration, double *velocity, double *position, double *predicted)
+{
+  for (std::size_t i = 0; i < n; i += width())
+  {
+    const Lanes kick = (0.5 * h) * load(acceleration + i);
+    const Lanes halfway = load(velocity + i) + kick;
+    store(halfway, velocity + i);
+    store(load(position + i) + h * halfway, position + i);
+    store(halfway + kick, predicted + i);
+  }
+}
+
+void Kick(double duration, std::size_t n, const double *force, const double *inverse_mass, double *acceleration,
+          double *velocity)
+{
+  for (std::size_t i = 0; i < n; i += width())
+  {
+    const Lanes a = load(force + i) * load(inverse_mass + i);
+    store(a, acceleration + i);
+    store(load(velocity + i) + duration * a, velocity + i);
+  }
+}
+
+const char *InstructionSet()
+{
+  return hwy::TargetName(HWY_TARGET);
+}
+
+} // namespace lattice::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace lattice::kernels
+{
+
+HWY_EXPORT(BondsOfRow);
+HWY_EXPORT(GatherRow);
+HWY_EXPORT(Drift);
+HWY_EXPORT(Kick);
+HWY_EXPORT(InstructionSet);
+
+RowSums bonds_of_row(const SheetConstants &sheet, const RowOfBonds &row)
+{
+  return HWY_DYNAMIC_DISPATCH(BondsOfRow)(sheet, row);
+}
+
+void gather_row(std::size_t n, const std::array<const double *, n_bond_kinds> &start,
+                const std::array<const double *, n_bond_kinds> &end, double *total)
+{
+  HWY_DYNAMIC_DISPATCH(GatherRow)(n, start, end, total);
+}
+
+void drift(double h, std::size_t n, const double *acceleration, double *velocity, double *position, double *predicted)
+{
+  HWY_DYNAMIC_DISPATCH(Drift)(h, n, acceleration, velocity, position, predicted);
+}
+
+void kick(double duration, std::size_t n, const double *force, const double *inverse_mass, double *acceleration,
+          double *velocity)
+{
+  HWY_DYNAMIC_DISPATCH(Kick)(duration, n, force, inverse_mass, acceleration, velocity);
+}
+
+const char *instruction_set()
+{
+  return HWY_DYNAMIC_DISPATCH(InstructionSet)();
+}
+
+BondForce bond_force(const BondConstants &bond, double dx, double dy, double dvx, double dvy)
+{
+  const double distance = std::sqrt(dx * dx + dy * dy);
+  const double inverse = 1. / distance;
+  const double nx = dx * inverse, ny = dy * inverse;
+  const double rate = dvx * nx + dvy * ny;
+  const double stretch = (1. / bond.rest_length) * distance;
+  const double viscous = bond.damping * rate;
+  const double axial =
+    bond.cross_section *
+      std::visit([&](const auto &law) { return law.force(stretch, bond.rest_length * inverse); }, bond.law) +
+    viscous;
+  return {axial * nx, axial * ny, stretch, viscous * rate};
+}
+
+double sum_of_bonds(const std::array<double, n_bond_kinds> &s, const std::array<double, n_bond_kinds> &e)
+{
+  return ((s[0] - e[0]) + (s[5] - e[5])) + (((s[1] - e[2]) + (s[2] - e[1])) + ((s[3] - e[4]) + (s[4] - e[3])));
+}
+
+} // namespace lattice::kernels
+#endif

@@ -1,0 +1,87 @@
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <variant>
+
+#include "lattice/bond_law.h"
+#include "lattice/bond_states.h"
+
+/// @file
+/// The loops that take nearly all of a simulation's time, over the sites of one row each. They exist once per
+/// instruction set, from SSSE3 to AVX-512; the best that the processor has is chosen at run time, and all give the same
+/// bits. Rows begin at multiples of TriangularLattice::row_alignment and are worked on in blocks of as many places, so
+/// arrays must be readable, and those written to writable, to the end of the last block.
+namespace lattice::kernels
+{
+
+/// What the bonds of a shell have in common.
+struct BondConstants
+{
+  BondLaw law;
+  double rest_length = 0.;   ///< l [m]
+  double cross_section = 0.; ///< A0 / h [m]; 0: there are no such bonds
+  double damping = 0.;       ///< A0 eta / (h l) [Pa s]
+};
+
+/// What the bonds of a sheet have in common.
+struct SheetConstants
+{
+  std::array<BondConstants, 2> shells;                   ///< nearest and next-nearest neighbours
+  std::array<double, n_bond_kinds> retraction_stretch{}; ///< see Forces::watch_retraction; 0: not watched
+
+  const BondConstants &shell(std::size_t kind) const { return shells[TriangularLattice::is_nearest(kind) ? 0 : 1]; }
+};
+
+/// The bonds that start in a row, with places counted from its first site.
+struct RowOfBonds
+{
+  std::size_t n;                                  ///< sites
+  const double *x, *y, *vx, *vy;                  ///< of sites [m, m/s]
+  const BondStates::Word *bonds;                  ///< of sites
+  std::array<std::ptrdiff_t, n_bond_kinds> shift; ///< from a site to the far end of its bond of a kind
+  double breaking_stretch, toughened_stretch;     ///< as in State
+  /// Forces on the near ends [N/m], x (0) and y (1) for each kind: what is computed.
+  std::array<std::array<double *, 2>, n_bond_kinds> force;
+};
+
+/// Sums over the bonds that start in a row.
+struct RowSums
+{
+  double viscous_power = 0.; ///< of their dashpots [W/m]
+  bool has_events = false;   ///< whether one is past its limit, or has retracted
+};
+
+/// Forces of all bonds that start in a row (theory.md, eq. L.3). Only `row.force` of kinds with a shell is written.
+RowSums bonds_of_row(const SheetConstants &sheet, const RowOfBonds &row);
+
+/// A component of the forces on the n sites of a row: those on the near ends of the bonds that start at a site, less
+/// those of the bonds that end there, [kind][site]. Kinds without a shell must be there and hold zeros.
+void gather_row(std::size_t n, const std::array<const double *, n_bond_kinds> &start,
+                const std::array<const double *, n_bond_kinds> &end, double *total);
+
+/// One component of n sites: from velocity and acceleration at the start of a step h [s] to the velocity at half of it,
+/// and position and predicted velocity at its end (theory.md, eq. L.7).
+void drift(double h, std::size_t n, const double *acceleration, double *velocity, double *position, double *predicted);
+
+/// The acceleration of the n sites from the force, and their velocity after it has acted for `duration` [s].
+void kick(double duration, std::size_t n, const double *force, const double *inverse_mass, double *acceleration,
+          double *velocity);
+
+/// Name of the instruction set in use.
+const char *instruction_set();
+
+/// A bond's force, one at a time: the operations of bonds_of_row, so that both have the same bits.
+struct BondForce
+{
+  double x, y; ///< on the near end [N/m], the opposite on the far end
+  double stretch;
+  double viscous_power; ///< [W/m]
+};
+BondForce bond_force(const BondConstants &bond, double dx, double dy, double dvx, double dvy);
+
+/// A component of the force on a site, as in gather_row.
+double sum_of_bonds(const std::array<double, n_bond_kinds> &start, const std::array<double, n_bond_kinds> &end);
+
+} // namespace lattice::kernels
