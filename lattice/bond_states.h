@@ -16,9 +16,10 @@ class BondStates
 {
 public:
   using Word = std::uint16_t;
+  using Words = std::vector<Word, ZeroPages<Word>>;
 
   /// No bonds at all at n places.
-  void clear(std::size_t n) { words_.assign(n, 0); }
+  void clear(std::size_t n) { words_ = Words(n); }
 
   bool present(std::size_t place, std::size_t kind) const { return (words_[place] & bit(kind)) != 0; }
   bool toughened(std::size_t place, std::size_t kind) const { return (words_[place] & toughened_bit(kind)) != 0; }
@@ -40,11 +41,12 @@ public:
   }
 
   const Word *words() const { return words_.data(); } ///< one a place
+  Words &storage() { return words_; }                 ///< for other ranks to fill
   static constexpr Word bit(std::size_t kind) { return static_cast<Word>(1u << kind); }
   static constexpr Word toughened_bit(std::size_t kind) { return static_cast<Word>(0x100u << kind); }
 
 private:
-  std::vector<Word, ZeroPages<Word>> words_;
+  Words words_;
 };
 
 } // namespace lattice

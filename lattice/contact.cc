@@ -22,50 +22,51 @@ ContactLaw contact_like_nearest_bond(const TriangularLattice &lattice, const Mat
           viscosity * per_length * material.nearest.viscosity};
 }
 
-Contact::Contact(const TriangularLattice &lattice, const ContactLaw &law)
-  : lattice_(lattice), law_(law), skin_(skin_over_distance * law.distance), cells_(law.distance + skin_),
-    is_candidate_(lattice.n_places(), 0)
+Contact::Contact(const RowBand &band, const ContactLaw &law)
+  : band_(band), lattice_(band.lattice()), law_(law), skin_(skin_over_distance * law.distance),
+    cells_(law.distance + skin_), is_candidate_(lattice_.n_places())
 {
   if (!(law.stiffness > 0.) || !(law.viscosity >= 0.))
     throw std::invalid_argument("a contact needs a positive stiffness and a viscosity that is not negative");
-  if (!lattice.images().empty())
+  if (!lattice_.images().empty())
     throw std::invalid_argument("sites of a periodic sheet do not touch: it does not break");
 }
 
 void Contact::find_candidates(const State &state)
 {
-  candidates_.clear();
+  places_.clear();
+  found_.clear();
+  pairs_.clear();
+  cells_.clear(0);
+  is_candidate_ = Marks(lattice_.n_places());
   for (std::size_t place = 0; place < lattice_.n_places(); ++place)
-  {
-    is_candidate_[place] = state.lost_bonds[place] > 0 && state.removed[place] == 0 ? 1 : 0;
-    if (is_candidate_[place] != 0)
-      candidates_.push_back({place, 0., 0.});
-  }
-  rebuild(state);
+    if (state.lost_bonds[place] > 0 && state.removed[place] == 0)
+    {
+      is_candidate_[place] = 1;
+      places_.push_back(place);
+    }
 }
 
 void Contact::rebuild(const State &state)
 {
   pairs_.clear();
+  found_.clear();
   // Room for what is added until the next time.
-  cells_.clear(2 * candidates_.size() + 64);
-  for (std::size_t index = 0; index < candidates_.size(); ++index)
+  cells_.clear(2 * places_.size() + 64);
+  for (std::size_t index = 0; index < places_.size(); ++index)
   {
-    Candidate &candidate = candidates_[index];
-    candidate.x = state.x[candidate.place];
-    candidate.y = state.y[candidate.place];
-    cells_.insert(index, candidate.x, candidate.y);
+    found_.emplace_back(state.x[places_[index]], state.y[places_[index]]);
+    cells_.insert(index, found_.back().x(), found_.back().y());
   }
   const double reach_square = (law_.distance + skin_) * (law_.distance + skin_);
-  for (const Candidate &candidate : candidates_)
-    cells_.for_each_near(candidate.x, candidate.y,
-                         [&](std::size_t index)
+  for (std::size_t first = 0; first < places_.size(); ++first)
+    cells_.for_each_near(found_[first].x(), found_[first].y(),
+                         [&](std::size_t second)
                          {
-                           const Candidate &other = candidates_[index];
-                           const double dx = other.x - candidate.x, dy = other.y - candidate.y;
-                           if (candidate.place < other.place && dx * dx + dy * dy <= reach_square &&
-                               !bonded(state, candidate.place, other.place))
-                             pairs_.push_back({candidate.place, other.place});
+                           if (places_[first] < places_[second] &&
+                               (found_[second] - found_[first]).squaredNorm() <= reach_square &&
+                               may_touch(state, places_[first], places_[second]))
+                             pairs_.push_back({places_[first], places_[second]});
                          });
   std::sort(pairs_.begin(), pairs_.end());
 }
@@ -73,22 +74,24 @@ void Contact::rebuild(const State &state)
 bool Contact::has_moved(const State &state) const
 {
   const double limit_square = 0.25 * skin_ * skin_;
-  return std::any_of(candidates_.begin(), candidates_.end(),
-                     [&](const Candidate &candidate)
-                     {
-                       const double dx = state.x[candidate.place] - candidate.x;
-                       const double dy = state.y[candidate.place] - candidate.y;
-                       return dx * dx + dy * dy > limit_square;
-                     });
+  for (std::size_t index = 0; index < found_.size(); ++index)
+  {
+    const Eigen::Vector2d now(state.x[places_[index]], state.y[places_[index]]);
+    if ((now - found_[index]).squaredNorm() > limit_square)
+      return true;
+  }
+  return false;
 }
 
 void Contact::note(const State &state, const std::vector<BrokenBond> &broken)
 {
+  if (found_.size() < places_.size())
+    rebuild(state);
   const double reach = law_.distance + skin_;
   for (const BrokenBond &bond : broken)
   {
     // Between two candidates there is no pair yet, since a bond has joined them; else the new one finds the other.
-    if (is_candidate_[bond.near] != 0 && is_candidate_[bond.far] != 0 &&
+    if (is_candidate_[bond.near] != 0 && is_candidate_[bond.far] != 0 && may_touch(state, bond.near, bond.far) &&
         std::hypot(state.x[bond.far] - state.x[bond.near], state.y[bond.far] - state.y[bond.near]) <= reach + skin_)
       insert_pair(bond.near, bond.far);
     for (const std::size_t place : {bond.near, bond.far})
@@ -101,18 +104,17 @@ void Contact::note(const State &state, const std::vector<BrokenBond> &broken)
 // the skin since its own, so pairs farther apart than distance + skin then cannot touch.
 void Contact::add_candidate(const State &state, std::size_t place)
 {
-  const Candidate added{place, state.x[place], state.y[place]};
+  const Eigen::Vector2d here(state.x[place], state.y[place]);
   const double reach = law_.distance + skin_;
-  cells_.for_each_near(added.x, added.y,
+  cells_.for_each_near(here.x(), here.y(),
                        [&](std::size_t index)
                        {
-                         const Candidate &other = candidates_[index];
-                         if (std::hypot(other.x - added.x, other.y - added.y) <= reach &&
-                             !bonded(state, place, other.place))
-                           insert_pair(place, other.place);
+                         if ((found_[index] - here).norm() <= reach && may_touch(state, place, places_[index]))
+                           insert_pair(place, places_[index]);
                        });
-  cells_.insert(candidates_.size(), added.x, added.y);
-  candidates_.push_back(added);
+  cells_.insert(places_.size(), here.x(), here.y());
+  places_.push_back(place);
+  found_.push_back(here);
   is_candidate_[place] = 1;
 }
 
@@ -124,18 +126,23 @@ void Contact::insert_pair(std::size_t a, std::size_t b)
     pairs_.insert(at, pair);
 }
 
-bool Contact::bonded(const State &state, std::size_t first, std::size_t second) const
+// Whether no bond joins two sites, one of which at least is in the band.
+bool Contact::may_touch(const State &state, std::size_t first, std::size_t second) const
 {
+  if (!band_.owns(first) && !band_.owns(second))
+    return false;
   for (const auto &[near, far] : {std::pair(first, second), std::pair(second, first)})
     for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
       if (near + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(near))) == far)
-        return state.bonds.present(near, kind);
-  return false;
+        return !state.bonds.present(near, kind);
+  return true;
 }
 
 const std::vector<SiteForce> &Contact::evaluate(const State &state, const Field &vx, const Field &vy)
 {
-  if (has_moved(state))
+  if (found_.size() < places_.size())
+    rebuild(state);
+  else if (has_moved(state))
   {
     rebuild(state);
     ++n_rebuilt_;
@@ -149,7 +156,7 @@ const std::vector<SiteForce> &Contact::evaluate(const State &state, const Field 
     // Sites in one place have no line between them to act along.
     if (!(square < law_.distance * law_.distance) || square == 0.)
       continue;
-    ++n_touching_;
+    n_touching_ += band_.owns(first) ? 1 : 0;
     const double r = std::sqrt(square);
     const Eigen::Vector2d direction = between / r;
     const double approach = -direction.dot(Eigen::Vector2d(vx[second] - vx[first], vy[second] - vy[first]));
@@ -157,8 +164,10 @@ const std::vector<SiteForce> &Contact::evaluate(const State &state, const Field 
     if (!(repulsion > 0.))
       continue;
     const Eigen::Vector2d force = repulsion * direction;
-    forces_.push_back({first, -force});
-    forces_.push_back({second, force});
+    if (band_.owns(first))
+      forces_.push_back({first, -force});
+    if (band_.owns(second))
+      forces_.push_back({second, force});
   }
   return forces_;
 }
@@ -168,6 +177,8 @@ double Contact::elastic_energy(const State &state) const
   double energy = 0.;
   for (const auto &[first, second] : pairs_)
   {
+    if (!band_.owns(first))
+      continue;
     const double r = std::hypot(state.x[second] - state.x[first], state.y[second] - state.y[first]);
     const double overlap = std::max(0., law_.distance - r);
     energy += 0.5 * law_.stiffness * overlap * overlap;

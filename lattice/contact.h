@@ -31,35 +31,39 @@ ContactLaw contact_like_nearest_bond(const TriangularLattice &lattice, const Mat
 /// distance + skin when it was made, which holds until a candidate has moved half the skin. The list is made anew then,
 /// with link cells; a site that becomes a candidate is added to it. Pairs are kept sorted by place and summed one after
 /// the other.
+///
+/// Ranks that share a sheet all follow all candidates, whose positions and velocities they tell each other before each
+/// evaluation: candidates stand along a line, so they are few. Each rank keeps the pairs that have a site in its rows
+/// and computes the forces on these.
 class Contact : public SiteForces
 {
 public:
-  /// @throws std::invalid_argument for a law out of its range or a periodic sheet
-  Contact(const TriangularLattice &lattice, const ContactLaw &law);
+  /// @param band rows on whose sites to act @throws std::invalid_argument for a law out of its range or a periodic
+  /// sheet
+  Contact(const RowBand &band, const ContactLaw &law);
 
   /// Finds the candidates among all sites; for a state that was cut or loaded from outside.
   void find_candidates(const State &state);
 
   /// Takes note of bonds that broke: their ends may touch others from now on, and each other.
+  /// @param state with the positions of these ends, wherever they are
   void note(const State &state, const std::vector<BrokenBond> &broken);
 
   const std::vector<SiteForce> &evaluate(const State &state, const Field &vx, const Field &vy) override;
 
-  /// Energy stored in the springs, per sheet thickness [J/m].
+  /// The candidates.
+  const std::vector<std::size_t> &sites_to_know() const override { return places_; }
+
+  /// Energy stored in the springs of the pairs whose first site is in the band, per sheet thickness [J/m].
   double elastic_energy(const State &state) const;
 
-  std::size_t n_candidates() const { return candidates_.size(); }
-  /// Pairs that overlapped at the last evaluation.
+  std::size_t n_candidates() const { return places_.size(); }
+  /// Pairs that overlapped at the last evaluation, those whose first site is in the band.
   std::size_t n_touching() const { return n_touching_; }
   /// How often the list was made anew because candidates had moved.
   std::size_t n_rebuilt() const { return n_rebuilt_; }
 
 private:
-  struct Candidate
-  {
-    std::size_t place;
-    double x, y; // where it was when its pairs were found
-  };
   struct Pair
   {
     std::size_t first, second; // places, first < second
@@ -72,15 +76,17 @@ private:
   bool has_moved(const State &state) const;
   void rebuild(const State &state);
   void add_candidate(const State &state, std::size_t place);
-  bool bonded(const State &state, std::size_t first, std::size_t second) const;
+  bool may_touch(const State &state, std::size_t first, std::size_t second) const;
   void insert_pair(std::size_t a, std::size_t b);
 
+  RowBand band_;
   const TriangularLattice &lattice_;
   ContactLaw law_;
   double skin_;
-  LinkCells cells_; // of candidates, by their index
-  std::vector<Candidate> candidates_;
-  std::vector<std::uint8_t> is_candidate_; // by place
+  LinkCells cells_;                    // of candidates, by their index
+  std::vector<std::size_t> places_;    // of candidates
+  std::vector<Eigen::Vector2d> found_; // where each was when its pairs were found; empty: no list was made of them yet
+  Marks is_candidate_;                 // by place
   std::vector<Pair> pairs_;
   std::size_t n_touching_ = 0;
   std::size_t n_rebuilt_ = 0;

@@ -65,11 +65,12 @@ Eigen::Matrix2d tangent_along_x(const TriangularLattice &lattice, const Material
   return tangent;
 }
 
-EndLoads::EndLoads(const TriangularLattice &lattice, const Material &material, const State &state,
-                   const Eigen::Matrix2d &F, End left, End right)
+EndLoads::EndLoads(const RowBand &band, const Material &material, const State &state, const Eigen::Matrix2d &F,
+                   End left, End right)
   : impedance_(Eigen::Matrix2d::Zero())
 {
-  for (std::size_t row = 0; row < lattice.rows(); ++row)
+  const TriangularLattice &lattice = band.lattice();
+  for (std::size_t row = band.rows().begin; row < band.rows().end; ++row)
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
     {
       const std::size_t place = lattice.index(row, column);
@@ -85,7 +86,7 @@ EndLoads::EndLoads(const TriangularLattice &lattice, const Material &material, c
       if (end == End::absorbing && outermost(lattice, place, on_left))
         absorbing_.push_back(place);
     }
-  if (absorbing_.empty())
+  if (left != End::absorbing && right != End::absorbing)
     return;
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> modes(material.density * tangent_along_x(lattice, material, F));
   if (!(modes.eigenvalues().minCoeff() > 0.))

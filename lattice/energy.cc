@@ -3,48 +3,50 @@
 namespace lattice
 {
 
-double elastic_energy(const State &state, const TriangularLattice &lattice, const Material &material)
+double elastic_energy(const State &state, const RowBand &band, const Material &material)
 {
+  const TriangularLattice &lattice = band.lattice();
   std::array<double, n_bond_kinds> volume{};
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
     if (const Shell *shell = material.shell(kind))
       volume[kind] = cross_section(*shell, lattice) * lattice.rest_length(kind);
-  // Row by row: a sum over a large sheet in one go would lose the digits that small changes are seen in.
-  double total = 0., row = 0.;
-  std::size_t current = 0;
-  for_each_bond(state, lattice,
+  std::vector<double> of_rows(lattice.rows(), 0.);
+  for_each_bond(state, lattice, band.rows(),
                 [&](std::size_t place, std::size_t kind, std::size_t)
                 {
-                  if (lattice.row_of(place) != current)
-                  {
-                    current = lattice.row_of(place);
-                    total += row;
-                    row = 0.;
-                  }
-                  row += volume[kind] * energy(material.shell(kind)->law, stretch(state, lattice, place, kind));
+                  of_rows[lattice.row_of(place)] +=
+                    volume[kind] * energy(material.shell(kind)->law, stretch(state, lattice, place, kind));
                 });
-  return total + row;
+  return band.sum(of_rows);
 }
 
-double kinetic_energy(const State &state, const TriangularLattice &lattice)
+double kinetic_energy(const State &state, const RowBand &band)
 {
-  double total = 0.;
-  for (std::size_t place = 0; place < lattice.n_places(); ++place)
-    if (state.inverse_mass[place] > 0.)
-      total +=
-        0.5 / state.inverse_mass[place] * (state.vx[place] * state.vx[place] + state.vy[place] * state.vy[place]);
-  return total;
+  const TriangularLattice &lattice = band.lattice();
+  std::vector<double> of_rows(lattice.rows(), 0.);
+  for (std::size_t row = band.rows().begin; row < band.rows().end; ++row)
+    for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
+    {
+      const std::size_t place = lattice.index(row, column);
+      if (state.inverse_mass[place] > 0.)
+        of_rows[row] +=
+          0.5 / state.inverse_mass[place] * (state.vx[place] * state.vx[place] + state.vy[place] * state.vy[place]);
+    }
+  return band.sum(of_rows);
 }
 
-double boundary_power(const State &state, const Forces &forces, const Field &vx, const Field &vy)
+double boundary_power(const State &state, const TriangularLattice &lattice, const Forces &forces, const Field &vx,
+                      const Field &vy, std::size_t row)
 {
   double power = 0.;
-  for (std::size_t place = 0; place < state.held.size(); ++place)
-    if (state.held[place] != 0)
-    {
-      const Eigen::Vector2d force = forces.on_site(state, vx, vy, place);
-      power -= force.x() * state.vx[place] + force.y() * state.vy[place];
-    }
+  for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
+  {
+    const std::size_t place = lattice.index(row, column);
+    if (state.held[place] == 0)
+      continue;
+    const Eigen::Vector2d force = forces.on_site(state, vx, vy, place);
+    power -= force.x() * state.vx[place] + force.y() * state.vy[place];
+  }
   return power;
 }
 

@@ -5,15 +5,20 @@
 namespace lattice
 {
 
-/// Elastic energy of all bonds, per sheet thickness [J/m].
-double elastic_energy(const State &state, const TriangularLattice &lattice, const Material &material);
+// Sums over a sheet are sums over its rows, added from the lowest up, so that their bits do not depend on who moves
+// which row.
 
-/// Kinetic energy of all free sites, per sheet thickness [J/m].
-double kinetic_energy(const State &state, const TriangularLattice &lattice);
+/// Elastic energy of all bonds, per sheet thickness [J/m]. Collective.
+double elastic_energy(const State &state, const RowBand &band, const Material &material);
 
-/// Power the held sites put into the sheet, -sum f . v over them, f being the force of the bonds on a site [W/m].
+/// Kinetic energy of all free sites, per sheet thickness [J/m]. Collective.
+double kinetic_energy(const State &state, const RowBand &band);
+
+/// Power the held sites of a row put into the sheet, -sum f . v over them, f being the force of the bonds on a site
+/// [W/m].
 /// @param vx,vy velocities that the dashpots see [m/s]
-double boundary_power(const State &state, const Forces &forces, const Field &vx, const Field &vy);
+double boundary_power(const State &state, const TriangularLattice &lattice, const Forces &forces, const Field &vx,
+                      const Field &vy, std::size_t row);
 
 /// Where the energy of a sheet is and where it went, all per sheet thickness [J/m] (theory.md, eq. L.11).
 struct EnergyBalance

@@ -12,15 +12,16 @@ namespace
 constexpr std::ptrdiff_t reach = 2; // of bonds, in rows
 
 } // namespace
-Forces::Forces(const TriangularLattice &lattice, const Material &material)
-  : lattice_(lattice), rows_repeat_(lattice.is_occupied(lattice.index(0, 0) - lattice.stride())),
-    columns_repeat_(lattice.is_occupied(lattice.index(0, 0) - 1)), row_viscous_power_(lattice.rows(), 0.),
-    row_events_(lattice.rows(), 0)
+
+Forces::Forces(const RowBand &band, const Material &material)
+  : band_(band), lattice_(band.lattice()), rows_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - lattice_.stride())),
+    columns_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - 1)), row_viscous_power_(lattice_.rows(), 0.),
+    row_events_(lattice_.rows(), 0)
 {
   for (const std::size_t kind : {std::size_t{0}, n_nearest_kinds})
     if (const Shell *shell = material.shell(kind))
     {
-      const double rest_length = lattice.rest_length(kind), section = cross_section(*shell, lattice);
+      const double rest_length = lattice_.rest_length(kind), section = cross_section(*shell, lattice_);
       constants_.shells[kind / n_nearest_kinds] = {shell->law, rest_length, section,
                                                    section * shell->viscosity / rest_length};
     }
@@ -32,24 +33,30 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy, cons
   scratch_.resize(threads ? static_cast<std::size_t>(omp_get_max_threads()) : 1, Scratch(lattice_.stride()));
 #pragma omp parallel if (threads)
   {
-    const auto rows = static_cast<std::ptrdiff_t>(lattice_.rows());
+    const auto first = static_cast<std::ptrdiff_t>(band_.rows().begin);
+    const std::ptrdiff_t rows = static_cast<std::ptrdiff_t>(band_.rows().end) - first;
     const std::ptrdiff_t n = omp_get_num_threads(), i = omp_get_thread_num();
-    const std::ptrdiff_t begin = rows * i / n, end = rows * (i + 1) / n;
-    // The rows that the bands next to this one look at, before anyone does.
+    const std::ptrdiff_t begin = first + rows * i / n, end = first + rows * (i + 1) / n;
+    // The rows that the threads next to this one look at, before anyone does.
     if (work.before)
       for (std::ptrdiff_t row = begin; row < end; ++row)
         if (row < begin + reach || row >= end - reach)
           work.before(static_cast<std::size_t>(row));
 #pragma omp barrier
-    evaluate_band({state, vx, vy}, begin, end, scratch_[static_cast<std::size_t>(i)], work);
+    evaluate_rows({state, vx, vy}, begin, end, scratch_[static_cast<std::size_t>(i)], work);
   }
-  // Summed row after row, whatever thread did which.
-  viscous_power_ = 0.;
-  for (const double power : row_viscous_power_)
-    viscous_power_ += power;
 }
 
-void Forces::evaluate_band(const Motion &motion, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
+double Forces::viscous_power() const
+{
+  // Summed row after row, whatever thread did which.
+  double sum = 0.;
+  for (const double power : row_viscous_power_)
+    sum += power;
+  return sum;
+}
+
+void Forces::evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
                            const RowWork &work)
 {
   if (begin == end)
@@ -60,7 +67,7 @@ void Forces::evaluate_band(const Motion &motion, std::ptrdiff_t begin, std::ptrd
   for (std::ptrdiff_t row = begin; row < end; ++row)
   {
     const auto index = static_cast<std::size_t>(row);
-    // As far up as bonds of this row reach, and where this has not been done for the band next to it.
+    // As far up as bonds of this row reach, and where this has not been done for the thread next to it.
     if (work.before && row + 2 * reach < end)
       work.before(index + reach);
     ahead.clear();
@@ -155,7 +162,8 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy)
 
 void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, std::size_t place, std::size_t kind)
 {
-  viscous_power_ -= single_bond({state, vx, vy}, place, kind).viscous_power;
+  if (band_.owns(place))
+    row_viscous_power_[lattice_.row_of(place)] -= single_bond({state, vx, vy}, place, kind).viscous_power;
 }
 
 kernels::BondForce Forces::single_bond(const Motion &motion, std::size_t place, std::size_t kind) const

@@ -13,22 +13,23 @@ namespace lattice
 /// Forces on all sites from all bonds. The loops over a row are in row_kernels.h.
 ///
 /// A bond pulls with A0 psi'(lam) + A0 eta (v_rel . n) / l along its current direction n (theory.md, eq. L.3).
-/// Every thread takes a band of rows from its lower to its upper end. It computes the bonds that start in a row, keeps
-/// those of the last three rows, and lets the sites of the row gather their twelve bonds while these are in cache.
-/// Bonds that reach into a band from below are computed once more there. The order of a gather is symmetric under both
-/// mirrors of the lattice, so the bits of a result depend neither on the number of threads nor on which side of a
+/// Every thread takes some of the rows from its lower to its upper end. It computes the bonds that start in a row,
+/// keeps those of the last three rows, and lets the sites of the row gather their twelve bonds while these are in
+/// cache. Bonds that reach into these from below are computed once more there. The order of a gather is symmetric under
+/// both mirrors of the lattice, so the bits of a result depend neither on the number of threads nor on which side of a
 /// symmetry line a site stands.
 class Forces
 {
 public:
-  Forces(const TriangularLattice &lattice, const Material &material);
+  /// @param band rows whose sites are to get their forces, of the whole sheet or of the share of a rank
+  Forces(const RowBand &band, const Material &material);
 
   /// Bonds below this stretch that are not toughened count as events too, per kind: all positive, or all 0 (no such
   /// event), which is the default. For toughening on retraction.
   void watch_retraction(const std::array<double, n_bond_kinds> &stretch) { constants_.retraction_stretch = stretch; }
 
-  /// What an integrator does with each row during an evaluation, while it is in cache: once, in any order of rows, by
-  /// several threads.
+  /// What an integrator does with each row of the band during an evaluation, while it is in cache: once, in any order
+  /// of rows, by several threads.
   struct RowWork
   {
     /// Before any bond of the row is looked at; may give the row its positions and velocities to be evaluated. Not for
@@ -40,8 +41,8 @@ public:
     std::function<void(std::size_t row, const double *fx, const double *fy)> after;
   };
 
-  /// Computes the force on every site at positions state.x, y and the given velocities [m/s], those of images included.
-  /// Forces at held sites are those the bonds exert on them.
+  /// Computes the force on every site of the band at positions state.x, y and the given velocities [m/s], those of
+  /// images included. Forces at held sites are those the bonds exert on them.
   void evaluate(const State &state, const Field &vx, const Field &vy, const RowWork &work);
   /// The same, into fx() and fy().
   void evaluate(const State &state, const Field &vx, const Field &vy);
@@ -52,13 +53,16 @@ public:
   /// Force on one site [N/m] at the given velocities, by the operations of an evaluation of all.
   Eigen::Vector2d on_site(const State &state, const Field &vx, const Field &vy, std::size_t place) const;
 
-  /// Power the dashpots dissipated at the last evaluation, sum of A0 eta (v_rel . n)^2 / l [W/m].
-  double viscous_power() const { return viscous_power_; }
+  /// Power the dashpots dissipated at the last evaluation, sum of A0 eta (v_rel . n)^2 / l [W/m] over the bonds that
+  /// start in a row of the band.
+  double viscous_power(std::size_t row) const { return row_viscous_power_[row]; }
+  /// The same over all its rows.
+  double viscous_power() const;
 
   /// Whether a row holds bonds that were stretched past their limit (or retracted) at the last evaluation.
   bool row_has_events(std::size_t row) const { return row_events_[row] != 0; }
 
-  /// Takes a bond that has just broken out of viscous_power().
+  /// Takes a bond that has just broken out of viscous_power(), if it is there.
   /// @param state as at the last evaluation
   /// @param vx,vy velocities of that evaluation
   void remove_bond(const State &state, const Field &vx, const Field &vy, std::size_t place, std::size_t kind);
@@ -101,7 +105,7 @@ private:
     Field fx, fy; // forces on the sites of a row
   };
 
-  void evaluate_band(const Motion &motion, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
+  void evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
                      const RowWork &work);
   void bonds_from_below(const Motion &motion, std::ptrdiff_t row, BondRows &bonds) const;
   kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, BondRows &bonds,
@@ -109,6 +113,7 @@ private:
   void gather_row(std::ptrdiff_t row, Scratch &scratch) const;
   kernels::BondForce single_bond(const Motion &motion, std::size_t place, std::size_t kind) const;
 
+  RowBand band_;
   const TriangularLattice &lattice_;
   kernels::SheetConstants constants_;
   bool rows_repeat_;    // periodic across the rows
@@ -118,7 +123,6 @@ private:
   Field fx_, fy_;
   Field row_viscous_power_;
   std::vector<std::uint8_t> row_events_;
-  double viscous_power_ = 0.;
 };
 
 } // namespace lattice

@@ -1,5 +1,6 @@
 #include "lattice/fracture.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -16,13 +17,13 @@ void require(bool condition, const char *message)
 
 } // namespace
 
-Fracture::Fracture(const TriangularLattice &lattice, const Material &material, double breaking_stretch,
-                   Toughening toughening, const Eigen::Matrix2d &deformation)
-  : lattice_(lattice), material_(material), breaking_stretch_(breaking_stretch), toughening_(toughening),
-    tip_losses_((material.coordination() + 3) / 4)
+Fracture::Fracture(const RowBand &band, const Material &material, double breaking_stretch, Toughening toughening,
+                   const Eigen::Matrix2d &deformation)
+  : band_(band), lattice_(band.lattice()), material_(material), breaking_stretch_(breaking_stretch),
+    toughening_(toughening), tip_losses_((material.coordination() + 3) / 4)
 {
   require(breaking_stretch > 0., "the breaking stretch must be positive");
-  require(lattice.images().empty(), "a periodic sheet does not break: a crack has no tip there");
+  require(lattice_.images().empty(), "a periodic sheet does not break: a crack has no tip there");
   if (const auto *behind = std::get_if<BehindTipToughening>(&toughening_))
     require(behind->distance >= 0. && behind->factor >= 1.,
             "toughening behind the tip needs distance >= 0, factor >= 1");
@@ -32,7 +33,7 @@ Fracture::Fracture(const TriangularLattice &lattice, const Material &material, d
             "toughening on retraction needs a fraction between 0 and 1 and a factor >= 1");
     for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
       retraction_stretch_[kind] =
-        retraction->fraction * (deformation * lattice.bond_vector(kind)).norm() / lattice.rest_length(kind);
+        retraction->fraction * (deformation * lattice_.bond_vector(kind)).norm() / lattice_.rest_length(kind);
   }
 }
 
@@ -52,36 +53,78 @@ double Fracture::bond_energy(const State &state, std::size_t place, std::size_t 
          energy(shell.law, stretch(state, lattice_, place, kind));
 }
 
-void Fracture::lose_bond(State &state, std::size_t place, std::size_t kind)
+// What ranks tell each other of a bond that is lost.
+struct Fracture::Loss
+{
+  std::size_t place, kind;
+  double stretch, energy;
+  std::uint8_t near_held, far_held; // which others need not know
+};
+
+Fracture::Loss Fracture::loss(const State &state, std::size_t place, std::size_t kind) const
 {
   const std::size_t far = place + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(place)));
-  state.bonds.remove(place, kind);
-  ++state.lost_bonds[place];
-  ++state.lost_bonds[far];
+  return {
+    place,          kind, stretch(state, lattice_, place, kind), bond_energy(state, place, kind), state.held[place],
+    state.held[far]};
 }
 
-double Fracture::remove_site(State &state, std::size_t place)
+// Takes bonds out of the sheet. @return those of all ranks in the order of storage, if `own` ones are in it
+std::vector<BrokenBond> Fracture::lose_bonds(State &state, const std::vector<Loss> &own) const
 {
-  require(lattice_.is_site(place), "only a site can be removed");
+  std::vector<BrokenBond> lost;
+  for (const Loss &bond : band_.joined(own))
+  {
+    const std::size_t far =
+      bond.place + static_cast<std::size_t>(lattice_.shift(bond.kind, lattice_.row_of(bond.place)));
+    const Eigen::Vector2d midpoint = lattice_.reference(bond.place) + 0.5 * lattice_.bond_vector(bond.kind);
+    state.bonds.remove(bond.place, bond.kind);
+    ++state.lost_bonds[bond.place];
+    ++state.lost_bonds[far];
+    state.held[bond.place] = bond.near_held;
+    state.held[far] = bond.far_held;
+    lost.push_back({state.time, bond.place, far, bond.kind, midpoint, bond.stretch, bond.energy});
+  }
+  return lost;
+}
+
+double Fracture::remove_sites(State &state, const std::vector<std::size_t> &places)
+{
+  std::vector<std::pair<std::size_t, std::size_t>> bonds; // place, kind
+  for (const std::size_t place : places)
+  {
+    require(lattice_.is_site(place), "only a site can be removed");
+    for_each_bond_of_site(state, lattice_, place,
+                          [&](std::size_t near, std::size_t kind)
+                          {
+                            if (band_.owns(near))
+                              bonds.emplace_back(near, kind);
+                          });
+  }
+  // Two removed sites may have a bond in common.
+  std::sort(bonds.begin(), bonds.end());
+  bonds.erase(std::unique(bonds.begin(), bonds.end()), bonds.end());
+  std::vector<Loss> own;
+  for (const auto &[place, kind] : bonds)
+    own.push_back(loss(state, place, kind));
   double removed_energy = 0.;
-  for_each_bond_of_site(state, lattice_, place,
-                        [&](std::size_t near, std::size_t kind)
-                        {
-                          removed_energy += bond_energy(state, near, kind);
-                          lose_bond(state, near, kind);
-                        });
-  state.removed[place] = 1;
-  state.inverse_mass[place] = 0.;
-  state.vx[place] = state.vy[place] = state.ax[place] = state.ay[place] = 0.;
+  for (const BrokenBond &bond : lose_bonds(state, own))
+    removed_energy += bond.energy;
+  for (const std::size_t place : places)
+  {
+    state.removed[place] = 1;
+    state.inverse_mass[place] = 0.;
+    state.vx[place] = state.vy[place] = state.ax[place] = state.ay[place] = 0.;
+  }
   return removed_energy;
 }
 
 const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, const Field &evaluated_vx,
                                                const Field &evaluated_vy)
 {
-  broken_.clear();
+  std::vector<Loss> own;
   const auto *retraction = std::get_if<RetractionToughening>(&toughening_);
-  for (std::size_t row = 0; row < lattice_.rows(); ++row)
+  for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
   {
     if (!forces.row_has_events(row))
       continue;
@@ -94,21 +137,15 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
           continue;
         const double current = stretch(state, lattice_, place, kind);
         if (current > limit(state, place, kind))
-        {
-          const std::size_t far = place + static_cast<std::size_t>(lattice_.shift(kind, row));
-          const Eigen::Vector2d midpoint = lattice_.reference(place) + 0.5 * lattice_.bond_vector(kind);
-          broken_.push_back({state.time, place, far, kind, midpoint, current, bond_energy(state, place, kind)});
-        }
+          own.push_back(loss(state, place, kind));
         else if (retraction != nullptr && current < retraction_stretch_[kind])
           state.bonds.toughen(place, kind);
       }
     }
   }
+  broken_ = lose_bonds(state, own);
   for (const BrokenBond &bond : broken_)
-  {
-    lose_bond(state, bond.near, bond.kind);
     forces.remove_bond(state, evaluated_vx, evaluated_vy, bond.near, bond.kind);
-  }
 
   const std::optional<std::size_t> previous_tip = tip_;
   if (tip_)
@@ -157,7 +194,7 @@ void Fracture::toughen_behind_tip(State &state)
   if (behind == nullptr || !tip_)
     return;
   const double boundary = tip_x_ - behind->distance;
-  for_each_bond(state, lattice_,
+  for_each_bond(state, lattice_, band_.rows(),
                 [&](std::size_t place, std::size_t kind, std::size_t)
                 {
                   const double midpoint_x = lattice_.reference(place).x() + 0.5 * lattice_.bond_vector(kind).x();

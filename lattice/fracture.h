@@ -47,23 +47,28 @@ struct BrokenBond
 /// The tip is the right-most site (reference X) that has lost at least a quarter of its bonds, rounded up: 3 of 12 as
 /// in the source paper, 2 of 6 where there are nearest neighbours alone. Held and removed sites do not count. Among
 /// sites at the same X the one nearest the previous tip is taken, then the one stored first.
+///
+/// Where ranks share a sheet, each looks after the bonds that start in its rows and tells the others what broke, so
+/// that all follow the crack alike.
 class Fracture
 {
 public:
+  /// @param band rows whose bonds may break, that of the simulation
   /// @param deformation F of the loaded, unbroken sheet: the stretch that retraction is measured against
   /// @throws std::invalid_argument for a rule out of its range
-  Fracture(const TriangularLattice &lattice, const Material &material, double breaking_stretch, Toughening toughening,
+  Fracture(const RowBand &band, const Material &material, double breaking_stretch, Toughening toughening,
            const Eigen::Matrix2d &deformation);
 
   /// Tells `state` what toughened bonds stand, and has `forces` report the bonds this object wants to hear of.
   void watch(State &state, Forces &forces) const;
 
-  /// Cuts a site and its bonds out of the sheet.
+  /// Cuts sites and their bonds out of the sheet. Collective.
   /// @return elastic energy of the bonds removed, per sheet thickness [J/m]
-  double remove_site(State &state, std::size_t place);
+  double remove_sites(State &state, const std::vector<std::size_t> &places);
 
   /// Breaks every bond beyond its limit at the last evaluation of `forces` and takes it out of `forces`, toughens what
-  /// is to be toughened, and moves the tip. @return the bonds that broke now, in the order of storage
+  /// is to be toughened, and moves the tip. Collective.
+  /// @return the bonds of the whole sheet that broke now, in the order of storage
   const std::vector<BrokenBond> &apply(State &state, Forces &forces, const Field &evaluated_vx,
                                        const Field &evaluated_vy);
 
@@ -74,11 +79,14 @@ public:
   std::optional<std::size_t> tip() const { return tip_; }
 
 private:
-  void lose_bond(State &state, std::size_t place, std::size_t kind);
+  struct Loss;
+  Loss loss(const State &state, std::size_t place, std::size_t kind) const;
+  std::vector<BrokenBond> lose_bonds(State &state, const std::vector<Loss> &own) const;
   void consider_tip(const State &state, std::size_t place);
   void toughen_behind_tip(State &state);
   double bond_energy(const State &state, std::size_t place, std::size_t kind) const;
 
+  RowBand band_;
   const TriangularLattice &lattice_;
   const Material &material_;
   double breaking_stretch_;

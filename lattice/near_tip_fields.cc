@@ -211,12 +211,36 @@ NearTipSampler::NearTipSampler(const TriangularLattice &lattice, const Material 
 {
   if (!(options.X_end >= options.X_begin))
     throw std::invalid_argument("the stretch in which samples are taken near the tip must end after it begins");
-  for (std::size_t row = 0; row < lattice.rows(); ++row)
-    for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
-    {
-      places_.push_back(lattice.index(row, column));
-      references_.push_back(lattice.reference(places_.back()));
-    }
+}
+
+bool NearTipSampler::looks_at(std::size_t tip) const
+{
+  const double X = lattice_.reference(tip).x();
+  return X >= options_.X_begin && X <= options_.X_end;
+}
+
+// Of `n` rows or columns those that a grid around the one of the tip may have to do with.
+Rows NearTipSampler::around(std::size_t centre, int before, int after, std::size_t n)
+{
+  // One more than the grid has, up to four between the tip and the axis, and two whose bonds reach a site.
+  constexpr int more = 7;
+  const auto first = static_cast<std::ptrdiff_t>(centre) - before - more;
+  return {static_cast<std::size_t>(std::max<std::ptrdiff_t>(first, 0)),
+          std::min(n, centre + static_cast<std::size_t>(after + more + 1))};
+}
+
+Rows NearTipSampler::rows_around(std::size_t tip) const
+{
+  const bool along = lattice_.orientation() == Orientation::rows_along_crack;
+  return around(lattice_.row_of(tip), along ? grid_.half_height : grid_.behind, along ? grid_.half_height : grid_.ahead,
+                lattice_.rows());
+}
+
+Rows NearTipSampler::columns_around(std::size_t tip) const
+{
+  const bool along = lattice_.orientation() == Orientation::rows_along_crack;
+  return around(lattice_.column_of(tip), along ? grid_.behind : grid_.half_height,
+                along ? grid_.ahead : grid_.half_height, lattice_.columns());
 }
 
 const NearTipSample *NearTipSampler::sample(const State &state, std::size_t tip)
@@ -226,9 +250,9 @@ const NearTipSample *NearTipSampler::sample(const State &state, std::size_t tip)
   const Axis now = axis(state, tip);
   path_.push_back(now.reference);
   fold_until(now.reference.x() - heading_to * lattice_.spacing());
-  if (now.reference.x() < options_.X_begin || now.reference.x() > options_.X_end || calls_at_rest_ >= calls_of_rest)
+  if (!looks_at(tip) || calls_at_rest_ >= calls_of_rest)
     return nullptr;
-  pending_.push_back(look(state, now, taken_ % samples_for_tensors == 0));
+  pending_.push_back(look(state, now, tip, taken_ % samples_for_tensors == 0));
   ++taken_;
   plain_.add(pending_.back().sums, false);
   return &pending_.back();
@@ -253,7 +277,7 @@ NearTipSampler::Axis NearTipSampler::axis(const State &state, std::size_t tip) c
   return {0.5 * (lattice_.reference(lowest) + lattice_.reference(highest)), 0.5 * (low + high)};
 }
 
-NearTipSample NearTipSampler::look(const State &state, const Axis &axis, bool with_tensors)
+NearTipSample NearTipSampler::look(const State &state, const Axis &axis, std::size_t tip, bool with_tensors)
 {
   const double part = (axis.reference.x() - options_.X_begin) / (options_.X_end - options_.X_begin);
   NearTipSample sample{axis.reference.x(),
@@ -262,19 +286,18 @@ NearTipSample NearTipSampler::look(const State &state, const Axis &axis, bool wi
                        NearTipSums(grid_),
                        {}};
   sample.sums.add_sample();
-  for (std::size_t s = 0; s < places_.size(); ++s)
+  const auto look_at = [&](std::size_t place)
   {
-    const Eigen::Vector2d offset = references_[s] - axis.reference;
+    const Eigen::Vector2d reference = lattice_.reference(place), offset = reference - axis.reference;
     // Half a pitch more than the grid: sites there count half at its rim.
     if (offset.x() < -(grid_.behind + 0.75) * grid_.pitch_X || offset.x() > (grid_.ahead + 0.75) * grid_.pitch_X ||
         std::abs(offset.y()) > (grid_.half_height + 0.75) * grid_.pitch_Y)
-      continue;
-    const std::size_t place = places_[s];
+      return;
     if (state.removed[place] != 0 || 2u * state.lost_bonds[place] > material_.coordination())
-      continue;
+      return;
     const Eigen::Vector2d position(state.x[place], state.y[place]);
     const Eigen::Vector2d displacement = position - axis.current - offset;
-    const Eigen::Vector2d from_loading = position - options_.deformation * references_[s];
+    const Eigen::Vector2d from_loading = position - options_.deformation * reference;
     NearTipSums::Motion motion;
     motion << state.vx[place], state.vy[place], displacement.x(), displacement.y(), from_loading.x(), from_loading.y();
     std::optional<NearTipSums::Tensors> tensors;
@@ -296,7 +319,11 @@ NearTipSample NearTipSampler::look(const State &state, const Axis &axis, bool wi
     sample.sums.add_site(twice(offset.x(), grid_.pitch_X), twice(offset.y(), grid_.pitch_Y), motion, tensors,
                          gradients);
     sample.sites.push_back(position - axis.current);
-  }
+  };
+  const Rows rows = rows_around(tip), columns = columns_around(tip);
+  for (std::size_t row = rows.begin; row < rows.end; ++row)
+    for (std::size_t column = columns.begin; column < std::min(columns.end, lattice_.sites_in_row(row)); ++column)
+      look_at(lattice_.index(row, column));
   return sample;
 }
 

@@ -139,6 +139,11 @@ public:
   /// X_end, or because the tip has rested for the last ten calls and is no running one
   const NearTipSample *sample(const State &state, std::size_t tip);
 
+  /// Whether sample() looks at the sheet if the tip is there, unless the tip rests.
+  bool looks_at(std::size_t tip) const;
+  /// The rows that it then looks at.
+  Rows rows_around(std::size_t tip) const;
+
   /// Folds the last samples by what is known of the path. To be called once, when there is no more to come.
   void finish();
 
@@ -157,7 +162,9 @@ private:
     Eigen::Vector2d reference, current; // of the tip [m]
   };
   Axis axis(const State &state, std::size_t tip) const;
-  NearTipSample look(const State &state, const Axis &axis, bool with_tensors);
+  static Rows around(std::size_t centre, int before, int after, std::size_t n);
+  Rows columns_around(std::size_t tip) const;
+  NearTipSample look(const State &state, const Axis &axis, std::size_t tip, bool with_tensors);
   bool descends(double X) const;
   void fold_until(double X);
 
@@ -167,9 +174,7 @@ private:
   NearTipGrid grid_;
   SiteEvaluator evaluator_;
   StrainGradientFit gradient_fit_;
-  std::vector<std::size_t> places_;         // of all sites
-  std::vector<Eigen::Vector2d> references_; // of all sites [m]
-  std::vector<Eigen::Vector2d> path_;       // of the tip at all calls, reference [m]
+  std::vector<Eigen::Vector2d> path_; // of the tip at all calls, reference [m]
   NearTipSums plain_;
   std::vector<NearTipSums> folded_;   // a sum for each block
   std::deque<NearTipSample> pending_; // not folded yet

@@ -5,15 +5,16 @@
 namespace lattice
 {
 
-Simulation::Simulation(const TriangularLattice &lattice, const Material &material, State initial, double time_step,
+Simulation::Simulation(const RowBand &band, const Material &material, State initial, double time_step,
                        std::optional<Fracture> fracture)
-  : lattice_(lattice), material_(material), state_(std::move(initial)), forces_(lattice, material),
-    integrator_(lattice, forces_, time_step), fracture_(std::move(fracture))
+  : band_(band), lattice_(band.lattice()), material_(material), state_(std::move(initial)), forces_(band, material),
+    integrator_(band, forces_, time_step), fracture_(std::move(fracture)), powers_(lattice_.rows()),
+    work_(lattice_.rows())
 {
   if (fracture_)
     fracture_->watch(state_, forces_);
-  initial_energy_ = elastic_energy(state_, lattice_, material_) + kinetic_energy(state_, lattice_);
   restart();
+  initial_energy_ = elastic_energy(state_, band_, material_) + kinetic_energy(state_, band_);
 }
 
 void Simulation::restart()
@@ -26,29 +27,51 @@ void Simulation::restart()
 
 void Simulation::note_powers()
 {
-  contact_power_ = 0.;
-  boundary_power_ =
-    edges_move_ ? boundary_power(state_, forces_, integrator_.evaluated_vx(), integrator_.evaluated_vy()) : 0.;
-  if (contact_)
+  for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
   {
-    // A held site that moves pushes with what the contact pushes it.
-    contact_power_ = -power(contact_->last(), state_, false) - power(contact_->last(), state_, true);
-    boundary_power_ -= power(contact_->last(), state_, true);
+    powers_.viscous[row] = forces_.viscous_power(row);
+    powers_.contact[row] = 0.;
+    powers_.boundary[row] = edges_move_ ? boundary_power(state_, lattice_, forces_, integrator_.evaluated_vx(),
+                                                         integrator_.evaluated_vy(), row)
+                                        : 0.;
   }
+  const auto power = [this](const SiteForce &on)
+  { return on.force.dot(Eigen::Vector2d(state_.vx[on.place], state_.vy[on.place])); };
+  if (contact_)
+    for (const SiteForce &on : contact_->last())
+    {
+      powers_.contact[lattice_.row_of(on.place)] -= power(on);
+      // A held site that moves pushes with what the contact pushes it.
+      if (state_.held[on.place] != 0)
+        powers_.boundary[lattice_.row_of(on.place)] -= power(on);
+    }
   if (end_loads_)
-    boundary_power_ += power(end_loads_->last(), state_, false);
+    for (const SiteForce &on : end_loads_->last())
+      powers_.boundary[lattice_.row_of(on.place)] += power(on);
+}
+
+// Trapezoidal rule over a time step.
+void Simulation::add_work(const Ledger &before)
+{
+  const double half = 0.5 * time_step();
+  for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
+  {
+    work_.viscous[row] += half * (before.viscous[row] + powers_.viscous[row]);
+    work_.contact[row] += half * (before.contact[row] + powers_.contact[row]);
+    work_.boundary[row] += half * (before.boundary[row] + powers_.boundary[row]);
+  }
 }
 
 void Simulation::let_touch(const ContactLaw &law)
 {
-  contact_.emplace(lattice_, law);
+  contact_.emplace(band_, law);
   integrator_.add(*contact_);
   restart();
 }
 
 void Simulation::load_ends(const Eigen::Matrix2d &F, EndLoads::End left, EndLoads::End right)
 {
-  end_loads_.emplace(lattice_, material_, state_, F, left, right);
+  end_loads_.emplace(band_, material_, state_, F, left, right);
   integrator_.add(*end_loads_);
   restart();
 }
@@ -57,8 +80,7 @@ void Simulation::cut(const std::vector<std::size_t> &places)
 {
   if (!fracture_)
     throw std::logic_error("a sheet without fracture rules cannot be cut");
-  for (const std::size_t place : places)
-    broken_ += fracture_->remove_site(state_, place);
+  broken_ += fracture_->remove_sites(state_, places);
   fracture_->locate_tip(state_);
   restart();
 }
@@ -78,29 +100,25 @@ void Simulation::move_edges(const Eigen::Matrix2d &velocity_gradient)
 
 void Simulation::set_velocities(const Field &vx, const Field &vy)
 {
-  const double before = kinetic_energy(state_, lattice_);
+  const double before = kinetic_energy(state_, band_);
   for (std::size_t place = 0; place < lattice_.n_places(); ++place)
     if (state_.inverse_mass[place] > 0.)
     {
       state_.vx[place] = vx[place];
       state_.vy[place] = vy[place];
     }
-  initial_energy_ += kinetic_energy(state_, lattice_) - before;
+  initial_energy_ += kinetic_energy(state_, band_) - before;
   restart();
 }
 
 const std::vector<BrokenBond> &Simulation::step()
 {
-  const double h = time_step();
-  const double viscous_power_before = forces_.viscous_power();
   integrator_.step(state_);
 
   // Powers are taken before bonds break, so that each interval of the trapezoidal rule sees one set of bonds.
-  viscous_ += 0.5 * h * (viscous_power_before + forces_.viscous_power());
-  const double contact_power_before = contact_power_, boundary_power_before = boundary_power_;
+  const Ledger before = powers_;
   note_powers();
-  contact_energy_ += 0.5 * h * (contact_power_before + contact_power_);
-  boundary_work_ += 0.5 * h * (boundary_power_before + boundary_power_);
+  add_work(before);
   if (!fracture_)
     return no_bonds_;
 
@@ -111,15 +129,16 @@ const std::vector<BrokenBond> &Simulation::step()
     for (const BrokenBond &bond : broken)
       broken_ += bond.energy;
     n_broken_ += broken.size();
-    if (contact_)
-    {
-      // From this instant on, as the bonds are gone from it.
-      contact_->note(state_, broken);
-      contact_->evaluate(state_, integrator_.evaluated_vx(), integrator_.evaluated_vy());
-    }
     std::vector<std::size_t> ends;
     for (const BrokenBond &bond : broken)
       ends.insert(ends.end(), {bond.near, bond.far});
+    if (contact_)
+    {
+      // From this instant on, as the bonds are gone from it.
+      band_.share(ends, {&state_.x, &state_.y});
+      contact_->note(state_, broken);
+      integrator_.evaluate_site_forces(state_);
+    }
     integrator_.update_accelerations(state_, ends);
     note_powers();
   }
@@ -131,14 +150,34 @@ std::optional<std::size_t> Simulation::tip() const
   return fracture_ ? fracture_->tip() : std::nullopt;
 }
 
+Eigen::Vector2d Simulation::position(std::size_t place) const
+{
+  Eigen::Vector2d x(state_.x[place], state_.y[place]);
+  if (band_.is_shared())
+    MPI_Bcast(x.data(), 2, MPI_DOUBLE, static_cast<int>(band_.owner(lattice_.row_of(place))), band_.communicator());
+  return x;
+}
+
+const State &Simulation::gather(Rows rows)
+{
+  for (Field *field : {&state_.x, &state_.y, &state_.vx, &state_.vy})
+    band_.gather(*field, rows);
+  band_.gather(state_.bonds.storage(), rows);
+  for (Marks *marks : {&state_.held, &state_.removed, &state_.lost_bonds})
+    band_.gather(*marks, rows);
+  if (band_.is_first())
+    update_images(state_, lattice_);
+  return state_;
+}
+
 EnergyBalance Simulation::energies() const
 {
-  return {elastic_energy(state_, lattice_, material_),
-          kinetic_energy(state_, lattice_),
-          viscous_,
+  return {elastic_energy(state_, band_, material_),
+          kinetic_energy(state_, band_),
+          band_.sum(work_.viscous),
           broken_,
-          contact_energy_,
-          boundary_work_,
+          band_.sum(work_.contact),
+          band_.sum(work_.boundary),
           initial_energy_};
 }
 

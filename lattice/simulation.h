@@ -13,13 +13,18 @@ namespace lattice
 {
 
 /// A sheet in motion: state, forces, time stepping, fracture and the energy ledger, one step at a time.
+///
+/// Ranks that share the sheet make one simulation together, each of its band of rows. Every function that is not const
+/// is collective, and so are energies() and position(). What they return, and all that does not depend on who moves
+/// which row, is the same bits on all ranks, for any number of them.
 class Simulation
 {
 public:
-  /// @param initial loaded state; its accelerations are computed here
+  /// @param band rows that this process moves: a whole lattice, or its share
+  /// @param initial loaded state in the rows that the band knows; its accelerations are computed here
   /// @param time_step h [s]
-  /// @param fracture breaking rules; none for a sheet whose bonds never break
-  Simulation(const TriangularLattice &lattice, const Material &material, State initial, double time_step,
+  /// @param fracture breaking rules for the same band; none for a sheet whose bonds never break
+  Simulation(const RowBand &band, const Material &material, State initial, double time_step,
              std::optional<Fracture> fracture = std::nullopt);
   Simulation(const Simulation &) = delete; // parts refer to each other
   Simulation &operator=(const Simulation &) = delete;
@@ -39,12 +44,20 @@ public:
   /// Adds a velocity field to the free sites; for waves and for tests. One (vx, vy) a place [m/s].
   void set_velocities(const Field &vx, const Field &vy);
 
-  /// Advances by one time step. @return bonds that broke in it
+  /// Advances by one time step. @return bonds of the whole sheet that broke in it
   const std::vector<BrokenBond> &step();
 
+  /// Lets the first rank know positions, velocities and bonds in some rows. @return its state() there, and that of
+  /// others as it was
+  const State &gather(Rows rows);
+  /// The same for the whole sheet, for those who look at it all.
+  const State &gather() { return gather({0, lattice_.rows()}); }
+
+  const RowBand &band() const { return band_; }
   const TriangularLattice &lattice() const { return lattice_; }
   const Material &material() const { return material_; }
-  const State &state() const { return state_; }
+  const State &state() const { return state_; }      ///< in the rows that the band knows
+  Eigen::Vector2d position(std::size_t place) const; ///< of any site [m]
   const Forces &forces() const { return forces_; }
   double time_step() const { return integrator_.time_step(); }
   std::optional<std::size_t> tip() const;
@@ -53,9 +66,20 @@ public:
   const Contact *contact() const { return contact_ ? &*contact_ : nullptr; } ///< nullptr: sites do not touch
 
 private:
+  /// Powers per sheet thickness [W/m], and what they have added up to [J/m]; one a row of the sheet.
+  struct Ledger
+  {
+    std::vector<double> viscous;  // dissipated by dashpots
+    std::vector<double> contact;  // from the sheet into contacts
+    std::vector<double> boundary; // into the sheet from its edges
+    explicit Ledger(std::size_t rows) : viscous(rows, 0.), contact(rows, 0.), boundary(rows, 0.) {}
+  };
+
   void restart();
   void note_powers();
+  void add_work(const Ledger &before);
 
+  RowBand band_;
   const TriangularLattice &lattice_;
   const Material &material_;
   State state_;
@@ -69,8 +93,8 @@ private:
   bool edges_move_ = false;
   std::size_t n_broken_ = 0;
   double initial_energy_ = 0.;
-  double viscous_ = 0., broken_ = 0., contact_energy_ = 0., boundary_work_ = 0.;
-  double contact_power_ = 0., boundary_power_ = 0.; // from the sheet, into the sheet
+  double broken_ = 0.;
+  Ledger powers_, work_;
 };
 
 } // namespace lattice

@@ -14,7 +14,8 @@ struct SiteForce
   Eigen::Vector2d force; ///< [N/m]
 };
 
-/// Forces on a few sites that no bond exerts: contacts, loads on edges. VelocityVerlet adds them to those of the bonds.
+/// Forces on a few sites of a band of rows that no bond exerts: contacts, loads on edges. VelocityVerlet adds them to
+/// those of the bonds.
 class SiteForces
 {
 public:
@@ -24,15 +25,19 @@ public:
   /// site may occur more than once.
   virtual const std::vector<SiteForce> &evaluate(const State &state, const Field &vx, const Field &vy) = 0;
 
+  /// Sites whose positions and velocities the forces depend on, wherever in the sheet they are: the same list on all
+  /// ranks. Whoever calls evaluate() sees to it that they are known.
+  virtual const std::vector<std::size_t> &sites_to_know() const
+  {
+    static const std::vector<std::size_t> none;
+    return none;
+  }
+
   /// Those of the last evaluation.
   const std::vector<SiteForce> &last() const { return forces_; }
 
 protected:
   std::vector<SiteForce> forces_;
 };
-
-/// Power sum f . v [W/m] that forces put into sites moving with state.vx, vy: into those that move freely, or into the
-/// held ones.
-double power(const std::vector<SiteForce> &forces, const State &state, bool into_held);
 
 } // namespace lattice

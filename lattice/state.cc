@@ -41,12 +41,36 @@ bool reaches_beyond(const TriangularLattice &lattice, const Material &material, 
   return false;
 }
 
+// Gives a site the bonds that start there. @return how many it has, those that end there included
+unsigned int add_bonds(State &state, const TriangularLattice &lattice, const Material &material, std::size_t place)
+{
+  const std::size_t row = lattice.row_of(place);
+  unsigned int bonds = 0;
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  {
+    if (material.shell(kind) == nullptr)
+      continue;
+    if (lattice.is_occupied(place + static_cast<std::size_t>(lattice.shift(kind, row))))
+    {
+      state.bonds.add(place, kind);
+      ++bonds;
+    }
+    // The bond from below starts in a row of the other parity, except along the row and two rows down.
+    const std::size_t near_row = (kind == 0 || kind == n_bond_kinds - 1) ? row : row + 1;
+    if (lattice.is_occupied(place - static_cast<std::size_t>(lattice.shift(kind, near_row))))
+      ++bonds;
+  }
+  return bonds;
+}
+
 } // namespace
 
-void update_images(State &state, const TriangularLattice &lattice)
+void update_images(State &state, const RowBand &band)
 {
-  for (const TriangularLattice::Image &image : lattice.images())
+  for (const TriangularLattice::Image &image : band.lattice().images())
   {
+    if (!band.knows(image.site))
+      continue;
     const Eigen::Vector2d period = state.periods * image.period;
     state.x[image.place] = state.x[image.site] + period.x();
     state.y[image.place] = state.y[image.site] + period.y();
@@ -55,64 +79,52 @@ void update_images(State &state, const TriangularLattice &lattice)
   }
 }
 
-State homogeneous_state(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F,
-                        Edges edges, double breaking_stretch)
+State homogeneous_state(const RowBand &band, const Material &material, const Eigen::Matrix2d &F, Edges edges,
+                        double breaking_stretch)
 {
+  const TriangularLattice &lattice = band.lattice();
   const std::size_t n = lattice.n_places();
   State state;
-  for (Field *field : {&state.vx, &state.vy, &state.ax, &state.ay, &state.inverse_mass})
-    field->assign(n, 0.);
-  state.held.assign(n, 0);
-  state.removed.assign(n, 0);
-  state.lost_bonds.assign(n, 0);
+  for (Field *field : {&state.x, &state.y, &state.vx, &state.vy, &state.ax, &state.ay, &state.inverse_mass})
+    *field = Field(n);
+  for (Marks *marks : {&state.held, &state.removed, &state.lost_bonds})
+    *marks = Marks(n);
+  state.bonds.clear(n);
+  state.breaking_stretch = state.toughened_stretch = breaking_stretch;
 
   state.periods = F;
-  state.x.resize(n);
-  state.y.resize(n);
   for (std::size_t place = 0; place < n; ++place)
   {
+    const bool in_margin = lattice.row_of(place) >= lattice.rows(); // unsigned, so below the first row as well
+    if (!band.knows(place) && !in_margin)
+      continue;
     const Eigen::Vector2d position = F * lattice.reference(place);
     state.x[place] = position.x();
     state.y[place] = position.y();
   }
 
-  state.bonds.clear(n);
-  state.breaking_stretch = state.toughened_stretch = breaking_stretch;
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
-  {
-    if (material.shell(kind) == nullptr)
-      continue;
-    for (std::size_t row = 0; row < lattice.rows(); ++row)
-      for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
-      {
-        const std::size_t place = lattice.index(row, column);
-        if (lattice.is_occupied(place + static_cast<std::size_t>(lattice.shift(kind, row))))
-          state.bonds.add(place, kind);
-      }
-  }
-
   const double inverse_mass = 1. / site_mass(material, lattice);
-  for (std::size_t row = 0; row < lattice.rows(); ++row)
+  for (const std::size_t row : band.known_rows())
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
     {
       const std::size_t place = lattice.index(row, column);
-      unsigned int bonds = 0;
-      for_each_bond_of_site(state, lattice, place, [&](std::size_t, std::size_t) { ++bonds; });
+      const unsigned int bonds = add_bonds(state, lattice, material, place);
       const bool held = bonds < material.coordination() && reaches_beyond(lattice, material, place, edges);
       state.held[place] = held ? 1 : 0;
       state.inverse_mass[place] = held ? 0. : inverse_mass;
     }
-  update_images(state, lattice);
+  update_images(state, band);
   return state;
 }
 
-void add_noise(State &state, const TriangularLattice &lattice, double amplitude, std::uint64_t seed)
+void add_noise(State &state, const RowBand &band, double amplitude, std::uint64_t seed)
 {
+  const TriangularLattice &lattice = band.lattice();
   const std::uint64_t stream = splitmix64(seed);
   // Sites are numbered with two places between rows and before them, whatever the storage.
   const auto number = [&](std::size_t row, std::size_t column)
   { return (row + 2) * (lattice.columns() + 4) + column + 2; };
-  for (std::size_t row = 0; row < lattice.rows(); ++row)
+  for (const std::size_t row : band.known_rows())
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
     {
       const std::size_t place = lattice.index(row, column);
@@ -121,7 +133,7 @@ void add_noise(State &state, const TriangularLattice &lattice, double amplitude,
       state.x[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * number(row, column)));
       state.y[place] += amplitude * symmetric_uniform(splitmix64(stream + 2 * number(row, column) + 1));
     }
-  update_images(state, lattice);
+  update_images(state, band);
 }
 
 double stretch(const State &state, const TriangularLattice &lattice, std::size_t place, std::size_t kind)

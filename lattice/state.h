@@ -9,8 +9,7 @@
 
 #include "lattice/bond_states.h"
 #include "lattice/material.h"
-#include "lattice/triangular_lattice.h"
-#include "lattice/zero_pages.h"
+#include "lattice/row_band.h"
 
 namespace lattice
 {
@@ -22,11 +21,12 @@ inline constexpr std::size_t worth_threads = 4096;
 /// A breaking stretch that no bond reaches.
 inline constexpr double unbreakable = std::numeric_limits<double>::infinity();
 
-/// A field over the places of a lattice, one value each, margin included.
-using Field = std::vector<double, ZeroPages<double>>;
-
 /// Everything that changes while a sheet moves and breaks, as a structure of arrays over the places of the lattice.
 /// Positions and velocities are current ones.
+///
+/// On a rank that shares the sheet with others values are those of the rows it knows (see RowBand), and of these some
+/// of its own rows alone: velocities, accelerations, which bonds are toughened. Removed sites, lost bonds and which
+/// bonds have broken are known everywhere.
 struct State
 {
   double time = 0.;                       ///< [s]
@@ -37,15 +37,15 @@ struct State
   double breaking_stretch = unbreakable;  ///< lam_f [-], beyond which a bond breaks
   double toughened_stretch = unbreakable; ///< that of toughened bonds [-]
   Field inverse_mass;                     ///< h / m [m/kg]; 0 at held and removed sites and in the margin
-  std::vector<std::uint8_t> held;         ///< 1 at sites whose motion is prescribed
-  std::vector<std::uint8_t> removed;      ///< 1 at sites cut out as seed crack
-  std::vector<std::uint8_t> lost_bonds;   ///< bonds a site has lost, to breaking or to removed neighbours
+  Marks held;                             ///< 1 at sites whose motion is prescribed
+  Marks removed;                          ///< 1 at sites cut out as seed crack
+  Marks lost_bonds;                       ///< bonds a site has lost, to breaking or to removed neighbours
   Eigen::Matrix2d periods = Eigen::Matrix2d::Identity(); ///< F that takes reference periods to current ones [-]
 };
 
-/// Gives the images of a periodic sheet the positions and velocities of their sites. To be called after a change of
-/// either from outside; what moves a sheet calls it itself.
-void update_images(State &state, const TriangularLattice &lattice);
+/// Gives the images of a periodic sheet the positions and velocities of their sites, those in known rows. To be called
+/// after a change of either from outside; what moves a sheet calls it itself.
+void update_images(State &state, const RowBand &band);
 
 /// Which edges of the sheet are held: there, sites that lack a neighbour beyond the edge have their motion prescribed.
 struct Edges
@@ -57,11 +57,11 @@ struct Edges
 inline constexpr Edges Edges::held{true, true, true, true};
 inline constexpr Edges Edges::free{false, false, false, false};
 
-/// The unbroken sheet at the homogeneous deformation x = F X, at rest. Edges across which the sheet is periodic do not
-/// exist, whatever `edges` says of them.
+/// The unbroken sheet at the homogeneous deformation x = F X, at rest, in the rows that `band` knows. Edges across
+/// which the sheet is periodic do not exist, whatever `edges` says of them.
 /// @param breaking_stretch lam_f [-] of every bond, toughened or not
-State homogeneous_state(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F,
-                        Edges edges, double breaking_stretch = unbreakable);
+State homogeneous_state(const RowBand &band, const Material &material, const Eigen::Matrix2d &F, Edges edges,
+                        double breaking_stretch = unbreakable);
 
 /// Stretch beyond which a bond that is present breaks [-].
 inline double limit(const State &state, std::size_t place, std::size_t kind)
@@ -69,19 +69,21 @@ inline double limit(const State &state, std::size_t place, std::size_t kind)
   return state.bonds.toughened(place, kind) ? state.toughened_stretch : state.breaking_stretch;
 }
 
-/// Moves every free site by a random displacement, uniform in [-amplitude, amplitude] along x and y.
-/// The displacement of a site depends on (seed, place) alone, so it is the same on every machine and in any order.
+/// Moves every free site in the rows that `band` knows by a random displacement, uniform in [-amplitude, amplitude]
+/// along x and y. The displacement of a site depends on (seed, place) alone, so it is the same on every machine and in
+/// any order.
 /// @param amplitude [m], >= 0
-void add_noise(State &state, const TriangularLattice &lattice, double amplitude, std::uint64_t seed);
+void add_noise(State &state, const RowBand &band, double amplitude, std::uint64_t seed);
 
 /// Current stretch |x_j - x_i| / l of a bond [-].
 double stretch(const State &state, const TriangularLattice &lattice, std::size_t place, std::size_t kind);
 
-/// Calls visit(place, kind, far_place) for every bond that is present, row by row; far_place may be an image.
+/// Calls visit(place, kind, far_place) for every bond present that starts in a row of `rows`, row by row; far_place may
+/// be an image.
 template <class Visitor>
-void for_each_bond(const State &state, const TriangularLattice &lattice, Visitor &&visit)
+void for_each_bond(const State &state, const TriangularLattice &lattice, Rows rows, Visitor &&visit)
 {
-  for (std::size_t row = 0; row < lattice.rows(); ++row)
+  for (std::size_t row = rows.begin; row < rows.end; ++row)
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
     {
       const std::size_t place = lattice.index(row, column);
@@ -89,6 +91,13 @@ void for_each_bond(const State &state, const TriangularLattice &lattice, Visitor
         if (state.bonds.present(place, kind))
           visit(place, kind, place + static_cast<std::size_t>(lattice.shift(kind, row)));
     }
+}
+
+/// The same for all rows.
+template <class Visitor>
+void for_each_bond(const State &state, const TriangularLattice &lattice, Visitor &&visit)
+{
+  for_each_bond(state, lattice, {0, lattice.rows()}, visit);
 }
 
 /// Calls visit(near_place, kind) for each of the up to twelve bonds present at a site, near_place being the end at

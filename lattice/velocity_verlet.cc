@@ -1,5 +1,6 @@
 #include "lattice/velocity_verlet.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "lattice/row_kernels.h"
@@ -11,19 +12,19 @@ namespace
 
 // Rows are shared out among threads; nothing here couples two sites, so the bits cannot depend on how.
 template <class RowOperation>
-void for_each_row(const TriangularLattice &lattice, const RowOperation &operation)
+void for_each_row(const TriangularLattice &lattice, Rows rows, const RowOperation &operation)
 {
-  const auto n_rows = static_cast<std::ptrdiff_t>(lattice.rows());
-#pragma omp parallel for schedule(static) if (lattice.n_places() >= worth_threads)
-  for (std::ptrdiff_t row = 0; row < n_rows; ++row)
+  const auto end = static_cast<std::ptrdiff_t>(rows.end);
+#pragma omp parallel for schedule(static) if ((rows.end - rows.begin) * lattice.stride() >= worth_threads)
+  for (auto row = static_cast<std::ptrdiff_t>(rows.begin); row < end; ++row)
     operation(static_cast<std::size_t>(row));
 }
 
 } // namespace
 
-VelocityVerlet::VelocityVerlet(const TriangularLattice &lattice, Forces &forces, double time_step)
-  : lattice_(lattice), forces_(forces), time_step_(time_step), predicted_vx_(lattice.n_places(), 0.),
-    predicted_vy_(lattice.n_places(), 0.)
+VelocityVerlet::VelocityVerlet(const RowBand &band, Forces &forces, double time_step)
+  : band_(band), lattice_(band.lattice()), halo_(band), forces_(forces), time_step_(time_step),
+    predicted_vx_(lattice_.n_places()), predicted_vy_(lattice_.n_places())
 {
   if (!(time_step > 0.))
     throw std::invalid_argument("velocity Verlet needs a positive time step");
@@ -31,9 +32,16 @@ VelocityVerlet::VelocityVerlet(const TriangularLattice &lattice, Forces &forces,
 
 void VelocityVerlet::initialise(State &state)
 {
-  update_images(state, lattice_);
-  predicted_vx_ = state.vx;
-  predicted_vy_ = state.vy;
+  for_each_row(lattice_, band_.rows(),
+               [&](std::size_t row)
+               {
+                 const std::size_t first = lattice_.index(row, 0), n = lattice_.columns();
+                 std::copy_n(&state.vx[first], n, &predicted_vx_[first]);
+                 std::copy_n(&state.vy[first], n, &predicted_vy_[first]);
+               });
+  halo_.start(evaluated_fields(state));
+  halo_.finish();
+  update_all_images(state);
   forces_.evaluate(
     state, predicted_vx_, predicted_vy_,
     {{}, {}, [&](std::size_t row, const double *fx, const double *fy) { kick(state, row, fx, fy, 0.); }});
@@ -41,10 +49,29 @@ void VelocityVerlet::initialise(State &state)
   add_site_forces(state, 0.);
 }
 
-void VelocityVerlet::evaluate_site_forces(const State &state)
+std::vector<Field *> VelocityVerlet::evaluated_fields(State &state)
+{
+  return {&state.x, &state.y, &predicted_vx_, &predicted_vy_};
+}
+
+void VelocityVerlet::update_all_images(State &state)
+{
+  update_images(state, band_);
+  for (const TriangularLattice::Image &image : lattice_.images())
+    if (band_.knows(image.site))
+    {
+      predicted_vx_[image.place] = predicted_vx_[image.site];
+      predicted_vy_[image.place] = predicted_vy_[image.site];
+    }
+}
+
+void VelocityVerlet::evaluate_site_forces(State &state)
 {
   for (SiteForces *forces : site_forces_)
+  {
+    band_.share(forces->sites_to_know(), evaluated_fields(state));
     forces->evaluate(state, predicted_vx_, predicted_vy_);
+  }
 }
 
 void VelocityVerlet::add_site_forces(State &state, double duration) const
@@ -69,7 +96,8 @@ void VelocityVerlet::update_accelerations(State &state, const std::vector<std::s
     state.ay[place] = force.y() * state.inverse_mass[place];
   };
   for (const std::size_t place : places)
-    of_bonds(place);
+    if (band_.owns(place))
+      of_bonds(place);
   for (const SiteForces *forces : site_forces_)
     for (const SiteForce &force : forces->last())
       of_bonds(force.place);
@@ -93,28 +121,37 @@ void VelocityVerlet::kick(State &state, std::size_t row, const double *fx, const
 
 void VelocityVerlet::step(State &state)
 {
-  const auto before = [&](std::size_t row) { drift(state, row); };
+  const auto drift_row = [&](std::size_t row) { drift(state, row); };
   const auto after = [&](std::size_t row, const double *fx, const double *fy)
   { kick(state, row, fx, fy, 0.5 * time_step_); };
+  const Rows own = band_.rows(), interior = halo_.interior();
+  for_each_row(lattice_, {own.begin, interior.begin}, drift_row);
+  for_each_row(lattice_, {interior.end, own.end}, drift_row);
+  halo_.start(evaluated_fields(state));
+  // Forces on the rows next to the halo apart from the others would take longer than waiting for it.
   if (lattice_.images().empty())
+  {
+    const auto before = [&](std::size_t row)
+    {
+      if (row >= interior.begin && row < interior.end)
+        drift(state, row);
+    };
+    halo_.finish();
     forces_.evaluate(state, predicted_vx_, predicted_vy_,
                      {before,
                       {&state.x, &state.y, &state.vx, &state.vy, &state.ax, &state.ay, &predicted_vx_, &predicted_vy_},
                       after});
+  }
   else
   {
-    for_each_row(lattice_, before);
-    update_images(state, lattice_);
-    for (const TriangularLattice::Image &image : lattice_.images())
-    {
-      predicted_vx_[image.place] = predicted_vx_[image.site];
-      predicted_vy_[image.place] = predicted_vy_[image.site];
-    }
+    for_each_row(lattice_, interior, drift_row);
+    halo_.finish();
+    update_all_images(state);
     forces_.evaluate(state, predicted_vx_, predicted_vy_, {{}, {}, after});
   }
   evaluate_site_forces(state);
   add_site_forces(state, 0.5 * time_step_);
-  update_images(state, lattice_);
+  update_images(state, band_);
   state.time += time_step_;
 }
 

@@ -47,9 +47,20 @@ Failure describe(const std::exception &error)
   return {ExitCode::internal_error, std::string("internal error: ") + error.what()};
 }
 
+// Ranks that share this machine.
+unsigned int local_ranks()
+{
+  MPI_Comm local = MPI_COMM_NULL;
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &local);
+  const unsigned int ranks = dealii::Utilities::MPI::n_mpi_processes(local);
+  MPI_Comm_free(&local);
+  return ranks;
+}
+
+// As many threads on each rank as said, or as the machine has for it.
 void set_threads(unsigned int threads)
 {
-  const unsigned int wanted = threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency());
+  const unsigned int wanted = threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency() / local_ranks());
   omp_set_num_threads(static_cast<int>(wanted));
   dealii::MultithreadInfo::set_thread_limit(1);
   // A threaded BLAS sums in an order that depends on the number of threads. OpenBLAS is asked if it is the one in use.
@@ -81,7 +92,7 @@ ExitCode run_program(int argc, char **argv)
     ->allow_extra_args(false)
     ->type_name("ENTRY");
   app.add_option("--output-dir", options.output_dir, "where to write")->capture_default_str()->type_name("DIR");
-  app.add_option("--threads", options.threads, "threads of the lattice; default: all cores")
+  app.add_option("--threads", options.threads, "threads of the lattice on each rank; default: all cores")
     ->check(CLI::Range(1u, 4096u))
     ->type_name("N");
   app.add_flag("--quiet", options.quiet, "print errors only");

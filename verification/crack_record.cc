@@ -32,7 +32,7 @@ void write_row(std::ostream &out, std::initializer_list<double> values)
 
 } // namespace
 
-CrackRecord::CrackRecord(const lattice::Simulation &simulation) : simulation_(simulation) {}
+CrackRecord::CrackRecord(lattice::Simulation &simulation) : simulation_(simulation) {}
 
 void CrackRecord::start()
 {
@@ -54,17 +54,17 @@ void CrackRecord::note_tip()
   if (!tip || tip == last_tip_)
     return;
   last_tip_ = tip;
-  const lattice::State &state = simulation_.state();
-  const Eigen::Vector2d X = simulation_.lattice().reference(*tip);
-  tip_.push_back({state.time, X.x(), X.y(), state.x[*tip], state.y[*tip]});
+  const double time = simulation_.state().time;
+  const Eigen::Vector2d X = simulation_.lattice().reference(*tip), x = simulation_.position(*tip);
+  tip_.push_back({time, X.x(), X.y(), x.x(), x.y()});
   broken_at_tip_.push_back(simulation_.n_broken());
 
   double speed = 0.;
   const double baseline = speed_baseline * simulation_.lattice().spacing();
   for (std::size_t i = tip_.size() - 1; i-- > 0;)
-    if (X.x() - tip_[i].X >= baseline && state.time > tip_[i].t)
+    if (X.x() - tip_[i].X >= baseline && time > tip_[i].t)
     {
-      speed = (X.x() - tip_[i].X) / (state.time - tip_[i].t);
+      speed = (X.x() - tip_[i].X) / (time - tip_[i].t);
       break;
     }
   speeds_.push_back(speed);
@@ -147,8 +147,11 @@ void CrackRecord::write_tables(const std::filesystem::path &directory) const
 
 void CrackRecord::write_measurement(const std::filesystem::path &directory,
                                     const lattice::CrackMeasurement &measurement, double seed_tip_X,
-                                    double breaking_stretch, bool skip_verification) const
+                                    double breaking_stretch, bool skip_verification)
 {
+  const lattice::State &state = simulation_.gather();
+  if (!simulation_.band().is_first())
+    return;
   nlohmann::ordered_json json;
   json["pattern"] = lattice::to_string(measurement.pattern);
   json["conclusive"] = measurement.conclusive;
@@ -169,15 +172,13 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory,
   json["window_end"] = measurement.X_end;
   json["branched_fraction"] = measurement.branched_fraction;
   json["bonds_broken"] = simulation_.n_broken();
-  const lattice::Fragments fragments = lattice::find_fragments(simulation_.state(), simulation_.lattice());
+  const lattice::Fragments fragments = lattice::find_fragments(state, simulation_.lattice());
   json["detached_sites"] = std::accumulate(fragments.sizes.begin(), fragments.sizes.end(), std::size_t{0});
   json["detached_fragments"] = fragments.sizes.size();
   json["largest_fragment"] = fragments.sizes.empty() ? 0 : fragments.sizes.front();
-  json["overstretched_bonds"] =
-    lattice::n_overstretched_bonds(simulation_.state(), simulation_.lattice(), breaking_stretch);
-  json["bridged_length"] =
-    lattice::bridged_length(simulation_.state(), simulation_.lattice(), seed_tip_X, tip_X());
-  json["end_time"] = simulation_.state().time;
+  json["overstretched_bonds"] = lattice::n_overstretched_bonds(state, simulation_.lattice(), breaking_stretch);
+  json["bridged_length"] = lattice::bridged_length(state, simulation_.lattice(), seed_tip_X, tip_X());
+  json["end_time"] = state.time;
   json["energy_imbalance"] = largest_imbalance();
   json["skip_verification"] = skip_verification;
   json["units"] = "speeds m/s, lengths m in the undeformed sheet, time s; uncertainties are one standard deviation";

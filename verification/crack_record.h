@@ -9,19 +9,20 @@
 namespace verification
 {
 
-/// What a fracture run leaves behind besides fields: the crack, the bonds that broke, the energies over time.
+/// What a fracture run leaves behind besides fields: the crack, the bonds that broke, the energies over time. All ranks
+/// that share the sheet keep the same record.
 class CrackRecord
 {
 public:
-  explicit CrackRecord(const lattice::Simulation &simulation);
+  explicit CrackRecord(lattice::Simulation &simulation);
 
-  /// Notes the state before the first step.
+  /// Notes the state before the first step. Collective.
   void start();
 
-  /// Notes what a step has done. @param broken bonds that broke in it
+  /// Notes what a step has done. Collective. @param broken bonds that broke in it
   void step(const std::vector<lattice::BrokenBond> &broken);
 
-  /// Notes the energies now. @throws SolverError if they are not finite or more than there can be
+  /// Notes the energies now. Collective. @throws SolverError if they are not finite or more than there can be
   void energies();
 
   /// Reference X of the tip [m]; 0 without one.
@@ -33,15 +34,15 @@ public:
 
   lattice::CrackMeasurement measure(double seed_tip_X) const;
 
-  /// Writes crack.csv, broken_bonds.csv and energy.csv. @throws OutputError
+  /// Writes crack.csv, broken_bonds.csv and energy.csv, on one rank. @throws OutputError
   void write_tables(const std::filesystem::path &directory) const;
 
-  /// Writes crack.json.
+  /// Writes crack.json. Collective; the first rank writes.
   /// @param seed_tip_X where the crack started [m]
   /// @param breaking_stretch lam_f of a bond that has not been toughened [-]
   /// @param skip_verification whether the material went unverified @throws OutputError
   void write_measurement(const std::filesystem::path &directory, const lattice::CrackMeasurement &measurement,
-                         double seed_tip_X, double breaking_stretch, bool skip_verification) const;
+                         double seed_tip_X, double breaking_stretch, bool skip_verification);
 
 private:
   void note_tip();
@@ -52,7 +53,7 @@ private:
     lattice::EnergyBalance balance;
   };
 
-  const lattice::Simulation &simulation_;
+  lattice::Simulation &simulation_;
   std::optional<std::size_t> last_tip_;
   std::vector<lattice::TipRecord> tip_;
   std::vector<double> speeds_;             // a value for each tip record [m/s]

@@ -99,15 +99,15 @@ void require_fracture_case(const Case &input, Parameters &p)
     p.error("Time/end", "fracture needs an end time larger than 0");
 }
 
-lattice::State lattice_state(const Case &input, const lattice::TriangularLattice &sheet, double breaking_stretch)
+lattice::State lattice_state(const Case &input, const lattice::RowBand &band, double breaking_stretch)
 {
   const auto held = [&](std::size_t id) { return input.continuum.edges[id].condition == Condition::held; };
-  lattice::State state = lattice::homogeneous_state(sheet, input.material(), input.deformation(),
+  lattice::State state = lattice::homogeneous_state(band, input.material(), input.deformation(),
                                                     {held(0), held(1), held(2), held(3)}, breaking_stretch);
   if (input.hole_radius > 0.)
-    lattice::cut_out(state, sheet, lattice::RoundHole{input.hole_radius});
+    lattice::cut_out(state, band.lattice(), lattice::RoundHole{input.hole_radius});
   if (input.notch_length > 0.)
-    lattice::cut_out(state, sheet, lattice::Notch{input.notch_length});
+    lattice::cut_out(state, band.lattice(), lattice::Notch{input.notch_length});
   return state;
 }
 

@@ -20,10 +20,10 @@ void require_whole_held_sheet(const Case &input, Parameters &parameters, const s
 /// Refuses, besides, cases that `latcon fracture` cannot run for want of a breaking stretch or an end time.
 void require_fracture_case(const Case &input, Parameters &parameters);
 
-/// The sheet at the homogeneous deformation of the case, at rest and without noise; hole or notch cut out, its edges
-/// held or free as the case says.
-/// @param sheet input.lattice()
+/// The sheet at the homogeneous deformation of the case, at rest and without noise, in the rows that `band` knows; hole
+/// or notch cut out, its edges held or free as the case says.
+/// @param band all rows of input.lattice(), or a share of them
 /// @param breaking_stretch lam_f [-] of every bond; infinity for a sheet that never breaks
-lattice::State lattice_state(const Case &input, const lattice::TriangularLattice &sheet, double breaking_stretch);
+lattice::State lattice_state(const Case &input, const lattice::RowBand &band, double breaking_stretch);
 
 } // namespace verification

@@ -116,7 +116,7 @@ WaveSpeeds wave_speeds_along_crack(const Case &input)
   return {waves[0].frequency / k, waves[1].frequency / k};
 }
 
-NearTipRecord::NearTipRecord(const Case &input, const lattice::Simulation &simulation, double seed_tip_X)
+NearTipRecord::NearTipRecord(const Case &input, lattice::Simulation &simulation, double seed_tip_X)
   : simulation_(simulation), interval_(input.near_tip_interval), deformation_(input.deformation()),
     waves_(wave_speeds_along_crack(input)),
     X_begin_(seed_tip_X + sampled_from * (input.stop_position * simulation.lattice().length() - seed_tip_X)),
@@ -129,7 +129,12 @@ void NearTipRecord::step(std::size_t step)
 {
   if (interval_ == 0 || step % interval_ != 0 || !simulation_.tip())
     return;
-  const lattice::NearTipSample *sample = sampler_.sample(simulation_.state(), *simulation_.tip());
+  const std::size_t tip = *simulation_.tip();
+  if (sampler_.looks_at(tip))
+    simulation_.gather(sampler_.rows_around(tip));
+  if (!simulation_.band().is_first())
+    return;
+  const lattice::NearTipSample *sample = sampler_.sample(simulation_.state(), tip);
   if (sample == nullptr)
     return;
   const double d = simulation_.lattice().spacing();

@@ -29,13 +29,14 @@ class NearTipRecord
 {
 public:
   /// @param seed_tip_X of the seed crack, reference [m]
-  NearTipRecord(const Case &input, const lattice::Simulation &simulation, double seed_tip_X);
+  NearTipRecord(const Case &input, lattice::Simulation &simulation, double seed_tip_X);
 
-  /// To be called after every step. @param step counted from 1
+  /// To be called after every step. Collective; the first rank takes the samples. @param step counted from 1
   void step(std::size_t step);
 
   /// Writes near_tip.json and, if there are samples, near_tip.vti and near_tip_folded.vti; nothing if no samples were
-  /// asked for. To be called once, at the end. @throws OutputError, std::filesystem::filesystem_error
+  /// asked for. To be called once, at the end, on the first rank. @throws OutputError,
+  /// std::filesystem::filesystem_error
   void write(const std::filesystem::path &directory, const lattice::CrackMeasurement &crack);
 
 private:
@@ -57,7 +58,7 @@ private:
   };
   std::string measurements(const lattice::CrackMeasurement &crack) const;
 
-  const lattice::Simulation &simulation_;
+  lattice::Simulation &simulation_;
   std::size_t interval_;
   Eigen::Matrix2d deformation_;
   WaveSpeeds waves_;

@@ -28,7 +28,7 @@ struct TenSites
   {
     fracture.watch(state, forces);
     EXPECT_EQ(sheet.n_sites(), 11u);
-    EXPECT_EQ(fracture.remove_site(state, sheet.index(2, 3)), 0.); // undeformed bonds hold no energy
+    EXPECT_EQ(fracture.remove_sites(state, {sheet.index(2, 3)}), 0.); // undeformed bonds hold no energy
   }
 
   const std::vector<BrokenBond> &apply()

@@ -74,7 +74,7 @@ TEST_F(Cut, HalvesOfTheSheetAreNoFragments)
       half.push_back(sheet.index(row, column));
   cut_around(half);
   Fracture fracture(sheet, material, 2., NoToughening{}, Eigen::Matrix2d::Identity());
-  fracture.remove_site(state, sheet.index(10, 6));
+  fracture.remove_sites(state, {sheet.index(10, 6)});
   EXPECT_TRUE(find_fragments(state, sheet).sizes.empty());
 }
 

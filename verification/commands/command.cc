@@ -38,6 +38,12 @@ bool signal_came()
   return signal_flag != 0;
 }
 
+bool signal_came_to_any_rank()
+{
+  signal_flag = dealii::Utilities::MPI::max(static_cast<int>(signal_flag), MPI_COMM_WORLD);
+  return signal_came();
+}
+
 void read_case(const Options &options, Case &input, Parameters &parameters)
 {
   input.declare(parameters);

@@ -111,5 +111,9 @@ Results passed_claims(const Case &input, Run &run);
 /// Whether SIGINT or SIGTERM has come since catch_signals().
 void catch_signals();
 bool signal_came();
+/// Whether one has come to any rank: so all stop at once. Collective.
+bool signal_came_to_any_rank();
+/// Time steps of a lattice between two calls of it: less than some milliseconds, or a few steps of a large sheet.
+inline constexpr std::size_t steps_between_signals = 16;
 
 } // namespace verification

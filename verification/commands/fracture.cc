@@ -71,17 +71,18 @@ std::string progress_text(const lattice::Simulation &simulation, const CrackReco
   return text.str();
 }
 
-// Moves the sheet until the crack is through or the time is up.
+// Moves the sheet until the crack is through or the time is up. On every rank, with the same results.
 Results break_sheet(const Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
                     bool skip_verification, Run &run)
 {
   const lattice::Edges edges{input.left_end == Case::End::held, input.right_end == Case::End::held, true, true};
+  const lattice::RowBand band(sheet, MPI_COMM_WORLD);
   lattice::State state =
-    lattice::homogeneous_state(sheet, material, input.deformation(), edges, *input.breaking_stretch);
-  lattice::add_noise(state, sheet, input.noise_amplitude * input.spacing, input.noise_seed);
+    lattice::homogeneous_state(band, material, input.deformation(), edges, *input.breaking_stretch);
+  lattice::add_noise(state, band, input.noise_amplitude * input.spacing, input.noise_seed);
   lattice::Simulation simulation(
-    sheet, material, std::move(state), input.fracture_time_step(),
-    lattice::Fracture(sheet, material, *input.breaking_stretch, input.toughening_rule(), input.deformation()));
+    band, material, std::move(state), input.fracture_time_step(),
+    lattice::Fracture(band, material, *input.breaking_stretch, input.toughening_rule(), input.deformation()));
   if (!edges.left || !edges.right)
     simulation.load_ends(input.deformation(), end_load(input.left_end), end_load(input.right_end));
   if (input.has_contact)
@@ -91,8 +92,19 @@ Results break_sheet(const Case &input, const lattice::TriangularLattice &sheet, 
 
   CrackRecord record(simulation);
   lattice::FieldWriter fields(sheet, material, run.directory());
+  const auto add_frame = [&]
+  {
+    const lattice::State &whole = simulation.gather();
+    if (run.writes())
+      fields.add_frame(whole);
+  };
+  const auto write_tables = [&]
+  {
+    if (run.writes())
+      record.write_tables(run.directory());
+  };
   record.start();
-  fields.add_frame(simulation.state());
+  add_frame();
 
   const double stop = input.stop_position * sheet.length();
   const double seed_tip = sheet.reference(seed.back()).x();
@@ -101,9 +113,10 @@ Results break_sheet(const Case &input, const lattice::TriangularLattice &sheet, 
   Progress progress(run.talks());
   {
     const auto phase = run.info().stopwatch().phase("fracture");
-    for (std::size_t step = 1; simulation.state().time < input.end_time && record.tip_X() < stop && !signal_came();
-         ++step)
+    for (std::size_t step = 1; simulation.state().time < input.end_time && record.tip_X() < stop; ++step)
     {
+      if (step % steps_between_signals == 0 && signal_came_to_any_rank())
+        break;
       record.step(simulation.step());
       near_tip.step(step);
       if (step % input.energy_interval == 0)
@@ -111,8 +124,8 @@ Results break_sheet(const Case &input, const lattice::TriangularLattice &sheet, 
       if (input.frame_interval > 0. && simulation.state().time >= next_frame)
       {
         // What is known so far is on disk from here on.
-        fields.add_frame(simulation.state());
-        record.write_tables(run.directory());
+        add_frame();
+        write_tables();
         next_frame += input.frame_interval;
       }
       if (progress.due())
@@ -121,11 +134,12 @@ Results break_sheet(const Case &input, const lattice::TriangularLattice &sheet, 
     }
   }
   record.energies();
-  fields.add_frame(simulation.state());
-  record.write_tables(run.directory());
+  add_frame();
+  write_tables();
   const lattice::CrackMeasurement crack = record.measure(seed_tip);
   record.write_measurement(run.directory(), crack, seed_tip, *input.breaking_stretch, skip_verification);
-  near_tip.write(run.directory(), crack);
+  if (run.writes())
+    near_tip.write(run.directory(), crack);
   if (run.talks())
     std::cout << "The crack is " << lattice::to_string(crack.pattern) << ": " << crack.reason << "\n";
   return measured_results(input, record, crack);
@@ -155,9 +169,7 @@ ExitCode run_fracture(const Options &options)
   Results results;
   if (!options.skip_verification)
     results = passed_claims(input, run);
-  // The lattice knows no ranks: the first one breaks it, the others wait.
-  if (run.writes())
-    results.add(break_sheet(input, sheet, material, options.skip_verification, run));
+  results.add(break_sheet(input, sheet, material, options.skip_verification, run));
   const ExitCode exit_code = signal_came() ? run.interrupted(results) : run.finish(results);
   if (options.no_report)
     return exit_code;

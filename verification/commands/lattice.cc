@@ -47,15 +47,22 @@ Results relaxed(const Case &input, const lattice::TriangularLattice &sheet, cons
   return results;
 }
 
-Results moved(const Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
-              lattice::State state, Run &run)
+// On every rank, with the same results.
+Results moved(const Case &input, const lattice::RowBand &band, const lattice::Material &material, lattice::State state,
+              Run &run)
 {
-  lattice::FieldWriter fields(sheet, material, run.directory());
-  fields.add_frame(state);
   double time_step = input.lattice_time_step();
   if (!input.time_step)
     time_step = input.end_time / std::ceil(input.end_time / time_step); // so that the last step ends at the end
-  lattice::Simulation simulation(sheet, material, std::move(state), time_step);
+  lattice::Simulation simulation(band, material, std::move(state), time_step);
+  lattice::FieldWriter fields(band.lattice(), material, run.directory());
+  const auto add_frame = [&]
+  {
+    const lattice::State &whole = simulation.gather();
+    if (run.writes())
+      fields.add_frame(whole);
+  };
+  add_frame();
   CrackRecord record(simulation);
   record.start();
   Progress progress(run.talks());
@@ -63,14 +70,16 @@ Results moved(const Case &input, const lattice::TriangularLattice &sheet, const 
     const auto phase = run.info().stopwatch().phase("motion");
     const auto steps = static_cast<std::size_t>(std::ceil(input.end_time / time_step * (1. - 1e-12)));
     double next_frame = input.frame_interval;
-    for (std::size_t step = 1; step <= steps && !signal_came(); ++step)
+    for (std::size_t step = 1; step <= steps; ++step)
     {
+      if (step % steps_between_signals == 0 && signal_came_to_any_rank())
+        break;
       simulation.step();
       if (step % input.energy_interval == 0)
         record.energies();
       if (input.frame_interval > 0. && simulation.state().time >= next_frame && step < steps)
       {
-        fields.add_frame(simulation.state());
+        add_frame();
         next_frame += input.frame_interval;
       }
       if (progress.due())
@@ -78,9 +87,10 @@ Results moved(const Case &input, const lattice::TriangularLattice &sheet, const 
     }
   }
   record.energies();
-  record.write_tables(run.directory());
+  if (run.writes())
+    record.write_tables(run.directory());
   if (input.end_time > 0.)
-    fields.add_frame(simulation.state());
+    add_frame();
   Results results;
   const lattice::EnergyBalance energies = simulation.energies();
   results.add({"lattice", "elastic energy per thickness", "J/m", energies.elastic, {}, {}, {}, {}});
@@ -118,13 +128,19 @@ ExitCode run_lattice(const Options &options)
   }
   Run run(options, parameters);
   Results results;
-  if (run.writes())
+  const auto state_of = [&](const lattice::RowBand &band)
   {
-    lattice::State state = lattice_state(input, sheet, lattice::unbreakable);
-    lattice::add_noise(state, sheet, input.noise_amplitude * input.spacing, input.noise_seed);
-    results = input.solution == Case::Solution::relaxed ? relaxed(input, sheet, material, std::move(state), run)
-                                                        : moved(input, sheet, material, std::move(state), run);
+    lattice::State state = lattice_state(input, band, lattice::unbreakable);
+    lattice::add_noise(state, band, input.noise_amplitude * input.spacing, input.noise_seed);
+    return state;
+  };
+  if (input.solution == Case::Solution::motion)
+  {
+    const lattice::RowBand band(sheet, MPI_COMM_WORLD);
+    results = moved(input, band, material, state_of(band), run);
   }
+  else if (run.writes()) // equilibrium is a matter of the first rank
+    results = relaxed(input, sheet, material, state_of(sheet), run);
   return signal_came() ? run.interrupted(results) : run.finish(results);
 }
 

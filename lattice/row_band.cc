@@ -1,0 +1,227 @@
+#include "lattice/row_band.h"
+
+#include <algorithm>
+#include <numeric>
+
+namespace lattice
+{
+namespace
+{
+
+// How far bonds reach across rows.
+constexpr std::ptrdiff_t reach = 2;
+
+} // namespace
+
+RowBand::RowBand(const TriangularLattice &lattice)
+  : lattice_(&lattice), communicator_(MPI_COMM_NULL), rank_(0), first_rows_{0, lattice.rows()},
+    knows_(lattice.n_places() / lattice.stride(), 1)
+{
+}
+
+RowBand::RowBand(const TriangularLattice &lattice, MPI_Comm communicator)
+  : lattice_(&lattice), communicator_(communicator), rank_(0), knows_(lattice.n_places() / lattice.stride(), 0)
+{
+  int rank = 0, n_ranks = 1;
+  MPI_Comm_rank(communicator, &rank);
+  MPI_Comm_size(communicator, &n_ranks);
+  rank_ = static_cast<std::size_t>(rank);
+  const auto n = static_cast<std::size_t>(n_ranks);
+  for (std::size_t i = 0; i <= n; ++i)
+    first_rows_.push_back(lattice.rows() * i / n);
+  for (const std::size_t row : known_rows())
+    knows_[padded_row(lattice.index(row, 0))] = 1;
+}
+
+std::vector<std::size_t> RowBand::known_rows() const
+{
+  std::vector<std::size_t> known = halo();
+  for (std::size_t row = rows().begin; row < rows().end; ++row)
+    known.push_back(row);
+  std::sort(known.begin(), known.end());
+  return known;
+}
+
+bool RowBand::owns(std::size_t place) const
+{
+  const Rows own = rows();
+  const std::size_t row = lattice_->row_of(place); // beyond all rows where the margin is below them
+  return row >= own.begin && row < own.end;
+}
+
+std::size_t RowBand::owner(std::size_t row) const
+{
+  return static_cast<std::size_t>(std::upper_bound(first_rows_.begin(), first_rows_.end(), row) - first_rows_.begin()) -
+         1;
+}
+
+std::vector<std::size_t> RowBand::halo_of(std::size_t rank) const
+{
+  const auto begin = static_cast<std::ptrdiff_t>(first_rows_[rank]);
+  const auto end = static_cast<std::ptrdiff_t>(first_rows_[rank + 1]);
+  const auto n_rows = static_cast<std::ptrdiff_t>(lattice_->rows());
+  std::vector<std::size_t> halo;
+  if (begin == end)
+    return halo;
+  const bool repeats = lattice_->is_occupied(lattice_->index(0, 0) - lattice_->stride());
+  const auto add = [&](std::ptrdiff_t row)
+  {
+    if (repeats)
+      row = (row + n_rows) % n_rows;
+    if (row >= 0 && row < n_rows && (row < begin || row >= end))
+      halo.push_back(static_cast<std::size_t>(row));
+  };
+  for (std::ptrdiff_t distance = 0; distance < reach; ++distance)
+  {
+    add(begin - reach + distance);
+    add(end + distance);
+  }
+  std::sort(halo.begin(), halo.end());
+  halo.erase(std::unique(halo.begin(), halo.end()), halo.end());
+  return halo;
+}
+
+double RowBand::sum(std::vector<double> values) const
+{
+  if (is_shared())
+  {
+    std::vector<int> counts, offsets;
+    for (std::size_t r = 0; r < n_ranks(); ++r)
+    {
+      offsets.push_back(static_cast<int>(first_rows_[r]));
+      counts.push_back(static_cast<int>(first_rows_[r + 1] - first_rows_[r]));
+    }
+    MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, values.data(), counts.data(), offsets.data(), MPI_DOUBLE,
+                   communicator_);
+  }
+  return std::accumulate(values.begin(), values.end(), 0.);
+}
+
+std::vector<char> RowBand::joined_bytes(const char *own, std::size_t size) const
+{
+  const int own_size = static_cast<int>(size);
+  std::vector<int> sizes(n_ranks()), offsets(n_ranks(), 0);
+  MPI_Allgather(&own_size, 1, MPI_INT, sizes.data(), 1, MPI_INT, communicator_);
+  std::partial_sum(sizes.begin(), sizes.end() - 1, offsets.begin() + 1);
+  std::vector<char> all(static_cast<std::size_t>(offsets.back() + sizes.back()));
+  if (!all.empty())
+    MPI_Allgatherv(own, own_size, MPI_CHAR, all.data(), sizes.data(), offsets.data(), MPI_CHAR, communicator_);
+  return all;
+}
+
+void RowBand::share(const std::vector<std::size_t> &places, const std::vector<Field *> &fields) const
+{
+  if (!is_shared() || places.empty())
+    return;
+  std::vector<int> counts(n_ranks(), 0), offsets(n_ranks(), 0);
+  for (const std::size_t place : places)
+    counts[owner(lattice_->row_of(place))] += static_cast<int>(fields.size());
+  std::partial_sum(counts.begin(), counts.end() - 1, offsets.begin() + 1);
+  std::vector<double> own, all(places.size() * fields.size());
+  for (const std::size_t place : places)
+    if (owns(place))
+      for (const Field *field : fields)
+        own.push_back((*field)[place]);
+  MPI_Allgatherv(own.data(), static_cast<int>(own.size()), MPI_DOUBLE, all.data(), counts.data(), offsets.data(),
+                 MPI_DOUBLE, communicator_);
+  std::vector<int> next = offsets;
+  for (const std::size_t place : places)
+    for (Field *field : fields)
+      (*field)[place] = all[static_cast<std::size_t>(next[owner(lattice_->row_of(place))]++)];
+}
+
+void RowBand::gather_bytes(void *field, std::size_t bytes_of_place, Rows rows) const
+{
+  // In units of a row: so the numbers fit into MPI's integers.
+  const std::size_t bytes = bytes_of_place * lattice_->stride();
+  MPI_Datatype row_type = MPI_DATATYPE_NULL;
+  MPI_Type_contiguous(static_cast<int>(bytes), MPI_BYTE, &row_type);
+  MPI_Type_commit(&row_type);
+  std::vector<int> counts, offsets;
+  for (std::size_t r = 0; r < n_ranks(); ++r)
+  {
+    const std::size_t begin = std::clamp(first_rows_[r], rows.begin, rows.end);
+    offsets.push_back(static_cast<int>(padded_row(lattice_->index(begin, 0))));
+    counts.push_back(static_cast<int>(std::clamp(first_rows_[r + 1], rows.begin, rows.end) - begin));
+  }
+  if (is_first())
+    MPI_Gatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, field, counts.data(), offsets.data(), row_type, 0, communicator_);
+  else
+    MPI_Gatherv(static_cast<char *>(field) + static_cast<std::size_t>(offsets[rank_]) * bytes, counts[rank_], row_type,
+                nullptr, nullptr, nullptr, row_type, 0, communicator_);
+  MPI_Type_free(&row_type);
+}
+
+HaloExchange::HaloExchange(const RowBand &band)
+  : lattice_(band.lattice()), communicator_(band.communicator()), interior_(band.rows())
+{
+  if (!band.is_shared())
+    return;
+  const std::vector<std::size_t> halo = band.halo();
+  const Rows own = band.rows();
+  const std::size_t middle = (own.begin + own.end) / 2;
+  for (std::size_t rank = 0; rank < band.n_ranks(); ++rank)
+  {
+    if (rank == band.rank())
+      continue;
+    Partner partner{static_cast<int>(rank), {}, {}, {}, {}};
+    for (const std::size_t row : band.halo_of(rank))
+      if (band.owner(row) == band.rank())
+      {
+        partner.sent.push_back(row);
+        // Within two rows of either edge of the band.
+        if (row < middle)
+          interior_.begin = std::max(interior_.begin, row + 1);
+        else
+          interior_.end = std::min(interior_.end, row);
+      }
+    for (const std::size_t row : halo)
+      if (band.owner(row) == rank)
+        partner.received.push_back(row);
+    if (!partner.sent.empty() || !partner.received.empty())
+      partners_.push_back(std::move(partner));
+  }
+}
+
+void HaloExchange::start(const std::vector<Field *> &fields)
+{
+  constexpr int tag = 0;
+  const std::size_t columns = lattice_.columns();
+  fields_ = fields;
+  for (Partner &partner : partners_)
+  {
+    partner.in.resize(partner.received.size() * fields.size() * columns);
+    MPI_Irecv(partner.in.data(), static_cast<int>(partner.in.size()), MPI_DOUBLE, partner.rank, tag, communicator_,
+              &requests_.emplace_back());
+    partner.out.clear();
+    for (const std::size_t row : partner.sent)
+      for (const Field *field : fields)
+      {
+        const double *const first = field->data() + lattice_.index(row, 0);
+        partner.out.insert(partner.out.end(), first, first + columns);
+      }
+    MPI_Isend(partner.out.data(), static_cast<int>(partner.out.size()), MPI_DOUBLE, partner.rank, tag, communicator_,
+              &requests_.emplace_back());
+  }
+}
+
+void HaloExchange::finish()
+{
+  if (requests_.empty())
+    return;
+  MPI_Waitall(static_cast<int>(requests_.size()), requests_.data(), MPI_STATUSES_IGNORE);
+  requests_.clear();
+  const std::size_t columns = lattice_.columns();
+  for (const Partner &partner : partners_)
+  {
+    const double *next = partner.in.data();
+    for (const std::size_t row : partner.received)
+      for (Field *field : fields_)
+      {
+        std::copy_n(next, columns, field->data() + lattice_.index(row, 0));
+        next += columns;
+      }
+  }
+}
+
+} // namespace lattice

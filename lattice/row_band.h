@@ -1,0 +1,144 @@
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+#include <type_traits>
+#include <vector>
+
+#include <mpi.h>
+
+#include "lattice/triangular_lattice.h"
+#include "lattice/zero_pages.h"
+
+namespace lattice
+{
+
+/// A field over the places of a lattice, one value each, margin included. Make one of zeros as Field(n): see ZeroPages.
+using Field = std::vector<double, ZeroPages<double>>;
+/// The same for small whole numbers.
+using Marks = std::vector<std::uint8_t, ZeroPages<std::uint8_t>>;
+
+/// The rows begin, begin + 1, ... end - 1.
+struct Rows
+{
+  std::size_t begin, end;
+};
+
+/// The rows of a sheet that one process moves, as one of the ranks that share the sheet or alone.
+///
+/// Every rank has a band of rows that follow each other, the lowest rank the lowest rows, none at all if there are more
+/// ranks than rows. Bonds reach two rows up and down, so besides its own a rank keeps the rows of a halo up to date,
+/// two on either side, across a periodic edge as well. Own rows and halo are the rows that it knows. Places are those
+/// of the whole sheet on every rank.
+///
+/// A lattice converts to the band of all its rows, for which nothing is communicated and MPI need not be running. Where
+/// a function is said to be collective, all ranks must call it.
+class RowBand
+{
+public:
+  /// All rows. The lattice must outlive this object.
+  RowBand(const TriangularLattice &lattice); // NOLINT(google-explicit-constructor)
+
+  /// The share of the calling process in `communicator`. Bands differ by one row at most.
+  RowBand(const TriangularLattice &lattice, MPI_Comm communicator);
+
+  const TriangularLattice &lattice() const { return *lattice_; }
+  Rows rows() const { return {first_rows_[rank_], first_rows_[rank_ + 1]}; } ///< that this rank moves
+  bool owns(std::size_t place) const; ///< whether a place, margin included, is in one of its rows
+  bool knows(std::size_t place) const { return knows_[padded_row(place)] != 0; } ///< or in its halo
+  /// The rows of other ranks that it needs, by increasing number.
+  std::vector<std::size_t> halo() const { return halo_of(rank_); }
+  std::vector<std::size_t> known_rows() const; ///< own ones and halo, by increasing number
+
+  bool is_first() const { return rank_ == 0; } ///< whether this is the first rank, which gathers
+  bool is_shared() const { return n_ranks() > 1; }
+  std::size_t rank() const { return rank_; }
+  std::size_t n_ranks() const { return first_rows_.size() - 1; }
+  MPI_Comm communicator() const { return communicator_; }
+  std::size_t owner(std::size_t row) const; ///< rank that moves a row
+  std::vector<std::size_t> halo_of(std::size_t rank) const;
+
+  /// Sum of the values of all rows from the lowest up, whoever has them: the same bits for any number of ranks.
+  /// Collective. @param values one a row of the sheet; those of own rows are read
+  double sum(std::vector<double> values) const;
+
+  /// The lists of all ranks one after the other. Collective; costs one short message where all lists are empty.
+  template <class T>
+  std::vector<T> joined(const std::vector<T> &own) const;
+
+  /// Gives every rank the values of `fields` at some places. Collective. @param places the same on all ranks
+  void share(const std::vector<std::size_t> &places, const std::vector<Field *> &fields) const;
+
+  /// Gives the first rank the values in `rows`, margin of columns included. Collective.
+  template <class Vector>
+  void gather(Vector &field, Rows rows) const;
+
+private:
+  std::size_t padded_row(std::size_t place) const { return place / lattice_->stride(); }
+  std::vector<char> joined_bytes(const char *own, std::size_t size) const;
+  void gather_bytes(void *field, std::size_t bytes_of_place, Rows rows) const;
+
+  const TriangularLattice *lattice_;
+  MPI_Comm communicator_;
+  std::size_t rank_;
+  std::vector<std::size_t> first_rows_; // of each rank, and the number of rows
+  std::vector<std::uint8_t> knows_;     // by row with margin
+};
+
+template <class T>
+std::vector<T> RowBand::joined(const std::vector<T> &own) const
+{
+  static_assert(std::is_trivially_copyable_v<T>);
+  if (!is_shared())
+    return own;
+  const std::vector<char> bytes = joined_bytes(reinterpret_cast<const char *>(own.data()), own.size() * sizeof(T));
+  std::vector<T> all(bytes.size() / sizeof(T));
+  std::memcpy(all.data(), bytes.data(), bytes.size());
+  return all;
+}
+
+template <class Vector>
+void RowBand::gather(Vector &field, Rows rows) const
+{
+  if (is_shared())
+    gather_bytes(field.data(), sizeof(typename Vector::value_type), rows);
+}
+
+/// Brings the halo rows of fields up to date. While messages are under way the rows that no other rank needs, the
+/// interior, may be changed, and nothing of the halo be read:
+///
+///     change rows [rows.begin, interior.begin) and [interior.end, rows.end)
+///     halo.start({&x, &y});
+///     change the interior
+///     halo.finish();
+class HaloExchange
+{
+public:
+  explicit HaloExchange(const RowBand &band);
+  HaloExchange(const HaloExchange &) = delete; // messages arrive in its buffers
+  HaloExchange &operator=(const HaloExchange &) = delete;
+
+  Rows interior() const { return interior_; }
+
+  /// Sends own rows and begins to receive those of the halo. Collective among ranks that need rows of each other.
+  void start(const std::vector<Field *> &fields);
+  /// Waits for what start() began and puts it in place.
+  void finish();
+
+private:
+  struct Partner
+  {
+    int rank;
+    std::vector<std::size_t> sent, received; // rows
+    std::vector<double> out, in;
+  };
+
+  const TriangularLattice &lattice_;
+  MPI_Comm communicator_;
+  Rows interior_;
+  std::vector<Partner> partners_;
+  std::vector<Field *> fields_;
+  std::vector<MPI_Request> requests_;
+};
+
+} // namespace lattice

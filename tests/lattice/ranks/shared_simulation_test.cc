@@ -1,0 +1,197 @@
+// A sheet that ranks share against the same sheet on one rank, bit by bit.
+#include <cstring>
+
+#include <gtest/gtest.h>
+
+#include "../sheets.h"
+#include "lattice/simulation.h"
+#include "lattice/time_step.h"
+
+namespace
+{
+
+using namespace lattice;
+
+void expect_same_bits(double shared, double alone, const char *what)
+{
+  EXPECT_EQ(std::memcmp(&shared, &alone, sizeof(double)), 0) << what << ": " << shared << ", alone " << alone;
+}
+
+void expect_same_energies(const EnergyBalance &shared, const EnergyBalance &alone)
+{
+  expect_same_bits(shared.elastic, alone.elastic, "elastic");
+  expect_same_bits(shared.kinetic, alone.kinetic, "kinetic");
+  expect_same_bits(shared.viscous, alone.viscous, "viscous");
+  expect_same_bits(shared.broken, alone.broken, "broken");
+  expect_same_bits(shared.contact, alone.contact, "contact");
+  expect_same_bits(shared.boundary_work, alone.boundary_work, "boundary work");
+  expect_same_bits(shared.initial, alone.initial, "initial");
+}
+
+// Own rows on every rank, and the whole sheet on the first.
+void expect_same_state(Simulation &shared, const State &alone)
+{
+  const TriangularLattice &sheet = shared.lattice();
+  const RowBand &band = shared.band();
+  const State &state = shared.gather();
+  for (std::size_t row = 0; row < sheet.rows(); ++row)
+    for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
+    {
+      const std::size_t place = sheet.index(row, column);
+      ASSERT_EQ(state.lost_bonds[place], alone.lost_bonds[place]);
+      ASSERT_EQ(state.removed[place], alone.removed[place]);
+      if (!band.is_first() && !band.owns(place))
+        continue;
+      ASSERT_EQ(state.x[place], alone.x[place]) << "row " << row << ", column " << column;
+      ASSERT_EQ(state.y[place], alone.y[place]);
+      ASSERT_EQ(state.vx[place], alone.vx[place]);
+      ASSERT_EQ(state.vy[place], alone.vy[place]);
+      ASSERT_EQ(state.held[place], alone.held[place]);
+      ASSERT_EQ(state.bonds.words()[place], alone.bonds.words()[place]);
+      if (band.owns(place))
+      {
+        ASSERT_EQ(state.ax[place], alone.ax[place]);
+        ASSERT_EQ(state.ay[place], alone.ay[place]);
+      }
+    }
+}
+
+struct Variant
+{
+  Orientation orientation;
+  double height; // in spacings
+  Toughening toughening;
+  double contact; // distance in spacings, so large that sites on one flank touch; 0: none
+  EndLoads::End right;
+};
+
+struct Crack
+{
+  Crack(const Variant &variant, const RowBand &band, const Material &material)
+  {
+    const TriangularLattice &sheet = band.lattice();
+    const Eigen::Matrix2d F = sheets::stretched(2.3, 2.9);
+    State state = homogeneous_state(band, material, F, {true, variant.right == EndLoads::End::held, true, true}, 3.05);
+    add_noise(state, band, 0.05 * sheets::spacing, 1);
+    simulation = std::make_unique<Simulation>(band, material, std::move(state),
+                                              0.9 * time_step_limits(sheet, material, 0.3).combined,
+                                              Fracture(band, material, 3.05, variant.toughening, F));
+    if (variant.right != EndLoads::End::held)
+      simulation->load_ends(F, EndLoads::End::held, variant.right);
+    if (variant.contact > 0.)
+      simulation->let_touch(contact_like_nearest_bond(sheet, material, variant.contact * sheets::spacing, 0.1, 0.1));
+    // A line of sites at Y = 0 along X, in one row or one in every second row.
+    std::vector<std::size_t> seed;
+    for (std::size_t n = 4; n < 12; ++n)
+      if (variant.orientation == Orientation::rows_along_crack)
+        seed.push_back(sheet.index(sheet.rows() / 2, n));
+      else if (n % 2 == 0)
+        seed.push_back(sheet.index(n, sheet.columns() / 2));
+    simulation->cut(seed);
+  }
+  std::unique_ptr<Simulation> simulation;
+};
+
+class SharedCrack : public testing::TestWithParam<Variant>
+{
+};
+
+constexpr double behind = 4. * sheets::spacing;
+INSTANTIATE_TEST_SUITE_P(
+  LatticeRanks, SharedCrack,
+  testing::Values(
+    Variant{Orientation::rows_along_crack, 24., BehindTipToughening{behind, 3.}, 3., EndLoads::End::held},
+    Variant{Orientation::rows_across_crack, 24., BehindTipToughening{behind, 3.}, 5., EndLoads::End::absorbing},
+    Variant{Orientation::rows_along_crack, 24., RetractionToughening{0.8, 2.}, 0., EndLoads::End::absorbing},
+    // Nine rows: bands of one or two for five ranks.
+    Variant{Orientation::rows_along_crack, 7., NoToughening{}, 5., EndLoads::End::free}));
+
+TEST_P(SharedCrack, HasTheBitsOfOneRank)
+{
+  const Variant &variant = GetParam();
+  const TriangularLattice sheet(sheets::spacing, 40. * sheets::spacing, variant.height * sheets::spacing,
+                                variant.orientation);
+  const Material material = sheets::rubber();
+  Crack shared(variant, RowBand(sheet, MPI_COMM_WORLD), material), alone(variant, sheet, material);
+  Simulation &ours = *shared.simulation, &theirs = *alone.simulation;
+  std::size_t touching = 0;
+  for (int step = 0; step < 3000; ++step)
+  {
+    const std::vector<BrokenBond> &broken = ours.step(), &expected = theirs.step();
+    ASSERT_EQ(broken.size(), expected.size()) << "step " << step;
+    for (std::size_t i = 0; i < broken.size(); ++i)
+    {
+      ASSERT_EQ(broken[i].near, expected[i].near);
+      ASSERT_EQ(broken[i].far, expected[i].far);
+      ASSERT_EQ(broken[i].kind, expected[i].kind);
+      ASSERT_EQ(broken[i].time, expected[i].time);
+      ASSERT_EQ(broken[i].stretch, expected[i].stretch);
+      ASSERT_EQ(broken[i].energy, expected[i].energy);
+      ASSERT_EQ(broken[i].midpoint, expected[i].midpoint);
+    }
+    ASSERT_EQ(ours.tip(), theirs.tip());
+    if (variant.contact > 0.)
+      touching += theirs.contact()->n_touching();
+    if (step % 500 == 0)
+      expect_same_energies(ours.energies(), theirs.energies());
+  }
+  EXPECT_GT(theirs.n_broken(), 30u) << "too quiet to show anything";
+  EXPECT_EQ(ours.n_broken(), theirs.n_broken());
+  if (variant.contact > 0.)
+  {
+    EXPECT_GT(touching, 100u) << "too quiet to show anything";
+  }
+  ASSERT_TRUE(theirs.tip());
+  const std::size_t tip = *theirs.tip();
+  EXPECT_EQ(ours.position(tip), Eigen::Vector2d(theirs.state().x[tip], theirs.state().y[tip]));
+  expect_same_energies(ours.energies(), theirs.energies());
+  expect_same_state(ours, theirs.state());
+}
+
+// Without breaking: both periodicities, from a state of rest and from one in motion.
+class SharedMotion : public testing::TestWithParam<Periodic>
+{
+};
+INSTANTIATE_TEST_SUITE_P(LatticeRanks, SharedMotion,
+                         testing::Values(Periodic{false, false}, Periodic{true, false}, Periodic{false, true},
+                                         Periodic{true, true}));
+
+TEST_P(SharedMotion, HasTheBitsOfOneRank)
+{
+  for (const double n : {4., 6., 20.}) // 4: fewer rows than five ranks want, and halos that overlap
+    for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
+    {
+      const TriangularLattice sheet(sheets::spacing, n * sheets::spacing, n * sheets::spacing, orientation, GetParam());
+      const Material material = sheets::rubber();
+      const auto start = [&](const RowBand &band)
+      {
+        State state = homogeneous_state(band, material, sheets::stretched(1.3, 1.6), Edges::held, sheets::unbreakable);
+        add_noise(state, band, 0.05 * sheets::spacing, 3);
+        return std::make_unique<Simulation>(band, material, std::move(state), 1e-7);
+      };
+      const auto ours = start(RowBand(sheet, MPI_COMM_WORLD)), theirs = start(sheet);
+      for (int step = 0; step < 100; ++step)
+      {
+        ours->step();
+        theirs->step();
+      }
+      expect_same_state(*ours, theirs->state());
+      Field vx(sheet.n_places()), vy(sheet.n_places());
+      for (std::size_t place = 0; place < vx.size(); ++place)
+      {
+        vx[place] = std::sin(static_cast<double>(place));
+        vy[place] = std::cos(static_cast<double>(place));
+      }
+      for (Simulation *simulation : {ours.get(), theirs.get()})
+      {
+        simulation->set_velocities(vx, vy);
+        simulation->move_edges(sheets::stretched(40., 20.));
+        for (int step = 0; step < 100; ++step)
+          simulation->step();
+      }
+      expect_same_energies(ours->energies(), theirs->energies());
+      expect_same_state(*ours, theirs->state());
+    }
+}
+
+} // namespace
