@@ -3,6 +3,9 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "lattice/instruction_sets.h"
+#include "lattice/rows.h"
+
 namespace lattice
 {
 namespace
@@ -12,6 +15,28 @@ void require(bool condition, const char *message)
 {
   if (!condition)
     throw std::invalid_argument(message);
+}
+
+// Bonds of a row that are past their limit, or below `retraction` at their first limit, when their ends have gone on
+// for `ahead` [s].
+LATCON_PER_INSTRUCTION_SET double events_ahead(double ahead, double rest_length, double retraction, double first_limit,
+                                               std::size_t n, const double *x, const double *y, const double *vx,
+                                               const double *vy, const double *limit, std::ptrdiff_t shift)
+{
+  double events = 0.;
+#pragma omp simd reduction(+ : events)
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const double *const far_x = x + shift, *const far_y = y + shift;
+    const double *const far_vx = vx + shift, *const far_vy = vy + shift;
+    const double dx = (far_x[i] - x[i]) + ahead * (far_vx[i] - vx[i]);
+    const double dy = (far_y[i] - y[i]) + ahead * (far_vy[i] - vy[i]);
+    const double square = dx * dx + dy * dy, longest = limit[i] * rest_length, shortest = retraction * rest_length;
+    // Nested selections instead of logical operators, which gcc would turn into branches.
+    events += (limit[i] > 0. ? square : 0.) > longest * longest ? 1. : 0.;
+    events += (limit[i] == first_limit ? square : shortest * shortest) < shortest * shortest ? 1. : 0.;
+  }
+  return events;
 }
 
 } // namespace
@@ -39,6 +64,38 @@ Fracture::Fracture(const TriangularLattice &lattice, const Material &material, d
 void Fracture::watch(Forces &forces) const
 {
   forces.watch_retraction(retraction_stretch_, breaking_stretch_);
+}
+
+void Fracture::look_ahead(double duration)
+{
+  require(duration >= 0., "breaking looks ahead in time, not back");
+  look_ahead_ = duration;
+  row_has_events_.assign(lattice_.rows(), 0);
+}
+
+void Fracture::find_rows_ahead(const State &state)
+{
+  for_each_row(lattice_,
+               [&](std::size_t begin, std::size_t end)
+               {
+                 const std::size_t row = lattice_.row_of(begin);
+                 double events = 0.;
+                 for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+                   if (material_.shell(kind) != nullptr)
+                     events +=
+                       events_ahead(look_ahead_, lattice_.rest_length(kind), retraction_stretch_[kind],
+                                    breaking_stretch_, end - begin, &state.x[begin], &state.y[begin], &state.vx[begin],
+                                    &state.vy[begin], &state.breaking_stretch[kind][begin], lattice_.shift(kind, row));
+                 row_has_events_[row] = events > 0. ? 1 : 0;
+               });
+}
+
+double Fracture::stretch_ahead(const State &state, std::size_t place, std::size_t kind) const
+{
+  const std::size_t far = place + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(place)));
+  return std::hypot((state.x[far] - state.x[place]) + look_ahead_ * (state.vx[far] - state.vx[place]),
+                    (state.y[far] - state.y[place]) + look_ahead_ * (state.vy[far] - state.vy[place])) /
+         lattice_.rest_length(kind);
 }
 
 double Fracture::bond_energy(const State &state, std::size_t place, std::size_t kind) const
@@ -77,9 +134,11 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
 {
   broken_.clear();
   const auto *retraction = std::get_if<RetractionToughening>(&toughening_);
+  if (look_ahead_ > 0.)
+    find_rows_ahead(state);
   for (std::size_t row = 0; row < lattice_.rows(); ++row)
   {
-    if (!forces.row_has_events(row))
+    if (look_ahead_ > 0. ? row_has_events_[row] == 0 : !forces.row_has_events(row))
       continue;
     for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
     {
@@ -90,13 +149,14 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
         if (!(limit > 0.))
           continue;
         const double current = stretch(state, lattice_, place, kind);
-        if (current > limit)
+        const double decisive = look_ahead_ > 0. ? stretch_ahead(state, place, kind) : current;
+        if (decisive > limit)
         {
           const std::size_t far = place + static_cast<std::size_t>(lattice_.shift(kind, row));
           const Eigen::Vector2d midpoint = lattice_.reference(place) + 0.5 * lattice_.bond_vector(kind);
           broken_.push_back({state.time, place, far, kind, midpoint, current, bond_energy(state, place, kind)});
         }
-        else if (retraction != nullptr && limit == breaking_stretch_ && current < retraction_stretch_[kind])
+        else if (retraction != nullptr && limit == breaking_stretch_ && decisive < retraction_stretch_[kind])
           limit *= retraction->factor;
       }
     }

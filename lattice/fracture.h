@@ -58,12 +58,19 @@ public:
   /// Has `forces` report the bonds this object wants to hear of.
   void watch(Forces &forces) const;
 
+  /// Has a bond break, or toughen, in the evaluation after which it will come to its limit within `duration` [s], >= 0,
+  /// at the velocities of its ends; 0 by default: once it is past it. Half a time step makes it the end of a step that
+  /// is nearest to the moment of coming there, so that breaking is neither late nor early in the mean. @throws
+  /// std::invalid_argument for a negative duration
+  void look_ahead(double duration);
+
   /// Cuts a site and its bonds out of the sheet.
   /// @return elastic energy of the bonds removed, per sheet thickness [J/m]
   double remove_site(State &state, std::size_t place);
 
-  /// Breaks every bond beyond its limit at the last evaluation of `forces` and takes it out of `forces`, toughens what
-  /// is to be toughened, and moves the tip. @return the bonds that broke now, in the order of storage
+  /// Breaks every bond beyond its limit at the last evaluation of `forces`, or soon to be beyond it, and takes it out
+  /// of `forces`, toughens what is to be toughened, and moves the tip. @return the bonds that broke now, in the order
+  /// of storage
   const std::vector<BrokenBond> &apply(State &state, Forces &forces, const Field &evaluated_vx,
                                        const Field &evaluated_vy);
 
@@ -74,6 +81,8 @@ public:
   std::optional<std::size_t> tip() const { return tip_; }
 
 private:
+  void find_rows_ahead(const State &state);
+  double stretch_ahead(const State &state, std::size_t place, std::size_t kind) const;
   void lose_bond(State &state, std::size_t place, std::size_t kind);
   void consider_tip(const State &state, std::size_t place);
   void toughen_behind_tip(State &state);
@@ -84,6 +93,8 @@ private:
   double breaking_stretch_;
   Toughening toughening_;
   std::array<double, n_bond_kinds> retraction_stretch_{};
+  double look_ahead_ = 0.;
+  std::vector<std::uint8_t> row_has_events_; // looking ahead
   unsigned int tip_losses_;
   std::optional<std::size_t> tip_;
   double tip_x_ = 0.; // reference X of the tip

@@ -2,16 +2,33 @@
 
 #include <stdexcept>
 
+#include "lattice/runge_kutta_chebyshev.h"
+#include "lattice/velocity_verlet.h"
+
 namespace lattice
 {
+namespace
+{
 
-Simulation::Simulation(const TriangularLattice &lattice, const Material &material, State initial, double time_step,
-                       std::optional<Fracture> fracture)
+std::unique_ptr<Integrator> integrator(const TriangularLattice &lattice, Forces &forces, const TimeStepping &how)
+{
+  if (how.stages == 0)
+    return std::make_unique<VelocityVerlet>(lattice, forces, how.step);
+  return std::make_unique<RungeKuttaChebyshev>(lattice, forces, how.step, how.stages);
+}
+
+} // namespace
+
+Simulation::Simulation(const TriangularLattice &lattice, const Material &material, State initial,
+                       TimeStepping time_stepping, std::optional<Fracture> fracture)
   : lattice_(lattice), material_(material), state_(std::move(initial)), forces_(lattice, material),
-    integrator_(lattice, forces_, time_step), fracture_(std::move(fracture))
+    integrator_(integrator(lattice, forces_, time_stepping)), fracture_(std::move(fracture))
 {
   if (fracture_)
     fracture_->watch(forces_);
+  // Long steps would break bonds late; those of velocity Verlet are so short that they need not look ahead.
+  if (fracture_ && time_stepping.stages > 0)
+    fracture_->look_ahead(0.5 * time_stepping.step);
   initial_energy_ = elastic_energy(state_, lattice_, material_) + kinetic_energy(state_, lattice_);
   restart();
 }
@@ -20,7 +37,7 @@ void Simulation::restart()
 {
   if (contact_)
     contact_->find_candidates(state_);
-  integrator_.initialise(state_);
+  integrator_->initialise(state_);
   note_powers();
 }
 
@@ -41,14 +58,14 @@ void Simulation::note_powers()
 void Simulation::let_touch(const ContactLaw &law)
 {
   contact_.emplace(lattice_, law);
-  integrator_.add(*contact_);
+  integrator_->add(*contact_);
   restart();
 }
 
 void Simulation::load_ends(const Eigen::Matrix2d &F, EndLoads::End left, EndLoads::End right)
 {
   end_loads_.emplace(lattice_, material_, state_, F, left, right);
-  integrator_.add(*end_loads_);
+  integrator_->add(*end_loads_);
   restart();
 }
 
@@ -92,7 +109,7 @@ const std::vector<BrokenBond> &Simulation::step()
 {
   const double h = time_step();
   const double viscous_power_before = forces_.viscous_power();
-  integrator_.step(state_);
+  integrator_->step(state_);
 
   // Powers are taken before bonds break, so that each interval of the trapezoidal rule sees one set of bonds.
   viscous_ += 0.5 * h * (viscous_power_before + forces_.viscous_power());
@@ -104,7 +121,7 @@ const std::vector<BrokenBond> &Simulation::step()
     return no_bonds_;
 
   const std::vector<BrokenBond> &broken =
-    fracture_->apply(state_, forces_, integrator_.evaluated_vx(), integrator_.evaluated_vy());
+    fracture_->apply(state_, forces_, integrator_->evaluated_vx(state_), integrator_->evaluated_vy(state_));
   if (!broken.empty())
   {
     for (const BrokenBond &bond : broken)
@@ -114,9 +131,9 @@ const std::vector<BrokenBond> &Simulation::step()
     {
       // From this instant on, as the bonds are gone from it.
       contact_->note(state_, broken);
-      contact_->evaluate(state_, integrator_.evaluated_vx(), integrator_.evaluated_vy());
+      contact_->evaluate(state_, integrator_->evaluated_vx(state_), integrator_->evaluated_vy(state_));
     }
-    integrator_.update_accelerations(state_);
+    integrator_->update_accelerations(state_);
     note_powers();
   }
   return broken;

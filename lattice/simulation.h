@@ -7,7 +7,8 @@
 #include "lattice/end_loads.h"
 #include "lattice/energy.h"
 #include "lattice/fracture.h"
-#include "lattice/velocity_verlet.h"
+#include "lattice/integrator.h"
+#include "lattice/time_step.h"
 
 namespace lattice
 {
@@ -17,9 +18,8 @@ class Simulation
 {
 public:
   /// @param initial loaded state; its accelerations are computed here
-  /// @param time_step h [s]
   /// @param fracture breaking rules; none for a sheet whose bonds never break
-  Simulation(const TriangularLattice &lattice, const Material &material, State initial, double time_step,
+  Simulation(const TriangularLattice &lattice, const Material &material, State initial, TimeStepping time_stepping,
              std::optional<Fracture> fracture = std::nullopt);
   Simulation(const Simulation &) = delete; // parts refer to each other
   Simulation &operator=(const Simulation &) = delete;
@@ -46,7 +46,7 @@ public:
   const Material &material() const { return material_; }
   const State &state() const { return state_; }
   const Forces &forces() const { return forces_; }
-  double time_step() const { return integrator_.time_step(); }
+  double time_step() const { return integrator_->time_step(); }
   std::optional<std::size_t> tip() const;
   std::size_t n_broken() const { return n_broken_; } ///< bonds broken since the start, the seed's not counted
   EnergyBalance energies() const;
@@ -60,7 +60,7 @@ private:
   const Material &material_;
   State state_;
   Forces forces_;
-  VelocityVerlet integrator_;
+  std::unique_ptr<Integrator> integrator_;
   std::optional<Fracture> fracture_;
   std::optional<Contact> contact_;
   std::optional<EndLoads> end_loads_;

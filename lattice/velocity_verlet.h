@@ -1,7 +1,6 @@
 #pragma once
 
-#include "lattice/forces.h"
-#include "lattice/site_forces.h"
+#include "lattice/integrator.h"
 
 namespace lattice
 {
@@ -11,39 +10,19 @@ namespace lattice
 ///   a' = f(x', v_pred) / m, v' = v_half + (h/2) a'.
 /// The dashpots see v_pred = v + h a, a second-order prediction of v', so the scheme stays explicit, takes one force
 /// evaluation a step and converges at second order with and without viscosity. Without it, it is plain velocity Verlet.
-class VelocityVerlet
+class VelocityVerlet : public Integrator
 {
 public:
   /// @param time_step h [s], > 0; see TimeStepLimits
   VelocityVerlet(const TriangularLattice &lattice, Forces &forces, double time_step);
 
-  double time_step() const { return time_step_; }
+  void initialise(State &state) override;
+  void step(State &state) override;
 
-  /// Has forces act besides those of the bonds, at the same positions and velocities; they must outlive this object.
-  void add(SiteForces &forces) { site_forces_.push_back(&forces); }
-
-  /// Computes the accelerations a state starts with; needed once, and again after a change from outside.
-  void initialise(State &state);
-
-  /// Advances by one time step. Sites with zero inverse mass keep their velocity.
-  void step(State &state);
-
-  /// Velocities the last force evaluation was made with [m/s].
-  const Field &evaluated_vx() const { return predicted_vx_; }
-  const Field &evaluated_vy() const { return predicted_vy_; }
-
-  /// Accelerations anew from the forces as they stand, after bonds were taken out of them or site forces changed.
-  void update_accelerations(State &state) const;
+  const Field &evaluated_vx(const State &) const override { return predicted_vx_; }
+  const Field &evaluated_vy(const State &) const override { return predicted_vy_; }
 
 private:
-  void evaluate(State &state);
-  /// Adds the site forces to the accelerations, and what they change of the velocities in `duration` [s].
-  void add_site_forces(State &state, double duration) const;
-
-  const TriangularLattice &lattice_;
-  Forces &forces_;
-  double time_step_;
-  std::vector<SiteForces *> site_forces_;
   Field predicted_vx_, predicted_vy_;
 };
 

@@ -54,16 +54,16 @@ Results moved(const Case &input, const lattice::TriangularLattice &sheet, const 
 {
   lattice::FieldWriter fields(sheet, material, run.directory(), unbreakable);
   fields.add_frame(state);
-  double time_step = input.lattice_time_step();
+  lattice::TimeStepping stepping = input.lattice_time_stepping();
   if (!input.time_step)
-    time_step = input.end_time / std::ceil(input.end_time / time_step); // so that the last step ends at the end
-  lattice::Simulation simulation(sheet, material, std::move(state), time_step);
+    stepping.step = input.end_time / std::ceil(input.end_time / stepping.step); // so that the last step ends at the end
+  lattice::Simulation simulation(sheet, material, std::move(state), stepping);
   CrackRecord record(simulation);
   record.start();
   Progress progress(run.talks());
   {
     const auto phase = run.info().stopwatch().phase("motion");
-    const auto steps = static_cast<std::size_t>(std::ceil(input.end_time / time_step * (1. - 1e-12)));
+    const auto steps = static_cast<std::size_t>(std::ceil(input.end_time / stepping.step * (1. - 1e-12)));
     double next_frame = input.frame_interval;
     for (std::size_t step = 1; step <= steps && !signal_came(); ++step)
     {
@@ -115,7 +115,7 @@ ExitCode run_lattice(const Options &options)
   if (options.dry_run)
   {
     if (!options.quiet)
-      std::cout << parameters.resolved_text() << lattice_size(input, input.lattice_time_step());
+      std::cout << parameters.resolved_text() << lattice_size(input, input.lattice_time_stepping());
     return ExitCode::done;
   }
   Run run(options, parameters);
