@@ -76,6 +76,7 @@ TEST(ChebyshevStages, HoldAllWavesOfTheLattice)
       const TimeStepLimits limits = time_step_limits(sheet, material, 0.3);
       const TimeStepping stepping = chebyshev_time_stepping(chebyshev_step(sheet, material, 0.45), limits, 0);
       const ChebyshevStages stages(stepping.stages);
+      EXPECT_GE(stages.real_limit(), stepping.step / limits.viscous);
       double fastest = 0.;
       for (const Complex &rate : plane_modes::rates(sheet, material, F))
       {
