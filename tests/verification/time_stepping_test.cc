@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "lattice/chebyshev_stages.h"
+#include "lattice/contact.h"
 #include "verification/case.h"
 #include "verification/errors.h"
 
