@@ -239,8 +239,7 @@ CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vec
   {
     m.crest_amplitude = crest_amplitude(steady, options.lattice_spacing, m.sinusoid->curve);
     if (m.crest_amplitude)
-      m.crest_amplitude->uncertainty =
-        std::hypot(m.crest_amplitude->uncertainty, site_error * options.lattice_spacing);
+      m.crest_amplitude->uncertainty = std::hypot(m.crest_amplitude->uncertainty, site_error * options.lattice_spacing);
   }
   return m;
 }

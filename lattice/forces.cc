@@ -94,31 +94,43 @@ void Forces::bonds_from_below(const Motion &motion, std::ptrdiff_t row, BondRows
         std::fill_n(bonds.at(row, kind, component) - TriangularLattice::row_alignment, lattice_.stride(), 0.);
 }
 
+kernels::RowOfBonds Forces::row_of_bonds(const Motion &motion, std::size_t row) const
+{
+  const std::size_t near = lattice_.index(row, 0);
+  const State &state = motion.state;
+  kernels::RowOfBonds bonds{lattice_.columns(),
+                            &state.x[near],
+                            &state.y[near],
+                            &motion.vx[near],
+                            &motion.vy[near],
+                            state.bonds.words() + near,
+                            {},
+                            state.breaking_stretch,
+                            state.toughened_stretch,
+                            {},
+                            {}};
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+    bonds.shift[kind] = lattice_.shift(kind, row);
+  return bonds;
+}
+
+bool Forces::row_has_events_ahead(const State &state, std::size_t row, double ahead) const
+{
+  return kernels::any_event_ahead(constants_, row_of_bonds({state, state.vx, state.vy}, row), ahead);
+}
+
 // The bonds of row `from` as those of `row`: the same, or below the edge of a periodic sheet.
 kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, BondRows &bonds,
                                       const std::vector<const double *> &ahead) const
 {
-  const std::size_t columns = lattice_.columns(), near = lattice_.index(from, 0);
-  const State &state = motion.state;
-  kernels::RowOfBonds all{columns,
-                          &state.x[near],
-                          &state.y[near],
-                          &motion.vx[near],
-                          &motion.vy[near],
-                          state.bonds.words() + near,
-                          {},
-                          state.breaking_stretch,
-                          state.toughened_stretch,
-                          {},
-                          ahead};
+  kernels::RowOfBonds all = row_of_bonds(motion, from);
+  all.ahead = ahead;
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
-  {
-    all.shift[kind] = lattice_.shift(kind, from);
     for (std::size_t component = 0; component < 2; ++component)
       all.force[kind][component] = bonds.at(row, kind, component);
-  }
   const kernels::RowSums sums = kernels::bonds_of_row(constants_, all);
   // A site gathers from the places around it, so bonds that start beyond a periodic edge must be there.
+  const std::size_t columns = lattice_.columns();
   if (columns_repeat_)
     for (const auto &force : all.force)
       for (double *component : force)

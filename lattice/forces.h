@@ -62,6 +62,10 @@ public:
   /// Whether a row holds bonds that were stretched past their limit (or retracted) at the last evaluation.
   bool row_has_events(std::size_t row) const { return row_events_[row] != 0; }
 
+  /// Whether one of the bonds that start in a row of the band will be past its limit, or have retracted, when their
+  /// ends have gone on for `ahead` [s] at the velocities of the state.
+  bool row_has_events_ahead(const State &state, std::size_t row, double ahead) const;
+
   /// Takes a bond that has just broken out of viscous_power(), if it is there.
   /// @param state as at the last evaluation
   /// @param vx,vy velocities of that evaluation
@@ -107,6 +111,7 @@ private:
 
   void evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
                      const RowWork &work);
+  kernels::RowOfBonds row_of_bonds(const Motion &motion, std::size_t row) const;
   void bonds_from_below(const Motion &motion, std::ptrdiff_t row, BondRows &bonds) const;
   kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, BondRows &bonds,
                                 const std::vector<const double *> &ahead = {}) const;

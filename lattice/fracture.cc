@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "lattice/integrator.h"
+
 namespace lattice
 {
 namespace
@@ -44,6 +46,35 @@ void Fracture::watch(State &state, Forces &forces) const
   if (const auto *retraction = std::get_if<RetractionToughening>(&toughening_))
     state.toughened_stretch = breaking_stretch_ * retraction->factor;
   forces.watch_retraction(retraction_stretch_);
+}
+
+void Fracture::look_ahead(double duration)
+{
+  require(duration >= 0., "breaking looks ahead in time, not back");
+  look_ahead_ = duration;
+}
+
+std::vector<std::uint8_t> Fracture::rows_with_events(const State &state, const Forces &forces) const
+{
+  std::vector<std::uint8_t> rows(lattice_.rows(), 0);
+  for_each_row(lattice_, band_.rows(),
+               [&](std::size_t row)
+               {
+                 const bool has =
+                   look_ahead_ > 0. ? forces.row_has_events_ahead(state, row, look_ahead_) : forces.row_has_events(row);
+                 rows[row] = has ? 1 : 0;
+               });
+  return rows;
+}
+
+double Fracture::decisive_stretch(const State &state, std::size_t place, std::size_t kind) const
+{
+  if (!(look_ahead_ > 0.))
+    return stretch(state, lattice_, place, kind);
+  const std::size_t far = place + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(place)));
+  return std::hypot((state.x[far] - state.x[place]) + look_ahead_ * (state.vx[far] - state.vx[place]),
+                    (state.y[far] - state.y[place]) + look_ahead_ * (state.vy[far] - state.vy[place])) /
+         lattice_.rest_length(kind);
 }
 
 double Fracture::bond_energy(const State &state, std::size_t place, std::size_t kind) const
@@ -124,9 +155,10 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
 {
   std::vector<Loss> own;
   const auto *retraction = std::get_if<RetractionToughening>(&toughening_);
+  const std::vector<std::uint8_t> has_events = rows_with_events(state, forces);
   for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
   {
-    if (!forces.row_has_events(row))
+    if (has_events[row] == 0)
       continue;
     for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
     {
@@ -135,7 +167,7 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
       {
         if (!state.bonds.present(place, kind))
           continue;
-        const double current = stretch(state, lattice_, place, kind);
+        const double current = decisive_stretch(state, place, kind);
         if (current > limit(state, place, kind))
           own.push_back(loss(state, place, kind));
         else if (retraction != nullptr && current < retraction_stretch_[kind])

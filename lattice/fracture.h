@@ -62,12 +62,19 @@ public:
   /// Tells `state` what toughened bonds stand, and has `forces` report the bonds this object wants to hear of.
   void watch(State &state, Forces &forces) const;
 
+  /// Has a bond break, or toughen, in the evaluation after which it will come to its limit within `duration` [s], >= 0,
+  /// at the velocities of its ends; 0 by default: once it is past it. Half a time step makes it the end of a step that
+  /// is nearest to the moment of coming there, so that breaking is neither late nor early in the mean. @throws
+  /// std::invalid_argument for a negative duration
+  void look_ahead(double duration);
+
   /// Cuts sites and their bonds out of the sheet. Collective.
   /// @return elastic energy of the bonds removed, per sheet thickness [J/m]
   double remove_sites(State &state, const std::vector<std::size_t> &places);
 
-  /// Breaks every bond beyond its limit at the last evaluation of `forces` and takes it out of `forces`, toughens what
-  /// is to be toughened, and moves the tip. Collective.
+  /// Breaks every bond beyond its limit at the last evaluation of `forces`, or soon to be beyond it, and takes it out
+  /// of `forces`, toughens what is to be toughened, and moves the tip. Velocities of the state must be known in the
+  /// halo if this looks ahead. Collective.
   /// @return the bonds of the whole sheet that broke now, in the order of storage
   const std::vector<BrokenBond> &apply(State &state, Forces &forces, const Field &evaluated_vx,
                                        const Field &evaluated_vy);
@@ -79,6 +86,8 @@ public:
   std::optional<std::size_t> tip() const { return tip_; }
 
 private:
+  std::vector<std::uint8_t> rows_with_events(const State &state, const Forces &forces) const;
+  double decisive_stretch(const State &state, std::size_t place, std::size_t kind) const;
   struct Loss;
   Loss loss(const State &state, std::size_t place, std::size_t kind) const;
   std::vector<BrokenBond> lose_bonds(State &state, const std::vector<Loss> &own) const;
@@ -92,6 +101,7 @@ private:
   double breaking_stretch_;
   Toughening toughening_;
   std::array<double, n_bond_kinds> retraction_stretch_{};
+  double look_ahead_ = 0.; // [s]
   unsigned int tip_losses_;
   std::optional<std::size_t> tip_;
   double tip_x_ = 0.; // reference X of the tip

@@ -25,8 +25,8 @@ Fragments find_fragments(const State &state, const TriangularLattice &lattice);
 /// crack, and flanks that were held together.
 std::size_t n_overstretched_bonds(const State &state, const TriangularLattice &lattice, double breaking_stretch);
 
-/// Length of crack that fibrils bridge: of the strips across the sheet, 4 d wide, that lie between X_from and X_to, those
-/// in which bonds still lead from a held site below the middle to one above it without leaving the strip.
+/// Length of crack that fibrils bridge: of the strips across the sheet, 4 d wide, that lie between X_from and X_to,
+/// those in which bonds still lead from a held site below the middle to one above it without leaving the strip.
 /// @param X_from, X_to reference [m]; the seed's tip and the tip, say
 /// @return their width in all, reference [m]
 double bridged_length(const State &state, const TriangularLattice &lattice, double X_from, double X_to);

@@ -9,8 +9,8 @@
 #define HWY_DISABLED_TARGETS (HWY_SSE4 | HWY_AVX3_DL)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lattice/row_kernels.cc"
-#include <hwy/foreach_target.h>
 #include <hwy/cache_control.h>
+#include <hwy/foreach_target.h>
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
@@ -298,6 +298,66 @@ void Kick(double duration, std::size_t n, const double *force, const double *inv
   }
 }
 
+void FirstStage(double duration, std::size_t n, const double *acceleration, double *position, double *velocity,
+                double *start_position, double *start_velocity, double *previous_position, double *previous_velocity)
+{
+  for (std::size_t i = 0; i < n; i += width())
+  {
+    const Lanes x = load(position + i), v = load(velocity + i);
+    store(x, start_position + i);
+    store(x, previous_position + i);
+    store(v, start_velocity + i);
+    store(v, previous_velocity + i);
+    store(x + duration * v, position + i);
+    store(v + duration * load(acceleration + i), velocity + i);
+  }
+}
+
+// Written in differences from the start, so that what stands still or flies straight does so to the last bit.
+void NextStage(const ChebyshevStages::Stage &stage, double h, std::size_t n, const double *force,
+               const double *inverse_mass, const double *start_acceleration, const double *start_position,
+               const double *start_velocity, const double *position, const double *velocity, double *previous_position,
+               double *previous_velocity)
+{
+  const double mu = stage.mu, nu = stage.nu, now = h * stage.now, start = h * stage.start;
+  for (std::size_t i = 0; i < n; i += width())
+  {
+    const Lanes x = load(start_position + i), v = load(start_velocity + i), last_v = load(velocity + i);
+    store(x + (mu * (load(position + i) - x) + nu * (load(previous_position + i) - x)) + (now * last_v + start * v),
+          previous_position + i);
+    store(v + (mu * (last_v - v) + nu * (load(previous_velocity + i) - v)) +
+            (now * (load(force + i) * load(inverse_mass + i)) + start * load(start_acceleration + i)),
+          previous_velocity + i);
+  }
+}
+
+bool AnyEventAhead(const SheetConstants &sheet, const RowOfBonds &row, double ahead)
+{
+  auto events = hn::FirstN(D(), 0);
+  const std::size_t n_kinds = sheet.shells[1].cross_section > 0. ? n_bond_kinds : n_nearest_kinds;
+  for (std::size_t site = 0; site < row.n; site += width())
+  {
+    const Sites near(row, site);
+    const Lanes vx = load(row.vx + site), vy = load(row.vy + site);
+    for (std::size_t kind = 0; kind < n_kinds; ++kind)
+    {
+      const double l = sheet.shell(kind).rest_length;
+      const double shortest = sheet.retraction_stretch[kind] * l;
+      const std::size_t far = site + static_cast<std::size_t>(row.shift[kind]);
+      const Lanes dx = (load(row.x + far) - near.x) + ahead * (load(row.vx + far) - vx);
+      const Lanes dy = (load(row.y + far) - near.y) + ahead * (load(row.vy + far) - vy);
+      const Lanes square = dx * dx + dy * dy;
+      const auto toughened = near.toughened(kind);
+      const auto squared_limit = [l](double stretch) { return lanes(stretch * l * (stretch * l)).v; };
+      const auto beyond = hn::Gt(
+        square.v, hn::IfThenElse(toughened, squared_limit(row.toughened_stretch), squared_limit(row.breaking_stretch)));
+      const auto retracted = hn::AndNot(toughened, hn::Lt(square.v, lanes(shortest * shortest).v));
+      events = hn::Or(events, hn::And(near.present(kind), hn::Or(beyond, retracted)));
+    }
+  }
+  return !hn::AllFalse(D(), events);
+}
+
 const char *InstructionSet()
 {
   return hwy::TargetName(HWY_TARGET);
@@ -314,6 +374,9 @@ HWY_EXPORT(BondsOfRow);
 HWY_EXPORT(GatherRow);
 HWY_EXPORT(Drift);
 HWY_EXPORT(Kick);
+HWY_EXPORT(FirstStage);
+HWY_EXPORT(NextStage);
+HWY_EXPORT(AnyEventAhead);
 HWY_EXPORT(InstructionSet);
 
 namespace
@@ -351,6 +414,28 @@ void kick(double duration, std::size_t n, const double *force, const double *inv
           double *velocity)
 {
   HWY_DYNAMIC_DISPATCH(Kick)(duration, n, force, inverse_mass, acceleration, velocity);
+}
+
+void first_stage(double duration, std::size_t n, const double *acceleration, double *position, double *velocity,
+                 double *start_position, double *start_velocity, double *previous_position, double *previous_velocity)
+{
+  HWY_DYNAMIC_DISPATCH(FirstStage)
+  (duration, n, acceleration, position, velocity, start_position, start_velocity, previous_position, previous_velocity);
+}
+
+void next_stage(const ChebyshevStages::Stage &stage, double h, std::size_t n, const double *force,
+                const double *inverse_mass, const double *start_acceleration, const double *start_position,
+                const double *start_velocity, const double *position, const double *velocity, double *previous_position,
+                double *previous_velocity)
+{
+  HWY_DYNAMIC_DISPATCH(NextStage)
+  (stage, h, n, force, inverse_mass, start_acceleration, start_position, start_velocity, position, velocity,
+   previous_position, previous_velocity);
+}
+
+bool any_event_ahead(const SheetConstants &sheet, const RowOfBonds &row, double ahead)
+{
+  return HWY_DYNAMIC_DISPATCH(AnyEventAhead)(sheet, row, ahead);
 }
 
 std::vector<std::string> instruction_sets()

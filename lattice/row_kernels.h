@@ -9,6 +9,7 @@
 
 #include "lattice/bond_law.h"
 #include "lattice/bond_states.h"
+#include "lattice/chebyshev_stages.h"
 
 /// @file
 /// The loops that take nearly all of a simulation's time, over the sites of one row each. They exist once per
@@ -72,6 +73,21 @@ void drift(double h, std::size_t n, const double *acceleration, double *velocity
 /// The acceleration of the n sites from the force, and their velocity after it has acted for `duration` [s].
 void kick(double duration, std::size_t n, const double *force, const double *inverse_mass, double *acceleration,
           double *velocity);
+
+/// The first stage of a Runge-Kutta-Chebyshev step (theory.md, eq. L.18) for one component of n sites, in place, after
+/// `duration` [s]; positions and velocities before it go to `start` and `previous`.
+void first_stage(double duration, std::size_t n, const double *acceleration, double *position, double *velocity,
+                 double *start_position, double *start_velocity, double *previous_position, double *previous_velocity);
+
+/// A further stage of a step h [s] from the forces at the last one; it takes the place of the stage before the last.
+void next_stage(const ChebyshevStages::Stage &stage, double h, std::size_t n, const double *force,
+                const double *inverse_mass, const double *start_acceleration, const double *start_position,
+                const double *start_velocity, const double *position, const double *velocity, double *previous_position,
+                double *previous_velocity);
+
+/// Whether one of the bonds that start in a row will be past its limit, or have retracted, when their ends have gone on
+/// for `ahead` [s] at their velocities. `row.force` is not looked at.
+bool any_event_ahead(const SheetConstants &sheet, const RowOfBonds &row, double ahead);
 
 /// Names of the instruction sets that this processor has and the loops exist for, the best first; "SCALAR" is none.
 std::vector<std::string> instruction_sets();

@@ -2,17 +2,34 @@
 
 #include <stdexcept>
 
+#include "lattice/runge_kutta_chebyshev.h"
+#include "lattice/velocity_verlet.h"
+
 namespace lattice
 {
+namespace
+{
 
-Simulation::Simulation(const RowBand &band, const Material &material, State initial, double time_step,
+std::unique_ptr<Integrator> integrator(const RowBand &band, Forces &forces, const TimeStepping &how)
+{
+  if (how.stages == 0)
+    return std::make_unique<VelocityVerlet>(band, forces, how.step);
+  return std::make_unique<RungeKuttaChebyshev>(band, forces, how.step, how.stages);
+}
+
+} // namespace
+
+Simulation::Simulation(const RowBand &band, const Material &material, State initial, TimeStepping time_stepping,
                        std::optional<Fracture> fracture)
   : band_(band), lattice_(band.lattice()), material_(material), state_(std::move(initial)), forces_(band, material),
-    integrator_(band, forces_, time_step), fracture_(std::move(fracture)), powers_(lattice_.rows()),
+    integrator_(integrator(band, forces_, time_stepping)), fracture_(std::move(fracture)), powers_(lattice_.rows()),
     work_(lattice_.rows())
 {
   if (fracture_)
     fracture_->watch(state_, forces_);
+  // Long steps would break bonds late; those of velocity Verlet are so short that they need not look ahead.
+  if (fracture_ && time_stepping.stages > 0)
+    fracture_->look_ahead(0.5 * time_stepping.step);
   restart();
   initial_energy_ = elastic_energy(state_, band_, material_) + kinetic_energy(state_, band_);
 }
@@ -21,7 +38,7 @@ void Simulation::restart()
 {
   if (contact_)
     contact_->find_candidates(state_);
-  integrator_.initialise(state_);
+  integrator_->initialise(state_);
   note_powers();
 }
 
@@ -31,8 +48,8 @@ void Simulation::note_powers()
   {
     powers_.viscous[row] = forces_.viscous_power(row);
     powers_.contact[row] = 0.;
-    powers_.boundary[row] = edges_move_ ? boundary_power(state_, lattice_, forces_, integrator_.evaluated_vx(),
-                                                         integrator_.evaluated_vy(), row)
+    powers_.boundary[row] = edges_move_ ? boundary_power(state_, lattice_, forces_, integrator_->evaluated_vx(state_),
+                                                         integrator_->evaluated_vy(state_), row)
                                         : 0.;
   }
   const auto power = [this](const SiteForce &on)
@@ -65,14 +82,14 @@ void Simulation::add_work(const Ledger &before)
 void Simulation::let_touch(const ContactLaw &law)
 {
   contact_.emplace(band_, law);
-  integrator_.add(*contact_);
+  integrator_->add(*contact_);
   restart();
 }
 
 void Simulation::load_ends(const Eigen::Matrix2d &F, EndLoads::End left, EndLoads::End right)
 {
   end_loads_.emplace(band_, material_, state_, F, left, right);
-  integrator_.add(*end_loads_);
+  integrator_->add(*end_loads_);
   restart();
 }
 
@@ -113,7 +130,7 @@ void Simulation::set_velocities(const Field &vx, const Field &vy)
 
 const std::vector<BrokenBond> &Simulation::step()
 {
-  integrator_.step(state_);
+  integrator_->step(state_);
 
   // Powers are taken before bonds break, so that each interval of the trapezoidal rule sees one set of bonds.
   const Ledger before = powers_;
@@ -123,7 +140,7 @@ const std::vector<BrokenBond> &Simulation::step()
     return no_bonds_;
 
   const std::vector<BrokenBond> &broken =
-    fracture_->apply(state_, forces_, integrator_.evaluated_vx(), integrator_.evaluated_vy());
+    fracture_->apply(state_, forces_, integrator_->evaluated_vx(state_), integrator_->evaluated_vy(state_));
   if (!broken.empty())
   {
     for (const BrokenBond &bond : broken)
@@ -137,9 +154,9 @@ const std::vector<BrokenBond> &Simulation::step()
       // From this instant on, as the bonds are gone from it.
       band_.share(ends, {&state_.x, &state_.y});
       contact_->note(state_, broken);
-      integrator_.evaluate_site_forces(state_);
+      integrator_->evaluate_site_forces(state_);
     }
-    integrator_.update_accelerations(state_, ends);
+    integrator_->update_accelerations(state_, ends);
     note_powers();
   }
   return broken;

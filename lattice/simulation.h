@@ -7,7 +7,8 @@
 #include "lattice/end_loads.h"
 #include "lattice/energy.h"
 #include "lattice/fracture.h"
-#include "lattice/velocity_verlet.h"
+#include "lattice/integrator.h"
+#include "lattice/time_step.h"
 
 namespace lattice
 {
@@ -22,9 +23,8 @@ class Simulation
 public:
   /// @param band rows that this process moves: a whole lattice, or its share
   /// @param initial loaded state in the rows that the band knows; its accelerations are computed here
-  /// @param time_step h [s]
   /// @param fracture breaking rules for the same band; none for a sheet whose bonds never break
-  Simulation(const RowBand &band, const Material &material, State initial, double time_step,
+  Simulation(const RowBand &band, const Material &material, State initial, TimeStepping time_stepping,
              std::optional<Fracture> fracture = std::nullopt);
   Simulation(const Simulation &) = delete; // parts refer to each other
   Simulation &operator=(const Simulation &) = delete;
@@ -59,7 +59,7 @@ public:
   const State &state() const { return state_; }      ///< in the rows that the band knows
   Eigen::Vector2d position(std::size_t place) const; ///< of any site [m]
   const Forces &forces() const { return forces_; }
-  double time_step() const { return integrator_.time_step(); }
+  double time_step() const { return integrator_->time_step(); }
   std::optional<std::size_t> tip() const;
   std::size_t n_broken() const { return n_broken_; } ///< bonds broken since the start, the seed's not counted
   EnergyBalance energies() const;
@@ -84,7 +84,7 @@ private:
   const Material &material_;
   State state_;
   Forces forces_;
-  VelocityVerlet integrator_;
+  std::unique_ptr<Integrator> integrator_;
   std::optional<Fracture> fracture_;
   std::optional<Contact> contact_;
   std::optional<EndLoads> end_loads_;

@@ -14,7 +14,7 @@ struct SiteForce
   Eigen::Vector2d force; ///< [N/m]
 };
 
-/// Forces on a few sites of a band of rows that no bond exerts: contacts, loads on edges. VelocityVerlet adds them to
+/// Forces on a few sites of a band of rows that no bond exerts: contacts, loads on edges. An Integrator adds them to
 /// those of the bonds.
 class SiteForces
 {

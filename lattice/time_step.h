@@ -7,6 +7,18 @@ namespace lattice
 
 struct ContactLaw;
 
+/// How a motion is advanced in time.
+struct TimeStepping
+{
+  /// Velocity Verlet, unless stages are given.
+  TimeStepping(double h, unsigned int s = 0) : step(h), stages(s) {}
+
+  double step;         ///< h [s], > 0
+  unsigned int stages; ///< s of Runge-Kutta-Chebyshev, >= 2; 0: velocity Verlet
+
+  unsigned int evaluations() const { return stages > 0 ? stages : 1; } ///< of all forces, in a step
+};
+
 /// Largest stable time steps of velocity Verlet with predicted velocities [s] (theory.md, eqs. L.8 to L.10).
 struct TimeStepLimits
 {
@@ -28,5 +40,17 @@ TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material
 /// bonds they stand for.
 TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
                                 const ContactLaw &contact);
+
+/// Step of Runge-Kutta-Chebyshev at which waves and the breaking of bonds are resolved [s]: a share of the elastic
+/// limit of the undeformed sheet, or, where it is smaller, h = 1 / kappa: all oscillating modes are stable then for any
+/// number of stages (theory.md, eq. L.22). kappa is the largest A0 psi''(smallest_stretch) / (A0 eta).
+/// @return 0 where a shell has no dashpots, for which the method is not made
+double chebyshev_step(const TriangularLattice &lattice, const Material &material, double smallest_stretch);
+
+/// Runge-Kutta-Chebyshev with steps no longer than `step`, and no longer than is stable (theory.md, eqs. L.20, L.21).
+/// @param step [s], > 0
+/// @param limits of velocity Verlet for the same sheet, whose dashpots bound the real axis
+/// @param stages s; 0: as few as are stable with `step`
+TimeStepping chebyshev_time_stepping(double step, const TimeStepLimits &limits, unsigned int stages);
 
 } // namespace lattice

@@ -5,9 +5,9 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "lattice/chebyshev_stages.h"
 #include "lattice/contact.h"
 #include "lattice/seed.h"
-#include "lattice/time_step.h"
 #include "verification/atomic_file.h"
 
 namespace verification
@@ -30,6 +30,40 @@ void check_seed(const Case &input, Parameters &p, const lattice::TriangularLatti
   {
     p.error(extent, std::string("the seed crack does not fit: ") + problem.what(), others);
   }
+}
+
+// Twice the bound on the dashpots is where the undeformed lattice of nearest neighbours is certain to be unstable.
+void check_time_step(const Case &input, Parameters &p)
+{
+  const lattice::TimeStepLimits limits = lattice::time_step_limits(input.lattice(), input.material(), 1.);
+  double limit = 2. * limits.combined;
+  if (input.integrator == Case::Integrator::runge_kutta_chebyshev)
+  {
+    if (input.stages < 2)
+      return;
+    limit = 2. * lattice::ChebyshevStages(input.stages).real_limit() * limits.viscous;
+  }
+  if (*input.time_step > limit)
+    p.error("Time/step", "beyond " + full_precision(limit) + " s the time stepping is unstable; auto is safe",
+            {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity", "Sheet/spacing", "Time/integrator",
+             "Time/stages"});
+}
+
+void check_time_stepping(const Case &input, Parameters &p)
+{
+  const bool chebyshev = input.integrator == Case::Integrator::runge_kutta_chebyshev;
+  if (!chebyshev && input.stages != 0)
+    p.error("Time/stages", "velocity-verlet has no stages; give 0, or integrator = runge-kutta-chebyshev",
+            {"Time/integrator"});
+  if (chebyshev && input.stages == 1)
+    p.error("Time/stages", "a method of second order has two stages or more; give 0 to have them chosen");
+  if (chebyshev && (input.nearest.viscosity == 0. || (input.has_next_nearest && input.next_nearest.viscosity == 0.)))
+    p.error("Time/integrator",
+            "runge-kutta-chebyshev is for sheets whose bonds all have dashpots; give velocity-verlet",
+            {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity"});
+  else if (input.time_step && input.spacing > 0. && input.density > 0. && input.height >= 8. * input.spacing &&
+           input.length >= 8. * input.spacing)
+    check_time_step(input, p);
 }
 
 } // namespace
@@ -136,8 +170,16 @@ void Case::declare(Parameters &p)
   p.add("Time", "end", end_time, NonNegative{}, "s", "the motion ends here at the latest");
   p.add("Time", "step", time_step, Positive{}, "s",
         "time step of the lattice; auto: safety factor times the stable one");
-  p.add("Time", "safety factor", safety_factor, Between{0.01, 1.}, "1",
-        "automatic time step over the one that is stable in every configuration");
+  p.add(
+    "Time", "integrator", integrator,
+    {{"velocity-verlet", Integrator::velocity_verlet}, {"runge-kutta-chebyshev", Integrator::runge_kutta_chebyshev}},
+    "of the lattice: velocity Verlet, whose step the dashpots limit, or longer steps of several stages each");
+  p.add("Time", "stages", stages, Between{0., 200.},
+        "force evaluations in a step of runge-kutta-chebyshev, 2 or more; 0: as few as are stable");
+  p.add(
+    "Time", "safety factor", safety_factor, Between{0.01, 1.}, "1",
+    "automatic time step over the one that is stable in every configuration, or, of runge-kutta-chebyshev, over the "
+    "one that resolves the motion");
 
   continuum.declare(p);
 
@@ -222,14 +264,7 @@ void Case::check(Parameters &p) const
     p.error("Fracture/factor",
             "toughening by a factor of 1 changes nothing; give a larger factor, or toughening = none",
             {"Fracture/toughening"});
-  if (time_step && spacing > 0. && density > 0. && height >= 8. * spacing && length >= 8. * spacing)
-  {
-    // Twice the bound is where the undeformed lattice of nearest neighbours is certain to be unstable.
-    const double limit = 2. * lattice::time_step_limits(lattice(), material(), 1.).combined;
-    if (*time_step > limit)
-      p.error("Time/step", "beyond " + full_precision(limit) + " s the time stepping is unstable; auto is safe",
-              {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity", "Sheet/spacing"});
-  }
+  check_time_stepping(*this, p);
 }
 
 std::vector<std::size_t> Case::seed(const lattice::TriangularLattice &sheet) const
@@ -275,25 +310,33 @@ lattice::Toughening Case::toughening_rule() const
   }
 }
 
-double Case::lattice_time_step() const
-{
-  if (time_step)
-    return *time_step;
-  return safety_factor * lattice::time_step_limits(lattice(), material(), smallest_stable_stretch).combined;
-}
-
 lattice::ContactLaw Case::contact_law() const
 {
   return lattice::contact_like_nearest_bond(lattice(), material(), contact_distance * spacing, contact_stiffness,
                                             contact_viscosity);
 }
 
-double Case::fracture_time_step() const
+lattice::TimeStepping Case::time_stepping(const lattice::TimeStepLimits &limits) const
 {
-  if (time_step || !has_contact)
-    return lattice_time_step();
-  return safety_factor *
-         lattice::time_step_limits(lattice(), material(), smallest_stable_stretch, contact_law()).combined;
+  if (integrator == Integrator::velocity_verlet)
+    return time_step ? *time_step : safety_factor * limits.combined;
+  const double step =
+    time_step ? *time_step : safety_factor * lattice::chebyshev_step(lattice(), material(), smallest_chebyshev_stretch);
+  if (time_step && stages > 0)
+    return {step, stages};
+  return lattice::chebyshev_time_stepping(step, limits, stages);
+}
+
+lattice::TimeStepping Case::lattice_time_stepping() const
+{
+  return time_stepping(lattice::time_step_limits(lattice(), material(), smallest_stable_stretch));
+}
+
+lattice::TimeStepping Case::fracture_time_stepping() const
+{
+  if (!has_contact)
+    return lattice_time_stepping();
+  return time_stepping(lattice::time_step_limits(lattice(), material(), smallest_stable_stretch, contact_law()));
 }
 
 } // namespace verification

@@ -7,6 +7,7 @@
 
 #include "lattice/fracture.h"
 #include "lattice/material.h"
+#include "lattice/time_step.h"
 #include "verification/continuum_case.h"
 #include "verification/parameters.h"
 
@@ -113,7 +114,14 @@ struct Case
   double contact_viscosity = 1.; ///< of the dashpot of a nearest bond [-]
 
   // Time
-  double end_time = 0.;            ///< [s]
+  double end_time = 0.; ///< [s]
+  enum class Integrator
+  {
+    velocity_verlet,
+    runge_kutta_chebyshev
+  };
+  Integrator integrator = Integrator::velocity_verlet;
+  unsigned int stages = 0;         ///< of Runge-Kutta-Chebyshev; 0: as few as are stable
   std::optional<double> time_step; ///< [s]; none: safety factor times the stable one
   double safety_factor = 0.9;
 
@@ -150,13 +158,19 @@ struct Case
   /// Places of the sites that the seed crack removes, by increasing X. @throws std::invalid_argument if there are none
   std::vector<std::size_t> seed(const lattice::TriangularLattice &sheet) const;
   lattice::ContactLaw contact_law() const;
-  /// Time step of the lattice [s]: the stated one, or safety factor times the limit.
-  double lattice_time_step() const;
+  /// Time stepping of the lattice: the stated step, or safety factor times the limit.
+  lattice::TimeStepping lattice_time_stepping() const;
   /// The same for a sheet that breaks, whose sites may touch.
-  double fracture_time_step() const;
+  lattice::TimeStepping fracture_time_stepping() const;
+
+private:
+  lattice::TimeStepping time_stepping(const lattice::TimeStepLimits &limits) const;
 };
 
 /// Stretch down to which the automatic time step is stable [-]; shorter bonds do not occur in a sheet under tension.
 inline constexpr double smallest_stable_stretch = 0.3;
+
+/// The same for the oscillating modes under Runge-Kutta-Chebyshev [-].
+inline constexpr double smallest_chebyshev_stretch = 0.45;
 
 } // namespace verification

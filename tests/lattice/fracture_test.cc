@@ -98,6 +98,37 @@ TEST(Fracture, BreaksWhatIsBeyondTheLimitForGood)
   EXPECT_EQ(sheet.limit(0, 0, 0), 0.);
 }
 
+// The corner's bond along the row is at 1.4 of 1.5 and grows by 1 m/s; the one across stays whole.
+TEST(Fracture, LooksAheadToTheMomentOfBreaking)
+{
+  TenSites sheet{NoToughening{}};
+  const std::size_t corner = sheet.sheet.index(0, 0);
+  sheet.state.x[corner] -= 0.4;
+  sheet.state.vx[corner] = -1.;
+  EXPECT_TRUE(sheet.apply().empty());
+  sheet.fracture.look_ahead(0.09);
+  EXPECT_TRUE(sheet.apply().empty());
+  sheet.fracture.look_ahead(0.11);
+  const std::vector<BrokenBond> broken = sheet.apply();
+  ASSERT_EQ(broken.size(), 1u);
+  EXPECT_EQ(broken[0].near, corner);
+  EXPECT_NEAR(broken[0].stretch, 1.4, 1e-12); // where it is, as its energy
+  EXPECT_THROW(sheet.fracture.look_ahead(-1.), std::invalid_argument);
+}
+
+// A bond at its length that shortens by 1 m/s is to toughen below 0.8.
+TEST(Fracture, LooksAheadToTheMomentOfRetraction)
+{
+  TenSites sheet{RetractionToughening{0.8, 3.}};
+  sheet.state.vx[sheet.sheet.index(0, 0)] = 1.;
+  sheet.fracture.look_ahead(0.19);
+  sheet.apply();
+  EXPECT_EQ(sheet.limit(0, 0, 0), 1.5);
+  sheet.fracture.look_ahead(0.21);
+  sheet.apply();
+  EXPECT_EQ(sheet.limit(0, 0, 0), 4.5);
+}
+
 // Six bonds at most: the tip needs two losses. The corner's two bonds go; then its neighbours have lost one each.
 TEST(Fracture, TipIsTheRightMostSiteThatLostAQuarterOfItsBonds)
 {

@@ -54,6 +54,8 @@ const std::set<std::string> no_claim_reads{
   "Time/end",
   "Time/step",
   "Time/safety factor",
+  "Time/integrator",
+  "Time/stages",
   "Output/frame interval",
   "Output/energy interval",
   "Near tip/ahead",
@@ -107,9 +109,26 @@ std::optional<Case> with_another(const std::string &key, const std::string &valu
   catch (const std::invalid_argument &)
   {
   }
-  for (const char *other :
-       {"1e-12", "1", "0.5", "2", "false", "true", "rows-across-crack", "linear", "motion", "behind-tip", "slit",
-        "mooney-rivlin", "isotropic", "generalised-alpha", "free", "held", "clamped", "undeformed", "other.msh"})
+  for (const char *other : {"1e-12",
+                            "1",
+                            "0.5",
+                            "2",
+                            "false",
+                            "true",
+                            "rows-across-crack",
+                            "linear",
+                            "motion",
+                            "behind-tip",
+                            "slit",
+                            "mooney-rivlin",
+                            "isotropic",
+                            "generalised-alpha",
+                            "free",
+                            "held",
+                            "clamped",
+                            "undeformed",
+                            "other.msh",
+                            "runge-kutta-chebyshev"})
     candidates.emplace_back(other);
   for (const std::string &candidate : candidates)
   {

@@ -51,10 +51,10 @@ Results relaxed(const Case &input, const lattice::TriangularLattice &sheet, cons
 Results moved(const Case &input, const lattice::RowBand &band, const lattice::Material &material, lattice::State state,
               Run &run)
 {
-  double time_step = input.lattice_time_step();
+  lattice::TimeStepping stepping = input.lattice_time_stepping();
   if (!input.time_step)
-    time_step = input.end_time / std::ceil(input.end_time / time_step); // so that the last step ends at the end
-  lattice::Simulation simulation(band, material, std::move(state), time_step);
+    stepping.step = input.end_time / std::ceil(input.end_time / stepping.step); // so that the last step ends at the end
+  lattice::Simulation simulation(band, material, std::move(state), stepping);
   lattice::FieldWriter fields(band.lattice(), material, run.directory());
   const auto add_frame = [&]
   {
@@ -68,7 +68,7 @@ Results moved(const Case &input, const lattice::RowBand &band, const lattice::Ma
   Progress progress(run.talks());
   {
     const auto phase = run.info().stopwatch().phase("motion");
-    const auto steps = static_cast<std::size_t>(std::ceil(input.end_time / time_step * (1. - 1e-12)));
+    const auto steps = static_cast<std::size_t>(std::ceil(input.end_time / stepping.step * (1. - 1e-12)));
     double next_frame = input.frame_interval;
     for (std::size_t step = 1; step <= steps; ++step)
     {
@@ -123,7 +123,7 @@ ExitCode run_lattice(const Options &options)
   if (options.dry_run)
   {
     if (!options.quiet)
-      std::cout << parameters.resolved_text() << lattice_size(input, input.lattice_time_step());
+      std::cout << parameters.resolved_text() << lattice_size(input, input.lattice_time_stepping());
     return ExitCode::done;
   }
   Run run(options, parameters);

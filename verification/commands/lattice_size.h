@@ -7,10 +7,11 @@
 namespace verification
 {
 
-/// What `--dry-run` says of the lattice of a case: sites, bonds, time step, steps, memory and time it will take.
-std::string lattice_size(const Case &input, double time_step);
+/// What `--dry-run` says of the lattice of a case: sites, bonds, time step, stages, steps, memory and time it will
+/// take.
+std::string lattice_size(const Case &input, const lattice::TimeStepping &stepping);
 
-/// Time that so many site-steps take on one core, estimated [s].
-double core_seconds(double site_steps);
+/// Time that so many evaluations of the forces on a site take on one core, time stepping included, estimated [s].
+double core_seconds(double site_evaluations);
 
 } // namespace verification

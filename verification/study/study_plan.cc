@@ -34,7 +34,8 @@ double expected_steps(const Case &input, const lattice::TriangularLattice &sheet
 {
   const double way = (input.stop_position - input.seed_position) * sheet.length();
   const double passage = way / small_strain(sheet, input.material()).shear_speed;
-  return std::ceil(std::min(input.end_time, passage) / input.lattice_time_step());
+  const lattice::TimeStepping stepping = input.lattice_time_stepping();
+  return std::ceil(std::min(input.end_time, passage) / stepping.step) * stepping.evaluations();
 }
 
 PlannedRun plan_run(const Study &study, const StudyRun &run, const std::uint64_t seed, const Settings &settings)

@@ -1,0 +1,110 @@
+#include "lattice/integrator.h"
+
+#include <stdexcept>
+
+#include "lattice/row_kernels.h"
+
+namespace lattice
+{
+namespace
+{
+
+// Calls visit(place, acceleration) for every site force.
+template <class Visitor>
+void for_each_acceleration(const State &state, const std::vector<SiteForces *> &site_forces, const Visitor &visit)
+{
+  for (const SiteForces *forces : site_forces)
+    for (const auto &[place, force] : forces->last())
+      visit(place, Eigen::Vector2d(state.inverse_mass[place] * force));
+}
+
+} // namespace
+
+Integrator::Integrator(const RowBand &band, Forces &forces, double time_step)
+  : band_(band), lattice_(band.lattice()), halo_(band), forces_(forces), time_step_(time_step)
+{
+  if (!(time_step > 0.))
+    throw std::invalid_argument("time stepping needs a positive time step");
+}
+
+void Integrator::update_surroundings(State &state)
+{
+  halo_.start(evaluated_fields(state));
+  halo_.finish();
+  update_all_images(state);
+}
+
+void Integrator::update_all_images(State &state)
+{
+  update_images(state, band_);
+  const std::vector<Field *> fields = evaluated_fields(state);
+  for (const TriangularLattice::Image &image : lattice_.images())
+    if (band_.knows(image.site))
+      for (Field *velocity : {fields[2], fields[3]})
+        (*velocity)[image.place] = (*velocity)[image.site];
+}
+
+void Integrator::kick(State &state, std::size_t row, const double *fx, const double *fy, double duration) const
+{
+  const std::size_t begin = lattice_.index(row, 0), n = lattice_.columns();
+  const double *const inverse_mass = &state.inverse_mass[begin];
+  kernels::kick(duration, n, fx, inverse_mass, &state.ax[begin], &state.vx[begin]);
+  kernels::kick(duration, n, fy, inverse_mass, &state.ay[begin], &state.vy[begin]);
+}
+
+void Integrator::accelerate(State &state)
+{
+  forces_.evaluate(
+    state, evaluated_vx(state), evaluated_vy(state),
+    {{}, {}, [&](std::size_t row, const double *fx, const double *fy) { kick(state, row, fx, fy, 0.); }});
+  evaluate_site_forces(state);
+  accelerate_sites(state);
+}
+
+void Integrator::evaluate_site_forces(State &state)
+{
+  for (SiteForces *forces : site_forces_)
+  {
+    band_.share(forces->sites_to_know(), evaluated_fields(state));
+    forces->evaluate(state, evaluated_vx(state), evaluated_vy(state));
+  }
+}
+
+void Integrator::accelerate_sites(State &state) const
+{
+  for_each_acceleration(state, site_forces_,
+                        [&](std::size_t place, const Eigen::Vector2d &acceleration)
+                        {
+                          state.ax[place] += acceleration.x();
+                          state.ay[place] += acceleration.y();
+                        });
+}
+
+void Integrator::kick_sites(State &state, double duration) const
+{
+  for_each_acceleration(state, site_forces_,
+                        [&](std::size_t place, const Eigen::Vector2d &acceleration)
+                        {
+                          state.vx[place] += duration * acceleration.x();
+                          state.vy[place] += duration * acceleration.y();
+                        });
+}
+
+void Integrator::update_accelerations(State &state, const std::vector<std::size_t> &places) const
+{
+  const auto of_bonds = [&](std::size_t place)
+  {
+    const Eigen::Vector2d force = forces_.on_site(state, evaluated_vx(state), evaluated_vy(state), place);
+    state.ax[place] = force.x() * state.inverse_mass[place];
+    state.ay[place] = force.y() * state.inverse_mass[place];
+  };
+  for (const std::size_t place : places)
+    if (band_.owns(place))
+      of_bonds(place);
+  for (const SiteForces *forces : site_forces_)
+    for (const SiteForce &force : forces->last())
+      of_bonds(force.place);
+  accelerate_sites(state);
+}
+
+} // namespace lattice

@@ -1,0 +1,65 @@
+#include "lattice/runge_kutta_chebyshev.h"
+
+#include "lattice/row_kernels.h"
+
+namespace lattice
+{
+
+RungeKuttaChebyshev::RungeKuttaChebyshev(const RowBand &band, Forces &forces, double time_step, unsigned int stages)
+  : Integrator(band, forces, time_step), stages_(stages)
+{
+  for (Motion *motion : {&start_, &previous_})
+    for (Field *field : {&motion->x, &motion->y, &motion->vx, &motion->vy})
+      *field = Field(lattice_.n_places());
+}
+
+std::vector<Field *> RungeKuttaChebyshev::evaluated_fields(State &state)
+{
+  return {&state.x, &state.y, &state.vx, &state.vy};
+}
+
+void RungeKuttaChebyshev::initialise(State &state)
+{
+  update_surroundings(state);
+  accelerate(state);
+}
+
+void RungeKuttaChebyshev::step(State &state)
+{
+  const double h = time_step();
+  for_each_row(lattice_, band_.rows(),
+               [&](std::size_t row)
+               {
+                 const double duration = h * stages_.first();
+                 const std::size_t i = lattice_.index(row, 0), n = lattice_.columns();
+                 kernels::first_stage(duration, n, &state.ax[i], &state.x[i], &state.vx[i], &start_.x[i], &start_.vx[i],
+                                      &previous_.x[i], &previous_.vx[i]);
+                 kernels::first_stage(duration, n, &state.ay[i], &state.y[i], &state.vy[i], &start_.y[i], &start_.vy[i],
+                                      &previous_.y[i], &previous_.vy[i]);
+               });
+  update_surroundings(state);
+  for (const ChebyshevStages::Stage &stage : stages_.stages())
+  {
+    const auto next = [&](std::size_t row, const double *fx, const double *fy)
+    {
+      const std::size_t i = lattice_.index(row, 0), n = lattice_.columns();
+      const double *const inverse_mass = &state.inverse_mass[i];
+      kernels::next_stage(stage, h, n, fx, inverse_mass, &state.ax[i], &start_.x[i], &start_.vx[i], &state.x[i],
+                          &state.vx[i], &previous_.x[i], &previous_.vx[i]);
+      kernels::next_stage(stage, h, n, fy, inverse_mass, &state.ay[i], &start_.y[i], &start_.vy[i], &state.y[i],
+                          &state.vy[i], &previous_.y[i], &previous_.vy[i]);
+    };
+    forces_.evaluate(state, state.vx, state.vy, {{}, {}, next});
+    evaluate_site_forces(state);
+    state.x.swap(previous_.x);
+    state.y.swap(previous_.y);
+    state.vx.swap(previous_.vx);
+    state.vy.swap(previous_.vy);
+    kick_sites(state, h * stage.now);
+    update_surroundings(state);
+  }
+  accelerate(state);
+  state.time += h;
+}
+
+} // namespace lattice

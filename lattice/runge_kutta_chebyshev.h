@@ -1,0 +1,40 @@
+#pragma once
+
+#include "lattice/chebyshev_stages.h"
+#include "lattice/integrator.h"
+
+namespace lattice
+{
+
+/// Runge-Kutta-Chebyshev method of second order for y = (x, v), y' = (v, a(x, v)) (theory.md, eqs. L.17 to L.22).
+///
+/// Each of the s stages of a step evaluates all forces at its own positions and velocities. The stable step grows with
+/// s^2, so that a given time takes fewer evaluations the longer the steps are.
+class RungeKuttaChebyshev : public Integrator
+{
+public:
+  /// @param time_step h [s], > 0
+  /// @param stages s, >= 2
+  RungeKuttaChebyshev(const RowBand &band, Forces &forces, double time_step, unsigned int stages);
+
+  void initialise(State &state) override;
+  void step(State &state) override;
+
+  const Field &evaluated_vx(const State &state) const override { return state.vx; }
+  const Field &evaluated_vy(const State &state) const override { return state.vy; }
+
+private:
+  std::vector<Field *> evaluated_fields(State &state) override;
+
+  /// Positions and velocities.
+  struct Motion
+  {
+    Field x, y, vx, vy;
+  };
+
+  ChebyshevStages stages_;
+  Motion start_;    // of the step, in own rows
+  Motion previous_; // those of the stage before the one that the state holds
+};
+
+} // namespace lattice

@@ -1,0 +1,247 @@
+#include "lattice/runge_kutta_chebyshev.h"
+
+#include <cmath>
+#include <cstring>
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "lattice/simulation.h"
+#include "tests/lattice/plane_modes.h"
+
+namespace
+{
+
+using namespace lattice;
+using Complex = std::complex<double>;
+
+// A held, stretched sheet set off by a smooth velocity field of a few m/s, after 20 microseconds times `steps` / 8.
+State run(const Material &material, TimeStepping stepping, std::size_t steps, double *imbalance = nullptr)
+{
+  const TriangularLattice sheet = sheets::square(12);
+  Simulation simulation(
+    sheet, material, homogeneous_state(sheet, material, sheets::stretched(1.5, 1.4), Edges::held, sheets::unbreakable),
+    stepping);
+  Field vx(sheet.n_places()), vy(sheet.n_places());
+  for (std::size_t i = 0; i < vx.size(); ++i)
+  {
+    const Eigen::Vector2d X = sheet.reference(i) / sheets::spacing;
+    vx[i] = 4. * std::sin(0.5 * X.x()) * std::cos(0.4 * X.y());
+    vy[i] = 3. * std::cos(0.3 * X.x() + 0.5 * X.y());
+  }
+  simulation.set_velocities(vx, vy);
+  for (std::size_t step = 0; step < steps; ++step)
+    simulation.step();
+  if (imbalance != nullptr)
+    *imbalance = std::abs(simulation.energies().imbalance());
+  return simulation.state();
+}
+
+double distance(const State &a, const State &b)
+{
+  double square = 0.;
+  for (std::size_t i = 0; i < a.x.size(); ++i)
+    square += std::pow(a.x[i] - b.x[i], 2) + std::pow(a.y[i] - b.y[i], 2);
+  return std::sqrt(square);
+}
+
+class Stages : public testing::TestWithParam<unsigned int>
+{
+};
+
+// Against velocity Verlet with steps so short that its own error is a hundredth of those measured.
+TEST_P(Stages, ConvergeAtSecondOrderToTheMotionOfVerlet)
+{
+  for (const double viscosity : {0., 2.})
+  {
+    const Material material = sheets::rubber(viscosity);
+    const double h = 5e-7;
+    const std::size_t n = 160;
+    const State exact = run(material, h / 80., 80 * n);
+    const auto error = [&](std::size_t refinement) {
+      return distance(run(material, {h / static_cast<double>(refinement), GetParam()}, refinement * n), exact);
+    };
+    const double coarse = error(1), medium = error(2), fine = error(4);
+    EXPECT_NEAR(std::log2(coarse / medium), 2., 0.15) << viscosity;
+    EXPECT_NEAR(std::log2(medium / fine), 2., 0.15) << viscosity;
+  }
+}
+
+TEST_P(Stages, KeepTheLedgerAtSecondOrder)
+{
+  const auto imbalance = [](double h, std::size_t steps)
+  {
+    double found;
+    run(sheets::rubber(2.), {h, GetParam()}, steps, &found);
+    return found;
+  };
+  EXPECT_NEAR(std::log2(imbalance(5e-7, 160) / imbalance(2.5e-7, 320)), 2., 0.2);
+}
+
+INSTANTIATE_TEST_SUITE_P(RungeKuttaChebyshev, Stages, testing::Values(3u, 8u));
+
+// Damped waves in a periodic sheet, so small that they are linear, are multiplied by R(h lambda) in each step, to
+// round-off: all stages, their order, the images of the sites, the polynomial that stability is judged by.
+TEST(RungeKuttaChebyshev, MultipliesWavesByItsPolynomial)
+{
+  const TriangularLattice sheet(sheets::spacing, 8. * sheets::spacing, 8. * sheets::spacing,
+                                Orientation::rows_along_crack, {true, true});
+  const Material material = sheets::rubber();
+  const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
+  const Eigen::Vector2d K(2. * M_PI / sheet.length() * 2., 2. * M_PI / sheet.height());
+  const plane_modes::PlaneModes waves = plane_modes::of(sheet, material, F, K);
+  const double h = 3e-6;
+  const unsigned int n_stages = 7, steps = 5;
+  const ChebyshevStages stages(n_stages);
+  for (Eigen::Index mode = 0; mode < 4; ++mode)
+  {
+    const Complex factor = std::pow(stages.amplification(h * waves.rates(mode)), steps);
+    // As large as linearity allows; the fast modes are motions of high velocity.
+    const double amplitude = 1e-7 * sheets::spacing / waves.modes.col(mode).head<2>().norm();
+    const State rest = homogeneous_state(sheet, material, F, Edges::free, sheets::unbreakable);
+    State state = rest;
+    const auto wave = [&](std::size_t place, Eigen::Index component, Complex times)
+    {
+      const Complex phase = std::exp(Complex(0., K.dot(sheet.reference(place))));
+      return amplitude * (times * waves.modes(component, mode) * phase).real();
+    };
+    for (std::size_t place = 0; place < sheet.n_places(); ++place)
+      if (sheet.is_occupied(place))
+      {
+        state.x[place] += wave(place, 0, 1.);
+        state.y[place] += wave(place, 1, 1.);
+        state.vx[place] += wave(place, 2, 1.);
+        state.vy[place] += wave(place, 3, 1.);
+      }
+    Simulation simulation(sheet, material, std::move(state), {h, n_stages});
+    for (unsigned int step = 0; step < steps; ++step)
+      simulation.step();
+    // Quadratic terms are 1e-7 of the wave, rounding of positions of 10 d is 1e-15 over 1e-7, each times some tens.
+    const double tolerance = 1e-5 * amplitude * waves.modes.col(mode).tail<2>().norm();
+    for (std::size_t row = 0; row < sheet.rows(); ++row)
+      for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
+      {
+        const std::size_t place = sheet.index(row, column);
+        EXPECT_NEAR(simulation.state().vx[place], wave(place, 2, factor), tolerance) << mode;
+        EXPECT_NEAR(simulation.state().vy[place], wave(place, 3, factor), tolerance) << mode;
+      }
+  }
+}
+
+// Noise dies out with steps up to what the fastest plane wave allows, and blows up with 1.3 times that.
+TEST(RungeKuttaChebyshev, IsStableUpToItsLimitAndNotBeyond)
+{
+  const TriangularLattice sheet = sheets::square(30);
+  for (const Eigen::Matrix2d &F : {sheets::stretched(1., 1.), sheets::stretched(2.3, 2.8)})
+  {
+    const Material material = sheets::rubber();
+    double fastest = 0.;
+    for (const Complex &rate : plane_modes::rates(sheet, material, F))
+      fastest = std::max(fastest, std::abs(rate));
+    for (const unsigned int n_stages : {2u, 5u, 8u})
+    {
+      const double limit = ChebyshevStages(n_stages).real_limit() / fastest;
+      const auto kinetic = [&](double factor)
+      {
+        State state = homogeneous_state(sheet, material, F, Edges::held, sheets::unbreakable);
+        add_noise(state, sheet, 1e-3 * sheets::spacing, 5);
+        Simulation simulation(sheet, material, std::move(state), {factor * limit, n_stages});
+        simulation.step();
+        const double before = simulation.energies().kinetic;
+        for (int step = 0; step < 400; ++step)
+          simulation.step();
+        return simulation.energies().kinetic / before;
+      };
+      EXPECT_LT(kinetic(1.), 1.) << n_stages;
+      EXPECT_FALSE(kinetic(1.3) < 1e3) << n_stages; // beyond, or no number any more
+    }
+  }
+}
+
+TEST(RungeKuttaChebyshev, ComesToTheEquilibriumOfVerlet)
+{
+  const TriangularLattice sheet = sheets::square(10);
+  const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
+  const Material material = sheets::rubber();
+  State state = homogeneous_state(sheet, material, F, Edges::held, sheets::unbreakable);
+  const State rest = state;
+  add_noise(state, sheet, 0.05 * sheets::spacing, 3);
+  Simulation simulation(sheet, material, std::move(state), {4e-6, 7});
+  const double before = distance(simulation.state(), rest);
+  // The slowest wave of the sheet decays with some 1e3 / s.
+  for (int step = 0; step < 10000; ++step)
+    simulation.step();
+  EXPECT_LT(distance(simulation.state(), rest), 1e-9 * before);
+}
+
+// Loads on free ends balance the stretched sheet in each stage, or it would not stay at rest.
+TEST(RungeKuttaChebyshev, AppliesForcesOnSitesInEachStage)
+{
+  const TriangularLattice sheet = sheets::square(10);
+  const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
+  const Material material = sheets::rubber();
+  const State rest = homogeneous_state(sheet, material, F, {false, false, true, true}, sheets::unbreakable);
+  Simulation simulation(sheet, material, rest, {4e-6, 7});
+  simulation.load_ends(F, EndLoads::End::free, EndLoads::End::free);
+  for (int step = 0; step < 100; ++step)
+    simulation.step();
+  EXPECT_LT(distance(simulation.state(), rest), 1e-11 * sheets::spacing);
+}
+
+TEST(RungeKuttaChebyshev, KeepsTheVelocityOfHeldSites)
+{
+  const TriangularLattice sheet = sheets::square(10);
+  const Material material = sheets::rubber();
+  Simulation simulation(
+    sheet, material, homogeneous_state(sheet, material, sheets::stretched(1.2, 1.1), Edges::held, sheets::unbreakable),
+    {4e-6, 6});
+  const State before = simulation.state();
+  const Eigen::Matrix2d L = sheets::stretched(30., 70.);
+  simulation.move_edges(L);
+  const int steps = 200;
+  for (int step = 0; step < steps; ++step)
+    simulation.step();
+  for (std::size_t place = 0; place < sheet.n_places(); ++place)
+    if (before.held[place] != 0 && sheet.is_site(place))
+    {
+      const Eigen::Vector2d velocity = L * sheet.reference(place);
+      EXPECT_EQ(simulation.state().vx[place], velocity.x());
+      EXPECT_EQ(simulation.state().vy[place], velocity.y());
+      EXPECT_NEAR(simulation.state().x[place], before.x[place] + steps * 4e-6 * velocity.x(), 1e-12 * sheet.length());
+    }
+}
+
+// Same bits for 1, 2 and 4 threads, through breaking ahead, toughening, contact and the ledger.
+TEST(RungeKuttaChebyshev, BitsDoNotDependOnThreads)
+{
+  const auto result = [](int threads)
+  {
+    omp_set_num_threads(threads);
+    const TriangularLattice sheet = sheets::square(70); // more places than are left to one thread
+    EXPECT_GE(sheet.n_places(), worth_threads);
+    const Material material = sheets::rubber();
+    const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
+    State state = homogeneous_state(sheet, material, F, Edges::held, 3.05);
+    add_noise(state, sheet, 0.01 * sheets::spacing, 1);
+    Simulation simulation(sheet, material, std::move(state), {4e-6, 7},
+                          Fracture(sheet, material, 3.05, BehindTipToughening{4. * sheets::spacing, 2.}, F));
+    simulation.let_touch(contact_like_nearest_bond(sheet, material, sheets::spacing, 1., 1.));
+    simulation.cut(sheets::middle_row(sheet, 5, 8));
+    for (int step = 0; step < 250; ++step)
+      simulation.step();
+    return std::tuple{simulation.state(), simulation.energies(), simulation.n_broken()};
+  };
+  const auto [one, one_energies, one_broken] = result(1);
+  EXPECT_GT(one_broken, 100u);
+  for (const int threads : {2, 4})
+  {
+    const auto [state, energies, broken] = result(threads);
+    EXPECT_EQ(broken, one_broken);
+    EXPECT_EQ(std::memcmp(state.x.data(), one.x.data(), one.x.size() * sizeof(double)), 0);
+    EXPECT_EQ(std::memcmp(state.vy.data(), one.vy.data(), one.vy.size() * sizeof(double)), 0);
+    EXPECT_EQ(energies.viscous, one_energies.viscous);
+    EXPECT_EQ(energies.elastic, one_energies.elastic);
+  }
+}
+
+} // namespace
