@@ -29,8 +29,8 @@ LinearSolver::LinearSolver(const Sheet &sheet, HeldBoundaries held, const Linear
 {
   if (!(settings.relative_tolerance > 0. && settings.relative_tolerance < 1.))
     throw InvalidInput("the relative tolerance of the linear solver must lie between 0 and 1");
-  if (!(settings.wear_limit >= 1. && std::isfinite(settings.wear_limit)))
-    throw InvalidInput("the wear limit of multigrid must be finite and at least 1");
+  if (!(settings.wear_limit >= 0. && std::isfinite(settings.wear_limit)))
+    throw InvalidInput("the wear limit of multigrid must be finite and not negative");
 }
 
 void LinearSolver::update(const Sheet::Vector &u, const Sheet::Matrix &K, const Multigrid::Assembler &assemble)
@@ -124,8 +124,7 @@ unsigned int LinearSolver::iterate(const Sheet::Matrix &K, Sheet::Vector &x, con
   const double effort = control.last_step() / (digits_at_first - std::log10(relative_tolerance));
   if (is_fresh_)
     fresh_effort_ = std::max(fresh_effort_, effort);
-  else
-    is_worn_ = effort > settings_.wear_limit * fresh_effort_;
+  is_worn_ = effort > settings_.wear_limit * fresh_effort_;
   return control.last_step();
 }
 } // namespace continuum

@@ -15,8 +15,8 @@ struct LinearSettings
   dealii::types::global_dof_index direct_limit = 20000;
   /// Smallest residual of conjugate gradients relative to the right-hand side that is asked for [-], in (0, 1).
   double relative_tolerance = 1e-8;
-  /// Iterations for the digits of the residual, over those with a multigrid that is up to date [-], >= 1, beyond which
-  /// multigrid is set up anew.
+  /// Iterations for the digits of the residual, over those with a multigrid that is up to date [-], >= 0, beyond which
+  /// multigrid is set up anew; 0: for every tangent.
   double wear_limit = 1.5;
   /// Conjugate-gradient iterations before giving up.
   unsigned int max_iterations = 200;

@@ -180,6 +180,7 @@ TEST(GradientEquilibrium, LinearIterationsDependLittleOnTheMesh)
     settings.linear.direct_limit = 0;
     settings.linear.multigrid.coarsest_size = 150;
     settings.largest_forcing = 0.;
+    settings.linear.wear_limit = 0.;
     const auto largest = [](const continuum::SolverReport &report)
     {
       unsigned int result = 0;
