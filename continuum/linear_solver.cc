@@ -7,6 +7,7 @@
 
 #include <Amesos.h>
 
+#include <algorithm>
 #include <cmath>
 
 using namespace dealii;
@@ -28,22 +29,40 @@ LinearSolver::LinearSolver(const Sheet &sheet, HeldBoundaries held, const Linear
 {
   if (!(settings.relative_tolerance > 0. && settings.relative_tolerance < 1.))
     throw InvalidInput("the relative tolerance of the linear solver must lie between 0 and 1");
+  if (!(settings.wear_limit >= 0. && std::isfinite(settings.wear_limit)))
+    throw InvalidInput("the wear limit of multigrid must be finite and not negative");
 }
 
 void LinearSolver::update(const Sheet::Vector &u, const Sheet::Matrix &K, const Multigrid::Assembler &assemble)
 {
   if (is_direct_)
     return;
+  state_.reinit(u);
+  state_ = u;
+  assemble_ = assemble;
+  is_fresh_ = false;
+  if (is_worn_)
+    set_up(K);
+}
+
+void LinearSolver::set_up(const Sheet::Matrix &K)
+{
   if (!multigrid_)
     multigrid_ = std::make_unique<Multigrid>(
       sheet_, [this](const Sheet::Mesh &mesh) { return sheet_.on(mesh); },
       [](const Sheet &sheet, const AffineConstraints<double> &constraints, Sheet::Matrix &matrix)
       { sheet.make_matrix(constraints, matrix); },
       held_, settings_.multigrid);
-  multigrid_->update(u, K, assemble);
+  is_worn_ = true; // until it is set up
+  multigrid_->update(state_, K, assemble_);
+  is_worn_ = false;
+  is_fresh_ = true;
+  fresh_effort_ = 0.;
+  ++n_set_ups_;
 }
 
-unsigned int LinearSolver::solve(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b) const
+unsigned int LinearSolver::solve(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b,
+                                 const double relative_tolerance)
 {
   // deal.II's and Trilinos' exceptions here follow from collective results, so all ranks take the same branch.
   unsigned int iterations = 0;
@@ -53,25 +72,9 @@ unsigned int LinearSolver::solve(const Sheet::Matrix &K, Sheet::Vector &x, const
   try
   {
     if (is_direct_)
-    {
-      SolverControl control(1, 0.);
-      TrilinosWrappers::SolverDirect direct(
-        control, TrilinosWrappers::SolverDirect::AdditionalData(false, direct_solver_name()));
-      direct.solve(K, x, b);
-    }
+      solve_directly(K, x, b);
     else
-    {
-      Multigrid::Vector from;
-      Multigrid::Vector to;
-      multigrid_->initialize(from);
-      multigrid_->initialize(to);
-      Multigrid::copy(b, from);
-      SolverControl control(settings_.max_iterations, settings_.relative_tolerance * from.l2_norm());
-      SolverCG<Multigrid::Vector> conjugate_gradients(control);
-      conjugate_gradients.solve(K, to, from, *multigrid_);
-      Multigrid::copy(to, x);
-      iterations = control.last_step();
-    }
+      iterations = iterate(K, x, b, std::max(relative_tolerance, settings_.relative_tolerance));
   }
   catch (const SolverControl::NoConvergence &failure)
   {
@@ -84,5 +87,44 @@ unsigned int LinearSolver::solve(const Sheet::Matrix &K, Sheet::Vector &x, const
   if (!std::isfinite(x.l2_norm()))
     throw LinearSolverFailed("the linear solver gave an answer that is not finite");
   return iterations;
+}
+
+void LinearSolver::solve_directly(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b) const
+{
+  SolverControl control(1, 0.);
+  TrilinosWrappers::SolverDirect direct(control,
+                                        TrilinosWrappers::SolverDirect::AdditionalData(false, direct_solver_name()));
+  direct.solve(K, x, b);
+}
+
+unsigned int LinearSolver::iterate(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b,
+                                   const double relative_tolerance)
+{
+  Multigrid::Vector from;
+  Multigrid::Vector to;
+  multigrid_->initialize(from);
+  multigrid_->initialize(to);
+  Multigrid::copy(b, from);
+  SolverControl control(settings_.max_iterations, relative_tolerance * from.l2_norm());
+  SolverCG<Multigrid::Vector> conjugate_gradients(control);
+  try
+  {
+    conjugate_gradients.solve(K, to, from, *multigrid_);
+  }
+  catch (const SolverControl::NoConvergence &)
+  {
+    if (is_fresh_)
+      throw;
+    set_up(K);
+    return control.last_step() + iterate(K, x, b, relative_tolerance);
+  }
+  Multigrid::copy(to, x);
+  // Conjugate gradients gain little at first: as if there were some digits more, however many are asked for.
+  constexpr double digits_at_first = 3.;
+  const double effort = control.last_step() / (digits_at_first - std::log10(relative_tolerance));
+  if (is_fresh_)
+    fresh_effort_ = std::max(fresh_effort_, effort);
+  is_worn_ = effort > settings_.wear_limit * fresh_effort_;
+  return control.last_step();
 }
 } // namespace continuum

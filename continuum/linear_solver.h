@@ -13,36 +13,59 @@ struct LinearSettings
   /// Largest number of unknowns for the direct solver; above it, conjugate gradients with multigrid. Periodic edges are
   /// left to the direct solver whatever the size.
   dealii::types::global_dof_index direct_limit = 20000;
-  /// Residual of conjugate gradients relative to the right-hand side [-], in (0, 1).
+  /// Smallest residual of conjugate gradients relative to the right-hand side that is asked for [-], in (0, 1).
   double relative_tolerance = 1e-8;
+  /// Iterations for the digits of the residual, over those with a multigrid that is up to date [-], >= 0, beyond which
+  /// multigrid is set up anew; 0: for every tangent.
+  double wear_limit = 1.5;
   /// Conjugate-gradient iterations before giving up.
   unsigned int max_iterations = 200;
   MultigridSettings multigrid;
 };
 
 /// Solves K x = b for the condensed tangent of a sheet. Direct: Amesos with MUMPS, or KLU where MUMPS is missing.
-/// Iterative, for symmetric positive definite K: conjugate gradients, preconditioned by Multigrid.
+/// Iterative, for symmetric positive definite K: conjugate gradients, preconditioned by Multigrid. A multigrid is kept
+/// for the tangents that follow (of further Newton, load and time steps) until it is worn: until the iterations have
+/// grown beyond LinearSettings::wear_limit, or fail. That changes the work and not what is solved.
 class LinearSolver
 {
 public:
   /// `sheet` must outlive the solver, `held` says what is held besides. Throws InvalidInput for settings out of range.
   LinearSolver(const Sheet &sheet, HeldBoundaries held, const LinearSettings &settings);
 
-  /// To be called when K has changed: takes over the state `u` [m] (with ghost entries) and its tangent, which must
-  /// stay as it is until the last solve. `assemble` makes the tangents of coarser meshes. Collective.
+  /// To be called when K has changed, before the next solve: takes note of the state `u` [m] (with ghost entries) and
+  /// sets up multigrid if there is none that serves. `assemble` makes the tangents of coarser meshes; it is called in
+  /// solve, too. Collective.
   void update(const Sheet::Vector &u, const Sheet::Matrix &K, const Multigrid::Assembler &assemble);
 
-  /// Collective. Returns the conjugate-gradient iterations, 0 when direct. Throws LinearSolverFailed on every rank if
-  /// the factorisation fails, the tolerance is not met, or the answer is not finite.
-  unsigned int solve(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b) const;
+  /// The residual comes to at most `relative_tolerance` [-] times that of x = 0, but no smaller one is asked for than
+  /// LinearSettings::relative_tolerance; the direct solver ignores it. Collective. Returns the conjugate-gradient
+  /// iterations, 0 when direct. Throws LinearSolverFailed on every rank if the factorisation fails, the tolerance is
+  /// not met, or the answer is not finite.
+  unsigned int solve(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b, double relative_tolerance = 0.);
 
+  /// Has multigrid set up anew at the next update: the matrices that follow are of another kind.
+  void forget() { is_worn_ = true; }
+
+  /// How often multigrid was set up.
+  unsigned int n_set_ups() const { return n_set_ups_; }
   bool is_direct() const { return is_direct_; }
 
 private:
+  void set_up(const Sheet::Matrix &K);
+  void solve_directly(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b) const;
+  unsigned int iterate(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b, double relative_tolerance);
+
   const Sheet &sheet_;
   HeldBoundaries held_;
   LinearSettings settings_;
   bool is_direct_;
   std::unique_ptr<Multigrid> multigrid_; // made when first needed
+  unsigned int n_set_ups_ = 0;
+  Sheet::Vector state_;
+  Multigrid::Assembler assemble_;
+  bool is_fresh_ = false;    // whether multigrid is that of the last update
+  bool is_worn_ = true;      // whether it has to be set up anew
+  double fresh_effort_ = 0.; // iterations for each digit with a fresh multigrid
 };
 } // namespace continuum

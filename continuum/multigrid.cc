@@ -1,6 +1,7 @@
 #include "continuum/multigrid.h"
 
 #include "continuum/errors.h"
+#include "continuum/single_precision_matrix.h"
 #include "continuum/vertex_patches.h"
 
 #include <deal.II/base/mpi.h>
@@ -21,15 +22,15 @@ namespace continuum
 {
 struct Multigrid::Level
 {
-  using Smoother = PreconditionChebyshev<Sheet::Matrix, Vector, VertexPatches>;
+  using Smoother = PreconditionChebyshev<SinglePrecisionMatrix, Vector, VertexPatches>;
 
-  std::shared_ptr<const Triangulation<2>> mesh; // empty on the finest level, as are own_sheet and own_matrix
+  std::shared_ptr<const Triangulation<2>> mesh; // empty on the finest level, as are own_sheet and tangent
   std::unique_ptr<Sheet> own_sheet;
   const Sheet *sheet = nullptr;
   AffineConstraints<double> constraints;
   std::shared_ptr<const Utilities::MPI::Partitioner> layout;
-  Sheet::Matrix own_matrix;
-  const Sheet::Matrix *matrix = nullptr;
+  Sheet::Matrix tangent;
+  SinglePrecisionMatrix matrix;             // what the cycle sees of it; unused on the coarsest level
   MGTwoLevelTransfer<2, Vector> to_coarser; // from here and on, unused on the coarsest level
   std::shared_ptr<VertexPatches> patches;
   Smoother smoother;
@@ -86,7 +87,7 @@ void fill_start(const Sheet &sheet, const AffineConstraints<double> &constraints
 // Estimate of the largest eigenvalue of B A from below, by `n_steps` steps of the Lanczos process that conjugate
 // gradients imply, from B `start`. Where A shows not to be positive definite there is no such process, and the bound
 // for positive cell energies stands in.
-double largest_eigenvalue(const Sheet::Matrix &A, const VertexPatches &B, const Multigrid::Vector &start,
+double largest_eigenvalue(const SinglePrecisionMatrix &A, const VertexPatches &B, const Multigrid::Vector &start,
                           const unsigned int n_steps)
 {
   std::vector<double> diagonal;
@@ -162,7 +163,7 @@ Multigrid::Multigrid(const Sheet &fine, const SheetFactory &make_sheet, const Ma
     const Sheet &sheet = *level->sheet;
     level->constraints = homogeneous_constraints(sheet, held);
     if (level->own_sheet)
-      make_matrix(sheet, level->constraints, level->own_matrix);
+      make_matrix(sheet, level->constraints, level->tangent);
     const bool is_coarsest = n == 0 || sheet.dof_handler().n_dofs() <= settings.coarsest_size;
     if (is_coarsest)
       level->layout =
@@ -206,14 +207,9 @@ void Multigrid::update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix,
   for (std::size_t l = levels_.size(); l-- > 0;)
   {
     Level &level = *levels_[l];
-    if (l + 1 == levels_.size())
-      level.matrix = &fine_matrix;
     if (levels_.size() == 1)
-    {
       // A direct solver looks at its matrix when it is destroyed, and the caller's may be gone by then.
-      level.own_matrix.copy_from(fine_matrix);
-      level.matrix = &level.own_matrix;
-    }
+      level.tangent.copy_from(fine_matrix);
     else if (l + 1 < levels_.size())
     {
       Vector coarse_state(level.layout);
@@ -234,7 +230,7 @@ void Multigrid::update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix,
         ghosted *= level.state_factor;
         try
         {
-          assemble(*level.sheet, ghosted, level.constraints, level.own_matrix);
+          assemble(*level.sheet, ghosted, level.constraints, level.tangent);
           break;
         }
         catch (const NonPhysicalState &)
@@ -243,13 +239,14 @@ void Multigrid::update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix,
             throw;
         }
       }
-      level.matrix = &level.own_matrix;
     }
     if (l > 0)
     {
-      level.patches->factorise(*level.matrix);
+      const Sheet::Matrix &tangent = level.own_sheet ? level.tangent : fine_matrix;
+      level.patches->factorise(tangent);
+      level.matrix.copy_from(tangent);
       level.largest_eigenvalue =
-        largest_eigenvalue(*level.matrix, *level.patches, level.start, settings_.eigenvalue_iterations);
+        largest_eigenvalue(level.matrix, *level.patches, level.start, settings_.eigenvalue_iterations);
       constexpr double safety = 1.1; // the estimate is from below
       // Twice the degree on each coarser level, which is a small part of the work: see theory-continuum.md, "Linear
       // solver". Beyond a few doublings nothing is gained.
@@ -257,7 +254,7 @@ void Multigrid::update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix,
       Level::Smoother::AdditionalData data(settings_.smoothing_degree << doublings, settings_.smoothing_range, 0, 0.,
                                            safety * level.largest_eigenvalue);
       data.preconditioner = level.patches;
-      level.smoother.initialize(*level.matrix, data);
+      level.smoother.initialize(level.matrix, data);
     }
   }
 
@@ -266,7 +263,7 @@ void Multigrid::update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix,
     coarsest_->solver = std::make_unique<TrilinosWrappers::SolverDirect>(
       coarsest_->control, TrilinosWrappers::SolverDirect::AdditionalData(
                             false, coarsest_solver_name(levels_.front()->sheet->dof_handler().n_dofs())));
-    coarsest_->solver->initialize(*levels_.front()->matrix);
+    coarsest_->solver->initialize(levels_.front()->tangent);
   }
   catch (const ExceptionBase &failure)
   {
@@ -283,7 +280,7 @@ void Multigrid::cycle(const unsigned int l, Vector &z, const Vector &r) const
     return;
   }
   level.smoother.vmult(z, r);
-  level.matrix->vmult(level.residual, z);
+  level.matrix.vmult(level.residual, z);
   level.residual.sadd(-1., 1., r);
   level.coarse_residual = 0.;
   level.to_coarser.restrict_and_add(level.coarse_residual, level.residual);

@@ -28,7 +28,7 @@ struct MultigridSettings
 /// each coarsened everywhere by one refinement (global coarsening), with a sheet of their own; so a level has hanging
 /// nodes where its mesh has, and no more cells than the work there needs. The tangent is assembled anew on each level
 /// at the interpolated state, the smoother is a Chebyshev polynomial over VertexPatches, and the coarsest level is
-/// solved directly.
+/// solved directly. The cycle reads tangents in single precision (SinglePrecisionMatrix).
 ///
 /// The cycle is symmetric, and positive definite as long as the tangents are. Vectors vanish at constrained degrees of
 /// freedom: those at hanging nodes, and the held ones. Repeated runs on the same ranks give the same bits, as long as
@@ -57,10 +57,10 @@ public:
   Multigrid(const Multigrid &) = delete;
   Multigrid &operator=(const Multigrid &) = delete;
 
-  /// Takes over the state `u` [m] (with ghost entries) and its tangent on the finest mesh, condensed by constraints();
-  /// `fine_matrix` must stay unchanged as long as vmult is called. Where the interpolated state is non-physical on a
-  /// coarser level, half of it is taken, then a quarter and so on, and at last zero: that makes a worse preconditioner
-  /// and no error. Throws LinearSolverFailed if the coarsest tangent is singular.
+  /// Takes over the state `u` [m] (with ghost entries) and its tangent on the finest mesh, condensed by constraints(),
+  /// of which a copy is kept. Where the interpolated state is non-physical on a coarser level, half of it is taken,
+  /// then a quarter and so on, and at last zero: that makes a worse preconditioner and no error. Throws
+  /// LinearSolverFailed if the coarsest tangent is singular.
   void update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix, const Assembler &assemble);
 
   /// z [m] from r [N/m], vectors of the layout that `initialize` gives.

@@ -1,5 +1,7 @@
 #include "continuum/point_density.h"
 
+#include <cstring>
+
 using namespace dealii;
 
 namespace continuum
@@ -39,7 +41,7 @@ void add_F_F(Density &d, const unsigned int s, const Tensor<4, 2> &T, const doub
     for (unsigned int J = 0; J < 2; ++J)
       for (unsigned int k = 0; k < 2; ++k)
         for (unsigned int L = 0; L < 2; ++L)
-          d.second[s][s][i][J][k][L] += factor * T[i][J][k][L];
+          d.second[i][k][s][J][s][L] += factor * T[i][J][k][L];
 }
 
 void add_G_F(Density &d, const unsigned int s, const Tensor<5, 2> &T, const double factor)
@@ -50,8 +52,8 @@ void add_G_F(Density &d, const unsigned int s, const Tensor<5, 2> &T, const doub
         for (unsigned int M = 0; M < 2; ++M)
         {
           const double value = factor * multiplicity[c] * T[i][first_index[c]][second_index[c]][l][M];
-          d.second[s][s][i][c][l][M] += value;
-          d.second[s][s][l][M][i][c] += value;
+          d.second[i][l][s][c][s][M] += value;
+          d.second[l][i][s][M][s][c] += value;
         }
 }
 
@@ -61,7 +63,7 @@ void add_G_G(Density &d, const unsigned int s, const Tensor<6, 2> &T, const doub
     for (unsigned int c = n_first; c < n_jet; ++c)
       for (unsigned int l = 0; l < 2; ++l)
         for (unsigned int e = n_first; e < n_jet; ++e)
-          d.second[s][s][i][c][l][e] += factor * multiplicity[c] * multiplicity[e] *
+          d.second[i][l][s][c][s][e] += factor * multiplicity[c] * multiplicity[e] *
                                         T[i][first_index[c]][second_index[c]][l][first_index[e]][second_index[e]];
 }
 } // namespace
@@ -69,16 +71,9 @@ void add_G_G(Density &d, const unsigned int s, const Tensor<6, 2> &T, const doub
 void clear(Density &density, const Order order)
 {
   density.value = 0.;
-  for (FieldJet &side : density.first)
-    for (Jet &jet : side)
-      jet.fill(0.);
+  std::memset(density.first, 0, sizeof(density.first));
   if (order == Order::second)
-    for (auto &side : density.second)
-      for (auto &other_side : side)
-        for (auto &component : other_side)
-          for (FieldJet &field : component)
-            for (Jet &jet : field)
-              jet.fill(0.);
+    std::memset(density.second, 0, sizeof(density.second));
 }
 
 void cell_density(const Constitution &laws, const bool has_gradient, const FieldJet &u, const Order order, Density &d)
@@ -98,11 +93,11 @@ void cell_density(const Constitution &laws, const bool has_gradient, const Field
     const Tensor<3, 2> Q = laws.gradient->double_stress(F, G);
     for (unsigned int i = 0; i < 2; ++i)
       for (unsigned int c = n_first; c < n_jet; ++c)
-        d.first[0][i][c] = multiplicity[c] * Q[i][first_index[c]][second_index[c]];
+        d.first[i][0][c] = multiplicity[c] * Q[i][first_index[c]][second_index[c]];
   }
   for (unsigned int i = 0; i < 2; ++i)
     for (unsigned int J = 0; J < 2; ++J)
-      d.first[0][i][J] = P[i][J];
+      d.first[i][0][J] = P[i][J];
   if (order == Order::first)
     return;
 
@@ -146,7 +141,7 @@ void face_density(const GradientLaw &law, const std::array<FieldJet, 2> &u, cons
     const Tensor<3, 2> by_G = law.double_stress(F, Z);
     for (unsigned int i = 0; i < 2; ++i)
       for (unsigned int c = 0; c < n_jet; ++c)
-        d.first[s][i][c] -=
+        d.first[i][s][c] -=
           share * (c < n_first ? by_F[i][c] : multiplicity[c] * by_G[i][first_index[c]][second_index[c]]);
     if (order == Order::first)
       continue;
@@ -169,8 +164,8 @@ void face_density(const GradientLaw &law, const std::array<FieldJet, 2> &u, cons
           for (unsigned int t = 0; t < n_sides; ++t)
             for (unsigned int J = 0; J < 2; ++J)
             {
-              d.second[t][s][i][J][l][c] += sign[t] * N[J] * value;
-              d.second[s][t][l][c][i][J] += sign[t] * N[J] * value;
+              d.second[i][l][t][J][s][c] += sign[t] * N[J] * value;
+              d.second[l][i][s][c][t][J] += sign[t] * N[J] * value;
             }
         }
   }
@@ -179,7 +174,7 @@ void face_density(const GradientLaw &law, const std::array<FieldJet, 2> &u, cons
   for (unsigned int s = 0; s < n_sides; ++s)
     for (unsigned int i = 0; i < 2; ++i)
       for (unsigned int J = 0; J < 2; ++J)
-        d.first[s][i][J] += sign[s] * by_z[i] * N[J];
+        d.first[i][s][J] += sign[s] * by_z[i] * N[J];
   if (order == Order::first)
     return;
   for (unsigned int s = 0; s < n_sides; ++s)
@@ -187,6 +182,6 @@ void face_density(const GradientLaw &law, const std::array<FieldJet, 2> &u, cons
       for (unsigned int i = 0; i < 2; ++i)
         for (unsigned int J = 0; J < 2; ++J)
           for (unsigned int L = 0; L < 2; ++L)
-            d.second[s][t][i][J][i][L] += sign[s] * sign[t] * penalty * N[J] * N[L];
+            d.second[i][i][s][J][t][L] += sign[s] * sign[t] * penalty * N[J] * N[L];
 }
 } // namespace continuum

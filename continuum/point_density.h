@@ -17,10 +17,9 @@ using FieldJet = std::array<Jet, 2>; // one for each component
 /// its first and second derivatives by them.
 struct Density
 {
-  using SideJets = std::array<FieldJet, 2>; // [side][component][derivative]
   double value = 0.;
-  SideJets first;
-  FieldJet second[2][2][2][n_jet]; // [side][side'][component][derivative][component'][derivative']
+  double first[2][2][n_jet];               // [component][side][derivative]
+  double second[2][2][2][n_jet][2][n_jet]; // [component][component'][side][derivative][side'][derivative']
 };
 
 enum class Order

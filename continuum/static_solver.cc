@@ -33,6 +33,21 @@ private:
   double &seconds_;
   std::chrono::steady_clock::time_point start_;
 };
+// Relative residual to which the next Newton step is solved, after Eisenstat and Walker (1996), choice 2 with its
+// safeguard: as the residual falls quadratically, by the square of its last reduction. `tolerance` is that of the
+// residual relative to what it is. A step that comes close to it anyway is made to reach it, and none goes far below
+// it.
+double next_forcing(const double largest, const double last, const double reduction, const double tolerance)
+{
+  constexpr double share = 0.9;
+  double forcing = share * reduction * reduction;
+  if (const double kept = share * last * last; kept > 0.1)
+    forcing = std::max(forcing, kept);
+  const double last_step = 0.1 * tolerance;
+  if (forcing < 1e3 * last_step)
+    forcing = last_step;
+  return std::min(largest, forcing);
+}
 } // namespace
 
 /// What Newton has to know of a state.
@@ -65,6 +80,8 @@ void StaticSolver::check_input() const
   require(settings_.first_load_step > 0. && settings_.first_load_step <= 1., "the first load step must lie in (0, 1]");
   require(settings_.smallest_load_step > 0. && settings_.smallest_load_step <= settings_.first_load_step,
           "the smallest load step must be positive and no larger than the first");
+  require(settings_.largest_forcing >= 0. && settings_.largest_forcing < 1.,
+          "the largest residual of a linear system must lie in [0, 1)");
   require(!sheet_.conditions().displacements.empty(), "a sheet needs a boundary with prescribed displacement");
 }
 
@@ -82,18 +99,12 @@ void StaticSolver::set_up()
   linear_solver_ = std::make_unique<LinearSolver>(sheet_, held_boundaries(sheet_.conditions()), settings_.linear);
 }
 
-double StaticSolver::potential(const Vector &u, const double load_factor) const
-{
-  Vector owned = sheet_.make_owned();
-  owned = u;
-  return sheet_.energy(u, load_factor) - load_factor * (loads_ * owned);
-}
-
 StaticSolver::Evaluation StaticSolver::look_at(const Vector &u, const double load_factor) const
 {
   Evaluation state{0., 0., 0., sheet_.make_owned(), sheet_.make_owned()};
-  state.potential = potential(u, load_factor);
-  sheet_.residual(u, state.residual, state.magnitude, load_factor);
+  Vector owned = sheet_.make_owned();
+  owned = u;
+  state.potential = sheet_.residual(u, state.residual, state.magnitude, load_factor) - load_factor * (loads_ * owned);
   state.residual.add(-load_factor, loads_);
   double free = 0.;
   double given = 0.; // forces at work: reactions and dead loads
@@ -132,7 +143,7 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
   Vector lift = sheet_.make_ghosted(); // rise of the prescribed displacement
   Vector lift_forces = sheet_.make_owned();
 
-  const auto solve = [&](const Evaluation &state, const Vector &at, const Vector *rise)
+  const auto solve = [&](const Evaluation &state, const Vector &at, const Vector *rise, const double forcing)
   {
     {
       const Clock clock(report.times.assembly);
@@ -154,7 +165,7 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
                              { level.tangent(there, constraints, K, target); });
     }
     const Clock clock(report.times.linear_solve);
-    const unsigned int iterations = linear_solver_->solve(matrix_, step, rhs);
+    const unsigned int iterations = linear_solver_->solve(matrix_, step, rhs, forcing);
     homogeneous_.distribute(step);
     return iterations;
   };
@@ -169,7 +180,8 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
     // Predictor: the linear response to the rise of load and boundary displacement.
     lift = full_lift_;
     lift *= target - load_factor_;
-    unsigned int linear_iterations = solve(look(displacement_), displacement_, &lift);
+    // The predictor to the last: its right-hand side is large from the cells along held edges alone.
+    unsigned int linear_iterations = solve(look(displacement_), displacement_, &lift, 0.);
     trial = displacement_;
     trial += step;
     step = lift;
@@ -177,9 +189,11 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
     u = trial;
     double length = 1.;
 
+    Evaluation state = look(u);
+    double last_free = 0.; // before the last Newton step
+    double forcing = settings_.largest_forcing;
     for (unsigned int iteration = 0;; ++iteration)
     {
-      const Evaluation state = look(u);
       const double floor = round_off(state, u);
       const double tolerance = std::max(settings_.relative_tolerance * state.reference, floor);
       report.iterations.push_back(
@@ -189,7 +203,10 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
       if (iteration == settings_.max_newton_iterations)
         return "no convergence in " + std::to_string(iteration) + " Newton iterations";
 
-      linear_iterations = solve(state, u, nullptr);
+      forcing = next_forcing(settings_.largest_forcing, forcing, iteration == 0 ? 1. : state.free / last_free,
+                             tolerance / state.free);
+      last_free = state.free;
+      linear_iterations = solve(state, u, nullptr, forcing);
       const double slope = -(rhs * step); // dE along the step; rhs is minus the residual, zero where held
       if (!(slope < 0.))
         return "the tangent is not positive definite along the Newton step";
@@ -199,6 +216,7 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
         static_cast<double>(sheet_.mesh().n_global_active_cells()) * Utilities::pow(sheet_.degree() + 1, 2);
       const double noise =
         4. * std::numeric_limits<double>::epsilon() * std::sqrt(n_points) * std::abs(state.potential);
+      const double start = state.potential;
       length = 1.;
       std::string reason;
       for (unsigned int halvings = 0;; ++halvings, length *= 0.5)
@@ -211,8 +229,8 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
         candidate = trial;
         try
         {
-          const Clock clock(report.times.assembly);
-          if (potential(candidate, target) <= state.potential + 1e-4 * length * slope + noise)
+          state = look(candidate);
+          if (state.potential <= start + 1e-4 * length * slope + noise)
           {
             u = candidate;
             break;

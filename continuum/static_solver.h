@@ -21,6 +21,9 @@ struct StaticSettings
   unsigned int max_halvings = 10;          ///< of the Newton step in one line search
   double first_load_step = 1.;             ///< first rise of the load factor [-], in (0, 1]
   double smallest_load_step = 1. / 1024.;  ///< rise below which the solve fails [-]
+  /// Largest residual of a linear system relative to its right-hand side [-], in [0, 1): what is solved more closely
+  /// than a Newton step is good for is lost work (theory-continuum.md, "Weak form and Newton"). 0: each to the last.
+  double largest_forcing = 1e-3;
   LinearSettings linear;
 };
 
@@ -89,7 +92,6 @@ private:
   void check_input() const;
   void set_up();
   Evaluation look_at(const Vector &u, double load_factor) const;
-  double potential(const Vector &u, double load_factor) const;
   double round_off(const Evaluation &state, const Vector &u) const;
   std::string attempt(double target, SolverReport &report);
 

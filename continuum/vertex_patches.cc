@@ -1,6 +1,7 @@
 #include "continuum/vertex_patches.h"
 
 #include "continuum/collective.h"
+#include "continuum/vector_kernels.h"
 
 #include <deal.II/base/geometry_info.h>
 #include <deal.II/base/mpi.h>
@@ -25,14 +26,15 @@ namespace
 {
 constexpr unsigned int nowhere = numbers::invalid_unsigned_int;
 
-// Entries of a lower triangle of n rows.
+// Entries of the lower triangle of n rows in blocks of 4 by 4, those on the diagonal whole.
 std::size_t packed_size(const std::size_t n)
 {
-  return n * (n + 1) / 2;
+  const std::size_t n_blocks = padded(n) / n_lanes;
+  return n_blocks * (n_blocks + 1) / 2 * n_lanes * n_lanes;
 }
 
-// Lower triangle of the inverse of `block`, column by column; false if the block had to be replaced.
-bool invert(Eigen::MatrixXd &block, Eigen::LLT<Eigen::MatrixXd> &cholesky, double *packed)
+// Packed inverse of `block`; false if the block had to be replaced.
+bool invert(Eigen::MatrixXd &block, Eigen::LLT<Eigen::MatrixXd> &cholesky, float *packed)
 {
   // Of the pivot, relative to the diagonal entry it came from: below it, round-off decides about the sign.
   constexpr double smallest_pivot = 1e-12;
@@ -57,23 +59,64 @@ bool invert(Eigen::MatrixXd &block, Eigen::LLT<Eigen::MatrixXd> &cholesky, doubl
     for (Eigen::Index i = 0; i < n; ++i)
       block(i, i) = row_sums(i) > 0. && std::isfinite(row_sums(i)) ? 1. / row_sums(i) : 0.;
   }
-  for (Eigen::Index j = 0; j < n; ++j)
-    for (Eigen::Index i = j; i < n; ++i)
-      *packed++ = block(i, j);
+  for (Eigen::Index J = 0; J < n; J += n_lanes)
+    for (Eigen::Index I = J; I < n; I += n_lanes)
+      for (Eigen::Index j = J; j < J + n_lanes; ++j)
+        for (Eigen::Index i = I; i < I + n_lanes; ++i)
+          *packed++ = i < n && j < n ? static_cast<float>(block(std::max(i, j), std::min(i, j))) : 0.f;
   return is_safe;
 }
 
-// y += A x for a symmetric matrix of which `packed` is the lower triangle, column by column.
-void add_product(const double *packed, const unsigned int n, const double *x, double *y)
+// y = A x for a symmetric matrix of n rows, a multiple of 4: of each four columns the blocks of 4 by 4 from the
+// diagonal down, column by column.
+inline __attribute__((always_inline)) void multiply(const float *packed, const unsigned int n, const double *x,
+                                                    double *y)
 {
-  using Segment = Eigen::Map<const Eigen::VectorXd>;
-  for (unsigned int j = 0; j < n; ++j)
+  for (unsigned int i = 0; i < n; ++i)
+    y[i] = 0.;
+  for (unsigned int J = 0; J < n; J += n_lanes)
   {
-    const unsigned int below = n - j - 1;
-    const Segment column(packed + 1, below);
-    y[j] += packed[0] * x[j] + column.dot(Segment(x + j + 1, below));
-    Eigen::Map<Eigen::VectorXd>(y + j + 1, below) += column * x[j];
-    packed += below + 1;
+    Lanes across[n_lanes] = {}; // what the columns of this strip give to its own rows, by symmetry
+    for (unsigned int I = J; I < n; I += n_lanes)
+    {
+      Lanes there;
+      Lanes sum;
+      std::memcpy(&there, x + I, sizeof(there));
+      std::memcpy(&sum, y + I, sizeof(sum));
+      for (unsigned int j = 0; j < n_lanes; ++j, packed += n_lanes)
+      {
+        SingleLanes entries;
+        std::memcpy(&entries, packed, sizeof(entries));
+        const Lanes column = __builtin_convertvector(entries, Lanes);
+        sum += column * x[J + j];
+        if (I > J)
+          across[j] += column * there;
+      }
+      std::memcpy(y + I, &sum, sizeof(sum));
+    }
+    for (unsigned int j = 0; j < n_lanes; ++j)
+      y[J + j] += (across[j][0] + across[j][1]) + (across[j][2] + across[j][3]);
+  }
+}
+
+// z += sum over patches.
+LATCON_CLONES void add_patches(const std::size_t n_patches, const std::size_t *first_dof, const unsigned int *dofs,
+                               const std::size_t *first_entry, const float *inverses, double *work, const double *r,
+                               double *z)
+{
+  for (std::size_t p = 0; p < n_patches; ++p)
+  {
+    const unsigned int *there = dofs + first_dof[p];
+    const auto n = static_cast<unsigned int>(first_dof[p + 1] - first_dof[p]);
+    double *patch_r = work;
+    double *patch_z = work + padded(n);
+    for (unsigned int i = 0; i < n; ++i)
+      patch_r[i] = r[there[i]];
+    for (unsigned int i = n; i < padded(n); ++i)
+      patch_r[i] = 0.;
+    multiply(inverses + first_entry[p], padded(n), patch_r, patch_z);
+    for (unsigned int i = 0; i < n; ++i)
+      z[there[i]] += patch_z[i];
   }
 }
 
@@ -225,22 +268,17 @@ VertexPatches::VertexPatches(const Sheet &sheet, const AffineConstraints<double>
   ghost_rows_ = std::make_unique<Epetra_Map>(-1, static_cast<int>(rows.size()), rows.data(), 0,
                                              Epetra_MpiComm(sheet.communicator()));
 
-  std::size_t n_dofs = 0;
-  std::size_t n_entries = 0;
-  for (const Dofs &patch : patches)
-  {
-    n_dofs += patch.size();
-    n_entries += packed_size(patch.size());
-  }
-  dofs_.reserve(n_dofs);
   first_dof_.assign(1, 0);
+  first_entry_.assign(1, 0);
   for (const Dofs &patch : patches)
   {
     for (const types::global_dof_index dof : patch)
       dofs_.push_back(layout_->global_to_local(dof));
     first_dof_.push_back(dofs_.size());
+    first_entry_.push_back(first_entry_.back() + packed_size(patch.size()));
+    largest_patch_ = std::max<std::size_t>(largest_patch_, patch.size());
   }
-  inverses_.resize(n_entries);
+  inverses_.resize(first_entry_.back());
 }
 
 VertexPatches::~VertexPatches() = default;
@@ -269,7 +307,6 @@ void VertexPatches::factorise(const Sheet::Matrix &K)
                  std::vector<unsigned int> at(n_owned + layout_->n_ghost_indices(), nowhere); // in the present patch
                  Eigen::MatrixXd block;
                  Eigen::LLT<Eigen::MatrixXd> cholesky;
-                 double *inverse = inverses_.data();
                  for (std::size_t p = 0; p + 1 < first_dof_.size(); ++p)
                  {
                    const unsigned int *dofs = &dofs_[first_dof_[p]];
@@ -301,9 +338,8 @@ void VertexPatches::factorise(const Sheet::Matrix &K)
                          take(k, position_of(columns[k]));
                      }
                    }
-                   if (!invert(block, cholesky, inverse))
+                   if (!invert(block, cholesky, &inverses_[first_entry_[p]]))
                      ++own_replaced_;
-                   inverse += packed_size(n);
                    for (unsigned int i = 0; i < n; ++i)
                      at[dofs[i]] = nowhere;
                  }
@@ -314,22 +350,9 @@ void VertexPatches::vmult(Vector &z, const Vector &r) const
 {
   z = 0.;
   r.update_ghost_values();
-  std::vector<double> patch_r;
-  std::vector<double> patch_z;
-  const double *inverse = inverses_.data();
-  for (std::size_t p = 0; p + 1 < first_dof_.size(); ++p)
-  {
-    const unsigned int *dofs = &dofs_[first_dof_[p]];
-    const unsigned int n = first_dof_[p + 1] - first_dof_[p];
-    patch_r.resize(n);
-    for (unsigned int i = 0; i < n; ++i)
-      patch_r[i] = r.local_element(dofs[i]);
-    patch_z.assign(n, 0.);
-    add_product(inverse, n, patch_r.data(), patch_z.data());
-    for (unsigned int i = 0; i < n; ++i)
-      z.local_element(dofs[i]) += patch_z[i];
-    inverse += packed_size(n);
-  }
+  std::vector<double> work(2 * padded(largest_patch_));
+  add_patches(first_dof_.size() - 1, first_dof_.data(), dofs_.data(), first_entry_.data(), inverses_.data(),
+              work.data(), r.begin(), z.begin());
   r.zero_out_ghost_values();
   z.compress(VectorOperation::add);
 }

@@ -19,7 +19,8 @@ namespace continuum
 /// Around hanging nodes, too, the star is the support of the continuous bilinear hat function of the vertex: if one of
 /// the lines is the side of a larger cell and halved on the other side, then both of the smaller cells there belong to
 /// the star, with the line between them. Hanging vertices have no hat function and no patch. Thus every free degree of
-/// freedom is in a patch, and the largest eigenvalue is the same as on uniform meshes.
+/// freedom is in a patch, and the largest eigenvalue is the same as on uniform meshes. The inverses are kept in single
+/// precision, which is enough for a smoother, and applied in double.
 ///
 /// The operator is symmetric positive definite on vectors that vanish at constrained degrees of freedom, and the same
 /// for every partition of the mesh, rounding apart. Every vector must have the layout of layout().
@@ -49,9 +50,11 @@ public:
 
 private:
   std::shared_ptr<const Layout> layout_;
-  std::vector<unsigned int> dofs_;         // of all patches, one after the other, as positions in the layout
-  std::vector<std::size_t> first_dof_;     // of each patch in dofs_, and the end
-  std::vector<double> inverses_;           // of all patches: lower triangle, column by column
+  std::vector<unsigned int> dofs_;       // of all patches, one after the other, as positions in the layout
+  std::vector<std::size_t> first_dof_;   // of each patch in dofs_, and the end
+  std::vector<std::size_t> first_entry_; // of each patch in inverses_, and the end
+  std::size_t largest_patch_ = 0;
+  std::vector<float> inverses_;            // of all patches: lower triangle of blocks of 4 by 4, see multiply
   std::unique_ptr<Epetra_Map> ghost_rows_; // rows of K that patches need and other ranks own
   unsigned int own_replaced_ = 0;
 };

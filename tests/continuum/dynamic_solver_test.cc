@@ -1,8 +1,6 @@
-// Motion of sheets on one rank: waves against their dispersion, orders in time, the energy ledger, and what happens
-// when a step cannot be taken.
-#include "continuum/dynamic_solver.h"
+// Motion of sheets on one rank: orders in time, the energy ledger, and what happens when a step cannot be taken.
 #include "continuum/errors.h"
-#include "sheets.h"
+#include "moving_sheets.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/numerics/vector_tools_interpolate.h>
@@ -13,7 +11,7 @@
 #include <cmath>
 #include <limits>
 
-using namespace sheets;
+using namespace moving_sheets;
 using continuum::Conditions;
 using continuum::Constitution;
 using continuum::DynamicSettings;
@@ -27,112 +25,6 @@ namespace edge = continuum::edge;
 
 namespace
 {
-const double density = 944.; // [kg/m^3]
-const Tensor<2, 2> identity = matrix(1., 0., 0., 1.);
-
-std::shared_ptr<Field> constant(const double x, const double y)
-{
-  return std::make_shared<Field>([=](const Point<2> &) { return Tensor<1, 2>({x, y}); });
-}
-
-Conditions periodic()
-{
-  Conditions conditions;
-  conditions.periodic = {{edge::left, edge::right, 0}, {edge::bottom, edge::top, 1}};
-  return conditions;
-}
-
-// Along x one wavelength of 1 m and n cells, two of them across.
-continuum::Rectangle strip(const unsigned int n)
-{
-  return {1., 2. / n, n, 2, true, true};
-}
-const double k_wave = 2. * pi; // [1/m]
-
-std::shared_ptr<Field> wave(const Tensor<1, 2> &polarisation)
-{
-  return std::make_shared<Field>([=](const Point<2> &X) { return std::cos(k_wave * X[0]) * polarisation; });
-}
-
-// Dashpots along the bonds of rubber_network.
-FibreViscosity network_viscosity(const double eta)
-{
-  const continuum::CauchyBorn network = rubber_network();
-  std::vector<continuum::FibreDashpot> dashpots;
-  for (const auto &family : network.families())
-    dashpots.push_back({family.direction, family.weight, eta});
-  return FibreViscosity(dashpots);
-}
-
-// x.A y over the independent unknowns.
-double form(const continuum::Sheet &sheet, const continuum::Sheet::Matrix &A, const Vector &x, const Vector &y)
-{
-  Vector product = sheet.make_owned();
-  A.vmult(product, y);
-  double sum = 0.;
-  for (const auto i : sheet.owned())
-    if (!sheet.continuity().is_constrained(i))
-      sum += x(i) * product(i);
-  return sum;
-}
-
-// omega^2 of the discrete wave at the homogeneous state F that is closest to omega^2 = `expected`: inverse iteration
-// from the nodal values of the wave.
-double discrete_frequency(const Constitution &laws, const double inertia_length, const Tensor<2, 2> &F,
-                          const Tensor<1, 2> &polarisation, const unsigned int degree, const unsigned int n,
-                          const double expected)
-{
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, strip(n));
-  const continuum::Sheet sheet(mesh, laws, degree, periodic());
-  Vector owned = sheet.make_owned();
-  dealii::VectorTools::interpolate(sheet.mapping(), sheet.dof_handler(), *affine(F), owned);
-  Vector u = sheet.make_ghosted();
-  u = owned;
-  continuum::Sheet::Matrix K, M, A;
-  for (auto *matrix : {&K, &M, &A})
-    sheet.make_matrix(sheet.continuity(), *matrix);
-  sheet.tangent(u, sheet.continuity(), K);
-  sheet.mass(density, inertia_length, sheet.continuity(), M);
-  A.add(1., K);
-  A.add(-0.9 * expected, M); // not at the eigenvalue, where A is singular
-  const continuum::LinearSolver solver(sheet, {}, {});
-  Vector x = sheet.make_owned();
-  dealii::VectorTools::interpolate(sheet.mapping(), sheet.dof_handler(), *wave(polarisation), x);
-  Vector b = sheet.make_owned();
-  // The eigenvalue converges by the square of the ratio of distances to the shift, under 0.1/1.1 here and, next to the
-  // second polarisation, which symmetry keeps apart: five take it from 1 % to round-off.
-  for (int iteration = 0; iteration < 5; ++iteration)
-  {
-    M.vmult(b, x);
-    for (const auto i : sheet.owned())
-      if (sheet.continuity().is_constrained(i))
-        b(i) = 0.;
-    b.compress(dealii::VectorOperation::insert);
-    solver.solve(A, x, b);
-    x *= 1. / x.linfty_norm();
-    sheet.continuity().distribute(x);
-  }
-  return form(sheet, K, x, x) / form(sheet, M, x, x);
-}
-
-void expect_order_in_space(const Constitution &laws, const double inertia_length, const Tensor<2, 2> &F,
-                           const Tensor<1, 2> &polarisation, const double exact, const std::string &name)
-{
-  // Where the gradient is resolved the order is 2 (p - 1), that of the energy of the error in second derivatives.
-  for (const unsigned int degree : {2, 3})
-  {
-    std::vector<double> errors;
-    for (const unsigned int n : {8, 16, 32})
-      errors.push_back(
-        std::abs(discrete_frequency(laws, inertia_length, F, polarisation, degree, n, exact) / exact - 1.));
-    const double order = std::log2(errors[1] / errors[2]);
-    EXPECT_NEAR(order, 2. * (degree - 1.), 0.3)
-      << name << ", degree " << degree << ", errors " << errors[0] << " " << errors[1] << " " << errors[2];
-    testing::Test::RecordProperty(name + ", order of degree " + std::to_string(degree), std::to_string(order));
-  }
-}
-
 // Everything at once: a moving held edge, a traction, a weak normal gradient, a gradient law, viscosity.
 struct Problem
 {
@@ -167,60 +59,6 @@ std::unique_ptr<DynamicSolver> moved(const Mesh &mesh, const Problem &problem, c
   return solver;
 }
 } // namespace
-
-TEST(DynamicSolver, WavesFollowTheDispersionOfTheIsotropicGradient)
-{
-  const continuum::CauchyBorn law = rubber_network();
-  const double mu = law.tangent(identity)[0][1][0][1];
-  const continuum::IsotropicGradient gradient(mu, 0.15);
-  const double l_d = 0.05;
-  for (const unsigned int i : {0, 1})
-  {
-    Tensor<1, 2> polarisation;
-    polarisation[i] = 1.;
-    const double modulus = law.tangent(identity)[i][0][i][0]; // rho c^2
-    const double l_s = std::sqrt(gradient.modulus() / modulus);
-    const double k2 = k_wave * k_wave;
-    const double exact = modulus / density * k2 * (1. + l_s * l_s * k2) / (1. + l_d * l_d * k2);
-    expect_order_in_space(Constitution(law, gradient), l_d, identity, polarisation, exact,
-                          i == 0 ? "longitudinal" : "shear");
-  }
-}
-
-TEST(DynamicSolver, WavesFollowTheDispersionOfTheLattice)
-{
-  // Bonds of an NN and NNN network with d = 0.2 m, so kd = 1.26; see theory.md, section 4.
-  const continuum::CauchyBorn law = rubber_network();
-  const double d = 0.2;
-  const auto bonds = rubber_bonds(d);
-  const double l_d = 0.6 * d;
-  const continuum::LatticeGradient gradient(bonds, l_d);
-  for (const Tensor<2, 2> &F : {identity, matrix(2.3, 0., 0., 2.8)})
-    for (const unsigned int i : {0, 1})
-    {
-      // rho omega^2 = (A_2 k^2 + (l_d^2 A_2 - A_4) k^4)/(1 + l_d^2 k^2) with A_2 and A_4 sums over bonds; F is along
-      // the axes, and so are the polarisations.
-      double A_2 = 0.;
-      double A_4 = 0.;
-      for (const auto &bond : bonds)
-      {
-        const Tensor<1, 2> &N = bond.fibre.direction;
-        const Tensor<1, 2> f = F * N;
-        const double l = f.norm();
-        const auto psi = continuum::derivatives(bond.fibre.potential, l);
-        const double along = f[i] * f[i] / (l * l);
-        const double stiffness = bond.fibre.weight * (psi.second * along + psi.first / l * (1. - along));
-        A_2 += stiffness * N[0] * N[0];
-        A_4 += stiffness * bond.length * bond.length / 12. * std::pow(N[0], 4);
-      }
-      const double k2 = k_wave * k_wave;
-      const double exact = (A_2 * k2 + (l_d * l_d * A_2 - A_4) * k2 * k2) / (1. + l_d * l_d * k2) / density;
-      Tensor<1, 2> polarisation;
-      polarisation[i] = 1.;
-      expect_order_in_space(Constitution(law, gradient), l_d, F, polarisation, exact,
-                            std::string(F[0][0] > 1. ? "stretched, " : "") + (i == 0 ? "longitudinal" : "shear"));
-    }
-}
 
 TEST(DynamicSolver, IsOfSecondOrderInTime)
 {
@@ -331,90 +169,6 @@ TEST(DynamicSolver, KeepsTheEnergyOfALongVibration)
   RecordProperty("largest error", std::to_string(1e6 * fine.largest) + "e-6");
   RecordProperty("ratio", std::to_string(coarse.largest_at_first / fine.largest_at_first));
   RecordProperty("drift", std::to_string(1e6 * (fine.mean_at_last - fine.mean_at_first)) + "e-6");
-}
-
-TEST(DynamicSolver, DampsAStandingWaveAsKelvinTheorySays)
-{
-  // q'' + 2 g q' + w^2 q = 0 with g = eta k^2 / (2 rho (1 + l_d^2 k^2)), eta the viscous modulus of the polarisation.
-  const continuum::CauchyBorn law = rubber_network();
-  const FibreViscosity viscosity = network_viscosity(300.);
-  const double l_d = 0.05;
-  const double rho_effective = density * (1. + l_d * l_d * k_wave * k_wave);
-  for (const unsigned int i : {0, 1})
-  {
-    Tensor<1, 2> polarisation;
-    polarisation[i] = 1e-6;
-    const double w2 = law.tangent(identity)[i][0][i][0] * k_wave * k_wave / rho_effective;
-    const double eta = viscosity.stress_by_rate(identity, Tensor<2, 2>())[i][0][i][0];
-    const double g = 0.5 * eta * k_wave * k_wave / rho_effective;
-    const double damped = std::sqrt(w2 - g * g);
-    Mesh mesh(MPI_COMM_SELF);
-    continuum::make_rectangle(mesh, strip(8));
-    const unsigned int per_period = 100;
-    DynamicSettings settings{2. * pi / damped / per_period};
-    DynamicSolver solver(mesh, law, periodic(), {density, l_d}, settings, &viscosity);
-    solver.start(wave(polarisation));
-    Vector initial = solver.sheet().make_owned();
-    initial = solver.displacement();
-    double dissipated = 0.;
-    double smallest = 1.;
-    solver.run_until(2. * per_period * settings.time_step,
-                     [&]
-                     {
-                       Vector u = solver.sheet().make_owned();
-                       u = solver.displacement();
-                       const double t = solver.time();
-                       const double exact =
-                         std::exp(-g * t) * (std::cos(damped * t) + g / damped * std::sin(damped * t));
-                       // Average acceleration is slow by (w dt)^2/12 of the phase, 1/3000, which is 4e-3 after two
-                       // periods.
-                       EXPECT_NEAR((u * initial) / initial.norm_sqr(), exact, 5e-3);
-                       EXPECT_GE(solver.ledger().dissipated, dissipated);
-                       dissipated = solver.ledger().dissipated;
-                       smallest = std::min(smallest, exact);
-                     });
-    const double decay = std::exp(-g * solver.time());
-    EXPECT_LT(decay, 0.8); // there was something to see
-    Vector u = solver.sheet().make_owned();
-    u = solver.displacement();
-    // At the end of a period the error of the phase is of second order: the decay by itself.
-    EXPECT_NEAR((u * initial) / initial.norm_sqr(), decay, 1e-3) << decay;
-  }
-}
-
-TEST(DynamicSolver, DampsHighFrequenciesOnly)
-{
-  // The same shear wave, followed with steps that resolve it and with steps far longer than its period.
-  const continuum::CauchyBorn law = rubber_network();
-  const double w = k_wave * std::sqrt(law.tangent(identity)[1][0][1][0] / density);
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, strip(8));
-  // q^2 + (dq/dt)^2/w^2 of the wave's amplitude q, over that at the start. The energy itself would drown in the
-  // round-off of W at strains of 1e-5.
-  const auto energy_left = [&](const TimeRule &rule, const double dt, const unsigned int n_steps)
-  {
-    DynamicSettings settings{dt};
-    settings.rule = rule;
-    DynamicSolver solver(mesh, law, periodic(), {density, 0.}, settings);
-    solver.start(wave(Tensor<1, 2>({0., 1e-6})));
-    Vector initial = solver.sheet().make_owned();
-    initial = solver.displacement();
-    for (unsigned int n = 0; n < n_steps; ++n)
-      solver.step();
-    Vector now = solver.sheet().make_owned();
-    now = solver.displacement();
-    const double q = (now * initial) / initial.norm_sqr();
-    now = solver.velocity();
-    const double rate = (now * initial) / initial.norm_sqr();
-    return q * q + rate * rate / (w * w);
-  };
-  // A period in 60 steps, w dt = 0.1. Eight cells of degree 3 have w to 1e-5.
-  EXPECT_NEAR(energy_left(TimeRule::generalised_alpha(0.5), 2. * pi / 60. / w, 60), 1., 5e-3);
-  EXPECT_NEAR(energy_left(TimeRule::average_acceleration(), 2. * pi / 60. / w, 60), 1., 1e-4);
-  // As w dt grows the three eigenvalues of a step all tend to rho_inf: what is left of q after n steps is of the order
-  // of n^2 rho_inf^n, 1600 * 2^-40 here, and its square 2e-18 within constants.
-  EXPECT_LT(energy_left(TimeRule::generalised_alpha(0.5), 1000. / w, 40), 1e-14);
-  EXPECT_NEAR(energy_left(TimeRule::average_acceleration(), 1000. / w, 20), 1., 1e-4);
 }
 
 TEST(DynamicSolver, MovesHeldBoundariesWithTheLoadFactor)

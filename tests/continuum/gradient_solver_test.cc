@@ -179,6 +179,8 @@ TEST(GradientEquilibrium, LinearIterationsDependLittleOnTheMesh)
     settings.degree = degree;
     settings.linear.direct_limit = 0;
     settings.linear.multigrid.coarsest_size = 150;
+    settings.largest_forcing = 0.;
+    settings.linear.wear_limit = 0.;
     const auto largest = [](const continuum::SolverReport &report)
     {
       unsigned int result = 0;
@@ -206,6 +208,50 @@ TEST(GradientEquilibrium, LinearIterationsDependLittleOnTheMesh)
                    std::to_string(most[0]) + " " + std::to_string(most[1]) + " " + std::to_string(most[2]));
     EXPECT_LE(most[2], 1.5 * most[0]) << most[0] << " " << most[1] << " " << most[2];
     EXPECT_LE(most[2], degree == 2 ? 20u : 10u);
+  }
+}
+
+// Linear systems solved no more closely than Newton can use: the same equilibrium for less, and no more than two
+// further steps, the last ones as large as those of exact steps.
+TEST(GradientEquilibrium, InexactStepsEndAtTheSameEquilibrium)
+{
+  const continuum::CauchyBorn law = rubber_network();
+  const continuum::IsotropicGradient gradient(5e5, 0.1 * height);
+  struct Answer
+  {
+    double energy;
+    std::vector<continuum::PointState> states;
+    std::size_t n_steps;
+    unsigned int n_linear;
+  };
+  const auto solve = [&](const double largest_forcing)
+  {
+    Mesh mesh(MPI_COMM_SELF);
+    continuum::make_rectangle(mesh, rectangle(24, 16));
+    StaticSettings settings;
+    settings.degree = 2;
+    settings.linear.direct_limit = 0;
+    settings.linear.multigrid.coarsest_size = 150;
+    settings.largest_forcing = largest_forcing;
+    StaticSolver solver(mesh, Constitution(law, gradient), clamped_bump(1.5, 1.8, 0.02), settings);
+    const continuum::SolverReport report = solver.solve();
+    EXPECT_LE(report.iterations.back().residual, report.iterations.back().tolerance);
+    unsigned int n_linear = 0;
+    for (const auto &iteration : report.iterations)
+      n_linear += iteration.linear_iterations;
+    return Answer{solver.total_energy(), solver.evaluate(scattered_points(7, 5)), report.iterations.size(), n_linear};
+  };
+  const Answer exact = solve(0.);
+  for (const double largest_forcing : {StaticSettings().largest_forcing, 0.1})
+  {
+    const Answer inexact = solve(largest_forcing);
+    EXPECT_LE(inexact.n_steps, exact.n_steps + 2);
+    EXPECT_LT(inexact.n_linear, exact.n_linear);
+    // The energy is stationary, so it shows the square of the error: round-off alone.
+    EXPECT_NEAR(inexact.energy, exact.energy, 1e-12 * exact.energy);
+    // Residuals are 1e-10 of the forces.
+    for (std::size_t p = 0; p < exact.states.size(); ++p)
+      EXPECT_LT((inexact.states[p].displacement - exact.states[p].displacement).norm(), 1e-9 * length);
   }
 }
 
@@ -269,6 +315,9 @@ TEST(GradientEquilibrium, RefusesImpossibleInput)
   StaticSettings linear;
   linear.degree = 1;
   EXPECT_THROW(StaticSolver(mesh, Constitution(law, gradient), conditions, linear), continuum::InvalidInput);
+  StaticSettings careless;
+  careless.largest_forcing = 1.;
+  EXPECT_THROW(StaticSolver(mesh, Constitution(law, gradient), conditions, careless), continuum::InvalidInput);
   Constitution constitution(law, gradient);
   constitution.penalty = 0.;
   EXPECT_THROW(StaticSolver(mesh, constitution, conditions), continuum::InvalidInput);

@@ -223,7 +223,7 @@ std::array<double, 2> discrete_frequencies(const WaveContinuum &medium, const Ei
   continuum::Sheet::Matrix stiffness;
   sheet.make_matrix(sheet.continuity(), stiffness);
   sheet.tangent(u, sheet.continuity(), stiffness);
-  const continuum::LinearSolver solver(sheet, {}, {});
+  continuum::LinearSolver solver(sheet, {}, {});
 
   // Both waves at once, by inverse iteration with a shift below them. Translations by whole cells keep waves of other
   // wave vectors out, so what dies out are the higher branches of this one, of 9 times the eigenvalue and more.

@@ -1,0 +1,85 @@
+// Energy and momentum of DynamicSolver.
+#include "continuum/dynamic_step.h"
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/dofs/dof_tools.h>
+
+using namespace dealii;
+
+namespace continuum
+{
+void DynamicSolver::take_stock(EnergyLedger &ledger, const Vector &u, const Vector &v, const double load_factor) const
+{
+  ledger.stored = sheet_.energy(ghosted(u), load_factor);
+  Vector momenta = sheet_.make_owned();
+  multiply_by_mass(full_mass_, v, momenta);
+  ledger.kinetic = 0.5 * (momenta * v);
+  ledger.micro_kinetic = 0.;
+  if (inertia_.length > 0.)
+  {
+    multiply_by_mass(plain_mass_, v, momenta);
+    ledger.micro_kinetic = ledger.kinetic - 0.5 * (momenta * v);
+  }
+}
+
+// The ledger after a step that ends with u and v.
+EnergyLedger DynamicSolver::settled(const Step &step, const Vector &u, const Vector &v) const
+{
+  EnergyLedger ledger = ledger_;
+  take_stock(ledger, u, v, step.last_load_factor);
+
+  Vector rise = u;
+  rise -= step.u;
+  const Vector middle = ghosted(Step::mean(0.5, step.u, u));
+  Vector rate = rise;
+  rate *= 1. / step.dt;
+  const Vector middle_velocity = ghosted(rate);
+  ledger.dissipated += step.dt * viscous_forces_.dissipation(middle, middle_velocity);
+
+  const double factor = 0.5 * (step.first_load_factor + step.last_load_factor);
+  ledger.work += factor * (loads_ * rise);
+  if (step.first_load_factor != step.last_load_factor)
+  {
+    if (!sheet_.conditions().normal_gradients.empty())
+      ledger.work += sheet_.energy(middle, step.last_load_factor) - sheet_.energy(middle, step.first_load_factor);
+    if (!sheet_.conditions().displacements.empty())
+    {
+      // Reactions at the middle of the step, where the accelerations of the rule are not of second order.
+      Vector forces = sheet_.make_owned();
+      Vector inertial = sheet_.make_owned();
+      Vector magnitude = sheet_.make_owned();
+      sheet_.residual(middle, forces, magnitude, factor);
+      viscous_forces_.add_forces(middle, middle_velocity, forces, nullptr);
+      Vector change = v;
+      change -= step.v;
+      change *= 1. / step.dt;
+      multiply_by_mass(full_mass_, change, inertial);
+      double own = 0.;
+      for (const types::global_dof_index i : sheet_.owned())
+        if (homogeneous_.is_constrained(i) && !sheet_.continuity().is_constrained(i))
+          own += (forces(i) + inertial(i) - factor * loads_(i)) * rise(i);
+      ledger.work += Utilities::MPI::sum(own, sheet_.communicator());
+    }
+  }
+  ledger.imbalance = ledger.stored + ledger.kinetic + ledger.dissipated - ledger.work - initial_energy_;
+  return ledger;
+}
+
+Tensor<1, 2> DynamicSolver::momentum() const
+{
+  Vector v = sheet_.make_owned();
+  v = velocity_;
+  Vector momenta = sheet_.make_owned();
+  multiply_by_mass(full_mass_, v, momenta);
+  Tensor<1, 2> sum;
+  for (unsigned int i = 0; i < 2; ++i)
+  {
+    ComponentMask mask(2, false);
+    mask.set(i, true);
+    for (const types::global_dof_index dof : DoFTools::extract_dofs(sheet_.dof_handler(), mask))
+      if (sheet_.owned().is_element(dof))
+        sum[i] += momenta(dof);
+  }
+  return Utilities::MPI::sum(sum, sheet_.communicator());
+}
+} // namespace continuum

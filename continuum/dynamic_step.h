@@ -1,0 +1,57 @@
+#pragma once
+
+// One time step of DynamicSolver, for its sources alone.
+
+#include "continuum/dynamic_solver.h"
+
+namespace continuum
+{
+/// What is known when a step begins, all without ghost entries, and Newmark's formulas from there.
+struct DynamicSolver::Step
+{
+  TimeRule rule;
+  double dt;
+  Vector u;
+  Vector v;
+  Vector a;
+  double first_load_factor;
+  double last_load_factor;
+
+  double mean_load_factor() const { return rule.alpha_f * first_load_factor + (1. - rule.alpha_f) * last_load_factor; }
+
+  Vector last_acceleration(const Vector &last_u) const
+  {
+    Vector a_1 = last_u;
+    a_1 -= u;
+    a_1.add(-dt, v);
+    a_1.sadd(1. / (rule.beta * dt * dt), 1. - 0.5 / rule.beta, a);
+    return a_1;
+  }
+
+  Vector last_velocity(const Vector &last_acceleration) const
+  {
+    Vector v_1 = v;
+    v_1.add(dt * (1. - rule.gamma), a, dt * rule.gamma, last_acceleration);
+    return v_1;
+  }
+
+  static Vector mean(const double first_share, const Vector &first, const Vector &last)
+  {
+    Vector x = last;
+    x.sadd(1. - first_share, first_share, first);
+    return x;
+  }
+};
+
+/// The equation of motion at a displacement of the end of a step.
+struct DynamicSolver::Balance
+{
+  Vector u_mean;    // with ghost entries [m]
+  Vector v_mean;    // with ghost entries [m/s]
+  Vector residual;  // [N/m]
+  Vector magnitude; // sums of absolute values behind it [N/m]
+  double free;      // norm of the residual over the free unknowns [N/m]
+  double reference; // norm of internal, viscous and inertial forces and of loads, of every unknown [N/m]
+  double energy;    // of the mean state, less the work of dead loads [J/m]
+};
+} // namespace continuum

@@ -1,0 +1,299 @@
+#include "continuum/element_integrals.h"
+
+#include "continuum/element_kernels.h"
+#include "continuum/shape_tables.h"
+#include "continuum/vector_kernels.h"
+
+#include <deal.II/meshworker/mesh_loop.h>
+
+#include <Epetra_MultiVector.h>
+
+#include <algorithm>
+#include <array>
+
+using namespace dealii;
+
+namespace continuum
+{
+namespace
+{
+using Contributions = std::vector<Contribution>;
+using Iterator = DoFHandler<2>::active_cell_iterator;
+using MeshIterator = Triangulation<2>::cell_iterator;
+
+// Entries of a vector with ghosts, the own ones without a search.
+class NodalValues
+{
+public:
+  NodalValues(const Sheet::Vector &u, const IndexSet &owned)
+    : u_(u), begin_(owned.is_empty() ? 0 : owned.nth_index_in_set(0)), end_(begin_ + owned.n_elements()),
+      own_(u.trilinos_vector()[0] + (begin_ < end_ ? u.trilinos_vector().Map().LID(static_cast<int>(begin_)) : 0))
+  {
+  }
+  double operator()(const types::global_dof_index i) const
+  {
+    return i >= begin_ && i < end_ ? own_[i - begin_] : u_(i);
+  }
+
+private:
+  const Sheet::Vector &u_;
+  types::global_dof_index begin_;
+  types::global_dof_index end_;
+  const double *own_; // a ghosted vector is sorted, so the own entries follow each other
+};
+
+// Integrates densities over cells and faces for one state u. Copied once for a loop (see mesh_loop).
+class Integrator
+{
+public:
+  Integrator(const Sheet &sheet, const Sheet::Vector &u, const double load_factor, const Order order)
+    : sheet_(sheet), vector_(u), u_(u, sheet.owned()), load_factor_(load_factor), order_(order), tables_(sheet)
+  {
+    for (unsigned int n = 0; n < sheet.element().n_dofs_per_cell() / 2; ++n)
+      for (unsigned int i = 0; i < 2; ++i)
+        system_index_[i].push_back(sheet.element().component_to_system_index(i, n));
+  }
+  Integrator(const Integrator &other) : Integrator(other.sheet_, other.vector_, other.load_factor_, other.order_) {}
+
+  void cell(const Iterator &cell, Contributions &contributions)
+  {
+    const ShapeTable &table = tables_.cell(MeshIterator(cell));
+    begin(contributions);
+    take_nodes(cell, 0);
+    start(1);
+    const Rows rows = {1, sheet_.has_gradient() ? n_jet : n_first};
+    for (unsigned int q = 0; q < table.n_points; ++q)
+    {
+      const double *basis = table.row(q, 0);
+      take_jets(basis, rows);
+      cell_density(sheet_.constitution(), sheet_.has_gradient(), jets_[0], order_, density_);
+      add_point(basis, rows, table.JxW[q], contributions.back());
+    }
+    end(contributions.back());
+  }
+
+  void boundary(const Iterator &cell, const unsigned int face, Contributions &contributions)
+  {
+    for (const PrescribedNormalGradient &condition : sheet_.conditions().normal_gradients)
+      if (condition.boundary == cell->face(face)->boundary_id())
+      {
+        constexpr unsigned int whole = numbers::invalid_unsigned_int;
+        const std::array<const ShapeTable *, 2> tables = {&tables_.face(MeshIterator(cell), face, whole, 0), nullptr};
+        const auto &points = tables_.face_values(MeshIterator(cell), face).get_quadrature_points();
+        std::vector<Tensor<1, 2>> prescribed(points.size());
+        for (std::size_t q = 0; q < points.size(); ++q)
+          for (unsigned int i = 0; i < 2; ++i)
+            prescribed[q][i] = load_factor_ * condition.gradient->value(points[q], i);
+        begin(contributions);
+        take_nodes(cell, 0);
+        integrate_face(tables, 1, sheet_.penalty(extent(cell, face)), &prescribed, contributions.back());
+        return; // the first in the list holds, as for displacements
+      }
+  }
+
+  void interior(const Iterator &cell, const unsigned int face, const unsigned int subface, const Iterator &neighbor,
+                const unsigned int neighbor_face, const unsigned int neighbor_subface, Contributions &contributions)
+  {
+    const std::array<const ShapeTable *, 2> tables = {
+      &tables_.face(MeshIterator(cell), face, subface, 0),
+      &tables_.face(MeshIterator(neighbor), neighbor_face, neighbor_subface, 1)};
+    begin(contributions);
+    take_nodes(cell, 0);
+    take_nodes(neighbor, 1);
+    const double penalty = sheet_.penalty(std::min(extent(cell, face), extent(neighbor, neighbor_face)));
+    integrate_face(tables, 2, penalty, nullptr, contributions.back());
+  }
+
+private:
+  // Of a cell across a face [m].
+  static double extent(const Iterator &cell, const unsigned int face)
+  {
+    return cell->measure() / cell->face(face)->measure();
+  }
+
+  void begin(Contributions &contributions)
+  {
+    contributions.emplace_back();
+    nodes_.clear();
+  }
+
+  // Adds the shape functions of a cell; those that the other side has too are one and the same.
+  void take_nodes(const Iterator &cell, const unsigned int side)
+  {
+    cell_dofs_.resize(sheet_.element().n_dofs_per_cell());
+    cell->get_dof_indices(cell_dofs_);
+    const std::size_t n_before = nodes_.size();
+    node_of_[side].clear();
+    for (unsigned int n = 0; n < system_index_[0].size(); ++n)
+    {
+      const types::global_dof_index dof = cell_dofs_[system_index_[0][n]];
+      std::size_t node = 0;
+      while (node < n_before && nodes_[node][0] != dof)
+        ++node;
+      if (node == n_before)
+      {
+        node = nodes_.size();
+        nodes_.push_back({dof, cell_dofs_[system_index_[1][n]]});
+      }
+      node_of_[side].push_back(node);
+    }
+  }
+
+  // Makes room for the nodes, zeros in the padding.
+  void start(const unsigned int n_sides)
+  {
+    const auto n = static_cast<unsigned int>(nodes_.size());
+    stride_ = padded(n);
+    nodal_.assign(2 * stride_, 0.);
+    for (unsigned int a = 0; a < n; ++a)
+      for (unsigned int i = 0; i < 2; ++i)
+        nodal_[i * stride_ + a] = u_(nodes_[a][i]);
+    if (order_ == Order::first)
+    {
+      first_.assign(2 * stride_, 0.);
+      magnitude_.assign(2 * stride_, 0.);
+    }
+    if (order_ == Order::second)
+    {
+      work_.resize(2 * n_jet * stride_);
+      for (std::vector<double> &block : second_)
+        block.assign(n * stride_, 0.);
+    }
+    basis_.assign(n_sides * n_jet * stride_, 0.);
+  }
+
+  void integrate_face(const std::array<const ShapeTable *, 2> &tables, const unsigned int n_sides, const double penalty,
+                      const std::vector<Tensor<1, 2>> *prescribed, Contribution &contribution)
+  {
+    start(n_sides);
+    const Rows rows = {n_sides, n_jet};
+    for (unsigned int q = 0; q < tables[0]->n_points; ++q)
+    {
+      for (unsigned int s = 0; s < n_sides; ++s)
+        for (unsigned int c = 0; c < n_jet; ++c)
+        {
+          const double *from = tables[s]->row(q, c);
+          double *to = &basis_[(s * n_jet + c) * stride_];
+          for (std::size_t n = 0; n < node_of_[s].size(); ++n)
+            to[node_of_[s][n]] = from[n];
+        }
+      take_jets(basis_.data(), rows);
+      face_density(*sheet_.constitution().gradient, jets_, n_sides, tables[0]->normals[q],
+                   prescribed ? (*prescribed)[q] : Tensor<1, 2>(), penalty, order_, density_);
+      add_point(basis_.data(), rows, tables[0]->JxW[q], contribution);
+    }
+    end(contribution);
+  }
+
+  // Jets of u from the basis, and a blank density.
+  void take_jets(const double *basis, const Rows &rows)
+  {
+    clear(density_, order_);
+    double jets[2][2][n_jet] = {};
+    evaluate_jets(basis, stride_, rows, nodal_.data(), jets[0][0]);
+    for (unsigned int s = 0; s < rows.n_sides; ++s)
+      for (unsigned int i = 0; i < 2; ++i)
+        std::copy(jets[i][s], jets[i][s] + n_jet, jets_[s][i].begin());
+  }
+
+  void add_point(const double *basis, const Rows &rows, const double JxW, Contribution &contribution)
+  {
+    contribution.energy += density_.value * JxW;
+    if (order_ == Order::first)
+      for (unsigned int i = 0; i < 2; ++i)
+        add_first(basis, stride_, rows, density_.first[i][0], JxW, &first_[i * stride_], &magnitude_[i * stride_]);
+    if (order_ == Order::second)
+      for (unsigned int block = 0; block < 3; ++block)
+      {
+        const auto &[i, k] = components[block];
+        add_second(basis, stride_, rows, density_.second[i][k][0][0][0], JxW, i == k, nodes_.size(), work_.data(),
+                   second_[block].data());
+      }
+  }
+
+  void end(Contribution &contribution)
+  {
+    const std::size_t n = nodes_.size();
+    for (const auto &node : nodes_)
+      contribution.dofs.insert(contribution.dofs.end(), node.begin(), node.end());
+    if (order_ == Order::first)
+    {
+      contribution.residual.reinit(2 * n, true);
+      contribution.magnitude.reinit(2 * n, true);
+      for (std::size_t a = 0; a < n; ++a)
+        for (unsigned int i = 0; i < 2; ++i)
+        {
+          contribution.residual[2 * a + i] = first_[i * stride_ + a];
+          contribution.magnitude[2 * a + i] = magnitude_[i * stride_ + a];
+        }
+    }
+    if (order_ != Order::second)
+      return;
+    // The second derivative is symmetric: of equal components one half was summed, of mixed ones one of the two.
+    FullMatrix<double> &K = contribution.tangent;
+    K.reinit(2 * n, 2 * n);
+    for (std::size_t a = 0; a < n; ++a)
+    {
+      for (std::size_t b = a; b < n; ++b)
+        for (unsigned int i = 0; i < 2; ++i)
+          K(2 * a + i, 2 * b + i) = K(2 * b + i, 2 * a + i) = second_[i][a * stride_ + b];
+      for (std::size_t b = 0; b < n; ++b)
+        K(2 * a, 2 * b + 1) = K(2 * b + 1, 2 * a) = second_[2][a * stride_ + b];
+    }
+  }
+
+  static constexpr std::pair<unsigned int, unsigned int> components[3] = {{0, 0}, {1, 1}, {0, 1}}; // of second_
+
+  const Sheet &sheet_;
+  const Sheet::Vector &vector_;
+  NodalValues u_;
+  double load_factor_;
+  Order order_;
+  ShapeTables tables_;
+  std::array<std::vector<unsigned int>, 2> system_index_; // of the scalar shape functions, by component
+
+  std::vector<std::array<types::global_dof_index, 2>> nodes_; // degrees of freedom of both components
+  std::array<std::vector<unsigned int>, 2> node_of_;          // of each shape function on each side
+  std::vector<types::global_dof_index> cell_dofs_;
+  unsigned int stride_ = 0;
+  std::vector<double> basis_; // see element_kernels.h
+  std::vector<double> nodal_; // [component][node] of u
+  std::vector<double> first_; // [component][node], as magnitude_
+  std::vector<double> magnitude_;
+  std::array<std::vector<double>, 3> second_; // [node][node]
+  std::vector<double> work_;
+  std::array<FieldJet, 2> jets_; // of u on each side
+  Density density_;
+};
+} // namespace
+
+void integrate(const Sheet &sheet, const Sheet::Vector &u, const double load_factor, const Order order,
+               const std::function<void(const Contribution &)> &add)
+{
+  const auto cell_worker = [](const Iterator &cell, Integrator &integrator, Contributions &contributions)
+  { integrator.cell(cell, contributions); };
+  const auto copier = [&](const Contributions &contributions)
+  {
+    for (const Contribution &contribution : contributions)
+      add(contribution);
+  };
+  const Integrator integrator(sheet, u, load_factor, order);
+  const Iterator begin = sheet.dof_handler().begin_active();
+  const Iterator end = sheet.dof_handler().end();
+  if (!sheet.has_gradient())
+  {
+    MeshWorker::mesh_loop(begin, end, cell_worker, copier, integrator, Contributions(), MeshWorker::assemble_own_cells);
+    return;
+  }
+  const auto boundary_worker = [](const Iterator &cell, const unsigned int face, Integrator &worker,
+                                  Contributions &contributions) { worker.boundary(cell, face, contributions); };
+  const auto face_worker = [](const Iterator &cell, const unsigned int face, const unsigned int subface,
+                              const Iterator &neighbor, const unsigned int neighbor_face,
+                              const unsigned int neighbor_subface, Integrator &worker, Contributions &contributions)
+  { worker.interior(cell, face, subface, neighbor, neighbor_face, neighbor_subface, contributions); };
+  MeshWorker::mesh_loop(begin, end, cell_worker, copier, integrator, Contributions(),
+                        MeshWorker::assemble_own_cells | MeshWorker::assemble_boundary_faces |
+                          MeshWorker::assemble_own_interior_faces_once | MeshWorker::assemble_ghost_faces_once,
+                        boundary_worker, face_worker);
+}
+} // namespace continuum

@@ -1,0 +1,74 @@
+#pragma once
+
+#include "continuum/point_density.h"
+#include "continuum/sheet.h"
+
+#include <deal.II/fe/fe_q.h>
+#include <deal.II/fe/fe_values.h>
+
+#include <array>
+#include <list>
+#include <map>
+#include <memory>
+#include <utility>
+#include <vector>
+
+namespace continuum
+{
+/// The scalar shape functions of a cell at the Gauss points of the cell or of one of its faces.
+struct ShapeTable
+{
+  unsigned int n_points = 0;
+  unsigned int stride = 0;                   ///< from row to row: the number of shape functions, padded with zeros
+  std::vector<double> jets;                  ///< [point][derivative of a jet][shape function]
+  std::vector<double> JxW;                   ///< weight [m^2] or [m] of each point
+  std::vector<dealii::Tensor<1, 2>> normals; ///< of each point of a face, outward
+  const double *row(const unsigned int q, const unsigned int derivative) const
+  {
+    return &jets[(q * n_jet + derivative) * stride];
+  }
+};
+
+/// Makes shape tables for the cells of a sheet. Straight parallelograms that differ by a translation alone share
+/// theirs, which is then computed once; edges that differ by less than 1e-11 of their length, which is rounding, count
+/// as equal.
+class ShapeTables
+{
+public:
+  using Cell = dealii::Triangulation<2>::cell_iterator;
+
+  explicit ShapeTables(const Sheet &sheet);
+
+  /// Of a cell; valid until the next call of cell().
+  const ShapeTable &cell(const Cell &cell);
+
+  /// Of a face, or with `subface` other than numbers::invalid_unsigned_int of a half of it; valid until the next call
+  /// of face() for the same `side`, 0 or 1.
+  const ShapeTable &face(const Cell &cell, unsigned int face, unsigned int subface, unsigned int side);
+
+  /// FEFaceValues of a face, with points.
+  const dealii::FEFaceValues<2> &face_values(const Cell &cell, unsigned int face);
+
+private:
+  struct Shape
+  {
+    dealii::Tensor<1, 2> edges[2];
+    ShapeTable table;
+    std::map<std::pair<unsigned int, unsigned int>, ShapeTable> faces;
+  };
+
+  Shape *shape_of(const Cell &cell);
+  void fill(const dealii::FEValuesBase<2> &values, bool is_face, ShapeTable &table) const;
+  void fill_face(const Cell &cell, unsigned int face, unsigned int subface, ShapeTable &table);
+
+  bool has_gradient_;
+  bool is_straight_;
+  dealii::FE_Q<2> element_;
+  dealii::FEValues<2> cell_values_;
+  std::unique_ptr<dealii::FEFaceValues<2>> face_values_;
+  std::unique_ptr<dealii::FESubfaceValues<2>> subface_values_;
+  std::list<Shape> shapes_; // the last one found first
+  ShapeTable own_table_;    // of a cell that shares its shape with none
+  std::array<ShapeTable, 2> own_faces_;
+};
+} // namespace continuum

@@ -1,0 +1,110 @@
+#include "continuum/single_precision_matrix.h"
+
+#include "continuum/vector_kernels.h"
+
+#include <deal.II/base/mpi.h>
+#include <deal.II/base/partitioner.h>
+
+#include <Epetra_CrsMatrix.h>
+
+#include <algorithm>
+#include <numeric>
+
+using namespace dealii;
+
+namespace continuum
+{
+namespace
+{
+// y = A x by pairs of rows.
+LATCON_CLONES void multiply(const std::size_t *first_block, const std::size_t n_rows, const unsigned int *columns,
+                            const float *values, const double *x, double *y)
+{
+  for (std::size_t row = 0; row < n_rows; ++row)
+  {
+    Lanes sum = {0., 0., 0., 0.};
+    for (std::size_t block = first_block[row]; block < first_block[row + 1]; ++block)
+    {
+      SingleLanes entries;
+      std::memcpy(&entries, values + 4 * block, sizeof(entries));
+      const double *pair = x + 2 * columns[block];
+      sum += __builtin_convertvector(entries, Lanes) * Lanes{pair[0], pair[1], pair[0], pair[1]};
+    }
+    y[2 * row] = sum[0] + sum[1];
+    y[2 * row + 1] = sum[2] + sum[3];
+  }
+}
+} // namespace
+
+void SinglePrecisionMatrix::copy_from(const Sheet::Matrix &K)
+{
+  const Epetra_CrsMatrix &matrix = K.trilinos_matrix();
+  n_unknowns_ = K.m();
+  const IndexSet owned = K.locally_owned_range_indices();
+  const auto n_owned = static_cast<int>(owned.n_elements());
+  Assert(n_owned % 2 == 0, ExcInternalError());
+
+  // Pairs of columns: as they are numbered in x_, with the ghosts behind the owned ones.
+  IndexSet ghosts(K.n());
+  for (int column = 0; column < matrix.NumMyCols(); ++column)
+    if (const types::global_dof_index index = matrix.GCID(column); !owned.is_element(index))
+      ghosts.add_range(index / 2 * 2, index / 2 * 2 + 2);
+  const auto layout = std::make_shared<const Utilities::MPI::Partitioner>(owned, ghosts, K.get_mpi_communicator());
+  x_.reinit(layout);
+  std::vector<unsigned int> position(matrix.NumMyCols());
+  for (int column = 0; column < matrix.NumMyCols(); ++column)
+    position[column] = layout->global_to_local(matrix.GCID(column));
+
+  first_block_.assign(1, 0);
+  columns_.clear();
+  values_.clear();
+  columns_.reserve(matrix.NumMyNonzeros() / 4);
+  values_.reserve(matrix.NumMyNonzeros());
+  std::vector<unsigned int> pairs;
+  for (int row = 0; row < n_owned; row += 2)
+  {
+    int n_entries[2];
+    double *values[2];
+    int *columns[2];
+    pairs.clear();
+    for (int r = 0; r < 2; ++r)
+    {
+      matrix.ExtractMyRowView(row + r, n_entries[r], values[r], columns[r]);
+      for (int k = 0; k < n_entries[r]; ++k)
+        if (const unsigned int pair = position[columns[r][k]] / 2; pairs.empty() || pairs.back() != pair)
+          pairs.push_back(pair);
+    }
+    std::sort(pairs.begin(), pairs.end());
+    pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
+    const std::size_t first = columns_.size();
+    columns_.insert(columns_.end(), pairs.begin(), pairs.end());
+    values_.resize(4 * columns_.size(), 0.f);
+    for (int r = 0; r < 2; ++r)
+    {
+      std::size_t block = first;
+      for (int k = 0; k < n_entries[r]; ++k)
+      {
+        const unsigned int at = position[columns[r][k]];
+        if (block == columns_.size() || columns_[block] != at / 2)
+          block = std::lower_bound(columns_.begin() + first, columns_.end(), at / 2) - columns_.begin();
+        values_[4 * block + 2 * r + at % 2] = static_cast<float>(values[r][k]);
+      }
+    }
+    first_block_.push_back(columns_.size());
+  }
+}
+
+void SinglePrecisionMatrix::vmult(Vector &y, const Vector &x) const
+{
+  const Vector *from = &x;
+  if (x_.get_partitioner()->n_mpi_processes() > 1)
+  {
+    std::copy(x.begin(), x.end(), x_.begin());
+    x_.update_ghost_values();
+    from = &x_;
+  }
+  multiply(first_block_.data(), first_block_.size() - 1, columns_.data(), values_.data(), from->begin(), y.begin());
+  if (from == &x_)
+    x_.zero_out_ghost_values();
+}
+} // namespace continuum

@@ -1,0 +1,29 @@
+#pragma once
+
+// What the innermost loops are written with. Sums run over four lanes in a fixed order, and the build does not contract
+// to fused multiply-add, so the bits do not depend on the instruction set.
+
+#include <cstring>
+
+namespace continuum
+{
+/// Four doubles at once.
+typedef double Lanes __attribute__((vector_size(32)));
+/// Four floats, to be read as doubles.
+typedef float SingleLanes __attribute__((vector_size(16)));
+
+constexpr unsigned int n_lanes = 4;
+
+/// The least multiple of the number of lanes that holds n entries.
+constexpr unsigned int padded(const unsigned int n)
+{
+  return (n + n_lanes - 1) / n_lanes * n_lanes;
+}
+} // namespace continuum
+
+/// Compiles a function for AVX2 as well, chosen when the program starts.
+#if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)
+#define LATCON_CLONES __attribute__((target_clones("default", "avx2")))
+#else
+#define LATCON_CLONES
+#endif

@@ -1,0 +1,161 @@
+#!/usr/bin/env python3
+"""One nonlinear strain-gradient problem, solved by latcon and by dolfinx: time to solution, and whether they agree.
+
+continuum_sheet.prm and dolfinx_sheet.py state the same problem: functional, mesh, element, quadrature, penalty, and the
+residual at which Newton's method ends. Times are wall times without output, and for dolfinx without imports and the
+compilation of forms. dolfinx runs on one rank, its systems solved by MUMPS, factorised as symmetric and, if asked, as
+general matrices too. Exit code 1 if the answers differ.
+"""
+import argparse
+import csv
+import json
+import math
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+HERE = pathlib.Path(__file__).resolve().parent
+PYTHON = "/usr/bin/python3"  # the one that sees Debian's packages
+CASE = HERE / "continuum_sheet.prm"
+
+# Of continuum_sheet.prm: (3/8) sum over shells of c psi''(1), with c = s and sqrt(3) s for an area factor s of 2/3.
+SHEAR_MODULUS = 3 / 8 * (2 / 3) * (1 + math.sqrt(3)) * 3 * (0.1e6 + 0.15e6)
+STATIC_LENGTH = 0.01  # m
+PROBE = (0.05, 0.0)  # m, a vertex of every mesh with an even number of cells
+
+# Cells along a side by degree: about 10^5 and 4 10^5 unknowns; halved often enough for multigrid.
+SIZES = {2: [112, 224], 3: [72, 144]}
+QUICK_SIZES = {2: [56], 3: [36]}
+
+
+def parse():
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--output", type=pathlib.Path, help="JSON file to write")
+    parser.add_argument("--quick", action="store_true", help="a small problem alone, which shows agreement and no ratio")
+    parser.add_argument("--degrees", type=int, nargs="+", choices=[2, 3], default=[2, 3])
+    parser.add_argument("--latcon", type=pathlib.Path, default=HERE.parents[1] / "build/release/verification/latcon")
+    parser.add_argument("--lu", action="store_true", help="time dolfinx with general matrices too")
+    return parser.parse_args()
+
+
+def environment():
+    """One thread for each rank: the ranks are what is counted."""
+    return {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+
+
+def run(command, folder):
+    done = subprocess.run(command, cwd=folder, env=environment(), text=True, capture_output=True)
+    if done.returncode != 0:
+        sys.exit(f"{' '.join(map(str, command))}\nended with {done.returncode}:\n{done.stdout}{done.stderr}")
+    return done.stdout
+
+
+def rows(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def displacement_at(path, point):
+    """Of the node of a frame that is nearest to `point` [m]; frames are in single precision."""
+    from vtkmodules.util.numpy_support import vtk_to_numpy
+    from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
+
+    reader = vtkXMLUnstructuredGridReader()
+    reader.SetFileName(str(path))
+    reader.Update()
+    frame = reader.GetOutput()
+    node = frame.FindPoint(*point, 0.0)
+    return vtk_to_numpy(frame.GetPointData().GetArray("displacement"))[node][:2].tolist()
+
+
+def latcon(program, cells, degree, ranks, folder):
+    folder = folder / f"latcon_{degree}_{cells}_{ranks}"
+    launch = [] if ranks == 1 else ["mpirun", "--oversubscribe", "-np", str(ranks)]
+    entries = {"cells x": cells, "cells y": cells, "degree": degree, "direct limit": 0}
+    settings = [part for name, value in entries.items() for part in ("--set", f"Continuum/{name}={value}")]
+    run([*launch, program, "continuum", CASE, "--quiet", "--output-dir", folder, *settings], folder.parent)
+    info = json.loads((folder / "run.json").read_text())
+    results = {claim["quantity"]: claim["continuum"] for claim in json.loads((folder / "results.json").read_text())["claims"]}
+    newton = rows(folder / "newton.csv")
+    times = info["wall_time_s"]
+    unknowns = int(results["unknowns"])
+    return {
+        "ranks": ranks,
+        "unknowns": unknowns,
+        "seconds": info["wall_time_total_s"] - times["output"],
+        "assembly": times["assembly"],
+        "preconditioner": times["preconditioner"],
+        "linear_solve": times["linear solve"],
+        "newton_steps": len(newton),  # the predictor is one
+        "krylov_iterations": [int(step["linear_iterations"]) for step in newton],
+        "bytes_per_unknown": ranks * info["peak_memory_bytes"] / unknowns,  # the first rank stands for all
+        "tolerance": float(newton[-1]["tolerance"]),
+        "energy": results["elastic energy per thickness"],
+        "displacement": displacement_at(folder / "continuum_0001.vtu", PROBE) if ranks == 1 else None,
+    }
+
+
+def dolfinx(cells, degree, tolerance, factorisation, folder):
+    command = [PYTHON, HERE / "dolfinx_sheet.py", "--cells", cells, "--degree", degree, "--tolerance", tolerance,
+               "--shear-modulus", repr(SHEAR_MODULUS), "--length", STATIC_LENGTH, "--probe", *PROBE,
+               "--factorisation", factorisation]
+    solution = json.loads(run(list(map(str, command)), folder).splitlines()[-1])
+    solution["bytes_per_unknown"] = solution.pop("peak_memory_bytes") / solution["unknowns"]
+    return solution
+
+
+def compare(program, cells, degree, lu, folder):
+    one, two = (latcon(program, cells, degree, ranks, folder) for ranks in (1, 2))
+    other = dolfinx(cells, degree, one["tolerance"], "cholesky", folder)
+    problem = {
+        "unknowns": one["unknowns"], "degree": degree, "cells": cells,
+        "latcon": one, "latcon_2_ranks": two, "dolfinx": other,
+        "ratio": other["seconds"] / one["seconds"],
+        "energy_difference": abs(one["energy"] - other["energy"]) / abs(other["energy"]),
+        "displacement_difference": math.dist(one["displacement"], other["displacement"]),
+    }
+    if lu:
+        problem["dolfinx_lu"] = dolfinx(cells, degree, one["tolerance"], "lu", folder)
+        problem["ratio_lu"] = problem["dolfinx_lu"]["seconds"] / one["seconds"]
+    # Energies are stationary, so what is left is the rounding of a sum over the cells, at worst one of each. Frames
+    # have 24 bits of a displacement below 6 cm.
+    energy_tolerance = sys.float_info.epsilon * cells**2
+    problem["agrees"] = (
+        one["unknowns"] == two["unknowns"] == other["unknowns"]
+        and problem["energy_difference"] <= energy_tolerance
+        and abs(one["energy"] - two["energy"]) <= energy_tolerance * one["energy"]
+        and problem["displacement_difference"] <= 2**-24 * 0.06 * math.sqrt(2) + 1e-10 * 0.06)
+    return problem
+
+
+def table(problems):
+    print("degree  unknowns  latcon [s]  assembly  precond.  solve  2 ranks [s]  dolfinx [s]  ratio  Newton  "
+          "Krylov        B/unknown      energy difference")
+    for problem in problems:
+        one, two, other = problem["latcon"], problem["latcon_2_ranks"], problem["dolfinx"]
+        print(f"{problem['degree']:6} {problem['unknowns']:9} {one['seconds']:11.2f} {one['assembly']:9.2f} "
+              f"{one['preconditioner']:9.2f} {one['linear_solve']:6.2f} {two['seconds']:12.2f} {other['seconds']:12.2f} "
+              f"{problem['ratio']:6.2f} {one['newton_steps']:3}/{other['newton_steps']:<3} "
+              f"{'+'.join(map(str, one['krylov_iterations'])):12} {one['bytes_per_unknown']:6.0f}/"
+              f"{other['bytes_per_unknown']:<8.0f} {problem['energy_difference']:8.1e}"
+              + (f"  (LU {problem['dolfinx_lu']['seconds']:.2f} s, ratio {problem['ratio_lu']:.2f})"
+                 if "ratio_lu" in problem else "")
+              + ("" if problem["agrees"] else "  DIFFERS"))
+
+
+def main():
+    arguments = parse()
+    sizes = QUICK_SIZES if arguments.quick else SIZES
+    with tempfile.TemporaryDirectory() as folder:
+        problems = [compare(arguments.latcon.resolve(), cells, degree, arguments.lu, pathlib.Path(folder))
+                    for degree in arguments.degrees for cells in sizes[degree]]
+    table(problems)
+    if arguments.output:
+        arguments.output.write_text(json.dumps({"problems": problems}, indent=2) + "\n")
+    return 0 if all(problem["agrees"] for problem in problems) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,177 @@
+// How elements become matrices and vectors. On one rank among the unit tests, on several in ranks_tests.
+#include "continuum/element_integrals.h"
+#include "continuum/meshes.h"
+#include "continuum/shape_tables.h"
+#include "continuum/single_precision_matrix.h"
+#include "multigrid_cases.h"
+
+#include <deal.II/base/quadrature_lib.h>
+
+#include <gtest/gtest.h>
+
+using namespace multigrid_cases;
+
+namespace
+{
+// Cells of three sizes with hanging nodes.
+void make_adaptive(Mesh &mesh)
+{
+  continuum::make_rectangle(mesh, rectangle(6, 4));
+  refine_towards(mesh, Point<2>(0.4 * length, 0.003), 2, length / 4.);
+}
+
+// A state that jumps nowhere and is homogeneous nowhere, with ghost entries.
+Sheet::Vector wavy_state(const Sheet &sheet)
+{
+  Sheet::Vector owned = sheet.make_owned();
+  std::vector<dealii::types::global_dof_index> dofs(sheet.element().n_dofs_per_cell());
+  for (const auto &cell : sheet.dof_handler().active_cell_iterators())
+    if (cell->is_locally_owned())
+    {
+      cell->get_dof_indices(dofs);
+      for (unsigned int a = 0; a < dofs.size(); ++a)
+        if (sheet.owned().is_element(dofs[a]))
+        {
+          const Point<2> X = sheet.mapping().transform_unit_to_real_cell(cell, sheet.element().unit_support_point(a));
+          const unsigned int i = sheet.element().system_to_component_index(a).first;
+          owned(dofs[a]) = 0.3 * X[i] + 2e-4 * std::sin(300. * (X[0] + 2. * X[1]) + i);
+        }
+    }
+  owned.compress(dealii::VectorOperation::insert);
+  sheet.continuity().distribute(owned);
+  Sheet::Vector u = sheet.make_ghosted();
+  u = owned;
+  return u;
+}
+} // namespace
+
+// The same sums in another order: each of the up to 100 terms of an entry is rounded once.
+TEST(Assembly, WritesWhatConstraintsDistribute)
+{
+  const continuum::CauchyBorn law = rubber_network();
+  const continuum::LatticeGradient gradient = rubber_gradient(0.01);
+  for (const unsigned int degree : {2u, 3u})
+  {
+    Mesh mesh(MPI_COMM_WORLD);
+    make_adaptive(mesh);
+    const Sheet sheet(mesh, continuum::Constitution(law, gradient), degree);
+    const Sheet::Vector u = wavy_state(sheet);
+    const auto held = continuum::homogeneous_constraints(sheet, all_held());
+    for (const AffineConstraints<double> *constraints : {&sheet.continuity(), &held})
+    {
+      Sheet::Matrix K, expected;
+      sheet.make_matrix(*constraints, K);
+      sheet.make_matrix(*constraints, expected);
+      sheet.tangent(u, *constraints, K);
+      continuum::integrate(sheet, u, 1., continuum::Order::second,
+                           [&](const continuum::Contribution &c)
+                           { constraints->distribute_local_to_global(c.tangent, c.dofs, expected); });
+      expected.compress(dealii::VectorOperation::add);
+      const double size = expected.frobenius_norm();
+      K.add(-1., expected);
+      EXPECT_LE(K.frobenius_norm(), 1e-14 * size) << "degree " << degree;
+    }
+
+    Sheet::Vector r = sheet.make_owned(), magnitude = sheet.make_owned(), expected = sheet.make_owned();
+    const double energy = sheet.residual(u, r, magnitude);
+    continuum::integrate(sheet, u, 1., continuum::Order::first,
+                         [&](const continuum::Contribution &c)
+                         { sheet.continuity().distribute_local_to_global(c.residual, c.dofs, expected); });
+    expected.compress(dealii::VectorOperation::add);
+    r -= expected;
+    EXPECT_LE(r.l2_norm(), 1e-14 * magnitude.l2_norm()) << "degree " << degree;
+    EXPECT_EQ(energy, sheet.energy(u)) << "degree " << degree;
+  }
+}
+
+// Tables that cells share against those of each cell: straight cells of several sizes, and curved ones.
+TEST(Assembly, SharesTheTablesOfEqualCells)
+{
+  const continuum::CauchyBorn law = rubber_network();
+  const continuum::IsotropicGradient gradient(5e5, 0.01);
+  for (const bool has_hole : {false, true})
+  {
+    Mesh mesh(MPI_COMM_SELF);
+    if (has_hole)
+      continuum::make_rectangle_with_hole(mesh, {length, height, 0.02, 1});
+    else
+      make_adaptive(mesh);
+    const Sheet sheet(mesh, continuum::Constitution(law, gradient), 3);
+    continuum::ShapeTables tables(sheet);
+    const dealii::FE_Q<2> element(3);
+    const auto flags = dealii::update_gradients | dealii::update_hessians | dealii::update_JxW_values;
+    dealii::FEValues<2> cell_values(sheet.mapping(), element, dealii::QGauss<2>(4), flags);
+    dealii::FEFaceValues<2> face_values(sheet.mapping(), element, dealii::QGauss<1>(4), flags);
+    dealii::FESubfaceValues<2> subface_values(sheet.mapping(), element, dealii::QGauss<1>(4), flags);
+    const auto expect_same = [](const dealii::FEValuesBase<2> &exact, const continuum::ShapeTable &table)
+    {
+      ASSERT_EQ(table.n_points, exact.n_quadrature_points);
+      for (unsigned int q = 0; q < table.n_points; ++q)
+      {
+        EXPECT_NEAR(table.JxW[q], exact.JxW(q), 1e-10 * exact.JxW(q));
+        for (unsigned int a = 0; a < exact.dofs_per_cell; ++a)
+        {
+          const Tensor<1, 2> &first = exact.shape_grad(a, q);
+          const Tensor<2, 2> &second = exact.shape_hessian(a, q);
+          const double jet[] = {first[0], first[1], second[0][0], second[1][1], second[0][1]};
+          // Edges are equal to 1e-11 of their length.
+          for (unsigned int c = 0; c < 5; ++c)
+            EXPECT_NEAR(table.row(q, c)[a], jet[c], 1e-9 * (c < 2 ? first.norm() + 1. : second.norm() + 1e3));
+        }
+      }
+    };
+    for (const auto &cell : mesh.active_cell_iterators())
+    {
+      cell_values.reinit(cell);
+      expect_same(cell_values, tables.cell(cell));
+      for (const unsigned int face : cell->face_indices())
+      {
+        face_values.reinit(cell, face);
+        expect_same(face_values, tables.face(cell, face, dealii::numbers::invalid_unsigned_int, 0));
+        if (!cell->at_boundary(face) && cell->neighbor(face)->has_children())
+        {
+          subface_values.reinit(cell, face, 1);
+          expect_same(subface_values, tables.face(cell, face, 1, 1));
+        }
+      }
+    }
+  }
+}
+
+// Each entry is rounded to 24 bits, so the product is off by 2^-24 sum |K_ab| |x_b| at most.
+TEST(Assembly, MultipliesInSinglePrecision)
+{
+  const continuum::CauchyBorn law = rubber_network();
+  const continuum::IsotropicGradient gradient(5e5, 0.01);
+  for (const unsigned int degree : {2u, 3u})
+  {
+    Mesh mesh(MPI_COMM_WORLD);
+    make_adaptive(mesh);
+    const Sheet sheet(mesh, continuum::Constitution(law, gradient), degree);
+    // One component held, so that the rows of a pair differ.
+    const auto constraints = continuum::homogeneous_constraints(
+      sheet, {{continuum::edge::left, dealii::ComponentMask(std::vector<bool>{true, false})}});
+    Sheet::Matrix K;
+    sheet.make_matrix(constraints, K);
+    sheet.tangent(wavy_state(sheet), constraints, K);
+    continuum::SinglePrecisionMatrix copy;
+    copy.copy_from(K);
+    Sheet::Vector x = sheet.make_owned(), y = sheet.make_owned();
+    for (const auto i : sheet.owned())
+      x(i) = std::sin(0.7 * i);
+    K.vmult(y, x);
+    const auto layout = std::make_shared<const dealii::Utilities::MPI::Partitioner>(sheet.owned(), sheet.relevant(),
+                                                                                    sheet.communicator());
+    Multigrid::Vector from(layout);
+    Multigrid::Vector to(layout);
+    Multigrid::copy(x, from);
+    copy.vmult(to, from);
+    for (const auto i : sheet.owned())
+    {
+      double bound = 0.;
+      for (auto entry = K.begin(i); entry != K.end(i); ++entry)
+        bound += std::abs(entry->value());
+      EXPECT_NEAR(to(i), y(i), std::ldexp(bound, -23));
+    }
+  }
+}

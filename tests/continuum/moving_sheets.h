@@ -1,0 +1,49 @@
+#pragma once
+
+// Waves, strips and dashpots that tests of motion share. SI units.
+
+#include "continuum/dynamic_solver.h"
+#include "sheets.h"
+
+namespace moving_sheets
+{
+using namespace sheets;
+
+inline const double density = 944.; // [kg/m^3]
+inline const Tensor<2, 2> identity = matrix(1., 0., 0., 1.);
+
+inline std::shared_ptr<Field> constant(const double x, const double y)
+{
+  return std::make_shared<Field>([=](const Point<2> &) { return Tensor<1, 2>({x, y}); });
+}
+
+inline continuum::Conditions periodic()
+{
+  continuum::Conditions conditions;
+  conditions.periodic = {{continuum::edge::left, continuum::edge::right, 0},
+                         {continuum::edge::bottom, continuum::edge::top, 1}};
+  return conditions;
+}
+
+// Along x one wavelength of 1 m and n cells, two of them across.
+inline continuum::Rectangle strip(const unsigned int n)
+{
+  return {1., 2. / n, n, 2, true, true};
+}
+inline const double k_wave = 2. * pi; // [1/m]
+
+inline std::shared_ptr<Field> wave(const Tensor<1, 2> &polarisation)
+{
+  return std::make_shared<Field>([=](const Point<2> &X) { return std::cos(k_wave * X[0]) * polarisation; });
+}
+
+// Dashpots along the bonds of rubber_network.
+inline continuum::FibreViscosity network_viscosity(const double eta)
+{
+  const continuum::CauchyBorn network = rubber_network();
+  std::vector<continuum::FibreDashpot> dashpots;
+  for (const auto &family : network.families())
+    dashpots.push_back({family.direction, family.weight, eta});
+  return continuum::FibreViscosity(dashpots);
+}
+} // namespace moving_sheets
