@@ -54,16 +54,11 @@ void Fracture::look_ahead(double duration)
   look_ahead_ = duration;
 }
 
-std::vector<std::uint8_t> Fracture::rows_with_events(const State &state, const Forces &forces) const
+std::vector<std::uint8_t> Fracture::rows_with_events_ahead(const State &state, const Forces &forces) const
 {
   std::vector<std::uint8_t> rows(lattice_.rows(), 0);
   for_each_row(lattice_, band_.rows(),
-               [&](std::size_t row)
-               {
-                 const bool has =
-                   look_ahead_ > 0. ? forces.row_has_events_ahead(state, row, look_ahead_) : forces.row_has_events(row);
-                 rows[row] = has ? 1 : 0;
-               });
+               [&](std::size_t row) { rows[row] = forces.row_has_events_ahead(state, row, look_ahead_) ? 1 : 0; });
   return rows;
 }
 
@@ -155,10 +150,12 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
 {
   std::vector<Loss> own;
   const auto *retraction = std::get_if<RetractionToughening>(&toughening_);
-  const std::vector<std::uint8_t> has_events = rows_with_events(state, forces);
+  std::vector<std::uint8_t> ahead;
+  if (look_ahead_ > 0.)
+    ahead = rows_with_events_ahead(state, forces);
   for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
   {
-    if (has_events[row] == 0)
+    if (look_ahead_ > 0. ? ahead[row] == 0 : !forces.row_has_events(row))
       continue;
     for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
     {

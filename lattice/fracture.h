@@ -86,7 +86,7 @@ public:
   std::optional<std::size_t> tip() const { return tip_; }
 
 private:
-  std::vector<std::uint8_t> rows_with_events(const State &state, const Forces &forces) const;
+  std::vector<std::uint8_t> rows_with_events_ahead(const State &state, const Forces &forces) const;
   double decisive_stretch(const State &state, std::size_t place, std::size_t kind) const;
   struct Loss;
   Loss loss(const State &state, std::size_t place, std::size_t kind) const;
