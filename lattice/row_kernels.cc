@@ -179,6 +179,28 @@ HWY_INLINE Lanes bonds_of_kind(const Law &law, const SheetConstants &sheet, cons
   return stretch;
 }
 
+// What tells in short whether one of some bonds may be past a limit.
+template <bool watches_retraction>
+struct Extremes
+{
+  Lanes longest;  // stretch
+  Lanes shortest; // stretch beyond that of retraction; negative for absent bonds as well
+
+  HWY_INLINE void add(Lanes stretch, double retraction)
+  {
+    longest.v = hn::Max(longest.v, stretch.v);
+    if constexpr (watches_retraction)
+      shortest.v = hn::Min(shortest.v, (stretch - retraction).v);
+  }
+  HWY_INLINE bool may_be_events(double first_limit) const
+  {
+    auto events = hn::Gt(longest.v, lanes(first_limit).v);
+    if constexpr (watches_retraction)
+      events = hn::Or(events, hn::Lt(shortest.v, lanes(0.).v));
+    return !hn::AllFalse(D(), events);
+  }
+};
+
 struct NoBonds
 {
 };
@@ -192,6 +214,7 @@ RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, con
   const std::size_t n_ahead = row.ahead.size();
   constexpr bool has_next_nearest = !std::is_same_v<NextNearest, NoBonds>;
   constexpr std::size_t n_kinds = has_next_nearest ? n_bond_kinds : n_nearest_kinds;
+  const std::array<double, n_bond_kinds> retraction = sheet.retraction_stretch;
   const double first_limit = std::min(row.breaking_stretch, row.toughened_stretch);
   Lanes power[block];
   for (Lanes &sum : power)
@@ -212,19 +235,18 @@ RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, con
     const Lanes vx = load(row.vx + site), vy = load(row.vy + site);
     Lanes &sum = power[site % block / width()];
     const Lengths &here = lengths[turn];
-    const auto larger = [](Lanes a, Lanes b) { return Lanes{hn::Max(a.v, b.v)}; };
-    Lanes longest = bonds_of_kind<0>(nearest, sheet, row, near, vx, vy, here, sum);
-    longest = larger(longest, bonds_of_kind<1>(nearest, sheet, row, near, vx, vy, here, sum));
-    longest = larger(longest, bonds_of_kind<2>(nearest, sheet, row, near, vx, vy, here, sum));
+    Extremes<watches_retraction> extremes{lanes(0.), lanes(1e30)};
+    extremes.add(bonds_of_kind<0>(nearest, sheet, row, near, vx, vy, here, sum), retraction[0]);
+    extremes.add(bonds_of_kind<1>(nearest, sheet, row, near, vx, vy, here, sum), retraction[1]);
+    extremes.add(bonds_of_kind<2>(nearest, sheet, row, near, vx, vy, here, sum), retraction[2]);
     if constexpr (has_next_nearest)
     {
-      longest = larger(longest, bonds_of_kind<3>(next_nearest, sheet, row, near, vx, vy, here, sum));
-      longest = larger(longest, bonds_of_kind<4>(next_nearest, sheet, row, near, vx, vy, here, sum));
-      longest = larger(longest, bonds_of_kind<5>(next_nearest, sheet, row, near, vx, vy, here, sum));
+      extremes.add(bonds_of_kind<3>(next_nearest, sheet, row, near, vx, vy, here, sum), retraction[3]);
+      extremes.add(bonds_of_kind<4>(next_nearest, sheet, row, near, vx, vy, here, sum), retraction[4]);
+      extremes.add(bonds_of_kind<5>(next_nearest, sheet, row, near, vx, vy, here, sum), retraction[5]);
     }
     // Few bonds are near a limit, so whose it is can be asked then.
-    if (HWY_UNLIKELY(!has_events &&
-                     (watches_retraction || !hn::AllFalse(D(), hn::Gt(longest.v, lanes(first_limit).v)))))
+    if (HWY_UNLIKELY(!has_events && extremes.may_be_events(first_limit)))
       has_events = any_event<n_kinds>(sheet, row, site, here);
     turn = 1 - turn;
   }

@@ -21,7 +21,7 @@ class Plan:
 
     @property
     def rounds(self):
-        return 2 if self.quick else 5
+        return 2 if self.quick else 3
 
     def program(self, name):
         path = self.build / ("verification" if name == "latcon" else "tests/benchmarks") / name
