@@ -41,8 +41,9 @@ def parse():
 
 
 def environment():
-    """One thread for each rank: the ranks are what is counted."""
-    return {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+    """One thread for each rank: the ranks are what is counted. Open MPI refuses root unless told otherwise."""
+    return {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
+            "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
 
 def run(command, folder):
