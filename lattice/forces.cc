@@ -205,7 +205,7 @@ Eigen::Vector2d Forces::on_site(const State &state, const Field &vx, const Field
     note(place, start);
     note(lattice_.home(place - static_cast<std::size_t>(lattice_.shift(kind, near_row))), end);
   }
-  return {kernels::sum_of_bonds(start[0], end[0]), kernels::sum_of_bonds(start[1], end[1])};
+  return {sum_of_bonds(start[0], end[0]), sum_of_bonds(start[1], end[1])};
 }
 
 } // namespace lattice

@@ -275,13 +275,6 @@ RowSums BondsOfRow(const SheetConstants &sheet, const RowOfBonds &row)
   return std::visit(of_nearest, sheet.shells[0].law);
 }
 
-// Pairs that a mirror exchanges are added first: exchanging the terms of a sum of two leaves its bits as they are.
-template <class Number>
-HWY_INLINE Number sum(const Number (&s)[n_bond_kinds], const Number (&e)[n_bond_kinds])
-{
-  return ((s[0] - e[0]) + (s[5] - e[5])) + (((s[1] - e[2]) + (s[2] - e[1])) + ((s[3] - e[4]) + (s[4] - e[3])));
-}
-
 void GatherRow(std::size_t n, const std::array<const double *, n_bond_kinds> &start,
                const std::array<const double *, n_bond_kinds> &end, double *total)
 {
@@ -293,7 +286,7 @@ void GatherRow(std::size_t n, const std::array<const double *, n_bond_kinds> &st
       s[kind] = load(start[kind] + i);
       e[kind] = load(end[kind] + i);
     }
-    store(sum(s, e), total + i);
+    store(sum_of_bonds(s, e), total + i);
   }
 }
 
@@ -499,11 +492,6 @@ BondForce bond_force(const BondConstants &bond, double dx, double dy, double dvx
       std::visit([&](const auto &law) { return law.force(stretch, bond.rest_length * inverse); }, bond.law) +
     viscous;
   return {axial * nx, axial * ny, stretch, viscous * rate};
-}
-
-double sum_of_bonds(const std::array<double, n_bond_kinds> &s, const std::array<double, n_bond_kinds> &e)
-{
-  return ((s[0] - e[0]) + (s[5] - e[5])) + (((s[1] - e[2]) + (s[2] - e[1])) + ((s[3] - e[4]) + (s[4] - e[3])));
 }
 
 } // namespace lattice::kernels

@@ -106,7 +106,4 @@ struct BondForce
 };
 BondForce bond_force(const BondConstants &bond, double dx, double dy, double dvx, double dvy);
 
-/// A component of the force on a site, as in gather_row.
-double sum_of_bonds(const std::array<double, n_bond_kinds> &start, const std::array<double, n_bond_kinds> &end);
-
 } // namespace lattice::kernels

@@ -9,41 +9,14 @@
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
 #include "tests/lattice/sheets.h"
+#include "tests/lattice/smooth_motion.h"
 
 namespace
 {
 
 using namespace lattice;
-
-// A held, stretched sheet set off by a smooth velocity field of a few m/s.
-State run(const Material &material, double time_step, std::size_t steps, double *imbalance = nullptr)
-{
-  const TriangularLattice sheet = sheets::square(12);
-  Simulation simulation(
-    sheet, material, homogeneous_state(sheet, material, sheets::stretched(1.5, 1.4), Edges::held, sheets::unbreakable),
-    time_step);
-  Field vx(sheet.n_places()), vy(sheet.n_places());
-  for (std::size_t i = 0; i < vx.size(); ++i)
-  {
-    const Eigen::Vector2d X = sheet.reference(i) / sheets::spacing;
-    vx[i] = 4. * std::sin(0.5 * X.x()) * std::cos(0.4 * X.y());
-    vy[i] = 3. * std::cos(0.3 * X.x() + 0.5 * X.y());
-  }
-  simulation.set_velocities(vx, vy);
-  for (std::size_t step = 0; step < steps; ++step)
-    simulation.step();
-  if (imbalance != nullptr)
-    *imbalance = simulation.energies().imbalance();
-  return simulation.state();
-}
-
-double distance(const State &a, const State &b)
-{
-  double square = 0.;
-  for (std::size_t i = 0; i < a.x.size(); ++i)
-    square += std::pow(a.x[i] - b.x[i], 2) + std::pow(a.y[i] - b.y[i], 2);
-  return std::sqrt(square);
-}
+using smooth_motion::distance;
+using smooth_motion::run;
 
 // Order from three halvings: |x_h - x_(h/2)| / |x_(h/2) - x_(h/4)| = 2^order, no exact solution needed.
 double observed_order(const Material &material, double time_step, std::size_t steps)
