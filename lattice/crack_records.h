@@ -9,6 +9,16 @@ struct TipRecord
   double t;    ///< time [s], not decreasing along a record
   double X, Y; ///< reference position [m], X not decreasing along a record
   double x, y; ///< current position at time t [m]
+
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive("t", t);
+    archive("X", X);
+    archive("Y", Y);
+    archive("x", x);
+    archive("y", y);
+  }
 };
 
 /// One broken bond.

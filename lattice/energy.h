@@ -34,6 +34,18 @@ struct EnergyBalance
   /// elastic + kinetic + viscous + broken + contact - initial - boundary_work; zero up to the error of the time
   /// stepping.
   double imbalance() const { return elastic + kinetic + viscous + broken + contact - initial - boundary_work; }
+
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive("elastic", elastic);
+    archive("kinetic", kinetic);
+    archive("viscous", viscous);
+    archive("broken", broken);
+    archive("contact", contact);
+    archive("boundary_work", boundary_work);
+    archive("initial", initial);
+  }
 };
 
 } // namespace lattice

@@ -40,6 +40,13 @@ std::string shortest(double value)
   return {text, result.ptr};
 }
 
+std::string file_name(std::size_t frame)
+{
+  char name[40];
+  std::snprintf(name, sizeof(name), "lattice-%04zu.vtp", frame);
+  return name;
+}
+
 vtkNew<vtkDoubleArray> array(const char *name, int components, vtkIdType tuples)
 {
   vtkNew<vtkDoubleArray> values;
@@ -176,10 +183,9 @@ void FieldWriter::add_frame(const State &state)
   bounds->SetTuple4(0, 0., lattice_.length(), -0.5 * lattice_.height(), 0.5 * lattice_.height());
   sheet->GetFieldData()->AddArray(bounds);
 
-  char name[32];
-  std::snprintf(name, sizeof(name), "lattice-%04zu.vtp", frames_.size());
+  const std::string name = file_name(times_.size());
   const std::filesystem::path path = directory_ / name;
-  const std::filesystem::path beside = directory_ / (std::string(name) + ".part");
+  const std::filesystem::path beside = directory_ / (name + ".part");
   vtkNew<vtkXMLPolyDataWriter> writer;
   writer->SetFileName(beside.c_str());
   writer->SetInputData(sheet);
@@ -190,7 +196,7 @@ void FieldWriter::add_frame(const State &state)
   if (writer->Write() != 1 || writer->GetErrorCode() != 0)
     fail(path, "cannot write lattice frame");
   std::filesystem::rename(beside, path);
-  frames_.push_back({state.time, name});
+  times_.push_back(state.time);
   write_collection();
 }
 
@@ -202,8 +208,9 @@ void FieldWriter::write_collection() const
     std::ofstream out(beside);
     out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
            "  <Collection>\n";
-    for (const Frame &frame : frames_)
-      out << "    <DataSet timestep=\"" << shortest(frame.time) << "\" part=\"0\" file=\"" << frame.file << "\"/>\n";
+    for (std::size_t frame = 0; frame < times_.size(); ++frame)
+      out << "    <DataSet timestep=\"" << shortest(times_[frame]) << "\" part=\"0\" file=\"" << file_name(frame)
+          << "\"/>\n";
     out << "  </Collection>\n</VTKFile>\n";
     out.flush();
     if (!out)

@@ -27,18 +27,21 @@ public:
   /// Adds the state as the next frame. @throws std::filesystem::filesystem_error if a file cannot be written
   void add_frame(const State &state);
 
-private:
+  /// Saves or loads which frames there are; see Simulation.
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive("times", times_);
+  }
+
+  /// Writes `lattice.pvd`, so that it names the frames there are. @throws std::filesystem::filesystem_error
   void write_collection() const;
 
+private:
   const TriangularLattice &lattice_;
   const Material &material_;
   std::filesystem::path directory_;
-  struct Frame
-  {
-    double time;
-    std::string file;
-  };
-  std::vector<Frame> frames_;
+  std::vector<double> times_; // of the frames [s]
 };
 
 } // namespace lattice

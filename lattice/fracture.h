@@ -40,6 +40,18 @@ struct BrokenBond
   Eigen::Vector2d midpoint; ///< reference [m]
   double stretch;           ///< at breaking [-]
   double energy;            ///< elastic energy it held, per sheet thickness [J/m]
+
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive("time", time);
+    archive("near", near);
+    archive("far", far);
+    archive("kind", kind);
+    archive("midpoint", midpoint);
+    archive("stretch", stretch);
+    archive("energy", energy);
+  }
 };
 
 /// Permanent breaking at lam_f, toughening, and the crack tip (theory.md, section "Fracture").
@@ -84,6 +96,15 @@ public:
 
   /// Place of the tip; none before anything was cut or broken.
   std::optional<std::size_t> tip() const { return tip_; }
+
+  /// Saves or loads what changes while a crack runs, besides the state; see Simulation.
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive("tip", tip_);
+    archive("tip_x", tip_x_);
+    archive("tip_y", tip_y_);
+  }
 
 private:
   std::vector<std::uint8_t> rows_with_events_ahead(const State &state, const Forces &forces) const;

@@ -79,6 +79,16 @@ public:
   std::size_t samples() const { return samples_; }
   NearTipField mean() const;
 
+  /// Saves or loads the sums, over the same grid; see Simulation.
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive("samples", samples_);
+    archive("motion", motion_);
+    archive("gradients", gradients_);
+    archive("tensors", tensors_);
+  }
+
 private:
   /// Weighted sums of n components at the points. Takes no memory, and no time, before the first site.
   template <int n>
@@ -93,6 +103,17 @@ private:
     /// @param signs of the components in a mirror image in Y; null: `other` is added as it is
     void add(const Sum &other, const NearTipGrid &grid, const Values *signs);
     std::optional<Values> mean(std::size_t point) const;
+
+    template <class Archive>
+    void archive(Archive &archive)
+    {
+      std::vector<double> all(values.data(), values.data() + values.size());
+      std::vector<double> of_points(weights.data(), weights.data() + weights.size());
+      archive("values", all);
+      archive("weights", of_points);
+      values = Eigen::Map<const decltype(values)>(all.data(), n, static_cast<Eigen::Index>(all.size()) / n);
+      weights = Eigen::Map<const Eigen::ArrayXd>(of_points.data(), static_cast<Eigen::Index>(of_points.size()));
+    }
   };
 
   NearTipGrid grid_;
@@ -109,6 +130,16 @@ struct NearTipSample
   NearTipSums sums;
   std::vector<Eigen::Vector2d>
     sites; ///< current positions relative to the tip [m], sites with at least half their bonds
+
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive("X", X);
+    archive("Y", Y);
+    archive("block", block);
+    archive("sums", sums);
+    archive("sites", sites);
+  }
 };
 
 /// Where and of what samples are taken.
@@ -155,6 +186,23 @@ public:
   NearTipField folded() const;
   /// Folded sums of one block.
   const NearTipSums &folded_block(std::size_t block) const { return folded_[block]; }
+
+  /// Saves or loads the samples and what is pending; see Simulation.
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive("path", path_);
+    archive("plain", plain_);
+    archive("folded", folded_);
+    std::size_t n_pending = pending_.size();
+    archive("n_pending", n_pending);
+    if constexpr (Archive::loads)
+      pending_.assign(n_pending, {0., 0., 0, NearTipSums(grid_), {}});
+    archive("pending", pending_);
+    archive("last_tip", last_tip_);
+    archive("calls_at_rest", calls_at_rest_);
+    archive("taken", taken_);
+  }
 
 private:
   struct Axis

@@ -1,13 +1,19 @@
 #pragma once
 
 #include <memory>
+#include <numeric>
 #include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
+#include "lattice/archive_rows.h"
 #include "lattice/contact.h"
 #include "lattice/end_loads.h"
 #include "lattice/energy.h"
 #include "lattice/fracture.h"
 #include "lattice/integrator.h"
+#include "lattice/snapshot.h"
 #include "lattice/time_step.h"
 
 namespace lattice
@@ -53,6 +59,17 @@ public:
   /// The same for the whole sheet, for those who look at it all.
   const State &gather() { return gather({0, lattice_.rows()}); }
 
+  /// Saves what changes from step to step, or loads it into a simulation that was set up like the one that was saved,
+  /// before its first step; that goes on with the same bits, on any number of ranks. Collective.
+  /// @param archive called as archive(name, value) with numbers, vectors, matrices, and objects that have a function
+  /// like this one; `Archive::loads` tells which way. To save, the first rank's values are the whole; to load, all
+  /// ranks get the whole. @throws std::invalid_argument if fields are of a sheet of another size
+  template <class Archive>
+  void archive(Archive &archive);
+
+  /// Shows an earlier state instead of the present one. There is no going on from it. @param earlier of this simulation
+  void look_back(const Snapshot &earlier) { earlier.put_into(state_, band_); }
+
   const RowBand &band() const { return band_; }
   const TriangularLattice &lattice() const { return lattice_; }
   const Material &material() const { return material_; }
@@ -96,5 +113,38 @@ private:
   double broken_ = 0.;
   Ledger powers_, work_;
 };
+
+template <class Archive>
+void Simulation::archive(Archive &archive)
+{
+  const std::vector<std::size_t> known = band_.known_rows();
+  std::vector<std::size_t> all(lattice_.rows());
+  std::iota(all.begin(), all.end(), std::size_t{0});
+  archive("time", state_.time);
+  for (const auto &[name, field] :
+       {std::pair("x", &state_.x), std::pair("y", &state_.y), std::pair("vx", &state_.vx), std::pair("vy", &state_.vy),
+        std::pair("ax", &state_.ax), std::pair("ay", &state_.ay)})
+    archive_rows(archive, name, *field, band_, known);
+  archive_rows(archive, "bonds", state_.bonds.storage(), band_, known);
+  archive_rows(archive, "lost_bonds", state_.lost_bonds, band_, all);
+  for (const auto &[name, ledger] : {std::pair<std::string, Ledger *>("powers", &powers_), {"work", &work_}})
+  {
+    archive_rows(archive, name + "_viscous", ledger->viscous, band_);
+    archive_rows(archive, name + "_contact", ledger->contact, band_);
+    archive_rows(archive, name + "_boundary", ledger->boundary, band_);
+  }
+  archive("n_broken", n_broken_);
+  archive("initial_energy", initial_energy_);
+  archive("broken_energy", broken_);
+  if (fracture_)
+    archive("fracture", *fracture_);
+  if constexpr (Archive::loads)
+  {
+    update_images(state_, band_);
+    // Which pairs may touch follows from the state.
+    if (contact_)
+      contact_->find_candidates(state_);
+  }
+}
 
 } // namespace lattice

@@ -186,6 +186,10 @@ void Case::declare(Parameters &p)
   p.add("Output", "frame interval", frame_interval, NonNegative{}, "s",
         "time between frames of the lattice; 0: first and last frame alone");
   p.add("Output", "energy interval", energy_interval, AtLeast{1.}, "time steps between rows of energy.csv");
+  p.add("Checkpoints", "steps", checkpoint_steps, AtLeast{0.},
+        "time steps between checkpoints of a motion; 0: none by steps");
+  p.add("Checkpoints", "interval", checkpoint_interval, NonNegative{}, "s",
+        "wall time between checkpoints of a motion; 0: none by time");
 
   p.add("Near tip", "ahead", near_tip_ahead, NonNegative{}, "m",
         "how far the window in which fields are averaged reaches ahead of the tip, undeformed; 0: 32 spacings");

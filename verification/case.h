@@ -132,6 +132,10 @@ struct Case
   double frame_interval = 0.; ///< [s]; 0: first and last frame only
   unsigned int energy_interval = 200;
 
+  // Checkpoints: none of these changes what a run finds
+  unsigned int checkpoint_steps = 0; ///< time steps between two; 0: not by steps
+  double checkpoint_interval = 600.; ///< wall time between two [s]; 0: not by time
+
   // Near tip: the window that moves with the tip, undeformed; 0: a number of spacings
   double near_tip_ahead = 0.;           ///< [m]
   double near_tip_behind = 0.;          ///< [m]

@@ -96,6 +96,7 @@ ExitCode run_program(int argc, char **argv)
     ->check(CLI::Range(1u, 4096u))
     ->type_name("N");
   app.add_flag("--quiet", options.quiet, "print errors only");
+  app.add_flag("--resume", options.resume, "go on from the last checkpoint, or keep the runs of a study that are there");
   app.add_flag("--dry-run", options.dry_run, "check the input, print the resolved case and its cost, run nothing");
 
   options.case_file = shipped_case("fig1.prm");
@@ -125,7 +126,6 @@ ExitCode run_program(int argc, char **argv)
   CLI::App *study_command = app.add_subcommand("study", "a sweep of cracks, set beside what a source states");
   study_command->add_option("STUDY", study, "study file (.json), or a shipped one: paper")->required()->type_name("");
   study_command->add_flag("--quick", options.quick, "small version");
-  study_command->add_flag("--resume", options.resume, "keep the runs that are there and would come out the same");
   study_command->add_flag("--skip-verification", options.skip_verification,
                           "run the cracks unverified; noted in every output");
   study_command->callback([&] { command = [&] { return run_study(options, study); }; });

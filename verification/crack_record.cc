@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numeric>
 #include <ostream>
 #include <sstream>
@@ -28,6 +29,35 @@ void write_row(std::ostream &out, std::initializer_list<double> values)
     out << separator << full_precision(value);
     separator = ",";
   }
+}
+
+// The site that moves fastest, one that is not at a finite place or speed before all others.
+struct Wildest
+{
+  std::size_t place = 0;
+  double speed = -1.; // [m/s]
+};
+
+Wildest wildest_site(const lattice::Simulation &simulation)
+{
+  const lattice::TriangularLattice &sheet = simulation.lattice();
+  const lattice::State &state = simulation.state();
+  Wildest wildest;
+  const lattice::Rows rows = simulation.band().rows();
+  for (std::size_t row = rows.begin; row < rows.end; ++row)
+    for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
+    {
+      const std::size_t place = sheet.index(row, column);
+      double speed = std::hypot(state.vx[place], state.vy[place]);
+      if (!std::isfinite(speed) || !std::isfinite(state.x[place]) || !std::isfinite(state.y[place]))
+        speed = std::numeric_limits<double>::infinity();
+      if (speed > wildest.speed)
+        wildest = {place, speed};
+    }
+  for (const Wildest &other : simulation.band().joined(std::vector<Wildest>{wildest}))
+    if (other.speed > wildest.speed || (other.speed == wildest.speed && other.place < wildest.place))
+      wildest = other;
+  return wildest;
 }
 
 } // namespace
@@ -72,17 +102,29 @@ void CrackRecord::note_tip()
 
 void CrackRecord::energies()
 {
+  energies_.push_back({simulation_.state().time, sound_energies()});
+}
+
+lattice::EnergyBalance CrackRecord::sound_energies()
+{
   const lattice::EnergyBalance balance = simulation_.energies();
   const double available = balance.initial + std::abs(balance.boundary_work);
-  if (!(balance.elastic + balance.kinetic <= 2. * available))
+  if (balance.elastic + balance.kinetic <= 2. * available)
   {
-    std::ostringstream message;
-    message << "the lattice blew up: at " << simulation_.state().time << " s it holds " << balance.elastic
-            << " J/m elastic and " << balance.kinetic << " J/m kinetic energy, of " << available
-            << " J/m it was given; a smaller Time/safety factor may help";
-    throw SolverError(message.str());
+    last_sound_ = {simulation_.state(), simulation_.band()};
+    return balance;
   }
-  energies_.push_back({simulation_.state().time, balance});
+  const Wildest wildest = wildest_site(simulation_);
+  const Eigen::Vector2d X = simulation_.lattice().reference(wildest.place);
+  std::ostringstream message;
+  message << "the lattice blew up: at " << simulation_.state().time << " s it holds " << balance.elastic
+          << " J/m elastic and " << balance.kinetic << " J/m kinetic energy, of " << available
+          << " J/m it was given; the wildest is site " << simulation_.lattice().site_number(wildest.place)
+          << " at X = " << X.x() << " m, Y = " << X.y() << " m, with " << wildest.speed
+          << " m/s; the last frame shows the sheet at " << last_sound_.time()
+          << " s, when it was sound; a smaller Time/safety factor may help";
+  simulation_.look_back(last_sound_);
+  throw SolverError(message.str());
 }
 
 double CrackRecord::largest_imbalance() const

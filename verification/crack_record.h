@@ -22,8 +22,13 @@ public:
   /// Notes what a step has done. Collective. @param broken bonds that broke in it
   void step(const std::vector<lattice::BrokenBond> &broken);
 
-  /// Notes the energies now. Collective. @throws SolverError if they are not finite or more than there can be
+  /// Notes the energies now. Collective. @throws SolverError as check() does
   void energies();
+
+  /// Looks whether the sheet is still sound, and keeps it in mind as it is. Collective.
+  /// @throws SolverError if its energies are not finite or more than there can be, saying when and where it comes
+  /// apart; the simulation then shows the last sound state (see lattice::Simulation::look_back)
+  void check() { (void)sound_energies(); }
 
   /// Reference X of the tip [m]; 0 without one.
   double tip_X() const { return tip_.empty() ? 0. : tip_.back().X; }
@@ -44,13 +49,33 @@ public:
   void write_measurement(const std::filesystem::path &directory, const lattice::CrackMeasurement &measurement,
                          double seed_tip_X, double breaking_stretch, bool skip_verification);
 
+  /// Saves or loads what was noted; see lattice::Simulation.
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive("last_tip", last_tip_);
+    archive.records("tip", tip_);
+    archive("speeds", speeds_);
+    archive("broken_at_tip", broken_at_tip_);
+    archive.records("broken_bonds", broken_);
+    archive.records("energies", energies_);
+  }
+
 private:
   void note_tip();
+  lattice::EnergyBalance sound_energies();
 
   struct EnergyRow
   {
     double time;
     lattice::EnergyBalance balance;
+
+    template <class Archive>
+    void archive(Archive &archive)
+    {
+      archive("time", time);
+      archive("balance", balance);
+    }
   };
 
   lattice::Simulation &simulation_;
@@ -60,6 +85,7 @@ private:
   std::vector<std::size_t> broken_at_tip_; // bonds broken so far, likewise
   std::vector<lattice::BrokenBond> broken_;
   std::vector<EnergyRow> energies_;
+  lattice::Snapshot last_sound_;
 };
 
 } // namespace verification

@@ -39,6 +39,14 @@ public:
   /// std::filesystem::filesystem_error
   void write(const std::filesystem::path &directory, const lattice::CrackMeasurement &crack);
 
+  /// Saves or loads what the samples said; see lattice::Simulation. The first rank's is the whole.
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive("sampler", sampler_);
+    archive("blocks", blocks_);
+  }
+
 private:
   /// Sums over the samples of a block of what single samples say.
   struct Sum
@@ -50,11 +58,25 @@ private:
       value += number;
       ++samples;
     }
+    template <class Archive>
+    void archive(Archive &archive)
+    {
+      archive("value", value);
+      archive("samples", samples);
+    }
   };
   struct Block
   {
     Sum asymmetry, wedge_angle;
     std::vector<std::vector<double>> vortices; ///< of each sample: their speeds [m/s]; which count is known at the end
+
+    template <class Archive>
+    void archive(Archive &archive)
+    {
+      archive("asymmetry", asymmetry);
+      archive("wedge_angle", wedge_angle);
+      archive("vortices", vortices);
+    }
   };
   std::string measurements(const lattice::CrackMeasurement &crack) const;
 

@@ -321,6 +321,14 @@ void Parameters::write(const std::string &path) const
   write_file(path, resolved_text());
 }
 
+std::vector<std::pair<std::string, std::string>> Parameters::values() const
+{
+  std::vector<std::pair<std::string, std::string>> values;
+  for (const auto &[key, index] : keys_)
+    values.emplace_back(key, entries_[index].write());
+  return values;
+}
+
 std::uint64_t Parameters::hash() const
 {
   // FNV-1a: Fowler, Noll, Vo; offset basis and prime of its 64-bit form.
@@ -333,8 +341,8 @@ std::uint64_t Parameters::hash() const
       hash *= 1099511628211ULL;
     }
   };
-  for (const auto &[key, index] : keys_)
-    mix(key + "=" + entries_[index].write() + "\n");
+  for (const auto &[key, value] : values())
+    mix(key + "=" + value + "\n");
   return hash;
 }
 

@@ -197,6 +197,9 @@ public:
   /// Declares every entry in deal.II's own class, with its present value, its default and its documentation.
   void declare_in(dealii::ParameterHandler &handler) const;
 
+  /// All keys and the values of the members as they now stand, as text that reads back to them bit for bit; by key.
+  [[nodiscard]] std::vector<std::pair<std::string, std::string>> values() const;
+
   /// FNV-1a hash of all keys and values as they now stand. Does not depend on how the case was written down (order,
   /// comments, units, file or override), nor on the order of declaration, nor on the machine.
   [[nodiscard]] std::uint64_t hash() const;

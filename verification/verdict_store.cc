@@ -43,10 +43,10 @@ std::optional<std::string> content(const std::string &path)
 // The program is one static file but for the libraries of the system, which are told by name, size and time of change.
 std::string hash_of_program()
 {
-  const std::optional<std::string> program = content("/proc/self/exe");
-  if (!program)
+  const std::string hash = sha256_of_file("/proc/self/exe");
+  if (hash.empty())
     throw std::runtime_error("the program cannot read its own file");
-  return sha256(*program);
+  return hash;
 }
 
 std::string hash_of_libraries()

@@ -8,6 +8,8 @@
 
 #include <deal.II/base/mpi.h>
 
+#include "verification/checkpoint/checkpoints.h"
+
 namespace verification
 {
 namespace
@@ -55,7 +57,8 @@ void read_case(const Options &options, Case &input, Parameters &parameters)
 Run::Run(const Options &options, const Parameters &parameters) : Run(options, &parameters) {}
 
 Run::Run(const Options &options, const Parameters *parameters)
-  : directory_(options.output_dir), writes_(first_rank()), talks_(writes_ && !options.quiet), info_(options.arguments)
+  : directory_(options.output_dir), writes_(first_rank()), talks_(writes_ && !options.quiet), resumes_(options.resume),
+    info_(options.arguments)
 {
   if (parameters != nullptr)
     info_.add("case_hash", parameters->hash());
@@ -71,6 +74,22 @@ Run::Run(const Options &options, const Parameters *parameters)
   }
   // No rank writes beside rank 0 before the directory is there.
   MPI_Barrier(MPI_COMM_WORLD);
+}
+
+void Run::note(const Checkpoints &checkpoints)
+{
+  const std::optional<CheckpointPlace> &found = checkpoints.found();
+  if (found)
+    info_.add("resumed_from", RunInfo::Object{{"checkpoint", found->file.filename().string()},
+                                              {"step", static_cast<std::uint64_t>(found->step)},
+                                              {"time", found->time}});
+  if (!talks_ || !resumes_)
+    return;
+  if (found)
+    std::cout << "Going on from " << found->file.string() << ": step " << found->step << ", t = " << found->time
+              << " s\n";
+  else
+    std::cout << "There is no checkpoint in " << directory_ << ": starting from the beginning\n";
 }
 
 ExitCode Run::end(const Results &results, ExitCode exit_code)

@@ -26,7 +26,7 @@ struct Options
   bool dry_run = false;
   bool skip_verification = false;
   bool no_report = false; ///< of a crack: neither pictures nor page
-  bool resume = false;    ///< of a study: take the runs that are there
+  bool resume = false;    ///< go on from the last checkpoint; of a study: take the runs that are there
 };
 
 /// What `latcon compare` was asked. Times are texts, with a unit or in s, or load factors; empty: the last frame.
@@ -56,6 +56,8 @@ void study_page(const std::string &directory);
 /// Reads and checks the case that the options name. @throws InputError
 void read_case(const Options &options, Case &input, Parameters &parameters);
 
+class Checkpoints;
+
 /// The output directory of a run, and the record of how it came about. Rank 0 alone writes.
 class Run
 {
@@ -66,6 +68,9 @@ public:
 
   /// The same for a run without a case: run.json alone.
   explicit Run(const Options &options) : Run(options, nullptr) {}
+
+  /// Says from which checkpoint the run goes on, in words and in run.json.
+  void note(const Checkpoints &checkpoints);
 
   const std::string &directory() const { return directory_; }
   RunInfo &info() { return info_; }
@@ -87,7 +92,7 @@ private:
   void print(const Results &results) const;
 
   std::string directory_;
-  bool writes_, talks_;
+  bool writes_, talks_, resumes_;
   RunInfo info_;
 };
 

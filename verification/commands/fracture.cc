@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "lattice/field_writer.h"
+#include "verification/checkpoint/checkpoints.h"
 #include "verification/commands/command.h"
 #include "verification/commands/lattice_size.h"
 #include "verification/crack_record.h"
@@ -77,7 +78,7 @@ std::string progress_text(const lattice::Simulation &simulation, const CrackReco
 
 // Moves the sheet until the crack is through or the time is up. On every rank, with the same results.
 Results break_sheet(const Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
-                    bool skip_verification, Run &run)
+                    bool skip_verification, Checkpoints &checkpoints, Run &run)
 {
   const lattice::Edges edges{input.left_end == Case::End::held, input.right_end == Case::End::held, true, true};
   const lattice::RowBand band(sheet, MPI_COMM_WORLD);
@@ -107,20 +108,56 @@ Results break_sheet(const Case &input, const lattice::TriangularLattice &sheet, 
     if (run.writes())
       record.write_tables(run.directory());
   };
-  record.start();
-  add_frame();
 
   const double stop = input.stop_position * sheet.length();
   const double seed_tip = sheet.reference(seed.back()).x();
   NearTipRecord near_tip(input, simulation, seed_tip);
   double next_frame = input.frame_interval;
+  std::size_t step = 0; // done
+  const auto parts = [&](auto &archive)
+  {
+    archive("simulation", simulation);
+    archive("record", record);
+    archive("near_tip", near_tip);
+    archive("frames", fields);
+    archive("next_frame", next_frame);
+    archive("step", step);
+  };
+  const auto write_checkpoint = [&]
+  {
+    record.check();
+    checkpoints.write(step, simulation.state().time, parts);
+  };
+  if (checkpoints.resume(parts))
+  {
+    // What was written after the checkpoint goes.
+    write_tables();
+    if (run.writes())
+      fields.write_collection();
+  }
+  else
+  {
+    record.start();
+    add_frame();
+  }
+
   Progress progress(run.talks());
+  try
   {
     const auto phase = run.info().stopwatch().phase("fracture");
-    for (std::size_t step = 1; simulation.state().time < input.end_time && record.tip_X() < stop; ++step)
+    while (simulation.state().time < input.end_time && record.tip_X() < stop)
     {
-      if (step % steps_between_signals == 0 && signal_came_to_any_rank())
-        break;
+      if (step % steps_between_signals == 0)
+      {
+        if (signal_came_to_any_rank())
+        {
+          write_checkpoint();
+          break;
+        }
+        if (checkpoints.due(step))
+          write_checkpoint();
+      }
+      ++step;
       record.step(simulation.step());
       near_tip.step(step);
       if (step % input.energy_interval == 0)
@@ -136,8 +173,15 @@ Results break_sheet(const Case &input, const lattice::TriangularLattice &sheet, 
         progress.show(progress_text(simulation, record, step), std::max((record.tip_X() - seed_tip) / (stop - seed_tip),
                                                                         simulation.state().time / input.end_time));
     }
+    record.energies();
   }
-  record.energies();
+  catch (const SolverError &)
+  {
+    // The last sound state, and what was noted until then.
+    add_frame();
+    write_tables();
+    throw;
+  }
   add_frame();
   write_tables();
   const lattice::CrackMeasurement crack = record.measure(seed_tip);
@@ -168,12 +212,14 @@ ExitCode run_fracture(const Options &options)
     return ExitCode::done;
   }
 
+  Checkpoints checkpoints(options, parameters, input, "fracture");
   Run run(options, parameters);
+  run.note(checkpoints);
   run.info().add("skip_verification", options.skip_verification);
   Results results;
   if (!options.skip_verification)
     results = passed_claims(input, run);
-  results.add(break_sheet(input, sheet, material, options.skip_verification, run));
+  results.add(break_sheet(input, sheet, material, options.skip_verification, checkpoints, run));
   const ExitCode exit_code = signal_came() ? run.interrupted(results) : run.finish(results);
   if (options.no_report)
     return exit_code;

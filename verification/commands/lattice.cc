@@ -3,6 +3,7 @@
 
 #include "lattice/field_writer.h"
 #include "lattice/relaxation.h"
+#include "verification/checkpoint/checkpoints.h"
 #include "verification/commands/command.h"
 #include "verification/commands/lattice_size.h"
 #include "verification/crack_record.h"
@@ -49,7 +50,7 @@ Results relaxed(const Case &input, const lattice::TriangularLattice &sheet, cons
 
 // On every rank, with the same results.
 Results moved(const Case &input, const lattice::RowBand &band, const lattice::Material &material, lattice::State state,
-              Run &run)
+              Checkpoints &checkpoints, Run &run)
 {
   lattice::TimeStepping stepping = input.lattice_time_stepping();
   if (!input.time_step)
@@ -62,18 +63,57 @@ Results moved(const Case &input, const lattice::RowBand &band, const lattice::Ma
     if (run.writes())
       fields.add_frame(whole);
   };
-  add_frame();
   CrackRecord record(simulation);
-  record.start();
+  const auto write_tables = [&]
+  {
+    if (run.writes())
+      record.write_tables(run.directory());
+  };
+  double next_frame = input.frame_interval;
+  std::size_t step = 0; // done
+  const auto parts = [&](auto &archive)
+  {
+    archive("simulation", simulation);
+    archive("record", record);
+    archive("frames", fields);
+    archive("next_frame", next_frame);
+    archive("step", step);
+  };
+  const auto write_checkpoint = [&]
+  {
+    record.check();
+    checkpoints.write(step, simulation.state().time, parts);
+  };
+  if (checkpoints.resume(parts))
+  {
+    // What was written after the checkpoint goes.
+    write_tables();
+    if (run.writes())
+      fields.write_collection();
+  }
+  else
+  {
+    add_frame();
+    record.start();
+  }
   Progress progress(run.talks());
+  try
   {
     const auto phase = run.info().stopwatch().phase("motion");
     const auto steps = static_cast<std::size_t>(std::ceil(input.end_time / stepping.step * (1. - 1e-12)));
-    double next_frame = input.frame_interval;
-    for (std::size_t step = 1; step <= steps; ++step)
+    while (step < steps)
     {
-      if (step % steps_between_signals == 0 && signal_came_to_any_rank())
-        break;
+      if (step % steps_between_signals == 0)
+      {
+        if (signal_came_to_any_rank())
+        {
+          write_checkpoint();
+          break;
+        }
+        if (checkpoints.due(step))
+          write_checkpoint();
+      }
+      ++step;
       simulation.step();
       if (step % input.energy_interval == 0)
         record.energies();
@@ -85,10 +125,16 @@ Results moved(const Case &input, const lattice::RowBand &band, const lattice::Ma
       if (progress.due())
         progress.show("step " + std::to_string(step) + "/" + std::to_string(steps), static_cast<double>(step) / steps);
     }
+    record.energies();
   }
-  record.energies();
-  if (run.writes())
-    record.write_tables(run.directory());
+  catch (const SolverError &)
+  {
+    // The last sound state, and what was noted until then.
+    add_frame();
+    write_tables();
+    throw;
+  }
+  write_tables();
   if (input.end_time > 0.)
     add_frame();
   Results results;
@@ -126,7 +172,9 @@ ExitCode run_lattice(const Options &options)
       std::cout << parameters.resolved_text() << lattice_size(input, input.lattice_time_stepping());
     return ExitCode::done;
   }
+  Checkpoints checkpoints(options, parameters, input, "lattice");
   Run run(options, parameters);
+  run.note(checkpoints);
   Results results;
   const auto state_of = [&](const lattice::RowBand &band)
   {
@@ -137,7 +185,7 @@ ExitCode run_lattice(const Options &options)
   if (input.solution == Case::Solution::motion)
   {
     const lattice::RowBand band(sheet, MPI_COMM_WORLD);
-    results = moved(input, band, material, state_of(band), run);
+    results = moved(input, band, material, state_of(band), checkpoints, run);
   }
   else if (run.writes()) // equilibrium is a matter of the first rank
     results = relaxed(input, sheet, material, state_of(sheet), run);

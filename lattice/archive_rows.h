@@ -1,0 +1,59 @@
+#pragma once
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "lattice/row_band.h"
+
+namespace lattice
+{
+
+/// Saves a field over the sites of a lattice, or loads it: row by row, so that the list is the same for any number of
+/// ranks. Collective. `archive` is what classes that have a member function archive() are given; see Simulation.
+/// @param rows that a rank takes when it loads
+template <class Archive, class Vector>
+void archive_rows(Archive &archive, const std::string &name, Vector &field, const RowBand &band,
+                  const std::vector<std::size_t> &rows)
+{
+  const TriangularLattice &lattice = band.lattice();
+  std::vector<typename Vector::value_type> values;
+  if constexpr (!Archive::loads)
+  {
+    band.gather(field, {0, lattice.rows()});
+    if (band.is_first())
+      for (std::size_t row = 0; row < lattice.rows(); ++row)
+        values.insert(values.end(), &field[lattice.index(row, 0)],
+                      &field[lattice.index(row, 0)] + lattice.sites_in_row(row));
+  }
+  archive(name, values);
+  if constexpr (Archive::loads)
+  {
+    std::vector<std::size_t> first{0}; // value of each row
+    for (std::size_t row = 0; row < lattice.rows(); ++row)
+      first.push_back(first.back() + lattice.sites_in_row(row));
+    if (values.size() != first.back())
+      throw std::invalid_argument("`" + name + "` is of a sheet of another size");
+    for (const std::size_t row : rows)
+      std::copy(&values[first[row]], &values[first[row]] + lattice.sites_in_row(row), &field[lattice.index(row, 0)]);
+  }
+}
+
+/// The same for a value of each row of the sheet, of which every rank knows those of its band.
+template <class Archive>
+void archive_rows(Archive &archive, const std::string &name, std::vector<double> &of_rows, const RowBand &band)
+{
+  std::vector<double> values;
+  if constexpr (!Archive::loads)
+    values = band.joined(std::vector<double>(of_rows.begin() + static_cast<std::ptrdiff_t>(band.rows().begin),
+                                             of_rows.begin() + static_cast<std::ptrdiff_t>(band.rows().end)));
+  archive(name, values);
+  if constexpr (Archive::loads)
+  {
+    if (values.size() != of_rows.size())
+      throw std::invalid_argument("`" + name + "` is of a sheet of another size");
+    of_rows = values;
+  }
+}
+
+} // namespace lattice

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <vector>
+
+#include "lattice/state.h"
+
+namespace lattice
+{
+
+/// What can be seen of a sheet at an instant, positions, velocities and bonds, in the rows that a rank moves.
+class Snapshot
+{
+public:
+  Snapshot() = default;
+  Snapshot(const State &state, const RowBand &band);
+
+  /// Puts the rows back into a state, for who looks at it: what else is needed to go on from there is not kept.
+  void put_into(State &state, const RowBand &band) const;
+
+  double time() const { return time_; } ///< [s]
+
+private:
+  double time_ = 0.;
+  std::vector<double> x_, y_, vx_, vy_; // of the places of these rows, margin of columns included
+  std::vector<BondStates::Word> bonds_;
+  std::vector<std::uint8_t> lost_bonds_;
+};
+
+} // namespace lattice

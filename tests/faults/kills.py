@@ -1,0 +1,64 @@
+"""Kills the program at random moments, lets it go on, and compares what it found with the undisturbed run."""
+import shutil
+import time
+
+import victims
+import whole
+
+
+class Failure(Exception):
+    """What must never happen."""
+
+
+def kill_at_random(program, name, folder, rng, kills, ranks=(1,)):
+    """@return statistics: kills, files read, runs finished, and kills that came before the first checkpoint"""
+    arguments = victims.VICTIMS[name]
+    expected, duration = victims.undisturbed(program, arguments, folder / "undisturbed")
+    out = folder / "killed"
+    shutil.rmtree(out, ignore_errors=True)
+    told = {"kills": 0, "files_read": 0, "runs": 0, "without_checkpoint": 0, "asked_to_stop": 0}
+    while told["kills"] < kills:
+        finished = advance(program, arguments, out, rng, duration, ranks, told)
+        told["files_read"] += whole.check(out) if out.exists() else 0
+        if finished:
+            compare(name, out, expected)
+            told["runs"] += 1
+            shutil.rmtree(out)
+        elif not list(out.glob("checkpoints/*.h5")):
+            told["without_checkpoint"] += 1
+    status, said = program.run([*arguments, "--resume"], out)
+    if status not in victims.DONE:
+        raise Failure(f"{name}: exit {status} after the last kill: {said}")
+    compare(name, out, expected)
+    told["runs"] += 1
+    return told
+
+
+def advance(program, arguments, out, rng, duration, ranks, told):
+    """Starts the run again and kills it, or now and then asks it to stop. @return whether it had ended before"""
+    on = rng.choice(ranks)
+    process = program.start([*arguments, "--resume", "--threads", str(rng.choice((1, 2)))], out, ranks=on)
+    end = time.monotonic() + rng.uniform(0., 1.3 * duration * on)
+    while time.monotonic() < end and process.poll() is None:
+        time.sleep(0.005)
+    if process.poll() is None and rng.random() < 0.1:
+        told["asked_to_stop"] += 1
+        process.terminate()
+        _, said = process.communicate(timeout=120)
+        # It may end before it looks, and before it listens a signal just ends it.
+        if process.returncode not in (130, -15, 143, *victims.DONE):
+            raise Failure(f"exit {process.returncode} when asked to stop: {said}")
+    elif process.poll() is None:
+        told["kills"] += 1
+        victims.kill(process)
+        return False
+    _, said = process.communicate()
+    if process.returncode not in (130, -15, 143, *victims.DONE):
+        raise Failure(f"exit {process.returncode}: {said}")
+    return process.returncode in victims.DONE
+
+
+def compare(name, out, expected):
+    different = victims.differences(victims.contents(out), expected)
+    if different:
+        raise Failure(f"{name}: not what the undisturbed run wrote: {', '.join(different)}")

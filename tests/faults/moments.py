@@ -1,0 +1,42 @@
+"""Kills the program, or lets the disk be full, at one after the other of the calls by which it changes files."""
+import shutil
+
+import victims
+import whole
+from kills import Failure, compare
+
+
+def n_calls(program, arguments, folder):
+    """How many such calls an undisturbed run makes."""
+    log = folder / "calls"
+    out = folder / "counted"
+    status, said = program.run([*arguments, "--threads", "1"], out,
+                               fault={"LATCON_FAULT": "count", "LATCON_FAULT_LOG": str(log)})
+    if status not in victims.DONE:
+        raise Failure(f"exit {status} when counted: {said}")
+    shutil.rmtree(out)
+    return int(log.read_text())
+
+
+def at_moments(program, name, folder, fault, moments):
+    """Lets a fault happen at some of the calls, given as a function of their number. @return statistics"""
+    arguments = victims.VICTIMS[name]
+    expected, _ = victims.undisturbed(program, arguments, folder / "undisturbed")
+    calls = n_calls(program, arguments, folder)
+    told = {"calls": calls, "faults": 0, "files_read": 0}
+    out = folder / fault
+    for call in moments(calls):
+        shutil.rmtree(out, ignore_errors=True)
+        status, said = program.run([*arguments, "--threads", "1"], out,
+                                   fault={"LATCON_FAULT": fault, "LATCON_FAULT_AT": str(call)})
+        if status != {"kill": -9, "full": 5}[fault]:
+            raise Failure(f"{name}: exit {status} with `{fault}` at call {call} of {calls}: {said}")
+        if fault == "full" and str(out) not in said:
+            raise Failure(f"{name}: the message names no file with `full` at call {call}: {said}")
+        told["faults"] += 1
+        told["files_read"] += whole.check(out) if out.exists() else 0
+        status, said = program.run([*arguments, "--resume", "--threads", "1"], out)
+        if status not in victims.DONE:
+            raise Failure(f"{name}: exit {status} after `{fault}` at call {call} of {calls}: {said}")
+        compare(name, out, expected)
+    return told

@@ -1,0 +1,99 @@
+"""Small runs of every kind that leaves checkpoints: what the harness of faults stops, kills and starves."""
+import os
+import pathlib
+import shutil
+import signal
+import subprocess
+import time
+
+CASES = pathlib.Path(__file__).resolve().parents[2] / "verification" / "cases"
+
+
+def settings(**entries):
+    """--set options; `Section__name` stands for Section/name, `_` for a blank."""
+    words = []
+    for key, value in entries.items():
+        words += ["--set", key.replace("__", "/").replace("_", " ") + "=" + str(value)]
+    return words
+
+
+STRIP = ["fracture", str(CASES / "quick.prm"), "--skip-verification", "--no-report", "--quiet",
+         *settings(Sheet__length="2.5 cm", Sheet__height="1.25 cm", Output__frame_interval="0.1 ms",
+                   Output__energy_interval=40, Near_tip__interval=20, Checkpoints__steps=48)]
+# Its checkpoints are written as often as there are steps between two looks at signals.
+VICTIMS = {
+    "crack": [*STRIP, *settings(Fracture__right_end="absorbing", Contact__present="true")],
+    "retracting crack in long steps": [*STRIP, *settings(Fracture__toughening="retraction", Time__stages=4,
+                                                         Time__integrator="runge-kutta-chebyshev")],
+    "lattice in motion": ["lattice", str(CASES / "quick.prm"), "--quiet",
+                          *settings(Lattice__solution="motion", Time__end="0.1 ms", Sheet__length="2.5 cm",
+                                    Output__frame_interval="0.02 ms", Output__energy_interval=30,
+                                    Checkpoints__steps=32)],
+}
+# Those whose bits do not depend on the number of ranks.
+ON_RANKS = list(VICTIMS)
+DONE = (0, 3)  # 3: strips this small need not be in balance to the last digit that a crack is held to
+
+
+def descendants(process):
+    """A process and all that it has started, directly or not."""
+    found = [process]
+    for started in found:
+        for task in pathlib.Path(f"/proc/{started}/task").glob("*/children"):
+            try:
+                found += [int(word) for word in task.read_text().split()]
+            except OSError:
+                pass  # it has ended
+    return found
+
+
+class Program:
+    """latcon, and how it is started."""
+
+    def __init__(self, latcon, preloaded=None):
+        self.latcon, self.preloaded = str(latcon), preloaded
+
+    def start(self, arguments, out, *, ranks=1, fault=None):
+        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+        if fault is not None:
+            environment.update(LD_PRELOAD=str(self.preloaded), LATCON_FAULT_IN=str(out), **fault)
+        launcher = [] if ranks == 1 else ["mpirun", "--oversubscribe", "-n", str(ranks)]
+        return subprocess.Popen([*launcher, self.latcon, *arguments, "--output-dir", str(out)], env=environment,
+                                stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
+
+    def run(self, arguments, out, **how):
+        """@return exit status, what it said on standard error"""
+        process = self.start(arguments, out, **how)
+        _, said = process.communicate(timeout=600)
+        return process.returncode, said
+
+
+def kill(process):
+    for victim in reversed(descendants(process.pid)):
+        try:
+            os.kill(victim, signal.SIGKILL)
+        except ProcessLookupError:
+            pass
+    process.communicate()
+
+
+def contents(folder):
+    """What a run found, by the names of files; what tells how it went left out."""
+    return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*"))
+            if path.is_file() and path.suffix != ".part" and path.name not in ("run.json", "log.txt")
+            and "checkpoints" not in path.parts}
+
+
+def differences(found, expected):
+    """Names of files that are not the same."""
+    return sorted(name for name in found.keys() | expected.keys() if found.get(name) != expected.get(name))
+
+
+def undisturbed(program, arguments, out):
+    """@return the contents of the folder, the wall time of the run [s]"""
+    shutil.rmtree(out, ignore_errors=True)
+    start = time.monotonic()
+    status, said = program.run([*arguments, "--threads", "1"], out)
+    if status not in DONE:
+        raise RuntimeError(f"exit {status}: {said}")
+    return contents(out), time.monotonic() - start

@@ -1,0 +1,82 @@
+"""Whether every file that a run left behind is whole, looked at with readers of other people."""
+import csv
+import hashlib
+import json
+import xml.etree.ElementTree
+
+import h5py
+import vtk
+
+USER_BLOCK = 512
+
+
+class Broken(Exception):
+    """A file that is not whole."""
+
+
+def read_vtk(reader, path):
+    problems = []
+    reader.AddObserver("ErrorEvent", lambda *event: problems.append("cannot be read"))
+    reader.SetFileName(str(path))
+    reader.Update()
+    if problems or reader.GetOutput().GetNumberOfPoints() == 0:
+        raise Broken(f"{path}: VTK cannot read it")
+
+
+def read_csv(path):
+    text = path.read_text()
+    if not text.endswith("\n"):
+        raise Broken(f"{path}: its last line has no end")
+    widths = {len(row) for row in csv.reader(text.splitlines())}
+    if len(widths) != 1:
+        raise Broken(f"{path}: rows of {sorted(widths)} columns")
+
+
+def read_collection(path):
+    for data in xml.etree.ElementTree.parse(path).getroot().iter("DataSet"):
+        if not (path.parent / data.get("file")).exists():
+            raise Broken(f"{path}: there is no {data.get('file')}")
+
+
+def read_checkpoint(path):
+    """The hash of its bytes is right, and HDF5 reads it."""
+    content = path.read_bytes()
+    told = content[:content.index(b"\n")].decode().rpartition(" ")[2]
+    if hashlib.sha256(content[USER_BLOCK:]).hexdigest() != told:
+        raise Broken(f"{path}: its hash is not that of its bytes")
+    with h5py.File(path, "r") as file:
+        if file["run/step"][0] < 0:
+            raise Broken(f"{path}: no step")
+
+
+READERS = {
+    ".csv": read_csv,
+    ".json": lambda path: json.loads(path.read_text()),
+    ".pvd": read_collection,
+    ".vtp": lambda path: read_vtk(vtk.vtkXMLPolyDataReader(), path),
+    ".vtu": lambda path: read_vtk(vtk.vtkXMLUnstructuredGridReader(), path),
+    ".pvtu": lambda path: read_vtk(vtk.vtkXMLPUnstructuredGridReader(), path),
+    ".vti": lambda path: read_vtk(vtk.vtkXMLImageDataReader(), path),
+    ".h5": read_checkpoint,
+    ".prm": lambda path: path.read_text(),
+}
+
+
+def check(folder):
+    """Reads all files in a folder and those below it. Parts of files beside their places do not count, nor what a
+    program said while it ran. @return how many were read"""
+    n = 0
+    for path in sorted(folder.rglob("*")):
+        inside = path.relative_to(folder)
+        if not path.is_file() or path.suffix == ".part" or path.name == "log.txt":
+            continue
+        if path.suffix not in READERS:
+            raise Broken(f"{path}: no reader for it")
+        try:
+            READERS[path.suffix](path)
+        except Broken:
+            raise
+        except Exception as error:  # each reader has its own
+            raise Broken(f"{inside}: {error}") from error
+        n += 1
+    return n

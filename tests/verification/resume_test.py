@@ -1,0 +1,168 @@
+#!/usr/bin/python3
+"""Checkpoints and --resume: which one is taken, what is said of those that cannot be, and what a stopped run leaves.
+
+That resumed runs find what undisturbed ones do, whenever they are stopped: tests/faults.
+
+Usage: resume_test.py PATH_OF_LATCON
+"""
+import json
+import pathlib
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+import h5py
+
+sys.dont_write_bytecode = True
+from program import CASES, LATCON, TemporaryFolder, frames, latcon, latcon_on_ranks, read_csv
+
+STRIP = ["fracture", CASES / "quick.prm", "--skip-verification", "--no-report", "--set", "Sheet/length=2.5 cm", "--set",
+         "Sheet/height=1.25 cm", "--set", "Output/frame interval=0.1 ms", "--set", "Checkpoints/steps=160"]
+
+
+def files(folder):
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file() and path.name != "run.json"}
+
+
+class Resume(TemporaryFolder):
+    def run_to_end(self, *more):
+        run = latcon(*STRIP, "--output-dir", self.out, *more)
+        self.assertIn(run.returncode, (0, 3), run.stderr)
+        return run
+
+    def checkpoints(self):
+        return sorted((self.out / "checkpoints").glob("*.h5"))
+
+    def step_told(self):
+        return json.loads((self.out / "run.json").read_text())["resumed_from"]["step"]
+
+    def test_last_two_are_kept_and_tell_what_they_are(self):
+        self.run_to_end()
+        found = self.checkpoints()
+        self.assertEqual(len(found), 2)
+        steps = []
+        for path in found:
+            with h5py.File(path, "r") as file:
+                steps.append(int(file["run/step"][0]))
+                self.assertEqual(path.name, f"checkpoint-{steps[-1]:012}.h5")
+                self.assertEqual(file["run/command"][0], b"fracture")
+                self.assertEqual(file["run/schema"][0], 1)
+                self.assertIn(b"Sheet/length = 0.025\n", file["run/case"][0])
+                self.assertEqual(file["run/time"][0], file["simulation/time"][0])
+                sites = file["simulation/x"].shape
+                self.assertEqual(file["simulation/bonds"].shape, sites)
+                self.assertGreater(file["record/tip/X"].size, 0)
+        self.assertEqual(steps[1] - steps[0], 160)
+
+    def test_stopped_run_goes_on_with_the_same_bits_on_other_ranks_and_threads(self):
+        self.run_to_end()
+        expected = files(self.out)
+        self.out = self.folder / "stopped"
+        with subprocess.Popen([LATCON, *map(str, STRIP), "--output-dir", str(self.out), "--threads", "2"],
+                              stdout=subprocess.DEVNULL) as run:
+            while len(self.checkpoints()) < 2:
+                self.assertIsNone(run.poll(), "it ended too soon")
+                time.sleep(0.01)
+            run.send_signal(signal.SIGTERM)
+            self.assertEqual(run.wait(timeout=60), 130)
+        stopped = json.loads((self.out / "run.json").read_text())
+        self.assertEqual(stopped["exit_code"], 130)
+        # The instant of the signal is in a frame and in a checkpoint.
+        with h5py.File(self.checkpoints()[-1], "r") as file:
+            self.assertEqual(file["run/time"][0], frames(self.out / "lattice.pvd")[-1][0])
+            step = int(file["run/step"][0])
+        run = latcon_on_ranks(3, *STRIP, "--resume", "--output-dir", self.out, "--threads", "1")
+        self.assertIn(run.returncode, (0, 3), run.stderr)
+        self.assertIn(f"step {step},", run.stdout)
+        self.assertEqual(self.step_told(), step)
+        found = files(self.out)
+        self.assertEqual(sorted(found), sorted(expected))
+        for name, content in expected.items():
+            self.assertEqual(found[name] == content, True, name)
+
+    def test_without_any_it_starts_from_the_beginning(self):
+        run = self.run_to_end("--resume")
+        self.assertIn("no checkpoint", run.stdout)
+        self.assertNotIn("resumed_from", json.loads((self.out / "run.json").read_text()))
+
+    def test_files_may_be_renamed(self):
+        self.run_to_end()
+        first, last = self.checkpoints()
+        with h5py.File(last, "r") as file:
+            step = int(file["run/step"][0])
+        last.rename(last.with_name("a.h5"))
+        first.rename(first.with_name("b.h5"))
+        run = self.run_to_end("--resume")
+        self.assertIn("a.h5", run.stdout)
+        self.assertEqual(self.step_told(), step)
+
+    def test_older_one_is_taken_if_the_last_is_damaged(self):
+        self.run_to_end()
+        expected = files(self.out)
+        first, last = self.checkpoints()
+        content = bytearray(last.read_bytes())
+        content[len(content) // 2] ^= 16
+        last.write_bytes(content)
+        run = self.run_to_end("--resume")
+        self.assertIn(f"{last}: it is damaged", run.stderr)
+        self.assertIn(str(first), run.stdout)
+        self.assertEqual(files(self.out) == expected, True)
+
+    def test_nothing_is_touched_if_none_can_be_used(self):
+        self.run_to_end()
+        first, last = self.checkpoints()
+        first.write_bytes(first.read_bytes()[:1000])
+        last.write_text("not a checkpoint at all\n")
+        (self.out / "checkpoints" / "notes.txt").write_text("mine")
+        before = {path: path.stat().st_mtime_ns for path in self.out.rglob("*")}
+        run = latcon(*STRIP, "--output-dir", self.out, "--resume")
+        self.assertEqual(run.returncode, 2)
+        self.assertIn(f"{first}: it is damaged", run.stderr)
+        self.assertIn(f"{last}: it is no checkpoint", run.stderr)
+        self.assertIn("leave out --resume", run.stderr)
+        self.assertEqual({path: path.stat().st_mtime_ns for path in self.out.rglob("*")}, before)
+
+    def test_those_of_another_case_are_refused_with_the_difference(self):
+        self.run_to_end()
+        run = latcon(*STRIP, "--output-dir", self.out, "--resume", "--set", "Fracture/breaking stretch=3.1")
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("another case: Fracture/breaking stretch = 3.05 there, 3.1 here", run.stderr)
+        run = latcon("lattice", *STRIP[1:2], "--output-dir", self.out, "--resume", "--set", "Lattice/solution=motion")
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("left by `latcon fracture`", run.stderr)
+
+    def test_how_often_they_are_written_may_change(self):
+        self.run_to_end()
+        run = self.run_to_end("--resume", "--set", "Checkpoints/interval=1")
+        self.assertIn("Going on from", run.stdout)
+
+    def test_new_start_keeps_those_of_the_run_before(self):
+        self.run_to_end()
+        before = [path.name for path in self.checkpoints()]
+        self.run_to_end("--set", "Checkpoints/interval=0", "--set", "Time/end=0.02 ms")
+        self.assertEqual(sorted(path.name for path in (self.out / "checkpoints.old").glob("*.h5")), before)
+        self.assertEqual(self.checkpoints(), [])
+
+    def test_by_wall_time(self):
+        arguments = [word for word in STRIP if word != "Checkpoints/steps=160"]
+        arguments.insert(arguments.index("--set"), "--quiet")
+        del arguments[-1]  # the --set that lost its entry
+        run = latcon(*arguments, "--output-dir", self.out, "--set", "Checkpoints/interval=0.05 s")
+        self.assertIn(run.returncode, (0, 3), run.stderr)
+        self.assertEqual(len(self.checkpoints()), 2)
+
+
+class BlowUp(TemporaryFolder):
+    def test_last_sound_state_is_written(self):
+        """A step far beyond the stable one, which the check of the input does not let through, in a running sheet: a
+        contact so stiff that it throws the sheet apart."""
+        run = latcon(*STRIP, "--output-dir", self.out, "--set", "Output/energy interval=20", "--set",
+                     "Time/safety factor=1", "--set", "Nearest neighbours/viscosity=0", "--set",
+                     "Next-nearest neighbours/viscosity=0", "--set", "Fracture/breaking stretch=2.85")
+        self.skipTest(run.stderr)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
