@@ -19,6 +19,7 @@
 #include <vtkUnsignedCharArray.h>
 #include <vtkXMLPolyDataWriter.h>
 
+#include "lattice/field_units.h"
 #include "lattice/fragments.h"
 #include "lattice/site_fields.h"
 #include "lattice/strain_gradient.h"
@@ -53,6 +54,7 @@ vtkNew<vtkDoubleArray> array(const char *name, int components, vtkIdType tuples)
   values->SetName(name);
   values->SetNumberOfComponents(components);
   values->SetNumberOfTuples(tuples);
+  set_unit(*values);
   return values;
 }
 
@@ -183,6 +185,8 @@ void FieldWriter::add_frame(const State &state)
   bounds->SetTuple4(0, 0., lattice_.length(), -0.5 * lattice_.height(), 0.5 * lattice_.height());
   sheet->GetFieldData()->AddArray(bounds);
 
+  if (!times_.empty() && times_.back() == state.time)
+    times_.pop_back();
   const std::string name = file_name(times_.size());
   const std::filesystem::path path = directory_ / name;
   const std::filesystem::path beside = directory_ / (name + ".part");

@@ -18,13 +18,15 @@ namespace lattice
 /// held, site (row-wise number), fragment (0 the sheet, 1, 2 ... detached, see Fragments). Cell data: stretch [-] (1 at
 /// vertices), shell (0 vertex, 1 nearest, 2 next-nearest), toughened (0 or 1); bonds across a periodic edge are left
 /// out. The field data arrays TimeValue and SheetBounds hold the time [s] and the bounds of the undeformed sheet, a
-/// period where it is periodic: X from, to, Y from, to [m]. Every file is written beside its place and renamed.
+/// period where it is periodic: X from, to, Y from, to [m]. Quantities carry their units (VTK's
+/// UNITS_LABEL). Every file is written beside its place and renamed.
 class FieldWriter
 {
 public:
   FieldWriter(const TriangularLattice &lattice, const Material &material, std::filesystem::path directory);
 
-  /// Adds the state as the next frame. @throws std::filesystem::filesystem_error if a file cannot be written
+  /// Adds the state as the next frame, in the place of the last one if that is of the same time. @throws
+  /// std::filesystem::filesystem_error if a file cannot be written
   void add_frame(const State &state);
 
   /// Saves or loads which frames there are; see Simulation.

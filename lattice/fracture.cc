@@ -232,4 +232,18 @@ void Fracture::toughen_behind_tip(State &state)
                 });
 }
 
+std::optional<StretchedBond> nearest_to_breaking(const State &state, const TriangularLattice &lattice)
+{
+  std::optional<StretchedBond> nearest;
+  for_each_bond(state, lattice,
+                [&](std::size_t near, std::size_t kind, std::size_t far)
+                {
+                  const StretchedBond bond{near, far, kind, stretch(state, lattice, near, kind),
+                                           limit(state, near, kind)};
+                  if (!nearest || bond.stretch / bond.limit > nearest->stretch / nearest->limit)
+                    nearest = bond;
+                });
+  return nearest;
+}
+
 } // namespace lattice

@@ -130,4 +130,17 @@ private:
   std::vector<BrokenBond> broken_;
 };
 
+/// A bond that is present.
+struct StretchedBond
+{
+  std::size_t near, far; ///< places of its two ends
+  std::size_t kind;      ///< see n_bond_kinds
+  double stretch;        ///< [-]
+  double limit;          ///< stretch beyond which it breaks [-]
+};
+
+/// The bond present whose stretch over its limit is largest, the one stored first of several: why a crack stopped. None
+/// in a sheet without bonds. @param state of the whole sheet
+std::optional<StretchedBond> nearest_to_breaking(const State &state, const TriangularLattice &lattice);
+
 } // namespace lattice

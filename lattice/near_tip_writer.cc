@@ -10,6 +10,8 @@
 #include <vtkPointData.h>
 #include <vtkXMLImageDataWriter.h>
 
+#include "lattice/field_units.h"
+
 namespace lattice
 {
 namespace
@@ -22,6 +24,7 @@ void add(vtkImageData &image, const char *name, int components, std::size_t poin
   vtkNew<vtkDoubleArray> array;
   array->SetName(name);
   array->SetNumberOfComponents(components);
+  set_unit(*array);
   array->SetNumberOfTuples(static_cast<vtkIdType>(points));
   for (std::size_t point = 0; point < points; ++point)
     fill(*array, static_cast<vtkIdType>(point), point);

@@ -219,6 +219,14 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory,
   json["detached_fragments"] = fragments.sizes.size();
   json["largest_fragment"] = fragments.sizes.empty() ? 0 : fragments.sizes.front();
   json["overstretched_bonds"] = lattice::n_overstretched_bonds(state, simulation_.lattice(), breaking_stretch);
+  if (const auto bond = lattice::nearest_to_breaking(state, simulation_.lattice()))
+  {
+    const lattice::TriangularLattice &sheet = simulation_.lattice();
+    const Eigen::Vector2d X = sheet.reference(bond->near) + 0.5 * sheet.bond_vector(bond->kind);
+    json["nearest_to_breaking"] = {
+      {"site", sheet.site_number(bond->near)}, {"other_site", sheet.site_number(bond->far)}, {"X", X.x()}, {"Y", X.y()},
+      {"stretch", bond->stretch},              {"limit", bond->limit}};
+  }
   json["bridged_length"] = lattice::bridged_length(state, simulation_.lattice(), seed_tip_X, tip_X());
   json["end_time"] = state.time;
   json["energy_imbalance"] = largest_imbalance();

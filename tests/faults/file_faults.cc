@@ -67,6 +67,9 @@ struct Log
 {
   ~Log()
   {
+    // Processes that the program starts, such as those of MPI, are none of those that are counted.
+    if (calls == 0)
+      return;
     if (const char *path = std::getenv("LATCON_FAULT_LOG"))
       if (std::FILE *file = std::fopen(path, "w"))
       {
@@ -81,70 +84,70 @@ struct Log
 extern "C"
 {
 
-ssize_t write(int descriptor, const void *bytes, size_t n)
-{
-  if (is_inside(descriptor) && count_call())
+  ssize_t write(int descriptor, const void *bytes, size_t n)
   {
-    errno = ENOSPC;
-    return -1;
+    if (is_inside(descriptor) && count_call())
+    {
+      errno = ENOSPC;
+      return -1;
+    }
+    static const auto real = next<ssize_t(int, const void *, size_t)>("write");
+    return real(descriptor, bytes, n);
   }
-  static const auto real = next<ssize_t(int, const void *, size_t)>("write");
-  return real(descriptor, bytes, n);
-}
 
-ssize_t writev(int descriptor, const iovec *pieces, int n)
-{
-  if (is_inside(descriptor) && count_call())
+  ssize_t writev(int descriptor, const iovec *pieces, int n)
   {
-    errno = ENOSPC;
-    return -1;
+    if (is_inside(descriptor) && count_call())
+    {
+      errno = ENOSPC;
+      return -1;
+    }
+    static const auto real = next<ssize_t(int, const iovec *, int)>("writev");
+    return real(descriptor, pieces, n);
   }
-  static const auto real = next<ssize_t(int, const iovec *, int)>("writev");
-  return real(descriptor, pieces, n);
-}
 
-int fsync(int descriptor)
-{
-  if (is_inside(descriptor) && count_call())
+  int fsync(int descriptor)
   {
-    errno = ENOSPC;
-    return -1;
+    if (is_inside(descriptor) && count_call())
+    {
+      errno = ENOSPC;
+      return -1;
+    }
+    static const auto real = next<int(int)>("fsync");
+    return real(descriptor);
   }
-  static const auto real = next<int(int)>("fsync");
-  return real(descriptor);
-}
 
-// These need no room on a disk.
+  // These need no room on a disk.
 
-int rename(const char *from, const char *to) noexcept
-{
-  if (is_inside(to))
-    count_call();
-  static const auto real = next<int(const char *, const char *)>("rename");
-  return real(from, to);
-}
+  int rename(const char *from, const char *to) noexcept
+  {
+    if (is_inside(to))
+      count_call();
+    static const auto real = next<int(const char *, const char *)>("rename");
+    return real(from, to);
+  }
 
-int unlink(const char *path) noexcept
-{
-  if (is_inside(path))
-    count_call();
-  static const auto real = next<int(const char *)>("unlink");
-  return real(path);
-}
+  int unlink(const char *path) noexcept
+  {
+    if (is_inside(path))
+      count_call();
+    static const auto real = next<int(const char *)>("unlink");
+    return real(path);
+  }
 
-FILE *fopen(const char *path, const char *mode)
-{
-  if (is_inside(path) && std::strpbrk(mode, "wa+") != nullptr)
-    count_call();
-  static const auto real = next<FILE *(const char *, const char *)>("fopen");
-  return real(path, mode);
-}
+  FILE *fopen(const char *path, const char *mode)
+  {
+    if (is_inside(path) && std::strpbrk(mode, "wa+") != nullptr)
+      count_call();
+    static const auto real = next<FILE *(const char *, const char *)>("fopen");
+    return real(path, mode);
+  }
 
-FILE *fopen64(const char *path, const char *mode)
-{
-  if (is_inside(path) && std::strpbrk(mode, "wa+") != nullptr)
-    count_call();
-  static const auto real = next<FILE *(const char *, const char *)>("fopen64");
-  return real(path, mode);
-}
+  FILE *fopen64(const char *path, const char *mode)
+  {
+    if (is_inside(path) && std::strpbrk(mode, "wa+") != nullptr)
+      count_call();
+    static const auto real = next<FILE *(const char *, const char *)>("fopen64");
+    return real(path, mode);
+  }
 }

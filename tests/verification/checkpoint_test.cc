@@ -7,8 +7,8 @@
 #include <gtest/gtest.h>
 
 #include "lattice/fracture.h"
-#include "verification/checkpoint/archive.h"
 #include "tests/verification/temporary_folder.h"
+#include "verification/checkpoint/archive.h"
 
 namespace
 {

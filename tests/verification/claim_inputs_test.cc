@@ -58,6 +58,8 @@ const std::set<std::string> no_claim_reads{
   "Time/stages",
   "Output/frame interval",
   "Output/energy interval",
+  "Checkpoints/steps",
+  "Checkpoints/interval",
   "Near tip/ahead",
   "Near tip/behind",
   "Near tip/half height",

@@ -77,6 +77,14 @@ class Fracture(unittest.TestCase):
         stretch = last.GetCellData().GetArray("stretch")
         self.assertEqual(crack["overstretched_bonds"],
                          sum(stretch.GetTuple1(i) > 3.05 for i in range(stretch.GetNumberOfTuples())))
+        # The bond next to break is in the last frame, and no other one is nearer to its limit.
+        bond = crack["nearest_to_breaking"]
+        toughened = last.GetCellData().GetArray("toughened")
+        nearest = max(stretch.GetTuple1(i) / (3. * 3.05 if toughened.GetTuple1(i) else 3.05)
+                      for i in range(stretch.GetNumberOfTuples()))
+        self.assertAlmostEqual(bond["stretch"] / bond["limit"], nearest, delta=1e-12)
+        self.assertIn(round(bond["limit"] / 3.05), (1, 3))
+        self.assertLess(bond["stretch"], bond["limit"])
         tip = read_csv(self.out / "crack.csv")
         grown = float(tip[-1]["X"]) - float(tip[0]["X"])
         self.assertLess(crack["bridged_length"], grown)
@@ -124,6 +132,10 @@ class Fracture(unittest.TestCase):
                                      "strain_energy_density", "damage", "held", "site", "fragment"])
             self.assertEqual([sheet.GetCellData().GetArrayName(i) for i in range(3)], ["stretch", "shell", "toughened"])
             self.assertEqual(sheet.GetCellData().GetArray("stretch").GetNumberOfTuples(), sheet.GetNumberOfCells())
+            self.assertEqual({name: points.GetArray(name).GetInformation().Get(vtk.vtkDataArray.UNITS_LABEL())
+                              for name in ("displacement", "velocity", "cauchy_stress", "strain_gradient_x", "site")},
+                             {"displacement": "m", "velocity": "m/s", "cauchy_stress": "Pa", "strain_gradient_x": "1/m",
+                              "site": None})
             lines = sheet.GetNumberOfLines()
             if broken_before is not None:
                 self.assertLessEqual(lines, broken_before)

@@ -177,7 +177,8 @@ class Study(TemporaryFolder):
             process.send_signal(number)
             self.assertEqual(process.wait(60), expected)
             time.sleep(0.5 if number == signal.SIGKILL else 0)
-            self.assertTrue([path for path in runs.iterdir() if path.suffix == ".part"])
+            begun = [path for path in runs.iterdir() if path.suffix == ".part"]
+            self.assertTrue(begun)
             if number == signal.SIGTERM:
                 self.assertIn("not run", self.text("study.csv"))
                 self.assertEqual(json.loads(self.text("study.json"))["checks"], [])
@@ -185,6 +186,11 @@ class Study(TemporaryFolder):
             self.assertNotIn("4 runs, 0 are", printed)
             self.assertEqual(self.text("study.csv"), whole)
             self.assertFalse([path for path in runs.iterdir() if path.suffix == ".part"])
+            for path in begun:
+                if (path.with_suffix("") / "checkpoints").exists():
+                    self.assertIn("resumed_from", json.loads((path.with_suffix("") / "run.json").read_text()))
+            if number == signal.SIGTERM:
+                self.assertTrue([path for path in begun if (path.with_suffix("") / "checkpoints").exists()])
 
     def test_runs_fill_the_cores_and_keep_to_one_each(self):
         document = dict(TINY, runs={"base": {"seeds": [1, 2]}})

@@ -38,13 +38,15 @@ void replace(const Folders &folders)
 }
 
 std::vector<std::string> command_of(const PlannedRun &planned, const Study &study, const std::string &folder,
-                                    bool skip_verification)
+                                    bool skip_verification, bool resume)
 {
   // This program, whatever has become of its file since it was started.
   std::vector<std::string> command{"/proc/self/exe", "fracture",  study.base, "--output-dir",
                                    folder,           "--threads", "1",        "--no-report"};
   if (skip_verification)
     command.emplace_back("--skip-verification");
+  if (resume)
+    command.emplace_back("--resume");
   for (const std::string &setting : planned.overrides)
     command.insert(command.end(), {"--set", setting});
   return command;
@@ -127,9 +129,11 @@ bool run_children(StudyResults &results, const Options &options, bool skip_verif
   {
     const PlannedRun &planned = results.plan[jobs[job]];
     const std::string folder = folders_of(run, planned).part;
-    fs::remove_all(folder);
+    const bool goes_on = options.resume && is_begun(planned, folder, skip_verification);
+    if (!goes_on)
+      fs::remove_all(folder);
     fs::create_directories(folder);
-    return {command_of(planned, results.study, folder, skip_verification), folder + "/log.txt"};
+    return {command_of(planned, results.study, folder, skip_verification, goes_on), folder + "/log.txt"};
   };
   pool.ended = [&](std::size_t job, int status)
   {

@@ -105,14 +105,18 @@ RunOutcome read_outcome(const PlannedRun &run, const std::string &folder, const 
   return outcome;
 }
 
-bool is_finished(const PlannedRun &run, const std::string &folder, const bool skip_verification)
+bool is_begun(const PlannedRun &run, const std::string &folder, const bool skip_verification)
 {
   const Json info = object_in(folder + "/run.json");
   return content(folder + "/case.prm") == run.case_text &&
          value_or(info, "version", std::string()) == program_version() &&
          value_or(info, "git_commit", std::string()) == git_commit() &&
-         value_or(info, "skip_verification", !skip_verification) == skip_verification &&
-         read_outcome(run, folder).state == RunState::measured;
+         value_or(info, "skip_verification", !skip_verification) == skip_verification;
+}
+
+bool is_finished(const PlannedRun &run, const std::string &folder, const bool skip_verification)
+{
+  return is_begun(run, folder, skip_verification) && read_outcome(run, folder).state == RunState::measured;
 }
 
 } // namespace verification
