@@ -1,0 +1,50 @@
+#!/usr/bin/python3
+"""Every answer in docs/reliability.md names tests that there are.
+
+Usage: reliability_page_test.py SOURCE_FOLDER
+"""
+import pathlib
+import re
+import sys
+import unittest
+
+SOURCE = pathlib.Path(sys.argv.pop(1))
+
+
+def known_tests():
+    """Names as the page writes them: Suite.Name of ctest, FILE.py::METHOD of Python."""
+    names = set()
+    for path in (SOURCE / "tests").rglob("*"):
+        if path.suffix == ".cc":
+            names |= {f"{suite}.{test}" for suite, test in
+                      re.findall(r"^TEST(?:_F|_P)?\((\w+),\s*(\w+)\)", path.read_text(), re.MULTILINE)}
+        elif path.name == "CMakeLists.txt":
+            names |= set(re.findall(r"(?:add_test\(NAME|latcon_\w+test\w*\()\s*(\w+\.\w+)", path.read_text()))
+        elif path.suffix == ".py":
+            names |= {f"{path.name}::{method}" for method in re.findall(r"def (test_\w+)", path.read_text())}
+    return names
+
+
+def answers():
+    """Cells of the rows of the table of answers."""
+    text = (SOURCE / "docs" / "reliability.md").read_text().partition("## What others met")[2]
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line.startswith("|")]
+    return rows[2:]
+
+
+class ReliabilityPage(unittest.TestCase):
+    def test_every_answer_names_tests_that_there_are(self):
+        known = known_tests()
+        self.assertGreater(len(known), 500)
+        rows = answers()
+        self.assertGreater(len(rows), 10)
+        for _, met, answer, tests in rows:
+            with self.subTest(met):
+                self.assertTrue(answer)
+                named = re.findall(r"`([^`]+)`", tests)
+                self.assertTrue(named)
+                self.assertEqual([name for name in named if name not in known], [])
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
