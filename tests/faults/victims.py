@@ -18,8 +18,8 @@ def settings(**entries):
 
 
 STRIP = ["fracture", str(CASES / "quick.prm"), "--skip-verification", "--no-report", "--quiet",
-         *settings(Sheet__length="2.5 cm", Sheet__height="1.25 cm", Output__frame_interval="0.1 ms",
-                   Output__energy_interval=40, Checkpoints__steps=160, Time__end="0.6 ms", Near_tip__interval=20,
+         *settings(Sheet__length="2.5 cm", Sheet__height="1.5 cm", Output__frame_interval="0.1 ms",
+                   Output__energy_interval=40, Checkpoints__steps=160, Time__end="1 ms", Near_tip__interval=20,
                    Near_tip__ahead="4 mm", Near_tip__behind="4 mm", Near_tip__half_height="4 mm")]
 VICTIMS = {
     "crack": [*STRIP, *settings(Fracture__right_end="absorbing", Contact__present="true")],

@@ -173,7 +173,9 @@ class Study(TemporaryFolder):
             deadline = time.time() + 60
             while not (runs.exists() and any(p.suffix != ".part" for p in runs.iterdir())) and time.time() < deadline:
                 time.sleep(0.01)
-            time.sleep(0.1)
+            # In the middle of the next crack.
+            while not list(runs.glob("*.part/lattice-0000.vtp")) and time.time() < deadline:
+                time.sleep(0.01)
             process.send_signal(number)
             self.assertEqual(process.wait(60), expected)
             time.sleep(0.5 if number == signal.SIGKILL else 0)
