@@ -56,6 +56,9 @@ void study_page(const std::string &directory);
 /// Reads and checks the case that the options name. @throws InputError
 void read_case(const Options &options, Case &input, Parameters &parameters);
 
+/// Prints a part of what --dry-run says, on the first rank, unless --quiet.
+void print_dry_run(const Options &options, const std::string &text);
+
 /// The output directory of a run, and the record of how it came about. Rank 0 alone writes.
 class Run
 {

@@ -4,7 +4,7 @@
 #include "lattice/field_writer.h"
 #include "lattice/relaxation.h"
 #include "verification/commands/command.h"
-#include "verification/commands/lattice_size.h"
+#include "verification/commands/dry_run.h"
 #include "verification/crack_record.h"
 #include "verification/homogenisation.h"
 #include "verification/lattice_sheet.h"
@@ -116,16 +116,24 @@ ExitCode run_lattice(const Options &options)
   require_lattice_sheet(input, parameters, "`latcon lattice`");
   if (input.solution == Case::Solution::motion && !(input.end_time > 0.))
     parameters.error("Time/end", "motion needs an end time larger than 0", {"Lattice/solution"});
+  const bool moves = input.solution == Case::Solution::motion;
+  if (moves && parameters.good())
+    check_steps(input, input.lattice_time_stepping().step, parameters);
   parameters.finish();
 
   const lattice::TriangularLattice sheet = input.lattice();
   const lattice::Material material = input.material();
+  const LatticeRun kind = moves ? LatticeRun::moved : LatticeRun::relaxed;
+  const MemoryNeed memory = lattice_memory(input, kind);
   if (options.dry_run)
   {
+    print_dry_run(options, parameters.resolved_text() + memory_text(memory));
+    require_memory(memory);
     if (!options.quiet)
-      std::cout << parameters.resolved_text() << lattice_size(input, input.lattice_time_stepping());
+      print_dry_run(options, lattice_text(input, input.lattice_time_stepping(), kind));
     return ExitCode::done;
   }
+  require_memory(memory);
   Run run(options, parameters);
   Results results;
   const auto state_of = [&](const lattice::RowBand &band)
@@ -134,7 +142,7 @@ ExitCode run_lattice(const Options &options)
     lattice::add_noise(state, band, input.noise_amplitude * input.spacing, input.noise_seed);
     return state;
   };
-  if (input.solution == Case::Solution::motion)
+  if (moves)
   {
     const lattice::RowBand band(sheet, MPI_COMM_WORLD);
     results = moved(input, band, material, state_of(band), run);
