@@ -1,15 +1,16 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing, then configures and builds.
-# Usage: cmake/set-up.sh [--benchmarks] PRESET [TARGET...]   (run from anywhere; ./run, ./test and tests/benchmarks/run call it)
-# --benchmarks: with the packages that only the benchmarks need.
+# Usage: cmake/set-up.sh [--benchmarks] [--fuzzing] PRESET [TARGET...]   (run from anywhere; ./run, ./test, tests/benchmarks/run
+# and tests/fuzz/run call it)
+# --benchmarks, --fuzzing: with the packages that only these need.
 # With every package in place nothing is installed and no privilege is needed.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 lists=("$root/cmake/packages.txt")
-if [ "$1" = --benchmarks ]; then
-  lists+=("$root/cmake/packages-benchmarks.txt")
+while [[ $1 == --* ]]; do
+  lists+=("$root/cmake/packages-${1#--}.txt")
   shift
-fi
+done
 preset=$1
 shift
 

@@ -26,13 +26,46 @@ void require(const bool holds, const std::string &rule)
     throw InvalidInput(rule);
 }
 
-// `n` equal parts of [from, to], without the first end.
+// Number of parts of about that size.
+double n_parts(const double from, const double to, const double size)
+{
+  return std::max(1., std::round((to - from) / size));
+}
+
+// Equal parts of [from, to], without the first end.
 void append_parts(std::vector<double> &lines, const double to, const double size)
 {
   const double from = lines.back();
-  const unsigned int n = std::max(1., std::round((to - from) / size));
+  const unsigned int n = n_parts(from, to, size);
   for (unsigned int k = 1; k <= n; ++k)
     lines.push_back(k == n ? to : from + (to - from) * k / n);
+}
+
+// Half the side of the square of cells around a hole: twice as wide where there is room.
+double half_box(const RectangleWithHole &shape)
+{
+  return std::min(2. * shape.radius, 0.5 * (shape.radius + 0.5 * std::min(shape.length, shape.height)));
+}
+
+// Reads a mesh of quadrilaterals on this process alone.
+void read_serial(Triangulation<2> &mesh, const std::filesystem::path &file)
+{
+  std::ifstream stream(file);
+  require(stream.good(), "cannot read the mesh file " + file.string());
+  GridIn<2> reader(mesh);
+  try
+  {
+    reader.read_msh(stream);
+  }
+  catch (const std::exception &failure)
+  {
+    throw InvalidInput("the mesh file " + file.string() +
+                       " is no Gmsh mesh of quadrilaterals in the plane: " + failure.what());
+  }
+  require(mesh.n_active_cells() > 0, "the mesh file " + file.string() + " holds no cells");
+  require(mesh.all_reference_cells_are_hyper_cube(),
+          "the mesh file " + file.string() +
+            " holds cells other than quadrilaterals; Gmsh's `Recombine Surface` makes them");
 }
 
 class CoarseMesh
@@ -89,8 +122,8 @@ void make_rectangle_with_hole(parallel::distributed::Triangulation<2> &mesh, con
   require(radius > 0. && radius < 0.45 * smaller,
           "the radius of a hole must be positive and less than 0.45 of the sheet");
 
-  // A square of cells around the hole, twice as wide where there is room, and rows and columns of cells outside.
-  const double half = std::min(2. * radius, 0.5 * (radius + 0.5 * smaller));
+  // A square of cells around the hole, and rows and columns of cells outside.
+  const double half = half_box(shape);
   const double cx = 0.5 * length;
   std::vector<double> xs = {0.}, ys = {-0.5 * height};
   append_parts(xs, cx - half, 1.5 * half);
@@ -161,30 +194,36 @@ void make_notched_rectangle(parallel::distributed::Triangulation<2> &mesh, const
   mesh.refine_global(refinements);
 }
 
+double n_coarse_cells(const RectangleWithHole &shape)
+{
+  const double half = half_box(shape), pitch = 1.5 * half;
+  const double columns = 2. * n_parts(0., 0.5 * shape.length - half, pitch) + 2.;
+  const double rows = 2. * n_parts(0., 0.5 * shape.height - half, pitch) + 2.;
+  return columns * rows - 4. + 8.; // eight around the hole stand for the four in the box
+}
+
+double n_coarse_cells(const NotchedRectangle &shape)
+{
+  const double pitch = 0.5 * shape.height;
+  return 2. * (n_parts(0., shape.notch, pitch) + n_parts(shape.notch, shape.length, pitch));
+}
+
+double n_coarse_cells(const std::filesystem::path &gmsh_file)
+{
+  Triangulation<2> serial;
+  read_serial(serial, gmsh_file);
+  return serial.n_active_cells();
+}
+
 void read_gmsh(parallel::distributed::Triangulation<2> &mesh, const std::filesystem::path &file,
                const unsigned int refinements)
 {
   collectively(mesh.get_communicator(),
                [&]
                {
-                 std::ifstream stream(file);
-                 require(stream.good(), "cannot read the mesh file " + file.string());
                  // Into a serial mesh first: what deal.II throws on one rank must not leave the others waiting.
                  Triangulation<2> serial;
-                 GridIn<2> reader(serial);
-                 try
-                 {
-                   reader.read_msh(stream);
-                 }
-                 catch (const std::exception &failure)
-                 {
-                   throw InvalidInput("the mesh file " + file.string() +
-                                      " is no Gmsh mesh of quadrilaterals in the plane: " + failure.what());
-                 }
-                 require(serial.n_active_cells() > 0, "the mesh file " + file.string() + " holds no cells");
-                 require(serial.all_reference_cells_are_hyper_cube(),
-                         "the mesh file " + file.string() +
-                           " holds cells other than quadrilaterals; Gmsh's `Recombine Surface` makes them");
+                 read_serial(serial, file);
                });
   std::ifstream stream(file);
   GridIn<2> reader(mesh);

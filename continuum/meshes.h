@@ -38,6 +38,13 @@ void make_rectangle_with_hole(dealii::parallel::distributed::Triangulation<2> &m
 
 void make_notched_rectangle(dealii::parallel::distributed::Triangulation<2> &mesh, const NotchedRectangle &shape);
 
+// Cells of such a mesh before it is refined, to be known before it is made: there may be more than memory for.
+
+double n_coarse_cells(const RectangleWithHole &shape);
+double n_coarse_cells(const NotchedRectangle &shape);
+/// Throws as read_gmsh does.
+double n_coarse_cells(const std::filesystem::path &gmsh_file);
+
 /// Reads quadrilaterals in the plane, coordinates in metres, from a Gmsh file (.msh, format 2 or 4.1, ASCII). Boundary
 /// ids are the numbers of the physical curves, 0 where there is none. Straight edges only. Throws InvalidInput, naming
 /// the file, if it cannot be read or is no such mesh.

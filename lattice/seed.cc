@@ -4,6 +4,8 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "lattice/row_band.h"
+
 namespace lattice
 {
 namespace
@@ -18,17 +20,48 @@ struct Site
   Eigen::Vector2d X;
 };
 
-// All sites that are `chosen`, by increasing X, then Y.
-template <class Predicate>
-std::vector<Site> sites_where(const TriangularLattice &lattice, const Predicate &chosen)
+// Lists of more sites would take more memory than a check may.
+constexpr double most_sites = 1e7;
+
+// A closed rectangle.
+struct Box
 {
+  Eigen::Vector2d lower, upper;
+
+  bool contains(const Eigen::Vector2d &X) const
+  {
+    return (X.array() >= lower.array()).all() && (X.array() <= upper.array()).all();
+  }
+};
+
+// The rows, or the columns, that have sites between two distances from the first; one more at either end, since odd
+// rows are shifted.
+Rows numbers_between(double from, double to, double pitch, std::size_t n)
+{
+  const auto clamped = [n](double number) { return static_cast<std::size_t>(std::clamp(number, 0., double(n))); };
+  return {clamped(std::floor(from / pitch) - 1.), clamped(std::floor(to / pitch) + 2.)};
+}
+
+// All sites in the box, by increasing X, then Y.
+std::vector<Site> sites_in(const Box &box, const TriangularLattice &lattice)
+{
+  const bool along_x = lattice.orientation() == Orientation::rows_along_crack;
+  const Eigen::Vector2d first = lattice.reference(lattice.index(0, 0));
+  const Eigen::Vector2d from = box.lower - first, to = box.upper - first;
+  const double pitch = std::sqrt(0.75) * lattice.spacing();
+  const auto [along, across] = along_x ? std::pair(0, 1) : std::pair(1, 0);
+  const Rows rows = numbers_between(from[across], to[across], pitch, lattice.rows());
+  const Rows columns = numbers_between(from[along], to[along], lattice.spacing(), lattice.columns());
+  if (double(rows.end - rows.begin) * double(columns.end - columns.begin) > most_sites)
+    throw std::invalid_argument("it takes more than 1e7 sites");
+
   std::vector<Site> sites;
-  for (std::size_t row = 0; row < lattice.rows(); ++row)
-    for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
+  for (std::size_t row = rows.begin; row < rows.end; ++row)
+    for (std::size_t column = columns.begin; column < std::min(columns.end, lattice.sites_in_row(row)); ++column)
     {
       const std::size_t place = lattice.index(row, column);
       const Eigen::Vector2d X = lattice.reference(place);
-      if (chosen(X))
+      if (box.contains(X))
         sites.push_back({place, X});
     }
   const double room = round_off * lattice.spacing();
@@ -38,33 +71,44 @@ std::vector<Site> sites_where(const TriangularLattice &lattice, const Predicate 
   return sites;
 }
 
+// Y of all lines along x on which sites stand.
+std::vector<double> lines_of_sites(const TriangularLattice &lattice)
+{
+  std::vector<double> lines;
+  if (lattice.orientation() == Orientation::rows_along_crack)
+    for (std::size_t row = 0; row < lattice.rows(); ++row)
+      lines.push_back(lattice.reference(lattice.index(row, 0)).y());
+  else
+    for (const std::size_t row : {0, 1})
+      for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
+        lines.push_back(lattice.reference(lattice.index(row, column)).y());
+  return lines;
+}
+
 std::vector<Site> sites_of(const SeedSlit &slit, const TriangularLattice &lattice)
 {
   const double room = round_off * lattice.spacing();
-  return sites_where(lattice,
-                     [&](const Eigen::Vector2d &X)
-                     {
-                       return X.x() >= slit.position - room && X.x() <= slit.position + slit.length + room &&
-                              std::abs(X.y() - slit.offset) <= 0.5 * slit.height + room;
-                     });
+  return sites_in({{slit.position - room, slit.offset - 0.5 * slit.height - room},
+                   {slit.position + slit.length + room, slit.offset + 0.5 * slit.height + room}},
+                  lattice);
 }
 
 std::vector<Site> sites_of(const SeedLine &line, const TriangularLattice &lattice)
 {
   const double room = round_off * lattice.spacing();
-  // Later ones win among equals, since all go by increasing coordinate.
+  // Of two that are equally near, the larger wins.
   double nearest_y = 0., smallest = -1.;
-  for (const Site &site : sites_where(lattice, [](const Eigen::Vector2d &) { return true; }))
+  for (const double y : lines_of_sites(lattice))
   {
-    const double distance = std::abs(site.X.y() - line.offset);
-    if (smallest < 0. || distance < smallest - room || (distance <= smallest + room && site.X.y() > nearest_y + room))
+    const double distance = std::abs(y - line.offset);
+    if (smallest < 0. || distance < smallest - room || (distance <= smallest + room && y > nearest_y + room))
     {
       smallest = distance;
-      nearest_y = site.X.y();
+      nearest_y = y;
     }
   }
-  const std::vector<Site> candidates =
-    sites_where(lattice, [&](const Eigen::Vector2d &X) { return std::abs(X.y() - nearest_y) <= room; });
+  const std::vector<Site> candidates = sites_in(
+    {{-lattice.spacing(), nearest_y - room}, {lattice.length() + lattice.spacing(), nearest_y + room}}, lattice);
   std::size_t first = 0;
   for (std::size_t i = 1; i < candidates.size(); ++i)
     if (std::abs(candidates[i].X.x() - line.position) <= std::abs(candidates[first].X.x() - line.position) + room)

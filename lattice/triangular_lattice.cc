@@ -97,6 +97,8 @@ bool TriangularLattice::is_site(std::size_t place) const
 
 void TriangularLattice::find_images()
 {
+  if (!periodic_along_ && !periodic_across_)
+    return;
   const std::size_t width = stride();
   for (std::size_t place = 0; place < n_places(); ++place)
   {
@@ -105,8 +107,12 @@ void TriangularLattice::find_images()
     const bool left = padded_column < row_alignment, right = padded_column >= columns_ + row_alignment;
     if (padded_column + margin < row_alignment || padded_column >= columns_ + row_alignment + margin)
       continue;
-    if ((!below && !above && !left && !right) || ((below || above) && !periodic_across_) ||
-        ((left || right) && !periodic_along_))
+    if (!below && !above && !left && !right)
+    {
+      place += columns_ - 1; // on to the right end of the row
+      continue;
+    }
+    if (((below || above) && !periodic_across_) || ((left || right) && !periodic_along_))
       continue;
     const std::size_t row = below ? padded_row + rows_ : above ? padded_row - rows_ : padded_row;
     const std::size_t column = left ? padded_column + columns_ : right ? padded_column - columns_ : padded_column;

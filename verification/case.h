@@ -151,6 +151,8 @@ struct Case
   void declare(Parameters &parameters);
   void check(Parameters &parameters) const;
 
+  /// Whether length and height are such that lattice() has a sheet to make.
+  bool has_sheet() const;
   /// The lattice of the sheet, periodic where its edges are.
   lattice::TriangularLattice lattice() const;
   lattice::Material material() const;
@@ -162,6 +164,8 @@ struct Case
   /// Places of the sites that the seed crack removes, by increasing X. @throws std::invalid_argument if there are none
   std::vector<std::size_t> seed(const lattice::TriangularLattice &sheet) const;
   lattice::ContactLaw contact_law() const;
+  /// Limits of the time step of a sheet, or of one that breaks, whose sites may touch.
+  lattice::TimeStepLimits time_step_limits(bool breaks) const;
   /// Time stepping of the lattice: the stated step, or safety factor times the limit.
   lattice::TimeStepping lattice_time_stepping() const;
   /// The same for a sheet that breaks, whose sites may touch.

@@ -44,6 +44,8 @@ Failure describe(const std::exception &error)
   if (dynamic_cast<const continuum::OutputFailed *>(&error) != nullptr ||
       dynamic_cast<const std::filesystem::filesystem_error *>(&error) != nullptr)
     return {ExitCode::output_failed, error.what()};
+  if (dynamic_cast<const std::bad_alloc *>(&error) != nullptr)
+    return {ExitCode::bad_input, "out of memory: the run takes more than this machine gives; see --dry-run"};
   return {ExitCode::internal_error, std::string("internal error: ") + error.what()};
 }
 

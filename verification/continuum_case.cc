@@ -1,8 +1,14 @@
 #include "verification/continuum_case.h"
 
+#include <algorithm>
+#include <cctype>
 #include <cmath>
 #include <iostream>
 #include <sstream>
+
+#include "verification/atomic_file.h"
+#include "verification/case_text.h"
+#include "verification/errors.h"
 
 namespace verification
 {
@@ -22,6 +28,112 @@ private:
   std::streambuf *buffer_;
 };
 
+// Words that muparser and deal.II know and a case may not use: a sheet must be the same in every run and on every rank.
+bool draws_numbers(const std::string &expression)
+{
+  const auto is_part = [](const char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+  for (const std::string word : {"rand", "rand_seed"})
+    for (std::size_t at = expression.find(word); at != std::string::npos; at = expression.find(word, at + 1))
+      if ((at == 0 || !is_part(expression[at - 1])) &&
+          (at + word.size() == expression.size() || !is_part(expression[at + word.size()])))
+        return true;
+  return false;
+}
+
+// `x = 1`, which muparser takes for 1; comparisons are none.
+bool assigns(const std::string &expression)
+{
+  for (std::size_t at = expression.find('='); at != std::string::npos; at = expression.find('=', at + 1))
+    if (at + 1 < expression.size() && expression[at + 1] == '=')
+      ++at;
+    else if (at == 0 || std::string("<>!").find(expression[at - 1]) == std::string::npos)
+      return true;
+  return false;
+}
+
+// A function whose values are numbers.
+class Expressions : public dealii::FunctionParser<2>
+{
+public:
+  using dealii::FunctionParser<2>::FunctionParser;
+
+  double value(const dealii::Point<2> &X, const unsigned int component) const override
+  {
+    const double value = dealii::FunctionParser<2>::value(X, component);
+    if (!std::isfinite(value))
+      throw InputError("the expression '" + printable(get_expressions()[component]) + "' is no finite number at x = " +
+                       full_precision(X[0]) + " m, y = " + full_precision(X[1]) + " m");
+    return value;
+  }
+
+  void vector_value(const dealii::Point<2> &X, dealii::Vector<double> &values) const override
+  {
+    for (unsigned int component = 0; component < 2; ++component)
+      values[component] = value(X, component);
+  }
+};
+
+using Points = std::vector<dealii::Point<2>>;
+
+// Points on an edge of the sheet, its ends among them, and those where cells of most numbers meet.
+Points points_on(const std::size_t edge, const Outline &outline)
+{
+  constexpr unsigned int n = 720;
+  Points points;
+  for (unsigned int i = 0; i <= n; ++i)
+  {
+    const double part = static_cast<double>(i) / n;
+    const double X = part * outline.length, Y = (part - 0.5) * outline.height, angle = 2. * M_PI * part;
+    if (edge < 2)
+      points.emplace_back(edge == 0 ? 0. : outline.length, Y);
+    else if (edge < 4)
+      points.emplace_back(X, (edge == 2 ? -0.5 : 0.5) * outline.height);
+    else if (outline.hole_radius > 0.)
+      points.emplace_back(0.5 * outline.length + outline.hole_radius * std::cos(angle),
+                          outline.hole_radius * std::sin(angle));
+    else if (outline.notch_length > 0.)
+      points.emplace_back(part * outline.notch_length, 0.);
+  }
+  return points;
+}
+
+// Points all over the sheet, its edges among them.
+Points points_in(const Outline &outline)
+{
+  constexpr unsigned int n = 48;
+  Points points;
+  for (unsigned int i = 0; i <= n; ++i)
+    for (unsigned int j = 0; j <= n; ++j)
+    {
+      const dealii::Point<2> X(outline.length * i / n, outline.height * (static_cast<double>(j) / n - 0.5));
+      if (X.distance(dealii::Point<2>(0.5 * outline.length, 0.)) >= outline.hole_radius)
+        points.push_back(X);
+    }
+  return points;
+}
+
+void check_values_at(Parameters &parameters, const std::string &key, const std::string &text, const Points &points,
+                     const Outline &outline)
+{
+  const SilentErrors silent;
+  FieldCase field;
+  field.x = text;
+  try
+  {
+    const auto function = field.field(std::min(outline.length, outline.height));
+    for (const dealii::Point<2> &X : points)
+      (void)function->value(X, 0);
+  }
+  catch (const InputError &problem)
+  {
+    parameters.error(key, problem.what());
+  }
+  catch (const std::exception &)
+  {
+    // It cannot be parsed, and that has been told.
+  }
+}
+
 // Empty if there is none. Evaluated once, since parsing happens with the first value.
 std::string problem_with(const std::string &expression)
 {
@@ -33,6 +145,10 @@ std::string problem_with(const std::string &expression)
     if (c == ',' && open == 0)
       return "a list where one number is wanted";
   }
+  if (assigns(expression))
+    return "an assignment; to compare, write ==";
+  if (draws_numbers(expression))
+    return "random numbers, which differ from run to run";
   const SilentErrors silent;
   try
   {
@@ -40,6 +156,10 @@ std::string problem_with(const std::string &expression)
     field.x = expression;
     field.field(1.)->value(dealii::Point<2>(0.0123, 0.0045), 0);
     return "";
+  }
+  catch (const InputError &)
+  {
+    return ""; // it can be parsed; its values are looked at where the sheet is
   }
   catch (const std::exception &error)
   {
@@ -64,6 +184,8 @@ bool is_word(const std::string &text)
 
 void check_expression(Parameters &parameters, const std::string &key, const std::string &text)
 {
+  if (text == "0")
+    return; // nearly all of them, and a parser takes long to make
   const std::string problem = problem_with(text);
   if (!problem.empty())
     parameters.error(key, "it is no expression in x, y and pi: " + problem);
@@ -89,7 +211,7 @@ void FieldCase::check(Parameters &p, const std::string &section, const std::stri
 std::shared_ptr<dealii::FunctionParser<2>> FieldCase::field(const double extent) const
 {
   // Gradients by differences of fourth order: the step balances their error against round-off.
-  auto function = std::make_shared<dealii::FunctionParser<2>>(2, 0., 1e-3 * extent);
+  auto function = std::make_shared<Expressions>(2, 0., 1e-3 * extent);
   function->set_formula(dealii::AutoDerivativeFunction<2>::FourthOrder);
   function->initialize("x,y", std::vector<std::string>{x, y}, {{"pi", std::acos(-1.)}});
   return function;
@@ -160,9 +282,9 @@ void ContinuumCase::declare(Parameters &p)
          {"lattice", ContinuumGradient::lattice}},
         "energy of the gradient of deformation: none, (mu l_s^2 / 2) |Grad F|^2, or that of the lattice's bonds");
   p.add(
-    "Continuum", "static length", static_length, NonNegative{}, "m",
+    "Continuum", "static length", static_length, MagnitudeOrZero{}, "m",
     "l_s of the isotropic gradient energy; auto: fitted to the dispersion of the lattice, averaged over directions");
-  p.add("Continuum", "inertia length", inertia_length, NonNegative{}, "m",
+  p.add("Continuum", "inertia length", inertia_length, MagnitudeOrZero{}, "m",
         "l_d of the micro-inertia and of the lattice's gradient energy; auto: 0 without a gradient energy, fitted with "
         "l_s for the isotropic one, the longest bond over sqrt(12) for that of the lattice");
   p.add("Continuum", "penalty", penalty, Between{0.5, 1000.}, "1",
@@ -180,7 +302,7 @@ void ContinuumCase::declare(Parameters &p)
         "times that the mesh is refined where the error seems largest, after the loading");
   p.add("Continuum", "refined fraction", refined_fraction, Between{0.001, 1.}, "1",
         "of the cells, in each adaptive cycle");
-  p.add("Continuum", "reaction tolerance", reaction_tolerance, Positive{}, "1",
+  p.add("Continuum", "reaction tolerance", reaction_tolerance, Magnitude{}, "1",
         "largest relative change of the largest reaction in the last adaptive cycle with which it counts as converged; "
         "auto: reported, not judged");
   p.add("Continuum", "first load step", first_load_step, Between{0.001, 1.}, "1",
@@ -191,7 +313,7 @@ void ContinuumCase::declare(Parameters &p)
         "unknowns up to which linear systems are solved directly; conjugate gradients with multigrid beyond");
   p.add("Continuum", "solution", solution, {{"equilibrium", Solution::equilibrium}, {"motion", Solution::motion}},
         "what `latcon continuum` computes: static equilibrium, or the motion up to the end time");
-  p.add("Continuum", "time step", time_step, Positive{}, "s",
+  p.add("Continuum", "time step", time_step, Magnitude{}, "s",
         "of the motion; auto: a tenth of the time that a shear wave takes across a cell");
   p.add("Continuum", "rule", rule,
         {{"average-acceleration", Rule::average_acceleration}, {"generalised-alpha", Rule::generalised_alpha}},
@@ -246,6 +368,35 @@ void ContinuumCase::check(Parameters &p, const bool has_inner_edge) const
   body_force.check(p, "Body force", "force");
   initial_displacement.check(p, "Initial state", "displacement");
   initial_velocity.check(p, "Initial state", "velocity");
+}
+
+void ContinuumCase::check_values(Parameters &p, const Outline &outline) const
+{
+  // Where a sheet from a file is, is known only when it is read.
+  if (!mesh_file.empty())
+    return;
+  const auto check = [&](const std::string &key, const std::string &text, const Points &points)
+  {
+    if (!is_word(text) && text != "0")
+      check_values_at(p, key, text, points, outline);
+  };
+  const auto check_field = [&](const std::string &key, const FieldCase &field, const Points &points)
+  {
+    check(key + " x", field.x, points);
+    check(key + " y", field.y, points);
+  };
+  for (std::size_t id = 0; id < edges.size(); ++id)
+  {
+    const EdgeCase &edge = edges[id];
+    const Points points = points_on(id, outline);
+    check_field(edge.name + "/displacement", {edge.displacement_x, edge.displacement_y}, points);
+    check_field(edge.name + "/traction", edge.traction, points);
+    check_field(edge.name + "/double traction", edge.double_traction, points);
+  }
+  const Points inside = points_in(outline);
+  check_field("Body force/force", body_force, inside);
+  check_field("Initial state/displacement", initial_displacement, inside);
+  check_field("Initial state/velocity", initial_velocity, inside);
 }
 
 } // namespace verification

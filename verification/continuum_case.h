@@ -37,8 +37,17 @@ struct FieldCase
                const std::string &documentation);
   void check(Parameters &parameters, const std::string &section, const std::string &name) const;
   bool is_zero() const { return x == "0" && y == "0"; }
+  /// The field; its values are finite, or @throws InputError with the place of one that is not.
   /// @param extent a length of the sheet [m], the scale on which the field varies
   std::shared_ptr<dealii::FunctionParser<2>> field(double extent) const;
+};
+
+/// The shape of a sheet: X from 0 to length, Y from -height / 2 to height / 2.
+struct Outline
+{
+  double length, height; ///< [m], > 0
+  double hole_radius;    ///< [m], in the middle; 0 for none
+  double notch_length;   ///< [m], from the left edge along y = 0; 0 for none
 };
 
 /// What is done to one edge of the sheet. The lattice takes a part of it, see require_lattice_sheet.
@@ -122,6 +131,8 @@ struct ContinuumCase
   ContinuumCase();
   void declare(Parameters &parameters);
   void check(Parameters &parameters, bool has_inner_edge) const;
+  /// Refuses expressions that are not finite somewhere: they are tried in points all over the sheet and its edges.
+  void check_values(Parameters &parameters, const Outline &outline) const;
 };
 
 } // namespace verification

@@ -56,8 +56,7 @@ void require_lattice_sheet(const Case &input, Parameters &p, const std::string &
   if (!c.body_force.is_zero())
     p.error(c.body_force.x != "0" ? "Body force/force x" : "Body force/force y",
             command + " has no body force; give 0");
-  const bool has_sheet = input.spacing > 0. && input.length >= 8. * input.spacing && input.height >= 8. * input.spacing;
-  if (has_sheet)
+  if (input.has_sheet())
     check_period(input, p, command);
   if (input.solution == Case::Solution::relaxed)
   {

@@ -116,6 +116,12 @@ WaveSpeeds wave_speeds_along_crack(const Case &input)
   return {waves[0].frequency / k, waves[1].frequency / k};
 }
 
+double near_tip_window(const Case &input)
+{
+  const lattice::NearTipOptions window = sampler_options(input, 0., 0.);
+  return (window.behind + window.ahead) * 2. * window.half_height;
+}
+
 NearTipRecord::NearTipRecord(const Case &input, lattice::Simulation &simulation, double seed_tip_X)
   : simulation_(simulation), interval_(input.near_tip_interval), deformation_(input.deformation()),
     waves_(wave_speeds_along_crack(input)),

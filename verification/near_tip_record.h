@@ -21,6 +21,9 @@ struct WaveSpeeds
 
 WaveSpeeds wave_speeds_along_crack(const Case &input);
 
+/// Area of the window around the tip, undeformed [m^2].
+double near_tip_window(const Case &input);
+
 /// The fields around the tip of a fracture run, and what is measured of them.
 ///
 /// Samples are taken while the tip is between 40 and 90 % of the way from the seed to the stop position: the crack has

@@ -218,6 +218,13 @@ void Parameters::error(const std::string &key, const std::string &text, const st
          key + " = " + printable(entry.is_set() ? entry.text : entry.default_text) + ": " + text + others);
 }
 
+bool Parameters::good() const
+{
+  return n_problems_ == 0 && std::none_of(entries_.begin(), entries_.end(),
+                                          [](const Entry &entry)
+                                          { return entry.presence == Presence::required && !entry.is_set(); });
+}
+
 void Parameters::finish()
 {
   if (!unreadable_)

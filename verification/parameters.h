@@ -68,6 +68,18 @@ struct NonNegative : Range
   NonNegative() : Range({0., true}, {infinity, false}) {}
 };
 
+/// 1e-20 <= x <= 1e20: what has a size, in any system of units. Products of a dozen such numbers are finite.
+struct Magnitude : Range
+{
+  Magnitude() : Range({1e-20, true}, {1e20, true}) {}
+};
+
+/// 0 <= x <= 1e20: likewise, or nothing.
+struct MagnitudeOrZero : Range
+{
+  MagnitudeOrZero() : Range({0., true}, {1e20, true}) {}
+};
+
 /// x > lower
 struct Above : Range
 {
@@ -182,6 +194,9 @@ public:
   /// @param text what is wrong and what would be right
   /// @param also the other entries that the check used
   void error(const std::string &key, const std::string &text, const std::vector<std::string> &also = {});
+
+  /// Whether nothing has been found wrong so far: checks that compute with many entries need that.
+  [[nodiscard]] bool good() const;
 
   /// Ends reading.
   /// @throws InputError with all problems if there are any, also required entries that are missing.

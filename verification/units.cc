@@ -80,7 +80,7 @@ std::optional<Unit> single_unit(const std::string_view name)
 }
 
 // The unit as a message should show it: "" is "no unit".
-std::string quoted(const std::string_view unit)
+std::string in_quotes(const std::string_view unit)
 {
   return unit.empty() ? "no unit" : "'" + std::string(unit) + "'";
 }
@@ -197,8 +197,8 @@ Quantity read_quantity(const std::string &text, const std::string &unit)
     const std::optional<Unit> wanted = parse_unit(unit);
     if (!wanted || wanted->dimension != given.dimension)
     {
-      quantity.wrong = "wrong unit: " + quoted(behind) + " where " +
-                       (unit == "1" ? std::string("a pure number") : quoted(unit)) + " is wanted";
+      quantity.wrong = "wrong unit: " + in_quotes(behind) + " where " +
+                       (unit == "1" ? std::string("a pure number") : in_quotes(unit)) + " is wanted";
       return quantity;
     }
   }

@@ -137,6 +137,25 @@ TEST(Meshes, ReadsGmsh)
   EXPECT_NEAR(m.edges.at(0), 3., 1e-12);
 }
 
+TEST(Meshes, CellsAreKnownBeforeThereIsAMesh)
+{
+  for (const double radius : {1e-3, 3e-3, 8e-3})
+  {
+    const continuum::RectangleWithHole shape{0.06, 0.04, radius, 0};
+    Mesh mesh(MPI_COMM_SELF);
+    continuum::make_rectangle_with_hole(mesh, shape);
+    EXPECT_EQ(continuum::n_coarse_cells(shape), mesh.n_global_active_cells()) << radius;
+  }
+  for (const double notch : {1e-3, 0.02, 0.059})
+  {
+    const continuum::NotchedRectangle shape{0.06, 0.004, notch, 0};
+    Mesh mesh(MPI_COMM_SELF);
+    continuum::make_notched_rectangle(mesh, shape);
+    EXPECT_EQ(continuum::n_coarse_cells(shape), mesh.n_global_active_cells()) << notch;
+  }
+  EXPECT_GT(continuum::n_coarse_cells(continuum::RectangleWithHole{1e6, 1e6, 1., 0}), 1e10);
+}
+
 TEST(Meshes, RefusesWhatCannotBeMeshed)
 {
   Mesh mesh(MPI_COMM_SELF);

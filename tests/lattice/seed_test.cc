@@ -60,6 +60,21 @@ TEST(Seed, SlitTakesTheSitesOfAClosedRectangle)
   EXPECT_EQ(seed_sites(sheet, SeedSlit{4., std::sqrt(3.) / 2., 2., 0.}), places_in_row(sheet, 12, 4, 3));
 }
 
+// In a sheet of 1e12 sites, of which no list can be made.
+TEST(Seed, LooksOnlyWhereItIs)
+{
+  for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
+  {
+    const TriangularLattice sheet(1., 1e6, 1e6, orientation);
+    const std::vector<std::size_t> line = seed_sites(sheet, SeedLine{5e5, 0., 4});
+    ASSERT_EQ(line.size(), 4u);
+    EXPECT_NEAR(sheet.reference(line.front()).x(), 5e5, 1.);
+    EXPECT_EQ(sheet.reference(line.front()).y(), 0.);
+    EXPECT_EQ(seed_sites(sheet, SeedSlit{5e5, 0., 10., 10.}).size(), 115u);
+    EXPECT_THROW(seed_sites(sheet, SeedSlit{0., 0., 1e6, 1e5}), std::invalid_argument);
+  }
+}
+
 TEST(Seed, RefusesWhatDoesNotFit)
 {
   const TriangularLattice sheet = along();

@@ -6,6 +6,7 @@ Usage: command_line_test.py PATH_OF_LATCON
 import json
 import math
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -159,6 +160,80 @@ class Fracture(unittest.TestCase):
         self.assertEqual(run["skip_verification"], False)
 
 
+def settings(*entries):
+    return [word for entry in entries for word in ("--set", entry)]
+
+
+class DryRun(TemporaryFolder):
+    """What a run will take is said before, and refused where the machine has not got it."""
+
+    def memory(self, *arguments):
+        """Estimated peak and the part of it that the program has before it starts, both in bytes."""
+        run = latcon(*arguments, "--dry-run")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        line, = re.findall("^# memory: .*$", run.stdout, re.M)
+        peak, own = re.fullmatch(r"# memory: about (\d+) bytes .* itself (\d+) bytes; available .*", line).groups()
+        return int(peak), int(own)
+
+    def assert_foreseen(self, *arguments):
+        """To a factor of two, libraries not counted, so that it is the run that is estimated."""
+        peak, own = self.memory(*arguments)
+        run = latcon(*arguments, "--output-dir", self.out, "--quiet")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        taken = json.loads((self.out / "run.json").read_text())["peak_memory_bytes"]
+        self.assertGreater(taken - own, 5e7)  # enough for the difference to mean something
+        self.assertGreater(peak - own, 0.5 * (taken - own))
+        self.assertLess(peak - own, 2. * (taken - own))
+
+    def test_memory_of_lattices(self):
+        fine = settings("Sheet/spacing=0.1 mm", "Time/end=2e-8", "Time/step=1e-8")
+        for command in [["lattice", CASES / "quick.prm", *settings("Lattice/solution=motion")],
+                        ["fracture", CASES / "quick.prm", "--skip-verification", "--no-report"]]:
+            with self.subTest(command=command[0]):
+                self.assert_foreseen(*command, *fine)
+
+    def test_memory_of_finite_elements(self):
+        gradient = settings("Continuum/gradient=lattice", "Continuum/cells x=24", "Continuum/cells y=24")
+        for entries in [gradient, gradient + settings("Continuum/direct limit=0"), settings("Continuum/cells x=64",
+                                                                                            "Continuum/cells y=64")]:
+            with self.subTest(entries=entries):
+                self.assert_foreseen("continuum", CASES / "quick.prm", *entries)
+
+    def test_what_does_not_fit_is_refused_with_its_number(self):
+        for command, *entries in [("lattice", "Sheet/length=40 m", "Sheet/height=25 m"),
+                                  ("fracture", "Sheet/length=40 m", "Sheet/height=25 m"),
+                                  ("continuum", "Continuum/cells x=16384", "Continuum/cells y=16384")]:
+            for mode in [[], ["--dry-run"]]:
+                with self.subTest(command=command, mode=mode):
+                    run = latcon(command, CASES / "quick.prm", "--output-dir", self.out, *settings(*entries), *mode)
+                    self.assertEqual(run.returncode, 2, run.stderr)
+                    self.assertRegex(run.stderr, r"refused for want of memory: .* about \d{11,} bytes")
+                    self.assertFalse(self.out.exists())
+                    self.assertEqual("# memory: about" in run.stdout, bool(mode))
+        run = latcon("continuum", CASES / "quick.prm", *settings("Continuum/cells x=65536", "Continuum/cells y=65536"))
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("unknowns", run.stderr)
+
+    def test_ranks_say_it_once(self):
+        for command in ["verify", "lattice", "continuum", "fracture"]:
+            with self.subTest(command=command):
+                case = ["--case", CASES / "quick.prm"] if command == "verify" else [CASES / "quick.prm"]
+                run = latcon_on_ranks(2, command, *case, "--dry-run", "--threads", 1)
+                self.assertEqual(run.returncode, 0, run.stderr)
+                self.assertEqual(run.stdout.count("subsection Sheet"), 1)
+                self.assertEqual(run.stdout.count("# time"), 0 if command == "verify" else run.stdout.count("# memory"))
+
+    def test_sizes_steps_and_time_are_there(self):
+        run = latcon("fracture", CASES / "quick.prm", "--dry-run", "--threads", 1)
+        for wanted in [r"^# lattice: 2632 sites, \d+ bonds, 5264 unknowns", r"^# time step: .* s, \d+ steps at most",
+                       r"^# time: about \d+ s on 1 threads"]:
+            self.assertRegex(run.stdout, re.compile(wanted, re.M))
+        run = latcon("continuum", CASES / "quick.prm", "--dry-run", *settings("Continuum/solution=motion"))
+        for wanted in [r"^# continuum: 96 cells, 1850 unknowns", r"^# motion: time step .* s, \d+ steps", r"^# time: about"]:
+            self.assertRegex(run.stdout, re.compile(wanted, re.M))
+        self.assertIn("check steady-crack", latcon("study", "paper", "--quick", "--dry-run").stdout)
+
+
 class Reproducible(TemporaryFolder):
     def test_threads_leave_no_trace(self):
         for threads in [1, 2, 3]:
@@ -264,10 +339,34 @@ class ExitCodes(TemporaryFolder):
         run = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, "--set", "Sheet/spacin=1", "--set",
                      "Material/density=-3", "--set", "Loading/strain y=2.5")
         self.assertEqual(run.returncode, 2)
-        for part in ["Sheet/spacing", "Material/density", "-3", "> 0", "Fracture/breaking stretch", "quick.prm:"]:
+        for part in ["Sheet/spacing", "Material/density", "-3", ">= 1e-20", "Fracture/breaking stretch", "quick.prm:"]:
             self.assertIn(part, run.stderr)
         self.assertFalse(self.out.exists())
         self.assertEqual(latcon("lattice", self.folder / "none.prm", "--output-dir", self.out).returncode, 2)
+
+    def test_numbers_beyond_all_sense_are_2(self):
+        for command, entry, *parts in [
+                ("lattice", "Sheet/spacing=1e-300", "Sheet/spacing", ">= 1e-20"),
+                ("lattice", "Sheet/length=1e12", "Sheet/length", "at most 1e6 spacings"),
+                ("lattice", "Sheet/spacing=1e-12", "Sheet/length", "at most 1e6 spacings"),
+                ("lattice", "Sheet/hole radius=0.1 mm", "Sheet/hole radius", "at least a spacing"),
+                ("lattice", "Sheet/hole radius=3 cm", "Sheet/hole radius", "0.01125"),
+                ("fracture", "Time/step=1e-20", "Time/end", "time steps"),
+                ("fracture", "Fracture/breaking stretch=2", "next-nearest-neighbour bonds at 90 degrees", "2.8"),
+                ("fracture", "Time/step=1", "Time/step", "unstable"),
+                ("continuum", "Top edge/displacement x=1/0", "Top edge/displacement x", "no finite number"),
+                ("continuum", "Top edge/displacement y=0.01*sqrt(x-0.02)", "Top edge/displacement y", "no finite number"),
+                ("continuum", "Body force/force x=1/(x*x+y*y)", "Body force/force x", "x = 0 m, y = 0 m"),
+                ("continuum", "Top edge/displacement x=rand()", "random"),
+                ("continuum", "Top edge/displacement x=y=1", "assignment"),
+                ("continuum", "Continuum/time step=1e-20", "Time/end", "time steps")]:
+            with self.subTest(entry=entry):
+                moves = ["--set", "Continuum/solution=motion"] if "time step" in entry else []
+                run = latcon(command, CASES / "quick.prm", "--output-dir", self.out, "--set", entry, *moves)
+                self.assertEqual(run.returncode, 2, run.stderr)
+                for part in ["quick.prm" if parts[0] == "Time/end" else "--set", *parts]:
+                    self.assertIn(part, run.stderr)
+                self.assertFalse(self.out.exists())
 
     def test_seed_that_does_not_fit_is_2(self):
         for key, value, part in [("seed offset", "2 cm", "within two spacings"), ("seed position", "0.9", "right end"),

@@ -234,3 +234,20 @@ TEST(StudyFile, TheShippedStudyIsWhole)
     EXPECT_GT(study.claims.size(), 10u);
   }
 }
+
+// One that goes deep would take the stack with it, one number that overflows the program.
+TEST(StudyFile, RefusesNumbersAndDepthBeyondAllSense)
+{
+  for (const std::string &text :
+       {std::string(100000, '['), "{\"title\": " + std::string(100, '[') + std::string(100, ']') + "}",
+        std::string("{\"seeds\": [1e999]}"), std::string("{\"title\": \"\xff\"}")})
+    try
+    {
+      (void)read_study(text, "folder/x.json", false);
+      FAIL() << text.substr(0, 40);
+    }
+    catch (const InputError &error)
+    {
+      EXPECT_HAS(std::string(error.what()), "folder/x.json: not");
+    }
+}

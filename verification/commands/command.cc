@@ -54,6 +54,12 @@ void read_case(const Options &options, Case &input, Parameters &parameters)
   input.check(parameters);
 }
 
+void print_dry_run(const Options &options, const std::string &text)
+{
+  if (first_rank() && !options.quiet)
+    std::cout << text << std::flush;
+}
+
 Run::Run(const Options &options, const Parameters &parameters) : Run(options, &parameters) {}
 
 Run::Run(const Options &options, const Parameters *parameters)

@@ -58,6 +58,9 @@ void read_case(const Options &options, Case &input, Parameters &parameters);
 
 class Checkpoints;
 
+/// Prints a part of what --dry-run says, on the first rank, unless --quiet.
+void print_dry_run(const Options &options, const std::string &text);
+
 /// The output directory of a run, and the record of how it came about. Rank 0 alone writes.
 class Run
 {

@@ -99,9 +99,9 @@ ExitCode compare_frames(const Options &options, const CompareOptions &chosen)
   comparing.reset();
   if (options.dry_run)
   {
-    if (!options.quiet && dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-      std::cout << "# lattice: " << lattice.file.path.string() << ", " << lattice.points.size() << " sites\n"
-                << "# continuum: " << continuum.file.path.string() << ", " << continuum.cells.size() << " cells\n";
+    print_dry_run(options, "# lattice: " + lattice.file.path.string() + ", " + std::to_string(lattice.points.size()) +
+                             " sites\n# continuum: " + continuum.file.path.string() + ", " +
+                             std::to_string(continuum.cells.size()) + " cells\n");
     return ExitCode::done;
   }
 

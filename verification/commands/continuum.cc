@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <sstream>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/numerics/vector_tools_interpolate.h>
@@ -13,6 +14,7 @@
 #include "verification/continuum_model.h"
 #include "verification/continuum_record.h"
 #include "verification/progress.h"
+#include "verification/resources.h"
 
 namespace verification
 {
@@ -237,23 +239,39 @@ ExitCode run_continuum(const Options &options)
   const bool moves = input.continuum.solution == ContinuumCase::Solution::motion;
   if (moves && !(input.end_time > 0.))
     parameters.error("Time/end", "motion needs an end time larger than 0", {"Continuum/solution"});
+  if (moves && input.continuum.time_step && parameters.good())
+    check_steps(input, *input.continuum.time_step, parameters);
   parameters.finish();
 
+  const ContinuumSize size = continuum_size(input);
+  const MemoryNeed memory = continuum_memory(input, size);
+  if (options.dry_run)
+    print_dry_run(options, parameters.resolved_text() + memory_text(memory));
+  require_memory(memory);
   ContinuumModel model(input);
+  if (moves && !input.continuum.time_step)
+  {
+    check_steps(input, motion_time_step(input, model), parameters);
+    parameters.finish();
+  }
   if (options.dry_run)
   {
     const continuum::Sheet sheet(model.mesh(), model.constitution(), input.continuum.degree, model.conditions());
-    if (!options.quiet && dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+    std::ostringstream text;
+    text << "# continuum: " << model.mesh().n_global_active_cells() << " cells, " << sheet.dof_handler().n_dofs()
+         << " unknowns\n";
+    if (input.continuum.gradient != ContinuumGradient::none)
+      text << "# lengths: static " << model.static_length() << " m, inertia " << model.inertia_length() << " m\n";
+    double steps = 0., frames = 2.;
+    if (moves)
     {
-      std::cout << parameters.resolved_text() << "# continuum: " << model.mesh().n_global_active_cells() << " cells, "
-                << sheet.dof_handler().n_dofs() << " unknowns\n";
-      if (input.continuum.gradient != ContinuumGradient::none)
-        std::cout << "# lengths: static " << model.static_length() << " m, inertia " << model.inertia_length()
-                  << " m\n";
-      if (moves)
-        std::cout << "# motion: time step " << motion_time_step(input, model) << " s, "
-                  << std::ceil(input.end_time / motion_time_step(input, model)) << " steps\n";
+      const double step = motion_time_step(input, model);
+      steps = std::ceil(input.end_time / step);
+      frames += input.frame_interval > 0. ? std::floor(input.end_time / input.frame_interval) : 0.;
+      text << "# motion: time step " << step << " s, " << steps << " steps\n";
     }
+    text << "# time: about " << std::ceil(continuum_seconds(input, size, steps, frames)) << " s\n";
+    print_dry_run(options, text.str());
     return ExitCode::done;
   }
   Run run(options, parameters);
@@ -262,9 +280,13 @@ ExitCode run_continuum(const Options &options)
     const Results results = moves ? motion(input, model, run) : equilibrium(input, model, run);
     return signal_came() ? run.interrupted(results) : run.finish(results);
   }
+  // The input was good as far as it could be tried, so it is the computed state that is not.
   catch (const continuum::NonPhysicalState &failure)
   {
-    // The input was good, so it is the computed state that is not.
+    throw SolverError(failure.what());
+  }
+  catch (const InputError &failure)
+  {
     throw SolverError(failure.what());
   }
 }

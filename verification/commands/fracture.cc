@@ -4,7 +4,7 @@
 #include "lattice/field_writer.h"
 #include "verification/checkpoint/checkpoints.h"
 #include "verification/commands/command.h"
-#include "verification/commands/lattice_size.h"
+#include "verification/commands/dry_run.h"
 #include "verification/crack_record.h"
 #include "verification/lattice_sheet.h"
 #include "verification/near_tip_record.h"
@@ -201,23 +201,31 @@ ExitCode run_fracture(const Options &options)
   Parameters parameters;
   read_case(options, input, parameters);
   require_fracture_case(input, parameters);
+  if (parameters.good())
+    check_steps(input, input.fracture_time_stepping().step, parameters);
   parameters.finish();
 
   const lattice::TriangularLattice sheet = input.lattice();
   const lattice::Material material = input.material();
+  const bool claims = !options.skip_verification;
+  const MemoryNeed memory = lattice_memory(input, LatticeRun::broken, claims);
   if (options.dry_run)
   {
+    print_dry_run(options, parameters.resolved_text() + memory_text(memory));
+    require_memory(memory);
     if (!options.quiet)
-      std::cout << parameters.resolved_text() << lattice_size(input, input.fracture_time_stepping());
+      print_dry_run(
+        options, lattice_text(input, input.fracture_time_stepping(), LatticeRun::broken, claims, !options.no_report));
     return ExitCode::done;
   }
+  require_memory(memory);
 
   Checkpoints checkpoints(options, parameters, input, "fracture");
   Run run(options, parameters);
   run.note(checkpoints);
   run.info().add("skip_verification", options.skip_verification);
   Results results;
-  if (!options.skip_verification)
+  if (claims)
     results = passed_claims(input, run);
   results.add(break_sheet(input, sheet, material, options.skip_verification, checkpoints, run));
   const ExitCode exit_code = signal_came() ? run.interrupted(results) : run.finish(results);

@@ -5,7 +5,7 @@
 #include "lattice/relaxation.h"
 #include "verification/checkpoint/checkpoints.h"
 #include "verification/commands/command.h"
-#include "verification/commands/lattice_size.h"
+#include "verification/commands/dry_run.h"
 #include "verification/crack_record.h"
 #include "verification/homogenisation.h"
 #include "verification/lattice_sheet.h"
@@ -162,17 +162,25 @@ ExitCode run_lattice(const Options &options)
   require_lattice_sheet(input, parameters, "`latcon lattice`");
   if (input.solution == Case::Solution::motion && !(input.end_time > 0.))
     parameters.error("Time/end", "motion needs an end time larger than 0", {"Lattice/solution"});
+  const bool moves = input.solution == Case::Solution::motion;
+  if (moves && parameters.good())
+    check_steps(input, input.lattice_time_stepping().step, parameters);
   parameters.finish();
 
   const lattice::TriangularLattice sheet = input.lattice();
   const lattice::Material material = input.material();
+  const LatticeRun kind = moves ? LatticeRun::moved : LatticeRun::relaxed;
+  const MemoryNeed memory = lattice_memory(input, kind);
   if (options.dry_run)
   {
+    print_dry_run(options, parameters.resolved_text() + memory_text(memory));
+    require_memory(memory);
     if (!options.quiet)
-      std::cout << parameters.resolved_text() << lattice_size(input, input.lattice_time_stepping());
+      print_dry_run(options, lattice_text(input, input.lattice_time_stepping(), kind));
     return ExitCode::done;
   }
   Checkpoints checkpoints(options, parameters, input, "lattice");
+  require_memory(memory);
   Run run(options, parameters);
   run.note(checkpoints);
   Results results;
@@ -182,7 +190,7 @@ ExitCode run_lattice(const Options &options)
     lattice::add_noise(state, band, input.noise_amplitude * input.spacing, input.noise_seed);
     return state;
   };
-  if (input.solution == Case::Solution::motion)
+  if (moves)
   {
     const lattice::RowBand band(sheet, MPI_COMM_WORLD);
     results = moved(input, band, material, state_of(band), checkpoints, run);

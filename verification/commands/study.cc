@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <filesystem>
 #include <iostream>
+#include <numeric>
 #include <system_error>
 #include <thread>
 
@@ -8,7 +9,9 @@
 
 #include "verification/atomic_file.h"
 #include "verification/commands/command.h"
+#include "verification/machine_memory.h"
 #include "verification/progress.h"
+#include "verification/resources.h"
 #include "verification/study/process_pool.h"
 #include "verification/study/study_output.h"
 
@@ -180,6 +183,17 @@ void verify_base(const Study &study, const std::vector<std::string> &settings, R
   (void)passed_claims(input, run);
 }
 
+// Of as many of the largest runs as go at once, each a program of its own.
+MemoryNeed memory_of(const std::vector<PlannedRun> &plan, std::size_t n_cores)
+{
+  std::vector<double> needs;
+  for (const PlannedRun &run : plan)
+    needs.push_back(run.memory + held_memory());
+  std::sort(needs.rbegin(), needs.rend());
+  needs.resize(std::min(needs.size(), n_cores));
+  return {std::accumulate(needs.begin(), needs.end(), 0.), 0.};
+}
+
 ExitCode exit_code_of(const StudyResults &results, const Results &rows)
 {
   const auto failed = [](const RunOutcome &outcome) { return outcome.state == RunState::failed; };
@@ -200,12 +214,18 @@ ExitCode run_study(const Options &options, const std::string &name)
   results.outcomes.resize(results.plan.size());
   results.quick = options.quick;
   const std::size_t n_cores = options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  const MemoryNeed memory = memory_of(results.plan, n_cores);
   if (options.dry_run)
   {
     if (!options.quiet)
-      print_plan(std::cout, results.plan, n_cores);
+    {
+      print_plan(std::cout, results.study, results.plan, n_cores);
+      std::cout << memory_text(memory);
+    }
+    require_memory(memory);
     return ExitCode::done;
   }
+  require_memory(memory);
 
   Run run(options);
   run.info().add("skip_verification", options.skip_verification);

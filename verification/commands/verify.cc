@@ -135,8 +135,7 @@ ExitCode verify(const Options &options)
   parameters.finish();
   if (options.dry_run)
   {
-    if (!options.quiet)
-      std::cout << parameters.resolved_text();
+    print_dry_run(options, parameters.resolved_text());
     return ExitCode::done;
   }
   Run run(options, parameters);

@@ -10,13 +10,23 @@
 namespace verification
 {
 
+namespace
+{
+
+// Deeper than any study goes, and than the stack allows those that look at it all.
+constexpr int deepest = 64;
+
+} // namespace
+
 nlohmann::ordered_json parse_json(const std::string &text, const std::string &file)
 {
   using Json = nlohmann::ordered_json;
   std::vector<std::set<std::string>> open; // keys of the objects around the place being parsed
   std::vector<std::string> problems;
-  const auto check = [&](int, Json::parse_event_t event, Json &value)
+  const auto check = [&](int depth, Json::parse_event_t event, Json &value)
   {
+    if (depth > deepest)
+      throw InputError(file + ": not a study: objects and lists in each other deeper than " + std::to_string(deepest));
     if (event == Json::parse_event_t::object_start)
       open.emplace_back();
     else if (event == Json::parse_event_t::object_end)
@@ -30,11 +40,11 @@ nlohmann::ordered_json parse_json(const std::string &text, const std::string &fi
   {
     document = Json::parse(text, check);
   }
-  catch (const Json::parse_error &error)
+  catch (const Json::exception &error)
   {
     // "[json.exception.parse_error.101] parse error at line 1, column 2: ...": the words after the bracket.
     const std::string what = error.what();
-    throw InputError(file + ": not JSON: " + what.substr(std::min(what.size(), what.find(']') + 2)));
+    throw InputError(file + ": not JSON: " + printable(what.substr(std::min(what.size(), what.find(']') + 2)), 200));
   }
   if (!document.is_object())
     problems.push_back(file + ": a study is a JSON object");

@@ -7,8 +7,8 @@
 
 #include <nlohmann/json.hpp>
 
-#include "verification/commands/lattice_size.h"
 #include "verification/csv.h"
+#include "verification/resources.h"
 #include "verification/run_info.h"
 #include "verification/text_wrap.h"
 
@@ -259,7 +259,7 @@ void print_table(std::ostream &out, const StudyResults &results)
                 "", "  ");
 }
 
-void print_plan(std::ostream &out, const std::vector<PlannedRun> &plan, const std::size_t n_cores)
+void print_plan(std::ostream &out, const Study &study, const std::vector<PlannedRun> &plan, const std::size_t n_cores)
 {
   std::size_t widest = 4;
   for (const PlannedRun &run : plan)
@@ -276,6 +276,8 @@ void print_plan(std::ostream &out, const std::vector<PlannedRun> &plan, const st
   }
   out << plan.size() << " runs, about " << std::llround(std::ceil(total / 60.)) << " core minutes, "
       << std::llround(std::ceil(total / 60. / static_cast<double>(n_cores))) << " minutes on " << n_cores << " cores\n";
+  for (const std::string &check : study.checks)
+    out << "check " << check << ", after the runs\n";
 }
 
 } // namespace verification

@@ -36,7 +36,7 @@ struct StudyResults
 /// Prints the table, at most 120 columns wide.
 void print_table(std::ostream &out, const StudyResults &results);
 
-/// Prints the runs with their sizes and the estimated time on so many cores.
-void print_plan(std::ostream &out, const std::vector<PlannedRun> &plan, std::size_t n_cores);
+/// Prints the runs with their sizes and the estimated time on so many cores, and the checks beside them.
+void print_plan(std::ostream &out, const Study &study, const std::vector<PlannedRun> &plan, std::size_t n_cores);
 
 } // namespace verification

@@ -10,6 +10,7 @@
 #include "verification/errors.h"
 #include "verification/homogenisation.h"
 #include "verification/lattice_sheet.h"
+#include "verification/resources.h"
 
 namespace verification
 {
@@ -28,14 +29,6 @@ std::map<std::string, double> numbers_in(const std::string &case_text)
         numbers[assignment->section + "/" + assignment->name] = value;
     }
   return numbers;
-}
-
-double expected_steps(const Case &input, const lattice::TriangularLattice &sheet)
-{
-  const double way = (input.stop_position - input.seed_position) * sheet.length();
-  const double passage = way / small_strain(sheet, input.material()).shear_speed;
-  const lattice::TimeStepping stepping = input.lattice_time_stepping();
-  return std::ceil(std::min(input.end_time, passage) / stepping.step) * stepping.evaluations();
 }
 
 PlannedRun plan_run(const Study &study, const StudyRun &run, const std::uint64_t seed, const Settings &settings)
@@ -64,7 +57,10 @@ PlannedRun plan_run(const Study &study, const StudyRun &run, const std::uint64_t
   planned.zeta = zeta(input);
   planned.entries = numbers_in(planned.case_text);
   planned.sites = sheet.n_sites();
-  planned.steps = expected_steps(input, sheet);
+  const MemoryNeed memory = lattice_memory(input, LatticeRun::broken, true);
+  planned.memory = memory.shared + memory.first_rank;
+  const lattice::TimeStepping stepping = input.fracture_time_stepping();
+  planned.steps = expected_steps(input, stepping) * stepping.evaluations();
   return planned;
 }
 

@@ -28,6 +28,7 @@ struct PlannedRun
   double steps = 0.; ///< expected [-]: until a crack as fast as the shear waves of the unloaded sheet is through
 
   std::string folder() const { return run + "-" + std::to_string(seed); }
+  double memory = 0.; ///< estimated, beyond that of the program itself [bytes]
   double cost() const { return static_cast<double>(sites) * steps; } ///< site-steps [-]
   /// Value of "zeta" or of an entry `Section/Name`; none if it has no number.
   std::optional<double> value(const std::string &against) const;

@@ -1,0 +1,111 @@
+// Runs the program once for each line on standard input, in a child made by fork: what takes half a second to start,
+// MPI and the libraries, starts once.
+//
+// A line is `LIMIT FOLDER ARGUMENT...`: seconds, a folder to work in, and the arguments of latcon without its name,
+// each word in hexadecimal. The child's output goes into FOLDER/stdout and FOLDER/stderr. The answer is a line: `exit
+// CODE`, `signal NUMBER`, or `limit` if the child was killed after LIMIT seconds.
+#include <chrono>
+#include <csignal>
+#include <cstdio>
+#include <cstdlib>
+#include <iostream>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include <fcntl.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <deal.II/base/mpi.h>
+
+#include "verification/command_line.h"
+
+namespace
+{
+
+std::string decoded(const std::string &hexadecimal)
+{
+  std::string text;
+  for (std::size_t i = 0; i + 1 < hexadecimal.size(); i += 2)
+    text += static_cast<char>(std::stoi(hexadecimal.substr(i, 2), nullptr, 16));
+  return text;
+}
+
+void redirect(int descriptor, const std::string &path)
+{
+  const int file = open(path.c_str(), O_WRONLY | O_CREAT | O_TRUNC, 0644);
+  if (file < 0 || dup2(file, descriptor) < 0)
+    _exit(99);
+  close(file);
+}
+
+[[noreturn]] void run_child(const std::string &folder, std::vector<std::string> arguments)
+{
+  redirect(STDOUT_FILENO, folder + "/stdout");
+  redirect(STDERR_FILENO, folder + "/stderr");
+  const int nothing = open("/dev/null", O_RDONLY);
+  dup2(nothing, STDIN_FILENO);
+  if (chdir(folder.c_str()) != 0)
+    _exit(99);
+  arguments.insert(arguments.begin(), "latcon");
+  std::vector<char *> argv;
+  for (std::string &argument : arguments)
+    argv.push_back(argument.data());
+  argv.push_back(nullptr);
+  const auto code = verification::run_program(static_cast<int>(arguments.size()), argv.data());
+  std::cout.flush();
+  std::fflush(nullptr);
+  _exit(static_cast<int>(code));
+}
+
+std::string outcome(const pid_t child, const double limit)
+{
+  using Clock = std::chrono::steady_clock;
+  const Clock::time_point start = Clock::now();
+  int status = 0;
+  while (waitpid(child, &status, WNOHANG) == 0)
+  {
+    if (std::chrono::duration<double>(Clock::now() - start).count() > limit)
+    {
+      kill(child, SIGKILL);
+      waitpid(child, &status, 0);
+      return "limit";
+    }
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+  }
+  if (WIFSIGNALED(status))
+    return "signal " + std::to_string(WTERMSIG(status));
+  return "exit " + std::to_string(WEXITSTATUS(status));
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  // Threads do not survive a fork.
+  setenv("OMP_NUM_THREADS", "1", 1);
+  setenv("OPENBLAS_NUM_THREADS", "1", 1);
+  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  std::string line;
+  while (std::getline(std::cin, line))
+  {
+    std::istringstream words(line);
+    double limit = 0.;
+    std::string folder, word;
+    words >> limit >> folder;
+    std::vector<std::string> arguments;
+    while (words >> word)
+      arguments.push_back(decoded(word));
+    std::cout.flush();
+    const pid_t child = fork();
+    if (child < 0)
+      throw std::runtime_error("cannot fork");
+    if (child == 0)
+      run_child(decoded(folder), arguments);
+    std::cout << outcome(child, limit) << std::endl;
+  }
+  return 0;
+}

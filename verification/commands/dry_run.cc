@@ -1,0 +1,67 @@
+#include "verification/commands/dry_run.h"
+
+#include <cmath>
+#include <sstream>
+
+#include <omp.h>
+
+#include "verification/lattice_sheet.h"
+
+namespace verification
+{
+namespace
+{
+
+// Frames of a run that moves: the first, the last, and those between.
+double frames_of(const Case &input, double duration)
+{
+  return 2. + (input.frame_interval > 0. ? std::floor(duration / input.frame_interval) : 0.);
+}
+
+std::string seconds_text(double seconds)
+{
+  std::ostringstream text;
+  text << std::ceil(seconds) << " s";
+  return text.str();
+}
+
+} // namespace
+
+std::string lattice_text(const Case &input, const lattice::TimeStepping &stepping, const LatticeRun run,
+                         const bool claims, const bool report)
+{
+  const lattice::TriangularLattice sheet = input.lattice();
+  const lattice::State state = lattice_state(input, sheet, lattice::unbreakable);
+  std::size_t sites = 0;
+  for (std::size_t place = 0; place < sheet.n_places(); ++place)
+    sites += sheet.is_site(place) && state.removed[place] == 0;
+  std::size_t bonds = 0;
+  lattice::for_each_bond(state, sheet, [&](std::size_t, std::size_t, std::size_t) { ++bonds; });
+  std::ostringstream out;
+  out << "# lattice: " << sites << " sites, " << bonds << " bonds, " << 2 * sites << " unknowns, " << sheet.length()
+      << " m x " << sheet.height() << " m\n";
+  double steps = 0., frames = 2.;
+  if (run != LatticeRun::relaxed)
+  {
+    steps = std::ceil(input.end_time / stepping.step);
+    out << "# time step: " << stepping.step << " s, " << steps << " steps at most"
+        << (stepping.stages > 0 ? " of " + std::to_string(stepping.stages) + " stages each" : "");
+    if (run == LatticeRun::broken)
+    {
+      steps = expected_steps(input, stepping);
+      out << ", " << steps << " if the crack is as fast as shear waves of the unloaded sheet";
+    }
+    out << "\n";
+    frames = frames_of(input, steps * stepping.step);
+  }
+  out << "# time: about " << seconds_text(lattice_seconds(input, stepping, run, steps, frames)) << " on "
+      << omp_get_max_threads() << " threads of each rank";
+  if (claims)
+    out << ", and " << seconds_text(seconds_of_claims) << " for the claims, unless their verdicts are stored";
+  if (report)
+    out << ", and " << seconds_text(seconds_of_report) << " for pictures and page";
+  out << "\n";
+  return out.str();
+}
+
+} // namespace verification

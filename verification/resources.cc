@@ -1,0 +1,328 @@
+#include "verification/resources.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cmath>
+#include <optional>
+#include <sstream>
+
+#include <deal.II/base/mpi.h>
+
+#include "continuum/meshes.h"
+#include "continuum/rectangle.h"
+#include "lattice/simulation.h"
+#include "verification/errors.h"
+#include "verification/homogenisation.h"
+#include "verification/lattice_sheet.h"
+#include "verification/machine_memory.h"
+#include "verification/near_tip_record.h"
+
+namespace verification
+{
+namespace
+{
+
+// Bytes a place in State, Forces and the integrator, and those that RungeKuttaChebyshev has more of.
+constexpr double bytes_of_place = 180., bytes_of_chebyshev_place = 48.;
+// Bytes a site, and a bond, while a frame is collected and written; a site in the image of a checkpoint.
+constexpr double bytes_of_site_in_frame = 640., bytes_of_bond_in_frame = 50., bytes_of_site_in_checkpoint = 150.;
+// A site in the window around the tip, in the sums over all samples and over those that are not folded yet.
+constexpr double bytes_of_site_near_tip = 2700.;
+// The claims in their small versions, whatever the case.
+constexpr double bytes_of_claims = 7e7;
+
+// On one core of 3 to 4 GHz [s].
+constexpr double nanoseconds_per_site_evaluation = 15.;
+constexpr double seconds_of_start = 0.5, seconds_of_site_in_frame = 9e-6, seconds_of_unknown_in_frame = 6e-6;
+// Of FIRE, from noise to round-off; and as long waves have to cross the sheet.
+constexpr double evaluations_relaxed = 7000., evaluations_relaxed_per_column = 30.;
+// Contact, the tip, samples near it and energies, over the time of the kernel.
+constexpr double beside_kernel = 1.2;
+
+// Unknowns are numbered by signed integers of 32 bits in Trilinos.
+constexpr double most_unknowns = 2147483647.;
+// Steps beyond these do not change a time of double precision.
+constexpr double most_steps = 1e15;
+
+// Entries in a row of the tangent, averaged over the nodes of a mesh of squares: a node in a cell meets those of the
+// cell, one on an edge those of two, one in a corner those of four; with face terms, those of the cells beside as well.
+double entries_per_row(const unsigned int degree, const bool has_face_terms)
+{
+  const double p = degree;
+  const double inside = (p - 1.) * (p - 1.), on_edges = 2. * (p - 1.);
+  if (has_face_terms)
+    return 2. *
+           (inside * (5. * p * p + 6. * p + 1.) + on_edges * (8. * p * p + 8. * p + 1.) + 12. * p * p + 9. * p + 1.) /
+           (p * p);
+  return 2. * (inside * (p + 1.) * (p + 1.) + on_edges * (2. * p + 1.) * (p + 1.) + (2. * p + 1.) * (2. * p + 1.)) /
+         (p * p);
+}
+
+bool is_direct(const Case &input, const double unknowns)
+{
+  const auto &edges = input.continuum.edges;
+  return unknowns <= input.continuum.direct_limit || edges[0].condition == EdgeCase::Condition::periodic ||
+         edges[2].condition == EdgeCase::Condition::periodic;
+}
+
+bool is_homogeneous(const Case &input)
+{
+  const ContinuumCase &c = input.continuum;
+  return !input.has_inner_edge() && c.mesh_file.empty() && c.body_force.is_zero() &&
+         std::all_of(c.edges.begin(), c.edges.begin() + 4,
+                     [](const EdgeCase &edge)
+                     {
+                       return edge.condition == EdgeCase::Condition::held && edge.displacement_x == "loading" &&
+                              edge.displacement_y == "loading" &&
+                              edge.normal_gradient != EdgeCase::NormalGradient::clamped;
+                     });
+}
+
+bool is_first_rank()
+{
+  return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+}
+
+// What this machine's ranks hold now, and what they will need besides.
+struct OnMachine
+{
+  double held, needed;
+};
+
+OnMachine on_machine(const MemoryNeed &need)
+{
+  const double ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+  std::array<double, 2> sums{held_memory(), need.shared / ranks + (is_first_rank() ? need.first_rank : 0.)};
+  MPI_Comm machine = MPI_COMM_NULL;
+  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
+  MPI_Allreduce(MPI_IN_PLACE, sums.data(), 2, MPI_DOUBLE, MPI_SUM, machine);
+  MPI_Comm_free(&machine);
+  return {sums[0], sums[1]};
+}
+
+// A piece of the sheet of a case that takes no time to make, and as many threads as the sheet.
+Case small_piece(const Case &input)
+{
+  constexpr double rows = 120., sites = 28000.;
+  Case piece = input;
+  piece.hole_radius = piece.notch_length = 0.;
+  piece.height = std::min(input.height, rows * input.spacing);
+  piece.length =
+    std::min(input.length, std::max(sites * input.spacing * input.spacing / piece.height, 8. * input.spacing));
+  return piece;
+}
+
+// Time of a step over the number of sites [s].
+double measured_seconds_per_site_step(const Case &input, const lattice::TimeStepping &stepping, const bool breaks)
+{
+  using Clock = std::chrono::steady_clock;
+  constexpr double long_enough = 0.2; // [s]
+  const Case piece = small_piece(input);
+  const lattice::TriangularLattice sheet = piece.lattice();
+  const lattice::Material material = piece.material();
+  lattice::State state = lattice_state(piece, sheet, breaks ? *input.breaking_stretch : lattice::unbreakable);
+  lattice::add_noise(state, sheet, input.noise_amplitude * input.spacing, input.noise_seed);
+  std::optional<lattice::Fracture> fracture;
+  if (breaks)
+    fracture.emplace(sheet, material, *input.breaking_stretch, input.toughening_rule(), input.deformation());
+  lattice::Simulation simulation(sheet, material, std::move(state), stepping, std::move(fracture));
+  if (breaks && input.has_contact)
+    simulation.let_touch(input.contact_law());
+  simulation.step();
+  const Clock::time_point start = Clock::now();
+  double elapsed = 0., steps = 0.;
+  do
+  {
+    simulation.step();
+    steps += 1.;
+    elapsed = std::chrono::duration<double>(Clock::now() - start).count();
+  } while (elapsed < long_enough);
+  return elapsed / steps / static_cast<double>(sheet.n_sites());
+}
+
+} // namespace
+
+MemoryNeed lattice_memory(const Case &input, const LatticeRun run, const bool claims)
+{
+  const lattice::TriangularLattice sheet = input.lattice();
+  const double places = static_cast<double>(sheet.n_places()), sites = static_cast<double>(sheet.n_sites());
+  const bool is_chebyshev = run != LatticeRun::relaxed && input.integrator == Case::Integrator::runge_kutta_chebyshev;
+  const double bonds = input.has_next_nearest ? 6. : 3.;
+  const double frame = sites * (bytes_of_site_in_frame + bonds * bytes_of_bond_in_frame);
+  const double checkpoint = run != LatticeRun::relaxed ? sites * bytes_of_site_in_checkpoint : 0.;
+  const double fields = places * (bytes_of_place + (is_chebyshev ? bytes_of_chebyshev_place : 0.));
+  MemoryNeed need;
+  // Equilibrium is a matter of the first rank.
+  (run == LatticeRun::relaxed ? need.first_rank : need.shared) = fields;
+  need.first_rank += std::max(frame, checkpoint);
+  if (run == LatticeRun::broken && input.near_tip_interval > 0)
+    need.first_rank += near_tip_window(input) / sheet.site_area() * bytes_of_site_near_tip;
+  if (claims && need.shared + need.first_rank < bytes_of_claims)
+    need.shared = bytes_of_claims - need.first_rank;
+  return need;
+}
+
+ContinuumSize continuum_size(const Case &input)
+{
+  const ContinuumCase &c = input.continuum;
+  const lattice::TriangularLattice sheet = input.lattice();
+  const double p = c.degree;
+  double coarse_cells = 0., halvings = c.refinements;
+  if (!c.mesh_file.empty())
+    coarse_cells = continuum::n_coarse_cells(c.mesh_file);
+  else if (input.hole_radius > 0.)
+    coarse_cells = continuum::n_coarse_cells(
+      continuum::RectangleWithHole{sheet.length(), sheet.height(), input.hole_radius, c.refinements});
+  else if (input.notch_length > 0.)
+    coarse_cells = continuum::n_coarse_cells(
+      continuum::NotchedRectangle{sheet.length(), sheet.height(), input.notch_length, c.refinements});
+  else
+  {
+    coarse_cells = static_cast<double>(c.cells_x) * static_cast<double>(c.cells_y);
+    for (halvings = 0.;
+         std::fmod(c.cells_x, std::exp2(halvings + 1.)) == 0. && std::fmod(c.cells_y, std::exp2(halvings + 1.)) == 0.;
+         halvings += 1.)
+      coarse_cells /= 4.;
+  }
+  // Of as many squares, edges included.
+  const auto unknowns = [p](double cells) { return 2. * (p * p * cells + 2. * p * std::sqrt(cells) + 1.); };
+  ContinuumSize size;
+  size.cells = coarse_cells * std::pow(4., halvings);
+  size.unknowns = unknowns(size.cells);
+  // Three further cells for each that is refined.
+  const double final_cells = size.cells * std::pow(1. + 3. * c.refined_fraction, c.adaptive_cycles);
+  size.final_unknowns = unknowns(final_cells);
+  size.coarse_unknowns = size.final_unknowns;
+  if (!is_direct(input, size.final_unknowns))
+  {
+    constexpr double coarsest_size = 2000.; // of continuum::MultigridSettings
+    double coarse = coarse_cells;
+    while (4. * coarse <= size.cells && unknowns(4. * coarse) <= coarsest_size)
+      coarse *= 4.;
+    size.coarse_unknowns = unknowns(coarse);
+  }
+  if (size.final_unknowns > most_unknowns)
+  {
+    std::ostringstream text;
+    text << "the finite element mesh would have about " << size.final_unknowns
+         << " unknowns, and no more than 2147483647 can be numbered; give fewer cells, refinements or adaptive cycles";
+    throw InputError(text.str());
+  }
+  return size;
+}
+
+MemoryNeed continuum_memory(const Case &input, const ContinuumSize &size)
+{
+  const ContinuumCase &c = input.continuum;
+  const bool has_face_terms = c.gradient != ContinuumGradient::none;
+  const double entries = entries_per_row(c.degree, has_face_terms);
+  // Bytes that the peak of runs of one rank grows by: cells and points with all that is kept of them, entries of
+  // matrices and of what is set up from them, of factors.
+  const double of_unknown = 700. + 1000. / (c.degree * c.degree);
+  const double of_entry =
+    (is_direct(input, size.final_unknowns) ? 0. : 30.) + (c.solution == ContinuumCase::Solution::motion ? 30. : 0.);
+  const double of_factor = has_face_terms ? 85. : 50.;
+  const double fill = 1. + 0.15 * std::max(0., std::log2(size.coarse_unknowns / 2e4));
+  return {size.final_unknowns * (of_unknown + entries * of_entry) + size.coarse_unknowns * entries * of_factor * fill,
+          0.};
+}
+
+void require_memory(const MemoryNeed &need)
+{
+  const OnMachine machine = on_machine(need);
+  const double available = available_memory();
+  // All ranks say the same, that of the machine that is worst off.
+  const int rank = static_cast<int>(dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD));
+  struct
+  {
+    double missing;
+    int rank;
+  } worst{machine.needed - available, rank};
+  MPI_Allreduce(MPI_IN_PLACE, &worst, 1, MPI_DOUBLE_INT, MPI_MAXLOC, MPI_COMM_WORLD);
+  std::array<double, 2> numbers{machine.needed, available};
+  MPI_Bcast(numbers.data(), 2, MPI_DOUBLE, worst.rank, MPI_COMM_WORLD);
+  if (!(worst.missing > 0.))
+    return;
+  std::ostringstream text;
+  text.precision(0);
+  text << std::fixed << "refused for want of memory: the run would take about " << numbers[0] << " bytes ("
+       << readable_bytes(numbers[0]) << ") more than latcon has now, and this machine has " << numbers[1] << " bytes ("
+       << readable_bytes(numbers[1])
+       << ") available; make the sheet smaller or coarser, or share it among more machines";
+  throw InputError(text.str());
+}
+
+std::string memory_text(const MemoryNeed &need)
+{
+  const OnMachine machine = on_machine(need);
+  std::ostringstream text;
+  text.precision(0);
+  text << std::fixed << "# memory: about " << machine.held + machine.needed << " bytes ("
+       << readable_bytes(machine.held + machine.needed) << ") at the peak, of which latcon itself " << machine.held
+       << " bytes; available are " << available_memory() << " bytes\n";
+  return text.str();
+}
+
+double lattice_seconds(const Case &input, const lattice::TimeStepping &stepping, const LatticeRun run,
+                       const double steps, const double frames)
+{
+  const double per_site_step = measured_seconds_per_site_step(input, stepping, run == LatticeRun::broken);
+  const lattice::TriangularLattice sheet = input.lattice();
+  const double sites = static_cast<double>(sheet.n_sites());
+  const double written = seconds_of_start + frames * sites * seconds_of_site_in_frame;
+  if (run == LatticeRun::relaxed)
+    return written + per_site_step * sites *
+                       std::max(evaluations_relaxed, evaluations_relaxed_per_column *
+                                                       static_cast<double>(std::max(sheet.columns(), sheet.rows())));
+  const double ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+  return written + (run == LatticeRun::broken ? beside_kernel : 1.) * per_site_step * sites * steps / ranks;
+}
+
+double expected_steps(const Case &input, const lattice::TimeStepping &stepping)
+{
+  const lattice::TriangularLattice sheet = input.lattice();
+  const double way = (input.stop_position - input.seed_position) * sheet.length();
+  const double passage = way / small_strain(sheet, input.material()).shear_speed;
+  return std::ceil(std::min(input.end_time, passage) / stepping.step);
+}
+
+double continuum_seconds(const Case &input, const ContinuumSize &size, const double steps, const double frames)
+{
+  const ContinuumCase &c = input.continuum;
+  const double entries = entries_per_row(c.degree, c.gradient != ContinuumGradient::none);
+  constexpr double seconds_of_unknown = 8e-6, seconds_of_entry = 2e-7; // in a Newton iteration
+  // Newton iterations of the loading, of an adaptive cycle, of a time step. A homogeneous sheet starts as it ends.
+  const double of_loading = is_homogeneous(input) ? 2. : 8.;
+  constexpr double of_cycle = 4., of_step = 2.;
+  double work = c.solution == ContinuumCase::Solution::motion ? of_step * steps * size.unknowns : 0.;
+  if (c.solution == ContinuumCase::Solution::equilibrium || c.initial_base == ContinuumCase::Base::equilibrium)
+    work += of_loading * size.unknowns;
+  double unknowns = size.unknowns;
+  for (unsigned int cycle = 0; cycle < c.adaptive_cycles; ++cycle)
+  {
+    unknowns *= 1. + 3. * c.refined_fraction;
+    work += of_cycle * unknowns;
+  }
+  const double ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+  return seconds_of_start + (frames * seconds_of_unknown_in_frame * size.final_unknowns +
+                             work * (seconds_of_unknown + entries * seconds_of_entry)) /
+                              ranks;
+}
+
+double core_seconds(const double site_evaluations)
+{
+  return site_evaluations * nanoseconds_per_site_evaluation * 1e-9;
+}
+
+void check_steps(const Case &input, const double step, Parameters &parameters)
+{
+  if (input.end_time / step <= most_steps)
+    return;
+  std::ostringstream text;
+  text << "it is " << input.end_time / step << " time steps of " << step << " s away, more than the " << most_steps
+       << " that can be counted";
+  parameters.error("Time/end", text.str());
+}
+
+} // namespace verification
