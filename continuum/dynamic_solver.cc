@@ -94,6 +94,7 @@ void DynamicSolver::set_up()
   displacement_ = sheet_.make_ghosted();
   velocity_ = sheet_.make_ghosted();
   acceleration_ = sheet_.make_ghosted();
+  multigrid_displacement_ = sheet_.make_ghosted();
   elastic_diagonal_ = sheet_.make_owned();
   effective_diagonal_ = sheet_.make_owned();
 }
@@ -254,8 +255,9 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time)
   a += free_acceleration;
 
   // The diagonals that the floor of the residual needs before the first Newton step.
-  const Step at_start{settings_.rule, dt, u, v, a, factors[0], factors[0]};
-  assemble(at_start, {u_ghosted, v_ghosted, forces, magnitude, 0., 0., 0.});
+  const unsigned int set_ups = linear_solver_->n_set_ups();
+  assemble(u_ghosted, v_ghosted, factors[0]);
+  note_multigrid(set_ups, u_ghosted, factors[0]);
 
   displacement_ = u_ghosted;
   velocity_ = v_ghosted;
@@ -292,6 +294,8 @@ void DynamicSolver::step()
       a = step.last_acceleration(u);
       v = step.last_velocity(a);
       ledger = settled(step, u, v);
+      if (!std::isfinite(ledger.imbalance) || !std::isfinite(a.l2_norm()))
+        failure = "its energy or acceleration is not finite";
     }
     catch (const NonPhysicalState &refusal) // the mean state may be one where that at the end is not
     {
@@ -301,7 +305,10 @@ void DynamicSolver::step()
     {static_cast<unsigned int>(n_steps_ + 1), step.last_load_factor, failure.empty(), failure});
   report_.load_factor = failure.empty() ? step.last_load_factor : load_factor_;
   if (!failure.empty())
+  {
+    linear_solver_->forget(); // a multigrid that may be of a state far off
     throw SolverFailed("the time step from " + std::to_string(time_) + " s failed: " + failure, report_);
+  }
 
   displacement_ = u;
   velocity_ = v;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "continuum/linear_solver.h"
+#include "continuum/nodal_order.h"
 #include "continuum/sheet.h"
 #include "continuum/solver_report.h"
 #include "continuum/viscous_forces.h"
@@ -60,6 +61,18 @@ struct EnergyLedger
   double dissipated = 0.;    ///< by viscosity
   double work = 0.;          ///< done on the sheet by held boundaries and dead loads
   double imbalance = 0.;     ///< stored + kinetic + dissipated - work, less stored + kinetic at the start
+
+  /// Stores the numbers in an archive, or takes them from there.
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive("stored", stored);
+    archive("kinetic", kinetic);
+    archive("micro_kinetic", micro_kinetic);
+    archive("dissipated", dissipated);
+    archive("work", work);
+    archive("imbalance", imbalance);
+  }
 };
 
 /// Motion of a sheet at finite strain, total Lagrangian:
@@ -111,6 +124,12 @@ public:
   /// Steps until the time is `end` [s] or, for want of a whole step, up to one step later. Throws as step().
   void run_until(double end, const Observer &observer = Observer());
 
+  /// Stores all that the steps to come depend on, or takes it from there in place of a start, in a solver made with the
+  /// same arguments on a like mesh: on as many ranks the motion then goes on with the same bits as if it had never been
+  /// stopped, on another number with the same fields. Throws InvalidInput for fields of another number of unknowns.
+  template <class Archive>
+  void archive(Archive &archive);
+
   double time() const { return time_; } ///< [s]
   double load_factor() const { return load_factor_; }
   const EnergyLedger &ledger() const { return ledger_; }
@@ -128,7 +147,7 @@ public:
   /// that of the time t to first order.
   const Vector &acceleration() const { return acceleration_; }
   const Sheet &sheet() const { return sheet_; }
-  /// Residuals of the last step.
+  /// Residuals of the last step; none at the start or from an archive.
   const SolverReport &last_report() const { return report_; }
 
 private:
@@ -144,7 +163,12 @@ private:
   void multiply_by_mass(const Sheet::Matrix &M, const Vector &x, Vector &product) const;
   Balance look_at(const Step &step, const Vector &u) const;
   Balance best_balance(const Step &step, const Vector &first, const Vector &second, Vector &u) const;
-  void assemble(const Step &step, const Balance &state);
+  Multigrid::Assembler level_assembler(double load_factor) const;
+  void assemble_matrix(const Vector &u, const Vector &v, double load_factor);
+  void assemble(const Vector &u, const Vector &v, double load_factor);
+  void note_multigrid(unsigned int before, const Vector &u, double load_factor);
+  void restore_multigrid();
+  std::string place_of_largest(const Vector &residual) const;
   double norm_over_free(const Vector &x) const;
   double round_off(const Balance &state, const Vector &u) const;
   std::string attempt(Step &step, Vector &u);
@@ -169,6 +193,10 @@ private:
   Vector elastic_diagonal_;                       // of the elastic tangent last assembled
   Vector effective_diagonal_;                     // of matrix_
 
+  // Where the multigrid that the linear solver keeps was set up, with ghost entries: from there it can be made again.
+  Vector multigrid_displacement_;
+  double multigrid_load_factor_ = 0.;
+
   bool has_started_ = false;
   double start_time_ = 0.;
   double initial_energy_ = 0.;
@@ -181,4 +209,35 @@ private:
   EnergyLedger ledger_;
   SolverReport report_;
 };
+
+template <class Archive>
+void DynamicSolver::archive(Archive &archive)
+{
+  archive("start_time", start_time_);
+  archive("initial_energy", initial_energy_);
+  archive("steps", n_steps_);
+  archive("time", time_);
+  archive("load_factor", load_factor_);
+  archive("ledger", ledger_);
+  const NodalOrder order(sheet_);
+  order.archive(archive, "displacement", displacement_);
+  order.archive(archive, "velocity", velocity_);
+  order.archive(archive, "acceleration", acceleration_);
+  // A multigrid that is kept has a part in the round-off of every iteration.
+  archive("linear_solver", *linear_solver_);
+  if (linear_solver_->keeps_multigrid())
+  {
+    archive("multigrid_load_factor", multigrid_load_factor_);
+    order.archive(archive, "multigrid_displacement", multigrid_displacement_);
+    if constexpr (Archive::loads)
+      restore_multigrid(); // which leaves other diagonals
+  }
+  order.archive(archive, "elastic_diagonal", elastic_diagonal_);
+  order.archive(archive, "effective_diagonal", effective_diagonal_);
+  if constexpr (Archive::loads)
+  {
+    report_ = SolverReport();
+    has_started_ = true;
+  }
+}
 } // namespace continuum

@@ -6,8 +6,10 @@
 #include <deal.II/base/mpi.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 using namespace dealii;
 
@@ -37,7 +39,39 @@ DynamicSolver::Balance DynamicSolver::look_at(const Step &step, const Vector &u)
   Vector u_owned = sheet_.make_owned();
   u_owned = state.u_mean;
   state.energy -= factor * (loads_ * u_owned);
+  if (!std::isfinite(state.free) || !std::isfinite(state.reference))
+    throw NonPhysicalState("forces are not finite" + place_of_largest(state.residual));
   return state;
+}
+
+// Where the largest residual of a free unknown is, in words; one that is not a number is the largest.
+std::string DynamicSolver::place_of_largest(const Vector &residual) const
+{
+  using Candidate = std::array<double, 3>; // absolute value [N/m], place [m]
+  Candidate own{-1., 0., 0.};
+  const auto &element = sheet_.element();
+  std::vector<types::global_dof_index> dofs(element.n_dofs_per_cell());
+  for (const auto &cell : sheet_.dof_handler().active_cell_iterators())
+    if (cell->is_locally_owned())
+    {
+      cell->get_dof_indices(dofs);
+      for (unsigned int a = 0; a < dofs.size(); ++a)
+        if (sheet_.owned().is_element(dofs[a]) && !homogeneous_.is_constrained(dofs[a]))
+        {
+          const double value =
+            std::isfinite(residual(dofs[a])) ? std::abs(residual(dofs[a])) : std::numeric_limits<double>::infinity();
+          if (value > own[0])
+          {
+            const Point<2> X = sheet_.mapping().transform_unit_to_real_cell(cell, element.unit_support_point(a));
+            own = {value, X[0], X[1]};
+          }
+        }
+    }
+  const std::vector<Candidate> all = Utilities::MPI::all_gather(sheet_.communicator(), own);
+  const Candidate largest = *std::max_element(all.begin(), all.end());
+  std::ostringstream place;
+  place << " at X = (" << largest[1] << ", " << largest[2] << ") m";
+  return place.str();
 }
 
 // The better of two predictors, which `u` becomes. Constant acceleration is close to third order when the step resolves
@@ -73,8 +107,26 @@ DynamicSolver::Balance DynamicSolver::best_balance(const Step &step, const Vecto
   return *state;
 }
 
-// The derivative of the residual by the displacement at the end of the step, and its diagonals.
-void DynamicSolver::assemble(const Step &step, const Balance &state)
+// The derivative of the residual by the displacement at the end of the step, on a coarser mesh; without viscosity,
+// which is left to the direct solver.
+Multigrid::Assembler DynamicSolver::level_assembler(const double load_factor) const
+{
+  const TimeRule &rule = settings_.rule;
+  const double stiffness_share = 1. - rule.alpha_f;
+  const double mass_share = (1. - rule.alpha_m) / (rule.beta * settings_.time_step * settings_.time_step);
+  return [=](const Sheet &level, const Vector &u, const AffineConstraints<double> &constraints, Sheet::Matrix &K)
+  {
+    Sheet::Matrix M;
+    level.make_matrix(constraints, M);
+    level.mass(inertia_.density, inertia_.length, constraints, M);
+    level.tangent(u, constraints, K, load_factor);
+    K *= stiffness_share;
+    K.add(mass_share, M);
+  };
+}
+
+// That derivative on the mesh itself, and its diagonals, at a mean state.
+void DynamicSolver::assemble_matrix(const Vector &u, const Vector &v, const double load_factor)
 {
   const auto take_diagonal = [&](Vector &diagonal)
   {
@@ -82,27 +134,35 @@ void DynamicSolver::assemble(const Step &step, const Balance &state)
       diagonal(i) = matrix_.diag_element(i);
     diagonal.compress(VectorOperation::insert);
   };
-  const TimeRule &rule = step.rule;
-  sheet_.tangent(state.u_mean, homogeneous_, matrix_, step.mean_load_factor());
+  const TimeRule &rule = settings_.rule;
+  const double dt = settings_.time_step;
+  sheet_.tangent(u, homogeneous_, matrix_, load_factor);
   take_diagonal(elastic_diagonal_);
-  viscous_forces_.add_tangent(state.u_mean, state.v_mean, rule.gamma / (rule.beta * step.dt), homogeneous_, matrix_);
-  const double stiffness_share = 1. - rule.alpha_f;
-  const double mass_share = (1. - rule.alpha_m) / (rule.beta * step.dt * step.dt);
-  matrix_ *= stiffness_share;
-  matrix_.add(mass_share, mass_);
+  viscous_forces_.add_tangent(u, v, rule.gamma / (rule.beta * dt), homogeneous_, matrix_);
+  matrix_ *= 1. - rule.alpha_f;
+  matrix_.add((1. - rule.alpha_m) / (rule.beta * dt * dt), mass_);
   take_diagonal(effective_diagonal_);
-  const double load_factor = step.mean_load_factor();
-  linear_solver_->update(
-    state.u_mean, matrix_,
-    [=](const Sheet &level, const Vector &u, const AffineConstraints<double> &constraints, Sheet::Matrix &K)
-    {
-      Sheet::Matrix M;
-      level.make_matrix(constraints, M);
-      level.mass(inertia_.density, inertia_.length, constraints, M);
-      level.tangent(u, constraints, K, load_factor);
-      K *= stiffness_share;
-      K.add(mass_share, M);
-    });
+}
+
+void DynamicSolver::assemble(const Vector &u, const Vector &v, const double load_factor)
+{
+  assemble_matrix(u, v, load_factor);
+  linear_solver_->update(u, matrix_, level_assembler(load_factor));
+}
+
+// What the linear solver set multigrid up at, if it has since it had set up `before` of them.
+void DynamicSolver::note_multigrid(const unsigned int before, const Vector &u, const double load_factor)
+{
+  if (linear_solver_->n_set_ups() == before)
+    return;
+  multigrid_displacement_ = u;
+  multigrid_load_factor_ = load_factor;
+}
+
+void DynamicSolver::restore_multigrid()
+{
+  assemble_matrix(multigrid_displacement_, sheet_.make_ghosted(), multigrid_load_factor_);
+  linear_solver_->restore(multigrid_displacement_, matrix_, level_assembler(multigrid_load_factor_));
 }
 
 // The floor of eq. (C.45).
@@ -153,9 +213,12 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
       if (state.free <= tolerance)
         return "";
       if (iteration == settings_.max_newton_iterations)
-        return "no convergence in " + std::to_string(iteration) + " Newton iterations";
+        return "no convergence in " + std::to_string(iteration) + " Newton iterations, the largest residual is" +
+               place_of_largest(state.residual);
 
-      assemble(step, state);
+      const unsigned int set_ups = linear_solver_->n_set_ups();
+      const double load_factor = step.mean_load_factor();
+      assemble(state.u_mean, state.v_mean, load_factor);
       Vector rhs = state.residual;
       rhs *= -1.;
       for (const types::global_dof_index i : sheet_.owned())
@@ -163,6 +226,7 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
           rhs(i) = 0.;
       rhs.compress(VectorOperation::insert);
       linear_iterations = linear_solver_->solve(matrix_, change, rhs);
+      note_multigrid(set_ups, state.u_mean, load_factor);
       homogeneous_.distribute(change);
 
       length = 1.;

@@ -1,6 +1,7 @@
 #include "continuum/element_integrals.h"
 
 #include "continuum/element_kernels.h"
+#include "continuum/errors.h"
 #include "continuum/shape_tables.h"
 #include "continuum/vector_kernels.h"
 
@@ -10,6 +11,7 @@
 
 #include <algorithm>
 #include <array>
+#include <sstream>
 
 using namespace dealii;
 
@@ -271,7 +273,18 @@ void integrate(const Sheet &sheet, const Sheet::Vector &u, const double load_fac
                const std::function<void(const Contribution &)> &add)
 {
   const auto cell_worker = [](const Iterator &cell, Integrator &integrator, Contributions &contributions)
-  { integrator.cell(cell, contributions); };
+  {
+    try
+    {
+      integrator.cell(cell, contributions);
+    }
+    catch (const NonPhysicalState &failure)
+    {
+      std::ostringstream place;
+      place << ", in the cell about X = (" << cell->center()[0] << ", " << cell->center()[1] << ") m";
+      throw NonPhysicalState(failure.what() + place.str());
+    }
+  };
   const auto copier = [&](const Contributions &contributions)
   {
     for (const Contribution &contribution : contributions)

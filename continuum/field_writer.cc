@@ -7,8 +7,10 @@
 #include <deal.II/numerics/data_out.h>
 #include <deal.II/numerics/data_postprocessor.h>
 
+#include <cerrno>
 #include <fstream>
 #include <iomanip>
+#include <limits>
 #include <sstream>
 
 using namespace dealii;
@@ -89,17 +91,28 @@ void write_whole(const std::filesystem::path &path, const std::string &text)
 {
   std::filesystem::path beside = path;
   beside += ".part";
-  {
-    std::ofstream file(beside, std::ios::binary);
-    file << text;
-    file.flush();
-    if (!file)
-      throw OutputFailed("cannot write " + beside.string());
-  }
   std::error_code failure;
-  std::filesystem::rename(beside, path, failure);
-  if (failure)
-    throw OutputFailed("cannot rename " + beside.string() + " to " + path.string() + ": " + failure.message());
+  errno = 0;
+  std::ofstream file(beside, std::ios::binary);
+  file << text;
+  file.close();
+  if (!file)
+    failure = std::error_code(errno, std::generic_category());
+  else
+    std::filesystem::rename(beside, path, failure);
+  if (file && !failure)
+    return;
+  std::error_code ignored;
+  std::filesystem::remove(beside, ignored);
+  throw OutputFailed("cannot write " + path.string() + (failure ? ": " + failure.message() : ""));
+}
+
+// deal.II tells the date in a comment whatever the flags; the same fields are to make the same file.
+std::string without_comment(std::string text)
+{
+  const std::size_t from = text.find("<!--");
+  const std::size_t to = text.find("-->\n");
+  return from < to && to != std::string::npos ? text.erase(from, to + 4 - from) : text;
 }
 
 std::string frame_name(const std::string &name, const std::size_t frame)
@@ -122,17 +135,6 @@ std::string with_time(std::string vtu, const double time)
         << "</DataArray>\n</FieldData>";
   return vtu.insert(at + grid.size(), field.str());
 }
-
-std::string collection_text(const std::vector<std::pair<double, std::string>> &frames)
-{
-  std::ostringstream out;
-  out << std::setprecision(17);
-  out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n";
-  for (const auto &[time, file] : frames)
-    out << "    <DataSet timestep=\"" << time << "\" part=\"0\" file=\"" << file << "\"/>\n";
-  out << "  </Collection>\n</VTKFile>\n";
-  return out.str();
-}
 } // namespace
 
 FieldWriter::FieldWriter(const MPI_Comm communicator, std::filesystem::path directory, std::string name)
@@ -150,7 +152,7 @@ FieldWriter::FieldWriter(const MPI_Comm communicator, std::filesystem::path dire
 
 void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::Vector &u, const Sheet::Vector *v)
 {
-  if (!frames_.empty() && !(time > frames_.back().first))
+  if (!(time > last_time()))
     throw InvalidInput("the time of a frame must be later than that of the frame before");
 
   const std::string frame = frame_name(name_, frames_.size());
@@ -169,6 +171,7 @@ void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::
     {"displacement", "m"},        {"deformation_gradient", "1"},      {"first_piola_stress", "Pa"},
     {"cauchy_stress", "Pa"},      {"strain_energy_density", "J/m^3"}, {"strain_gradient_x", "1/m"},
     {"strain_gradient_y", "1/m"}, {"double_stress_x", "Pa m"},        {"double_stress_y", "Pa m"}};
+  flags.print_date_and_time = false; // the same fields make the same file
   flags.write_higher_order_cells = sheet.degree() > 1;
   output.set_flags(flags);
   const std::vector<std::string> names(2, "displacement");
@@ -185,24 +188,49 @@ void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::
                  write_whole(directory_ / piece(rank), with_time(text.str(), time));
                });
 
-  const std::string file = n_ranks == 1 ? piece(0) : frame + ".pvtu";
-  frames_.emplace_back(time, file);
-  collectively(communicator_,
-               [&]
-               {
-                 if (rank != 0)
-                   return;
-                 if (n_ranks > 1)
+  frames_.push_back({time, n_ranks});
+  if (n_ranks > 1)
+    collectively(communicator_,
+                 [&]
                  {
+                   if (rank != 0)
+                     return;
                    std::vector<std::string> pieces;
                    for (unsigned int r = 0; r < n_ranks; ++r)
                      pieces.push_back(piece(r));
                    std::ostringstream text;
                    output.write_pvtu_record(text, pieces);
-                   write_whole(directory_ / file, text.str());
-                 }
-                 write_whole(collection(), collection_text(frames_));
+                   write_whole(directory_ / file_of(frames_.size() - 1), without_comment(text.str()));
+                 });
+  write_collection();
+}
+
+std::string FieldWriter::file_of(const std::size_t frame) const
+{
+  return frame_name(name_, frame) + (frames_[frame].n_pieces == 1 ? ".vtu" : ".pvtu");
+}
+
+void FieldWriter::write_collection() const
+{
+  collectively(communicator_,
+               [&]
+               {
+                 if (Utilities::MPI::this_mpi_process(communicator_) != 0)
+                   return;
+                 std::ostringstream out;
+                 out << std::setprecision(17);
+                 out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n";
+                 for (std::size_t frame = 0; frame < frames_.size(); ++frame)
+                   out << "    <DataSet timestep=\"" << frames_[frame].time << "\" part=\"0\" file=\"" << file_of(frame)
+                       << "\"/>\n";
+                 out << "  </Collection>\n</VTKFile>\n";
+                 write_whole(collection(), out.str());
                });
+}
+
+double FieldWriter::last_time() const
+{
+  return frames_.empty() ? -std::numeric_limits<double>::infinity() : frames_.back().time;
 }
 
 std::filesystem::path FieldWriter::collection() const

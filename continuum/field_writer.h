@@ -4,7 +4,6 @@
 
 #include <filesystem>
 #include <string>
-#include <utility>
 #include <vector>
 
 namespace continuum
@@ -30,13 +29,42 @@ public:
   /// OutputFailed on every rank, and NonPhysicalState if the law does; InvalidInput if the time does not grow.
   void add_frame(double time, const Sheet &sheet, const Sheet::Vector &u, const Sheet::Vector *v = nullptr);
 
+  /// Stores which frames there are, or takes that from there: those added later follow them.
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive.records("frames", frames_);
+  }
+
+  /// Writes the .pvd anew with the frames known, for one that names later frames as well. Collective. Throws
+  /// OutputFailed on every rank.
+  void write_collection() const;
+
+  /// Time of the last frame [s] or load factor [-]; minus infinity before the first.
+  double last_time() const;
+
   /// Path of the .pvd.
   std::filesystem::path collection() const;
 
 private:
+  struct Frame
+  {
+    double time;          // [s] or load factor [-]
+    std::size_t n_pieces; // files that the ranks wrote
+
+    template <class Archive>
+    void archive(Archive &archive)
+    {
+      archive("time", time);
+      archive("pieces", n_pieces);
+    }
+  };
+
+  std::string file_of(std::size_t frame) const;
+
   MPI_Comm communicator_;
   std::filesystem::path directory_;
   std::string name_;
-  std::vector<std::pair<double, std::string>> frames_;
+  std::vector<Frame> frames_;
 };
 } // namespace continuum

@@ -1,11 +1,9 @@
 #include "continuum/linear_solver.h"
 
+#include "continuum/direct_solver.h"
 #include "continuum/errors.h"
 
 #include <deal.II/lac/solver_cg.h>
-#include <deal.II/lac/trilinos_solver.h>
-
-#include <Amesos.h>
 
 #include <algorithm>
 #include <cmath>
@@ -14,15 +12,6 @@ using namespace dealii;
 
 namespace continuum
 {
-namespace
-{
-std::string direct_solver_name()
-{
-  static const std::string name = Amesos().Query("Amesos_Mumps") ? "Amesos_Mumps" : "Amesos_Klu";
-  return name;
-}
-} // namespace
-
 LinearSolver::LinearSolver(const Sheet &sheet, HeldBoundaries held, const LinearSettings &settings)
   : sheet_(sheet), held_(std::move(held)), settings_(settings),
     is_direct_(sheet.dof_handler().n_dofs() <= settings.direct_limit || !sheet.conditions().periodic.empty())
@@ -61,6 +50,16 @@ void LinearSolver::set_up(const Sheet::Matrix &K)
   ++n_set_ups_;
 }
 
+void LinearSolver::restore(const Sheet::Vector &u, const Sheet::Matrix &K, const Multigrid::Assembler &assemble)
+{
+  const double fresh_effort = fresh_effort_;
+  const unsigned int n_set_ups = n_set_ups_;
+  forget();
+  update(u, K, assemble);
+  fresh_effort_ = fresh_effort;
+  n_set_ups_ = n_set_ups;
+}
+
 unsigned int LinearSolver::solve(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b,
                                  const double relative_tolerance)
 {
@@ -72,7 +71,7 @@ unsigned int LinearSolver::solve(const Sheet::Matrix &K, Sheet::Vector &x, const
   try
   {
     if (is_direct_)
-      solve_directly(K, x, b);
+      DirectSolver(K).solve(x, b);
     else
       iterations = iterate(K, x, b, std::max(relative_tolerance, settings_.relative_tolerance));
   }
@@ -87,14 +86,6 @@ unsigned int LinearSolver::solve(const Sheet::Matrix &K, Sheet::Vector &x, const
   if (!std::isfinite(x.l2_norm()))
     throw LinearSolverFailed("the linear solver gave an answer that is not finite");
   return iterations;
-}
-
-void LinearSolver::solve_directly(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b) const
-{
-  SolverControl control(1, 0.);
-  TrilinosWrappers::SolverDirect direct(control,
-                                        TrilinosWrappers::SolverDirect::AdditionalData(false, direct_solver_name()));
-  direct.solve(K, x, b);
 }
 
 unsigned int LinearSolver::iterate(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b,

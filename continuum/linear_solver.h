@@ -23,7 +23,7 @@ struct LinearSettings
   MultigridSettings multigrid;
 };
 
-/// Solves K x = b for the condensed tangent of a sheet. Direct: Amesos with MUMPS, or KLU where MUMPS is missing.
+/// Solves K x = b for the condensed tangent of a sheet. Directly: by DirectSolver.
 /// Iterative, for symmetric positive definite K: conjugate gradients, preconditioned by Multigrid. A multigrid is kept
 /// for the tangents that follow (of further Newton, load and time steps) until it is worn: until the iterations have
 /// grown beyond LinearSettings::wear_limit, or fail. That changes the work and not what is solved.
@@ -47,13 +47,28 @@ public:
   /// Has multigrid set up anew at the next update: the matrices that follow are of another kind.
   void forget() { is_worn_ = true; }
 
+  /// Stores what is known of the multigrid that is kept, or takes it from there.
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive("is_worn", is_worn_);
+    archive("fresh_effort", fresh_effort_);
+    archive("set_ups", n_set_ups_);
+  }
+
+  /// Whether the next update leaves multigrid as it is.
+  bool keeps_multigrid() const { return !is_direct_ && !is_worn_; }
+
+  /// Makes the multigrid that another solver kept when it was archived: set up at the state `u` [m] and its matrix `K`,
+  /// and as worn as it was. Collective. Throws as update.
+  void restore(const Sheet::Vector &u, const Sheet::Matrix &K, const Multigrid::Assembler &assemble);
+
   /// How often multigrid was set up.
   unsigned int n_set_ups() const { return n_set_ups_; }
   bool is_direct() const { return is_direct_; }
 
 private:
   void set_up(const Sheet::Matrix &K);
-  void solve_directly(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b) const;
   unsigned int iterate(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b, double relative_tolerance);
 
   const Sheet &sheet_;

@@ -1,15 +1,14 @@
 #include "continuum/multigrid.h"
 
+#include "continuum/direct_solver.h"
 #include "continuum/errors.h"
 #include "continuum/single_precision_matrix.h"
 #include "continuum/vertex_patches.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/lac/precondition.h>
-#include <deal.II/lac/trilinos_solver.h>
 #include <deal.II/multigrid/mg_transfer_global_coarsening.h>
 
-#include <Amesos.h>
 #include <Eigen/Dense>
 
 #include <algorithm>
@@ -42,21 +41,8 @@ struct Multigrid::Level
   mutable Vector coarse_correction;
 };
 
-struct Multigrid::Coarsest
-{
-  SolverControl control{1, 0.};
-  std::unique_ptr<TrilinosWrappers::SolverDirect> solver;
-};
-
 namespace
 {
-// KLU where that is fast enough: it works on one rank, so that its rounding depends on no order of messages.
-std::string coarsest_solver_name(const types::global_dof_index n_unknowns)
-{
-  constexpr types::global_dof_index fast_enough = 10000;
-  return n_unknowns > fast_enough && Amesos().Query("Amesos_Mumps") ? "Amesos_Mumps" : "Amesos_Klu";
-}
-
 // Waves in all directions, short and long against the cells, so that no eigenvector is missed; a function of place, so
 // that the partition of the mesh does not matter.
 void fill_start(const Sheet &sheet, const AffineConstraints<double> &constraints, Multigrid::Vector &start)
@@ -137,7 +123,7 @@ double largest_eigenvalue(const SinglePrecisionMatrix &A, const VertexPatches &B
 
 Multigrid::Multigrid(const Sheet &fine, const SheetFactory &make_sheet, const MatrixFactory &make_matrix,
                      const HeldBoundaries &held, const MultigridSettings &settings)
-  : settings_(settings), coarsest_(std::make_unique<Coarsest>())
+  : settings_(settings)
 {
   if (settings.smoothing_degree == 0)
     throw InvalidInput("the smoother needs a degree of at least 1");
@@ -198,6 +184,7 @@ Multigrid::~Multigrid() = default;
 
 void Multigrid::update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix, const Assembler &assemble)
 {
+  coarsest_.reset(); // whose matrix changes
   Vector state(levels_.back()->layout);
   {
     Sheet::Vector owned = levels_.back()->sheet->make_owned();
@@ -258,17 +245,10 @@ void Multigrid::update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix,
     }
   }
 
-  try
-  {
-    coarsest_->solver = std::make_unique<TrilinosWrappers::SolverDirect>(
-      coarsest_->control, TrilinosWrappers::SolverDirect::AdditionalData(
-                            false, coarsest_solver_name(levels_.front()->sheet->dof_handler().n_dofs())));
-    coarsest_->solver->initialize(levels_.front()->tangent);
-  }
-  catch (const ExceptionBase &failure)
-  {
-    throw LinearSolverFailed(std::string("the coarsest tangent could not be factorised: ") + failure.what());
-  }
+  constexpr types::global_dof_index small = 10000; // KLU takes too long beyond
+  const bool is_small = levels_.front()->sheet->dof_handler().n_dofs() <= small;
+  coarsest_ = std::make_unique<DirectSolver>(levels_.front()->tangent,
+                                             is_small ? DirectSolver::Library::klu : DirectSolver::Library::mumps);
 }
 
 void Multigrid::cycle(const unsigned int l, Vector &z, const Vector &r) const
@@ -276,7 +256,7 @@ void Multigrid::cycle(const unsigned int l, Vector &z, const Vector &r) const
   const Level &level = *levels_[l];
   if (l == 0)
   {
-    coarsest_->solver->solve(z, r);
+    coarsest_->solve(z, r);
     return;
   }
   level.smoother.vmult(z, r);

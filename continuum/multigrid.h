@@ -11,6 +11,8 @@
 
 namespace continuum
 {
+class DirectSolver;
+
 /// How the multigrid cycle is set up.
 struct MultigridSettings
 {
@@ -31,9 +33,7 @@ struct MultigridSettings
 /// solved directly. The cycle reads tangents in single precision (SinglePrecisionMatrix).
 ///
 /// The cycle is symmetric, and positive definite as long as the tangents are. Vectors vanish at constrained degrees of
-/// freedom: those at hanging nodes, and the held ones. Repeated runs on the same ranks give the same bits, as long as
-/// the coarsest level has at most 10000 unknowns; beyond, it is left to MUMPS, whose rounding on several ranks depends
-/// on the order in which messages arrive.
+/// freedom: those at hanging nodes, and the held ones. Repeated runs on the same ranks give the same bits.
 ///
 /// All functions are collective, and every exception reaches every rank.
 class Multigrid
@@ -88,12 +88,11 @@ public:
 
 private:
   struct Level;
-  struct Coarsest;
 
   void cycle(unsigned int level, Vector &z, const Vector &r) const;
 
   MultigridSettings settings_;
   std::vector<std::unique_ptr<Level>> levels_; // from the coarsest to the finest
-  std::unique_ptr<Coarsest> coarsest_;
+  std::unique_ptr<DirectSolver> coarsest_;
 };
 } // namespace continuum

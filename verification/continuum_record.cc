@@ -63,7 +63,8 @@ void ContinuumRecord::newton(const continuum::SolverReport &report)
 
 void ContinuumRecord::motion(const continuum::DynamicSolver &solver)
 {
-  motion_.push_back({solver.time(), solver.ledger()});
+  if (motion_.empty() || motion_.back().time < solver.time())
+    motion_.push_back({solver.time(), solver.ledger()});
 }
 
 double ContinuumRecord::largest_reaction() const

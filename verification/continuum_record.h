@@ -23,13 +23,20 @@ public:
   /// The Newton iterations of a solve, on the mesh that is to be noted next.
   void newton(const continuum::SolverReport &report);
 
-  /// A state of a motion.
+  /// A state of a motion, unless it is the one noted last.
   void motion(const continuum::DynamicSolver &solver);
 
   /// Largest of |reaction of an edge| of the last mesh noted [N/m], and its relative change from the one before [-]; 0
   /// and infinite where there is none.
   double largest_reaction() const;
   double reaction_change() const;
+
+  /// Stores the states of a motion that were noted, or takes them from there.
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive.records("motion", motion_);
+  }
 
   /// Writes energy.csv and, for equilibria, reactions.csv, newton.csv and, with two meshes or more, meshes.csv.
   /// @throws OutputError
@@ -55,6 +62,13 @@ private:
   {
     double time;
     continuum::EnergyLedger ledger;
+
+    template <class Archive>
+    void archive(Archive &archive)
+    {
+      archive("time", time);
+      archive("ledger", ledger);
+    }
   };
 
   std::vector<Equilibrium> equilibria_;

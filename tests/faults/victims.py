@@ -32,6 +32,12 @@ VICTIMS = {
 }
 # Those whose bits do not depend on the number of ranks.
 ON_RANKS = list(VICTIMS)
+VICTIMS["sheet in motion"] = [
+    "continuum", str(CASES / "shear_layer.prm"), "--quiet",
+    *settings(Continuum__solution="motion", Continuum__cells_y=8, Continuum__degree=2, Continuum__time_step="5 us",
+              Left_edge__condition="held", Right_edge__condition="held", Continuum__direct_limit=0,
+              Loading__shear=0.1, Initial_state__velocity_x="6*sin(pi*y/0.02)^2*sin(pi*x/0.01)^2",
+              Time__end="0.1 ms", Output__frame_interval="0.02 ms", Output__energy_interval=2, Checkpoints__steps=3)]
 DONE = (0, 3)  # 3: strips this small need not be in balance to the last digit that a crack is held to
 
 

@@ -10,6 +10,7 @@
 #include "continuum/errors.h"
 #include "continuum/field_writer.h"
 #include "verification/affine_displacement.h"
+#include "verification/checkpoint/checkpoints.h"
 #include "verification/commands/command.h"
 #include "verification/continuum_model.h"
 #include "verification/continuum_record.h"
@@ -43,8 +44,10 @@ void note(Run &run, const continuum::SolverReport &report)
     std::cout << report.text();
 }
 
-Results equilibrium(const Case &input, ContinuumModel &model, Run &run)
+// An equilibrium leaves no checkpoints, so there are none to go on from.
+Results equilibrium(const Case &input, ContinuumModel &model, Checkpoints &checkpoints, Run &run)
 {
+  checkpoints.resume([](auto &) {});
   ContinuumRecord record;
   continuum::FieldWriter fields(MPI_COMM_WORLD, run.directory());
   auto set_up = std::make_unique<Stopwatch::Phase>(run.info().stopwatch(), "set-up");
@@ -88,7 +91,7 @@ Results equilibrium(const Case &input, ContinuumModel &model, Run &run)
                        });
                    });
   record.mesh(solver);
-  for (std::size_t cycle = 1; cycle <= n_cycles && !signal_came(); ++cycle)
+  for (std::size_t cycle = 1; cycle <= n_cycles && !signal_came_to_any_rank(); ++cycle)
   {
     solver.refine(model.mesh(), input.continuum.refined_fraction);
     find_equilibrium("adaptive cycles", [&] { return solver.equilibrate(); });
@@ -156,7 +159,7 @@ double motion_time_step(const Case &input, ContinuumModel &model)
   return input.end_time / std::ceil(input.end_time / longest); // so that the last step ends at the end
 }
 
-Results motion(const Case &input, ContinuumModel &model, Run &run)
+continuum::DynamicSettings dynamic_settings(const Case &input, ContinuumModel &model)
 {
   const ContinuumCase &c = input.continuum;
   continuum::DynamicSettings settings;
@@ -166,10 +169,12 @@ Results motion(const Case &input, ContinuumModel &model, Run &run)
   settings.linear.direct_limit = c.direct_limit;
   if (c.rule == ContinuumCase::Rule::generalised_alpha)
     settings.rule = continuum::TimeRule::generalised_alpha(c.spectral_radius);
-  const auto viscosity = homogenised_viscosity(input.lattice(), model.subject().material);
-  continuum::DynamicSolver solver(model.mesh(), model.constitution(), model.conditions(),
-                                  {input.density, model.inertia_length()}, settings, viscosity.get());
+  return settings;
+}
 
+void start(continuum::DynamicSolver &solver, const Case &input, ContinuumModel &model, Run &run)
+{
+  const ContinuumCase &c = input.continuum;
   const continuum::Sheet &sheet = solver.sheet();
   continuum::Sheet::Vector u = base_state(input, model, sheet, run);
   continuum::Sheet::Vector added = sheet.make_owned();
@@ -179,25 +184,91 @@ Results motion(const Case &input, ContinuumModel &model, Run &run)
   dealii::VectorTools::interpolate(sheet.mapping(), sheet.dof_handler(), *c.initial_velocity.field(model.extent()), v);
   u += added;
   solver.start(u, v);
+}
 
+// What a motion that has come to its end, or as far as it came, is known by.
+Results motion_results(const continuum::DynamicSolver &solver, double time_step)
+{
+  Results results;
+  const continuum::EnergyLedger &ledger = solver.ledger();
+  const auto add = [&results](const std::string &quantity, const std::string &unit, double value) {
+    results.add({"continuum", quantity, unit, {}, value, {}, {}, {}});
+  };
+  add("unknowns", "1", solver.sheet().dof_handler().n_dofs());
+  add("time step", "s", time_step);
+  add("elastic energy per thickness", "J/m", ledger.stored);
+  add("kinetic energy per thickness", "J/m", ledger.kinetic);
+  add("kinetic energy of micro-inertia per thickness", "J/m", ledger.micro_kinetic);
+  add("energy dissipated per thickness", "J/m", ledger.dissipated);
+  add("work done on the sheet per thickness", "J/m", ledger.work);
+  add("energy imbalance per thickness", "J/m", ledger.imbalance);
+  return results;
+}
+
+Results motion(const Case &input, ContinuumModel &model, Checkpoints &checkpoints, Run &run)
+{
+  const continuum::DynamicSettings settings = dynamic_settings(input, model);
+  const auto viscosity = homogenised_viscosity(input.lattice(), model.subject().material);
+  continuum::DynamicSolver solver(model.mesh(), model.constitution(), model.conditions(),
+                                  {input.density, model.inertia_length()}, settings, viscosity.get());
   ContinuumRecord record;
   continuum::FieldWriter fields(MPI_COMM_WORLD, run.directory());
+  double next_frame = input.frame_interval;
+  std::size_t step = 0; // done
+  const auto parts = [&](auto &archive)
+  {
+    archive("solver", solver);
+    archive("record", record);
+    archive("frames", fields);
+    archive("next_frame", next_frame);
+    archive("step", step);
+  };
   const auto write_frame = [&]
   {
     const auto phase = run.info().stopwatch().phase("output");
-    fields.add_frame(solver.time(), sheet, solver.displacement(), &solver.velocity());
+    fields.add_frame(solver.time(), solver.sheet(), solver.displacement(), &solver.velocity());
   };
-  write_frame();
-  record.motion(solver);
+  const auto write_tables = [&]
+  {
+    if (run.writes())
+      record.write(run.directory());
+  };
+  if (checkpoints.resume(parts))
+  {
+    // What was written after the checkpoint goes.
+    write_tables();
+    fields.write_collection();
+  }
+  else
+  {
+    start(solver, input, model, run);
+    write_frame();
+    record.motion(solver);
+  }
+  // The state as it is now, wherever the motion ends.
+  const auto write_last_state = [&]
+  {
+    record.motion(solver);
+    write_tables();
+    if (solver.time() > fields.last_time())
+      write_frame();
+  };
   Progress progress(run.talks());
-  const auto n_steps = static_cast<std::size_t>(std::ceil(input.end_time / settings.time_step * (1. - 1e-12)));
-  double next_frame = input.frame_interval;
+  try
   {
     const auto phase = run.info().stopwatch().phase("motion");
-    for (std::size_t step = 1; step <= n_steps && !signal_came(); ++step)
+    const auto n_steps = static_cast<std::size_t>(std::ceil(input.end_time / settings.time_step * (1. - 1e-12)));
+    while (step < n_steps)
     {
+      // A step takes far longer than to agree on this.
+      const bool is_stopped = signal_came_to_any_rank();
+      if (is_stopped || checkpoints.due(step))
+        checkpoints.write(step, solver.time(), parts);
+      if (is_stopped)
+        break;
       solver.step();
-      if (step % input.energy_interval == 0 || step == n_steps)
+      ++step;
+      if (step % input.energy_interval == 0)
         record.motion(solver);
       if (input.frame_interval > 0. && solver.time() >= next_frame && step < n_steps)
       {
@@ -209,24 +280,21 @@ Results motion(const Case &input, ContinuumModel &model, Run &run)
                       static_cast<double>(step) / n_steps);
     }
   }
-  write_frame();
-
-  Results results;
-  const continuum::EnergyLedger &ledger = solver.ledger();
-  const auto add = [&results](const std::string &quantity, const std::string &unit, double value) {
-    results.add({"continuum", quantity, unit, {}, value, {}, {}, {}});
-  };
-  add("unknowns", "1", sheet.dof_handler().n_dofs());
-  add("time step", "s", settings.time_step);
-  add("elastic energy per thickness", "J/m", ledger.stored);
-  add("kinetic energy per thickness", "J/m", ledger.kinetic);
-  add("kinetic energy of micro-inertia per thickness", "J/m", ledger.micro_kinetic);
-  add("energy dissipated per thickness", "J/m", ledger.dissipated);
-  add("work done on the sheet per thickness", "J/m", ledger.work);
-  add("energy imbalance per thickness", "J/m", ledger.imbalance);
-  if (run.writes())
-    record.write(run.directory());
-  return results;
+  catch (const continuum::SolverFailed &failure)
+  {
+    std::string message = failure.what();
+    try
+    {
+      write_last_state();
+    }
+    catch (const std::exception &other)
+    {
+      message += std::string("\nthe state before it could not be written: ") + other.what();
+    }
+    throw SolverError(message);
+  }
+  write_last_state();
+  return motion_results(solver, settings.time_step);
 }
 
 } // namespace
@@ -274,11 +342,14 @@ ExitCode run_continuum(const Options &options)
     print_dry_run(options, text.str());
     return ExitCode::done;
   }
+  Checkpoints checkpoints(options, parameters, input, "continuum");
   Run run(options, parameters);
+  run.note(checkpoints);
   try
   {
-    const Results results = moves ? motion(input, model, run) : equilibrium(input, model, run);
-    return signal_came() ? run.interrupted(results) : run.finish(results);
+    const Results results =
+      moves ? motion(input, model, checkpoints, run) : equilibrium(input, model, checkpoints, run);
+    return signal_came_to_any_rank() ? run.interrupted(results) : run.finish(results);
   }
   // The input was good as far as it could be tried, so it is the computed state that is not.
   catch (const continuum::NonPhysicalState &failure)

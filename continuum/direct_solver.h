@@ -1,0 +1,46 @@
+#pragma once
+
+#include "continuum/sheet.h"
+
+#include <deal.II/lac/la_parallel_vector.h>
+
+#include <memory>
+
+namespace continuum
+{
+/// LU factors of a matrix whose rows are spread over ranks. The first rank gathers it and factorises it alone: factors
+/// that ranks share are rounded as messages happen to arrive, and the same matrix has to give the same bits every time
+/// for a motion to be resumed. Sheets are plane, so their factors fit one rank.
+///
+/// All functions are collective, and throw LinearSolverFailed on every rank.
+class DirectSolver
+{
+public:
+  /// Which library factorises.
+  enum class Library
+  {
+    mumps, ///< KLU where MUMPS is missing
+    klu    ///< slower for large matrices, faster to solve with small ones
+  };
+
+  /// Factorises `K`, which must outlive the solver. Throws if it is singular.
+  explicit DirectSolver(const Sheet::Matrix &K, Library library = Library::mumps);
+  ~DirectSolver();
+  DirectSolver(const DirectSolver &) = delete;
+  DirectSolver &operator=(const DirectSolver &) = delete;
+
+  /// Solves K x = b; the vectors have no ghost entries.
+  void solve(Sheet::Vector &x, const Sheet::Vector &b);
+  void solve(dealii::LinearAlgebra::distributed::Vector<double> &x,
+             const dealii::LinearAlgebra::distributed::Vector<double> &b);
+
+private:
+  struct Factors; // of the first rank
+
+  void solve(double *x, const double *b);
+
+  MPI_Comm communicator_;
+  std::size_t n_own_; // rows
+  std::unique_ptr<Factors> factors_;
+};
+} // namespace continuum

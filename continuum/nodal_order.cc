@@ -1,0 +1,111 @@
+#include "continuum/nodal_order.h"
+
+#include "continuum/errors.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <algorithm>
+#include <array>
+#include <limits>
+
+using namespace dealii;
+
+namespace continuum
+{
+namespace
+{
+using CellName = CellId::binary_type;
+
+bool is_first_rank(const Sheet &sheet)
+{
+  return Utilities::MPI::this_mpi_process(sheet.communicator()) == 0;
+}
+
+// Of each unknown by its number, from the cells of all ranks.
+std::vector<unsigned int> places(const std::vector<std::vector<unsigned int>> &names,
+                                 const std::vector<std::vector<types::global_dof_index>> &unknowns,
+                                 const unsigned int per_cell, const types::global_dof_index n_unknowns)
+{
+  struct Cell
+  {
+    CellName name;
+    const types::global_dof_index *unknowns;
+  };
+  std::vector<Cell> cells;
+  for (std::size_t rank = 0; rank < names.size(); ++rank)
+    for (std::size_t c = 0; c * per_cell < unknowns[rank].size(); ++c)
+    {
+      Cell cell{{}, unknowns[rank].data() + c * per_cell};
+      std::copy_n(names[rank].begin() + c * cell.name.size(), cell.name.size(), cell.name.begin());
+      cells.push_back(cell);
+    }
+  std::sort(cells.begin(), cells.end(), [](const Cell &one, const Cell &two) { return one.name < two.name; });
+
+  constexpr unsigned int none = std::numeric_limits<unsigned int>::max();
+  std::vector<unsigned int> place(n_unknowns, none);
+  unsigned int next = 0;
+  for (const Cell &cell : cells)
+    for (unsigned int a = 0; a < per_cell; ++a)
+      if (unsigned int &here = place[cell.unknowns[a]]; here == none)
+        here = next++;
+  return place;
+}
+} // namespace
+
+NodalOrder::NodalOrder(const Sheet &sheet) : sheet_(sheet)
+{
+  std::vector<unsigned int> names;
+  std::vector<types::global_dof_index> unknowns;
+  const unsigned int per_cell = sheet.element().n_dofs_per_cell();
+  std::vector<types::global_dof_index> of_cell(per_cell);
+  for (const auto &cell : sheet.dof_handler().active_cell_iterators())
+    if (cell->is_locally_owned())
+    {
+      const CellName name = cell->id().to_binary<2>();
+      names.insert(names.end(), name.begin(), name.end());
+      cell->get_dof_indices(of_cell);
+      unknowns.insert(unknowns.end(), of_cell.begin(), of_cell.end());
+    }
+  const MPI_Comm communicator = sheet.communicator();
+  const auto all_names = Utilities::MPI::gather(communicator, names);
+  const auto all_unknowns = Utilities::MPI::gather(communicator, unknowns);
+  if (is_first_rank(sheet))
+    place_ = places(all_names, all_unknowns, per_cell, sheet.dof_handler().n_dofs());
+  std::vector<unsigned int> of_all = Utilities::MPI::broadcast(communicator, place_);
+  if (is_first_rank(sheet))
+    return;
+  for (const types::global_dof_index i : sheet.owned())
+    place_.push_back(of_all[i]);
+}
+
+std::vector<double> NodalOrder::gathered(const Sheet::Vector &x) const
+{
+  std::vector<double> own;
+  for (const types::global_dof_index i : sheet_.owned())
+    own.push_back(x(i));
+  // Ranks own unknowns that follow each other.
+  std::vector<double> values;
+  auto place = place_.begin();
+  for (const std::vector<double> &of_rank : Utilities::MPI::gather(sheet_.communicator(), own))
+  {
+    values.resize(place_.size());
+    for (const double value : of_rank)
+      values[*place++] = value;
+  }
+  return values;
+}
+
+void NodalOrder::spread(const std::vector<double> &values, Sheet::Vector &x) const
+{
+  const std::size_t n_unknowns = sheet_.dof_handler().n_dofs();
+  if (values.size() != n_unknowns)
+    throw InvalidInput("a stored nodal field has " + std::to_string(values.size()) + " values, and the sheet " +
+                       std::to_string(n_unknowns) + " unknowns");
+  Sheet::Vector owned = sheet_.make_owned();
+  auto place = place_.begin();
+  for (const types::global_dof_index i : sheet_.owned())
+    owned(i) = values[*place++]; // the first rank's own are the first of all
+  owned.compress(VectorOperation::insert);
+  x = owned;
+}
+} // namespace continuum

@@ -1,0 +1,283 @@
+// Motions that are stored and taken up again, on the ranks the program is started on.
+#include "continuum/dynamic_solver.h"
+#include "continuum/errors.h"
+#include "continuum/meshes.h"
+#include "memory_archive.h"
+#include "moving_sheets.h"
+#include "multigrid_cases.h"
+
+#include <deal.II/base/mpi.h>
+
+#include <gtest/gtest.h>
+
+#include <boost/serialization/map.hpp>
+
+using namespace moving_sheets;
+using continuum::DynamicSolver;
+using memory_archive::load;
+using memory_archive::Store;
+using memory_archive::stored;
+namespace edge = continuum::edge;
+
+namespace
+{
+// A sheet set in motion, of laws and conditions that use everything the kind of linear solver can take.
+class Motion
+{
+public:
+  virtual ~Motion() = default;
+
+  void start()
+  {
+    solver_->start(nullptr, std::make_shared<Field>(
+                              [](const Point<2> &X) {
+                                return Tensor<1, 2>({20. * std::sin(2. * pi * X[1] / height), 30. * X[0] / length});
+                              }));
+  }
+  DynamicSolver &solver() { return *solver_; }
+
+protected:
+  explicit Motion(const MPI_Comm communicator) : mesh_(communicator) {}
+
+  void make_solver(const continuum::Conditions &conditions, const continuum::DynamicSettings &settings,
+                   const continuum::Viscosity *viscosity)
+  {
+    solver_ = std::make_unique<DynamicSolver>(mesh_, continuum::Constitution(law_, gradient_), conditions,
+                                              continuum::Inertia{density, 0.01}, settings, viscosity,
+                                              [](const double t) { return 1. + 0.5 * std::sin(900. * t); });
+  }
+
+  const continuum::CauchyBorn law_ = rubber_network();
+  const continuum::IsotropicGradient gradient_{5e5, 0.01};
+  const continuum::FibreViscosity viscosity_ = network_viscosity(50.);
+  Mesh mesh_;
+  std::unique_ptr<DynamicSolver> solver_;
+};
+
+// Periodic, with dashpots.
+class DirectMotion : public Motion
+{
+public:
+  explicit DirectMotion(const MPI_Comm communicator) : Motion(communicator)
+  {
+    continuum::make_rectangle(mesh_, {length, height, 6, 5, false, true});
+    continuum::Conditions conditions;
+    conditions.displacements = {{edge::left, constant(0., 0.)}};
+    conditions.tractions = {{edge::right, constant(1e5, 0.)}};
+    conditions.periodic = {{edge::bottom, edge::top, 1}};
+    continuum::DynamicSettings settings{4e-4};
+    settings.degree = 2;
+    settings.rule = continuum::TimeRule::generalised_alpha(0.8);
+    make_solver(conditions, settings, &viscosity_);
+  }
+};
+
+// With hanging nodes and a normal gradient that grows with the load, by conjugate gradients.
+class MultigridMotion : public Motion
+{
+public:
+  explicit MultigridMotion(const MPI_Comm communicator) : Motion(communicator)
+  {
+    continuum::make_rectangle(mesh_, rectangle(6, 4));
+    multigrid_cases::refine_towards(mesh_, Point<2>(0.4 * length, 0.003), 2, length / 3.);
+    continuum::Conditions conditions;
+    conditions.displacements = {{edge::left, constant(0., 0.)}};
+    conditions.tractions = {{edge::right, constant(1e5, 3e4)}};
+    conditions.normal_gradients = {{edge::top, constant(0.3, 0.2)}};
+    continuum::DynamicSettings settings{4e-4};
+    settings.degree = 2;
+    settings.linear.direct_limit = 0;
+    settings.linear.multigrid.coarsest_size = 100;
+    settings.linear.wear_limit = 1.1; // so that some of the steps, and not all, set it up
+    make_solver(conditions, settings, nullptr);
+  }
+};
+
+bool is_first_rank()
+{
+  return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+}
+
+template <class T>
+T value(const Store &store, const std::string &name)
+{
+  T result;
+  std::memcpy(&result, store.at(name).data(), sizeof(T));
+  return result;
+}
+
+std::vector<std::string> differing(const Store &one, const Store &two)
+{
+  std::vector<std::string> names;
+  for (const auto &[name, bytes] : one)
+    if (two.count(name) == 0 || two.at(name) != bytes)
+      names.push_back(name);
+  EXPECT_EQ(one.size(), two.size());
+  return names;
+}
+
+constexpr unsigned int n_steps = 10;
+
+// States after each step, from the start on, of a motion that was never stopped.
+template <class M>
+std::vector<Store> undisturbed()
+{
+  M motion(MPI_COMM_WORLD);
+  motion.start();
+  std::vector<Store> states = {stored(motion.solver())};
+  while (states.size() <= n_steps)
+  {
+    motion.solver().step();
+    states.push_back(stored(motion.solver()));
+  }
+  return states;
+}
+
+template <class M>
+void expect_same_bits_after_resuming(const std::vector<Store> &states)
+{
+  for (const unsigned int at : {0u, 1u, 4u, 7u, 9u})
+  {
+    M motion(MPI_COMM_WORLD);
+    load(dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, states[at]), motion.solver());
+    EXPECT_EQ(motion.solver().time(), value<double>(states[at], "time"));
+    for (unsigned int step = at; step < n_steps; ++step)
+      motion.solver().step();
+    const Store end = stored(motion.solver());
+    if (!is_first_rank())
+      continue;
+    EXPECT_EQ(differing(end, states.back()), std::vector<std::string>()) << "resumed after step " << at;
+  }
+}
+
+// The first `n` ranks, or none on ranks that are not of them.
+class FirstRanks
+{
+public:
+  explicit FirstRanks(const int n)
+  {
+    const int rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
+    MPI_Comm_split(MPI_COMM_WORLD, rank < n ? 0 : MPI_UNDEFINED, rank, &communicator_);
+  }
+  ~FirstRanks()
+  {
+    if (*this)
+      MPI_Comm_free(&communicator_);
+  }
+  explicit operator bool() const { return communicator_ != MPI_COMM_NULL; }
+  MPI_Comm communicator() const { return communicator_; }
+
+private:
+  MPI_Comm communicator_ = MPI_COMM_NULL;
+};
+
+// A field on a mesh whose coarse cells are turned against each other, some of them refined.
+struct SheetWithHole
+{
+  explicit SheetWithHole(const MPI_Comm communicator) : mesh(communicator)
+  {
+    continuum::make_rectangle_with_hole(mesh, {length, height, 0.02, 1});
+    multigrid_cases::refine_towards(mesh, Point<2>(0.6 * length, 0.02), 2, length / 4.);
+    sheet = std::make_unique<continuum::Sheet>(mesh, law, 3);
+  }
+
+  const continuum::CauchyBorn law = rubber_network();
+  Mesh mesh;
+  std::unique_ptr<continuum::Sheet> sheet;
+};
+} // namespace
+
+TEST(MotionArchive, GoesOnWithTheSameBitsWithTheDirectSolver)
+{
+  expect_same_bits_after_resuming<DirectMotion>(undisturbed<DirectMotion>());
+}
+
+TEST(MotionArchive, GoesOnWithTheSameBitsWithAMultigridThatIsKept)
+{
+  const std::vector<Store> states = undisturbed<MultigridMotion>();
+  // Stored with a fresh multigrid, with one that has served for some steps, and with a worn one.
+  const auto set_ups = [&](const unsigned int at) { return value<unsigned int>(states[at], "linear_solver/set_ups"); };
+  unsigned int n_keeping = 0;
+  for (unsigned int at = 1; at <= n_steps; ++at)
+    n_keeping += set_ups(at) == set_ups(at - 1);
+  EXPECT_GT(n_keeping, 0u);
+  EXPECT_GT(set_ups(n_steps), set_ups(0));
+  expect_same_bits_after_resuming<MultigridMotion>(states);
+}
+
+TEST(MotionArchive, IsTakenUpByAnyNumberOfRanks)
+{
+  const int n_ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+  for (int writers = 1; writers <= n_ranks; ++writers)
+  {
+    const FirstRanks writing(writers);
+    Store at_stop;
+    Store at_end;
+    if (writing)
+    {
+      MultigridMotion motion(writing.communicator());
+      motion.start();
+      for (unsigned int step = 0; step < 4; ++step)
+        motion.solver().step();
+      at_stop = stored(motion.solver());
+      motion.solver().step();
+      at_end = stored(motion.solver());
+    }
+    at_stop = dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, at_stop);
+    for (int readers = 1; readers <= n_ranks; ++readers)
+    {
+      const FirstRanks reading(readers);
+      if (!reading)
+        continue;
+      MultigridMotion motion(reading.communicator());
+      load(at_stop, motion.solver());
+      const Store again = stored(motion.solver());
+      motion.solver().step();
+      if (!is_first_rank())
+        continue;
+      EXPECT_EQ(differing(again, at_stop), std::vector<std::string>()) << writers << " to " << readers;
+      // Round-off, in sums of another order, and conjugate gradients that stop at 1e-8.
+      const double energy = value<double>(at_end, "ledger/stored") + value<double>(at_end, "ledger/kinetic");
+      EXPECT_NEAR(motion.solver().ledger().stored, value<double>(at_end, "ledger/stored"), 1e-9 * energy);
+      EXPECT_NEAR(motion.solver().ledger().work, value<double>(at_end, "ledger/work"), 1e-9 * energy);
+    }
+  }
+}
+
+TEST(MotionArchive, PutsNodalValuesInTheirPlacesOnAnyNumberOfRanks)
+{
+  using continuum::NodalOrder;
+  const auto field = [](const Point<2> &X, const unsigned int component)
+  { return std::sin(40. * X[0] + 3. * component) + 7. * X[1]; };
+  const SheetWithHole whole(MPI_COMM_SELF);
+  continuum::Sheet::Vector u = whole.sheet->make_owned();
+  std::vector<dealii::types::global_dof_index> dofs(whole.sheet->element().n_dofs_per_cell());
+  for (const auto &cell : whole.sheet->dof_handler().active_cell_iterators())
+  {
+    cell->get_dof_indices(dofs);
+    for (unsigned int a = 0; a < dofs.size(); ++a)
+      u(dofs[a]) =
+        field(whole.sheet->mapping().transform_unit_to_real_cell(cell, whole.sheet->element().unit_support_point(a)),
+              whole.sheet->element().system_to_component_index(a).first);
+  }
+  const std::vector<double> values = NodalOrder(*whole.sheet).gathered(u);
+
+  const SheetWithHole shared(MPI_COMM_WORLD);
+  continuum::Sheet::Vector x = shared.sheet->make_ghosted();
+  const NodalOrder order(*shared.sheet);
+  order.spread(values, x);
+  for (const auto &cell : shared.sheet->dof_handler().active_cell_iterators())
+    if (cell->is_locally_owned())
+    {
+      cell->get_dof_indices(dofs);
+      for (unsigned int a = 0; a < dofs.size(); ++a)
+      {
+        const Point<2> X =
+          shared.sheet->mapping().transform_unit_to_real_cell(cell, shared.sheet->element().unit_support_point(a));
+        // A node may be placed by another cell that it belongs to, with other rounding.
+        ASSERT_NEAR(x(dofs[a]), field(X, shared.sheet->element().system_to_component_index(a).first), 1e-13);
+      }
+    }
+  EXPECT_EQ(order.gathered(x), is_first_rank() ? values : std::vector<double>());
+  EXPECT_THROW(order.spread(std::vector<double>(values.size() - 1), x), continuum::InvalidInput);
+}
