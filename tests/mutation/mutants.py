@@ -77,7 +77,7 @@ _EXCHANGES = [
     ("comparison", r" != ", " == "),
     ("comparison", r"hn::(Lt|Gt)\(", lambda m: {"Lt": "hn::Gt(", "Gt": "hn::Lt("}[m.group(1)]),
     ("constant", r"(?<![\w.])(?:\d+\.\d*|\.\d+|\d+)(?:e-?\d+)?(?![\w.])", lambda m: _literal(m.group(0))),
-    ("x and y", r"\b(v|a|f|n|d|dv|)([xy])(\(\)|_?)(?=\b|[^\w])",
+    ("x and y", r"(?<![&*])\b(v|a|f|n|d|dv|)([xy])(\(\)|_?)(?=\b|[^\w])",
      lambda m: m.group(1) + {"x": "y", "y": "x"}[m.group(2)] + m.group(3)),
     ("least and greatest", r"\b(min|max)\(", lambda m: {"min": "max(", "max": "min("}[m.group(1)]),
     ("least and greatest", r"hn::(Min|Max)\(", lambda m: {"Min": "hn::Max(", "Max": "hn::Min("}[m.group(1)]),
@@ -91,7 +91,7 @@ _EXCHANGES = [
     ("function", r"std::sqrt\(", "("),
     ("function", r"std::abs\(", "("),
     ("function", r"\.(transpose)\(\)", ""),
-    ("choice", r" \? ([^?:\n]+?) : ([^?:\n]+?)(?=[;,)\]]|$)", lambda m: f" ? {m.group(2)} : {m.group(1)}"),
+    ("choice", r" \? ([\w.]+) : ([\w.]+)(?=[;,)\]]|$)", lambda m: f" ? {m.group(2)} : {m.group(1)}"),
     ("factor 2", r"(?<=return )(?=[\w(-][^;{]*;$)", "2. * "),
 ]
 _EXCHANGES = [(kind, re.compile(pattern), to) for kind, pattern, to in _EXCHANGES]
