@@ -203,8 +203,9 @@ TEST(Objectivity, CrackInASheetOnItsSideIsTheSameCrack)
   }
 }
 
-// Any other turn changes round-off. Breaks are the same ones, one after another, until that has grown: stretches of
-// bonds differ by 1e-13 at first, and limits are passed at some 1e-2 a step.
+// Any other turn changes round-off: positions by 2^-53 of the sheet's size, stretches by 1e-14 at first. A limit is
+// passed at some 1e-3 a step, so breaks are the same ones, in the same steps, until that has grown by many powers of
+// ten. Energies are allowed a growth by 1e5.
 TEST(Objectivity, TurnedSheetBreaksTheSameBonds)
 {
   Crack::Choice choice;

@@ -42,8 +42,8 @@ def code_only(text):
 
 
 # What is no arithmetic of the program: declarations of names, checks of invariants, what is only said.
-_NO_CODE = re.compile(r"^\s*(?:#|using\b|namespace\b|template\b|class\b|friend\b|static_assert\b|throw\b|assert\b|HWY_EXPORT\b|"
-                      r"HWY_UNROLL\b|public:|private:|protected:|[{}();]*\s*$)|\bassert\(")
+_NO_CODE = re.compile(r"^\s*(?:#|(?:using|namespace|template|class|friend|static_assert|throw|HWY_EXPORT|HWY_UNROLL)\b|"
+                      r"(?:public|private|protected):|[{}();]*\s*$)|\bassert\(")
 
 
 def _literal(number):
@@ -99,8 +99,9 @@ _TEMPLATE_NUMBERS = re.compile(r"<[\w:]*(?:(?:, )?\d+)+>")  # sizes of types: ot
 # A whole statement on a line of its own: a call, an assignment to what exists, a jump.
 _STATEMENT = re.compile(r"^\s*(?:(?:\+\+|--|\*)?[A-Za-z_][\w:.\->\[\]() *+%,]*(?:\([^{}]*\)| [-+*/|&]?= [^{}]+)|\+\+[^{};]+|"
                         r"continue|break);$")
-_DECLARATION = re.compile(r"^\s*(?:const|static|constexpr|auto|double|bool|int|unsigned|return|std::(?:vector|array|size_t|string|"
-                          r"optional|ptrdiff_t|pair)|[A-Z]\w*(?:::\w+)*(?:<.*>)? [&*]?\w+ ?[=({;]|Eigen::\w+ \w|[\w:]+<[^;]*> [&*]?\w+)")
+_DECLARATION = re.compile(r"^\s*(?:const|static|constexpr|auto|double|bool|int|unsigned|return|"
+                          r"std::(?:vector|array|size_t|string|optional|ptrdiff_t|pair)|"
+                          r"[A-Z]\w*(?:::\w+)*(?:<.*>)? [&*]?\w+ ?[=({;]|Eigen::\w+ \w|[\w:]+<[^;]*> [&*]?\w+)")
 
 
 def _closing(line, begin):

@@ -32,7 +32,10 @@ build lattice_tests: phony tests/lattice_tests
 """
 EMPTY = """#include "lattice/bond_law.h"
 #include <gtest/gtest.h>
-TEST(BondLaw, IsCompiled) { EXPECT_NE(lattice::LinearBond{1.}.energy(2.) + lattice::force(lattice::LinearBond{1.}, 2.), -1.); }
+TEST(BondLaw, IsCompiled)
+{
+  EXPECT_NE(lattice::LinearBond{1.}.energy(2.), -1.);
+}
 """
 
 
@@ -44,7 +47,8 @@ class Faults(unittest.TestCase):
             return [(m.line, m.kind, m.after.strip()) for m in mutants.of_file(path, "lattice/file.cc")]
 
     def test_are_what_they_are_called(self):
-        found = self.found("double f(double x)\n{\n  if (x < 1.5 && x != 0.)\n    y += g(x, 2);\n  return x - h[i - 1];\n}\n")
+        found = self.found("double f(double x)\n{\n  if (x < 1.5 && x != 0.)\n    y += g(x, 2);\n"
+                           "  return x - h[i - 1];\n}\n")
         for expected in [(3, "comparison", "if (x <= 1.5 && x != 0.)"), (3, "comparison", "if (x > 1.5 && x != 0.)"),
                          (3, "comparison", "if (x < 1.5 && x == 0.)"), (3, "logic", "if (x < 1.5 || x != 0.)"),
                          (3, "constant", "if (x < 3.0 && x != 0.)"), (3, "constant", "if (x < 1.5 && x != 1.)"),
@@ -54,8 +58,9 @@ class Faults(unittest.TestCase):
             self.assertIn(expected, found)
 
     def test_are_in_code_alone(self):
-        self.assertEqual(self.found('#include "a - b.h"\n// a - b\n/* a - b\n   c < 1 */\n  throw Failed("a - b",\n               1 - 2);\n'
-                                    '  assert(a < b);\n  static_assert(a < 1);\n  std::array<double, 6> a;\n  using A = B<1>;\n'), [])
+        self.assertEqual(self.found('#include "a - b.h"\n// a - b\n/* a - b\n   c < 1 */\n'
+                                    '  throw Failed("a - b",\n               1 - 2);\n  assert(a < b);\n'
+                                    '  static_assert(a < 1);\n  std::array<double, 6> a;\n  using A = B<1>;\n'), [])
         self.assertEqual([after for _, _, after in self.found('  const char *text = "1 - 2"; // 3\n')], [])
         # A statement that goes on from the line before is none.
         self.assertNotIn("dropped", [kind for _, kind, _ in self.found("  const double sum = a[0] +\n    f(1);\n")])
@@ -115,15 +120,17 @@ class Project(unittest.TestCase):
         self.build = self.root / "build" / "release"
         self.build.mkdir(parents=True)
         (self.build / "build.ninja").write_text(BUILD.format(cxx=CXX, root=self.root), encoding="utf-8")
-        commands = subprocess.run(["ninja", "-t", "compdb", "compile"], cwd=self.build, stdout=subprocess.PIPE, text=True, check=True)
+        commands = subprocess.run(["ninja", "-t", "compdb", "compile"], cwd=self.build, stdout=subprocess.PIPE, text=True,
+                                  check=True)
         (self.build / "compile_commands.json").write_text(commands.stdout, encoding="utf-8")
 
     def planted(self, *arguments):
         """@return exit status, output and JSON of run.py"""
         record = self.root / "record.json"
         before = {path: path.read_bytes() for path in self.root.glob("*/**/*.*") if "build" not in path.parts}
-        done = subprocess.run([sys.executable, str(pathlib.Path(__file__).with_name("run.py")), "--root", str(self.root), "--only",
-                               "lattice/bond_law.h", "--programs", "lattice_tests", "--output", str(record), *arguments],
+        done = subprocess.run([sys.executable, str(pathlib.Path(__file__).with_name("run.py")), "--root", str(self.root),
+                               "--only", "lattice/bond_law.h", "--programs", "lattice_tests", "--output", str(record),
+                               *arguments],
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
         self.assertIn(done.returncode, (0, 1), done.stderr)
         self.assertEqual({path: path.read_bytes() for path in before}, before)

@@ -11,6 +11,7 @@ import concurrent.futures
 import json
 import pathlib
 import shutil
+import signal
 import sys
 import tempfile
 import time
@@ -35,14 +36,15 @@ FILES = {
                   "fibres.cc", "gradient_law.cc", "isotropic_gradient.cc", "lattice_gradient.cc", "local_to_global.cc",
                   "material.cc", "mooney_rivlin.cc", "point_density.cc", "sheet_assembly.cc", "viscosity.cc",
                   "viscous_forces.cc"],
-    "verification": ["affine_displacement.h", "homogenisation.cc", "order_fit.h", "energy/energy_claim.cc", "energy/wave_energy.cc",
-                     "intrinsic_length/dispersion.cc", "intrinsic_length/edge_layer.cc",
+    "verification": ["affine_displacement.h", "homogenisation.cc", "order_fit.h", "energy/energy_claim.cc",
+                     "energy/wave_energy.cc", "intrinsic_length/dispersion.cc", "intrinsic_length/edge_layer.cc",
                      "intrinsic_length/gradient_positivity.cc", "intrinsic_length/intrinsic_length_claim.cc",
                      "prestretch/cut_claim.cc", "prestretch/cut_comparison.cc", "prestretch/cut_lattice.cc",
                      "prestretch/cut_study.cc", "prestretch/equivalent_sheet.cc", "prestretch/prestretch_claim.cc",
                      "wave_speeds/bloch.cc", "wave_speeds/continuum_waves.cc", "wave_speeds/lattice_waves.cc",
                      "wave_speeds/oscillation.cc", "wave_speeds/plane_waves.cc", "wave_speeds/wave_speeds_claim.cc"]}
-STAGES = {"lattice": ["lattice_tests", "lattice_ranks_tests"], "continuum": ["continuum_tests"], "verification": ["claims_tests"]}
+STAGES = {"lattice": ["lattice_tests", "lattice_ranks_tests"], "continuum": ["continuum_tests"],
+          "verification": ["claims_tests"]}
 PROGRAMS = {"lattice_tests": GoogleTests(), "lattice_ranks_tests": Ranks(3), "continuum_tests": GoogleTests(),
             "claims_tests": GoogleTests(), "verification_tests": GoogleTests()}
 
@@ -50,15 +52,16 @@ PROGRAMS = {"lattice_tests": GoogleTests(), "lattice_ranks_tests": Ranks(3), "co
 def arguments():
     parser = argparse.ArgumentParser(prog="tests/mutation/run", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--only", nargs="+", metavar="FILE", help="of these sources or folders, relative to the root; by default those "
-                        "that carry the physics")
+    parser.add_argument("--only", nargs="+", metavar="FILE", help="of these sources or folders, relative to the root; by "
+                        "default those that carry the physics")
     parser.add_argument("--sample", type=int, metavar="N", help="N faults, in turns from each file; by default all of them")
     parser.add_argument("--seed", default="1", metavar="S", help="what the sample depends on (1)")
     parser.add_argument("--list", action="store_true", help="show the faults, plant none")
-    parser.add_argument("--programs", nargs="+", choices=PROGRAMS, metavar="NAME", help="test programs to run instead of those of the "
-                        "folder that a fault is in, of " + ", ".join(PROGRAMS))
+    parser.add_argument("--programs", nargs="+", choices=PROGRAMS, metavar="NAME", help="test programs to run instead of "
+                        "those of the folder that a fault is in, of " + ", ".join(PROGRAMS))
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="faults planted at once (1)")
-    parser.add_argument("--output", type=pathlib.Path, metavar="FILE", help="JSON file that gets every fault with its verdict")
+    parser.add_argument("--output", type=pathlib.Path, metavar="FILE", help="JSON file that gets every fault with its "
+                        "verdict; what it says was killed before is not planted again")
     parser.add_argument("--at-least", type=float, default=0.9, metavar="SHARE", help="killed, or the exit status is 1 (0.9)")
     parser.add_argument("--root", type=pathlib.Path, default=ROOT, help="folder of the sources")
     parser.add_argument("--build", type=pathlib.Path, help="folder of the test programs (ROOT/build/release)")
@@ -88,10 +91,19 @@ def files(root, only):
 class Report:
     """What came out so far, on the screen and in a file."""
 
-    def __init__(self, path, equivalents, n_mutants):
-        self._path, self._equivalents, self._n_mutants = path, equivalents, n_mutants
+    def __init__(self, path, equivalents, chosen):
+        self._path, self._equivalents, self._n_mutants = path, equivalents, len(chosen)
         self._records = []
         self.survivors = []
+        self.rest = list(chosen)  # still to be planted
+        if path and path.exists():
+            known = {(r["file"], r["line"], r["before"], r["after"]): r
+                     for r in json.loads(path.read_text(encoding="utf-8"))["mutants"] if r["outcome"] in ("killed", "no program")}
+            for mutant in chosen:
+                record = known.get((mutant.file, mutant.line, mutant.before.strip(), mutant.after.strip()))
+                if record:
+                    self._records.append(record)
+                    self.rest.remove(mutant)
 
     def add(self, mutant, verdict, seconds):
         outcome = verdict.outcome
@@ -103,8 +115,8 @@ class Report:
         self._records.append({"file": mutant.file, "line": mutant.line, "kind": mutant.kind, "before": mutant.before.strip(),
                               "after": mutant.after.strip(), "outcome": outcome, "by": reason or verdict.by,
                               "seconds": round(seconds, 1)})
-        print(f"[{len(self._records)}/{self._n_mutants}] {outcome:10} {seconds:4.0f} s  {mutant.file}:{mutant.line} {mutant.kind}  "
-              f"{verdict.by}", file=sys.stderr, flush=True)
+        print(f"[{len(self._records)}/{self._n_mutants}] {outcome:10} {seconds:4.0f} s  {mutant.file}:{mutant.line} "
+              f"{mutant.kind}  {verdict.by}", file=sys.stderr, flush=True)
         if self._path:
             self._path.parent.mkdir(parents=True, exist_ok=True)
             self._path.write_text(json.dumps({"score": self.score(), "mutants": self._records}, indent=1) + "\n",
@@ -137,7 +149,8 @@ def tested(chosen, options, report):
     with tempfile.TemporaryDirectory(prefix="mutation-", dir=options.build.parent) as place:
         folder = pathlib.Path(place)
         scratch = Scratch(options.root, options.build, folder, {name: p for name, p in PROGRAMS.items() if name in names})
-        scratch.measure(lambda program: print(f"{program} without a fault", file=sys.stderr, flush=True))
+        print("Running tests without a fault", file=sys.stderr, flush=True)
+        scratch.measure(options.build / "test_times")
 
         def test(number):
             start, own = time.monotonic(), folder / f"mutant-{number}"
@@ -156,6 +169,7 @@ def tested(chosen, options, report):
 
 
 def main():
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that the copy goes
     options = arguments()
     try:
         chosen = [mutant for file in files(options.root, options.only)
@@ -166,8 +180,9 @@ def main():
             print("\n".join(map(str, chosen)))
             return 0
         equivalents = Equivalents.read(EQUIVALENTS)
-        report = Report(options.output, equivalents, len(chosen))
-        tested(chosen, options, report)
+        report = Report(options.output, equivalents, chosen)
+        if report.rest:
+            tested(report.rest, options, report)
     except (Failed, OSError, ValueError) as error:
         print(f"tests/mutation/run: {error}", file=sys.stderr)
         return 2

@@ -59,11 +59,11 @@ class Scratch:
                     if re.search(rf" -o \S*\b{name} ", line))
         return shlex.split(line.split("&&")[1])
 
-    def measure(self, report):
-        """Times of all tests without a fault. @param report is told the name of each program"""
+    def measure(self, folder):
+        """Times of all tests without a fault. @param folder keeps them until a program is built anew"""
+        folder.mkdir(exist_ok=True)
         for name, program in self._programs.items():
-            report(name)
-            program.measure(self._build / _output(self._links[name]))
+            program.measure(self._build / _output(self._links[name]), folder / f"{name}.json")
 
     def test(self, mutant, stages, folder):
         """Plants a mutant, builds and tests it.
@@ -138,7 +138,8 @@ class Scratch:
         command = [own.pop(part, part) for part in link]
         at = command.index("-o")
         command[at:at + 2] = ["-o", str(program), *own.values()]
-        done = subprocess.run(command, cwd=self._build, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, check=False)
+        done = subprocess.run(command, cwd=self._build, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                              check=False)
         if done.returncode != 0:
             raise Failed(f"{name} cannot be linked:\n{done.stdout[-2000:]}")
         return program

@@ -4,6 +4,7 @@ import json
 import os
 import re
 import resource
+import shutil
 import signal
 import subprocess
 import time
@@ -65,29 +66,36 @@ def run_limited(command, folder, seconds, limits=Limits()):
     return Verdict("killed", failed.group(1) if failed else f"signal {-status}" if status < 0 else f"exit {status}")
 
 
+def is_newer(record, path):
+    return record.exists() and record.stat().st_mtime > path.stat().st_mtime
+
+
 class GoogleTests:
     """A program of GoogleTest on one rank."""
 
     def __init__(self):
         self._seconds = {}  # test: time without a fault
 
-    def measure(self, path):
-        """Runs the program without a fault. @throws Failed if it fails"""
-        record = path.parent / "times.json"
-        verdict = run_limited([str(path), "--gtest_brief=1", f"--gtest_output=json:{record}"], path.parent, 600.)
-        if verdict.outcome != "survived":
-            raise Failed(f"{path.name} fails without a fault: {verdict.by}")
+    def measure(self, path, record):
+        """Runs the program without a fault, unless that was done since it was built. @param record file that keeps the
+        times @throws Failed if it fails"""
+        if not is_newer(record, path):
+            written = path.parent / "times.json"
+            verdict = run_limited([str(path), "--gtest_brief=1", f"--gtest_output=json:{written}"], path.parent, 600.)
+            if verdict.outcome != "survived":
+                raise Failed(f"{path.name} fails without a fault: {verdict.by}")
+            shutil.copyfile(written, record)
         for suite in json.loads(record.read_text(encoding="utf-8"))["testsuites"]:
             for test in suite["testsuite"]:
                 self._seconds[f"{suite['name']}.{test['name']}"] = float(test["time"].rstrip("s"))
 
     def _parts(self, suites):
-        """What is run before what: first the suites named, then what is quick."""
+        """What is run before what: all that is quick, then one test after another; first the suites named."""
         # Names of tests with parameters have theirs before and after them.
-        named = [t for t in self._seconds if suites.intersection(re.split(r"[/.]", t))]
-        others = [t for t in self._seconds if t not in named]
-        quick = [t for t in others if self._seconds[t] < 0.5]
-        return [part for part in (named, quick, [t for t in others if t not in quick]) if part]
+        named = {t for t in self._seconds if suites.intersection(re.split(r"[/.]", t))}
+        quick = {t for t in self._seconds if self._seconds[t] < 0.5}
+        slow = sorted(self._seconds.keys() - quick, key=lambda t: (t not in named, self._seconds[t]))
+        return [sorted(part) for part in (quick & named, quick - named) if part] + [[test] for test in slow]
 
     def run(self, path, suites):
         """@param suites names of test suites that know the fault's file @return Verdict"""
@@ -106,12 +114,14 @@ class Ranks:
         self._start = ["env", f"LATCON_RANKS={ranks}", "mpirun", "--oversubscribe", "-np", str(ranks)]
         self._seconds = 0.
 
-    def measure(self, path):
-        start = time.monotonic()
-        verdict = run_limited([*self._start, str(path)], path.parent, 600.)
-        if verdict.outcome != "survived":
-            raise Failed(f"{path.name} fails without a fault: {verdict.by}")
-        self._seconds = time.monotonic() - start
+    def measure(self, path, record):
+        if not is_newer(record, path):
+            start = time.monotonic()
+            verdict = run_limited([*self._start, str(path)], path.parent, 600.)
+            if verdict.outcome != "survived":
+                raise Failed(f"{path.name} fails without a fault: {verdict.by}")
+            record.write_text(json.dumps(time.monotonic() - start), encoding="utf-8")
+        self._seconds = json.loads(record.read_text(encoding="utf-8"))
 
     def run(self, path, _):
         return run_limited([*self._start, str(path), "--gtest_brief=1"], path.parent, self._seconds)
