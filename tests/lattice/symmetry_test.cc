@@ -177,7 +177,7 @@ TEST_P(Similarity, CrackInOtherUnitsIsTheSameCrack)
 // A quarter turn exchanges x and y and a sign. Sums of two squares have the same bits then, and with them everything.
 TEST(Objectivity, CrackInASheetOnItsSideIsTheSameCrack)
 {
-  for (const Toughening &toughening : {Toughening(NoToughening{}), Toughening(RetractionToughening{0.5, 3.})})
+  for (const Toughening &toughening : {Toughening(NoToughening{}), Toughening(RetractionToughening{0.8, 3.})})
   {
     Crack::Choice choice;
     choice.toughening = toughening;
@@ -188,6 +188,11 @@ TEST(Objectivity, CrackInASheetOnItsSideIsTheSameCrack)
     EXPECT_GT(breaks.size(), 50u);
     EXPECT_EQ(turned.run(2500), breaks);
     const State &a = upright.simulation->state(), &b = turned.simulation->state();
+    std::size_t toughened = 0;
+    for_each_bond(a, upright.sheet,
+                  [&](std::size_t place, std::size_t kind, std::size_t)
+                  { toughened += a.bonds.toughened(place, kind) ? 1 : 0; });
+    EXPECT_EQ(toughened > 0, std::holds_alternative<RetractionToughening>(toughening));
     for (std::size_t place = 0; place < a.x.size(); ++place)
       if (upright.sheet.is_site(place))
       {
