@@ -23,14 +23,28 @@ timestep {time_step!r}
 thermo_style custom step pe ke
 thermo_modify norm no format float %.17g
 thermo {steps}
-{runs}
+{dump}{runs}
+"""
+DUMP = """dump positions all custom {steps} {file} id x y
+dump_modify positions sort id format float %.17g
 """
 
 
-def input_text(data, time_step, steps, repetitions):
-    """`steps` steps that are not timed, and `repetitions` times as many that are."""
+def input_text(data, time_step, steps, repetitions, positions=None):
+    """`steps` steps that are not timed, and `repetitions` times as many that are. @param positions file that gets them
+    before and after each of these times"""
     return INPUT.format(data=data, time_step=time_step, steps=steps,
+                        dump="" if positions is None else DUMP.format(steps=steps, file=positions),
                         runs="\n".join([f"run {steps}"] * (repetitions + 1)))
+
+
+def read_positions(text):
+    """{step: [(x, y) of each site, in the order of their numbers]} [m] of the file that `input_text` asks for."""
+    frames = {}
+    for part in text.split("ITEM: TIMESTEP\n")[1:]:
+        header, rows = part.split("ITEM: ATOMS id x y")
+        frames[int(header.split("\n")[0])] = [tuple(map(float, row.split()[1:])) for row in rows.strip().split("\n")]
+    return frames
 
 
 def read_log(text):

@@ -1,10 +1,12 @@
 // Moves a sheet by a number of steps and prints what that took, as JSON: what whole programs are compared by.
 //
-// lattice_motion WORK SITES STEPS REPETITIONS THREADS [LAMMPS_DATA]
+// lattice_motion WORK SITES STEPS REPETITIONS THREADS [LAMMPS_DATA [POSITIONS]]
 //   WORK         everything, nearest or linear
 //   SITES        number of sites, about
 //   STEPS        steps of a repetition; as many come before the first and are not timed
 //   LAMMPS_DATA  file that gets the sheet as LAMMPS reads it, before it moves; linear bonds alone
+//   POSITIONS    file that gets x and y of all sites [m] after each of these times, a site a line in the order of
+//   LAMMPS
 #include <chrono>
 #include <cstdio>
 #include <fstream>
@@ -28,14 +30,31 @@ double peak_memory()
   return 1024. * static_cast<double>(usage.ru_maxrss); // Linux counts in kibibytes
 }
 
-nlohmann::ordered_json moved(benchmarks::Motion &motion, std::size_t steps, std::size_t repetitions)
+void write_positions(const benchmarks::Motion &motion, std::ofstream &out)
+{
+  const lattice::TriangularLattice &sheet = motion.sheet;
+  out.precision(17);
+  for (std::size_t row = 0; row < sheet.rows(); ++row)
+    for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
+    {
+      const std::size_t place = sheet.index(row, column);
+      out << motion.simulation.state().x[place] << " " << motion.simulation.state().y[place] << "\n";
+    }
+}
+
+/// @param positions gets them after each repetition, if it is open
+nlohmann::ordered_json moved(benchmarks::Motion &motion, std::size_t steps, std::size_t repetitions,
+                             std::ofstream &positions)
 {
   const auto advance = [&]
   {
     const auto start = std::chrono::steady_clock::now();
     for (std::size_t step = 0; step < steps; ++step)
       motion.simulation.step();
-    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    const std::chrono::duration<double> taken = std::chrono::steady_clock::now() - start;
+    if (positions.is_open())
+      write_positions(motion, positions);
+    return taken.count();
   };
   advance();
   std::vector<double> seconds;
@@ -56,7 +75,7 @@ nlohmann::ordered_json moved(benchmarks::Motion &motion, std::size_t steps, std:
 int run(const std::vector<std::string> &arguments)
 {
   if (arguments.size() < 5)
-    throw std::invalid_argument("lattice_motion WORK SITES STEPS REPETITIONS THREADS [LAMMPS_DATA]");
+    throw std::invalid_argument("lattice_motion WORK SITES STEPS REPETITIONS THREADS [LAMMPS_DATA [POSITIONS]]");
   omp_set_num_threads(std::stoi(arguments[4]));
   const benchmarks::Work work = benchmarks::work_of(arguments[0]);
   benchmarks::Motion motion(work, std::stod(arguments[1]));
@@ -66,7 +85,12 @@ int run(const std::vector<std::string> &arguments)
       throw std::invalid_argument("LAMMPS' bonds are the linear ones");
     benchmarks::write_lammps_data(motion.simulation, arguments[5]);
   }
-  std::cout << moved(motion, std::stoul(arguments[2]), std::stoul(arguments[3])).dump() << "\n";
+  std::ofstream positions;
+  if (arguments.size() > 6)
+    positions.open(arguments[6]);
+  std::cout << moved(motion, std::stoul(arguments[2]), std::stoul(arguments[3]), positions).dump() << "\n";
+  if (positions.is_open() && !positions.flush())
+    throw std::runtime_error("cannot write " + arguments[6]);
   return 0;
 }
 

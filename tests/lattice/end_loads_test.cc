@@ -147,6 +147,26 @@ TEST(EndLoads, KeepTheTimeStepStableWhereItHasLeastRoom)
     EXPECT_LT(reflection(material, orientation, Eigen::Vector2d(1., 0.), 8., false), 0.1);
 }
 
+// Loads are on free sites of ends that are loaded, nowhere else, whatever the other edges are.
+TEST_P(Ends, LoadTheirFreeSitesAlone)
+{
+  const TriangularLattice sheet = sheets::square(14, orientation());
+  const Material bonds = material();
+  for (const bool held : {true, false}) // the long edges
+    for (const auto &[left, right] : {std::pair{End::free, End::held}, std::pair{End::held, End::absorbing}})
+    {
+      const State state = homogeneous_state(sheet, bonds, sheared(), {false, false, held, held});
+      EndLoads loads(sheet, bonds, state, sheared(), left, right);
+      const std::vector<SiteForce> &forces = loads.evaluate(state, state.vx, state.vy);
+      EXPECT_FALSE(forces.empty());
+      for (const SiteForce &on : forces)
+      {
+        EXPECT_EQ(state.held[on.place], 0);
+        EXPECT_EQ(sheet.reference(on.place).x() < 0.5 * sheet.length(), right == End::held);
+      }
+    }
+}
+
 TEST(EndLoads, NeedWavesToAbsorb)
 {
   const TriangularLattice sheet = sheets::square(10);

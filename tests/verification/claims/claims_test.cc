@@ -106,6 +106,17 @@ TEST(Energy, FailsForAWrongDensity)
   EXPECT_EQ(energy_claim(wrong, 10).verdict(), Verdict::fails);
 }
 
+TEST(Energy, FailsForAMooneyRivlinLawThatIsNotElliptic)
+{
+  Subject wrong = subject(subjects::paper_case());
+  EXPECT_GT(wrong.mooney_rivlin.smallest_acoustic_eigenvalue, 0.);
+  wrong.mooney_rivlin.smallest_acoustic_eigenvalue *= -1e-3;
+  const Results results = energy_claim(wrong, 10);
+  for (const Result &row : results.rows())
+    EXPECT_EQ(row.verdict() == Verdict::fails, row.quantity.find("slowest") != std::string::npos) << row.quantity;
+  EXPECT_EQ(results.verdict(), Verdict::fails);
+}
+
 TEST(Energy, FailsForAWrongMooneyRivlinConstant)
 {
   for (double continuum::MooneyRivlin::Constants::*constant :

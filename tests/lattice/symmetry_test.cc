@@ -1,0 +1,410 @@
+// What a sheet does must not depend on where it is, how it is turned, which way up it is, how large it is or which way
+// time runs. Where only signs, the order of x and y, or powers of two change, bits must not change either.
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <tuple>
+
+#include <gtest/gtest.h>
+
+#include "lattice/simulation.h"
+#include "tests/lattice/smooth_motion.h"
+
+namespace
+{
+
+using namespace lattice;
+
+const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
+constexpr double breaking_stretch = 3.05;
+
+// Units of a sheet in those of another one: whatever has none, angles, stretches, numbers of bonds, stays as it is.
+//
+// With lengths l, stresses e and densities r times as large, f = m a reads e l f = (r l^2) (l / t^2) a for the force
+// per thickness of a bond, A0 psi' with A0 ~ l, and of a contact, k o, hence the time t = l sqrt(r / e), and for
+// dashpots, A0 eta v / l, a viscosity e t. Velocities go with l / t, forces with e l, energies per thickness with e
+// l^2.
+struct Units
+{
+  double length = 1., stress = 1., density = 1.;
+  double time() const { return length * std::sqrt(density / stress); }
+  double viscosity() const { return stress * time(); }
+  double velocity() const { return length / time(); }
+  double energy() const { return stress * length * length; }
+};
+
+Material rubber_in(const Units &units)
+{
+  Material material = sheets::rubber();
+  material.density *= units.density;
+  for (Shell *shell : {&material.nearest, &*material.next_nearest})
+  {
+    auto &law = std::get<MooneyRivlinBond>(shell->law);
+    law.a *= units.stress;
+    law.b *= units.stress;
+    shell->viscosity *= units.viscosity();
+  }
+  return material;
+}
+
+// A bond that broke: step, place of its near end, kind.
+using Break = std::tuple<int, std::size_t, std::size_t>;
+
+// A small sheet with a seed crack that runs.
+struct Crack
+{
+  struct Choice
+  {
+    Units units;
+    Orientation orientation = Orientation::rows_along_crack;
+    Toughening toughening = BehindTipToughening{8. * sheets::spacing, 1000.};
+    unsigned int stages = 0;
+    bool touches = true;
+    bool absorbs = false; // at its short ends
+    Eigen::Matrix2d turn = Eigen::Matrix2d::Identity();
+    // Places exchanged, and the diagonal matrix of signs that goes with it: a mirror.
+    std::function<std::size_t(const TriangularLattice &, std::size_t)> exchange;
+    Eigen::Vector2d signs{1., 1.};
+  };
+
+  explicit Crack(const Choice &choice)
+    : sheet(choice.units.length * sheets::spacing, 60. * choice.units.length * sheets::spacing,
+            36. * choice.units.length * sheets::spacing, choice.orientation),
+      material(rubber_in(choice.units))
+  {
+    const double l = choice.units.length, d = l * sheets::spacing;
+    const Edges edges{!choice.absorbs, !choice.absorbs, true, true};
+    State loaded = homogeneous_state(sheet, material, F, edges, breaking_stretch);
+    add_noise(loaded, sheet, 0.05 * d, 1);
+    State initial = loaded;
+    for (std::size_t place = 0; place < sheet.n_places(); ++place)
+      if (sheet.is_site(place))
+      {
+        const std::size_t from = choice.exchange ? choice.exchange(sheet, place) : place;
+        Eigen::Vector2d x(loaded.x[from], loaded.y[from]);
+        if (choice.exchange)
+        {
+          // The sheet's left edge is at X = 0, its centre line at Y = 0.
+          if (choice.signs.x() < 0.)
+            x.x() = F(0, 0) * sheet.length() - x.x();
+          x.y() *= choice.signs.y();
+        }
+        x = choice.turn * x;
+        initial.x[place] = x.x();
+        initial.y[place] = x.y();
+      }
+    const Eigen::Matrix2d deformation = choice.turn * F;
+    Toughening toughening = choice.toughening;
+    if (auto *behind = std::get_if<BehindTipToughening>(&toughening))
+      behind->distance *= l;
+    const TimeStepLimits limits = time_step_limits(sheet, material, 0.3);
+    const TimeStepping stepping = choice.stages == 0 ? TimeStepping(0.9 * limits.combined)
+                                                     : TimeStepping(chebyshev_step(sheet, material, 1.), choice.stages);
+    simulation = std::make_unique<Simulation>(sheet, material, std::move(initial), stepping,
+                                              Fracture(sheet, material, breaking_stretch, toughening, deformation));
+    if (choice.touches)
+      simulation->let_touch(contact_like_nearest_bond(sheet, material, d, 1., 1.));
+    if (choice.absorbs)
+      simulation->load_ends(deformation, EndLoads::End::absorbing, EndLoads::End::free);
+    std::vector<std::size_t> seed;
+    for (const std::size_t place : sheets::middle_row(sheet, 6, 8))
+      seed.push_back(choice.exchange ? choice.exchange(sheet, place) : place);
+    simulation->cut(seed);
+  }
+
+  std::vector<Break> run(int steps)
+  {
+    std::vector<Break> breaks;
+    for (int step = 0; step < steps; ++step)
+      for (const BrokenBond &bond : simulation->step())
+        breaks.emplace_back(step, bond.near, bond.kind);
+    return breaks;
+  }
+
+  TriangularLattice sheet;
+  Material material;
+  std::unique_ptr<Simulation> simulation;
+};
+
+// Positions, velocities and energies of a sheet are those of another one in other units, bit by bit.
+void expect_scaled(const Crack &one, const Crack &other, const Units &units)
+{
+  const State &a = one.simulation->state(), &b = other.simulation->state();
+  for (std::size_t place = 0; place < a.x.size(); ++place)
+  {
+    ASSERT_EQ(b.x[place], units.length * a.x[place]);
+    ASSERT_EQ(b.y[place], units.length * a.y[place]);
+    ASSERT_EQ(b.vx[place], units.velocity() * a.vx[place]);
+    ASSERT_EQ(b.vy[place], units.velocity() * a.vy[place]);
+  }
+  const EnergyBalance p = one.simulation->energies(), q = other.simulation->energies();
+  const double e = units.energy();
+  EXPECT_EQ(q.elastic, e * p.elastic);
+  EXPECT_EQ(q.kinetic, e * p.kinetic);
+  EXPECT_EQ(q.viscous, e * p.viscous);
+  EXPECT_EQ(q.broken, e * p.broken);
+  EXPECT_EQ(q.contact, e * p.contact);
+  EXPECT_EQ(q.boundary_work, e * p.boundary_work);
+  EXPECT_EQ(q.initial, e * p.initial);
+}
+
+class Similarity : public testing::TestWithParam<unsigned int>
+{
+};
+INSTANTIATE_TEST_SUITE_P(Stages, Similarity, testing::Values(0u, 4u));
+
+// All units are powers of two, so that a run in others has the same mantissas throughout.
+TEST_P(Similarity, CrackInOtherUnitsIsTheSameCrack)
+{
+  const int steps = GetParam() == 0 ? 2500 : 250;
+  Crack::Choice choice;
+  choice.stages = GetParam();
+  choice.absorbs = true;
+  Crack one(choice);
+  const std::vector<Break> breaks = one.run(steps);
+  EXPECT_GT(breaks.size(), 50u);
+  EXPECT_NE(one.simulation->energies().contact, 0.) << "flanks or debris must have touched";
+  for (const Units &units : {Units{4., 1., 1.}, Units{1., 4., 16.}, Units{0.25, 0.25, 4.}})
+  {
+    choice.units = units;
+    Crack other(choice);
+    EXPECT_EQ(other.simulation->time_step(), units.time() * one.simulation->time_step());
+    EXPECT_EQ(other.run(steps), breaks);
+    expect_scaled(one, other, units);
+  }
+}
+
+// A quarter turn exchanges x and y and a sign. Sums of two squares have the same bits then, and with them everything.
+TEST(Objectivity, CrackInASheetOnItsSideIsTheSameCrack)
+{
+  for (const Toughening &toughening : {Toughening(NoToughening{}), Toughening(RetractionToughening{0.8, 3.})})
+  {
+    Crack::Choice choice;
+    choice.toughening = toughening;
+    Crack upright(choice);
+    choice.turn << 0., -1., 1., 0.;
+    Crack turned(choice);
+    const std::vector<Break> breaks = upright.run(2500);
+    EXPECT_GT(breaks.size(), 50u);
+    EXPECT_EQ(turned.run(2500), breaks);
+    const State &a = upright.simulation->state(), &b = turned.simulation->state();
+    std::size_t toughened = 0;
+    for_each_bond(a, upright.sheet,
+                  [&](std::size_t place, std::size_t kind, std::size_t)
+                  { toughened += a.bonds.toughened(place, kind) ? 1 : 0; });
+    EXPECT_EQ(toughened > 0, std::holds_alternative<RetractionToughening>(toughening));
+    for (std::size_t place = 0; place < a.x.size(); ++place)
+      if (upright.sheet.is_site(place))
+      {
+        ASSERT_EQ(b.x[place], -a.y[place]);
+        ASSERT_EQ(b.y[place], a.x[place]);
+      }
+    const EnergyBalance p = upright.simulation->energies(), q = turned.simulation->energies();
+    EXPECT_EQ(q.elastic, p.elastic);
+    EXPECT_EQ(q.kinetic, p.kinetic);
+    EXPECT_EQ(q.viscous, p.viscous);
+    EXPECT_EQ(q.broken, p.broken);
+    EXPECT_EQ(q.contact, p.contact);
+  }
+}
+
+// Any other turn changes round-off: positions by 2^-53 of the sheet's size, stretches by 1e-14 at first. A limit is
+// passed at some 1e-3 a step, so breaks are the same ones, in the same steps, until that has grown by many powers of
+// ten. Energies are allowed a growth by 1e5.
+TEST(Objectivity, TurnedSheetBreaksTheSameBonds)
+{
+  Crack::Choice choice;
+  Crack upright(choice);
+  const std::vector<Break> breaks = upright.run(1200);
+  EXPECT_GT(breaks.size(), 20u);
+  choice.turn << std::cos(0.7), -std::sin(0.7), std::sin(0.7), std::cos(0.7);
+  Crack turned(choice);
+  EXPECT_EQ(turned.run(1200), breaks);
+  const EnergyBalance p = upright.simulation->energies(), q = turned.simulation->energies();
+  EXPECT_NEAR(q.elastic, p.elastic, 1e-9 * p.initial);
+  EXPECT_NEAR(q.kinetic, p.kinetic, 1e-9 * p.initial);
+  EXPECT_NEAR(q.viscous, p.viscous, 1e-9 * p.initial);
+  EXPECT_NEAR(q.broken, p.broken, 1e-9 * p.initial);
+}
+
+std::size_t upside_down(const TriangularLattice &sheet, std::size_t place)
+{
+  return sheet.index(sheet.rows() - 1 - sheet.row_of(place), sheet.column_of(place));
+}
+
+// Ends of a bond, the smaller place first.
+std::pair<std::size_t, std::size_t> ends(const TriangularLattice &sheet, std::size_t near, std::size_t kind)
+{
+  const std::size_t far = near + static_cast<std::size_t>(sheet.shift(kind, sheet.row_of(near)));
+  return std::minmax({near, far});
+}
+
+// A crack that noise leads astray, and the mirror image of it all. Contacts are left out: forces of several on one site
+// are summed in the order of places, which a mirror changes.
+TEST(Mirror, CrackInTheMirrorIsTheMirroredCrack)
+{
+  Crack::Choice choice;
+  choice.touches = false;
+  Crack one(choice);
+  choice.exchange = upside_down;
+  choice.signs = {1., -1.};
+  Crack other(choice);
+  const TriangularLattice &sheet = one.sheet;
+  using Bonds = std::vector<std::tuple<int, std::size_t, std::size_t>>;
+  Bonds broken, mirrored;
+  for (const auto &[step, near, kind] : one.run(2500))
+  {
+    const auto [a, b] = ends(sheet, near, kind);
+    broken.emplace_back(step, a, b);
+  }
+  for (const auto &[step, near, kind] : other.run(2500))
+  {
+    const auto [a, b] = ends(sheet, near, kind);
+    const auto [first, second] = std::minmax({upside_down(sheet, a), upside_down(sheet, b)});
+    mirrored.emplace_back(step, first, second);
+  }
+  std::sort(broken.begin(), broken.end());
+  std::sort(mirrored.begin(), mirrored.end());
+  EXPECT_GT(broken.size(), 50u);
+  EXPECT_EQ(mirrored, broken);
+  const State &a = one.simulation->state(), &b = other.simulation->state();
+  bool symmetric = true; // which would make this test too easy
+  for (std::size_t place = 0; place < sheet.n_places(); ++place)
+    if (sheet.is_site(place))
+    {
+      const std::size_t image = upside_down(sheet, place);
+      ASSERT_EQ(b.x[place], a.x[image]);
+      ASSERT_EQ(b.y[place], -a.y[image]);
+      symmetric &= a.x[place] == a.x[image];
+    }
+  EXPECT_FALSE(symmetric);
+}
+
+// Positions that are multiples of 2^-45 m and less than 1/8 m can be shifted by 1/4 m without a rounding.
+TEST(Translation, ShiftedSheetFeelsTheSameForces)
+{
+  const TriangularLattice sheet = sheets::square(14);
+  const Material material = sheets::rubber();
+  State state = homogeneous_state(sheet, material, F, Edges::free);
+  add_noise(state, sheet, 0.1 * sheets::spacing, 1);
+  for (Field *field : {&state.x, &state.y})
+    for (double &x : *field)
+      x = std::ldexp(std::round(std::ldexp(x, 45)), -45);
+  for (std::size_t place = 0; place < sheet.n_places(); ++place)
+  {
+    state.vx[place] = 10. * std::sin(1e3 * state.y[place]);
+    state.vy[place] = 10. * std::cos(1e3 * state.x[place]);
+  }
+  Forces here(sheet, material), there(sheet, material);
+  here.evaluate(state, state.vx, state.vy);
+  const double energy = elastic_energy(state, sheet, material);
+  for (std::size_t place = 0; place < sheet.n_places(); ++place)
+  {
+    ASSERT_LT(std::max(std::abs(state.x[place]), std::abs(state.y[place])), 0.125);
+    state.x[place] += 0.25;
+    state.y[place] -= 0.25;
+  }
+  there.evaluate(state, state.vx, state.vy);
+  EXPECT_NE(here.viscous_power(), 0.);
+  EXPECT_EQ(there.fx(), here.fx());
+  EXPECT_EQ(there.fy(), here.fy());
+  EXPECT_EQ(there.viscous_power(), here.viscous_power());
+  EXPECT_EQ(elastic_energy(state, sheet, material), energy);
+}
+
+// A sheet sent back comes home.
+struct Return
+{
+  double from_home; // largest distance of a site from where it began, after the way out and back [m]
+  double way;       // the same after the way out
+  double bound;     // of the former by round-off [m]
+};
+
+Return there_and_back(double viscosity)
+{
+  const TriangularLattice sheet = sheets::square(12);
+  const Material material = sheets::rubber(viscosity);
+  State state = homogeneous_state(sheet, material, sheets::stretched(1.5, 1.4), Edges::held);
+  add_noise(state, sheet, 0.1 * sheets::spacing, 1);
+  const State home = state;
+  const double share = 0.5;
+  Simulation simulation(sheet, material, std::move(state), share * time_step_limits(sheet, material, 0.5).combined);
+  constexpr std::size_t steps = 500;
+  const auto distance = [&]
+  {
+    double largest = 0.;
+    for (std::size_t place = 0; place < sheet.n_places(); ++place)
+      largest = std::max(
+        largest, std::hypot(simulation.state().x[place] - home.x[place], simulation.state().y[place] - home.y[place]));
+    return largest;
+  };
+  for (std::size_t step = 0; step < steps; ++step)
+    simulation.step();
+  Return result{0., distance(), 0.};
+  Field vx = simulation.state().vx, vy = simulation.state().vy;
+  for (Field *field : {&vx, &vy})
+    for (double &v : *field)
+      v = -v;
+  simulation.set_velocities(vx, vy);
+  for (std::size_t step = 0; step < steps; ++step)
+    simulation.step();
+  result.from_home = distance();
+  // Each step rounds each coordinate, less than 1.5 times the sheet's length, once, by 2^-53 of it at most; rounding of
+  // velocities and forces moves a site by less. What a rounding leaves is an oscillation, no more than
+  // 1 / sqrt(1 - (omega h / 2)^2) times as large, h being `share` of the limit. A site has 2 coordinates, and all
+  // roundings of a vibration may meet at one site: the norm over all sites bounds the largest.
+  const double rounding = std::ldexp(1.5 * sheet.length(), -53) * std::sqrt(2. * static_cast<double>(sheet.n_sites()));
+  result.bound = 2. * steps * rounding / std::sqrt(1. - share * share);
+  return result;
+}
+
+TEST(TimeReversal, VerletWithoutDashpotsComesBack)
+{
+  const Return without = there_and_back(0.);
+  EXPECT_GT(without.way, 0.05 * sheets::spacing);
+  EXPECT_LT(without.from_home, without.bound);
+  EXPECT_LT(without.bound, 1e-8 * without.way);
+  const Return with = there_and_back(65.625);
+  EXPECT_GT(with.from_home, 0.01 * with.way) << "dashpots do not give back what they took";
+}
+
+// Small motions of a loaded sheet add up; what is left falls with the square of their size.
+TEST(Superposition, HoldsInTheSmall)
+{
+  const TriangularLattice sheet = sheets::square(12);
+  const Material material = sheets::rubber();
+  const double h = 0.5 * time_step_limits(sheet, material, 0.5).combined;
+  const auto moved = [&](double first, double second)
+  {
+    Simulation simulation(sheet, material, homogeneous_state(sheet, material, sheets::stretched(1.5, 1.4), Edges::held),
+                          h);
+    Field vx(sheet.n_places()), vy(sheet.n_places());
+    for (std::size_t i = 0; i < vx.size(); ++i)
+    {
+      const Eigen::Vector2d X = sheet.reference(i) / sheets::spacing;
+      vx[i] = first * std::sin(0.5 * X.x()) * std::cos(0.4 * X.y());
+      vy[i] = second * std::cos(0.3 * X.x() + 0.5 * X.y());
+    }
+    simulation.set_velocities(vx, vy);
+    for (int step = 0; step < 300; ++step)
+      simulation.step();
+    return simulation.state();
+  };
+  const State rest = moved(0., 0.);
+  const auto remainder = [&](double v)
+  {
+    const State one = moved(v, 0.), other = moved(0., v);
+    State sum = moved(v, v);
+    for (std::size_t i = 0; i < sum.x.size(); ++i)
+    {
+      sum.x[i] -= other.x[i] - rest.x[i];
+      sum.y[i] -= other.y[i] - rest.y[i];
+    }
+    return smooth_motion::distance(sum, one) / smooth_motion::distance(one, rest);
+  };
+  // Relative to the motion itself.
+  EXPECT_NEAR(std::log2(remainder(0.4) / remainder(0.1)) / 2., 1., 0.1);
+  EXPECT_LT(remainder(0.1), 0.05);
+}
+
+} // namespace

@@ -1,0 +1,177 @@
+"""Small faults that can be planted in C++ sources that clang-format has laid out.
+
+The layout tells operators from what looks like them: binary operators stand between spaces, template brackets, pointers
+and signs do not.
+"""
+import dataclasses
+import random
+import re
+
+
+@dataclasses.dataclass(frozen=True)
+class Mutant:
+    """One fault in one line of one file."""
+    file: str    # relative to the root
+    line: int    # from 1
+    before: str  # the line as it is
+    after: str   # and with the fault
+    kind: str    # of fault
+
+    @property
+    def folder(self):
+        return self.file.split("/")[0]
+
+    def planted(self, text):
+        """The text of the file with the fault in it."""
+        lines = text.split("\n")
+        assert lines[self.line - 1] == self.before
+        lines[self.line - 1] = self.after
+        return "\n".join(lines)
+
+    def __str__(self):
+        return f"{self.file}:{self.line}  {self.kind}\n    - {self.before.strip()}\n    + {self.after.strip()}"
+
+
+def _blank(match):
+    return re.sub(r"[^\n]", " ", match.group(0))
+
+
+def code_only(text):
+    """The text with comments, strings and characters blanked, place by place."""
+    return re.sub(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', _blank, text, flags=re.DOTALL)
+
+
+# What is no arithmetic of the program: declarations of names, checks of invariants, what is only said.
+_NO_CODE = re.compile(r"^\s*(?:#|(?:using|namespace|template|class|friend|static_assert|throw|HWY_EXPORT|HWY_UNROLL)\b|"
+                      r"(?:public|private|protected):|[{}();]*\s*$)|\bassert\(")
+
+
+def _literal(number):
+    """A number with which a literal is exchanged: a whole one by a neighbour, any other by its double."""
+    if re.fullmatch(r"\d+", number):
+        return "0" if number == "1" else str(int(number) + 1)
+    value = float(number)
+    return "1." if value == 0. else repr(2. * value)
+
+
+# kind, pattern, what takes the place of the match (a text, or a function of the match).
+_EXCHANGES = [
+    ("arithmetic", r" \+ ", " - "),
+    ("arithmetic", r" - ", " + "),
+    ("arithmetic", r" \* ", " / "),
+    ("arithmetic", r" / ", " * "),
+    ("arithmetic", r" \+= ", " -= "),
+    ("arithmetic", r" -= ", " += "),
+    ("arithmetic", r" \*= ", " /= "),
+    ("arithmetic", r" /= ", " *= "),
+    ("arithmetic", r" % ", " / "),
+    ("arithmetic", r"hn::(Add|Sub|Mul)\(", lambda m: {"Add": "hn::Sub(", "Sub": "hn::Add(", "Mul": "hn::Div("}[m.group(1)]),
+    ("sign", r"(?<=[(\[{,=?:] )-(?=[\w(])|(?<=[(\[{])-(?=[\w(])|(?<=return )-(?=[\w(])", ""),
+    ("comparison", r" < ", " <= "),
+    ("comparison", r" <= ", " < "),
+    ("comparison", r" > ", " >= "),
+    ("comparison", r" >= ", " > "),
+    ("comparison", r" < ", " > "),
+    ("comparison", r" > ", " < "),
+    ("comparison", r" == ", " != "),
+    ("comparison", r" != ", " == "),
+    ("comparison", r"hn::(Lt|Gt)\(", lambda m: {"Lt": "hn::Gt(", "Gt": "hn::Lt("}[m.group(1)]),
+    ("constant", r"(?<![\w.])(?:\d+\.\d*|\.\d+|\d+)(?:e-?\d+)?(?![\w.])", lambda m: _literal(m.group(0))),
+    ("x and y", r"(?<![&*])\b(v|a|f|n|d|dv|)([xy])(\(\)|_?)(?=\b|[^\w])",
+     lambda m: m.group(1) + {"x": "y", "y": "x"}[m.group(2)] + m.group(3)),
+    ("least and greatest", r"\b(min|max)\(", lambda m: {"min": "max(", "max": "min("}[m.group(1)]),
+    ("least and greatest", r"hn::(Min|Max)\(", lambda m: {"Min": "hn::Max(", "Max": "hn::Min("}[m.group(1)]),
+    ("least and greatest", r"\b(min|max)Coeff\(", lambda m: {"min": "maxCoeff(", "max": "minCoeff("}[m.group(1)]),
+    ("logic", r" && ", " || "),
+    ("logic", r" \|\| ", " && "),
+    ("logic", r"hn::(And|Or)\(", lambda m: {"And": "hn::Or(", "Or": "hn::And("}[m.group(1)]),
+    ("logic", r"\b(true|false)\b", lambda m: {"true": "false", "false": "true"}[m.group(1)]),
+    ("logic", r"(?<=[( ])!(?=[\w(])", ""),
+    ("function", r"\b(sin|cos)\(", lambda m: {"sin": "cos(", "cos": "sin("}[m.group(1)]),
+    ("function", r"std::sqrt\(", "("),
+    ("function", r"std::abs\(", "("),
+    ("function", r"\.(transpose)\(\)", ""),
+    ("choice", r" \? ([\w.]+) : ([\w.]+)(?=[;,)\]]|$)", lambda m: f" ? {m.group(2)} : {m.group(1)}"),
+    ("factor 2", r"(?<=return )(?=[\w(-][^;{]*;$)", "2. * "),
+]
+_EXCHANGES = [(kind, re.compile(pattern), to) for kind, pattern, to in _EXCHANGES]
+_TEMPLATE_NUMBERS = re.compile(r"<[\w:]*(?:(?:, )?\d+)+>")  # sizes of types: others are no program
+# A whole statement on a line of its own: a call, an assignment to what exists, a jump.
+_STATEMENT = re.compile(r"^\s*(?:(?:\+\+|--|\*)?[A-Za-z_][\w:.\->\[\]() *+%,]*(?:\([^{}]*\)| [-+*/|&]?= [^{}]+)|\+\+[^{};]+|"
+                        r"continue|break);$")
+_DECLARATION = re.compile(r"^\s*(?:const|static|constexpr|auto|double|bool|int|unsigned|return|"
+                          r"std::(?:vector|array|size_t|string|optional|ptrdiff_t|pair)|"
+                          r"[A-Z]\w*(?:::\w+)*(?:<.*>)? [&*]?\w+ ?[=({;]|Eigen::\w+ \w|[\w:]+<[^;]*> [&*]?\w+)")
+
+
+def _closing(line, begin):
+    """Where the bracket that opens before `begin` closes; None where it does so in another line."""
+    depth = 1
+    for place in range(begin, len(line)):
+        depth += {"(": 1, ")": -1}.get(line[place], 0)
+        if depth == 0:
+            return place
+    return None
+
+
+def _faults_of_line(code, whole):
+    """(kind, line with the fault) for all faults of a line of code; `whole`: no statement goes on into or out of it."""
+    for kind, pattern, to in _EXCHANGES:
+        for match in pattern.finditer(_TEMPLATE_NUMBERS.sub(_blank, code) if kind == "constant" else code):
+            exchange = to if isinstance(to, str) else to(match)
+            yield kind, match.start(), match.end(), exchange
+    match = re.match(r"^\s*(?:else )?if \(", code)
+    if match:
+        end = _closing(code, match.end())
+        if end is not None:
+            yield "negated", match.end(), end, None
+    if whole and _STATEMENT.match(code) and not _DECLARATION.match(code):
+        begin = len(code) - len(code.lstrip())
+        yield "dropped", begin, len(code), ";"
+
+
+def of_file(path, file):
+    """All faults that can be planted in a file, in its order.
+    @param path of the file @param file its name in the report"""
+    text = path.read_text(encoding="utf-8")
+    lines, codes = text.split("\n"), code_only(text).split("\n")
+    mutants, seen = [], set()
+    inside_throw = False
+    previous = ";"
+    for number, (line, code) in enumerate(zip(lines, codes), 1):
+        code = code.rstrip()
+        starts_throw = re.search(r"\bthrow\b|\bstatic_assert\(", code) is not None
+        in_throw = inside_throw or starts_throw
+        if in_throw:
+            inside_throw = not code.endswith(";")
+        if not code.strip() or _NO_CODE.search(code) or in_throw:
+            previous = code.strip() or previous
+            continue
+        whole = previous.endswith((";", "{", "}", ")", ":", "else")) or not previous
+        for kind, begin, end, exchange in _faults_of_line(code, whole):
+            part = line[begin:end]
+            after = line[:begin] + (f"!({part})" if exchange is None else exchange) + line[end:]
+            if after != line and (number, after) not in seen:
+                seen.add((number, after))
+                mutants.append(Mutant(file, number, line, after, kind))
+        previous = code.strip()
+    return mutants
+
+
+def sample(mutants, size, seed):
+    """`size` of the mutants, in turns from each file, so that small files are not lost among large ones. A mutant's
+    place in the order depends on the seed and itself alone."""
+    of_files = {}
+    for mutant in mutants:
+        of_files.setdefault(mutant.file, []).append(mutant)
+    queues = []
+    for file in sorted(of_files):
+        ordered = sorted(of_files[file], key=lambda m: (m.line, m.after))
+        random.Random(f"{seed} {file}").shuffle(ordered)
+        queues.append(ordered)
+    chosen = []
+    while len(chosen) < size and any(queues):
+        for queue in queues:
+            if queue and len(chosen) < size:
+                chosen.append(queue.pop())
+    return sorted(chosen, key=lambda m: (m.file, m.line, m.after))
