@@ -1,17 +1,15 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing, then configures and builds.
-# Usage: cmake/set-up.sh [--benchmarks] PRESET [TARGET...]   (run from anywhere; ./run, ./test and tests/benchmarks/run call it)
-# --benchmarks: with the packages that only the benchmarks need.
+# Usage: cmake/set-up.sh [--with LIST] [PRESET [TARGET...]]   (run from anywhere; ./run, ./test and tests/*/run call it)
+# --with LIST: also the packages of cmake/packages-LIST.txt. Without PRESET nothing is built.
 # With every package in place nothing is installed and no privilege is needed.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 lists=("$root/cmake/packages.txt")
-if [ "$1" = --benchmarks ]; then
-  lists+=("$root/cmake/packages-benchmarks.txt")
-  shift
+if [ "${1-}" = --with ]; then
+  lists+=("$root/cmake/packages-$2.txt")
+  shift 2
 fi
-preset=$1
-shift
 
 mapfile -t wanted < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "${lists[@]}")
 missing=()
@@ -52,6 +50,9 @@ if [ ! -d "$modules" ]; then
   rm -rf "$part"
 fi
 
+[ $# -gt 0 ] || exit 0
+preset=$1
+shift
 build="$root/build/$preset"
 cd "$root"
 if [ ! -f "$build/build.ninja" ]; then
