@@ -16,8 +16,8 @@
 /// deal.II's MeshWorker::mesh_loop, which continuum/ includes from here.
 ///
 /// Where deal.II checks itself, version 9.4 asserts `!cell->neighbor_is_coarser(face)` of cells of one level, also on
-/// periodic faces: there the cell has a periodic neighbour and no other, for which the answer is true. So the loop is
-/// compiled without its own assertions. Those of all that it calls stay, since what it includes comes before.
+/// periodic faces. There the cell has a periodic neighbour and no other, so the question itself is refused. The loop is
+/// therefore compiled without its own assertions; those of all that it calls stay, since what it includes comes before.
 
 #pragma push_macro("Assert")
 #undef Assert
