@@ -55,7 +55,7 @@ class Waves
 {
 public:
   Waves(const Subject &subject, const Eigen::Matrix2d &F)
-    : subject_(subject), F_(F), material_(lattice::without_dashpots(subject.material)),
+    : F_(F), material_(lattice::without_dashpots(subject.material)),
       sheet_(subject.spacing, 10. * subject.spacing, 10. * subject.spacing, subject.orientation),
       local_(std::make_unique<WaveContinuum>(WaveContinuum{{subject.cauchy_born}, {subject.material.density}})),
       gradient_(std::make_unique<WaveContinuum>(WaveContinuum{{subject.cauchy_born, *subject.lattice_gradient},
@@ -98,7 +98,6 @@ private:
     return frequencies(plane_waves(continuum_matrices(medium, F_, K), wave_normal(F_, K)));
   }
 
-  const Subject &subject_;
   Eigen::Matrix2d F_;
   lattice::Material material_;
   lattice::TriangularLattice sheet_; // only its bonds matter
