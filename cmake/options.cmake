@@ -1,15 +1,17 @@
 # Compile options that hold for every target of latcon: one interface target, linked by all.
 add_library(latcon_options INTERFACE)
 target_include_directories(latcon_options INTERFACE ${PROJECT_SOURCE_DIR})
-# gcc takes uninitialised lanes of Eigen's SSE packets for a mistake.
-target_compile_options(latcon_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror
-                       $<$<CXX_COMPILER_ID:GNU>:-Wno-maybe-uninitialized>)
+target_compile_options(latcon_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror)
+if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
+  # gcc takes uninitialised lanes of Eigen's SSE packets for a mistake.
+  target_compile_options(latcon_options INTERFACE -Wno-maybe-uninitialized)
+endif()
 # Contraction to fused multiply-add would make the bits of a result depend on the instruction set.
 target_compile_options(latcon_options INTERFACE -ffp-contract=off)
 
 if(LATCON_SANITIZE)
-  target_compile_options(latcon_options INTERFACE -fsanitize=address,undefined -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
-  target_link_options(latcon_options INTERFACE -fsanitize=address,undefined)
+  target_compile_options(latcon_options INTERFACE -fsanitize=${LATCON_SANITIZE} -fno-omit-frame-pointer -fno-sanitize-recover=undefined)
+  target_link_options(latcon_options INTERFACE -fsanitize=${LATCON_SANITIZE})
 endif()
 if(LATCON_FUZZ)
   target_compile_options(latcon_options INTERFACE -O1 -gline-tables-only)

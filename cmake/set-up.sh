@@ -1,18 +1,15 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing, then configures and builds.
-# Usage: cmake/set-up.sh [--benchmarks] [--fuzzing] PRESET [TARGET...]   (run from anywhere; ./run, ./test, tests/benchmarks/run
-# and tests/fuzz/run call it)
-# --benchmarks, --fuzzing: with the packages that only these need.
+# Usage: cmake/set-up.sh [--with LIST] [PRESET [TARGET...]]   (run from anywhere; ./run, ./test and tests/*/run call it)
+# --with LIST: also the packages of cmake/packages-LIST.txt. Without PRESET nothing is built.
 # With every package in place nothing is installed and no privilege is needed.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 lists=("$root/cmake/packages.txt")
-while [[ $1 == --* ]]; do
-  lists+=("$root/cmake/packages-${1#--}.txt")
-  shift
-done
-preset=$1
-shift
+if [ "${1-}" = --with ]; then
+  lists+=("$root/cmake/packages-$2.txt")
+  shift 2
+fi
 
 mapfile -t wanted < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "${lists[@]}")
 missing=()
@@ -53,6 +50,9 @@ if [ ! -d "$modules" ]; then
   rm -rf "$part"
 fi
 
+[ $# -gt 0 ] || exit 0
+preset=$1
+shift
 build="$root/build/$preset"
 cd "$root"
 if [ ! -f "$build/build.ninja" ]; then

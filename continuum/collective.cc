@@ -42,6 +42,7 @@ GuardedWork::GuardedWork(const std::function<void()> &work)
   const auto keep = [this](const int kind, const std::exception &failure)
   {
     kind_ = kind;
+    // cppcheck-suppress useInitializationList ; what fails is not known before
     message_ = failure.what();
   };
   try

@@ -2,10 +2,9 @@
 
 #include "continuum/element_kernels.h"
 #include "continuum/errors.h"
+#include "continuum/mesh_loop.h"
 #include "continuum/shape_tables.h"
 #include "continuum/vector_kernels.h"
-
-#include <deal.II/meshworker/mesh_loop.h>
 
 #include <Epetra_MultiVector.h>
 
@@ -265,7 +264,7 @@ private:
   std::array<std::vector<double>, 3> second_; // [node][node]
   std::vector<double> work_;
   std::array<FieldJet, 2> jets_; // of u on each side
-  Density density_;
+  Density density_{};
 };
 } // namespace
 

@@ -1,12 +1,12 @@
 #include "continuum/error_indicator.h"
 
 #include "continuum/collective.h"
+#include "continuum/mesh_loop.h"
 
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/symmetric_tensor.h>
 #include <deal.II/fe/fe_interface_values.h>
 #include <deal.II/lac/la_parallel_vector.h>
-#include <deal.II/meshworker/mesh_loop.h>
 
 #include <cmath>
 

@@ -108,10 +108,12 @@ const ShapeTable &ShapeTables::face(const Cell &cell, const unsigned int face, c
                                     const unsigned int side)
 {
   Shape *shape = shape_of(cell);
-  ShapeTable &table = shape ? shape->faces[{face, subface}] : own_faces_[side];
-  if (!shape || table.n_points == 0)
-    fill_face(cell, face, subface, table);
-  return table;
+  ShapeTable *table = &own_faces_[side];
+  if (shape)
+    table = &shape->faces[{face, subface}];
+  if (!shape || table->n_points == 0)
+    fill_face(cell, face, subface, *table);
+  return *table;
 }
 
 const FEFaceValues<2> &ShapeTables::face_values(const Cell &cell, const unsigned int face)

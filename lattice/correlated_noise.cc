@@ -86,6 +86,7 @@ NoiseFit fit_noise(const Eigen::VectorXd &position, const Eigen::MatrixXd &desig
 
   // Coarse on purpose: the likelihood of two hundred samples is flat over such steps.
   consider(0., shortest);
+  // NOLINTNEXTLINE(clang-analyzer-security.FloatLoopCounter): a geometric series
   for (double length = shortest; length < 1.5 * extent; length *= 1.5)
     for (const double fraction : {0.15, 0.3, 0.45, 0.6, 0.75, 0.9, 0.97, 0.999})
       consider(fraction, length);

@@ -49,6 +49,7 @@ double branched_fraction(const std::vector<BreakRecord> &breaks, double X_begin,
   }
 
   std::vector<double> gaps;
+  gaps.reserve(n_columns);
   for (std::vector<double> &column : columns)
     gaps.push_back(widest_gap(column, rule.gap * lattice_spacing, rule.bonds_per_spacing * rule.column_width));
 

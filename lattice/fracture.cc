@@ -131,6 +131,7 @@ double Fracture::remove_sites(State &state, const std::vector<std::size_t> &plac
   std::sort(bonds.begin(), bonds.end());
   bonds.erase(std::unique(bonds.begin(), bonds.end()), bonds.end());
   std::vector<Loss> own;
+  own.reserve(bonds.size());
   for (const auto &[place, kind] : bonds)
     own.push_back(loss(state, place, kind));
   double removed_energy = 0.;

@@ -206,6 +206,7 @@ struct NoBonds
 };
 
 template <bool watches_retraction, class Nearest, class NextNearest>
+// cppcheck-suppress passedByValue ; copies, which no store can change
 RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, const SheetConstants sheet,
                       const RowOfBonds &given)
 {

@@ -100,6 +100,7 @@ public:
   bool number_integer(const number_integer_t value) { return take(std::to_string(value)); }
   bool number_unsigned(const number_unsigned_t value) { return take(std::to_string(value)); }
   bool number_float(const number_float_t, const string_t &digits) { return take(digits); }
+  // cppcheck-suppress constParameter ; as the parser calls it
   bool string(string_t &value) { return take(value); }
   bool binary(binary_t &) { return unsuitable("binary data"); }
 
@@ -113,6 +114,7 @@ public:
     return true;
   }
 
+  // cppcheck-suppress constParameter ; as the parser calls it
   bool key(string_t &value)
   {
     if (skipped_ == 0)

@@ -357,7 +357,7 @@ void ContinuumCase::check(Parameters &p, const bool has_inner_edge) const
   bool held = false;
   for (std::size_t id = 0; id < edges.size(); ++id)
     held =
-      held || (edges[id].condition == EdgeCase::Condition::held && (id < 4 || has_inner_edge || !mesh_file.empty()));
+      held || ((id < 4 || has_inner_edge || !mesh_file.empty()) && edges[id].condition == EdgeCase::Condition::held);
   if (!held && solution == Solution::equilibrium)
     p.error("Left edge/condition", "equilibrium needs an edge that is held",
             {"Right edge/condition", "Bottom edge/condition", "Top edge/condition", "Inner edge/condition"});

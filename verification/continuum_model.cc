@@ -128,9 +128,10 @@ void ContinuumModel::make_conditions(const Case &input)
 
 continuum::Constitution ContinuumModel::constitution() const
 {
-  continuum::Constitution constitution(law_ == ContinuumLaw::mooney_rivlin
-                                         ? static_cast<const continuum::Material &>(mooney_rivlin_)
-                                         : subject_.cauchy_born);
+  const continuum::Material *law = &subject_.cauchy_born;
+  if (law_ == ContinuumLaw::mooney_rivlin)
+    law = &mooney_rivlin_;
+  continuum::Constitution constitution(*law);
   constitution.gradient = gradient_.get();
   constitution.penalty = penalty_;
   return constitution;

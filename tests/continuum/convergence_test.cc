@@ -137,8 +137,9 @@ std::vector<Errors> run(const Series &series)
     local = manufactured::NetworkEnergy{network.families()};
   else
     local = manufactured::MooneyRivlinEnergy{mooney_rivlin.constants()};
-  Constitution constitution(series.local == Local::network ? static_cast<const continuum::Material &>(network)
-                                                           : mooney_rivlin);
+  Constitution constitution(network);
+  if (series.local != Local::network)
+    constitution.local = &mooney_rivlin;
   if (series.nonlocal == Nonlocal::isotropic)
   {
     constitution.gradient = &isotropic;

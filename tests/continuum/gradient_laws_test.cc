@@ -241,8 +241,8 @@ double symbol(const GradientLaw &law, const Tensor<2, 2> &F, const Tensor<1, 2> 
 TEST(LatticeGradient, FormsAreDerivativesOfTheEnergy)
 {
   const auto bonds = mixed_bonds();
-  const double length = 1.1 * LatticeGradient::smallest_length(bonds);
-  expect_derivatives(LatticeGradient(bonds, length), [&](const auto &v) { return lattice_energy(bonds, length, v); });
+  const double l_d = 1.1 * LatticeGradient::smallest_length(bonds);
+  expect_derivatives(LatticeGradient(bonds, l_d), [&](const auto &v) { return lattice_energy(bonds, l_d, v); });
 }
 
 TEST(IsotropicGradient, FormsAreDerivativesOfTheEnergy)

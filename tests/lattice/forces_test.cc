@@ -331,7 +331,8 @@ TEST(Forces, BitsDoNotDependOnTheInstructionSet)
 {
   const std::vector<std::string> sets = kernels::instruction_sets();
   EXPECT_EQ(kernels::instruction_set(), sets.front());
-  EXPECT_EQ(sets.back(), "SCALAR");
+  // Without vectors; Highway has one for compilers that it trusts with its emulated ones.
+  EXPECT_TRUE(sets.back() == "SCALAR" || sets.back() == "EMU128") << sets.back();
   EXPECT_THROW(kernels::use_instruction_set("none"), std::invalid_argument);
   for (const Subject &subject : subjects())
   {

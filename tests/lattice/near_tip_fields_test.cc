@@ -138,7 +138,7 @@ TEST(NearTipSampler, AxisOfAMirrorSymmetricStateIsItsMirror)
     // Sites above and below the middle, at the same X, each with three bonds less.
     const bool along = orientation == Orientation::rows_along_crack;
     const std::size_t step = along ? slit.sheet.stride() : 1;
-    const std::size_t low = slit.tip - step, high = slit.tip + step + (along ? 0 : 0);
+    const std::size_t low = slit.tip - step, high = slit.tip + step;
     slit.state.lost_bonds[low] = slit.state.lost_bonds[high] = 3;
     const Eigen::Vector2d axis = 0.5 * (slit.sheet.reference(low) + slit.sheet.reference(high));
     for (std::size_t place = 0; place < slit.sheet.n_places(); ++place)

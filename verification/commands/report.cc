@@ -23,6 +23,7 @@ int run_script(const std::string &script, const std::string &directory, const st
   std::string python = "/usr/bin/python3";
   std::string path = std::string(LATCON_DATA_DIR) + "/report/" + script;
   std::string folder = directory;
+  // cppcheck-suppress variableScope ; the arguments hold its address until the script is started
   std::string quiet_option = "--quiet";
   std::vector<char *> arguments{python.data(), path.data(), folder.data()};
   if (quiet)

@@ -181,20 +181,21 @@ SiteValues probe(const ContinuumFrame &frame, const std::vector<Position> &point
   MPI_Comm_size(communicator, &n_ranks);
   const SiteProbe site_probe(frame, tolerance);
   const std::size_t n_values = site_probe.n_values();
-  const auto begin = [&](int r)
+  const auto first_point = [&](int r)
   { return points.size() * static_cast<std::size_t>(r) / static_cast<std::size_t>(n_ranks); };
 
-  std::vector<double> mine((begin(rank + 1) - begin(rank)) * n_values, std::numeric_limits<double>::quiet_NaN());
-  std::vector<std::uint8_t> mine_outside(begin(rank + 1) - begin(rank));
+  std::vector<double> mine((first_point(rank + 1) - first_point(rank)) * n_values,
+                           std::numeric_limits<double>::quiet_NaN());
+  std::vector<std::uint8_t> mine_outside(first_point(rank + 1) - first_point(rank));
   for (std::size_t i = 0; i < mine_outside.size(); ++i)
-    mine_outside[i] = site_probe.evaluate(points[begin(rank) + i], mine.data() + i * n_values) ? 0 : 1;
+    mine_outside[i] = site_probe.evaluate(points[first_point(rank) + i], mine.data() + i * n_values) ? 0 : 1;
 
   // Counts of sites, since those of values may not fit into an int.
   std::vector<int> counts, offsets;
   for (int r = 0; r < n_ranks; ++r)
   {
-    counts.push_back(static_cast<int>(begin(r + 1) - begin(r)));
-    offsets.push_back(static_cast<int>(begin(r)));
+    counts.push_back(static_cast<int>(first_point(r + 1) - first_point(r)));
+    offsets.push_back(static_cast<int>(first_point(r)));
   }
   MPI_Datatype values_of_site;
   MPI_Type_contiguous(static_cast<int>(n_values), MPI_DOUBLE, &values_of_site);

@@ -104,6 +104,7 @@ public:
       add(rows, quantity, here ? std::abs((*here).*error) : unknown,
           error == &CutErrors::reaction && !is_hole_
             ? std::nullopt
+            // cppcheck-suppress knownConditionTrueFalse ; a notch is asked about too, of all but its reactions
             : std::optional<double>(here && moved ? (is_hole_ ? 0.5 : 1.) * std::abs((*moved).*error - (*here).*error)
                                                   : unknown));
 

@@ -46,7 +46,7 @@ Vector interpolated(const continuum::Sheet &sheet, const dealii::Function<2> &fi
 continuum::Rectangle one_wavelength(const Eigen::Vector2d &K, unsigned int cells)
 {
   // Where the wave does not vary, two square cells carry it.
-  const double along_x = std::abs(K.x()) > 1e-9 * K.norm(), along_y = std::abs(K.y()) > 1e-9 * K.norm();
+  const bool along_x = std::abs(K.x()) > 1e-9 * K.norm(), along_y = std::abs(K.y()) > 1e-9 * K.norm();
   const double cell = 2. * M_PI / (K.norm() * cells);
   continuum::Rectangle rectangle{2. * cell, 2. * cell, 2, 2, true, true};
   if (along_x)

@@ -51,7 +51,6 @@ Oscillation fit_oscillation(const std::vector<double> &values, double step)
   const Eigen::Map<const Eigen::VectorXd> a(values.data(), n);
   Eigen::MatrixX4d J(n, 4);
   Eigen::Vector2d amplitudes = Eigen::Vector2d::Zero();
-  double residual = 0.;
   // Quadratic, since the values are an oscillation but for small terms; a handful of steps reach round-off.
   constexpr int max_iterations = 50;
   for (int iteration = 0; iteration < max_iterations; ++iteration)
@@ -64,7 +63,7 @@ Oscillation fit_oscillation(const std::vector<double> &values, double step)
     }
     amplitudes = J.leftCols<2>().colPivHouseholderQr().solve(a);
     const Eigen::VectorXd left = a - J.leftCols<2>() * amplitudes;
-    residual = left.norm() / a.norm();
+    const double residual = left.norm() / a.norm();
     for (Eigen::Index i = 0; i < n; ++i)
     {
       const double wt = static_cast<double>(i) * step * w; // derivatives by g/w and by the logarithm of w

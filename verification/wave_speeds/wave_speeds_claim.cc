@@ -56,14 +56,14 @@ class Waves
 public:
   Waves(const Subject &subject, const Eigen::Matrix2d &F)
     : F_(F), material_(lattice::without_dashpots(subject.material)),
-      sheet_(subject.spacing, 10. * subject.spacing, 10. * subject.spacing, subject.orientation)
+      sheet_(subject.spacing, 10. * subject.spacing, 10. * subject.spacing, subject.orientation),
+      local_(std::make_unique<WaveContinuum>(WaveContinuum{{subject.cauchy_born}, {subject.material.density}})),
+      gradient_(std::make_unique<WaveContinuum>(WaveContinuum{{subject.cauchy_born, *subject.lattice_gradient},
+                                                              {subject.material.density, subject.lengths.lattice}})),
+      isotropic_(
+        std::make_unique<WaveContinuum>(WaveContinuum{{subject.cauchy_born, *subject.isotropic_gradient},
+                                                      {subject.material.density, subject.lengths.isotropic_inertia}}))
   {
-    const double rho = subject.material.density;
-    local_ = std::make_unique<WaveContinuum>(WaveContinuum{{subject.cauchy_born}, {rho}});
-    gradient_ = std::make_unique<WaveContinuum>(
-      WaveContinuum{{subject.cauchy_born, *subject.lattice_gradient}, {rho, subject.lengths.lattice}});
-    isotropic_ = std::make_unique<WaveContinuum>(
-      WaveContinuum{{subject.cauchy_born, *subject.isotropic_gradient}, {rho, subject.lengths.isotropic_inertia}});
   }
 
   std::array<double, 2> bloch(const Eigen::Vector2d &K) const

@@ -1,0 +1,89 @@
+"""Running the programs of a part, and finding in their logs what they object to."""
+import concurrent.futures
+import dataclasses
+import os
+import pathlib
+import re
+import subprocess
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+LOGS = ROOT / "build" / "clean"
+# Open MPI refuses root, and more ranks than cores, unless told otherwise.
+ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
+                   OMPI_MCA_rmaps_base_oversubscribe="1", OMP_NUM_THREADS="1")
+
+
+class Failed(Exception):
+    """What a part needs could not be had."""
+
+
+@dataclasses.dataclass
+class Job:
+    """A program to run."""
+    name: str
+    command: list
+    environment: dict = dataclasses.field(default_factory=dict)
+    key: str = ""  # a log that ends with it is that of the same inputs, and is not made again
+
+
+@dataclasses.dataclass
+class Part:
+    """What to build, what to run then, and how a line of a log looks that is a finding."""
+    jobs: object  # a function without arguments
+    finding: str
+    preset: str = ""
+    targets: tuple = ()
+
+
+def build(part):
+    """Has cmake/set-up.sh install packages and build. @return its words; raises Failed with their end"""
+    command = [ROOT / "cmake" / "set-up.sh", "--with", "clean"]
+    if part.preset:
+        command += [part.preset, *part.targets]
+    done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, cwd=ROOT)
+    if done.returncode != 0:
+        raise Failed("cannot be built: " + done.stdout[-3000:])
+    return done.stdout
+
+
+def log_of(part, job):
+    return LOGS / part / (job.name.replace("/", "-") + ".log")
+
+
+def run(part, job):
+    """Runs a job unless its log holds the answer. @return its log"""
+    path = log_of(part, job)
+    last = f"key {job.key}\n"
+    if job.key and path.exists():
+        text = path.read_text(encoding="utf-8", errors="replace")
+        if text.endswith(last):
+            return text
+    done = subprocess.run(list(map(str, job.command)), stdout=subprocess.PIPE, stderr=subprocess.STDOUT, cwd=ROOT,
+                          env=dict(ENVIRONMENT, **job.environment))
+    text = f"{done.stdout.decode(errors='replace')}\nstatus {done.returncode}\n{last}"
+    path.write_text(text, encoding="utf-8")
+    return text
+
+
+def findings_in(log, pattern, name):
+    """Lines that match, each once; a program that failed without such a line is a finding too."""
+    found = list(dict.fromkeys(line for line in log.splitlines() if re.search(pattern, line)))
+    status = int(re.findall(r"^status (-?\d+)$", log, re.MULTILINE)[-1])
+    if status != 0 and not found:
+        found = [f"{name} ended with {status}"]
+    return found
+
+
+def examine(name, part, jobs_at_once, only=""):
+    """Builds and runs a part. @return number of jobs, findings without repetition"""
+    build(part)
+    (LOGS / name).mkdir(parents=True, exist_ok=True)
+    jobs = [job for job in part.jobs() if only in job.name]
+    if not jobs:
+        raise Failed(f"has no job with {only!r} in its name")
+    with concurrent.futures.ThreadPoolExecutor(jobs_at_once) as pool:
+        logs = list(pool.map(lambda job: run(name, job), jobs))
+    found = {}
+    for job, log in zip(jobs, logs):
+        found.update(dict.fromkeys(findings_in(log, part.finding, job.name)))
+    return len(jobs), list(found)
