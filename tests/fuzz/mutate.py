@@ -260,7 +260,7 @@ class Server:
     def __init__(self, program, folder):
         self.folder = folder
         environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", XDG_CACHE_HOME=str(folder / "cache"),
-                           ASAN_OPTIONS="detect_leaks=0:abort_on_error=0", UBSAN_OPTIONS="print_stacktrace=1")
+                           ASAN_OPTIONS="detect_leaks=0:abort_on_error=0", UBSAN_OPTIONS=f"print_stacktrace=1:suppressions={pathlib.Path(__file__).with_name('ubsan-suppressions.txt')}")
         self.process = subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment)
 
     def run(self, arguments, folder, limit):
@@ -328,7 +328,7 @@ class Fuzzer:
         arguments = made.arguments
         if really:
             command = arguments + [word for entry in TINY if not any(entry.split("=")[0] in word for word in arguments)
-                                   for word in ("--set", entry)] + (["--no-report"] if arguments[0] == "fracture" else [])
+                                   for word in ("--set", entry)] + ([word for word in ["--no-report", "--skip-verification"] if word not in arguments] if arguments[0] == "fracture" else [])
             if arguments[0] in ("verify",):
                 command = arguments + ["--dry-run"]
             outcome, finding, printed = self.run_once(made.files, command + ["--dry-run"])
