@@ -167,10 +167,11 @@ void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::
     2, DataComponentInterpretation::component_is_part_of_vector);
   DataOutBase::VtkFlags flags;
   flags.compression_level = DataOutBase::VtkFlags::best_speed;
-  flags.physical_units = {
-    {"displacement", "m"},        {"deformation_gradient", "1"},      {"first_piola_stress", "Pa"},
-    {"cauchy_stress", "Pa"},      {"strain_energy_density", "J/m^3"}, {"strain_gradient_x", "1/m"},
-    {"strain_gradient_y", "1/m"}, {"double_stress_x", "Pa m"},        {"double_stress_y", "Pa m"}};
+  flags.physical_units = {{"displacement", "m"},         {"velocity", "m/s"},
+                          {"deformation_gradient", "1"}, {"first_piola_stress", "Pa"},
+                          {"cauchy_stress", "Pa"},       {"strain_energy_density", "J/m^3"},
+                          {"strain_gradient_x", "1/m"},  {"strain_gradient_y", "1/m"},
+                          {"double_stress_x", "Pa m"},   {"double_stress_y", "Pa m"}};
   flags.print_date_and_time = false; // the same fields make the same file
   flags.write_higher_order_cells = sheet.degree() > 1;
   output.set_flags(flags);

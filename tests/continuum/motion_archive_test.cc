@@ -29,10 +29,12 @@ public:
 
   void start()
   {
-    solver_->start(nullptr, std::make_shared<Field>(
-                              [](const Point<2> &X) {
-                                return Tensor<1, 2>({20. * std::sin(2. * pi * X[1] / height), 30. * X[0] / length});
-                              }));
+    solver_->start(nullptr,
+                   std::make_shared<Field>(
+                     [](const Point<2> &X) {
+                       return Tensor<1, 2>({20. * std::sin(2. * pi * X[1] / height), 30. * X[0] / length});
+                     }),
+                   2e-4);
   }
   DynamicSolver &solver() { return *solver_; }
 
@@ -48,7 +50,7 @@ protected:
   }
 
   const continuum::CauchyBorn law_ = rubber_network();
-  const continuum::IsotropicGradient gradient_{5e5, 0.01};
+  const continuum::LatticeGradient gradient_ = rubber_gradient(0.01); // its tangent depends on the load factor
   const continuum::FibreViscosity viscosity_ = network_viscosity(50.);
   Mesh mesh_;
   std::unique_ptr<DynamicSolver> solver_;
