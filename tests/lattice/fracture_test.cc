@@ -149,6 +149,45 @@ TEST(Fracture, TipIsTheRightMostSiteThatLostAQuarterOfItsBonds)
   EXPECT_EQ(*sheet.fracture.tip(), sheet.sheet.index(0, 1));
 }
 
+// In a state that was cut or loaded from outside the tip may be any site.
+TEST(Fracture, FindsTheTipWhereverItIs)
+{
+  const TenSites whole{NoToughening{}};
+  for (std::size_t row = 0; row < 3; ++row)
+    for (std::size_t column = 0; column < whole.sheet.sites_in_row(row); ++column)
+    {
+      TenSites sheet{NoToughening{}};
+      const std::size_t place = sheet.sheet.index(row, column);
+      sheet.state.lost_bonds[place] = 3;
+      sheet.fracture.locate_tip(sheet.state);
+      if (sheet.state.removed[place] != 0)
+        EXPECT_FALSE(sheet.fracture.tip());
+      else
+        EXPECT_EQ(sheet.fracture.tip(), place);
+    }
+}
+
+// Each bond alone, those of held sites among them.
+TEST(Fracture, LeavesHeldSitesHeld)
+{
+  const TriangularLattice sheet = sheets::square(8);
+  const Material material = sheets::rubber();
+  const Eigen::Matrix2d F = 2. * Eigen::Matrix2d::Identity();
+  const State whole = homogeneous_state(sheet, material, F, Edges::held, 1.5);
+  for_each_bond(whole, sheet,
+                [&](std::size_t place, std::size_t kind, std::size_t)
+                {
+                  State state = whole;
+                  state.bonds.clear(sheet.n_places());
+                  state.bonds.add(place, kind);
+                  Forces forces(sheet, material);
+                  Fracture fracture(sheet, material, 1.5, NoToughening{}, F);
+                  forces.evaluate(state, state.vx, state.vy);
+                  EXPECT_EQ(fracture.apply(state, forces, state.vx, state.vy).size(), 1u);
+                  EXPECT_EQ(state.held, whole.held);
+                });
+}
+
 // Tip at (0, 1), X = 1; delta = 0.4: bonds with midpoint X < 0.6 toughen, those at 0.75 and beyond do not.
 TEST(Fracture, ToughensBehindTheTip)
 {

@@ -95,7 +95,7 @@ _EXCHANGES = [
     ("factor 2", r"(?<=return )(?=[\w(-][^;{]*;$)", "2. * "),
 ]
 _EXCHANGES = [(kind, re.compile(pattern), to) for kind, pattern, to in _EXCHANGES]
-_TEMPLATE_NUMBERS = re.compile(r"<[\w:]*(?:(?:, )?\d+)+>")  # sizes of types: others are no program
+_TEMPLATE_NUMBERS = re.compile(r"<[\w:]*(?:(?:, )?\d+)+>|, \d+> ")  # sizes of types: others are no program
 # A whole statement on a line of its own: a call, an assignment to what exists, a jump.
 _STATEMENT = re.compile(r"^\s*(?:(?:\+\+|--|\*)?[A-Za-z_][\w:.\->\[\]() *+%,]*(?:\([^{}]*\)| [-+*/|&]?= [^{}]+)|\+\+[^{};]+|"
                         r"continue|break);$")

@@ -28,7 +28,7 @@ class Limits:
     that sleeps for ever is ended by the clock."""
     factor: float = 4.
     seconds: float = 20.  # besides
-    wall: float = 6.      # times as long by the clock
+    wall: float = 20.     # times as long by the clock
 
 
 def run_limited(command, folder, seconds, limits=Limits()):
@@ -42,7 +42,8 @@ def run_limited(command, folder, seconds, limits=Limits()):
         resource.setrlimit(resource.RLIMIT_FSIZE, (1 << 28, 1 << 28))
 
     environment = {**os.environ, "OMP_NUM_THREADS": "1", "OMPI_ALLOW_RUN_AS_ROOT": "1",
-                   "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1", "OMPI_MCA_mpi_yield_when_idle": "1"}
+                   "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1", "OMPI_MCA_rmaps_base_oversubscribe": "1",
+                   "OMPI_MCA_mpi_yield_when_idle": "1"}
     log = folder / "log"
     with open(log, "wb") as out:
         process = subprocess.Popen(command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=out,
