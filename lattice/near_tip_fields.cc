@@ -318,7 +318,7 @@ NearTipSample NearTipSampler::look(const State &state, const Axis &axis, std::si
     const auto twice = [](double length, double pitch) { return static_cast<int>(std::lround(2. * length / pitch)); };
     sample.sums.add_site(twice(offset.x(), grid_.pitch_X), twice(offset.y(), grid_.pitch_Y), motion, tensors,
                          gradients);
-    sample.sites.push_back(position - axis.current);
+    sample.sites.emplace_back(position - axis.current);
   };
   const Rows rows = rows_around(tip), columns = columns_around(tip);
   for (std::size_t row = rows.begin; row < rows.end; ++row)

@@ -89,7 +89,8 @@ void next_stage(const ChebyshevStages::Stage &stage, double h, std::size_t n, co
 /// for `ahead` [s] at their velocities. `row.force` is not looked at.
 bool any_event_ahead(const SheetConstants &sheet, const RowOfBonds &row, double ahead);
 
-/// Names of the instruction sets that this processor has and the loops exist for, the best first; "SCALAR" is none.
+/// Names of the instruction sets that this processor has and the loops exist for, the best first. The
+/// last is for any processor: "SCALAR", or with some compilers "EMU128".
 std::vector<std::string> instruction_sets();
 /// Has the loops use one of these from now on, instead of the best. Not while others compute.
 /// @throws std::invalid_argument for another name

@@ -35,7 +35,7 @@ struct ZeroPages
     if (memory == nullptr)
       throw std::bad_alloc();
     const auto address = reinterpret_cast<std::uintptr_t>(memory);
-    const auto aligned = reinterpret_cast<void **>((address / alignment + 2) * alignment);
+    const auto aligned = reinterpret_cast<void **>(static_cast<char *>(memory) + (2 * alignment - address % alignment));
     aligned[-1] = memory;
     return reinterpret_cast<T *>(aligned);
   }
