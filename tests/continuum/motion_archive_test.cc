@@ -138,7 +138,7 @@ std::vector<Store> undisturbed()
 template <class M>
 void expect_same_bits_after_resuming(const std::vector<Store> &states)
 {
-  for (const unsigned int at : {0u, 1u, 4u, 7u, 9u})
+  for (const unsigned int at : {0u, 5u, 9u})
   {
     M motion(MPI_COMM_WORLD);
     load(dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, states[at]), motion.solver());
@@ -210,7 +210,8 @@ TEST(MotionArchive, GoesOnWithTheSameBitsWithAMultigridThatIsKept)
 TEST(MotionArchive, IsTakenUpByAnyNumberOfRanks)
 {
   const int n_ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
-  for (int writers = 1; writers <= n_ranks; ++writers)
+  const std::set<int> numbers{1, n_ranks};
+  for (const int writers : numbers)
   {
     const FirstRanks writing(writers);
     Store at_stop;
@@ -226,7 +227,7 @@ TEST(MotionArchive, IsTakenUpByAnyNumberOfRanks)
       at_end = stored(motion.solver());
     }
     at_stop = dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, at_stop);
-    for (int readers = 1; readers <= n_ranks; ++readers)
+    for (const int readers : numbers)
     {
       const FirstRanks reading(readers);
       if (!reading)

@@ -37,8 +37,12 @@ def kill_at_random(program, name, folder, rng, kills, ranks=(1,)):
 def advance(program, arguments, out, rng, duration, ranks, told):
     """Starts the run again and kills it, or now and then asks it to stop. @return whether it had ended before"""
     on = rng.choice(ranks)
+    before = victims.time_of_change(out / "run.json")
     process = program.start([*arguments, "--resume", "--threads", str(rng.choice((1, 2)))], out, ranks=on)
-    end = time.monotonic() + rng.uniform(0., 1.3 * duration * on)
+    # Most of what there is to lose is lost after the start, and some starts are hit as well.
+    if rng.random() < 0.9:
+        victims.wait_until_it_runs(process, out, before)
+    end = time.monotonic() + rng.uniform(0., duration)
     while time.monotonic() < end and process.poll() is None:
         time.sleep(0.005)
     # A signal that mpirun gets before it has started the ranks is no matter of latcon's.
