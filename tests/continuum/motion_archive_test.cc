@@ -12,6 +12,8 @@
 
 #include <boost/serialization/map.hpp>
 
+#include <set>
+
 using namespace moving_sheets;
 using continuum::DynamicSolver;
 using memory_archive::load;
