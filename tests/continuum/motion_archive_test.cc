@@ -52,7 +52,7 @@ protected:
   }
 
   const continuum::CauchyBorn law_ = rubber_network();
-  const continuum::LatticeGradient gradient_ = rubber_gradient(0.01); // its tangent depends on the load factor
+  const continuum::IsotropicGradient gradient_{5e5, 0.01};
   const continuum::FibreViscosity viscosity_ = network_viscosity(50.);
   Mesh mesh_;
   std::unique_ptr<DynamicSolver> solver_;
