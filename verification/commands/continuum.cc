@@ -172,7 +172,7 @@ continuum::DynamicSettings dynamic_settings(const Case &input, ContinuumModel &m
   return settings;
 }
 
-void start(continuum::DynamicSolver &solver, const Case &input, ContinuumModel &model, Run &run)
+void start(continuum::DynamicSolver &solver, const Case &input, const ContinuumModel &model, Run &run)
 {
   const ContinuumCase &c = input.continuum;
   const continuum::Sheet &sheet = solver.sheet();
