@@ -32,7 +32,7 @@ void check(const CrackMeasurementOptions &o)
   require(o.strip_length > 0. && std::isfinite(o.strip_length), "crack measurement: the strip length must be positive");
   require(o.lattice_spacing > 0. && o.lattice_spacing < o.strip_length,
           "crack measurement: the lattice spacing must lie between 0 and the strip length");
-  require(o.end_time > 0. && std::isfinite(o.end_time), "crack measurement: the end of the run must be positive");
+  require(o.end_time >= 0. && std::isfinite(o.end_time), "crack measurement: the run cannot end before it begins");
   require(o.seed_tip_X >= 0. && o.seed_tip_X < o.strip_length, "crack measurement: the seed must end inside the strip");
   require(o.run_in_fraction >= 0. && o.clamp_fraction >= 0. && o.run_in_fraction + o.clamp_fraction < 1.,
           "crack measurement: run-in and clamp zone must be fractions and leave something of the strip");
@@ -185,6 +185,11 @@ CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vec
 
   CrackMeasurement m;
   m.X_begin = m.X_end = options.seed_tip_X;
+  if (options.end_time == 0.)
+  {
+    m.reason = "the run was stopped before its first step: nothing to tell";
+    return m;
+  }
   const double X_last = tip.empty() ? options.seed_tip_X : std::max(options.seed_tip_X, tip.back().X);
   const double advance = X_last - options.seed_tip_X;
   const double least_advance = 0.5 * options.arrest_fraction * options.strip_length;

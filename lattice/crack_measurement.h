@@ -29,7 +29,7 @@ struct CrackMeasurementOptions
 {
   double strip_length = std::numeric_limits<double>::quiet_NaN();    ///< L [m], > 0
   double lattice_spacing = std::numeric_limits<double>::quiet_NaN(); ///< d [m], in (0, L)
-  double end_time = std::numeric_limits<double>::quiet_NaN();        ///< end of the run [s], > 0, not before a record
+  double end_time = std::numeric_limits<double>::quiet_NaN();        ///< end of the run [s], >= 0, not before a record
   double seed_tip_X = std::numeric_limits<double>::quiet_NaN();      ///< tip of the seed crack [m], in [0, L)
 
   /// Part of L ahead of the seed's tip that is left out in any case [-]: the crack accelerates there and has not

@@ -243,6 +243,16 @@ TEST(CrackMeasurement, ShortRecordOfARunningCrackIsNotConclusive)
   }
 }
 
+TEST(CrackMeasurement, RunStoppedBeforeItsFirstStepSaysNothing)
+{
+  CrackMeasurementOptions options = options_for({});
+  options.end_time = 0.;
+  const CrackMeasurement m = measure_crack({}, {}, options);
+  EXPECT_NE(m.pattern, CrackPattern::arrested);
+  EXPECT_FALSE(m.conclusive);
+  EXPECT_NE(m.reason.find("before its first step"), std::string::npos) << m.reason;
+}
+
 TEST(CrackMeasurement, AnyPartOfARecordCanBeMeasured)
 {
   // Every window length, and every one of them with a tenth of the entries: no number may come out that is not finite.
@@ -330,6 +340,7 @@ TEST(CrackMeasurement, RefusesBadOptions)
   refuses([&](auto &o) { o.lattice_spacing = nan; }, "no lattice spacing");
   refuses([&](auto &o) { o.lattice_spacing = 0.; }, "lattice spacing 0");
   refuses([&](auto &o) { o.end_time = nan; }, "no end");
+  refuses([&](auto &o) { o.end_time = -1e-9; }, "end before the beginning");
   refuses([&](auto &o) { o.end_time *= 0.5; }, "record after the end");
   refuses([&](auto &o) { o.seed_tip_X = nan; }, "no seed");
   refuses([&](auto &o) { o.seed_tip_X = length; }, "seed through the strip");
