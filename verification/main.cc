@@ -1,6 +1,6 @@
 #include <deal.II/base/mpi.h>
 
-#include "verification/command_line.h"
+#include "verification/commands/command_line.h"
 
 int main(int argc, char **argv)
 {

@@ -6,23 +6,24 @@ import whole
 from kills import Failure, compare
 
 
-def n_calls(program, arguments, folder):
-    """How many such calls an undisturbed run makes."""
+def counted(program, arguments, folder):
+    """@return the contents of an undisturbed run, and how many such calls it makes"""
     log = folder / "calls"
     out = folder / "counted"
     status, said = program.run([*arguments, "--threads", "1"], out,
                                fault={"LATCON_FAULT": "count", "LATCON_FAULT_LOG": str(log)})
     if status not in victims.DONE:
         raise Failure(f"exit {status} when counted: {said}")
+    contents = victims.contents(out)
     shutil.rmtree(out)
-    return int(log.read_text())
+    return contents, int(log.read_text())
 
 
 def at_moments(program, name, folder, fault, moments):
     """Lets a fault happen at some of the calls, given as a function of their number. @return statistics"""
     arguments = victims.VICTIMS[name]
-    expected, _ = victims.undisturbed(program, arguments, folder / "undisturbed")
-    calls = n_calls(program, arguments, folder)
+    folder.mkdir(parents=True, exist_ok=True)
+    expected, calls = counted(program, arguments, folder)
     told = {"calls": calls, "faults": 0, "files_read": 0}
     out = folder / fault
     for call in moments(calls):

@@ -21,7 +21,7 @@
 
 #include <deal.II/base/mpi.h>
 
-#include "verification/command_line.h"
+#include "verification/commands/command_line.h"
 
 namespace
 {

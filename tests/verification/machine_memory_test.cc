@@ -1,5 +1,5 @@
 // What the machine has left is what it says in /proc and in its control groups, the least of all.
-#include "verification/machine_memory.h"
+#include "verification/resources/machine_memory.h"
 
 #include "temporary_folder.h"
 

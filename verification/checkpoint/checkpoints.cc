@@ -10,7 +10,11 @@
 #include <deal.II/base/mpi.h>
 
 #include "verification/atomic_file.h"
-#include "verification/commands/command.h"
+#include "verification/case.h"
+#include "verification/errors.h"
+#include "verification/options.h"
+#include "verification/parameters.h"
+#include "verification/run_info.h"
 #include "verification/sha256.h"
 
 namespace verification

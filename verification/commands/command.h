@@ -6,28 +6,12 @@
 #include "verification/case.h"
 #include "verification/claim_outcome.h"
 #include "verification/errors.h"
+#include "verification/options.h"
 #include "verification/results.h"
 #include "verification/run_info.h"
 
 namespace verification
 {
-
-/// What the command line said, whatever the command.
-struct Options
-{
-  std::vector<std::string> arguments; ///< argv, for the record
-  std::vector<std::string> overrides; ///< `Section/Name=value`
-  std::string case_file;
-  std::string output_dir = "output";
-  std::vector<std::string> claims; ///< none: all
-  unsigned int threads = 0;        ///< 0: as many as the machine has
-  bool quick = false;
-  bool quiet = false;
-  bool dry_run = false;
-  bool skip_verification = false;
-  bool no_report = false; ///< of a crack: neither pictures nor page
-  bool resume = false;    ///< go on from the last checkpoint; of a study: take the runs that are there
-};
 
 /// What `latcon compare` was asked. Times are texts, with a unit or in s, or load factors; empty: the last frame.
 struct CompareOptions

@@ -15,7 +15,7 @@
 #include "verification/continuum_model.h"
 #include "verification/continuum_record.h"
 #include "verification/progress.h"
-#include "verification/resources.h"
+#include "verification/resources/resources.h"
 
 namespace verification
 {

@@ -3,7 +3,7 @@
 #include <string>
 
 #include "verification/case.h"
-#include "verification/resources.h"
+#include "verification/resources/resources.h"
 
 namespace verification
 {

@@ -5,9 +5,9 @@
 #include "verification/checkpoint/checkpoints.h"
 #include "verification/commands/command.h"
 #include "verification/commands/dry_run.h"
-#include "verification/crack_record.h"
+#include "verification/fracture/crack_record.h"
+#include "verification/fracture/near_tip_record.h"
 #include "verification/lattice_sheet.h"
-#include "verification/near_tip_record.h"
 #include "verification/progress.h"
 
 namespace verification

@@ -6,7 +6,7 @@
 #include "verification/checkpoint/checkpoints.h"
 #include "verification/commands/command.h"
 #include "verification/commands/dry_run.h"
-#include "verification/crack_record.h"
+#include "verification/fracture/crack_record.h"
 #include "verification/homogenisation.h"
 #include "verification/lattice_sheet.h"
 #include "verification/progress.h"

@@ -9,9 +9,9 @@
 
 #include "verification/atomic_file.h"
 #include "verification/commands/command.h"
-#include "verification/machine_memory.h"
 #include "verification/progress.h"
-#include "verification/resources.h"
+#include "verification/resources/machine_memory.h"
+#include "verification/resources/resources.h"
 #include "verification/study/process_pool.h"
 #include "verification/study/study_output.h"
 

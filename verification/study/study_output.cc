@@ -8,7 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "verification/csv.h"
-#include "verification/resources.h"
+#include "verification/resources/resources.h"
 #include "verification/run_info.h"
 #include "verification/text_wrap.h"
 

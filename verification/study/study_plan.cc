@@ -10,7 +10,7 @@
 #include "verification/errors.h"
 #include "verification/homogenisation.h"
 #include "verification/lattice_sheet.h"
-#include "verification/resources.h"
+#include "verification/resources/resources.h"
 
 namespace verification
 {

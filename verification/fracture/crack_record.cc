@@ -1,4 +1,4 @@
-#include "verification/crack_record.h"
+#include "verification/fracture/crack_record.h"
 
 #include <algorithm>
 #include <cmath>
@@ -223,9 +223,12 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory,
   {
     const lattice::TriangularLattice &sheet = simulation_.lattice();
     const Eigen::Vector2d X = sheet.reference(bond->near) + 0.5 * sheet.bond_vector(bond->kind);
-    json["nearest_to_breaking"] = {
-      {"site", sheet.site_number(bond->near)}, {"other_site", sheet.site_number(bond->far)}, {"X", X.x()}, {"Y", X.y()},
-      {"stretch", bond->stretch},              {"limit", bond->limit}};
+    json["nearest_to_breaking"] = {{"site", sheet.site_number(bond->near)},
+                                   {"other_site", sheet.site_number(bond->far)},
+                                   {"X", X.x()},
+                                   {"Y", X.y()},
+                                   {"stretch", bond->stretch},
+                                   {"limit", bond->limit}};
   }
   json["bridged_length"] = lattice::bridged_length(state, simulation_.lattice(), seed_tip_X, tip_X());
   json["end_time"] = state.time;

@@ -1,4 +1,4 @@
-#include "verification/resources.h"
+#include "verification/resources/resources.h"
 
 #include <algorithm>
 #include <array>
@@ -13,10 +13,10 @@
 #include "continuum/rectangle.h"
 #include "lattice/simulation.h"
 #include "verification/errors.h"
+#include "verification/fracture/near_tip_record.h"
 #include "verification/homogenisation.h"
 #include "verification/lattice_sheet.h"
-#include "verification/machine_memory.h"
-#include "verification/near_tip_record.h"
+#include "verification/resources/machine_memory.h"
 
 namespace verification
 {

@@ -1,4 +1,4 @@
-#include "verification/machine_memory.h"
+#include "verification/resources/machine_memory.h"
 
 #include <algorithm>
 #include <array>

@@ -1,4 +1,4 @@
-#include "verification/near_tip_record.h"
+#include "verification/fracture/near_tip_record.h"
 
 #include <algorithm>
 #include <cmath>

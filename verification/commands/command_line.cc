@@ -1,4 +1,4 @@
-#include "verification/command_line.h"
+#include "verification/commands/command_line.h"
 
 #include <algorithm>
 #include <chrono>
@@ -98,7 +98,8 @@ ExitCode run_program(int argc, char **argv)
     ->check(CLI::Range(1u, 4096u))
     ->type_name("N");
   app.add_flag("--quiet", options.quiet, "print errors only");
-  app.add_flag("--resume", options.resume, "go on from the last checkpoint, or keep the runs of a study that are there");
+  app.add_flag("--resume", options.resume,
+               "go on from the last checkpoint, or keep the runs of a study that are there");
   app.add_flag("--dry-run", options.dry_run, "check the input, print the resolved case and its cost, run nothing");
 
   options.case_file = shipped_case("fig1.prm");
