@@ -131,18 +131,8 @@ DynamicSolver::Vector DynamicSolver::interpolate(const VectorField &field) const
       {
         if (field->n_components != 2)
           throw InvalidInput("an initial field needs a function of two components");
-        const auto &element = sheet_.element();
-        std::vector<types::global_dof_index> dofs(element.n_dofs_per_cell());
-        for (const auto &cell : sheet_.dof_handler().active_cell_iterators())
-          if (cell->is_locally_owned())
-          {
-            cell->get_dof_indices(dofs);
-            for (unsigned int a = 0; a < dofs.size(); ++a)
-              if (sheet_.owned().is_element(dofs[a]))
-                x(dofs[a]) =
-                  field->value(sheet_.mapping().transform_unit_to_real_cell(cell, element.unit_support_point(a)),
-                               element.system_to_component_index(a).first);
-          }
+        sheet_.visit_unknowns([&](const auto dof, const unsigned int component, const Point<2> &X)
+                              { x(dof) = field->value(X, component); });
       });
     x.compress(VectorOperation::insert);
     guarded.agree(sheet_.communicator());

@@ -49,24 +49,16 @@ std::string DynamicSolver::place_of_largest(const Vector &residual) const
 {
   using Candidate = std::array<double, 3>; // absolute value [N/m], place [m]
   Candidate own{-1., 0., 0.};
-  const auto &element = sheet_.element();
-  std::vector<types::global_dof_index> dofs(element.n_dofs_per_cell());
-  for (const auto &cell : sheet_.dof_handler().active_cell_iterators())
-    if (cell->is_locally_owned())
+  sheet_.visit_unknowns(
+    [&](const auto dof, unsigned int, const Point<2> &X)
     {
-      cell->get_dof_indices(dofs);
-      for (unsigned int a = 0; a < dofs.size(); ++a)
-        if (sheet_.owned().is_element(dofs[a]) && !homogeneous_.is_constrained(dofs[a]))
-        {
-          const double value =
-            std::isfinite(residual(dofs[a])) ? std::abs(residual(dofs[a])) : std::numeric_limits<double>::infinity();
-          if (value > own[0])
-          {
-            const Point<2> X = sheet_.mapping().transform_unit_to_real_cell(cell, element.unit_support_point(a));
-            own = {value, X[0], X[1]};
-          }
-        }
-    }
+      if (homogeneous_.is_constrained(dof))
+        return;
+      const double value =
+        std::isfinite(residual(dof)) ? std::abs(residual(dof)) : std::numeric_limits<double>::infinity();
+      if (value > own[0])
+        own = {value, X[0], X[1]};
+    });
   const std::vector<Candidate> all = Utilities::MPI::all_gather(sheet_.communicator(), own);
   const Candidate largest = *std::max_element(all.begin(), all.end());
   std::ostringstream place;

@@ -53,21 +53,15 @@ void fill_start(const Sheet &sheet, const AffineConstraints<double> &constraints
       own_size = std::min(own_size, cell->diameter());
   const double size = Utilities::MPI::min(own_size, sheet.communicator());
 
-  const auto &element = sheet.element();
-  std::vector<types::global_dof_index> dofs(element.n_dofs_per_cell());
-  for (const auto &cell : sheet.dof_handler().active_cell_iterators())
-    if (cell->is_locally_owned())
+  sheet.visit_unknowns(
+    [&](const auto dof, const unsigned int i, const Point<2> &place)
     {
-      cell->get_dof_indices(dofs);
-      for (unsigned int a = 0; a < dofs.size(); ++a)
-        if (start.in_local_range(dofs[a]) && !constraints.is_constrained(dofs[a]))
-        {
-          const Point<2> X = sheet.mapping().transform_unit_to_real_cell(cell, element.unit_support_point(a)) / size;
-          const unsigned int i = element.system_to_component_index(a).first;
-          start(dofs[a]) = std::sin(11.3 * X[0] + 3.1 * i) * std::cos(9.7 * X[1]) + std::sin(4.9 * X[1] - 0.7 * i) +
-                           std::cos(5.3 * X[0] + 0.2 * X[1]);
-        }
-    }
+      if (constraints.is_constrained(dof))
+        return;
+      const Point<2> X = place / size;
+      start(dof) = std::sin(11.3 * X[0] + 3.1 * i) * std::cos(9.7 * X[1]) + std::sin(4.9 * X[1] - 0.7 * i) +
+                   std::cos(5.3 * X[0] + 0.2 * X[1]);
+    });
 }
 
 // Estimate of the largest eigenvalue of B A from below, by `n_steps` steps of the Lanczos process that conjugate

@@ -257,6 +257,21 @@ std::map<Sheet::Cell, Sheet::PointsInCell> Sheet::locate(const std::vector<Point
   return located;
 }
 
+void Sheet::visit_unknowns(
+  const std::function<void(types::global_dof_index, unsigned int, const Point<2> &)> &visit) const
+{
+  std::vector<types::global_dof_index> dofs(element_.n_dofs_per_cell());
+  for (const auto &cell : dof_handler_.active_cell_iterators())
+    if (cell->is_locally_owned())
+    {
+      cell->get_dof_indices(dofs);
+      for (unsigned int a = 0; a < dofs.size(); ++a)
+        if (owned_.is_element(dofs[a]))
+          visit(dofs[a], element_.system_to_component_index(a).first,
+                mapping_.transform_unit_to_real_cell(cell, element_.unit_support_point(a)));
+    }
+}
+
 Sheet::Vector Sheet::make_owned() const
 {
   return Vector(owned_, communicator());

@@ -12,6 +12,7 @@
 #include <deal.II/lac/trilinos_sparse_matrix.h>
 #include <deal.II/lac/trilinos_vector.h>
 
+#include <functional>
 #include <map>
 #include <memory>
 #include <vector>
@@ -99,6 +100,11 @@ public:
 
   /// Range of det F over all quadrature points. Does not throw for det F <= 0.
   DeterminantRange determinant_range(const Vector &u) const;
+
+  /// Calls `visit` with each displacement unknown that this rank owns, its component i (0 or 1), and the place X of its
+  /// node [m, reference]: cell by cell, so with a node that several own cells share several times.
+  void visit_unknowns(
+    const std::function<void(dealii::types::global_dof_index, unsigned int, const dealii::Point<2> &)> &visit) const;
 
   Vector make_owned() const;   ///< a zero vector without ghost entries, to write to
   Vector make_ghosted() const; ///< a zero vector with ghost entries, to read from

@@ -23,25 +23,12 @@ void make_adaptive(Mesh &mesh)
 // A state that jumps nowhere and is homogeneous nowhere, with ghost entries.
 Sheet::Vector wavy_state(const Sheet &sheet)
 {
-  Sheet::Vector owned = sheet.make_owned();
-  std::vector<dealii::types::global_dof_index> dofs(sheet.element().n_dofs_per_cell());
-  for (const auto &cell : sheet.dof_handler().active_cell_iterators())
-    if (cell->is_locally_owned())
-    {
-      cell->get_dof_indices(dofs);
-      for (unsigned int a = 0; a < dofs.size(); ++a)
-        if (sheet.owned().is_element(dofs[a]))
-        {
-          const Point<2> X = sheet.mapping().transform_unit_to_real_cell(cell, sheet.element().unit_support_point(a));
-          const unsigned int i = sheet.element().system_to_component_index(a).first;
-          owned(dofs[a]) = 0.3 * X[i] + 2e-4 * std::sin(300. * (X[0] + 2. * X[1]) + i);
-        }
-    }
-  owned.compress(dealii::VectorOperation::insert);
-  sheet.continuity().distribute(owned);
-  Sheet::Vector u = sheet.make_ghosted();
-  u = owned;
-  return u;
+  return nodal(sheet,
+               [](const Point<2> &X)
+               {
+                 const double wave = 300. * (X[0] + 2. * X[1]);
+                 return Tensor<1, 2>({0.3 * X[0] + 2e-4 * std::sin(wave), 0.3 * X[1] + 2e-4 * std::sin(wave + 1.)});
+               });
 }
 } // namespace
 

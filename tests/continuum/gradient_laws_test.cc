@@ -106,19 +106,6 @@ std::vector<BondFamily> mixed_bonds()
           {{Tensor<1, 2>({-0.28, 0.96}), 0.4, continuum::RodPotential{2e5, -0.5e5}}, spacing}};
 }
 
-Gradient random_gradient(std::mt19937 &generator)
-{
-  std::uniform_real_distribution<double> entry(-0.3 / spacing, 0.3 / spacing);
-  Gradient G;
-  for (unsigned int i = 0; i < 2; ++i)
-  {
-    G[i][0][0] = entry(generator);
-    G[i][1][1] = entry(generator);
-    G[i][0][1] = G[i][1][0] = entry(generator);
-  }
-  return G;
-}
-
 // Value, first and second derivatives of an energy by the ten variables.
 template <typename Energy>
 FadFad differentiated(const Energy &energy, const Tensor<2, 2> &F, const Gradient &G)
@@ -146,8 +133,8 @@ void expect_derivatives(const GradientLaw &law, const Energy &energy)
   for (int sample = 0; sample < 30; ++sample)
   {
     const Tensor<2, 2> F = random_deformation(generator, 0.8, 3.);
-    const Gradient G = random_gradient(generator);
-    const Gradient Z = random_gradient(generator);
+    const Gradient G = random_gradient(generator, spacing);
+    const Gradient Z = random_gradient(generator, spacing);
     const FadFad at_G = differentiated(energy, F, G);
     const FadFad at_Z = differentiated(energy, F, Z);
     const FadFad at_sum = differentiated(energy, F, G + Z);
@@ -218,8 +205,8 @@ void expect_objective(const GradientLaw &law)
   for (int sample = 0; sample < 30; ++sample)
   {
     const Tensor<2, 2> F = random_deformation(generator);
-    const Gradient G = random_gradient(generator);
-    const Gradient Z = random_gradient(generator);
+    const Gradient G = random_gradient(generator, spacing);
+    const Gradient Z = random_gradient(generator, spacing);
     const Tensor<2, 2> R = rotation(0.1 + 0.2 * sample);
     const double scale = law.energy(F, G) + law.energy(F, Z);
     EXPECT_NEAR(law.form(R * F, rotated(R, G), rotated(R, Z)), law.form(F, G, Z), roundings * epsilon * scale);
@@ -284,7 +271,7 @@ TEST(LatticeGradient, IsHexagonalAndNotIsotropic)
   for (int sample = 0; sample < 30; ++sample)
   {
     const Tensor<2, 2> F = random_deformation(generator);
-    const Gradient G = random_gradient(generator);
+    const Gradient G = random_gradient(generator, spacing);
     const double W = law.energy(F, G);
     const Tensor<2, 2> sixth = rotation(pi / 3.);
     EXPECT_NEAR(law.energy(F * transpose(sixth), turned(G, sixth)), W, roundings * epsilon * W);
@@ -302,7 +289,7 @@ TEST(LatticeGradient, IsPositiveInTension)
   EXPECT_NEAR(LatticeGradient::smallest_length(rubber_bonds(spacing)), 0.5 * spacing, 10. * epsilon * spacing);
   std::mt19937 generator(9);
   for (int sample = 0; sample < 200; ++sample)
-    EXPECT_GT(law.energy(random_deformation(generator, 1.01, 3.), random_gradient(generator)), 0.);
+    EXPECT_GT(law.energy(random_deformation(generator, 1.01, 3.), random_gradient(generator, spacing)), 0.);
 }
 
 // A strip pulled along y and free across: bonds along x are compressed, and push their ends apart across themselves.

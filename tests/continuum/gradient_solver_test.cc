@@ -61,18 +61,12 @@ TEST(GradientEquilibrium, ResidualAndTangentAreDerivativesOfOneFunctional)
         return result;
       };
       Vector u = random(2e-3); // over cells of 2.5 to 7.5 cm
-      for (const auto &cell : sheet.dof_handler().active_cell_iterators())
-      {
-        std::vector<dealii::types::global_dof_index> dofs(sheet.element().n_dofs_per_cell());
-        cell->get_dof_indices(dofs);
-        for (unsigned int a = 0; a < dofs.size(); ++a)
-          if (!sheet.continuity().is_constrained(dofs[a]))
-          {
-            const auto X = sheet.mapping().transform_unit_to_real_cell(cell, sheet.element().unit_support_point(a));
-            const unsigned int i = sheet.element().system_to_component_index(a).first;
-            u(dofs[a]) = 0.4 * X[i] + 1e-3 * std::sin(900. * (X[0] + 2. * X[1]) + i);
-          }
-      }
+      sheet.visit_unknowns(
+        [&](const auto dof, const unsigned int i, const auto &X)
+        {
+          if (!sheet.continuity().is_constrained(dof))
+            u(dof) = 0.4 * X[i] + 1e-3 * std::sin(900. * (X[0] + 2. * X[1]) + i);
+        });
       sheet.continuity().distribute(u);
       const Vector v = random(1e-3);
       const Vector w = random(1e-3);

@@ -256,21 +256,15 @@ TEST(MotionArchive, PutsNodalValuesInTheirPlacesOnAnyNumberOfRanks)
   { return std::sin(40. * X[0] + 3. * component) + 7. * X[1]; };
   const SheetWithHole whole(MPI_COMM_SELF);
   continuum::Sheet::Vector u = whole.sheet->make_owned();
-  std::vector<dealii::types::global_dof_index> dofs(whole.sheet->element().n_dofs_per_cell());
-  for (const auto &cell : whole.sheet->dof_handler().active_cell_iterators())
-  {
-    cell->get_dof_indices(dofs);
-    for (unsigned int a = 0; a < dofs.size(); ++a)
-      u(dofs[a]) =
-        field(whole.sheet->mapping().transform_unit_to_real_cell(cell, whole.sheet->element().unit_support_point(a)),
-              whole.sheet->element().system_to_component_index(a).first);
-  }
+  whole.sheet->visit_unknowns([&](const auto dof, const unsigned int component, const Point<2> &X)
+                              { u(dof) = field(X, component); });
   const std::vector<double> values = NodalOrder(*whole.sheet).gathered(u);
 
   const SheetWithHole shared(MPI_COMM_WORLD);
   continuum::Sheet::Vector x = shared.sheet->make_ghosted();
   const NodalOrder order(*shared.sheet);
   order.spread(values, x);
+  std::vector<dealii::types::global_dof_index> dofs(shared.sheet->element().n_dofs_per_cell());
   for (const auto &cell : shared.sheet->dof_handler().active_cell_iterators())
     if (cell->is_locally_owned())
     {

@@ -223,27 +223,6 @@ TEST(Multigrid, GivesTheSameBitsAgain)
 
 namespace
 {
-// A displacement at the nodes of a sheet, with ghost entries.
-Sheet::Vector nodal(const Sheet &sheet, const std::function<Tensor<1, 2>(const Point<2> &)> &field)
-{
-  Sheet::Vector owned = sheet.make_owned();
-  std::vector<dealii::types::global_dof_index> dofs(sheet.element().n_dofs_per_cell());
-  for (const auto &cell : sheet.dof_handler().active_cell_iterators())
-    if (cell->is_locally_owned())
-    {
-      cell->get_dof_indices(dofs);
-      for (unsigned int a = 0; a < dofs.size(); ++a)
-        if (sheet.owned().is_element(dofs[a]))
-          owned(dofs[a]) = field(sheet.mapping().transform_unit_to_real_cell(
-            cell, sheet.element().unit_support_point(a)))[sheet.element().system_to_component_index(a).first];
-    }
-  owned.compress(dealii::VectorOperation::insert);
-  sheet.continuity().distribute(owned);
-  Sheet::Vector u = sheet.make_ghosted();
-  u = owned;
-  return u;
-}
-
 Tensor<1, 2> quadratic(const Point<2> &X)
 {
   return Tensor<1, 2>({0.4 * X[0] - 2. * X[0] * X[1], 0.2 * X[1] + 3. * X[0] * X[0] - X[1] * X[1]});

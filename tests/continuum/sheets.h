@@ -39,6 +39,34 @@ inline Tensor<2, 2> rotation(const double angle)
   return matrix(std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle));
 }
 
+/// A displacement [m], given at reference places, at the nodes of a sheet: one field, with ghost entries.
+inline continuum::Sheet::Vector nodal(const continuum::Sheet &sheet,
+                                      const std::function<Tensor<1, 2>(const Point<2> &)> &field)
+{
+  continuum::Sheet::Vector owned = sheet.make_owned();
+  sheet.visit_unknowns([&](const auto dof, const unsigned int component, const Point<2> &X)
+                       { owned(dof) = field(X)[component]; });
+  owned.compress(dealii::VectorOperation::insert);
+  sheet.continuity().distribute(owned);
+  continuum::Sheet::Vector u = sheet.make_ghosted();
+  u = owned;
+  return u;
+}
+
+/// A second gradient of places G_iJK [1/m], symmetric in J and K, with entries up to 0.3 over `length` [m].
+inline Tensor<3, 2> random_gradient(std::mt19937 &generator, const double length)
+{
+  std::uniform_real_distribution<double> entry(-0.3 / length, 0.3 / length);
+  Tensor<3, 2> G;
+  for (unsigned int i = 0; i < 2; ++i)
+  {
+    G[i][0][0] = entry(generator);
+    G[i][1][1] = entry(generator);
+    G[i][0][1] = G[i][1][0] = entry(generator);
+  }
+  return G;
+}
+
 /// Rubber of theory.md, section 5: both shells of the triangular network, area factor s = 2/3, so weights s and sqrt(3)
 /// s.
 inline continuum::CauchyBorn rubber_network(const double a = 1e5, const double b = 1.5e5)

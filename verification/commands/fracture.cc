@@ -1,14 +1,11 @@
 #include <iostream>
 #include <sstream>
 
-#include "lattice/field_writer.h"
-#include "verification/checkpoint/checkpoints.h"
 #include "verification/commands/command.h"
 #include "verification/commands/dry_run.h"
-#include "verification/fracture/crack_record.h"
+#include "verification/commands/lattice_motion.h"
 #include "verification/fracture/near_tip_record.h"
 #include "verification/lattice_sheet.h"
-#include "verification/progress.h"
 
 namespace verification
 {
@@ -67,12 +64,12 @@ Results measured_results(const Case &input, const CrackRecord &record, const lat
   return results;
 }
 
-std::string progress_text(const lattice::Simulation &simulation, const CrackRecord &record, std::size_t step)
+std::string progress_text(const lattice::Simulation &simulation, const CrackRecord &record)
 {
   std::ostringstream text;
   text.precision(3);
-  text << "step " << step << ", t " << 1e3 * simulation.state().time << " ms, tip " << 100. * record.tip_X()
-       << " cm, speed " << record.speed() << " m/s, " << simulation.n_broken() << " bonds broken";
+  text << ", t " << 1e3 * simulation.state().time << " ms, tip " << 100. * record.tip_X() << " cm, speed "
+       << record.speed() << " m/s, " << simulation.n_broken() << " bonds broken";
   return text.str();
 }
 
@@ -95,95 +92,24 @@ Results break_sheet(const Case &input, const lattice::TriangularLattice &sheet, 
   const std::vector<std::size_t> seed = input.seed(sheet);
   simulation.cut(seed);
 
-  CrackRecord record(simulation);
-  lattice::FieldWriter fields(sheet, material, run.directory());
-  const auto add_frame = [&]
-  {
-    const lattice::State &whole = simulation.gather();
-    if (run.writes())
-      fields.add_frame(whole);
-  };
-  const auto write_tables = [&]
-  {
-    if (run.writes())
-      record.write_tables(run.directory());
-  };
-
+  LatticeMotion motion(input, simulation, checkpoints, run);
+  CrackRecord &record = motion.record();
   const double stop = input.stop_position * sheet.length();
   const double seed_tip = sheet.reference(seed.back()).x();
   NearTipRecord near_tip(input, simulation, seed_tip);
-  double next_frame = input.frame_interval;
-  std::size_t step = 0; // done
-  const auto parts = [&](auto &archive)
-  {
-    archive("simulation", simulation);
-    archive("record", record);
-    archive("near_tip", near_tip);
-    archive("frames", fields);
-    archive("next_frame", next_frame);
-    archive("step", step);
-  };
-  const auto write_checkpoint = [&]
-  {
-    record.check();
-    checkpoints.write(step, simulation.state().time, parts);
-  };
-  if (checkpoints.resume(parts))
-  {
-    // What was written after the checkpoint goes.
-    write_tables();
-    if (run.writes())
-      fields.write_collection();
-  }
-  else
-  {
-    record.start();
-    add_frame();
-  }
-
-  Progress progress(run.talks());
-  try
-  {
-    const auto phase = run.info().stopwatch().phase("fracture");
-    while (simulation.state().time < input.end_time && record.tip_X() < stop)
-    {
-      if (step % steps_between_signals == 0)
-      {
-        if (signal_came_to_any_rank())
-        {
-          write_checkpoint();
-          break;
-        }
-        if (checkpoints.due(step))
-          write_checkpoint();
-      }
-      ++step;
-      record.step(simulation.step());
-      near_tip.step(step);
-      if (step % input.energy_interval == 0)
-        record.energies();
-      if (input.frame_interval > 0. && simulation.state().time >= next_frame)
-      {
-        // What is known so far is on disk from here on.
-        add_frame();
-        write_tables();
-        next_frame += input.frame_interval;
-      }
-      if (progress.due())
-        progress.show(progress_text(simulation, record, step), std::max((record.tip_X() - seed_tip) / (stop - seed_tip),
-                                                                        simulation.state().time / input.end_time));
-    }
-    record.energies();
-  }
-  catch (const SolverError &)
-  {
-    // The last sound state, and what was noted until then.
-    add_frame();
-    write_tables();
-    throw;
-  }
-  add_frame();
-  write_tables();
+  motion.go({"fracture", [&] { return simulation.state().time < input.end_time && record.tip_X() < stop; },
+             [&](const std::vector<lattice::BrokenBond> &broken)
+             {
+               record.step(broken);
+               near_tip.step(motion.step());
+             },
+             [&]
+             {
+               return std::pair(
+                 progress_text(simulation, record),
+                 std::max((record.tip_X() - seed_tip) / (stop - seed_tip), simulation.state().time / input.end_time));
+             }},
+            [&](auto &archive) { archive("near_tip", near_tip); });
   const lattice::CrackMeasurement crack = record.measure(seed_tip);
   record.write_measurement(run.directory(), crack, seed_tip, *input.breaking_stretch, skip_verification);
   if (run.writes())

@@ -3,13 +3,11 @@
 
 #include "lattice/field_writer.h"
 #include "lattice/relaxation.h"
-#include "verification/checkpoint/checkpoints.h"
 #include "verification/commands/command.h"
 #include "verification/commands/dry_run.h"
-#include "verification/fracture/crack_record.h"
+#include "verification/commands/lattice_motion.h"
 #include "verification/homogenisation.h"
 #include "verification/lattice_sheet.h"
-#include "verification/progress.h"
 
 namespace verification
 {
@@ -56,87 +54,11 @@ Results moved(const Case &input, const lattice::RowBand &band, const lattice::Ma
   if (!input.time_step)
     stepping.step = input.end_time / std::ceil(input.end_time / stepping.step); // so that the last step ends at the end
   lattice::Simulation simulation(band, material, std::move(state), stepping);
-  lattice::FieldWriter fields(band.lattice(), material, run.directory());
-  const auto add_frame = [&]
-  {
-    const lattice::State &whole = simulation.gather();
-    if (run.writes())
-      fields.add_frame(whole);
-  };
-  CrackRecord record(simulation);
-  const auto write_tables = [&]
-  {
-    if (run.writes())
-      record.write_tables(run.directory());
-  };
-  double next_frame = input.frame_interval;
-  std::size_t step = 0; // done
-  const auto parts = [&](auto &archive)
-  {
-    archive("simulation", simulation);
-    archive("record", record);
-    archive("frames", fields);
-    archive("next_frame", next_frame);
-    archive("step", step);
-  };
-  const auto write_checkpoint = [&]
-  {
-    record.check();
-    checkpoints.write(step, simulation.state().time, parts);
-  };
-  if (checkpoints.resume(parts))
-  {
-    // What was written after the checkpoint goes.
-    write_tables();
-    if (run.writes())
-      fields.write_collection();
-  }
-  else
-  {
-    add_frame();
-    record.start();
-  }
-  Progress progress(run.talks());
-  try
-  {
-    const auto phase = run.info().stopwatch().phase("motion");
-    const auto steps = static_cast<std::size_t>(std::ceil(input.end_time / stepping.step * (1. - 1e-12)));
-    while (step < steps)
-    {
-      if (step % steps_between_signals == 0)
-      {
-        if (signal_came_to_any_rank())
-        {
-          write_checkpoint();
-          break;
-        }
-        if (checkpoints.due(step))
-          write_checkpoint();
-      }
-      ++step;
-      simulation.step();
-      if (step % input.energy_interval == 0)
-        record.energies();
-      if (input.frame_interval > 0. && simulation.state().time >= next_frame && step < steps)
-      {
-        add_frame();
-        next_frame += input.frame_interval;
-      }
-      if (progress.due())
-        progress.show("step " + std::to_string(step) + "/" + std::to_string(steps), static_cast<double>(step) / steps);
-    }
-    record.energies();
-  }
-  catch (const SolverError &)
-  {
-    // The last sound state, and what was noted until then.
-    add_frame();
-    write_tables();
-    throw;
-  }
-  write_tables();
-  if (input.end_time > 0.)
-    add_frame();
+  LatticeMotion motion(input, simulation, checkpoints, run);
+  const auto steps = static_cast<std::size_t>(std::ceil(input.end_time / stepping.step * (1. - 1e-12)));
+  motion.go({"motion", [&] { return motion.step() < steps; }, [](const auto &) {},
+             [&] { return std::pair("/" + std::to_string(steps), static_cast<double>(motion.step()) / steps); }},
+            [](auto &) {});
   Results results;
   const lattice::EnergyBalance energies = simulation.energies();
   results.add({"lattice", "elastic energy per thickness", "J/m", energies.elastic, {}, {}, {}, {}});
@@ -144,10 +66,10 @@ Results moved(const Case &input, const lattice::RowBand &band, const lattice::Ma
   results.add({"lattice",
                "energy imbalance over initial energy",
                "1",
-               record.largest_imbalance(),
+               motion.record().largest_imbalance(),
                {},
                {},
-               record.largest_imbalance(),
+               motion.record().largest_imbalance(),
                1e-4});
   return results;
 }

@@ -1,0 +1,77 @@
+#pragma once
+
+#include <functional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "lattice/field_writer.h"
+#include "lattice/simulation.h"
+#include "verification/checkpoint/checkpoints.h"
+#include "verification/commands/command.h"
+#include "verification/fracture/crack_record.h"
+
+namespace verification
+{
+
+/// What every motion of a lattice does as it goes, with a crack or without: frames, tables, the energy ledger,
+/// checkpoints, signals, progress. On every rank alike; the first writes.
+class LatticeMotion
+{
+public:
+  /// @param simulation at its first step; must outlive the motion
+  LatticeMotion(const Case &input, lattice::Simulation &simulation, Checkpoints &checkpoints, Run &run);
+
+  /// How one motion differs from another.
+  struct Course
+  {
+    std::string phase;             ///< under which its time is noted in run.json
+    std::function<bool()> goes_on; ///< whether there is a further step
+    std::function<void(const std::vector<lattice::BrokenBond> &)> after_step; ///< given the bonds that broke in it
+    std::function<std::pair<std::string, double>()> progress;                 ///< in words, and the part that is done
+  };
+
+  /// Moves the sheet from its first step, or the checkpoint found, until it does not go on or a signal comes. Then, and
+  /// if it blows up, the last frame shows where it got to, and the tables tell what was noted.
+  /// @param further archives what else belongs to the motion, given an archive
+  /// @throws SolverError if the sheet blows up, OutputError
+  template <class Further>
+  void go(const Course &course, const Further &further)
+  {
+    const auto parts = [&](auto &archive)
+    {
+      archive("simulation", simulation_);
+      archive("record", record_);
+      further(archive);
+      archive("frames", frames_);
+      archive("next_frame", next_frame_);
+      archive("step", step_);
+    };
+    const bool resumed = checkpoints_.resume(parts);
+    go(course, resumed,
+       [&]
+       {
+         record_.check();
+         checkpoints_.write(step_, simulation_.state().time, parts);
+       });
+  }
+
+  CrackRecord &record() { return record_; }
+  std::size_t step() const { return step_; } ///< steps done
+
+private:
+  void go(const Course &course, bool resumed, const std::function<void()> &write_checkpoint);
+  void add_frame();
+  void write_tables() const;
+
+  const Case &input_;
+  lattice::Simulation &simulation_;
+  Checkpoints &checkpoints_;
+  Run &run_;
+  CrackRecord record_;
+  lattice::FieldWriter frames_;
+  double next_frame_; // [s]
+  std::size_t step_ = 0;
+};
+
+} // namespace verification
