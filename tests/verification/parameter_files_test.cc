@@ -3,7 +3,7 @@
 
 #include "temporary_folder.h"
 
-#include <limits>
+#include <random>
 #include <sys/stat.h>
 #include <unistd.h>
 
