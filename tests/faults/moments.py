@@ -30,6 +30,9 @@ def at_moments(program, name, folder, fault, moments):
         shutil.rmtree(out, ignore_errors=True)
         status, said = program.run([*arguments, "--threads", "1"], out,
                                    fault={"LATCON_FAULT": fault, "LATCON_FAULT_AT": str(call)})
+        if fault == "full" and status in victims.DONE:
+            compare(name, out, expected)  # nothing that needs room came after
+            continue
         if status != {"kill": -9, "full": 5}[fault]:
             raise Failure(f"{name}: exit {status} with `{fault}` at call {call} of {calls}: {said}")
         if fault == "full" and str(out) not in said:
