@@ -113,6 +113,16 @@ class Site(unittest.TestCase):
         for page in self.pages.values():
             self.assertEqual([link for link in page.links if re.match(r"(https?:)?//.*\.(js|css|png|woff)", link)], [])
 
+    def test_mathjax_has_what_it_loads(self):
+        """As a browser listed it; without any of these formulas are error messages."""
+        loads = [*(f"extensions/{n}.js" for n in ("MathEvents", "TeX/AMSmath", "TeX/AMSsymbols", "tex2jax")),
+                 "jax/input/TeX/config.js", "jax/input/TeX/jax.js", "jax/element/mml/jax.js",
+                 *(f"jax/element/mml/optable/{n}.js" for n in ("Arrows", "BasicLatin", "GeneralPunctuation")),
+                 *(f"jax/output/HTML-CSS/{n}.js" for n in ("autoload/mtable", "config", "jax", "fonts/TeX/fontdata",
+                                                           "fonts/TeX/AMS/Regular/Main")),
+                 "fonts/HTML-CSS/TeX/woff/MathJax_Main-Regular.woff", "MathJax.js"]
+        self.assertEqual([file for file in loads if not (SITE / "mathjax" / file).is_file()], [])
+
     def test_warnings_are_seen(self):
         judged = module(BUILD).warnings
         self.assertEqual(judged("a.h:3: warning: Member f() (function) of class lattice::A is not documented.\n"), [])

@@ -12,15 +12,22 @@ import subprocess
 import sys
 
 MATHJAX = pathlib.Path("/usr/share/javascript/mathjax")
-MATHJAX_PARTS = ("MathJax.js", "extensions", "jax/element", "jax/input/TeX", "jax/output/HTML-CSS/autoload",
-                 "jax/output/HTML-CSS/fonts/TeX", "jax/output/HTML-CSS/imageFonts.js", "jax/output/HTML-CSS/jax.js",
-                 "fonts/HTML-CSS/TeX/woff")
+# Sources, other ways of loading it, words of other languages, other outputs than the one the pages ask for.
+MATHJAX_UNUSED = ("unpacked", "test", "docs", "config", "localization", "SVG", "CommonHTML", "NativeMML", "PreviewHTML",
+                  "PlainSource", "otf", "svg", "AsciiMath")
 SILENT = re.compile(r"warning: Member .* of (class|struct|union) .* is not documented\.$")
 
 
 def warnings(log):
     """What Doxygen said, without members of classes that have no docstring."""
     return [line for line in log.splitlines() if line.strip() and not SILENT.search(line)]
+
+
+def drop_links_to_nothing(page):
+    """A class whose nested classes are all private gets a link to the list of them, and no list."""
+    text = page.read_text()
+    if '"#nested-classes"' in text and 'name="nested-classes"' not in text:
+        page.write_text(re.sub(r'<a href="#nested-classes">[^<]*</a>( &#124;)?', "", text))
 
 
 def main():
@@ -31,12 +38,9 @@ def main():
     found = warnings(run.stderr)
     if run.returncode or found:
         sys.exit("\n".join(found) or f"doxygen ended with {run.returncode}")
-    for part in MATHJAX_PARTS:
-        (site / "mathjax" / part).parent.mkdir(parents=True, exist_ok=True)
-        if (MATHJAX / part).is_dir():
-            shutil.copytree(MATHJAX / part, site / "mathjax" / part)
-        else:
-            shutil.copyfile(MATHJAX / part, site / "mathjax" / part)
+    for page in site.glob("class*.html"):
+        drop_links_to_nothing(page)
+    shutil.copytree(MATHJAX, site / "mathjax", ignore=shutil.ignore_patterns(*MATHJAX_UNUSED))
     print(site / "index.html")
 
 

@@ -4,7 +4,8 @@
 Usage: filter.py ROOT SITE FILE   (to standard output; files that a page links to are copied into SITE/files)
 
 Pages: `$...$` and blocks ```math become formulas, headings and numbered equations get anchors, and links between pages, to
-headings and to files of the project lead there. In pages and in docstrings "(L.2)" leads to that equation. In contents.dox
+headings and to files of the project lead there. In pages and in docstrings "(L.2)" leads to that equation. Headers: see
+header(). In contents.dox
 "\\subpages GLOB..." becomes a list of all pages that match and are not in an earlier list.
 """
 import pathlib
@@ -120,9 +121,23 @@ def link_equations(text):
     return EQUATION.sub(lambda m: f"[({m.group(1)})](@ref {equation_name(m.group(1))})", text)
 
 
+def without_stops(text):
+    """Text without the full stops that end no sentence, since the first one ends the brief description."""
+    text = re.sub(r"\beq(s?)\.(?= |$)", r"equation\1", text)
+    return text.replace(" . ", " \u00b7 ").replace("...", "\u2026")
+
+
 def header(text):
-    """A header with its docstrings' equation numbers as links."""
-    return re.sub(r"//[/!].*$", lambda m: link_equations(m.group(0)), text, flags=re.MULTILINE)
+    """A header. Formulas on lines of their own, three spaces from the slashes, stay on these; lines keep their numbers."""
+    lines = text.split("\n")
+    formula = [re.match(r"( *///)   (\S.*)$", line) for line in lines]
+    for i, line in enumerate(lines):
+        if formula[i]:
+            slashes, words = formula[i].groups()
+            lines[i] = f"{slashes} \\n&emsp;`{without_stops(words).rstrip('.')}`" + ("" if formula[i + 1] else " \\n")
+        else:
+            lines[i] = re.sub(r"///.*$", lambda m: link_equations(without_stops(m.group(0))), line)
+    return "\n".join(lines)
 
 
 def contents(root, text):
