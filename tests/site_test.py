@@ -37,7 +37,7 @@ class Page(html.parser.HTMLParser):
         for name, value in attributes:
             if name in ("id", "name"):
                 self.anchors.add(value)
-            elif name in ("href", "src") and value:
+            elif name in ("href", "src", "data") and value:
                 self.links.append(value)
 
     def handle_endtag(self, tag):
