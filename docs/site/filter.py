@@ -16,7 +16,7 @@ import sys
 
 EQUATION = re.compile(r"\(([A-Z]\.\d+)\)")
 TAG = re.compile(r"\\tag\{([^}]+)\}")
-FENCE = re.compile(r"(^```.*?^```$)", re.DOTALL | re.MULTILINE)
+FENCE = re.compile(r"(^ *```.*?^ *```$)", re.DOTALL | re.MULTILINE)
 MATHS = re.compile(r"^\$(?! )([^$]+)(?<! )\$$")
 LINK = re.compile(r"^(!?)\[([^\]]*)\]\(([^)\s]+)\)$")
 # What is no prose in a line: code, formulas, links, pictures.
@@ -105,11 +105,12 @@ class Page:
         return "\n".join(done + ([self.prose("\n".join(prose))] if prose else []))
 
     def block(self, text):
-        if not text.startswith("```"):
+        fence = text.lstrip()
+        if not fence.startswith("```"):
             return self.lines(text)
-        if not text.startswith("```math\n"):
+        if not fence.startswith("```math\n"):
             return text
-        formula = text.removeprefix("```math").removesuffix("```").strip()
+        formula = fence.removeprefix("```math").removesuffix("```").strip()
         anchors = "".join(f"\\anchor {equation_name(n)}\n" for n in TAG.findall(formula))
         return f"{anchors}\\f[\n{formula}\n\\f]\n"
 
