@@ -45,7 +45,8 @@ struct DoubleTraction
   VectorField traction; ///< [Pa m]
 };
 
-/// Dead load on the whole sheet: load factor * (1 - length^2 Laplace) force_i(X) [N/m^3].
+/// Dead load on the whole sheet: load factor * (1 - length^2 Laplace) force_i(X) [N/m^3] (theory-continuum.md, eq.
+/// (C.32)).
 struct BodyForce
 {
   VectorField force;  ///< [N/m^3]; with a length, its gradient is asked for as well

@@ -20,6 +20,7 @@ struct LinearPotential
   double e;
 };
 
+/// A further potential is a further alternative here.
 using FibrePotential = std::variant<RodPotential, LinearPotential>;
 
 /// Fibres of one reference direction.

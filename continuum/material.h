@@ -10,7 +10,8 @@ namespace continuum
 /// density is per reference volume, so per reference area and unit reference thickness. All functions throw
 /// NonPhysicalState, naming F, when det F <= 0 or F is not finite.
 ///
-/// A law with gradient terms is a second, additive one, W_g(F, Grad F): it stands beside this class, not below it.
+/// Symbols as in theory-continuum.md, eq. (C.1). A law with gradient terms is a second, additive one, W_g(F, Grad F):
+/// it stands beside this class, not below it.
 class Material
 {
 public:

@@ -36,13 +36,14 @@ struct NotchedRectangle
 /// The rim is a circle for every element degree: Sheet takes its mapping from it.
 void make_rectangle_with_hole(dealii::parallel::distributed::Triangulation<2> &mesh, const RectangleWithHole &shape);
 
+/// The faces of the notch are free to part.
 void make_notched_rectangle(dealii::parallel::distributed::Triangulation<2> &mesh, const NotchedRectangle &shape);
 
-// Cells of such a mesh before it is refined, to be known before it is made: there may be more than memory for.
-
+/// Cells of such a mesh before it is refined, to be known before it is made: there may be more than memory for.
 double n_coarse_cells(const RectangleWithHole &shape);
+/// Likewise.
 double n_coarse_cells(const NotchedRectangle &shape);
-/// Throws as read_gmsh does.
+/// Likewise. Throws as read_gmsh does.
 double n_coarse_cells(const std::filesystem::path &gmsh_file);
 
 /// Reads quadrilaterals in the plane, coordinates in metres, from a Gmsh file (.msh, format 2 or 4.1, ASCII). Boundary

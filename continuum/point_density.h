@@ -9,9 +9,9 @@ namespace continuum
 /// Derivatives of a scalar field at a point, by reference position: f_,1 f_,2 f_,11 f_,22 f_,12. Both components of the
 /// displacement have the same scalar shape functions, so all kernels work on these five numbers.
 constexpr unsigned int n_jet = 5;
-constexpr unsigned int n_first = 2; // of them first derivatives
-using Jet = std::array<double, n_jet>;
-using FieldJet = std::array<Jet, 2>; // one for each component
+constexpr unsigned int n_first = 2;    ///< of them first derivatives
+using Jet = std::array<double, n_jet>; ///< of a component
+using FieldJet = std::array<Jet, 2>;   ///< one for each component
 
 /// A density at a point by the jets of u on one side (cells, boundary faces) or two sides (faces between cells), with
 /// its first and second derivatives by them.
@@ -22,6 +22,7 @@ struct Density
   double second[2][2][2][n_jet][2][n_jet]; // [component][component'][side][derivative][side'][derivative']
 };
 
+/// How many derivatives are wanted.
 enum class Order
 {
   value = 0,

@@ -7,10 +7,10 @@ namespace continuum
 /// Boundary ids of a Rectangle.
 namespace edge
 {
-constexpr dealii::types::boundary_id left = 0;
-constexpr dealii::types::boundary_id right = 1;
-constexpr dealii::types::boundary_id bottom = 2;
-constexpr dealii::types::boundary_id top = 3;
+constexpr dealii::types::boundary_id left = 0;   ///< smallest X
+constexpr dealii::types::boundary_id right = 1;  ///< largest X
+constexpr dealii::types::boundary_id bottom = 2; ///< smallest Y
+constexpr dealii::types::boundary_id top = 3;    ///< largest Y
 } // namespace edge
 
 /// The reference rectangle [0, length] x [-height/2, height/2] in metres, cut into cells_x times cells_y equal cells.

@@ -68,13 +68,13 @@ public:
   /// Sum over all ranks of E [J/m]. Dead loads are not in it.
   double energy(const Vector &u, double load_factor = 1.) const;
 
-  /// r_i = dE/du_i [N/m] for every degree of freedom, held ones too (theory-continuum.md, eq. (C.29)), and in
-  /// `magnitude` the sum of the absolute values that were added up to get it [N/m], which bounds its round-off. Returns
-  /// E as energy() does, at no further cost.
+  /// r_i = dE/du_i [N/m] for every degree of freedom, held ones too (theory-continuum.md, eq. (C.29), without gradient
+  /// law eq. (C.16)), and in `magnitude` the sum of the absolute values that were added up to get it [N/m], which
+  /// bounds its round-off. Returns E as energy() does, at no further cost.
   double residual(const Vector &u, Vector &r, Vector &magnitude, double load_factor = 1.) const;
 
-  /// K_ij = d2E/du_i du_j [N/m^2] (theory-continuum.md, eq. (C.30)), condensed by `constraints`; if `lift` g [m] is
-  /// given, also the product K g [N/m] with the uncondensed matrix.
+  /// K_ij = d2E/du_i du_j [N/m^2] (theory-continuum.md, eq. (C.30), without gradient law eq. (C.17)), condensed by
+  /// `constraints`; if `lift` g [m] is given, also the product K g [N/m] with the uncondensed matrix.
   void tangent(const Vector &u, const dealii::AffineConstraints<double> &constraints, Matrix &K,
                double load_factor = 1., const Vector *lift = nullptr, Vector *stiffness_times_lift = nullptr) const;
 

@@ -12,7 +12,7 @@ typedef double Lanes __attribute__((vector_size(32)));
 /// Four floats, to be read as doubles.
 typedef float SingleLanes __attribute__((vector_size(16)));
 
-constexpr unsigned int n_lanes = 4;
+constexpr unsigned int n_lanes = 4; ///< entries in both
 
 /// The least multiple of the number of lanes that holds n entries.
 constexpr unsigned int padded(const unsigned int n)

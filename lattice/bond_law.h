@@ -14,7 +14,7 @@ namespace lattice
 
 #include "lattice/bond_force.inc"
 
-/// Uniaxial incompressible Mooney-Rivlin rod (theory.md, eqs. L.2 and L.3), with a = 2 C1 and b = 2 C2 in Pa:
+/// Uniaxial incompressible Mooney-Rivlin rod (theory.md, eqs. (L.2) and (L.3)), with a = 2 C1 and b = 2 C2 in Pa:
 ///   psi  = a (lam^2 / 2 + 1 / lam - 3/2) + b (lam + 1 / (2 lam^2) - 3/2)
 ///   psi' = a (lam - lam^-2) + b (1 - lam^-3)
 struct MooneyRivlinBond
@@ -65,14 +65,17 @@ struct LinearBond
 /// The law of one shell of bonds. A further law is a further alternative here.
 using BondLaw = std::variant<MooneyRivlinBond, LinearBond>;
 
+/// psi [Pa].
 inline double energy(const BondLaw &law, double stretch)
 {
   return std::visit([stretch](const auto &l) { return l.energy(stretch); }, law);
 }
+/// psi' [Pa].
 inline double force(const BondLaw &law, double stretch)
 {
   return std::visit([stretch](const auto &l) { return l.force(stretch); }, law);
 }
+/// psi'' [Pa].
 inline double stiffness(const BondLaw &law, double stretch)
 {
   return std::visit([stretch](const auto &l) { return l.stiffness(stretch); }, law);

@@ -11,7 +11,8 @@ namespace lattice
 {
 
 /// Repulsion of two sites at distance r: max(0, k o + c do/dt), o = distance - r > 0 being their overlap (theory.md,
-/// eq. L.12). It never attracts.
+/// eq. (L.12)). It never attracts. Two sites that fly at each other part with the coefficient of restitution of eq.
+/// (L.13).
 struct ContactLaw
 {
   double distance;  ///< delta [m], > 0: sites touch below it

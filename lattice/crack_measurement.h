@@ -12,6 +12,7 @@
 namespace lattice
 {
 
+/// What the path of a crack is like.
 enum class CrackPattern
 {
   straight,

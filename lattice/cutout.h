@@ -19,6 +19,7 @@ struct Notch
   double length; ///< [m], >= 0, undeformed
 };
 
+/// What is cut out of a sheet before it is loaded.
 using Cutout = std::variant<RoundHole, Notch>;
 
 /// Takes a piece out of a sheet that nothing has broken yet. What is left at the rim is free and undamaged: bonds that

@@ -6,12 +6,12 @@ namespace lattice
 {
 
 /// Long-wave tangent along x of the sheet at x = F X: rho c^2 p = A p for a plane wave along X with referential speed c
-/// and polarisation p, A = (1/V) sum_k A0 l (N_k . e_x)^2 h_k [Pa], h_k = psi'' n n + (psi'/lam)(I - n n) (theory.md,
-/// eqs. W.1 and W.2), sum over the bonds that a site owns. Symmetric.
+/// and polarisation p, A = (1/V) sum_k A0 l (N_k . e_x)^2 h_k [Pa], h_k = psi'' n n + (psi'/lam)(I - n n)
+/// (theory-comparison.md, eqs. (W.1) and (W.2)), sum over the bonds that a site owns. Symmetric.
 Eigen::Matrix2d tangent_along_x(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F);
 
 /// Loads that stand for the rest of an endless sheet at its short ends, on the sites there that are not held
-/// (theory.md, eqs. L.15 and L.16).
+/// (theory.md, eqs. (L.15) and (L.16)).
 ///
 /// Dead load: what the bonds that are missing would pull with in the sheet at x = F X, so that this sheet is an exact
 /// equilibrium. Absorbing: besides, on the outermost site of each row that ends there, -sqrt(rho A) v times the row

@@ -20,7 +20,7 @@ double kinetic_energy(const State &state, const RowBand &band);
 double boundary_power(const State &state, const TriangularLattice &lattice, const Forces &forces, const Field &vx,
                       const Field &vy, std::size_t row);
 
-/// Where the energy of a sheet is and where it went, all per sheet thickness [J/m] (theory.md, eq. L.11).
+/// Where the energy of a sheet is and where it went, all per sheet thickness [J/m] (theory.md, eq. (L.11)).
 struct EnergyBalance
 {
   double elastic;       ///< of the bonds present

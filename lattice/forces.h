@@ -12,7 +12,7 @@ namespace lattice
 
 /// Forces on all sites from all bonds. The loops over a row are in row_kernels.h.
 ///
-/// A bond pulls with A0 psi'(lam) + A0 eta (v_rel . n) / l along its current direction n (theory.md, eq. L.3).
+/// A bond pulls with A0 psi'(lam) + A0 eta (v_rel . n) / l along its current direction n (theory.md, eq. (L.3)).
 /// Every thread takes some of the rows from its lower to its upper end. It computes the bonds that start in a row,
 /// keeps those of the last three rows, and lets the sites of the row gather their twelve bonds while these are in
 /// cache. Bonds that reach into these from below are computed once more there. The order of a gather is symmetric under

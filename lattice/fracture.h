@@ -29,6 +29,7 @@ struct RetractionToughening
   double factor;   ///< [-], >= 1
 };
 
+/// How bonds toughen behind the crack.
 using Toughening = std::variant<NoToughening, BehindTipToughening, RetractionToughening>;
 
 /// A bond that broke.

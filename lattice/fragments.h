@@ -19,6 +19,7 @@ struct Fragments
   std::vector<std::size_t> sizes;
 };
 
+/// Of the bonds that are present.
 Fragments find_fragments(const State &state, const TriangularLattice &lattice);
 
 /// Bonds present beyond the stretch that would have broken them had they not been toughened: fibrils in the wake of a

@@ -12,7 +12,7 @@ namespace lattice
 struct Shell
 {
   BondLaw law;
-  /// s [-], > 0: cross-section of a bond over (sqrt3 / 2) d h (theory.md, eq. L.4). The source paper leaves it open.
+  /// s [-], > 0: cross-section of a bond over (sqrt3 / 2) d h (theory.md, eq. (L.4)). The source paper leaves it open.
   double area_factor;
   /// eta [Pa s], >= 0: viscosity of the Kelvin dashpot along the bond.
   double viscosity;
@@ -41,10 +41,10 @@ struct Material
 /// The same bonds without their dashpots.
 Material without_dashpots(Material material);
 
-/// A0 / h = s (sqrt3 / 2) d [m], cross-section of a bond per sheet thickness (theory.md, eq. L.4).
+/// A0 / h = s (sqrt3 / 2) d [m], cross-section of a bond per sheet thickness (theory.md, eq. (L.4)).
 double cross_section(const Shell &shell, const TriangularLattice &lattice);
 
-/// m / h = rho (sqrt3 / 2) d^2 [kg/m], mass of a site per sheet thickness (theory.md, eq. L.1).
+/// m / h = rho (sqrt3 / 2) d^2 [kg/m], mass of a site per sheet thickness (theory.md, eq. (L.1)).
 double site_mass(const Material &material, const TriangularLattice &lattice);
 
 } // namespace lattice

@@ -10,7 +10,7 @@ namespace lattice
 {
 
 /// Material ahead of the tip that moves against the crack, v_x < -fraction * crack speed. In a steady field that is
-/// where rubber is stretched along x beyond the loaded sheet (theory.md, eq. N.1).
+/// where rubber is stretched along x beyond the loaded sheet (theory.md, eq. (N.1)).
 struct NegativeZone
 {
   double area;                    ///< reference [m^2]; 0 if there is none
@@ -23,9 +23,10 @@ struct NegativeZone
 /// @param laboratory_speed of the crack [m/s], > 0 @param fraction of it [-]
 NegativeZone negative_zone(const NearTipField &field, double laboratory_speed, double fraction = 0.01);
 
-/// |v - M v| / |v| [-] of a velocity field, M v its mirror image in the axis Y = Y_tip: (v_x, -v_y)(X, -Y). Norms are
-/// root mean squares over the points that hold material together with their images. 0 for a symmetric field, sqrt2 for
-/// one side moving alone, 2 for an antisymmetric field. None without such points, or at rest.
+/// |v - M v| / |v| [-] of a velocity field (theory.md, eq. (N.3)), M v its mirror image in the axis Y = Y_tip: (v_x,
+/// -v_y)(X, -Y). Norms are root mean squares over the points that hold material together with their images. 0 for a
+/// symmetric field, sqrt2 for one side moving alone, 2 for an antisymmetric field. None without such points, or at
+/// rest.
 std::optional<double> velocity_asymmetry(const NearTipField &field);
 
 /// Integral of v . dx [m^2/s] along a circle around `centre`, both reference and relative to the tip,

@@ -58,7 +58,7 @@ struct RowSums
   bool has_events = false;   ///< whether one is past its limit, or has retracted
 };
 
-/// Forces of all bonds that start in a row (theory.md, eq. L.3). Only `row.force` of kinds with a shell is written.
+/// Forces of all bonds that start in a row (theory.md, eq. (L.3)). Only `row.force` of kinds with a shell is written.
 RowSums bonds_of_row(const SheetConstants &sheet, const RowOfBonds &row);
 
 /// A component of the forces on the n sites of a row: those on the near ends of the bonds that start at a site, less
@@ -67,15 +67,15 @@ void gather_row(std::size_t n, const std::array<const double *, n_bond_kinds> &s
                 const std::array<const double *, n_bond_kinds> &end, double *total);
 
 /// One component of n sites: from velocity and acceleration at the start of a step h [s] to the velocity at half of it,
-/// and position and predicted velocity at its end (theory.md, eq. L.7).
+/// and position and predicted velocity at its end (theory.md, eq. (L.7)).
 void drift(double h, std::size_t n, const double *acceleration, double *velocity, double *position, double *predicted);
 
 /// The acceleration of the n sites from the force, and their velocity after it has acted for `duration` [s].
 void kick(double duration, std::size_t n, const double *force, const double *inverse_mass, double *acceleration,
           double *velocity);
 
-/// The first stage of a Runge-Kutta-Chebyshev step (theory.md, eq. L.18) for one component of n sites, in place, after
-/// `duration` [s]; positions and velocities before it go to `start` and `previous`.
+/// The first stage of a Runge-Kutta-Chebyshev step (theory.md, eq. (L.18)) for one component of n sites, in place,
+/// after `duration` [s]; positions and velocities before it go to `start` and `previous`.
 void first_stage(double duration, std::size_t n, const double *acceleration, double *position, double *velocity,
                  double *start_position, double *start_velocity, double *previous_position, double *previous_velocity);
 
@@ -105,6 +105,7 @@ struct BondForce
   double stretch;
   double viscous_power; ///< [W/m]
 };
+/// Of a bond whose ends are at a distance (dx, dy) [m] and move apart with (dvx, dvy) [m/s].
 BondForce bond_force(const BondConstants &bond, double dx, double dy, double dvx, double dvy);
 
 } // namespace lattice::kernels

@@ -6,7 +6,8 @@
 namespace lattice
 {
 
-/// Runge-Kutta-Chebyshev method of second order for y = (x, v), y' = (v, a(x, v)) (theory.md, eqs. L.17 to L.22).
+/// Runge-Kutta-Chebyshev method of second order for y = (x, v), y' = (v, a(x, v)) (theory.md, eqs. (L.17) to (L.20),
+/// (L.22)).
 ///
 /// Each of the s stages of a step evaluates all forces at its own positions and velocities. The stable step grows with
 /// s^2, so that a given time takes fewer evaluations the longer the steps are.

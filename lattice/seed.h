@@ -27,6 +27,7 @@ struct SeedSlit
   double height;   ///< [m], >= 0
 };
 
+/// Shape of a seed crack.
 using Seed = std::variant<SeedLine, SeedSlit>;
 
 /// Places of the sites that a seed crack removes from a sheet, by increasing X, then Y.

@@ -62,6 +62,7 @@ struct SiteFields
   Field damage;
 };
 
+/// All fields of a state.
 SiteFields site_fields(const State &state, const TriangularLattice &lattice, const Material &material);
 
 } // namespace lattice

@@ -48,6 +48,7 @@ struct State
 void update_images(State &state, const RowBand &band);
 
 /// Which edges of the sheet are held: there, sites that lack a neighbour beyond the edge have their motion prescribed.
+/// With all held, homogeneous states are in equilibrium (theory.md, eq. (L.6)).
 struct Edges
 {
   bool left, right, bottom, top;

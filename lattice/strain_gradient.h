@@ -16,7 +16,7 @@ struct StrainGradient
   Eigen::Matrix2d y; ///< G_yJK
 };
 
-/// Second derivatives of the positions by local least squares (theory.md, eq. N.2): the quadratic
+/// Second derivatives of the positions by local least squares (theory.md, eq. (N.2)): the quadratic
 ///
 ///     x_j - x_i = F R + (1/2) G : R R,   R = X_j - X_i
 ///

@@ -19,7 +19,7 @@ struct TimeStepping
   unsigned int evaluations() const { return stages > 0 ? stages : 1; } ///< of all forces, in a step
 };
 
-/// Largest stable time steps of velocity Verlet with predicted velocities [s] (theory.md, eqs. L.8 to L.10).
+/// Largest stable time steps of velocity Verlet with predicted velocities [s] (theory.md, eqs. (L.8) to (L.10)).
 struct TimeStepLimits
 {
   double elastic;  ///< 2 / omega, from the bond stiffness alone
@@ -35,7 +35,7 @@ struct TimeStepLimits
 /// @param smallest_stretch lam_min [-] in (0, 1]; the stiffness of every law here grows as a bond shortens
 TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch);
 
-/// The same for a sheet whose sites may touch (theory.md, eq. L.14): a site with all its bonds, as they are in the
+/// The same for a sheet whose sites may touch (theory.md, eq. (L.14)): a site with all its bonds, as they are in the
 /// undeformed lattice, and six contacts around it. Differs only for contacts that are stiffer or more viscous than the
 /// bonds they stand for.
 TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
@@ -43,11 +43,12 @@ TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material
 
 /// Step of Runge-Kutta-Chebyshev at which waves and the breaking of bonds are resolved [s]: a share of the elastic
 /// limit of the undeformed sheet, or, where it is smaller, h = 1 / kappa: all oscillating modes are stable then for any
-/// number of stages (theory.md, eq. L.22). kappa is the largest A0 psi''(smallest_stretch) / (A0 eta).
+/// number of stages (theory.md, eq. (L.22)). kappa is the largest A0 psi''(smallest_stretch) / (A0 eta).
 /// @return 0 where a shell has no dashpots, for which the method is not made
 double chebyshev_step(const TriangularLattice &lattice, const Material &material, double smallest_stretch);
 
-/// Runge-Kutta-Chebyshev with steps no longer than `step`, and no longer than is stable (theory.md, eqs. L.20, L.21).
+/// Runge-Kutta-Chebyshev with steps no longer than `step`, and no longer than is stable (theory.md, eqs. (L.20) and
+/// (L.22)).
 /// @param step [s], > 0
 /// @param limits of velocity Verlet for the same sheet, whose dashpots bound the real axis
 /// @param stages s; 0: as few as are stable with `step`

@@ -27,7 +27,7 @@ struct Periodic
 /// The other half are the same bonds seen from their far ends. Kinds 0 to 2 are nearest neighbours (rest length d), 3
 /// to 5 next-nearest (rest length sqrt3 d).
 inline constexpr std::size_t n_bond_kinds = 6;
-inline constexpr std::size_t n_nearest_kinds = 3;
+inline constexpr std::size_t n_nearest_kinds = 3; ///< of them nearest neighbours
 
 /// A rectangular piece of the triangular lattice in its reference configuration (theory.md, section "The lattice").
 ///

@@ -5,7 +5,7 @@
 namespace lattice
 {
 
-/// Velocity Verlet for forces that depend on velocity (theory.md, eq. L.7):
+/// Velocity Verlet for forces that depend on velocity (theory.md, eq. (L.7)):
 ///   v_half = v + (h/2) a,   x' = x + h v_half,   v_pred = v_half + (h/2) a,
 ///   a' = f(x', v_pred) / m, v' = v_half + (h/2) a'.
 /// The dashpots see v_pred = v + h a, a second-order prediction of v', so the scheme stays explicit, takes one force

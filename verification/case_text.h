@@ -55,7 +55,7 @@ using CaseText = std::vector<std::variant<SectionStart, Assignment, SyntaxProble
 /// Why a text cannot stand in a case file as a value; empty if it can.
 [[nodiscard]] std::string unwritable(const std::string &text);
 
-/// A text fit for a message: on one line, bytes that are not printable UTF-8 as \xNN, the middle left out if it has
+/// A text fit for a message: on one line, bytes that are not printable UTF-8 as `\xNN`, the middle left out if it has
 /// more than `longest` bytes.
 [[nodiscard]] std::string printable(const std::string &text, std::size_t longest = 80);
 

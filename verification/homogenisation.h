@@ -12,7 +12,8 @@
 namespace verification
 {
 
-/// Small-strain constants of a lattice's continuum (theory.md, eqs. H.2 and H.3): isotropic, lambda = mu.
+/// Small-strain constants of a lattice's continuum (theory-comparison.md, eqs. (H.2) and (H.3)): isotropic, lambda =
+/// mu.
 struct SmallStrain
 {
   double shear_modulus;      ///< mu = (3/8) sum over shells of c psi''(1) [Pa], per reference thickness
@@ -20,19 +21,20 @@ struct SmallStrain
   double longitudinal_speed; ///< c_L = sqrt(3 mu / rho) [m/s]
 };
 
+/// Of a lattice at F = I.
 SmallStrain small_strain(const lattice::TriangularLattice &lattice, const lattice::Material &material);
 
-/// The Cauchy-Born law of a lattice: a fibre family for each of its bond directions, weights c = A0 l / V (theory.md,
-/// eq. H.1). Constants alone are handed over; the continuum evaluates them with its own code.
+/// The Cauchy-Born law of a lattice: a fibre family for each of its bond directions, weights c = A0 l / V
+/// (theory-comparison.md, eq. (H.1)). Constants alone are handed over; the continuum evaluates them with its own code.
 continuum::CauchyBorn cauchy_born(const lattice::TriangularLattice &lattice, const lattice::Material &material);
 
-/// The bonds of a lattice, for the gradient energy that its long waves have (theory.md, eq. H.6): families as in
-/// cauchy_born, with the undeformed length [m] of each.
+/// The bonds of a lattice, for the gradient energy that its long waves have (theory-comparison.md, eq. (H.6)): families
+/// as in cauchy_born, with the undeformed length [m] of each.
 std::vector<continuum::BondFamily> bond_families(const lattice::TriangularLattice &lattice,
                                                  const lattice::Material &material);
 
-/// The dashpots of a lattice as a viscosity of its continuum, weights as in cauchy_born (theory.md, eq. H.9); null if
-/// no bond has one.
+/// The dashpots of a lattice as a viscosity of its continuum, weights as in cauchy_born (theory-comparison.md, eq.
+/// (H.9)); null if no bond has one.
 std::unique_ptr<continuum::Viscosity> homogenised_viscosity(const lattice::TriangularLattice &lattice,
                                                             const lattice::Material &material);
 
@@ -45,22 +47,22 @@ struct GradientLengths
 };
 
 /// The isotropic pair gives the longitudinal and the shear wave their dispersion at F = I, averaged over directions:
-/// l_s^2 = Lambda/24, l_d^2 = Lambda/12 with Lambda = sum c l^2 psi''(1) / sum c psi''(1) over the bonds (theory.md,
-/// eqs. H.7, H.8).
+/// l_s^2 = Lambda/24, l_d^2 = Lambda/12 with Lambda = sum c l^2 psi''(1) / sum c psi''(1) over the bonds
+/// (theory-comparison.md, eqs. (H.7), (H.8)).
 GradientLengths gradient_lengths(const lattice::TriangularLattice &lattice, const lattice::Material &material);
 
 /// A Mooney-Rivlin law fitted to a lattice: exact at small strain, closest in energy along a loading path.
 struct Calibration
 {
-  double ratio;                           ///< r = C2 / (C1 + C2) [-]
+  double ratio;                           ///< r = C2 / (C1 + C2) [-] (theory-comparison.md, eq. (H.4))
   double energy_residual;                 ///< rms over the path of W_MR / W_CB - 1 [-]
   double largest_energy_residual;         ///< largest of |W_MR / W_CB - 1| [-]
   double smallest_acoustic_eigenvalue;    ///< smallest rho c^2 along the path over mu; strongly elliptic if > 0 [-]
   continuum::MooneyRivlin::Constants law; ///< [Pa]
 };
 
-/// Calibrates r along F(t) = I + t (F - I), 0 < t <= 1, by least squares of the relative energy difference (theory.md,
-/// eq. H.5). @param F end of the loading path [-], not I
+/// Calibrates r along F(t) = I + t (F - I), 0 < t <= 1, by least squares of the relative energy difference
+/// (theory-comparison.md, eq. (H.5)). @param F end of the loading path [-], not I
 Calibration calibrate_mooney_rivlin(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                                     const Eigen::Matrix2d &F);
 
@@ -71,6 +73,7 @@ Calibration with_ratio(const lattice::TriangularLattice &lattice, const lattice:
 
 /// The same deformation gradient or vector in the other library's type.
 dealii::Tensor<2, 2> to_continuum(const Eigen::Matrix2d &F);
+/// Likewise, the other way.
 Eigen::Matrix2d to_lattice(const dealii::Tensor<2, 2> &F);
 
 } // namespace verification

@@ -229,6 +229,7 @@ class Convergence : public testing::TestWithParam<Series>
 
 // Theory for a smooth solution and h < l: displacement 2 for p = 2 with a gradient law, p + 1 otherwise; gradient p;
 // second gradient p - 1. Taken between the two finest meshes, where the next terms weigh less than 0.2 in the order.
+// theory-continuum.md, eqs. (C.28) and (C.31).
 TEST_P(Convergence, HasTheOrdersOfInteriorPenaltyElements)
 {
   const Series &series = GetParam();

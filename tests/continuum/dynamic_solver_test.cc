@@ -60,6 +60,7 @@ std::unique_ptr<DynamicSolver> moved(const Mesh &mesh, const Problem &problem, c
 }
 } // namespace
 
+// theory-continuum.md, eqs. (C.40), (C.43) and (C.44).
 TEST(DynamicSolver, IsOfSecondOrderInTime)
 {
   Mesh mesh(MPI_COMM_SELF);
@@ -87,6 +88,7 @@ TEST(DynamicSolver, IsOfSecondOrderInTime)
   }
 }
 
+// theory-continuum.md, eq. (C.46).
 TEST(DynamicSolver, LedgerClosesToSecondOrder)
 {
   Mesh mesh(MPI_COMM_SELF);
@@ -260,6 +262,7 @@ TEST(DynamicSolver, KeepsTheMomentumOfAFreeSheet)
   }
 }
 
+// theory-continuum.md, eq. (C.45).
 TEST(DynamicSolver, LeavesEquilibriumAtRest)
 {
   const continuum::CauchyBorn law = rubber_network();

@@ -93,6 +93,7 @@ void expect_order_in_space(const Constitution &laws, const double inertia_length
 }
 } // namespace
 
+// theory-continuum.md, eq. (C.47).
 TEST(DynamicSolver, WavesFollowTheDispersionOfTheIsotropicGradient)
 {
   const continuum::CauchyBorn law = rubber_network();
@@ -112,9 +113,10 @@ TEST(DynamicSolver, WavesFollowTheDispersionOfTheIsotropicGradient)
   }
 }
 
+// theory-continuum.md, eq. (C.47).
 TEST(DynamicSolver, WavesFollowTheDispersionOfTheLattice)
 {
-  // Bonds of an NN and NNN network with d = 0.2 m, so kd = 1.26; see theory.md, section 4.
+  // Bonds of an NN and NNN network with d = 0.2 m, so kd = 1.26.
   const continuum::CauchyBorn law = rubber_network();
   const double d = 0.2;
   const auto bonds = rubber_bonds(d);
@@ -147,6 +149,7 @@ TEST(DynamicSolver, WavesFollowTheDispersionOfTheLattice)
     }
 }
 
+// theory-continuum.md, eq. (C.48).
 TEST(DynamicSolver, DampsAStandingWaveAsKelvinTheorySays)
 {
   // q'' + 2 g q' + w^2 q = 0 with g = eta k^2 / (2 rho (1 + l_d^2 k^2)), eta the viscous modulus of the polarisation.
@@ -196,6 +199,7 @@ TEST(DynamicSolver, DampsAStandingWaveAsKelvinTheorySays)
   }
 }
 
+// theory-continuum.md, eq. (C.44).
 TEST(DynamicSolver, DampsHighFrequenciesOnly)
 {
   // The same shear wave, followed with steps that resolve it and with steps far longer than its period.

@@ -225,6 +225,7 @@ double symbol(const GradientLaw &law, const Tensor<2, 2> &F, const Tensor<1, 2> 
 }
 } // namespace
 
+// theory-continuum.md, eqs. (C.20) and (C.22) to (C.24).
 TEST(LatticeGradient, FormsAreDerivativesOfTheEnergy)
 {
   const auto bonds = mixed_bonds();
@@ -232,6 +233,7 @@ TEST(LatticeGradient, FormsAreDerivativesOfTheEnergy)
   expect_derivatives(LatticeGradient(bonds, l_d), [&](const auto &v) { return lattice_energy(bonds, l_d, v); });
 }
 
+// theory-continuum.md, eq. (C.21).
 TEST(IsotropicGradient, FormsAreDerivativesOfTheEnergy)
 {
   expect_derivatives(IsotropicGradient(5e5, 0.4 * spacing),
@@ -283,6 +285,7 @@ TEST(LatticeGradient, IsHexagonalAndNotIsotropic)
 }
 
 // Bonds in tension have stiffness along and across; at l_d = d/2 the energy is at the edge of positivity.
+// theory-continuum.md, eqs. (C.25) and (C.26).
 TEST(LatticeGradient, IsPositiveInTension)
 {
   const LatticeGradient law = rubber_gradient(spacing);
@@ -314,8 +317,8 @@ TEST(LatticeGradient, LosesPositivityWhereBondsAreCompressed)
   EXPECT_LT(softest(0.747, 2.5), 0.);
 }
 
-// theory.md, section 5: alpha d^2 = l_d^2 - H/A2, with A2 = rho c^2 from the Cauchy-Born law and H from the gradient
-// law.
+// theory-continuum.md, eq. (C.47): alpha d^2 = l_d^2 - H/A2, with A2 = rho c^2 from the Cauchy-Born law and H from the
+// gradient law.
 TEST(LatticeGradient, HasTheDispersionOfTheLattice)
 {
   const LatticeGradient law = rubber_gradient(spacing);

@@ -29,6 +29,7 @@ Conditions clamped_bump(const double stretch_x, const double stretch_y, const do
 
 // Energy, residual and tangent of the discrete functional by Taylor's theorem at a state whose normal gradients jump
 // everywhere, on a mesh with hanging nodes and a clamped edge; the tangent is symmetric.
+// theory-continuum.md, eqs. (C.28) to (C.30).
 TEST(GradientEquilibrium, ResidualAndTangentAreDerivativesOfOneFunctional)
 {
   using Vector = continuum::Sheet::Vector;
@@ -275,6 +276,7 @@ TEST(GradientEquilibrium, IsLocalWithoutLengthAndInHomogeneousStates)
 
 // A sinusoidal force of wave number k is 1 + l^2 k^2 times as large for (1 - l^2 Laplace), on every shape function: the
 // integral over the boundary makes up for the partial integration.
+// theory-continuum.md, eq. (C.32).
 TEST(GradientEquilibrium, CorrectsTheBodyForceOfMicroInertia)
 {
   const continuum::CauchyBorn law = rubber_network();

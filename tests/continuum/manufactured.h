@@ -130,7 +130,7 @@ struct IsotropicGradientEnergy
   }
 };
 
-/// theory.md, section 4.2, bond by bond.
+/// theory-continuum.md, eq. (C.22), bond by bond.
 struct LatticeGradientEnergy
 {
   std::vector<continuum::BondFamily> bonds;

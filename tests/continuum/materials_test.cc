@@ -242,6 +242,7 @@ CauchyBorn mixed_network()
 }
 } // namespace
 
+// theory-continuum.md, eq. (C.1).
 TEST(MooneyRivlin, StressIsEnergyGradient)
 {
   expect_taylor_orders(rubber_sheet(), true);
@@ -259,6 +260,7 @@ TEST(CauchyBorn, TangentIsStressGradient)
   expect_taylor_orders(mixed_network(), false);
 }
 
+// theory-continuum.md, eqs. (C.4) to (C.8).
 TEST(MooneyRivlin, AgreesWithDifferentiatedThreeDimensionalEnergy)
 {
   for (const double ratio : {-0.05, 0.3})
@@ -285,6 +287,7 @@ TEST(MooneyRivlin, AgreesWithDifferentiatedThreeDimensionalEnergy)
   }
 }
 
+// theory-continuum.md, eqs. (C.11) to (C.14).
 TEST(CauchyBorn, AgreesWithDifferentiatedEnergy)
 {
   const CauchyBorn law = mixed_network();
@@ -368,6 +371,7 @@ TEST(CauchyBorn, RefusesNonPositiveDeterminant)
   expect_refusal(rubber_network());
 }
 
+// theory-continuum.md, eq. (C.9).
 TEST(MooneyRivlin, HasPlaneStressModuliAtIdentity)
 {
   // Three-dimensional lambda = kappa + 4 c2, reduced by the free thickness.
@@ -380,6 +384,7 @@ TEST(MooneyRivlin, HasPlaneStressModuliAtIdentity)
   EXPECT_NEAR(law.lame_lambda(), lambda, 4. * epsilon * lambda);
 }
 
+// theory-continuum.md, eq. (C.10).
 TEST(MooneyRivlin, MatchesCauchyRelationForEveryRatio)
 {
   for (const double ratio : {-0.5, -0.05, 0., 0.6})
@@ -389,13 +394,13 @@ TEST(MooneyRivlin, MatchesCauchyRelationForEveryRatio)
 TEST(CauchyBorn, HasEqualLameConstantsAtIdentity)
 {
   const double mu = 2. / 3. * 9. / 8. * (1. + std::sqrt(3.)) * 2.5e5;
-  EXPECT_NEAR(mu / 2.5e5, 2.049038, 5e-7); // printed digits of theory.md, section 5
+  EXPECT_NEAR(mu / 2.5e5, 2.049038, 5e-7); // theory-comparison.md, eq. (H.2)
   expect_isotropic_moduli(rubber_network(), mu, mu);
 }
 
 TEST(CauchyBorn, HasTheWaveSpeedsOfTheTheory)
 {
-  // theory.md, section 5: seven printed digits, so half a unit of the last one.
+  // theory-comparison.md, eq. (W.2), worked out apart from the code to seven digits, so half a unit of the last one.
   const CauchyBorn law = rubber_network();
   const double rho = 944.;
   const Tensor<1, 2> x({1., 0.});
@@ -416,6 +421,7 @@ TEST(Material, MinimumAcousticEigenvalueIsTheShearModulusAtIdentity)
   EXPECT_NEAR(continuum::minimum_acoustic_eigenvalue(rubber_sheet(), matrix(1., 0., 0., 1.)), 5e5, 1e-10 * 5e5);
 }
 
+// theory-continuum.md, eq. (C.3).
 TEST(Material, MinimumAcousticEigenvalueIsTheLowestOverAllDirections)
 {
   std::mt19937 generator(8);
@@ -445,6 +451,7 @@ TEST(Material, StrongEllipticityIsSeenToBeLost)
   EXPECT_LT(continuum::minimum_acoustic_eigenvalue(law, matrix(3., 0., 0., 0.7)), 0.);
 }
 
+// theory-continuum.md, eq. (C.2).
 TEST(Material, CauchyStressIsForcePerCurrentLength)
 {
   // Stretch (2, 3) with P = diag(6, 10): the edge of normal x is 3 times longer, that of normal y twice.

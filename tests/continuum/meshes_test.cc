@@ -215,6 +215,7 @@ TEST(ErrorIndicator, RefinesAtTheTipOfANotch)
   EXPECT_LT(std::abs(energies[3] - energies.back()), 0.5 * std::abs(uniform->total_energy() - energies.back()));
 }
 
+// theory-continuum.md, eq. (C.33).
 TEST(ErrorIndicator, VanishesInHomogeneousDeformation)
 {
   const continuum::CauchyBorn law = rubber_network();

@@ -124,6 +124,7 @@ TEST(StaticSolver, HoldsOnlyTheMaskedComponents)
   EXPECT_NEAR(solver.reactions().at(edge::right)[1], 0., 1e-10 * state.P[0][0] * height);
 }
 
+// theory-continuum.md, eqs. (C.16) and (C.17).
 TEST(StaticSolver, NewtonIsQuadratic)
 {
   const continuum::MooneyRivlin law = rubber_sheet();
@@ -267,6 +268,7 @@ TEST(StaticSolver, ThrowsWhenIterationsRunOut)
   EXPECT_EQ(solver.load_factor(), 0.);
 }
 
+// theory-continuum.md, eq. (C.19).
 TEST(StaticSolver, StopsAtTheRoundOffOfTheResidual)
 {
   // A tolerance that no arithmetic can meet is answered by the floor, on coarse and fine meshes. A floor that stays
@@ -285,6 +287,7 @@ TEST(StaticSolver, StopsAtTheRoundOffOfTheResidual)
   }
 }
 
+// theory-continuum.md, eq. (C.18).
 TEST(StaticSolver, ReactionsBalance)
 {
   const continuum::MooneyRivlin law = rubber_sheet();
@@ -303,6 +306,7 @@ TEST(StaticSolver, ReactionsBalance)
   EXPECT_NEAR(sum.norm(), 0., 1e-10 * size);
 }
 
+// theory-continuum.md, eqs. (C.15) and (C.18).
 TEST(StaticSolver, ReactionIsTheDerivativeOfTheEnergy)
 {
   // dE/d(load factor) = reaction of the top edge against its unit displacement, all else held in place.

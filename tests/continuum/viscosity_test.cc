@@ -55,6 +55,7 @@ std::array<Fad, 4> differentiable_stress(const FibreViscosity &law, const std::a
 }
 } // namespace
 
+// theory-continuum.md, eqs. (C.41) and (C.42).
 TEST(Viscosity, AgreesWithDifferentiatedStress)
 {
   const FibreViscosity law = mixed_dashpots();

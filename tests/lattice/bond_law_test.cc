@@ -24,6 +24,7 @@ double taylor_slope(const Function &f, const Derivative &df, double x)
   return std::log2(remainder(1e-3) / remainder(2.5e-4)) / 2.;
 }
 
+// theory.md, eq. (L.2).
 TEST(BondLaw, ForceIsEnergyGradient)
 {
   for (const BondLaw &law : laws)

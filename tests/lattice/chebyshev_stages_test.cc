@@ -17,6 +17,7 @@ constexpr unsigned int most_stages = 60;
 // A stage adds a few roundings, and the differences that the recursion is made of grow as its number.
 constexpr double roundoff = 1e-13 * most_stages;
 
+// theory.md, eqs. (L.17) to (L.19).
 TEST(ChebyshevStages, AreOfSecondOrder)
 {
   for (unsigned int s = 2; s <= most_stages; ++s)
@@ -33,8 +34,8 @@ TEST(ChebyshevStages, AreOfSecondOrder)
   }
 }
 
-// theory.md, eqs. L.20 and L.22: real rates up to the limit; oscillating ones in the disc of radius 1 that touches 0,
-// by its rim, on which |R| is largest.
+// theory.md, eqs. (L.20) and (L.22): real rates up to the limit; oscillating ones in the disc of radius 1 that touches
+// 0, by its rim, on which |R| is largest.
 TEST(ChebyshevStages, AreStableForDampedModes)
 {
   for (unsigned int s = 2; s <= most_stages; ++s)

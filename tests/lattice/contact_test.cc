@@ -79,7 +79,7 @@ ContactLaw law_of(double omega_0, double beta)
   return {touching_distance, reduced_mass * omega_0 * omega_0, 2. * reduced_mass * beta};
 }
 
-// Theory.md, eq. L.13.
+// Theory.md, eq. (L.13).
 double duration(double omega_0, double beta)
 {
   if (beta < omega_0)
@@ -114,6 +114,7 @@ class Restitution : public testing::TestWithParam<double>
 INSTANTIATE_TEST_SUITE_P(Contact, Restitution, testing::Values(0., 0.1, 0.6, 0.95, 1.05, 2.));
 
 // Starting in touch the force is smooth to its end, where it has a kink: second order.
+// theory.md, eqs. (L.12) and (L.13).
 TEST_P(Restitution, ConvergesToTheClosedFormAtSecondOrder)
 {
   const double beta = GetParam() * omega_0, hair = -1e-9 * sheets::spacing;
@@ -365,6 +366,7 @@ TEST(Contact, LedgerClosesWhereAPairOverlapsFromTheStart)
 }
 
 // Contacts as of bonds leave the time step alone, stiffer or more viscous ones do not.
+// theory.md, eq. (L.14).
 TEST(TimeStepLimits, CountContactsThatOutweighBonds)
 {
   const TriangularLattice sheet = sheets::square(10);

@@ -33,6 +33,7 @@ INSTANTIATE_TEST_SUITE_P(
   testing::Combine(testing::Values(Orientation::rows_along_crack, Orientation::rows_across_crack), testing::Bool()));
 
 // Neither end held: the loaded sheet stays in equilibrium to round-off of the forces of single bonds.
+// theory.md, eqs. (L.6) and (L.15).
 TEST_P(Ends, KeepTheLoadedSheetInEquilibrium)
 {
   const TriangularLattice sheet = sheets::square(14, orientation());
@@ -120,6 +121,7 @@ double reflection(const Material &bonds, Orientation orientation, const Eigen::V
 
 // The end site's own mass and the bonds it lacks are a layer of about half a spacing: reflection of order k d / 2,
 // first order in the wave number, k d = 1 / width.
+// theory.md, eq. (L.16).
 TEST_P(Ends, AbsorbPulsesAndHeldOnesReflectThem)
 {
   for (const Eigen::Vector2d &polarisation : {Eigen::Vector2d(1., 0.), Eigen::Vector2d(0., 1.)})

@@ -142,6 +142,7 @@ TEST(Forces, DashpotsDoNotFeelRigidMotion)
 }
 
 // One bond along x drawn apart at a known speed: A0 (psi' + eta v / l), and the power is the viscous part times v.
+// theory.md, eqs. (L.3) and (L.4).
 TEST(Forces, AreTheBondLawAndDashpotOfOneBond)
 {
   const TriangularLattice sheet = sheets::square(14);

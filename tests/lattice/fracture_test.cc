@@ -296,6 +296,7 @@ TEST_P(SymmetricSeed, StaysSymmetricToTheLastBit)
 }
 
 // Energy ledger through a running crack: what the springs lost is in motion, in the dashpots or in broken bonds.
+// theory.md, eq. (L.11).
 TEST(EnergyBalance, ClosesThroughFracture)
 {
   Crack crack(Orientation::rows_along_crack, 0.01, 0.5);

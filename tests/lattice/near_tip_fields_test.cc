@@ -99,6 +99,7 @@ INSTANTIATE_TEST_SUITE_P(BothOrientations, NearTipFieldsOf,
                          testing::Values(Orientation::rows_along_crack, Orientation::rows_across_crack));
 
 // Also where half the neighbours are gone.
+// theory.md, eq. (N.2).
 TEST(StrainGradientFit, IsExactForQuadraticDisplacements)
 {
   for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})

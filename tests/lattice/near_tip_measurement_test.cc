@@ -83,6 +83,7 @@ TEST(NegativeZone, IsTheDiscThatMovesBack)
   EXPECT_GT(negative_zone(field, speed, 0.001).area, 0.);
 }
 
+// theory.md, eq. (N.3).
 TEST(VelocityAsymmetry, OfSymmetricAntisymmetricAndOneSidedFields)
 {
   const auto even = [](const Eigen::Vector2d &X) -> Eigen::Vector2d { return {std::abs(X.y()) + X.x(), X.y()}; };

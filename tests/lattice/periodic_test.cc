@@ -81,6 +81,7 @@ TEST(PeriodicLattice, HasEdgesOnlyWhereItIsNotPeriodic)
     }
 }
 
+// theory.md, eq. (L.6).
 TEST(PeriodicLattice, HomogeneousDeformationIsInEquilibriumAtEverySite)
 {
   for (const Orientation orientation : orientations)

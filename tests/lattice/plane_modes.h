@@ -7,7 +7,7 @@
 
 #include "tests/lattice/sheets.h"
 
-/// Damped plane waves about a homogeneous state, by Bloch's analysis (theory.md, eq. W.1).
+/// Damped plane waves about a homogeneous state, by Bloch's analysis (theory-comparison.md, eq. (W.1)).
 namespace plane_modes
 {
 

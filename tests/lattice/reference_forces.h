@@ -5,7 +5,7 @@
 
 #include "lattice/state.h"
 
-/// The forces of theory.md, eq. L.3, bond by bond and in no hurry: what the hot loop is measured against.
+/// The forces of theory.md, eq. (L.3), bond by bond and in no hurry: what the hot loop is measured against.
 struct ReferenceForces
 {
   lattice::Field fx, fy;     // [N/m], one a place; zero at images, whose share goes to their sites

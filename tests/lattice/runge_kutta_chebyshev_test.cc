@@ -55,6 +55,7 @@ INSTANTIATE_TEST_SUITE_P(RungeKuttaChebyshev, Stages, testing::Values(3u, 8u));
 
 // Damped waves in a periodic sheet, so small that they are linear, are multiplied by R(h lambda) in each step, to
 // round-off: all stages, their order, the images of the sites, the polynomial that stability is judged by.
+// theory.md, eq. (L.18).
 TEST(RungeKuttaChebyshev, MultipliesWavesByItsPolynomial)
 {
   const TriangularLattice sheet(sheets::spacing, 8. * sheets::spacing, 8. * sheets::spacing,

@@ -32,6 +32,7 @@ TEST(VelocityVerlet, ConvergesAtSecondOrder)
   EXPECT_NEAR(observed_order(sheets::rubber(0.), 4e-7, 200), 2., 0.1);
 }
 
+// theory.md, eq. (L.7).
 TEST(VelocityVerlet, ConvergesAtSecondOrderWithDashpots)
 {
   // A quarter of the stable step: there the stiffest modes have come into the asymptotic range.
@@ -55,6 +56,7 @@ TEST(VelocityVerlet, EnergyErrorIsSecondOrderWithoutDashpots)
 
 // One bond's dashpot between two free sites: v_rel' = -2 (c/m) v_rel exactly, so the scheme's own recursion is known:
 // its two roots for z = gamma h solve r^2 - (1 - 3z/2) r - z/2 = 0, and it diverges beyond z = 1.
+// theory.md, eq. (L.8).
 TEST(VelocityVerlet, DampingLimitOfOneDashpotIsOne)
 {
   const TriangularLattice sheet = sheets::square(6);
@@ -87,6 +89,7 @@ TEST(VelocityVerlet, DampingLimitOfOneDashpotIsOne)
 
 // In the undeformed lattice of nearest neighbours the shortest waves attain gamma = 6 c / m, half the stated bound, so
 // a sheet is stable up to twice the stated limit and not beyond. The held edge costs a finite sheet a few percent.
+// theory.md, eqs. (L.9) and (L.10).
 TEST(TimeStepLimits, AreSafeAndSharp)
 {
   const Material material = sheets::nearest_only();

@@ -65,7 +65,7 @@ def cells_of(mesh):
 
 
 def stiffening(ratio):
-    """Shear force of a clamped layer over that of the local law, for l = ratio H (theory-continuum.md, eq. C.35)."""
+    """Shear force of a clamped layer over that of the local law, for l = ratio H (theory-continuum.md, eq. (C.35))."""
     return 1. / (1. - 2. * ratio * math.tanh(0.5 / ratio))
 
 

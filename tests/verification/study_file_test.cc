@@ -132,7 +132,7 @@ TEST(StudyFile, PlanResolvesEveryCase)
   EXPECT_DOUBLE_EQ(plan[0].value("Fracture/seed sites").value(), 3.);
   EXPECT_DOUBLE_EQ(plan[0].value("Output/frame interval").value(), 0.);
   EXPECT_FALSE(plan[0].value("Sheet/orientation").has_value());
-  // (eta / a) / (d / sqrt(a / rho)) = 65.625 / 1e5 / (0.625e-3 / sqrt(1e5 / 944))
+  // theory.md, eq. (L.5): (eta / a) / (d / sqrt(a / rho)) = 65.625 / 1e5 / (0.625e-3 / sqrt(1e5 / 944))
   EXPECT_NEAR(plan[0].zeta.value(), 10.80695, 1e-5);
   EXPECT_GT(plan[0].sites, 1000u);
   EXPECT_NE(plan[0].case_text.find("set noise seed"), std::string::npos);

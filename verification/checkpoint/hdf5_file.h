@@ -29,6 +29,7 @@ enum class ElementType
   uint64
 };
 
+/// The one in which numbers of a type are kept.
 template <class T>
 constexpr ElementType element_type()
 {

@@ -26,13 +26,13 @@ struct CompareOptions
 const std::vector<std::string> &claim_names();
 
 // The commands. Each runs on every MPI rank and returns what the program should exit with, or throws.
-ExitCode verify(const Options &options);
-ExitCode run_lattice(const Options &options);
-ExitCode run_continuum(const Options &options);
-ExitCode run_fracture(const Options &options);
-ExitCode compare_frames(const Options &options, const CompareOptions &chosen);
-ExitCode report(const Options &options, const std::string &directory);
-ExitCode run_study(const Options &options, const std::string &study);
+ExitCode verify(const Options &options);                                       ///< `latcon verify`
+ExitCode run_lattice(const Options &options);                                  ///< `latcon lattice`
+ExitCode run_continuum(const Options &options);                                ///< `latcon continuum`
+ExitCode run_fracture(const Options &options);                                 ///< `latcon fracture`
+ExitCode compare_frames(const Options &options, const CompareOptions &chosen); ///< `latcon compare`
+ExitCode report(const Options &options, const std::string &directory);         ///< `latcon report`
+ExitCode run_study(const Options &options, const std::string &study);          ///< `latcon study`
 
 /// Draws the page of a study, study.html, from the files in its output directory. @throws OutputError
 void study_page(const std::string &directory);
@@ -100,8 +100,9 @@ ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names
 /// @throws ClaimFailed if a claim fails; results.json and run.json are then written
 Results passed_claims(const Case &input, Run &run);
 
-/// Whether SIGINT or SIGTERM has come since catch_signals().
+/// From here on SIGINT and SIGTERM are noted and end nothing by themselves.
 void catch_signals();
+/// Whether one of them has come since catch_signals().
 bool signal_came();
 /// Whether one has come to any rank: so all stop at once. Collective.
 bool signal_came_to_any_rank();

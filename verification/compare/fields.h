@@ -19,6 +19,7 @@ struct CommonField
   bool in_motion_only; ///< on the continuum
 };
 
+/// All of them, in the order of the tables.
 inline constexpr std::array<CommonField, 6> common_fields{{{"displacement", "m", 2, false, false},
                                                            {"velocity", "m/s", 2, false, true},
                                                            {"deformation_gradient", "1", 4, true, false},

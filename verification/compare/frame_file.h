@@ -16,6 +16,7 @@ enum class Side
   continuum
 };
 
+/// "lattice" or "continuum".
 std::string to_string(Side side);
 
 /// A file with one frame, and what the series says about it.

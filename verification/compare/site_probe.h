@@ -46,14 +46,16 @@ private:
   std::vector<std::vector<std::size_t>> bins_; // cells whose boxes meet a bin
 };
 
-/// Fields of a continuum frame at points, the points shared over the ranks. All ranks have the whole frame and get all
-/// values, the same bits for any number of ranks. Collective.
+/// Fields of a continuum frame at points.
 struct SiteValues
 {
   std::vector<std::uint8_t> outside; ///< 1 at points that are in no cell
   std::vector<FieldValues> fields;   ///< not-a-number at points outside
 };
 
+/// Values at points, which are shared over the ranks. All ranks have the whole frame and get all values, the same bits
+/// for any number of ranks. Collective.
+/// @param tolerance see SiteProbe
 SiteValues probe(const ContinuumFrame &frame, const std::vector<Position> &points, double tolerance,
                  MPI_Comm communicator);
 

@@ -26,9 +26,9 @@ double shear_speed();
 
 /// How the lower half of a strip answers what moves past it at a steady speed.
 ///
-/// All fields are w(t - X/v) with the same w for all sites of a row. Transforms are f(omega) = integral of f(s)
-/// exp(-i omega s), so that a step along the row by X is the factor exp(-i omega X/v). Rows are counted down from the
-/// crack; the upper half is the mirror image.
+/// All fields are w(t - X/v) with the same w for all sites of a row (theory-comparison.md, eq. (S.2)). Transforms are
+/// f(omega) = integral of f(s) exp(-i omega s), so that a step along the row by X is the factor exp(-i omega X/v). Rows
+/// are counted down from the crack; the upper half is the mirror image.
 class HalfStrip
 {
 public:
@@ -44,7 +44,7 @@ public:
   Complex stiffness(double omega) const { return {1., omega * strip_.viscosity}; }
 
   /// L(omega): the elongation that bonds across the crack lose if each of them pulls its ends together with a force of
-  /// transform 1 and nothing else holds the crack together (theory.md, eq. S.4).
+  /// transform 1 and nothing else holds the crack together (theory-comparison.md, eqs. (S.3), (S.4)).
   Complex compliance(double omega) const;
 
   /// Elongations of the bonds of one gap between rows, and of the row below it.

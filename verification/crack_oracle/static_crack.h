@@ -5,7 +5,8 @@
 namespace verification
 {
 
-/// Drivings Delta / Delta_G between which a crack at rest neither opens nor heals: lattice trapping.
+/// Drivings Delta / Delta_G between which a crack at rest neither opens nor heals: lattice trapping
+/// (theory-comparison.md, eq. (S.10)).
 struct TrappingWindow
 {
   double heals;  ///< Delta_-: here the last broken bond would be at the breaking elongation, were it whole

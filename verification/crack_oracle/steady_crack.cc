@@ -25,6 +25,7 @@ double logarithm_of_driving(const HalfStrip &half, std::size_t points)
   {
     const double x = (static_cast<double>(i) + 0.5) * dx;
     const double omega = scale * std::sinh(x);
+    // (S.5)
     const HalfStrip::Complex phi = 1. + half.stiffness(omega) * half.compliance(omega);
     // The argument is followed from 0 at omega = 0.
     argument += std::remainder(std::arg(phi) - argument, 2. * pi);

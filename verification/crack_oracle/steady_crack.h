@@ -6,8 +6,8 @@ namespace verification
 {
 
 /// Driving Delta / Delta_G at which a crack runs steadily at speed v: the displacement of the held rows over that of
-/// Griffith's threshold, from the exact solution of the linear lattice by the Wiener-Hopf method (theory.md, eq. S.8).
-/// Nothing of it is shared with the simulator.
+/// Griffith's threshold (theory-comparison.md, eq. (S.1)), from the exact solution of the linear lattice by the
+/// Wiener-Hopf method (eq. (S.8)). Nothing of it is shared with the simulator.
 /// @param speed v in d sqrt(k/m), > 0
 /// @throws std::runtime_error if the integral does not converge
 double steady_driving(const CrackStrip &strip, double speed);

@@ -5,10 +5,10 @@
 namespace verification
 {
 
-/// Steady cracks of the simulator against the exact solution of the linear lattice (theory.md, section "A steady crack
-/// in a linear lattice"): speed, elastic energy released and energy dissipated for each broken bond, under several
-/// drivings and for a weak and a strong viscosity. Besides, the exact solution against the equilibrium of a crack at
-/// rest.
+/// Steady cracks of the simulator against the exact solution of the linear lattice (theory-comparison.md, section "A
+/// steady crack in a linear lattice"): speed, elastic energy released and energy dissipated for each broken bond (eq.
+/// (S.9)), under several drivings and for a weak and a strong viscosity. Besides, the exact solution against the
+/// equilibrium of a crack at rest.
 ///
 /// Leaves the tables `steady_crack` (a row for each run) and, unless `quick`, `steady_crack_curve` (exact driving over
 /// speed, and whether only the bonds that should break do).

@@ -22,7 +22,7 @@ struct SteadyFields
   bool exists() const { return largest_before < 1. && largest_elsewhere < 1.; }
 };
 
-/// The fields by inverse Fourier transform of the exact solution (theory.md, eqs. S.6 and S.7).
+/// The fields by inverse Fourier transform of the exact solution (theory-comparison.md, eqs. (S.6) and (S.7)).
 /// @param duration of the periodic record, half of it ahead of the breaking: long enough for all motion behind the
 /// crack to die out, in sqrt(m/k)
 /// @param samples of it, a power of 2; errors fall with the second power of the step

@@ -14,7 +14,8 @@ namespace verification
 ///
 /// For one displacement field the lattice and the local continuum differ in second order of kd. So do the lattice and
 /// the gradient continuum, with the opposite sign, and they must: the continuum's equations are the lattice's times 1 +
-/// l_d^2 k^2, and its energies are too (theory.md, eqs. W.4, W.5). Divided by that, they agree to fourth order.
+/// l_d^2 k^2, and its energies are too (theory-comparison.md, eqs. (W.4), (W.5)). Divided by that, they agree to fourth
+/// order.
 ///
 /// Leaves the tables `sinusoidal_energy` and `travelling_waves`. Every rank computes all of it.
 struct WaveEnergyOptions
@@ -24,6 +25,7 @@ struct WaveEnergyOptions
   WaveMesh mesh;                              ///< of the finite elements
 };
 
+/// The part of the claim `energy` on waves. Collective.
 ClaimOutcome wave_energy_claim(const Subject &subject, const WaveEnergyOptions &options);
 
 } // namespace verification

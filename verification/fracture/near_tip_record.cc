@@ -194,7 +194,7 @@ std::string NearTipRecord::measurements(const lattice::CrackMeasurement &crack) 
   std::optional<double> laboratory_speed, process_zone_speed;
   if (crack.speed_laboratory)
     laboratory_speed = crack.speed_laboratory->value;
-  // Half of what fully relaxed rubber behind a steady crack has (theory.md, eq. N.1).
+  // Half of what fully relaxed rubber behind a steady crack has (theory.md, eq. (N.1)).
   if (laboratory_speed && deformation_(0, 0) > 1.)
     process_zone_speed = 0.5 * (1. - 1. / deformation_(0, 0)) * *laboratory_speed;
 

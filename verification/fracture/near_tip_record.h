@@ -13,12 +13,13 @@
 namespace verification
 {
 
-/// Speeds of long waves along x in the loaded sheet, dashpots left out (theory.md, eq. W.2).
+/// Speeds of long waves along x in the loaded sheet, dashpots left out (theory-comparison.md, eq. (W.2)).
 struct WaveSpeeds
 {
   double longitudinal, shear; ///< referential [m/s]: of the laboratory over the stretch along x
 };
 
+/// Of the sheet of a case in its loaded state.
 WaveSpeeds wave_speeds_along_crack(const Case &input);
 
 /// Area of the window around the tip, undeformed [m^2].

@@ -13,7 +13,8 @@ namespace verification
 /// it shortens; negative: hardens.
 using Alpha = std::array<double, 2>;
 
-/// Of a lattice at the homogeneous state F, in closed form (theory.md, eq. W.2).
+/// Of a lattice at the homogeneous state F, in closed form (theory-comparison.md, eq. (W.2), with A_2 and A_4 of
+/// theory-continuum.md, eq. (C.47)).
 /// @param N referential direction of the wave, a unit vector
 /// @param nearest_part if given, receives what the nearest-neighbour bonds contribute to alpha
 Alpha lattice_alpha(const lattice::TriangularLattice &lattice, const lattice::Material &material,

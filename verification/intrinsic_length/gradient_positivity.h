@@ -11,7 +11,7 @@ namespace verification
 double smallest_eigenvalue(const continuum::GradientLaw &law, const Eigen::Matrix2d &F);
 
 /// The same of the lattice's gradient energy with another length, from sums over its bonds (theory-continuum.md, eq.
-/// C.22). @param length l_d [m]
+/// (C.22)). @param length l_d [m]
 double smallest_lattice_eigenvalue(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                                    const Eigen::Matrix2d &F, double length);
 

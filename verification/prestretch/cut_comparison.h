@@ -29,7 +29,7 @@ struct CutMesh
 };
 
 /// Differences between a lattice and a continuum that hold the same sheet, all relative [-]. Positive where the lattice
-/// has more, if they have a sign.
+/// has more, if they have a sign. Energy and reaction are compared as theory-comparison.md, eq. (H.12), has them.
 struct CutErrors
 {
   double displacement;     ///< rms over the sites with all their bonds, over |F - I| times the size of the cut

@@ -23,7 +23,7 @@ struct CutSheet
 
 /// Sheet of about 5 R by 4 R with a hole in its middle, all edges held. The middle is a site, so that the staircase of
 /// the rim has the sixfold symmetry of the lattice and no oval in it; the radius is R [m] to half a spacing, the one
-/// whose rim is the least hexagonal (theory.md, section "Edges of the continuum").
+/// whose rim is the least hexagonal (theory-comparison.md, section "Edges of the continuum").
 CutSheet sheet_with_hole(const Subject &subject, double R, const Eigen::Matrix2d &F);
 
 /// Sheet of 4 a by 4 a, cut along y = 0 by about a [m] from its left edge, which is free; the others are held. The cut
@@ -38,6 +38,7 @@ struct CutLattice
   lattice::SiteFields fields;
   lattice::Relaxation relaxation;
 
+  /// A site of which something is compared.
   struct Site
   {
     std::size_t place;

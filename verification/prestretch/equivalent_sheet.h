@@ -6,15 +6,16 @@
 namespace verification
 {
 
-// Where the edges of a lattice sheet are, as a continuum feels them (theory.md, section "Edges of the continuum"). To
-// name them to a whole spacing is to leave an error of first order in d/R, which says nothing about the law.
+// Where the edges of a lattice sheet are, as a continuum feels them (theory-comparison.md, section "Edges of the
+// continuum"). To name them to a whole spacing is to leave an error of first order in d/R, which says nothing about the
+// law.
 
 /// delta [m]: a free edge of the continuum lies this far inside the cells of the outermost sites, whose bonds across it
-/// are missing; mean over the directions of the edge, at small strain (theory.md, eq. H.10).
+/// are missing; mean over the directions of the edge, at small strain (theory-comparison.md, eq. (H.10)).
 double rim_recession(const lattice::TriangularLattice &lattice, const lattice::Material &material);
 
 /// Depth [m] below the outermost sites at which an edge of the continuum is held where the lattice has its layer of
-/// held sites; mean over displacements across and along the edge, at small strain (theory.md, eq. H.11).
+/// held sites; mean over displacements across and along the edge, at small strain (theory-comparison.md, eq. (H.11)).
 /// @param normal unit vector along x or y
 double held_depth(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                   const Eigen::Vector2d &normal);

@@ -42,6 +42,7 @@ struct ContinuumSize
 /// @throws InputError for more unknowns than can be numbered; continuum::InvalidInput if a mesh file cannot be read
 [[nodiscard]] ContinuumSize continuum_size(const Case &input);
 
+/// Of a finite element sheet of that size.
 [[nodiscard]] MemoryNeed continuum_memory(const Case &input, const ContinuumSize &size);
 
 /// Refuses a run that this machine has no memory for. Ranks that share a machine add up. Collective: all ranks throw,
@@ -60,7 +61,7 @@ void require_memory(const MemoryNeed &need);
                                      double steps, double frames);
 
 /// The claims in their small versions, and the pictures and the page of a crack, on one core [s].
-inline constexpr double seconds_of_claims = 8., seconds_of_report = 5.;
+inline constexpr double seconds_of_claims = 8., seconds_of_report = 5.; ///< see above
 
 /// Steps that a crack as fast as the shear waves of the unloaded sheet takes to the stop position, at most all.
 [[nodiscard]] double expected_steps(const Case &input, const lattice::TimeStepping &stepping);

@@ -37,7 +37,7 @@ struct PlannedRun
 struct Case;
 
 /// zeta = (eta / a) / (d / sqrt(a / rho)) of the nearest-neighbour bonds [-]: the retardation time over the time in
-/// which a wave passes one spacing (theory.md, section "The lattice"). None for linear bonds, which have no a.
+/// which a wave passes one spacing (theory.md, eq. (L.5)). None for linear bonds, which have no a.
 [[nodiscard]] std::optional<double> zeta(const Case &input);
 
 /// All runs of a study with all their seeds, in the order of the file. The noise seed and `Output/frame interval = 0`

@@ -6,8 +6,8 @@
 namespace verification
 {
 
-/// Dynamical matrix of an endless lattice at the homogeneous deformation F, over the mass of a site (theory.md, eq.
-/// W.1): exact for waves of any length.
+/// Dynamical matrix of an endless lattice at the homogeneous deformation F, over the mass of a site
+/// (theory-comparison.md, eq. (W.1)): exact for waves of any length.
 /// @param K referential wave vector [1/m]
 WaveMatrices bloch_matrices(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                             const Eigen::Matrix2d &F, const Eigen::Vector2d &K);

@@ -17,8 +17,8 @@ struct WaveContinuum
   const continuum::Viscosity *viscosity = nullptr; ///< none: elastic
 };
 
-/// What a plane wave meets at the homogeneous state F, in closed form from the tangents of the laws (theory.md, eq.
-/// W.3). @param K referential wave vector [1/m]
+/// What a plane wave meets at the homogeneous state F, in closed form from the tangents of the laws
+/// (theory-comparison.md, eq. (W.3)). @param K referential wave vector [1/m]
 WaveMatrices continuum_matrices(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K);
 
 /// Elements of a periodic sheet as long as the wave, along x and along y (two across where K has no component).

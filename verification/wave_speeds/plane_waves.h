@@ -16,7 +16,7 @@ struct WaveMatrices
   Eigen::Matrix2d damping;   ///< C [1/s], symmetric
 };
 
-/// A free wave exp(-g t) cos(w t) of one polarisation.
+/// A free wave exp(-g t) cos(w t) of one polarisation. At F = I theory-continuum.md, eq. (C.48), has g.
 struct PlaneWave
 {
   double frequency;             ///< w [rad/s], >= 0; 0 if it is overdamped

@@ -23,6 +23,7 @@ struct WaveSpeedsOptions
   WaveMesh mesh;                                    ///< of the finite elements
 };
 
+/// Runs the claim. Collective.
 ClaimOutcome wave_speeds_claim(const Subject &subject, const WaveSpeedsOptions &options);
 
 } // namespace verification

@@ -49,6 +49,7 @@ bool any_has(const std::vector<std::string> &names, const std::string &part)
 // With nearest neighbours the outermost row of sites, held, is the edge; with both shells the second row is held too,
 // and the displacement it forces on the first free one has a boundary layer: 0.72 of a row pitch across and all of it
 // along the edge, by hand from the characteristic equation of the chain.
+// theory-comparison.md, eq. (H.11).
 TEST(EquivalentSheet, HeldLayerIsAnEdgeAtTheDepthOfItsChain)
 {
   const Case input = subjects::paper_case();
@@ -60,6 +61,7 @@ TEST(EquivalentSheet, HeldLayerIsAnEdgeAtTheDepthOfItsChain)
   EXPECT_NEAR(held_depth(lattice, input.material(), {0., 1.}), 0.5 * p * ((1. + r / (1. - r)) + 1.), 1e-9 * p);
 }
 
+// theory-comparison.md, eq. (H.10).
 TEST(EquivalentSheet, RimRecedesByAFixedPartOfABond)
 {
   const Case input = subjects::paper_case();
@@ -82,6 +84,7 @@ TEST(EquivalentSheet, IsTheSameInBothOrientations)
   EXPECT_NEAR(held_depth(a, along.material, {0., 1.}), held_depth(b, along.material, {1., 0.}), 1e-12 * R);
 }
 
+// theory-comparison.md, eq. (H.12).
 TEST(CutStudy, HoldsWithAHoleInBothOrientationsAndForBothShellSets)
 {
   for (const lattice::Orientation orientation : orientations)

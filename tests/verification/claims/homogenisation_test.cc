@@ -5,13 +5,14 @@
 #include <gtest/gtest.h>
 
 #include "tests/verification/claims/subjects.h"
+#include "verification/intrinsic_length/dispersion.h"
 
 namespace
 {
 
 using namespace verification;
 
-// Table of theory.md, section "Known answers", to the digits given there.
+// Worked out apart from the code: theory-comparison.md, eqs. (H.2) and (H.3).
 TEST(Homogenisation, HasTheKnownSmallStrainConstants)
 {
   const Case input = subjects::paper_case();
@@ -25,6 +26,7 @@ TEST(Homogenisation, HasTheKnownSmallStrainConstants)
 }
 
 // In closed form for equal s on both shells: mu = s (9/8) (1 + sqrt3) (a + b).
+// theory-comparison.md, eq. (H.2).
 TEST(Homogenisation, ShearModulusIsTheClosedForm)
 {
   Case input = subjects::paper_case();
@@ -34,6 +36,7 @@ TEST(Homogenisation, ShearModulusIsTheClosedForm)
 }
 
 // The tangent of the Cauchy-Born law at F = I, made by the continuum's own code, is isotropic with lambda = mu.
+// theory-comparison.md, eqs. (H.1) and (H.2).
 TEST(Homogenisation, CauchyBornTangentAtRestIsIsotropic)
 {
   for (const auto orientation : {lattice::Orientation::rows_along_crack, lattice::Orientation::rows_across_crack})
@@ -54,6 +57,34 @@ TEST(Homogenisation, CauchyBornTangentAtRestIsIsotropic)
   }
 }
 
+// Of the lattice, alpha d^2 of (W.2), averaged over all directions, is l_d^2 - l_s^2 M / (rho c^2) with M = mu, the
+// isotropic gradient's modulus: theory-comparison.md, eqs. (H.7) and (H.8).
+TEST(GradientLengths, OfTheIsotropicLawAverageTheDispersionOfTheLattice)
+{
+  const Case input = subjects::paper_case();
+  for (const lattice::Material &material : {input.material(), subjects::nearest_only(input)})
+  {
+    const GradientLengths lengths = gradient_lengths(input.lattice(), material);
+    // Averages over equal steps are exact for harmonics up to the sixth.
+    constexpr int steps = 24;
+    double longitudinal = 0., shear = 0.;
+    for (int i = 0; i < steps; ++i)
+    {
+      const double angle = 2. * M_PI * i / steps;
+      const Alpha alpha =
+        lattice_alpha(input.lattice(), material, Eigen::Matrix2d::Identity(), {std::cos(angle), std::sin(angle)});
+      longitudinal += alpha[0] / steps;
+      shear += alpha[1] / steps;
+    }
+    const double unit = input.spacing * input.spacing;
+    const double l_s2 = std::pow(lengths.isotropic_static, 2) / unit,
+                 l_d2 = std::pow(lengths.isotropic_inertia, 2) / unit;
+    EXPECT_NEAR(longitudinal, l_d2 - l_s2 / 3., 1e-13); // rho c^2 = 3 mu
+    EXPECT_NEAR(shear, l_d2 - l_s2, 1e-13);
+  }
+}
+
+// theory-comparison.md, eqs. (H.4) and (H.5).
 TEST(Calibration, IsTheBestRatioOnThePath)
 {
   const Case input = subjects::paper_case();

@@ -25,7 +25,7 @@ Eigen::Vector2d direction(double degrees)
   return {std::cos(degrees * M_PI / 180.), std::sin(degrees * M_PI / 180.)};
 }
 
-// Table of theory.md, section "Known answers", to the digits given there.
+// The table after theory-comparison.md, eq. (W.2), with one digit more.
 TEST(Dispersion, HasTheKnownCoefficients)
 {
   const Case input = subjects::paper_case();
@@ -47,6 +47,7 @@ TEST(Dispersion, HasTheKnownCoefficients)
   check(input.material(), 90., 0.1681624, 0.0625, 5e-8);
 }
 
+// theory-comparison.md, eq. (W.6), and the numbers after it.
 TEST(EdgeLayer, HasTheKnownDeviationAndDecay)
 {
   const Case input = subjects::paper_case();
@@ -85,6 +86,7 @@ TEST(GradientPositivity, SumOverBondsIsTheLaw)
   }
 }
 
+// theory-comparison.md, eq. (H.6).
 TEST(GradientPositivity, IsLostBelowTheCriticalLengthAndNotAboveIt)
 {
   const Case input = subjects::paper_case();

@@ -19,6 +19,7 @@ using namespace verification;
 
 // A uniform strip pulled open: springs of one gap in series with those of 2 N more. Its energy for one bond is then
 // (1 + L(0)) / 2 of the elongation squared, which gives Griffith's threshold.
+// theory-comparison.md, eqs. (S.1), (S.3) and (S.4).
 TEST(HalfStrip, IsAStackOfLayersInStatics)
 {
   for (const std::size_t free_rows : {1u, 2u, 9u})
@@ -31,6 +32,7 @@ TEST(HalfStrip, IsAStackOfLayersInStatics)
 
 // Bonds pulled at one end: at high frequency only the mass of the sites at the crack resists,
 // L = -(2 + cos(q / 2)) / omega^2, q = omega / v.
+// theory-comparison.md, eq. (S.4).
 TEST(HalfStrip, IsAMassAtHighFrequency)
 {
   const double speed = 0.3;
@@ -51,6 +53,7 @@ TEST(HalfStrip, RefusesValuesOutOfRange)
 
 // One row on each side, a patch so long that its ends do not count: removing a bond releases the energy of the strip,
 // so that the two ends of the window are inverse to each other.
+// theory-comparison.md, eq. (S.10).
 TEST(TrappingWindow, EndsAreInverseToEachOther)
 {
   for (const std::size_t free_rows : {1u, 2u, 4u})
@@ -65,6 +68,7 @@ TEST(TrappingWindow, EndsAreInverseToEachOther)
 
 // A crack that creeps breaks each bond at rest: the driving of the dynamic solution is that of the static one, which is
 // computed in another way.
+// theory-comparison.md, eq. (S.8).
 TEST(SteadyCrack, CreepsAtTheUpperEndOfTheTrappingWindow)
 {
   for (const std::size_t free_rows : {1u, 2u})
@@ -91,6 +95,7 @@ TEST(SteadyCrack, SpeedIsTheInverseOfDriving)
 // Three facts about the fields that are not built into them: the bond that breaks at s = 0 then has the breaking
 // elongation, the dashpots dissipate what the strip holds beyond the bond's energy, and far behind both faces hang
 // free at the height of the held rows. The first two to the second order of the time step.
+// theory-comparison.md, eqs. (S.6), (S.7) and (S.9).
 TEST(SteadyFields, BreakAtTheBreakingElongationAndBalanceEnergy)
 {
   const CrackStrip strip{4, 1.};
@@ -131,6 +136,7 @@ TEST(CrackRun, RefusesAnUnstableStepAndACrackThatDoesNotRun)
 }
 
 // What is compared is known to far better than a per cent, so that an error of a per cent anywhere is seen.
+// theory-comparison.md, eqs. (S.2), (S.5), (S.8) and (S.9).
 TEST(SteadyCrackStudy, HoldsInItsQuickVersion)
 {
   const ClaimOutcome outcome = steady_crack_study(true);

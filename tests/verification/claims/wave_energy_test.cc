@@ -19,6 +19,7 @@ WaveEnergyOptions small_version(const Case &input)
   return options;
 }
 
+// theory-comparison.md, eqs. (W.4) and (W.5).
 TEST(WaveEnergy, HoldsForBothShellSetsAndOrientations)
 {
   for (const auto orientation : {lattice::Orientation::rows_along_crack, lattice::Orientation::rows_across_crack})
@@ -36,6 +37,7 @@ TEST(WaveEnergy, HoldsForBothShellSetsAndOrientations)
 }
 
 // The excess is there, with its sign: the gradient continuum holds more energy than the local one, the lattice less.
+// theory-comparison.md, eq. (W.4).
 TEST(WaveEnergy, OfTheGradientContinuumIsOnTheOtherSideOfTheLocalOne)
 {
   const Case input = subjects::paper_case();

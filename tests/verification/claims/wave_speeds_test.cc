@@ -27,7 +27,7 @@ WaveSpeedsOptions small_version(const Case &input)
   return options;
 }
 
-// Table of theory.md, section "Known answers", to the digits given there.
+// Sums over bonds, worked out apart from the code: theory.md, eqs. (L.1) and (L.4); theory-comparison.md, eq. (W.2).
 TEST(Bloch, HasTheKnownSpeedsOfTheStretchedSheet)
 {
   const Case input = subjects::paper_case();
@@ -46,6 +46,7 @@ TEST(Bloch, HasTheKnownSpeedsOfTheStretchedSheet)
   EXPECT_NEAR(across[1], 20.31148, 5e-6);
 }
 
+// theory-comparison.md, eqs. (W.1) to (W.3).
 TEST(Bloch, HasTheKnownErrorsOfBothContinua)
 {
   const Case input = subjects::paper_case();
@@ -197,6 +198,7 @@ TEST(WaveSpeeds, HoldsForBothShellSetsAndOrientations)
   }
 }
 
+// theory-comparison.md, eq. (H.9).
 TEST(WaveSpeeds, HoldsForDampedWaves)
 {
   const Case input = subjects::paper_case();

@@ -1,0 +1,96 @@
+#!/usr/bin/python3
+"""Code, tests and theory name the same equations.
+
+Usage: equations_test.py PROJECT_ROOT
+
+The theory pages number equations by \\tag{L.2}. What implements one and what checks one refers to it as (L.2); (L.17) to (L.20)
+stands for all four.
+"""
+import collections
+import pathlib
+import re
+import sys
+import unittest
+
+ROOT = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else pathlib.Path(__file__).parents[1]
+CODE = ("lattice", "continuum", "verification")
+KINDS = {".h", ".cc", ".inc", ".py", ".prm", ".json"}
+
+# Steps of a derivation, which no line of code computes: what is computed is the equation that they lead to.
+DERIVATION = {"L.21": "says where damped modes lie, which (L.22) then keeps stable"}
+
+TAG = re.compile(r"\\tag\{([^}]+)\}")
+NUMBER = r"[A-Z]\.\d+"
+RANGE = re.compile(rf"\(({NUMBER})\)\s+(?:[/#]+\s+)?to\s+(?:[/#]+\s+)?\(({NUMBER})\)")
+ONE = re.compile(rf"\(({NUMBER})\)")
+
+
+def expanded(first, last):
+    letter, low = first.split(".")
+    return [f"{letter}.{number}" for number in range(int(low), int(last.split(".")[1]) + 1)]
+
+
+def references(text):
+    """Numbers of the equations that a text refers to. Of a range, those between its ends need not all be there."""
+    named = set(ONE.findall(text))
+    within = {number for first, last in RANGE.findall(text) for number in expanded(first, last)}
+    return named, within | named
+
+
+def bare(text, letters):
+    """What looks like a reference and is not in parentheses, so that it would not be found."""
+    return re.findall(rf"(?:\beqs?\.|\.md,)\s+(?:[/#]+\s+)?[{letters}]\.\d+", text)
+
+
+def theory_pages():
+    return sorted((ROOT / "docs").glob("theory*.md"))
+
+
+def equations():
+    """Number of each equation: how often it is given."""
+    return collections.Counter(tag for page in theory_pages() for tag in TAG.findall(page.read_text()))
+
+
+def sources(*folders):
+    return [path for folder in folders for path in sorted((ROOT / folder).rglob("*"))
+            if path.suffix in KINDS and path.resolve() != pathlib.Path(__file__).resolve()]
+
+
+def referred_to(paths):
+    return set().union(*(references(path.read_text())[1] for path in paths))
+
+
+class Equations(unittest.TestCase):
+    def test_ranges_are_expanded_and_bare_numbers_seen(self):
+        self.assertEqual(references("eqs. (L.9)\n/// to (L.11), (W.2)"),
+                         ({"L.9", "L.11", "W.2"}, {"L.9", "L.10", "L.11", "W.2"}))
+        self.assertEqual(len(bare("theory.md,\n/// eq. L.2, (theory.md, L.3), eq. (L.4)", "L")), 2)
+
+    def test_each_number_is_given_once(self):
+        given = equations()
+        self.assertGreater(len(given), 90)
+        self.assertEqual([number for number, times in given.items() if times > 1], [])
+
+    def test_code_refers_to_each_equation(self):
+        self.assertEqual(sorted(set(equations()) - referred_to(sources(*CODE)) - set(DERIVATION)), [])
+
+    def test_tests_refer_to_each_equation(self):
+        self.assertEqual(sorted(set(equations()) - referred_to(sources("tests")) - set(DERIVATION)), [])
+
+    def test_steps_of_derivation_are_equations_without_code(self):
+        self.assertEqual(set(DERIVATION) - set(equations()), set())
+        self.assertEqual(set(DERIVATION) & referred_to(sources(*CODE)), set())
+
+    def test_nobody_refers_to_an_equation_that_is_not_there(self):
+        given = equations()
+        letters = "".join(sorted({number[0] for number in given}))
+        code = sources(*CODE, "tests")
+        for path in code + sorted((ROOT / "docs").rglob("*.md")):
+            text = path.read_text()
+            with self.subTest(path.relative_to(ROOT).as_posix()):
+                self.assertEqual({n for n in references(text)[0] if n[0] in letters} - set(given), set())
+                self.assertEqual(bare(text, letters) if path in code else [], [])
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

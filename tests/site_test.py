@@ -1,0 +1,135 @@
+#!/usr/bin/python3
+"""The documentation as a web site is built without a warning, and whoever follows its links gets there.
+
+Usage: site_test.py PROJECT_ROOT DOXYFILE SITE
+"""
+import html.parser
+import importlib.util
+import pathlib
+import re
+import subprocess
+import sys
+import unittest
+import urllib.parse
+
+ROOT, DOXYFILE, SITE = (pathlib.Path(sys.argv.pop(1)) for _ in range(3))
+BUILD = ROOT / "docs" / "site" / "build.py"
+
+
+def module(path):
+    spec = importlib.util.spec_from_file_location(path.stem, path)
+    loaded = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(loaded)
+    return loaded
+
+
+class Page(html.parser.HTMLParser):
+    """Anchors, links and pictures of a page, its text, and what of it is formulas."""
+
+    def __init__(self, text):
+        super().__init__()
+        self.anchors, self.links, self.text, self.within = set(), [], [], ""
+        self.feed(text)
+        self.formulas = re.findall(r"\\\[(.*?)\\\]|\\\((.*?)\\\)", "".join(self.text), re.DOTALL)
+
+    def handle_starttag(self, tag, attributes):
+        self.within = tag
+        for name, value in attributes:
+            if name in ("id", "name"):
+                self.anchors.add(value)
+            elif name in ("href", "src", "data") and value:
+                self.links.append(value)
+
+    def handle_endtag(self, tag):
+        self.within = ""
+
+    def handle_data(self, data):
+        if self.within != "script":
+            self.text.append(data)
+
+
+def read_site():
+    return {path.name: Page(path.read_text()) for path in SITE.glob("*.html")}
+
+
+def dead_links(pages):
+    dead = []
+    for name, page in pages.items():
+        for link in page.links:
+            target = urllib.parse.urlsplit(link)
+            if target.scheme:
+                continue
+            file, anchor = urllib.parse.unquote(target.path) or name, urllib.parse.unquote(target.fragment)
+            if not (SITE / file).is_file() or (anchor and file in pages and anchor not in pages[file].anchors):
+                dead.append(f"{name}: {link}")
+    return dead
+
+
+class Site(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        run = subprocess.run([sys.executable, BUILD, DOXYFILE, SITE], capture_output=True, text=True, check=False)
+        assert run.returncode == 0, run.stdout + run.stderr
+        cls.pages = read_site()
+
+    def test_links_and_pictures_are_there(self):
+        self.assertGreater(sum(len(page.links) for page in self.pages.values()), 5000)
+        self.assertEqual(dead_links(self.pages), [])
+
+    def test_every_page_is_in_the_tree(self):
+        tree = {link for link in self.pages["pages.html"].links if link.endswith(".html")}
+        name = module(ROOT / "docs" / "site" / "filter.py").page_name
+        for path in sorted((ROOT / "docs").rglob("*.md")):
+            self.assertIn(name(path.relative_to(ROOT).as_posix()) + ".html", tree)
+
+    def test_equations_are_formulas_with_anchors(self):
+        for path in sorted((ROOT / "docs").glob("theory*.md")):
+            page = self.pages[path.stem + ".html"]
+            text = path.read_text()
+            shown = "".join(display for display, _ in page.formulas)
+            for number in re.findall(r"\\tag\{([^}]+)\}", text):
+                self.assertIn("eq-" + number.replace(".", "-"), page.anchors)
+                self.assertIn(f"\\tag{{{number}}}", shown)
+            inline = len(re.findall(r"\$[^$\n]+\$", text))
+            self.assertEqual(sum(1 for display, _ in page.formulas if not display), inline)
+            self.assertNotIn("$", "".join(page.text))
+
+    def test_formulas_are_what_mathjax_knows(self):
+        """MathJax shows an unknown command in red and a formula with a brace too many not at all."""
+        tex = SITE / "mathjax"
+        files = [tex / "jax/input/TeX/jax.js", *(tex / "extensions/TeX" / f"{n}.js" for n in ("AMSmath", "AMSsymbols"))]
+        known = "".join(path.read_text() for path in files)
+        checked = set()
+        for name, page in self.pages.items():
+            for formula in ("".join(pair) for pair in page.formulas):
+                bare = re.sub(r"\\[{}]", "", formula)
+                self.assertEqual(bare.count("{"), bare.count("}"), f"{name}: {formula}")
+                self.assertEqual(re.findall(r"\\begin\{(\w+)\}", formula), re.findall(r"\\end\{(\w+)\}", formula)[::-1])
+                checked.update(re.findall(r"\\([A-Za-z]+)", formula))
+        self.assertGreater(len(checked), 50)
+        self.assertEqual([c for c in sorted(checked) if not re.search(rf"[\s,{{\"'\\]{c}[\"']?\s*:", known)], [])
+
+    def test_nothing_comes_from_the_network(self):
+        for page in self.pages.values():
+            self.assertEqual([link for link in page.links if re.match(r"(https?:)?//.*\.(js|css|png|woff)", link)], [])
+
+    def test_mathjax_has_what_it_loads(self):
+        """As a browser listed it; without any of these formulas are error messages."""
+        loads = [*(f"extensions/{n}.js" for n in ("MathEvents", "TeX/AMSmath", "TeX/AMSsymbols", "tex2jax")),
+                 "jax/input/TeX/config.js", "jax/input/TeX/jax.js", "jax/element/mml/jax.js",
+                 *(f"jax/element/mml/optable/{n}.js" for n in ("Arrows", "BasicLatin", "GeneralPunctuation")),
+                 *(f"jax/output/HTML-CSS/{n}.js" for n in ("autoload/mtable", "config", "jax", "fonts/TeX/fontdata",
+                                                           "fonts/TeX/AMS/Regular/Main")),
+                 "fonts/HTML-CSS/TeX/woff/MathJax_Main-Regular.woff", "MathJax.js"]
+        self.assertEqual([file for file in loads if not (SITE / "mathjax" / file).is_file()], [])
+
+    def test_warnings_are_seen(self):
+        judged = module(BUILD).warnings
+        self.assertEqual(judged("a.h:3: warning: Member f() (function) of class lattice::A is not documented.\n"), [])
+        self.assertEqual(len(judged("a.h:3: warning: Member f() (function) of namespace lattice is not documented.\n"
+                                    "a.h:5: warning: Compound lattice::B is not documented.\n"
+                                    "b.md:7: warning: unable to resolve reference to 'x' for \\ref command\n")), 3)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
