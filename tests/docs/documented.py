@@ -1,0 +1,96 @@
+"""Whether docs/reference.md names all that is in an output directory: files, columns, keys, fields."""
+import csv
+import json
+import pathlib
+import re
+
+import vtk
+
+REFERENCE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "reference.md"
+READERS = {".vtp": vtk.vtkXMLPolyDataReader, ".vtu": vtk.vtkXMLUnstructuredGridReader, ".vti": vtk.vtkXMLImageDataReader}
+
+
+def rows_of_tables(text):
+    """(first cell, line with the header of its table) of every row of every table, headers with all of their table."""
+    found, table = [], []
+    for line in [*text.splitlines(), ""]:
+        if line.startswith("|"):
+            table.append(line)
+        elif table:
+            header = table[0]
+            found += [(line.split("|")[1], f"{header}\n{line}") for line in table[2:]]
+            found.append((header.split("|")[1], "\n".join(table)))
+            table = []
+    return found
+
+
+class Reference:
+    def __init__(self, text=None):
+        self.text = text if text is not None else REFERENCE.read_text(encoding="utf-8")
+        self.rows = rows_of_tables(self.text)
+
+    def about(self, name):
+        """What is said of a file: rows and tables that begin with its name, numbers in it written as N or STEP."""
+        patterns = {name, re.sub(r"\d{4}", "NNNN", name), re.sub(r"-\d+\.h5$", "-STEP.h5", name)}
+        return "\n".join(said for first, said in self.rows if patterns & set(re.findall(r"`([^`]+)`", first)))
+
+    def field(self, name):
+        name = re.sub(r"_(continuum|difference)$", "", name)
+        return any(f"`{name}`" in first for first, _ in self.rows)
+
+
+def named(name, text):
+    if "`_uncertainty`" in text:
+        name = name.removesuffix("_uncertainty")
+    return re.search(rf"(?<!\w){re.escape(name)}(?!\w)", text) is not None
+
+
+def columns(path):
+    with path.open(newline="", encoding="utf-8") as file:
+        return [re.sub(r" \[[^\]]*\]$", "", column) for column in next(csv.reader(file))]
+
+
+# Objects whose keys are names of parts of the program, libraries, runs, or entries.
+OPEN = ("wall_time_s", "libraries", "set", "settings", "units")
+
+
+def keys(value):
+    """Of an object and of those in it; of lists those of the elements."""
+    if isinstance(value, dict):
+        return [*value, *(key for name, inside in value.items() if name not in OPEN for key in keys(inside))]
+    return [key for inside in value for key in keys(inside)] if isinstance(value, list) else []
+
+
+def arrays(path):
+    reader = READERS[path.suffix]()
+    reader.SetFileName(str(path))
+    reader.Update()
+    data = reader.GetOutput()
+    return [part.GetArrayName(i) for part in (data.GetPointData(), data.GetCellData(), data.GetFieldData())
+            for i in range(part.GetNumberOfArrays())]
+
+
+def undocumented(folder, reference=None):
+    """`FILE: NAME` of all that the reference does not name."""
+    reference = reference or Reference()
+    missing = set()
+    for path in sorted(path for path in pathlib.Path(folder).rglob("*") if path.is_file()):
+        about = reference.about(path.name)
+        if path.suffix == ".png" and not about:
+            about = reference.about(path.with_suffix(".csv").name)
+        if not about and path.parent.name == "pictures":
+            about = reference.about("pictures/")
+        if not about:
+            missing.add(path.name)
+            continue
+        if path.stem == "study":  # its quantities are those of the runs
+            about += reference.about("crack.json") + reference.about("near_tip.json")
+        inside = []
+        if path.suffix == ".csv":
+            inside = [name for name in columns(path) if not named(name, about)]
+        elif path.suffix == ".json":
+            inside = [name for name in keys(json.loads(path.read_text())) if not named(name, about)]
+        elif path.suffix in READERS:
+            inside = [name for name in arrays(path) if not reference.field(name)]
+        missing |= {f"{path.name}: {name}" for name in inside}
+    return sorted(missing)
