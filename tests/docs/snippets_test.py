@@ -79,14 +79,16 @@ class Pages(unittest.TestCase):
         for page in PAGES:
             with self.subTest(page):
                 clone, begin = Clone(LATCON, SOURCE), time.monotonic()
+                self.addCleanup(clone.temporary.cleanup)
                 for block in blocks(page, (SOURCE / page).read_text(encoding="utf-8")):
                     if block.mark == "not run" or (block.mark == "run in full" and not FULL):
                         counts["left out"] += 1
                         left_out.append(f"{block.place()}: {block.mark}: {block.says}")
                     elif block.language in ("sh", "prm", "json"):
                         counts["run" if block.language == "sh" else "read"] += 1
-                        self.assertEqual((try_commands if block.language == "sh" else try_input)(clone, block), "")
-                clone.temporary.cleanup()
+                        problem = (try_commands if block.language == "sh" else try_input)(clone, block)
+                        if problem:
+                            self.fail(problem)
                 print(f"{page}: {time.monotonic() - begin:.0f} s", flush=True)
         print(f"{counts['run']} blocks of commands were run, {counts['read']} of input read, {counts['left out']} left out",
               *left_out, sep="\n")
