@@ -53,22 +53,23 @@ def table(results, claim):
     return "\n".join(lines)
 
 
-PLACE = re.compile(r"(<!-- table: ([\w-]+) -->\n\n)(.*?)(\n\n<!-- end of table -->)", re.DOTALL)
+PLACE = re.compile(r"(<!-- table: ([\w-]+) -->\n)(.*?)(<!-- end of table -->)", re.DOTALL)
 
 
 def filled(text, results):
     """The page with its tables made anew."""
-    return PLACE.sub(lambda place: place[1] + table(results, place[2]) + place[4], text)
+    return PLACE.sub(lambda place: f"{place[1]}\n{table(results, place[2])}\n\n{place[4]}", text)
 
 
 def cells(text):
-    return [[cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines()]
+    return [[cell.strip() for cell in line.strip("|").split("|")] for line in text.splitlines() if line]
 
 
 def differences(text, results, relative=0.1):
     """Rows of the page that these results do not bear out: another name, count, tolerance or verdict, or an error that
     is off by more than `relative`, two digits being shown."""
-    wrong = []
+    shown_claims = {place[2] for place in PLACE.finditer(text)}
+    wrong = [f"{claim}: no table" for claim in sorted({row["claim"] for row in results["claims"]} - shown_claims)]
     for place in PLACE.finditer(text):
         shown, known = cells(place[3]), cells(table(results, place[2]))
         if len(shown) != len(known):

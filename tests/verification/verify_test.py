@@ -1,13 +1,21 @@
 #!/usr/bin/python3
 """Every claim holds on the shipped case, through the command line: in the quick versions, or with --full in the full ones.
+The pages that tell of claims and their files say what is found.
 
 Usage: verify_test.py LATCON [--full]
 """
 import json
+import pathlib
 import sys
 import unittest
 
+sys.dont_write_bytecode = True
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "docs"))
+import verification_page
+from documented import undocumented
 from program import TemporaryFolder, latcon
+
+PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "verification.md"
 
 # What each claim must have said something about, whatever its wording beside it.
 SUBJECTS = {
@@ -28,7 +36,8 @@ class Verify(TemporaryFolder):
         # The full versions are to take less than ten minutes on two idle cores, and these may not be idle.
         result = latcon("verify", *VERSION, "--output-dir", self.out, timeout=1800)
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
-        rows = json.loads((self.out / "results.json").read_text())["claims"]
+        results = json.loads((self.out / "results.json").read_text())
+        rows = results["claims"]
         self.assertEqual({row["claim"] for row in rows}, set(SUBJECTS))
         for claim, subjects in SUBJECTS.items():
             quantities = [row["quantity"] for row in rows if row["claim"] == claim]
@@ -38,10 +47,14 @@ class Verify(TemporaryFolder):
                 self.assertTrue(any(quantity.startswith((f"{shells}:", f"{shells},")) for quantity in quantities), claim)
         for name in TABLES:
             self.assertGreater(len((self.out / f"{name}.csv").read_text().splitlines()), 4, name)
+        if VERSION:
+            self.assertEqual(verification_page.differences(PAGE.read_text(encoding="utf-8"), results), [],
+                             "if that is as it should be: cmake --build build/release --target verification_page")
         report = latcon("report", self.out, "--quiet")
         self.assertEqual(report.returncode, 0, report.stderr)
         page = (self.out / "report.html").read_text()
         self.assertGreaterEqual(page.count("<img "), len(TABLES) - 1)  # dispersion and its runs share one
+        self.assertEqual(undocumented(self.out), [])
 
 
 VERSION = [] if "--full" in sys.argv else ["--quick"]

@@ -1,0 +1,61 @@
+#!/usr/bin/python3
+"""The tables of docs/verification.md: rows that check the same are put together, and what differs is found."""
+import pathlib
+import sys
+import unittest
+
+sys.dont_write_bytecode = True
+sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import verification_page
+
+PAGE = "words\n\n<!-- table: energy -->\n\n<!-- end of table -->\n\nmore words\n"
+
+
+def results(*rows):
+    return {"claims": [{"claim": "energy", "quantity": quantity, "error": error, "tolerance": tolerance,
+                        "verdict": verdict} for quantity, error, tolerance, verdict in rows]}
+
+
+FOUND = results(("NN+NNN: stress", 1e-3, 1e-2, "holds"), ("NN: stress", 2e-3, 4e-2, "holds"),
+                ("NN, F = (2.3, 2.8), kd = 0.1: decay", 3e-13, 1e-9, "holds"), ("NN: sign", 0.0, 0.0, "holds"),
+                ("NN: residual", 0.0581, None, "reported"))
+
+
+class VerificationPage(unittest.TestCase):
+    def test_names_leave_out_states_and_directions(self):
+        for quantity, name in (("NN+NNN: mu at F = I, Mooney-Rivlin", "mu at F = I, Mooney-Rivlin"),
+                               ("NN, F = I: long-wave speed, L", "long-wave speed, L"),
+                               ("NN+NNN, F = (2.3, 2.8), kd = 0.025: L, decay", "L, decay"),
+                               ("NN, sinusoidal field about F = (2.3, 2.8): energy", "sinusoidal field: energy"),
+                               ("NN: hole, F = (1.3, 1.1), energy", "hole, energy"),
+                               ("NN: smallest eigenvalue at l_d, loaded", "smallest eigenvalue at l_d"),
+                               ("NN: alpha of L waves at 49 degrees, run", "alpha of L waves, run")):
+            self.assertEqual(verification_page.shared_name(quantity), name)
+
+    def test_table_shows_the_row_that_takes_most_of_its_tolerance(self):
+        page = verification_page.filled(PAGE, FOUND)
+        self.assertIn("| stress | 2 | 0.001 | 0.01 | holds |\n| decay | 1 | round-off | 1e-09 | holds |\n"
+                      "| sign | 1 | 0 | 0 | holds |\n| residual | 1 | 0.058 |  | reported |\n\n<!-- end", page)
+        self.assertTrue(page.startswith("words\n") and page.endswith("more words\n"))
+        self.assertEqual(verification_page.filled(page, FOUND), page)
+
+    def test_differences_are_found_and_round_off_is_none(self):
+        page = verification_page.filled(PAGE, FOUND)
+        self.assertEqual(verification_page.differences(page, FOUND), [])
+        for old, new, count in (("NN: residual", "NN: residual", 0), ("residual", "remainder", 1)):
+            other = results(*[(row["quantity"].replace(old, new), row["error"], row["tolerance"], row["verdict"])
+                              for row in FOUND["claims"]])
+            self.assertEqual(len(verification_page.differences(page, other)), count)
+        for i, change, count in ((2, {"error": 5e-13}, 0), (0, {"error": 1.04e-3}, 0), (0, {"error": 1.3e-3}, 1),
+                                 (0, {"tolerance": 1.2e-2}, 1), (3, {"error": 1.0, "verdict": "fails"}, 1)):
+            rows = [dict(row) for row in FOUND["claims"]]
+            rows[i].update(change)
+            self.assertEqual(len(verification_page.differences(page, {"claims": rows})), count, change)
+        self.assertEqual(len(verification_page.differences(page, {"claims": FOUND["claims"][1:]})), 1)
+        self.assertEqual(len(verification_page.differences(page, {"claims": FOUND["claims"][:-1]})), 1)
+        other = [dict(row, claim="objectivity") for row in FOUND["claims"]]
+        self.assertEqual(verification_page.differences(page, {"claims": FOUND["claims"] + other}), ["objectivity: no table"])
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
