@@ -4,18 +4,17 @@ A block of a page is
 
     ```sh      commands, run in the order of the page, all blocks of a page in one folder
     ```text    straight after commands: what they print. `...` stands for anything, in a line or for lines
-    ```prm, ```json    part of a case, or a study; a dry run reads it
+    ```prm, ```json    part of a case, or a study, which has `runs`; a dry run reads it
 
 and any other language is left alone. A comment on the line before a block of commands says what is special about it:
 
-    <!-- not run: REASON -->      it is never run
-    <!-- run in full: REASON -->  it is run by the long version of the test alone
-    <!-- exit code: N -->         its last command ends with N, which is not 0
+    <!-- not run: REASON -->  it is never run
+    <!-- exit code: N -->     its last command ends with N, which is not 0
 """
 import dataclasses
 import re
 
-MARK = re.compile(r"^<!-- (not run|run in full|exit code): (.+) -->$")
+MARK = re.compile(r"^<!-- (not run|exit code): (.+) -->$")
 FENCE = re.compile(r"^```(\w*)$")
 
 
@@ -29,7 +28,7 @@ class Block:
     line: int  # of the fence
     language: str
     text: str
-    mark: str = ""  # `not run`, `run in full`, `exit code`
+    mark: str = ""  # `not run` or `exit code`
     says: str = ""  # what follows the mark
     output: str = ""  # of commands: what the page says they print
 

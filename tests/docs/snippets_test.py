@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Commands and inputs in the documentation do what the pages say; snippets.py tells how pages are written.
 
-Usage: snippets_test.py PATH_OF_LATCON SOURCE_FOLDER [--full] [PAGE...]
+Usage: snippets_test.py PATH_OF_LATCON SOURCE_FOLDER [PAGE...]
 PAGE is relative to the source folder; default: README.md and all of docs/. Blocks that are not run are counted, and
 listed with their reasons.
 """
@@ -64,12 +64,11 @@ def try_commands(clone, block):
 def try_input(clone, block):
     path = clone.folder / f"block-{block.line}.{block.language}"
     path.write_text(block.text)
-    if block.language == "json":
+    if '"runs"' in block.text:
         ended = clone.run("./run", "study", path.name, "--dry-run", "--quiet")
     else:
-        given = {f"{name}={value}" for name, value in REQUIRED.items() if f"set {name.split('/')[1]} " not in block.text}
         ended = clone.run("./run", "continuum", path.name, "--dry-run", "--quiet",
-                          *[word for entry in sorted(given) for word in ("--set", entry)])
+                          *[word for name, value in REQUIRED.items() for word in ("--set", f"{name}={value}")])
     return f"{block.place()}: {ended.stdout}" if ended.returncode else ""
 
 
@@ -81,9 +80,9 @@ class Pages(unittest.TestCase):
                 clone, begin = Clone(LATCON, SOURCE), time.monotonic()
                 self.addCleanup(clone.temporary.cleanup)
                 for block in blocks(page, (SOURCE / page).read_text(encoding="utf-8")):
-                    if block.mark == "not run" or (block.mark == "run in full" and not FULL):
+                    if block.mark == "not run":
                         counts["left out"] += 1
-                        left_out.append(f"{block.place()}: {block.mark}: {block.says}")
+                        left_out.append(f"{block.place()}: {block.says}")
                     elif block.language in ("sh", "prm", "json"):
                         counts["run" if block.language == "sh" else "read"] += 1
                         problem = (try_commands if block.language == "sh" else try_input)(clone, block)
@@ -125,15 +124,14 @@ class Snippets(unittest.TestCase):
                            ("<!-- exit code: 3 -->\n```sh\ntrue\n```\n", "exit code 0"),
                            ("```sh\n./run --version\n```\n```text\nlatcon 77\n```\n", "not printed"),
                            ("```prm\nsubsection Sheet\n  set spacin = 1 mm\nend\n```\n", "spacing"),
-                           ("```json\n{\"titel\": \"x\"}\n```\n", "title")):
+                           ("```json\n{\"titel\": \"x\", \"runs\": {}}\n```\n", "title"),
+                           ("```json\n{\"Sheet\": {\"length\": \"1 kg\"}}\n```\n", "length")):
             (block,) = blocks("page.md", text)
             wrong = (try_commands if block.language == "sh" else try_input)(clone, block)
             self.assertIn(part, wrong)
 
 
 if __name__ == "__main__":
-    FULL = "--full" in sys.argv
-    LATCON, SOURCE, *PAGES = [argument for argument in sys.argv[1:] if argument != "--full"]
-    LATCON, SOURCE = pathlib.Path(LATCON).resolve(), pathlib.Path(SOURCE).resolve()
-    PAGES = PAGES or ["README.md", *sorted(str(path.relative_to(SOURCE)) for path in SOURCE.glob("docs/**/*.md"))]
+    LATCON, SOURCE = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
+    PAGES = sys.argv[3:] or ["README.md", *sorted(str(path.relative_to(SOURCE)) for path in SOURCE.glob("docs/**/*.md"))]
     unittest.main(argv=sys.argv[:1], verbosity=2)
