@@ -4,12 +4,15 @@
 
 #include <gtest/gtest.h>
 
+#include "tests/lattice/sheets.h"
+
 namespace
 {
 
 using lattice::BondLaw;
 
-const std::vector<BondLaw> laws{lattice::MooneyRivlinBond{1e5, 1.5e5}, lattice::LinearBond{2.35e5}};
+const std::vector<BondLaw> laws{lattice::MooneyRivlinBond{1e5, 1.5e5}, lattice::LinearBond{2.35e5},
+                                sheets::from_outside(lattice::MooneyRivlinBond{1e5, 1.5e5})};
 constexpr double stretches[] = {0.4, 0.8, 1., 1.7, 3.05};
 
 // Observed order of |f(x + h) - f(x) - h f'(x)| as h is halved twice; 2 if f' is the derivative, 1 if it is not. A law
@@ -42,6 +45,17 @@ TEST(BondLaw, StiffnessIsForceGradient)
         taylor_slope([&](double l) { return force(law, l); }, [&](double l) { return stiffness(law, l); }, lam), 2.,
         0.05)
         << lam;
+}
+
+TEST(BondLaw, LargestStiffnessIsThatOfTheShortestBond)
+{
+  for (const BondLaw &law : laws)
+    for (const double lam : stretches)
+    {
+      EXPECT_EQ(largest_stiffness(law, 0.4), stiffness(law, 0.4));
+      EXPECT_LE(stiffness(law, lam), largest_stiffness(law, 0.4));
+      EXPECT_LE(force(law, lam) / lam, largest_stiffness(law, 0.4));
+    }
 }
 
 TEST(BondLaw, RestIsFreeOfEnergyAndForce)
