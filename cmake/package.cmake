@@ -9,10 +9,9 @@ set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
 
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME latcon)
-set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "${PROJECT_DESCRIPTION}
- latcon simulates cracks in stretched rubber on a triangular lattice of bonds,
- sets the finite element continuum that the lattice stands for beside it, and
- runs a crack only after both have been shown to agree.")
+set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "The program: it simulates cracks in stretched rubber on a triangular lattice
+of bonds, sets the finite element continuum that the lattice stands for beside
+it, and runs a crack only after both have been shown to agree.")
 # Libraries, and what the report is drawn with.
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS "python3, python3-matplotlib, python3-numpy, python3-pil, python3-vtk9")
@@ -21,9 +20,9 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "paraview")
 
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME latcon-dev)
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
-set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "Libraries of latcon: bond lattice, strain-gradient finite elements
- Headers, static libraries and CMake targets, for programs that give the
- lattice a bond law, or the continuum a material or gradient law, of their own.")
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "The libraries: headers, static libraries and CMake targets, for programs that
+give the lattice a bond law, or the continuum a material or gradient law, of
+their own.")
 # What latconConfig.cmake looks for.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libdeal.ii-dev, libeigen3-dev, libhwy-dev, libopenmpi-dev, libvtk9-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "latcon, cmake")
