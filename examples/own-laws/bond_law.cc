@@ -3,6 +3,7 @@
 // The bonds follow Gent's law of rubber, A. N. Gent, Rubber Chem. Technol. 69, 59 (1996). A sheet of them is stretched
 // equally both ways. Measured are the energy and its slope, and the speed of a shear wave; each is set beside the
 // closed form for the continuum that the lattice stands for. Exit code 1 if one disagrees.
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 #include <limits>
