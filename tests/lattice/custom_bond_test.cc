@@ -46,6 +46,20 @@ TEST(CustomBond, HasToBeFreeAndStiffAtRest)
     EXPECT_THROW(sheets::from_outside(law), std::invalid_argument);
 }
 
+// Energy, force and stiffness are those of a law that bond_law_test.cc tries by Taylor's theorem.
+TEST(CustomBond, HasTheValuesOfItsLaw)
+{
+  const MooneyRivlinBond inside{1e5, 1.5e5};
+  const BondLaw outside = sheets::from_outside(inside);
+  for (const double stretch : {0.4, 1., 1.7, 3.05})
+  {
+    EXPECT_EQ(energy(outside, stretch), inside.energy(stretch));
+    EXPECT_EQ(force(outside, stretch), inside.force(stretch));
+    EXPECT_EQ(stiffness(outside, stretch), inside.stiffness(stretch));
+    EXPECT_EQ(largest_stiffness(outside, stretch), inside.largest_stiffness(stretch));
+  }
+}
+
 // Bond after bond, and every position to the last bit: the linear law does the same roundings wherever it is.
 TEST(CustomBond, CracksAsTheSameLawInTheHotLoop)
 {
