@@ -83,7 +83,7 @@ int main()
   std::printf("%-34s %12s %12s\n", "Gent bonds, stretched both ways", "lattice", "closed form");
   bool good = true;
 
-  // Each of three families of bonds has the volume s of the sheet's (theory.md, eq. L.4), and all have its stretch.
+  // Each of three families of bonds has the volume s of the sheet's (theory.md, eq. (L.4)), and all have its stretch.
   for (const double stretch : {1.5, 2.5})
   {
     std::printf("stretch %.1f\n", stretch);

@@ -123,7 +123,8 @@ int main(int argc, char **argv)
 {
   const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
 
-  // With C2 = 0 simple shear leaves the thickness alone, and the local law is linear in it (theory-continuum.md, C.35).
+  // With C2 = 0 simple shear leaves the thickness alone, and the local law is linear in it (theory-continuum.md, eq.
+  // (C.35)).
   const double mu = 0.25e6, length = 4e-3;
   const continuum::MooneyRivlin rubber(continuum::MooneyRivlin::Constants::with_equal_lame_constants(mu, 0.));
   const BendingFibres fibres(mu * length * length, Tensor<1, 2>({0., 1.}));
