@@ -89,6 +89,7 @@ inline double stiffness(const BondLaw &law, double stretch)
 {
   return std::visit([stretch](const auto &l) { return l.stiffness(stretch); }, law);
 }
+/// Largest psi'' [Pa] of all stretches from `smallest_stretch` [-] on that a bond gets to.
 inline double largest_stiffness(const BondLaw &law, double smallest_stretch)
 {
   return std::visit([smallest_stretch](const auto &l) { return l.largest_stiffness(smallest_stretch); }, law);
