@@ -46,7 +46,8 @@ function(latcon_build_facts target)
   string(TOUPPER "${CMAKE_BUILD_TYPE}" type)
   latcon_options_of(latcon_options INTERFACE_COMPILE_OPTIONS own)
   latcon_options_of(latcon_lattice COMPILE_OPTIONS lattice)
-  string(REGEX REPLACE " +" " " flags "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}} ${own}")
+  list(JOIN latcon_warnings " " warnings)
+  string(REGEX REPLACE " +" " " flags "${CMAKE_CXX_FLAGS} ${CMAKE_CXX_FLAGS_${type}} ${warnings} ${own}")
   string(STRIP "${flags}" flags)
   file(CONFIGURE OUTPUT ${folder}/latcon_build_facts.h @ONLY CONTENT
 "#define LATCON_VERSION \"@PROJECT_VERSION@\"

@@ -1,12 +1,16 @@
-# Compile options that hold for every target of latcon: one interface target, linked by all.
-add_library(latcon_options INTERFACE)
-target_include_directories(latcon_options INTERFACE ${PROJECT_SOURCE_DIR})
-target_compile_options(latcon_options INTERFACE -Wall -Wextra -Wpedantic -Wshadow -Werror)
+# Compile options of latcon. Those of latcon_options hold for whoever uses the libraries as well, the warnings do not.
+set(latcon_warnings -Wall -Wextra -Wpedantic -Wshadow -Werror)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # gcc takes uninitialised lanes of Eigen's SSE packets for a mistake.
-  target_compile_options(latcon_options INTERFACE -Wno-maybe-uninitialized)
+  list(APPEND latcon_warnings -Wno-maybe-uninitialized)
 endif()
-# Contraction to fused multiply-add would make the bits of a result depend on the instruction set.
+add_compile_options(${latcon_warnings})
+
+add_library(latcon_options INTERFACE)
+target_include_directories(latcon_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/latcon>)
+target_compile_features(latcon_options INTERFACE cxx_std_17)
+# Contraction to fused multiply-add would make the bits of a result depend on the instruction set. A user's laws are part of
+# the result, and so are the functions that headers bring into a user's program.
 target_compile_options(latcon_options INTERFACE -ffp-contract=off)
 
 if(LATCON_SANITIZE)
@@ -22,16 +26,14 @@ if(LATCON_AUDIT)
   target_compile_definitions(latcon_options INTERFACE _GLIBCXX_ASSERTIONS)
 endif()
 
-# deal.II as one interface target. Its own macro would add -g and a second set of optimisation flags to ours.
-add_library(latcon_dealii INTERFACE)
-target_include_directories(latcon_dealii SYSTEM INTERFACE ${DEAL_II_INCLUDE_DIRS})
-target_compile_definitions(latcon_dealii INTERFACE ${DEAL_II_USER_DEFINITIONS})
+# deal.II's debug build checks what it is given; programs must not mix it with the other.
+set(latcon_dealii_target ${DEAL_II_TARGET_RELEASE})
+set(latcon_dealii_definitions ${DEAL_II_USER_DEFINITIONS})
 if(CMAKE_BUILD_TYPE STREQUAL "Debug" OR LATCON_AUDIT)
-  target_compile_definitions(latcon_dealii INTERFACE ${DEAL_II_USER_DEFINITIONS_DEBUG})
-  target_link_libraries(latcon_dealii INTERFACE ${DEAL_II_TARGET_DEBUG})
-else()
-  target_link_libraries(latcon_dealii INTERFACE ${DEAL_II_TARGET_RELEASE})
+  set(latcon_dealii_target ${DEAL_II_TARGET_DEBUG})
+  list(APPEND latcon_dealii_definitions ${DEAL_II_USER_DEFINITIONS_DEBUG})
 endif()
+include(cmake/dealii.cmake)
 
 # The libraries behind deal.II make linking the slowest step; lld takes a tenth of the time of the default linker.
 add_link_options(-fuse-ld=lld)

@@ -2,6 +2,8 @@
 
 #include <variant>
 
+#include "lattice/custom_bond.h"
+
 /// @file
 /// Bond laws. A law is energy, force and stiffness as functions of the bond stretch, and nothing else.
 ///
@@ -42,6 +44,9 @@ struct MooneyRivlinBond
     const double inverse_cube = inverse * inverse * inverse;
     return a * (1. + 2. * inverse_cube) + 3. * b * inverse_cube * inverse;
   }
+
+  /// Largest psi''(lam) [Pa] of all lam >= smallest_stretch.
+  double largest_stiffness(double smallest_stretch) const { return stiffness(smallest_stretch); }
 };
 
 /// Linear spring psi = (e / 2) (lam - 1)^2 with modulus e > 0 in Pa.
@@ -60,10 +65,14 @@ struct LinearBond
 
   /// psi''(lam) [Pa].
   double stiffness(double /*stretch*/) const { return modulus; }
+
+  /// The same, whatever the stretch.
+  double largest_stiffness(double /*smallest_stretch*/) const { return modulus; }
 };
 
-/// The law of one shell of bonds. A further law is a further alternative here.
-using BondLaw = std::variant<MooneyRivlinBond, LinearBond>;
+/// The law of one shell of bonds. CustomBond takes any law; one that the hot loop is to compute for vectors of bonds is
+/// a further alternative here, with a `force` in row_kernels.cc.
+using BondLaw = std::variant<MooneyRivlinBond, LinearBond, CustomBond>;
 
 /// psi [Pa].
 inline double energy(const BondLaw &law, double stretch)
@@ -79,6 +88,11 @@ inline double force(const BondLaw &law, double stretch)
 inline double stiffness(const BondLaw &law, double stretch)
 {
   return std::visit([stretch](const auto &l) { return l.stiffness(stretch); }, law);
+}
+/// Largest psi'' [Pa] of all stretches from `smallest_stretch` [-] on that a bond gets to.
+inline double largest_stiffness(const BondLaw &law, double smallest_stretch)
+{
+  return std::visit([smallest_stretch](const auto &l) { return l.largest_stiffness(smallest_stretch); }, law);
 }
 
 } // namespace lattice

@@ -22,8 +22,9 @@ Forces::Forces(const RowBand &band, const Material &material)
     if (const Shell *shell = material.shell(kind))
     {
       const double rest_length = lattice_.rest_length(kind), section = cross_section(*shell, lattice_);
-      constants_.shells[kind / n_nearest_kinds] = {shell->law, rest_length, section,
-                                                   section * shell->viscosity / rest_length};
+      const std::size_t i = kind / n_nearest_kinds;
+      laws_[i] = shell->law;
+      constants_.shells[i] = {rest_length, section, section * shell->viscosity / rest_length};
     }
 }
 
@@ -128,7 +129,7 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
     for (std::size_t component = 0; component < 2; ++component)
       all.force[kind][component] = bonds.at(row, kind, component);
-  const kernels::RowSums sums = kernels::bonds_of_row(constants_, all);
+  const kernels::RowSums sums = kernels::bonds_of_row(laws_, constants_, all);
   // A site gathers from the places around it, so bonds that start beyond a periodic edge must be there.
   const std::size_t columns = lattice_.columns();
   if (columns_repeat_)
@@ -182,8 +183,9 @@ kernels::BondForce Forces::single_bond(const Motion &motion, std::size_t place, 
 {
   const State &state = motion.state;
   const std::size_t far = place + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(place)));
-  return kernels::bond_force(constants_.shell(kind), state.x[far] - state.x[place], state.y[far] - state.y[place],
-                             motion.vx[far] - motion.vx[place], motion.vy[far] - motion.vy[place]);
+  return kernels::bond_force(laws_[kind / n_nearest_kinds], constants_.shell(kind), state.x[far] - state.x[place],
+                             state.y[far] - state.y[place], motion.vx[far] - motion.vx[place],
+                             motion.vy[far] - motion.vy[place]);
 }
 
 Eigen::Vector2d Forces::on_site(const State &state, const Field &vx, const Field &vy, std::size_t place) const

@@ -120,6 +120,7 @@ private:
 
   RowBand band_;
   const TriangularLattice &lattice_;
+  kernels::BondLaws laws_;
   kernels::SheetConstants constants_;
   bool rows_repeat_;    // periodic across the rows
   bool columns_repeat_; // periodic along them

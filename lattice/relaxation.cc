@@ -22,8 +22,8 @@ struct Sums
     power += other.power;
     velocity_square += other.velocity_square;
     force_square += other.force_square;
-    // Written so that a NaN is kept.
-    if (!(other.largest_force_square <= largest_force_square))
+    // A NaN is taken, and kept, since no comparison with it is true.
+    if (std::isnan(other.largest_force_square) || other.largest_force_square > largest_force_square)
       largest_force_square = other.largest_force_square;
   }
 };

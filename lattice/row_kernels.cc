@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <type_traits>
+#include <variant>
 
 // This file is compiled once per instruction set. Those between SSSE3, AVX2 and AVX-512 would gain nothing.
 #define HWY_DISABLED_TARGETS (HWY_SSE4 | HWY_AVX3_DL)
@@ -90,6 +91,16 @@ HWY_INLINE Lanes force(const MooneyRivlinBond &law, Lanes stretch, Lanes inverse
 HWY_INLINE Lanes force(const LinearBond &law, Lanes stretch, Lanes)
 {
   return linear_force(law.modulus, stretch);
+}
+// A law from outside knows one stretch at a time.
+HWY_INLINE Lanes force(const CustomBond &law, Lanes stretch, Lanes inverse)
+{
+  alignas(64) double each[block], each_inverse[block];
+  store(stretch, each);
+  store(inverse, each_inverse);
+  for (std::size_t i = 0; i < width(); ++i)
+    each[i] = law.force(each[i], each_inverse[i]);
+  return load(each);
 }
 
 HWY_INLINE auto mask_of_bit(hn::Vec<Bits> words, unsigned int bit)
@@ -260,7 +271,7 @@ RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, con
   return {total, has_events};
 }
 
-RowSums BondsOfRow(const SheetConstants &sheet, const RowOfBonds &row)
+RowSums BondsOfRow(const BondLaws &laws, const SheetConstants &sheet, const RowOfBonds &row)
 {
   const auto of_laws = [&](const auto &nearest, const auto &next_nearest)
   {
@@ -271,9 +282,9 @@ RowSums BondsOfRow(const SheetConstants &sheet, const RowOfBonds &row)
   {
     if (!(sheet.shells[1].cross_section > 0.))
       return of_laws(nearest, NoBonds());
-    return std::visit([&](const auto &next_nearest) { return of_laws(nearest, next_nearest); }, sheet.shells[1].law);
+    return std::visit([&](const auto &next_nearest) { return of_laws(nearest, next_nearest); }, laws[1]);
   };
-  return std::visit(of_nearest, sheet.shells[0].law);
+  return std::visit(of_nearest, laws[0]);
 }
 
 void GatherRow(std::size_t n, const std::array<const double *, n_bond_kinds> &start,
@@ -410,9 +421,9 @@ std::vector<std::int64_t> targets()
 
 } // namespace
 
-RowSums bonds_of_row(const SheetConstants &sheet, const RowOfBonds &row)
+RowSums bonds_of_row(const BondLaws &laws, const SheetConstants &sheet, const RowOfBonds &row)
 {
-  return HWY_DYNAMIC_DISPATCH(BondsOfRow)(sheet, row);
+  return HWY_DYNAMIC_DISPATCH(BondsOfRow)(laws, sheet, row);
 }
 
 void gather_row(std::size_t n, const std::array<const double *, n_bond_kinds> &start,
@@ -480,7 +491,7 @@ std::string instruction_set()
   return HWY_DYNAMIC_DISPATCH(InstructionSet)();
 }
 
-BondForce bond_force(const BondConstants &bond, double dx, double dy, double dvx, double dvy)
+BondForce bond_force(const BondLaw &law, const BondConstants &bond, double dx, double dy, double dvx, double dvy)
 {
   const double distance = std::sqrt(dx * dx + dy * dy);
   const double inverse = 1. / distance;
@@ -490,7 +501,7 @@ BondForce bond_force(const BondConstants &bond, double dx, double dy, double dvx
   const double viscous = bond.damping * rate;
   const double axial =
     bond.cross_section *
-      std::visit([&](const auto &law) { return law.force(stretch, bond.rest_length * inverse); }, bond.law) +
+      std::visit([&](const auto &of_kind) { return of_kind.force(stretch, bond.rest_length * inverse); }, law) +
     viscous;
   return {axial * nx, axial * ny, stretch, viscous * rate};
 }

@@ -4,7 +4,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "lattice/bond_law.h"
@@ -19,10 +18,12 @@
 namespace lattice::kernels
 {
 
-/// What the bonds of a shell have in common.
+/// Laws of nearest and next-nearest neighbours.
+using BondLaws = std::array<BondLaw, 2>;
+
+/// What the bonds of a shell have in common besides their law.
 struct BondConstants
 {
-  BondLaw law;
   double rest_length = 0.;   ///< l [m]
   double cross_section = 0.; ///< A0 / h [m]; 0: there are no such bonds
   double damping = 0.;       ///< A0 eta / (h l) [Pa s]
@@ -59,7 +60,7 @@ struct RowSums
 };
 
 /// Forces of all bonds that start in a row (theory.md, eq. (L.3)). Only `row.force` of kinds with a shell is written.
-RowSums bonds_of_row(const SheetConstants &sheet, const RowOfBonds &row);
+RowSums bonds_of_row(const BondLaws &laws, const SheetConstants &sheet, const RowOfBonds &row);
 
 /// A component of the forces on the n sites of a row: those on the near ends of the bonds that start at a site, less
 /// those of the bonds that end there, [kind][site]. Kinds without a shell must be there and hold zeros.
@@ -106,6 +107,6 @@ struct BondForce
   double viscous_power; ///< [W/m]
 };
 /// Of a bond whose ends are at a distance (dx, dy) [m] and move apart with (dvx, dvy) [m/s].
-BondForce bond_force(const BondConstants &bond, double dx, double dy, double dvx, double dvy);
+BondForce bond_force(const BondLaw &law, const BondConstants &bond, double dx, double dy, double dvx, double dvy);
 
 } // namespace lattice::kernels

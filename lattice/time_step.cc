@@ -36,7 +36,7 @@ Rates bound_of_bonds(const TriangularLattice &lattice, const Material &material,
     {
       // A site has two bonds of each kind, and the bound is twice the sum over its bonds.
       const double per_length = 4. * cross_section(*shell, lattice) / (lattice.rest_length(kind) * mass);
-      rates.omega_square += per_length * stiffness(shell->law, smallest_stretch);
+      rates.omega_square += per_length * largest_stiffness(shell->law, smallest_stretch);
       rates.gamma += per_length * shell->viscosity;
     }
   return rates;
@@ -65,7 +65,7 @@ double chebyshev_step(const TriangularLattice &lattice, const Material &material
   double step = share_of_elastic_limit * time_step_limits(lattice, material, 1.).elastic;
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
     if (const Shell *shell = material.shell(kind))
-      step = std::min(step, shell->viscosity / stiffness(shell->law, smallest_stretch));
+      step = std::min(step, shell->viscosity / largest_stiffness(shell->law, smallest_stretch));
   return step;
 }
 

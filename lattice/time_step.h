@@ -29,10 +29,11 @@ struct TimeStepLimits
 
 /// Limits that hold in every configuration in which no bond is shorter than `smallest_stretch`.
 ///
-/// omega^2 <= 2 sum_j A0 psi''(smallest_stretch) / (l m) and gamma <= 2 sum_j A0 eta / (l m), sums over the bonds of a
-/// site: bonds all in line would attain them. In the undeformed lattice of nearest neighbours the true limit is larger
-/// by a factor of 2 for the dashpots (attained by the shortest waves), of sqrt2 for the springs.
-/// @param smallest_stretch lam_min [-] in (0, 1]; the stiffness of every law here grows as a bond shortens
+/// omega^2 <= 2 sum_j A0 psi''_max / (l m) and gamma <= 2 sum_j A0 eta / (l m), sums over the bonds of a site and
+/// psi''_max = largest_stiffness(law, smallest_stretch): bonds all in line would attain them. In the undeformed lattice
+/// of nearest neighbours the true limit is larger by a factor of 2 for the dashpots (attained by the shortest waves),
+/// of sqrt2 for the springs.
+/// @param smallest_stretch lam_min [-] in (0, 1]
 TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch);
 
 /// The same for a sheet whose sites may touch (theory.md, eq. (L.14)): a site with all its bonds, as they are in the
@@ -43,7 +44,7 @@ TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material
 
 /// Step of Runge-Kutta-Chebyshev at which waves and the breaking of bonds are resolved [s]: a share of the elastic
 /// limit of the undeformed sheet, or, where it is smaller, h = 1 / kappa: all oscillating modes are stable then for any
-/// number of stages (theory.md, eq. (L.22)). kappa is the largest A0 psi''(smallest_stretch) / (A0 eta).
+/// number of stages (theory.md, eq. (L.22)). kappa is the largest psi''_max / eta.
 /// @return 0 where a shell has no dashpots, for which the method is not made
 double chebyshev_step(const TriangularLattice &lattice, const Material &material, double smallest_stretch);
 

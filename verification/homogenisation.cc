@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include "continuum/errors.h"
 
@@ -70,8 +71,10 @@ std::vector<continuum::BondFamily> bond_families(const lattice::TriangularLattic
       family.weight = bond_weight(lattice, *shell, kind);
       if (const auto *rod = std::get_if<lattice::MooneyRivlinBond>(&shell->law))
         family.potential = continuum::RodPotential{rod->a, rod->b};
+      else if (const auto *spring = std::get_if<lattice::LinearBond>(&shell->law))
+        family.potential = continuum::LinearPotential{spring->modulus};
       else
-        family.potential = continuum::LinearPotential{std::get<lattice::LinearBond>(shell->law).modulus};
+        throw std::invalid_argument("no continuum is known here for bonds with a law from outside");
       families.push_back({family, lattice.rest_length(kind)});
     }
   return families;

@@ -39,7 +39,6 @@ inline Tensor<2, 2> rotation(const double angle)
   return matrix(std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle));
 }
 
-<<<<<<< HEAD
 /// A displacement [m], given at reference places, at the nodes of a sheet: one field, with ghost entries.
 inline continuum::Sheet::Vector nodal(const continuum::Sheet &sheet,
                                       const std::function<Tensor<1, 2>(const Point<2> &)> &field)
@@ -68,12 +67,8 @@ inline Tensor<3, 2> random_gradient(std::mt19937 &generator, const double length
   return G;
 }
 
-/// Rubber of theory.md, section 5: both shells of the triangular network, area factor s = 2/3, so weights s and sqrt(3)
-/// s.
-=======
 /// Rubber of the source paper's Fig. 1: both shells of the triangular network, area factor s = 2/3, so weights s and
 /// sqrt(3) s.
->>>>>>> 1f9c17e (Refer to every equation from the code and the test of it; build the documentation as a web site)
 inline continuum::CauchyBorn rubber_network(const double a = 1e5, const double b = 1.5e5)
 {
   const double s = 2. / 3.;

@@ -44,6 +44,17 @@ TEST(BondLaw, StiffnessIsForceGradient)
         << lam;
 }
 
+TEST(BondLaw, LargestStiffnessIsThatOfTheShortestBond)
+{
+  for (const BondLaw &law : laws)
+    for (const double lam : stretches)
+    {
+      EXPECT_EQ(largest_stiffness(law, 0.4), stiffness(law, 0.4));
+      EXPECT_LE(stiffness(law, lam), largest_stiffness(law, 0.4));
+      EXPECT_LE(force(law, lam) / lam, largest_stiffness(law, 0.4));
+    }
+}
+
 TEST(BondLaw, RestIsFreeOfEnergyAndForce)
 {
   for (const BondLaw &law : laws)

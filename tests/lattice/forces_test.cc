@@ -196,13 +196,22 @@ Material linear()
   return material;
 }
 
+// One shell with a law from outside, the other with one of latcon's.
+Material mixed()
+{
+  Material material = sheets::rubber();
+  material.nearest.law = sheets::from_outside(LinearBond{2e5});
+  return material;
+}
+
 std::vector<Subject> subjects()
 {
   std::vector<Subject> all;
   // Few and many columns, of all remainders that a vector of up to eight sites leaves.
   for (const double columns : {3., 10., 11., 12., 13., 14., 15., 16., 17., 40.})
     for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
-      for (const Material &material : {sheets::rubber(), sheets::nearest_only(), linear()})
+      for (const Material &material :
+           {sheets::rubber(), sheets::nearest_only(), linear(), sheets::rubber_from_outside(), mixed()})
         for (const Periodic periodic : {Periodic{}, Periodic{true, false}, Periodic{false, true}, Periodic{true, true}})
           all.push_back({material, orientation, periodic, columns});
   return all;
@@ -305,9 +314,9 @@ TEST(Forces, BitsDoNotDependOnThreads)
   const int before = omp_get_max_threads();
   for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
     for (const Periodic periodic : {Periodic{}, Periodic{true, true}})
-      for (const double rows : {20., 90.})
+      for (const auto &[rows, material] :
+           {std::pair(20., sheets::rubber()), {90., sheets::rubber()}, {20., sheets::rubber_from_outside()}})
       {
-        const Material material = sheets::rubber();
         const TriangularLattice sheet = sheet_of({material, orientation, periodic, 5000. / rows}, rows);
         ASSERT_GE(sheet.n_places(), worth_threads);
         const State state = random_state(sheet, material, 2);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <limits>
+#include <memory>
 
 #include "lattice/simulation.h"
 
@@ -10,6 +11,30 @@ namespace sheets
 
 inline constexpr double spacing = 0.625e-3;
 inline constexpr double unbreakable = std::numeric_limits<double>::infinity();
+
+/// A law of latcon's own, given as one from outside.
+template <class Law>
+class FromOutside : public lattice::CustomBondLaw
+{
+public:
+  explicit FromOutside(const Law &law) : law_(law) {}
+  double energy(double stretch) const noexcept override { return law_.energy(stretch); }
+  double force(double stretch) const noexcept override { return law_.force(stretch); }
+  double stiffness(double stretch) const noexcept override { return law_.stiffness(stretch); }
+  double largest_stiffness(double smallest_stretch) const noexcept override
+  {
+    return law_.largest_stiffness(smallest_stretch);
+  }
+
+private:
+  Law law_;
+};
+
+template <class Law>
+lattice::CustomBond from_outside(const Law &law)
+{
+  return lattice::CustomBond(std::make_shared<FromOutside<Law>>(law));
+}
 
 /// The rubber of the source paper's Fig. 1; viscosity of the nearest neighbours in Pa s, three times that for the next.
 inline lattice::Material rubber(double viscosity = 65.625)
@@ -23,6 +48,15 @@ inline lattice::Material nearest_only(double viscosity = 65.625)
 {
   lattice::Material material = rubber(viscosity);
   material.next_nearest.reset();
+  return material;
+}
+
+/// The same rubber with laws from outside.
+inline lattice::Material rubber_from_outside()
+{
+  lattice::Material material = rubber();
+  material.nearest.law = from_outside(lattice::MooneyRivlinBond{1e5, 1.5e5});
+  material.next_nearest->law = material.nearest.law;
   return material;
 }
 

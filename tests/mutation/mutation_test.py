@@ -114,7 +114,8 @@ class Project(unittest.TestCase):
         place = tempfile.TemporaryDirectory()
         self.addCleanup(place.cleanup)
         self.root = pathlib.Path(place.name).resolve()
-        for name in ("lattice/bond_law.h", "lattice/bond_force.inc", "tests/lattice/bond_law_test.cc"):
+        for name in ("lattice/bond_law.h", "lattice/custom_bond.h", "lattice/bond_force.inc",
+                     "tests/lattice/bond_law_test.cc"):
             (self.root / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(ROOT / name, self.root / name)
         self.build = self.root / "build" / "release"

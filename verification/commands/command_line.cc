@@ -17,6 +17,7 @@
 #include "continuum/errors.h"
 #include "continuum/solver_report.h"
 #include "verification/commands/command.h"
+#include "verification/data_folder.h"
 
 namespace verification
 {
@@ -70,12 +71,6 @@ void set_threads(unsigned int threads)
     reinterpret_cast<void (*)(int)>(symbol)(1);
 }
 
-// The file where the installed or checked-out project keeps the case of that name.
-std::string shipped_case(const std::string &name)
-{
-  return std::string(LATCON_DATA_DIR) + "/cases/" + name;
-}
-
 } // namespace
 
 ExitCode run_program(int argc, char **argv)
@@ -102,7 +97,7 @@ ExitCode run_program(int argc, char **argv)
                "go on from the last checkpoint, or keep the runs of a study that are there");
   app.add_flag("--dry-run", options.dry_run, "check the input, print the resolved case and its cost, run nothing");
 
-  options.case_file = shipped_case("fig1.prm");
+  options.case_file = data_folder() + "/cases/fig1.prm";
   CLI::App *verify_command = app.add_subcommand("verify", "check that lattice and continuum agree, claim by claim");
   verify_command->add_option("CLAIM", options.claims, "claims to check; default: all")
     ->check(CLI::IsMember(claim_names()))

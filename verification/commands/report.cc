@@ -7,6 +7,7 @@
 #include <deal.II/base/mpi.h>
 
 #include "verification/commands/command.h"
+#include "verification/data_folder.h"
 
 extern char **environ;
 
@@ -21,7 +22,7 @@ int run_script(const std::string &script, const std::string &directory, const st
 {
   // Debian's interpreter, the one that sees the packages the script needs.
   std::string python = "/usr/bin/python3";
-  std::string path = std::string(LATCON_DATA_DIR) + "/report/" + script;
+  std::string path = data_folder() + "/report/" + script;
   std::string folder = directory;
   // cppcheck-suppress variableScope ; the arguments hold its address until the script is started
   std::string quiet_option = "--quiet";

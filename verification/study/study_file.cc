@@ -11,6 +11,7 @@
 
 #include "verification/case.h"
 #include "verification/case_text.h"
+#include "verification/data_folder.h"
 #include "verification/errors.h"
 #include "verification/study/quantities.h"
 #include "verification/study/study_check.h"
@@ -349,7 +350,7 @@ const StudyRun &Study::run(const std::string &name) const
 
 std::string study_path(const std::string &name)
 {
-  const std::string shipped = std::string(LATCON_DATA_DIR) + "/studies/" + name + ".json";
+  const std::string shipped = data_folder() + "/studies/" + name + ".json";
   const bool is_word = name.find_first_of("/.") == std::string::npos;
   return is_word && !std::filesystem::exists(name) && std::filesystem::exists(shipped) ? shipped : name;
 }

@@ -63,6 +63,7 @@ struct Variant
   Toughening toughening;
   double contact; // distance in spacings, so large that sites on one flank touch; 0: none
   EndLoads::End right;
+  Material material = sheets::rubber();
 };
 
 struct Crack
@@ -103,6 +104,7 @@ INSTANTIATE_TEST_SUITE_P(
     Variant{Orientation::rows_along_crack, 24., BehindTipToughening{behind, 3.}, 3., EndLoads::End::held},
     Variant{Orientation::rows_across_crack, 24., BehindTipToughening{behind, 3.}, 5., EndLoads::End::absorbing},
     Variant{Orientation::rows_along_crack, 24., RetractionToughening{0.8, 2.}, 0., EndLoads::End::absorbing},
+    Variant{Orientation::rows_along_crack, 16., NoToughening{}, 0., EndLoads::End::held, sheets::rubber_from_outside()},
     // Nine rows: bands of one or two for five ranks.
     Variant{Orientation::rows_along_crack, 7., NoToughening{}, 5., EndLoads::End::free}));
 
@@ -111,7 +113,7 @@ TEST_P(SharedCrack, HasTheBitsOfOneRank)
   const Variant &variant = GetParam();
   const TriangularLattice sheet(sheets::spacing, 40. * sheets::spacing, variant.height * sheets::spacing,
                                 variant.orientation);
-  const Material material = sheets::rubber();
+  const Material &material = variant.material;
   Crack shared(variant, RowBand(sheet, MPI_COMM_WORLD), material), alone(variant, sheet, material);
   Simulation &ours = *shared.simulation, &theirs = *alone.simulation;
   std::size_t touching = 0;

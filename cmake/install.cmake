@@ -1,0 +1,38 @@
+# What `cmake --install` puts where, for any prefix: nothing that is installed knows the prefix or the folder of the sources.
+# Two components: `runtime`, the program with all that it reads, and `development`, the libraries.
+include(GNUInstallDirs)
+include(CMakePackageConfigHelpers)
+
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME runtime)
+install(TARGETS latcon)
+# verification/data_folder.h looks for it.
+foreach(folder cases studies report paraview)
+  install(DIRECTORY verification/${folder} DESTINATION share/latcon PATTERN __pycache__ EXCLUDE)
+endforeach()
+install(FILES README.md LICENSE CITATION.cff cmake/copyright DESTINATION share/doc/latcon)
+# Manual page and completion say what the program says of itself. Debian wants documents compressed, always to the same bits.
+set(latcon_shell_files latcon.1.gz latcon.bash)
+add_custom_command(OUTPUT ${latcon_shell_files}
+  COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/shell_files.py $<TARGET_FILE:latcon> ${PROJECT_SOURCE_DIR}/verification .
+  COMMAND gzip -9nf latcon.1
+  DEPENDS latcon cmake/shell_files.py VERBATIM)
+add_custom_command(OUTPUT changelog.gz COMMAND gzip -9nc ${PROJECT_SOURCE_DIR}/CHANGELOG.md > changelog.gz DEPENDS CHANGELOG.md VERBATIM)
+add_custom_target(documents ALL DEPENDS ${latcon_shell_files} changelog.gz)
+install(FILES ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION share/doc/latcon)
+install(FILES ${PROJECT_BINARY_DIR}/latcon.1.gz DESTINATION ${CMAKE_INSTALL_MANDIR}/man1)
+install(FILES ${PROJECT_BINARY_DIR}/latcon.bash DESTINATION share/bash-completion/completions RENAME latcon)
+
+set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME development)
+set(latcon_cmake_folder ${CMAKE_INSTALL_LIBDIR}/cmake/latcon)
+set_target_properties(latcon_lattice PROPERTIES EXPORT_NAME lattice)
+set_target_properties(latcon_continuum PROPERTIES EXPORT_NAME continuum)
+install(TARGETS latcon_options latcon_lattice latcon_continuum EXPORT latconTargets)
+install(EXPORT latconTargets NAMESPACE latcon:: DESTINATION ${latcon_cmake_folder})
+install(DIRECTORY lattice continuum DESTINATION include/latcon FILES_MATCHING PATTERN "*.h" PATTERN "*.inc" PATTERN precompiled.h EXCLUDE)
+configure_package_config_file(cmake/latconConfig.cmake.in latconConfig.cmake INSTALL_DESTINATION ${latcon_cmake_folder})
+# Before 1.0 a minor version may change what programs are written for.
+write_basic_package_version_file(latconConfigVersion.cmake COMPATIBILITY SameMinorVersion)
+install(FILES ${PROJECT_BINARY_DIR}/latconConfig.cmake ${PROJECT_BINARY_DIR}/latconConfigVersion.cmake cmake/dealii.cmake
+        DESTINATION ${latcon_cmake_folder})
+install(DIRECTORY examples/own-laws DESTINATION share/doc/latcon-dev/examples)
+install(FILES docs/library.md cmake/copyright ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION share/doc/latcon-dev)

@@ -1,0 +1,29 @@
+# Debian packages by `cpack` in the build folder: latcon, the program, and latcon-dev, the libraries.
+set(CPACK_GENERATOR DEB)
+set(CPACK_PACKAGE_CONTACT "The latcon developers <latcon@localhost>")
+set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
+set(CPACK_STRIP_FILES ON)
+set(CPACK_COMPONENTS_ALL runtime development)
+set(CPACK_DEB_COMPONENT_INSTALL ON)
+set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
+set(CPACK_DEBIAN_PACKAGE_SECTION science)
+
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME latcon)
+set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "The program: it simulates cracks in stretched rubber on a triangular lattice
+of bonds, sets the finite element continuum that the lattice stands for beside
+it, and runs a crack only after both have been shown to agree.")
+# Libraries, and what the report is drawn with.
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS "python3, python3-matplotlib, python3-numpy, python3-pil, python3-vtk9")
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "libopenblas0-pthread, openmpi-bin")
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "paraview")
+
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_NAME latcon-dev)
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
+set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "The libraries: headers, static libraries and CMake targets, for programs that
+give the lattice a bond law, or the continuum a material or gradient law, of
+their own.")
+# What latconConfig.cmake looks for.
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libdeal.ii-dev, libeigen3-dev, libhwy-dev, libopenmpi-dev, libvtk9-dev")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "latcon, cmake")
+include(CPack)

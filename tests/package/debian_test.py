@@ -1,0 +1,68 @@
+#!/usr/bin/python3
+"""The Debian packages: what they ask for, and that what they hold runs from where it is unpacked.
+
+Usage: debian_test.py SOURCE_FOLDER BUILD_FOLDER
+"""
+import re
+import unittest
+
+from folders import BUILD, FOLDER, SOURCE, check_program, files_below, mentions_of_sources, run
+
+
+def field(package, name):
+    return run("dpkg-deb", "--field", package, name).strip()
+
+
+def names(dependencies):
+    return set(re.findall(r"(?:^|, |\| )([a-z0-9.+-]+)", dependencies))
+
+
+class Packages(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        # As fast as it can be packed.
+        run("cpack", "--config", BUILD / "CPackConfig.cmake", "-B", FOLDER / "packages", "-D",
+            "CPACK_DEBIAN_COMPRESSION_TYPE=gzip")
+        cls.program, cls.libraries = (next((FOLDER / "packages").glob(f"{name}_*_*.deb"))
+                                      for name in ("latcon", "latcon-dev"))
+
+    def test_name_their_version(self):
+        project = re.search(r"project\(latcon VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text()).group(1)
+        for package in (self.program, self.libraries):
+            self.assertEqual(field(package, "Version"), project)
+
+    def test_ask_for_what_they_need(self):
+        runtime = names(field(self.program, "Depends"))
+        self.assertLessEqual({"libc6", "libdeal.ii-9.4.1", "libhwy1", "libopenmpi3", "libvtk9.1", "python3-matplotlib",
+                              "python3-numpy", "python3-pil", "python3-vtk9"}, runtime)
+        listed = set((SOURCE / "cmake/packages.txt").read_text().split("\n"))
+        by_hand = {name for name in runtime if name.startswith("python3")} | names(field(self.program, "Recommends"))
+        self.assertLessEqual(by_hand | names(field(self.libraries, "Depends")), listed)
+        # Modules of others that the report imports.
+        imported = {module for path in (SOURCE / "verification/report").glob("*.py")
+                    for module in re.findall(r"^\s*(?:import|from) (\w+)", path.read_text(), re.M)}
+        packages = {"matplotlib": "python3-matplotlib", "numpy": "python3-numpy", "vtkmodules": "python3-vtk9",
+                    "vtk": "python3-vtk9", "PIL": "python3-pil", "h5py": "python3-h5py"}
+        self.assertLessEqual({packages[module] for module in imported & set(packages)}, runtime)
+
+    def test_program_runs_where_it_is_unpacked(self):
+        root = FOLDER / "root"
+        run("dpkg-deb", "--extract", self.program, root)
+        self.assertEqual(mentions_of_sources(root), [])
+        for name in ("share/man/man1/latcon.1.gz", "share/bash-completion/completions/latcon",
+                     "share/doc/latcon/copyright"):
+            self.assertTrue((root / "usr" / name).is_file(), name)
+        check_program(self, root / "usr")
+
+    def test_libraries_hold_every_header(self):
+        root = FOLDER / "root-dev"
+        run("dpkg-deb", "--extract", self.libraries, root)
+        self.assertEqual(mentions_of_sources(root), [])
+        for side in ("lattice", "continuum"):
+            self.assertEqual({path.name for path in files_below(root / "usr/include/latcon" / side)},
+                             {path.name for pattern in ("*.h", "*.inc") for path in (SOURCE / side).glob(pattern)}
+                             - {"precompiled.h"})
+
+
+if __name__ == "__main__":
+    unittest.main()

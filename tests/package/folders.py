@@ -1,0 +1,50 @@
+"""What the tests of the installed project share: the folders of sources and build, and how programs are run."""
+import os
+import pathlib
+import subprocess
+import sys
+import tempfile
+
+sys.dont_write_bytecode = True
+SOURCE, BUILD = (pathlib.Path(sys.argv.pop(1)) for _ in range(2))
+SCRATCH = tempfile.TemporaryDirectory()
+FOLDER = pathlib.Path(SCRATCH.name)
+ENVIRONMENT = dict(os.environ, XDG_CACHE_HOME=str(FOLDER / "cache"), OMP_NUM_THREADS="1")
+# A strip so short that a crack runs through it in a second.
+TINY = ["--set", "Sheet/length=2.5 cm", "--set", "Sheet/height=1.5 cm", "--set", "Time/end=1.5 ms"]
+
+
+def run(*command, fails=False, **keywords):
+    """Runs a command outside of the sources; its output, once it has ended as it should."""
+    done = subprocess.run([str(word) for word in command], capture_output=True, text=True, cwd=FOLDER, timeout=600,
+                          env=ENVIRONMENT, **keywords)
+    if (done.returncode != 0) != fails:
+        raise AssertionError(f"{command} ended with {done.returncode}:\n{done.stdout[-4000:]}\n{done.stderr[-4000:]}")
+    return done.stdout + done.stderr
+
+
+def files_below(folder):
+    return [path for path in folder.rglob("*") if path.is_file()]
+
+
+def mentions_of_sources(folder):
+    """Files that hold the path of the sources (which that of the build folder begins with as a rule)."""
+    paths = [str(SOURCE).encode(), str(BUILD).encode()]
+    return [path for path in files_below(folder) if any(word in path.read_bytes() for word in paths)]
+
+
+def check_program(test, prefix):
+    """The program below a prefix runs, reads what lies beside it, and draws its report."""
+    latcon, data = prefix / "bin" / "latcon", prefix / "share" / "latcon"
+    test.assertRegex(run(latcon, "--version"), r"^latcon \d+\.\d+\.\d+")
+    quick = data / "cases" / "quick.prm"
+    test.assertIn("sites", run(latcon, "fracture", quick, "--dry-run"))
+    test.assertIn("little-viscosity", run(latcon, "study", "patterns", "--quick", "--dry-run"))
+    style = data / "report" / "style.css"
+    style.write_text(style.read_text() + "/* of this installation */\n")
+    output = prefix.parent / "crack"
+    run(latcon, "fracture", quick, "--skip-verification", "--output-dir", output, *TINY)
+    test.assertIn("/* of this installation */", (output / "report.html").read_text())
+    data.rename(data.with_name("elsewhere"))
+    test.assertIn(str(data), run(latcon, "verify", "energy", "--dry-run", fails=True))
+    data.with_name("elsewhere").rename(data)

@@ -1,0 +1,53 @@
+#!/usr/bin/python3
+"""latcon installed below some prefix needs neither its sources nor its build folder: the program runs, and programs of
+others are built on its libraries.
+
+Usage: install_test.py SOURCE_FOLDER BUILD_FOLDER
+"""
+import json
+import shutil
+import unittest
+
+from folders import BUILD, FOLDER, check_program, mentions_of_sources, run
+
+PREFIX = FOLDER / "prefix"
+
+
+class Installed(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        run("cmake", "--install", BUILD, "--prefix", PREFIX)
+
+    def test_knows_neither_sources_nor_build(self):
+        self.assertEqual(mentions_of_sources(PREFIX), [])
+
+    def test_program_runs(self):
+        check_program(self, PREFIX)
+
+    def test_example_with_laws_of_its_own_is_built_and_right(self):
+        own = FOLDER / "own-laws"
+        shutil.copytree(PREFIX / "share/doc/latcon-dev/examples/own-laws", own)
+        run("cmake", "-S", own, "-B", own / "build", "-G", "Ninja", "-D", "CMAKE_BUILD_TYPE=Release",
+            "-D", f"CMAKE_PREFIX_PATH={PREFIX}", "-D", "CMAKE_EXPORT_COMPILE_COMMANDS=ON")
+        run("cmake", "--build", own / "build", "--parallel", "2")
+        self.assertEqual(mentions_of_sources(own), [])
+        for entry in json.loads((own / "build/compile_commands.json").read_text()):
+            self.assertIn(str(PREFIX / "include/latcon"), entry["command"])
+            self.assertIn("-ffp-contract=off", entry["command"])
+            self.assertNotIn("-W", entry["command"])  # latcon's warnings are its own affair
+        self.assertIn("all agree", run(own / "build/bond_law"))
+        self.assertIn("they agree", run(own / "build/gradient_energy"))
+
+    def test_other_versions_are_refused(self):
+        version = (PREFIX / "lib/cmake/latcon/latconConfigVersion.cmake").read_text()
+        self.assertIn("PACKAGE_VERSION", version)
+        asker = FOLDER / "asker"
+        asker.mkdir()
+        (asker / "CMakeLists.txt").write_text("cmake_minimum_required(VERSION 3.25)\nproject(asker LANGUAGES C CXX)\n"
+                                              "find_package(latcon 99 REQUIRED)\n")
+        self.assertIn("99", run("cmake", "-S", asker, "-B", asker / "build", "-D", f"CMAKE_PREFIX_PATH={PREFIX}",
+                                fails=True))
+
+
+if __name__ == "__main__":
+    unittest.main()

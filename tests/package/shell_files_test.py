@@ -1,0 +1,76 @@
+#!/usr/bin/python3
+"""The manual page and the completion for bash have every command and option that the program has.
+
+Usage: shell_files_test.py SOURCE_FOLDER BUILD_FOLDER
+"""
+import functools
+import gzip
+import re
+import subprocess
+import unittest
+
+from folders import BUILD, FOLDER, SOURCE, run
+
+LATCON = BUILD / "verification" / "latcon"
+
+
+def complete(*words):
+    """What bash proposes for the last of some words after `latcon`."""
+    script = f'source {BUILD}/latcon.bash; COMP_WORDS=(latcon "$@"); COMP_CWORD=$#; _latcon; printf "%s\\n" "${{COMPREPLY[@]}}"'
+    done = subprocess.run(["bash", "-c", script, "bash", *words], cwd=FOLDER, capture_output=True, text=True, check=True)
+    return [line for line in done.stdout.split("\n") if line]
+
+
+@functools.cache
+def options_of(*command):
+    return set(re.findall(r"^  (?:-h,)?(--[a-z-]+)", run(LATCON, *command, "--help"), re.M))
+
+
+class Shell(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        cls.commands = re.findall(r"^  ([a-z]+) ", run(LATCON, "--help").split("Subcommands:")[1], re.M)
+
+    def test_manual_has_every_command_and_option(self):
+        page = run("groff", "-ww", "-man", "-Tascii", "-P-c", "-P-b", "-P-u",
+                   input=gzip.decompress((BUILD / "latcon.1.gz").read_bytes()).decode())
+        self.assertNotIn("warning", page)
+        self.assertGreaterEqual(len(self.commands), 7)
+        for command in self.commands:
+            part = re.search(rf"^   {command}$.*?(?=^   \S|^\S)", page, re.M | re.S).group(0)
+            for option in options_of(command) - {"--help"}:
+                self.assertIn(option, part)
+        for option in options_of():
+            self.assertIn(option, page)
+        for code in (0, 1, 2, 3, 4, 5, 130):
+            self.assertRegex(page, rf"(?m)^ +{code} +\S")
+
+    def test_completes_commands_and_options(self):
+        self.assertEqual(complete(""), self.commands)
+        self.assertEqual(complete("fra"), ["fracture"])
+        for command in self.commands:
+            self.assertEqual(set(complete(command, "--")), options_of() | options_of(command))
+        self.assertEqual(complete("--out"), ["--output-dir"])
+
+    def test_completes_claims_studies_and_files(self):
+        self.assertEqual(complete("verify", ""), ["energy", "wave-speeds", "intrinsic-length", "prestretch"])
+        self.assertEqual(set(complete("study", "")) - {"cache"},
+                         {path.stem for path in (SOURCE / "verification/studies").glob("*.json")})
+        (FOLDER / "my case.prm").touch()
+        self.assertEqual(complete("fracture", "my"), ["my case.prm"])
+        self.assertEqual(complete("verify", "--case", "my"), ["my case.prm"])
+        (FOLDER / "results").mkdir()
+        self.assertEqual(complete("report", "re"), ["results"])
+        self.assertEqual(complete("fracture", "--output-dir", "re"), ["results"])
+        self.assertEqual(complete("fracture", "--threads", ""), [])
+
+    def test_completes_entries_of_cases(self):
+        self.assertEqual(complete("fracture", "--set", "Sheet/sp"), ["Sheet/spacing="])
+        self.assertEqual(complete("fracture", "--set", "Lattice/noise\\ s"), ["Lattice/noise\\ seed="])
+        self.assertEqual(complete("fracture", "--set", '"Lattice/noise s'), ["Lattice/noise seed="])
+        self.assertGreater(len(complete("fracture", "--set", "")), 50)
+        self.assertEqual(complete("fracture", "--set", "Sheet/spacing", "="), [])
+
+
+if __name__ == "__main__":
+    unittest.main()
