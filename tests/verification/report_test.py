@@ -121,7 +121,7 @@ def write_frame(path, reference, fields, ends=(), stretch=()):
     sheet.SetPoints(points)
     sheet.SetVerts(vertices)
     sheet.SetLines(lines)
-    for data, arrays in ((sheet.GetPointData(), fields), (sheet.GetCellData(), {"stretch": stretch} if ends else {})):
+    for data, arrays in ((sheet.GetPointData(), fields), (sheet.GetCellData(), {"stretch": stretch} if len(ends) else {})):
         for name, values in arrays.items():
             array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
             array.SetName(name)

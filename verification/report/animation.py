@@ -21,8 +21,8 @@ SIZES = [(width, shades) for width in (900, 750, 600, 450) for shades in (192, 9
 LEFT, TOP, FOOT, BAR = 0.85, 0.5, 0.62, 0.75  # margins of the axes and room of the colour bar [in]
 
 
-def draw_animation(run, gif, still):
-    """Writes the animation and its last picture (PNG), if the run left frames of the motion. @return whether it did"""
+def draw_animation(run, gif, still=None):
+    """Writes the animation, and its last picture as PNG, if the run left frames of the motion. @return if it did"""
     frames = [(time, path) for time, path in read_series(run.folder / "motion.pvd") or [] if path.exists()]
     sheets = read_series(run.folder / "lattice.pvd")
     if len(frames) < 2 or not sheets or not sheets[0][1].exists() or run.broken is None:
@@ -38,7 +38,8 @@ def draw_animation(run, gif, still):
         write_file(gif, lambda beside: write_gif(pictures, shown, beside))
         if gif.stat().st_size <= LARGEST:
             break
-    save_png(pictures[-1].convert("RGB"), still)
+    if still is not None:
+        save_png(pictures[-1].convert("RGB"), still)
     return True
 
 
