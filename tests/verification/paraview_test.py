@@ -25,8 +25,8 @@ def near(pixels, colour):
 
 
 def write_run(folder):
-    """A sheet of 40 by 30 sites, stretched 2 by 1.5 times; its bonds ever more stretched to the right, and at the last time torn
-    between two rows; fields around a tip."""
+    """A sheet of 40 by 30 sites, stretched 2 by 1.5 times, its bonds ever more stretched to the right, and at the last
+    time torn between two rows; fields around a tip."""
     columns, rows = np.meshgrid(np.arange(40), np.arange(30))
     reference = np.column_stack((columns.ravel(), rows.ravel() - 14.5, np.zeros(1200))) * 1e-3
     number = np.arange(1200).reshape(30, 40)
@@ -38,7 +38,8 @@ def write_run(folder):
         stretch = 1.0 + 2.4 * reference[bonds[:, 0], 0] / 0.04  # up to 3.34
         stretch = np.concatenate((np.ones(1200), stretch))
         speed = np.linspace(0, 40, 1200)
-        fields = {"displacement": reference * (1.0, 0.5, 0.0), "velocity": np.column_stack((speed, 0 * speed, 0 * speed)),
+        fields = {"displacement": reference * (1.0, 0.5, 0.0),
+                  "velocity": np.column_stack((speed, 0 * speed, 0 * speed)),
                   "cauchy_stress": np.outer(1e4 * speed, np.eye(9)[4]), "damage": speed / 40}
         write_frame(folder / name, reference, fields, bonds, stretch)
     write_series(folder / "lattice.pvd", {"lattice-0000.vtp": 0.0, "lattice-0001.vtp": 2e-3})
@@ -77,7 +78,8 @@ class Looks(ParaView):
         self.assertLess(shown[0][middle], 0.5 * shown[1][middle])
 
     def test_sheet_shows_other_fields(self):
-        pictures = [self.picture("deformed_sheet.py", "--field", field) for field in ("speed", "opening-stress", "damage")]
+        pictures = [self.picture("deformed_sheet.py", "--field", field)
+                    for field in ("speed", "opening-stress", "damage")]
         for pixels in pictures:
             self.assertEqual(near(pixels, RED), 0)
             self.assertGreater(pixels.std(), 10)

@@ -21,7 +21,8 @@ WIDTH = 390  # [pixels]
 FRAME = f"""<html><body><iframe id="page" width="{WIDTH}" height="800" srcdoc="PAGE"></iframe><script>
 addEventListener("load", () => {{
   const page = document.getElementById("page").contentDocument;
-  const wide = [...page.querySelectorAll("pre, table")].some(box => box.scrollWidth > box.closest(".scroll").clientWidth);
+  const boxes = [...page.querySelectorAll("pre, table")];
+  const wide = boxes.some(box => box.scrollWidth > box.closest(".scroll").clientWidth);
   document.title = `${{page.documentElement.clientWidth}} ${{page.documentElement.scrollWidth}} ${{wide}}`;
 }});</script></body></html>"""
 
@@ -50,7 +51,8 @@ class PhoneWidth(unittest.TestCase):
         self.assertLessEqual(window, WIDTH)
         self.assertLessEqual(width, window)
         self.assertTrue(scrolls)  # so there was something to be kept in its box
-        self.assertGreater(self.measured(page.replace(".scroll {", ".none {"))[1], window)  # and it is seen if it is not
+        unboxed = page.replace(".scroll {", ".none {")
+        self.assertGreater(self.measured(unboxed)[1], window)  # and it is seen if it is not
 
 
 if __name__ == "__main__":

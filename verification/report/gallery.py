@@ -164,8 +164,9 @@ def arrested_section(run, folder):
     draw_sheet(frame, breaking_stretch, png)
     shrink(png, LARGEST_PICTURE)
     changes = ", ".join(entry.replace("=", " = ") for entry in EXTRA_RUNS["arrested"] if not entry.startswith("Output"))
-    return ["", f"## {run.crack['pattern'].capitalize()}: `arrested`", "", "Bonds too tough for the loading. Changed of "
-            f"Fig. 1: {changes}. Measured: {run.crack['pattern']}, {run.crack['reason']}.", "",
+    return ["", f"## {run.crack['pattern'].capitalize()}: `arrested`", "",
+            f"Bonds too tough for the loading. Changed of Fig. 1: {changes}. "
+            f"Measured: {run.crack['pattern']}, {run.crack['reason']}.", "",
             f"![sheet of arrested](pictures/{png.name})", "", RUN_PICTURES["sheet"]], [png]
 
 
