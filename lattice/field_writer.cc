@@ -1,11 +1,7 @@
 #include "lattice/field_writer.h"
 
-#include <charconv>
-#include <cstdio>
-#include <fstream>
 #include <limits>
 #include <optional>
-#include <system_error>
 
 #include <vtkCellArray.h>
 #include <vtkCellData.h>
@@ -17,7 +13,6 @@
 #include <vtkPoints.h>
 #include <vtkPolyData.h>
 #include <vtkUnsignedCharArray.h>
-#include <vtkXMLPolyDataWriter.h>
 
 #include "lattice/field_units.h"
 #include "lattice/fragments.h"
@@ -28,25 +23,6 @@ namespace lattice
 {
 namespace
 {
-
-[[noreturn]] void fail(const std::filesystem::path &path, const char *what)
-{
-  throw std::filesystem::filesystem_error(what, path, std::make_error_code(std::errc::io_error));
-}
-
-std::string shortest(double value)
-{
-  char text[32];
-  const auto result = std::to_chars(text, text + sizeof(text), value);
-  return {text, result.ptr};
-}
-
-std::string file_name(std::size_t frame)
-{
-  char name[40];
-  std::snprintf(name, sizeof(name), "lattice-%04zu.vtp", frame);
-  return name;
-}
 
 vtkNew<vtkDoubleArray> array(const char *name, int components, vtkIdType tuples)
 {
@@ -72,7 +48,7 @@ void set_tensor(vtkDoubleArray &values, vtkIdType id, const Eigen::Matrix2d &t)
 } // namespace
 
 FieldWriter::FieldWriter(const TriangularLattice &lattice, const Material &material, std::filesystem::path directory)
-  : lattice_(lattice), material_(material), directory_(std::move(directory))
+  : lattice_(lattice), material_(material), series_(std::move(directory), "lattice")
 {
 }
 
@@ -143,13 +119,15 @@ void FieldWriter::add_frame(const State &state)
   vtkNew<vtkUnsignedCharArray> shell, toughened;
   shell->SetName("shell");
   toughened->SetName("toughened");
-  // Cell data counts the vertices first, then the lines.
+  // Cell data counts the vertices first, then the lines. A site has the mean of its bonds, so that it is no dot of
+  // another colour among them.
   for (vtkIdType id = 0; id < n_points; ++id)
   {
-    bond_stretch->InsertNextValue(1.);
+    bond_stretch->InsertNextValue(0.);
     shell->InsertNextValue(0);
     toughened->InsertNextValue(0);
   }
+  std::vector<unsigned int> bonds_of_point(static_cast<std::size_t>(n_points), 0);
   for_each_bond(state, lattice_,
                 [&](std::size_t near, std::size_t kind, std::size_t far)
                 {
@@ -157,10 +135,22 @@ void FieldWriter::add_frame(const State &state)
                     return; // across a periodic edge; a line through the whole sheet would stand for it
                   const std::array<vtkIdType, 2> ends{{point_of_place[near], point_of_place[far]}};
                   lines->InsertNextCell(2, ends.data());
-                  bond_stretch->InsertNextValue(stretch(state, lattice_, near, kind));
+                  const double value = stretch(state, lattice_, near, kind);
+                  bond_stretch->InsertNextValue(value);
+                  for (const vtkIdType end : ends)
+                  {
+                    bond_stretch->SetValue(end, bond_stretch->GetValue(end) + value);
+                    ++bonds_of_point[static_cast<std::size_t>(end)];
+                  }
                   shell->InsertNextValue(TriangularLattice::is_nearest(kind) ? 1 : 2);
                   toughened->InsertNextValue(state.bonds.toughened(near, kind) ? 1 : 0);
                 });
+
+  for (vtkIdType id = 0; id < n_points; ++id)
+  {
+    const unsigned int bonds = bonds_of_point[static_cast<std::size_t>(id)];
+    bond_stretch->SetValue(id, bonds > 0 ? bond_stretch->GetValue(id) / bonds : 1.);
+  }
 
   vtkNew<vtkPolyData> sheet;
   sheet->SetPoints(points);
@@ -177,50 +167,15 @@ void FieldWriter::add_frame(const State &state)
   for (vtkDataArray *data : {static_cast<vtkDataArray *>(bond_stretch.Get()), static_cast<vtkDataArray *>(shell.Get()),
                              static_cast<vtkDataArray *>(toughened.Get())})
     sheet->GetCellData()->AddArray(data);
-  const auto time = array("TimeValue", 1, 1);
-  time->SetValue(0, state.time);
-  sheet->GetFieldData()->AddArray(time);
+  // What ParaView shows first.
+  sheet->GetPointData()->SetActiveVectors(displacement->GetName());
+  sheet->GetCellData()->SetActiveScalars(bond_stretch->GetName());
   // The sites of a periodic sheet stop short of its ends.
   const auto bounds = array("SheetBounds", 4, 1);
   bounds->SetTuple4(0, 0., lattice_.length(), -0.5 * lattice_.height(), 0.5 * lattice_.height());
   sheet->GetFieldData()->AddArray(bounds);
 
-  if (!times_.empty() && times_.back() == state.time)
-    times_.pop_back();
-  const std::string name = file_name(times_.size());
-  const std::filesystem::path path = directory_ / name;
-  const std::filesystem::path beside = directory_ / (name + ".part");
-  vtkNew<vtkXMLPolyDataWriter> writer;
-  writer->SetFileName(beside.c_str());
-  writer->SetInputData(sheet);
-  writer->SetDataModeToAppended();
-  writer->EncodeAppendedDataOff();
-  writer->SetCompressorTypeToZLib();
-  writer->SetCompressionLevel(1); // higher ones take a sixth of a crack's time to save a few percent
-  if (writer->Write() != 1 || writer->GetErrorCode() != 0)
-    fail(path, "cannot write lattice frame");
-  std::filesystem::rename(beside, path);
-  times_.push_back(state.time);
-  write_collection();
-}
-
-void FieldWriter::write_collection() const
-{
-  const std::filesystem::path path = directory_ / "lattice.pvd";
-  const std::filesystem::path beside = directory_ / "lattice.pvd.part";
-  {
-    std::ofstream out(beside);
-    out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
-           "  <Collection>\n";
-    for (std::size_t frame = 0; frame < times_.size(); ++frame)
-      out << "    <DataSet timestep=\"" << shortest(times_[frame]) << "\" part=\"0\" file=\"" << file_name(frame)
-          << "\"/>\n";
-    out << "  </Collection>\n</VTKFile>\n";
-    out.flush();
-    if (!out)
-      fail(path, "cannot write");
-  }
-  std::filesystem::rename(beside, path);
+  series_.add(*sheet, state.time);
 }
 
 } // namespace lattice

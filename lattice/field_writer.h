@@ -1,9 +1,6 @@
 #pragma once
 
-#include <filesystem>
-#include <string>
-#include <vector>
-
+#include "lattice/frame_series.h"
 #include "lattice/state.h"
 
 namespace lattice
@@ -15,11 +12,11 @@ namespace lattice
 /// sites themselves (vertices) and the bonds (lines). Point data: displacement [m], velocity [m/s],
 /// deformation_gradient [-], first_piola_stress [Pa], cauchy_stress [Pa], strain_gradient_x and _y [1/m] (not a
 /// number where the bonds left do not fix one, see StrainGradientFit), strain_energy_density [J/m^3], damage [-],
-/// held, site (row-wise number), fragment (0 the sheet, 1, 2 ... detached, see Fragments). Cell data: stretch [-] (1 at
-/// vertices), shell (0 vertex, 1 nearest, 2 next-nearest), toughened (0 or 1); bonds across a periodic edge are left
-/// out. The field data arrays TimeValue and SheetBounds hold the time [s] and the bounds of the undeformed sheet, a
-/// period where it is periodic: X from, to, Y from, to [m]. Quantities carry their units (VTK's
-/// UNITS_LABEL). Every file is written beside its place and renamed.
+/// held, site (row-wise number), fragment (0 the sheet, 1, 2 ... detached, see Fragments). Cell data: stretch [-] (at a
+/// vertex the mean over its bonds, 1 without any), shell (0 vertex, 1 nearest, 2 next-nearest), toughened (0 or 1);
+/// bonds across a periodic edge are left out. The field data arrays TimeValue and SheetBounds hold the time [s] and the
+/// bounds of the undeformed sheet, a period where it is periodic: X from, to, Y from, to [m]. Quantities carry their
+/// units (VTK's UNITS_LABEL). Every file is written beside its place and renamed.
 class FieldWriter
 {
 public:
@@ -33,17 +30,16 @@ public:
   template <class Archive>
   void archive(Archive &archive)
   {
-    archive("times", times_);
+    series_.archive(archive);
   }
 
   /// Writes `lattice.pvd`, so that it names the frames there are. @throws std::filesystem::filesystem_error
-  void write_collection() const;
+  void write_collection() const { series_.write_collection(); }
 
 private:
   const TriangularLattice &lattice_;
   const Material &material_;
-  std::filesystem::path directory_;
-  std::vector<double> times_; // of the frames [s]
+  FrameSeries series_;
 };
 
 } // namespace lattice

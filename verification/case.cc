@@ -276,6 +276,9 @@ void Case::declare(Parameters &p)
 
   p.add("Output", "frame interval", frame_interval, MagnitudeOrZero{}, "s",
         "time between frames of the lattice; 0: first and last frame alone");
+  p.add("Output", "motion frames", motion_frames, Between{0., 1e4},
+        "light frames of a crack, for animations, evenly spread over the way of its tip from the seed to the stop "
+        "position; 0: none");
   p.add("Output", "energy interval", energy_interval, AtLeast{1.}, "time steps between rows of energy.csv");
   p.add("Checkpoints", "steps", checkpoint_steps, AtLeast{0.},
         "time steps between checkpoints of a motion; 0: none by steps");

@@ -129,7 +129,8 @@ struct Case
   ContinuumCase continuum;
 
   // Output
-  double frame_interval = 0.; ///< [s]; 0: first and last frame only
+  double frame_interval = 0.;      ///< [s]; 0: first and last frame only
+  unsigned int motion_frames = 48; ///< in motion.pvd while a crack runs all the way; 0: none
   unsigned int energy_interval = 200;
 
   // Checkpoints: none of these changes what a run finds

@@ -57,6 +57,7 @@ const std::set<std::string> no_claim_reads{
   "Time/integrator",
   "Time/stages",
   "Output/frame interval",
+  "Output/motion frames",
   "Output/energy interval",
   "Checkpoints/steps",
   "Checkpoints/interval",

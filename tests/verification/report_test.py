@@ -12,6 +12,7 @@ import tempfile
 import unittest
 from html.parser import HTMLParser
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 from PIL import Image
@@ -24,6 +25,7 @@ sys.dont_write_bytecode = True
 FOLDER = Path(__file__).resolve().parents[2] / "verification" / "report"
 sys.path.insert(0, str(FOLDER))
 
+import animation
 import report
 from crack_path import fit_sinusoid
 from summary import with_uncertainty
@@ -31,8 +33,9 @@ from summary import with_uncertainty
 # The crack of the made-up run [m].
 WAVELENGTH, AMPLITUDE, PHASE, OFFSET, SLOPE = 0.02, 0.0012, 0.7, 0.0003, 0.004
 BEGIN, END = 0.03, 0.09
-PICTURES = ("sheet.png", "crack_path.png", "energy.png")
-VOID = {"meta", "br", "hr", "img", "link", "input"}
+PICTURES = ("sheet.png", "sheet_fields.png", "crack_path.png", "energy.png")
+MOTION_FRAMES = 5
+VOID = {"meta", "br", "hr", "img", "link", "input", "source"}
 
 
 def path_of_tip(X):
@@ -90,32 +93,50 @@ def write_fracture(folder, rows):
 
 
 def write_sheet(folder):
-    """A frame of 12 by 8 sites, its bonds along x, and the file that names it and its time."""
+    """A frame of 12 by 8 sites with the file that names it and its time, and frames of the motion."""
     columns, rows = np.meshgrid(np.arange(12), np.arange(8))
     reference = np.column_stack((columns.ravel(), rows.ravel(), np.zeros(96))) * 1e-2
     ends = [(i, i + 1) for i in range(96) if i % 12 < 11]
+    speed = np.linspace(0, 30, 96)
+    fields = {"displacement": 1.3 * reference, "velocity": np.column_stack((speed, 0 * speed, 0 * speed)),
+              "cauchy_stress": np.outer(1e4 * speed, np.eye(9)[4]), "damage": speed / 40, "site": np.arange(96)}
+    stretch = np.concatenate((np.ones(96), np.linspace(1.5, 4.0, len(ends))))
+    write_frame(folder / "lattice-0000.vtp", reference, fields, ends, stretch)
+    write_series(folder / "lattice.pvd", {"lattice-0000.vtp": 0.004})
+    names = {f"motion-{i:04}.vtp": 1e-3 * i for i in range(MOTION_FRAMES)}
+    for name, time in names.items():
+        fields = {"displacement": (1.3 + 20 * time) * reference, "velocity": (0.5 + 1e3 * time) * fields["velocity"]}
+        write_frame(folder / name, reference, fields)
+    write_series(folder / "motion.pvd", names)
+
+
+def write_frame(path, reference, fields, ends=(), stretch=()):
+    """A vtp file of sites, and of bonds with their stretch where there are any."""
     sheet, points, vertices, lines = vtkPolyData(), vtkPoints(), vtkCellArray(), vtkCellArray()
     points.SetData(numpy_to_vtk(reference, deep=True))
-    for site in range(96):
+    for site in range(len(reference)):
         vertices.InsertNextCell(1, (site,))
     for bond in ends:
         lines.InsertNextCell(2, bond)
     sheet.SetPoints(points)
     sheet.SetVerts(vertices)
     sheet.SetLines(lines)
-    stretch = np.concatenate((np.ones(96), np.linspace(1.5, 4.0, len(ends))))
-    for data, name, values in ((sheet.GetPointData(), "displacement", 1.3 * reference),
-                               (sheet.GetCellData(), "stretch", stretch)):
-        array = numpy_to_vtk(values, deep=True)
-        array.SetName(name)
-        data.AddArray(array)
+    for data, arrays in ((sheet.GetPointData(), fields), (sheet.GetCellData(), {"stretch": stretch} if len(ends) else {})):
+        for name, values in arrays.items():
+            array = numpy_to_vtk(np.ascontiguousarray(values), deep=True)
+            array.SetName(name)
+            data.AddArray(array)
     writer = vtkXMLPolyDataWriter()
-    writer.SetFileName(str(folder / "lattice-0000.vtp"))
+    writer.SetFileName(str(path))
     writer.SetInputData(sheet)
     writer.EncodeAppendedDataOff()
     writer.Write()
-    (folder / "lattice.pvd").write_text('<VTKFile type="Collection"><Collection>'
-                                        '<DataSet timestep="0.004" file="lattice-0000.vtp"/></Collection></VTKFile>')
+
+
+def write_series(path, times):
+    """A .pvd: {file name: time}."""
+    frames = "".join(f'<DataSet timestep="{time!r}" file="{name}"/>' for name, time in times.items())
+    path.write_text(f'<VTKFile type="Collection"><Collection>{frames}</Collection></VTKFile>')
 
 
 class Page(HTMLParser):
@@ -123,19 +144,29 @@ class Page(HTMLParser):
 
     def __init__(self, html):
         super().__init__()
-        self.open, self.images, self.references, self.text = [], [], [], ""
+        self.open, self.images, self.references, self.headings, self.text = [], [], [], [], ""
+        self.alternatives = []  # of the images
+        self.kinds = []  # classes of what is open
         self.feed(html)
         self.close()
 
     def handle_starttag(self, tag, attributes):
         self.references += [value for name, value in attributes if name in ("src", "href", "srcset", "data")]
-        self.images += [dict(attributes)["src"] for _ in [0] if tag == "img"]
+        if tag == "img":
+            self.images.append(dict(attributes)["src"])
+            self.alternatives.append(dict(attributes).get("alt") or "")
+        if re.fullmatch("h[1-6]", tag):
+            self.headings.append(int(tag[1]))
+        if tag in ("table", "pre") and not any("scroll" in (kind or "") for kind in self.kinds):
+            raise AssertionError(f"<{tag}> would make the page scroll")
         if tag not in VOID:
             self.open.append(tag)
+            self.kinds.append(dict(attributes).get("class"))
 
     def handle_endtag(self, tag):
         if not self.open or self.open.pop() != tag:
             raise AssertionError(f"</{tag}> closes nothing")
+        self.kinds.pop()
 
     def handle_data(self, data):
         if "style" not in self.open:
@@ -229,15 +260,68 @@ class ReportTest(unittest.TestCase):
         write_fracture(self.folder, [HOLDS, PUBLISHED])
         self.report("--quiet", expect=0)
         html, page = self.page()
-        self.assertEqual([r[:30] for r in page.references if not r.startswith(("data:image/png;base64,", "#"))], [])
+        own = ("data:image/png;base64,", "data:image/gif;base64,", "#")
+        self.assertEqual([r[:30] for r in page.references if not r.startswith(own)], [])
         self.assertNotRegex(re.sub(r"base64,[^\"]*", "", html), r"https?://|@import|url\(|<script|<link")
-        self.assertEqual(len(page.images), len(PICTURES))
+        self.assertEqual(len(page.images), len(PICTURES) + 1)
+
+    def test_can_be_read_without_seeing_it(self):
+        write_fracture(self.folder, [HOLDS, PUBLISHED])
+        self.report("--quiet", expect=0)
+        _, page = self.page()
+        for words in page.alternatives:
+            self.assertRegex(words, r"\w+ \w+ \w+")
+        self.assertEqual(len(set(page.alternatives)), len(page.images))
+        self.assertEqual(page.headings[0], 1)
+        self.assertEqual(page.headings.count(1), 1)
+        for before, after in zip(page.headings, page.headings[1:]):
+            self.assertLessEqual(after, before + 1)
+
+    def test_begins_with_what_was_found(self):
+        write_fracture(self.folder, [HOLDS, PUBLISHED])
+        self.report("--quiet", expect=0)
+        html, _ = self.page()
+        order = [html.index(words) for words in ("Holds: all", 'class="key"', "image/gif", 'id="claims"', "(case.prm")]
+        self.assertEqual(order, sorted(order))
+
+    def test_animation_has_all_frames_and_is_small(self):
+        write_fracture(self.folder, [HOLDS])
+        self.report("--quiet", expect=0)
+        html, page = self.page()
+        gif = (self.folder / "animation.gif").read_bytes()
+        self.assertEqual(gif, base64.b64decode(page.images[0].partition(",")[2]))
+        self.assertRegex(html, r'<source media="print, [^"]*" srcset="data:image/png;base64,')
+        with Image.open(io.BytesIO(gif)) as film:
+            self.assertEqual((film.n_frames, film.info["loop"]), (MOTION_FRAMES, 0))  # over and over
+            pictures, shown = [], []
+            for number in range(film.n_frames):
+                film.seek(number)
+                pictures.append(np.asarray(film.convert("RGB"), dtype=float))
+                shown.append(film.info["duration"])
+        self.assertEqual(shown, [1250] * (MOTION_FRAMES - 1) + [2000])
+        for before, after in zip(pictures, pictures[1:]):
+            self.assertGreater(np.count_nonzero(np.abs(before - after).max(axis=2) > 60), 500)
+        with Image.open(self.folder / "animation.png") as still:
+            self.assertLess(np.abs(np.asarray(still.convert("RGB"), dtype=float) - pictures[-1]).mean(), 3)
+        for most in (len(gif) - 1, len(gif) // 3):
+            with mock.patch.object(animation, "LARGEST", most):
+                self.report("--quiet", expect=0)
+            self.assertLessEqual((self.folder / "animation.gif").stat().st_size, most)
+            with Image.open(self.folder / "animation.gif") as film:
+                self.assertEqual(film.n_frames, MOTION_FRAMES)
+
+    def test_no_motion_no_animation(self):
+        write_fracture(self.folder, [HOLDS])
+        (self.folder / "motion.pvd").unlink()
+        self.report("--quiet", expect=0)
+        self.assertFalse((self.folder / "animation.gif").exists())
+        self.assertIn("nothing to draw: animation.gif", self.page()[1].text)
 
     def test_pictures_show_something(self):
         write_fracture(self.folder, [HOLDS])
         self.report("--quiet", expect=0)
         _, page = self.page()
-        for name, source in zip(PICTURES, page.images):
+        for name, source in zip(PICTURES, page.images[1:]):
             png = (self.folder / name).read_bytes()
             self.assertEqual(png, base64.b64decode(source.partition(",")[2]))
             pixels = np.asarray(Image.open(io.BytesIO(png)).convert("RGB"), dtype=float)
@@ -265,7 +349,7 @@ class ReportTest(unittest.TestCase):
         _, page = self.page()
         self.assertIn("Not complete", page.text)
         self.assertIn("no crack.json", page.text)
-        self.assertIn("nothing to draw: sheet.png", page.text)
+        self.assertIn("nothing to draw: animation.gif, sheet.png, sheet_fields.png", page.text)
         self.assertEqual(len(page.images), 2)
 
     def test_a_skipped_verification_is_said(self):
@@ -290,7 +374,7 @@ class ReportTest(unittest.TestCase):
         write_fracture(self.folder, [HOLDS])
         intact = {name: (self.folder / name).read_bytes()
                   for name in ("results.json", "crack.json", "near_tip.json", "crack.csv", "energy.csv",
-                               "lattice.pvd", "lattice-0000.vtp")}
+                               "lattice.pvd", "lattice-0000.vtp", "motion.pvd", "motion-0002.vtp")}
         for name, content in intact.items():
             for damaged in (content[:len(content) * 2 // 3], b"\xff\xfe"):
                 with self.subTest(name=name, length=len(damaged)):

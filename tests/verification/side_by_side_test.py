@@ -4,13 +4,7 @@
 Usage: side_by_side_test.py FOLDER_WITH_PARAVIEWS_PYTHON_MODULES
 Exits with 77 where they are not, or Xvfb is not: cmake/set-up.sh puts both there.
 """
-import os
-import pathlib
-import shutil
-import subprocess
 import sys
-import tempfile
-import unittest
 
 import numpy as np
 from PIL import Image
@@ -19,8 +13,9 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import VTK_QUAD, vtkCellArray, vtkPolyData, vtkUnstructuredGrid
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
 
-SCRIPT = pathlib.Path(__file__).resolve().parents[2] / "verification" / "paraview" / "side_by_side.py"
-MODULES = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else pathlib.Path()
+sys.dont_write_bytecode = True
+from paraview_display import ParaView, run_tests
+
 WIDTH, HEIGHT = 0.06, 0.03  # of the sheet [m]
 SPACING = 0.5e-3  # [m]
 
@@ -88,38 +83,17 @@ def write_difference(folder):
     write(vtkXMLUnstructuredGridWriter(), cells, folder / "difference_continuum.vtu")
 
 
-class SideBySide(unittest.TestCase):
+class SideBySide(ParaView):
     @classmethod
     def setUpClass(cls):
-        cls.temporary = tempfile.TemporaryDirectory()
-        cls.folder = pathlib.Path(cls.temporary.name)
+        super().setUpClass()
         write_difference(cls.folder)
-        read_end, write_end = os.pipe()
-        # -displayfd: told once connections are taken; -noreset: also after the last one has gone.
-        cls.display = subprocess.Popen(["Xvfb", "-displayfd", str(write_end), "-noreset", "-nolisten", "tcp", "-screen",
-                                        "0", "1280x1024x24"], pass_fds=[write_end], stderr=subprocess.DEVNULL)
-        os.close(write_end)
-        with os.fdopen(read_end) as told:
-            number = told.readline().strip()
-        # Interpreted as pvpython would, by the interpreter that ParaView was built for.
-        cls.environment = dict(os.environ, DISPLAY=f":{number}", PYTHONPATH=str(MODULES), PYTHONDONTWRITEBYTECODE="1",
-                               OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.display.terminate()
-        cls.display.wait()
-        cls.temporary.cleanup()
-
-    def script(self, *arguments):
-        return subprocess.run(["/usr/bin/python3", str(SCRIPT), *map(str, arguments)], capture_output=True, text=True,
-                              timeout=300, env=self.environment)
 
     def picture(self, *arguments):
         """Colours of the three views, at the same size each."""
         path = self.folder / "picture.png"
         path.unlink(missing_ok=True)
-        run = self.script(self.folder, "--screenshot", path, *arguments)
+        run = self.script("side_by_side.py", self.folder, "--screenshot", path, *arguments)
         self.assertEqual(run.returncode, 0, run.stderr)
         pixels = np.asarray(Image.open(path).convert("RGB")).astype(int)
         self.assertEqual(pixels.shape[1] % 3, 0)
@@ -158,16 +132,13 @@ class SideBySide(unittest.TestCase):
     def test_refuses_what_it_cannot_show(self):
         for arguments, part in ([self.folder / "none"], "difference_sites.vtp"), ([self.folder, "--component", "z"], "x, y"), \
                                ([self.folder, "--field", "speed"], "displacement"):
-            run = self.script(*arguments)
+            run = self.script("side_by_side.py", *arguments)
             self.assertEqual(run.returncode, 2)
             self.assertIn(part, run.stderr)
-        run = self.script(self.folder, "--field", "velocity", "--screenshot", self.folder / "none.png")
+        run = self.script("side_by_side.py", self.folder, "--field", "velocity", "--screenshot", self.folder / "none.png")
         self.assertEqual(run.returncode, 1)
         self.assertIn("velocity", run.stderr)
 
 
 if __name__ == "__main__":
-    if not (MODULES / "paraview").is_dir() or shutil.which("Xvfb") is None:
-        print(f"no ParaView in {MODULES}, or no Xvfb")
-        sys.exit(77)
-    unittest.main(verbosity=2)
+    run_tests()

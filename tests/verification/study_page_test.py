@@ -21,7 +21,7 @@ import study
 from check_plots import draw_steady_crack
 from near_tip_plots_test import write_field
 from pictures import shrink
-from report_test import Page, write_fracture
+from report_test import MOTION_FRAMES, Page, write_fracture
 from study_page import MEASURED, NEAR_TIP
 from study_plots import draw_sweep
 from study_runs import read_study
@@ -187,16 +187,16 @@ class Pictures(MadeUpStudy):
 
 
 class Gallery(MadeUpStudy):
-    def gallery(self, expect=0):
+    def gallery(self, expect=0, options=()):
         """@return the page, and what was printed as an error"""
         error = io.StringIO()
         with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(error):
-            self.assertEqual(gallery.main([str(self.folder), str(self.folder / "docs")]), expect)
+            self.assertEqual(gallery.main([str(self.folder), str(self.folder / "docs"), *options]), expect)
         path = self.folder / "docs" / "gallery.md"
         return path.read_text(encoding="utf-8") if path.exists() else "", error.getvalue()
 
     def shown(self):
-        return [(heading, seed.run, seed.seed) for heading, seed in gallery.cases_of(self.read())]
+        return [(heading, seed.run, seed.seed) for heading, seed, _ in gallery.cases_of(self.read())]
 
     def test_shows_the_first_run_of_each_kind(self):
         self.assertEqual(self.shown(), [("Oscillating", "wavy", 2), ("Straight, with next-nearest neighbours", "calm", 1),
@@ -204,6 +204,8 @@ class Gallery(MadeUpStudy):
         self.document["seeds"][3]["conclusive"] = False  # calm: not known to be straight
         self.document["seeds"][5]["pattern"] = "branching"  # across: so that none is straight there
         self.assertEqual(self.shown(), [("Oscillating", "wavy", 2), ("Without next-nearest neighbours", "along", 1)])
+        self.document["seeds"][2]["pattern"] = "branching"  # wavy 3
+        self.assertEqual(self.shown()[2:], [("Branching", "wavy", 3)])
 
     def test_states_the_numbers_of_the_study(self):
         self.read()
@@ -221,14 +223,35 @@ class Gallery(MadeUpStudy):
 
     def test_pictures_are_those_of_the_page_and_small(self):
         self.read()
-        stale = self.folder / "docs" / "pictures" / "stale.png"
-        stale.parent.mkdir(parents=True)
-        stale.write_bytes(b"")
+        pictures = self.folder / "docs" / "pictures"
+        pictures.mkdir(parents=True)
+        for name in ("stale.png", "tutorial.png"):  # of the gallery before this one, and of another page
+            (pictures / name).write_bytes(b"")
+        (self.folder / "docs" / "gallery.md").write_text("![before](pictures/stale.png)")
         text, _ = self.gallery()
         named = re.findall(r"!\[[^]]*\]\((.*?)\)", text)
         self.assertEqual(len(named), 3 * 4 + 1)
-        self.assertEqual({f"pictures/{png.name}" for png in stale.parent.glob("*")}, set(named))
-        self.assertLessEqual(max(png.stat().st_size for png in stale.parent.glob("*")), 250_000)
+        self.assertEqual({f"pictures/{png.name}" for png in pictures.glob("*")}, {*named, "pictures/tutorial.png"})
+        self.assertLessEqual(max(png.stat().st_size for png in pictures.glob("*")), 250_000)
+
+    def test_runs_what_is_missing(self):
+        log, program = self.folder / "log", self.folder / "latcon"
+        write_fracture(self.folder / "made up", [])
+        program.write_text(f"#!/bin/sh\nwhile [ $1 != --output-dir ]; do printf '%s ' ${{1##*/}} >>'{log}'; shift; done\n"
+                           f"echo >>'{log}'; mkdir -p \"$(dirname $2)\"; cp -r '{self.folder}/made up' \"$2\"; exit 3\n")
+        program.chmod(0o755)
+        self.read()
+        text, _ = self.gallery(options=["--latcon", str(program)])
+        self.assertEqual(log.read_text().splitlines(), ["fracture fig1.prm --no-report --quiet "] * 2)
+        self.assertLess(text.index("## Fig. 1 as it runs"), text.index("## Oscillating: `wavy`"))
+        self.assertIn("## Oscillating: `arrested`", text)  # as it came out, whatever the name
+        with Image.open(self.folder / "docs" / "pictures" / "fig1.gif") as film:
+            self.assertEqual(film.n_frames, MOTION_FRAMES)
+        self.gallery(options=["--latcon", str(program)])
+        self.assertEqual(len(log.read_text().splitlines()), 2)  # nothing is run twice
+        program.write_text("#!/bin/sh\nexit 4\n")
+        (self.folder / "study.json").unlink()
+        self.assertIn("latcon failed", self.gallery(options=["--latcon", str(program)], expect=4)[1])
 
     def test_without_a_study_it_says_what_makes_one(self):
         text, error = self.gallery(expect=2)

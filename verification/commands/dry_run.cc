@@ -12,6 +12,9 @@ namespace verification
 namespace
 {
 
+// Of a light frame, over that of one with all fields.
+constexpr double cost_of_motion_frame = 0.1;
+
 // Frames of a run that moves: the first, the last, and those between.
 double frames_of(const Case &input, double duration)
 {
@@ -53,6 +56,8 @@ std::string lattice_text(const Case &input, const lattice::TimeStepping &steppin
     }
     out << "\n";
     frames = frames_of(input, steps * stepping.step);
+    if (run == LatticeRun::broken)
+      frames += cost_of_motion_frame * input.motion_frames;
   }
   out << "# time: about " << seconds_text(lattice_seconds(input, stepping, run, steps, frames)) << " on "
       << omp_get_max_threads() << " threads of each rank";

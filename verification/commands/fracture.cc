@@ -4,6 +4,7 @@
 #include "verification/commands/command.h"
 #include "verification/commands/dry_run.h"
 #include "verification/commands/lattice_motion.h"
+#include "verification/fracture/crack_film.h"
 #include "verification/fracture/near_tip_record.h"
 #include "verification/lattice_sheet.h"
 
@@ -97,19 +98,27 @@ Results break_sheet(const Case &input, const lattice::TriangularLattice &sheet, 
   const double stop = input.stop_position * sheet.length();
   const double seed_tip = sheet.reference(seed.back()).x();
   NearTipRecord near_tip(input, simulation, seed_tip);
+  CrackFilm film(input, simulation, seed_tip, run.directory());
   motion.go({"fracture", [&] { return simulation.state().time < input.end_time && record.tip_X() < stop; },
              [&](const std::vector<lattice::BrokenBond> &broken)
              {
                record.step(broken);
                near_tip.step(motion.step());
+               film.step(record.tip_X());
              },
              [&]
              {
                return std::pair(
                  progress_text(simulation, record),
                  std::max((record.tip_X() - seed_tip) / (stop - seed_tip), simulation.state().time / input.end_time));
-             }},
-            [&](auto &archive) { archive("near_tip", near_tip); });
+             },
+             [&](bool resumed) { film.begin(resumed); }},
+            [&](auto &archive)
+            {
+              archive("near_tip", near_tip);
+              archive("film", film);
+            });
+  film.end();
   const lattice::CrackMeasurement crack = record.measure(seed_tip);
   record.write_measurement(run.directory(), crack, seed_tip, *input.breaking_stretch, skip_verification);
   if (run.writes())

@@ -38,6 +38,8 @@ void LatticeMotion::go(const Course &course, bool resumed, const std::function<v
     record_.start();
     add_frame();
   }
+  if (course.begin)
+    course.begin(resumed);
   Progress progress(run_.talks());
   try
   {

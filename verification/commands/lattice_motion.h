@@ -29,6 +29,7 @@ public:
     std::function<bool()> goes_on; ///< whether there is a further step
     std::function<void(const std::vector<lattice::BrokenBond> &)> after_step; ///< given the bonds that broke in it
     std::function<std::pair<std::string, double>()> progress;                 ///< in words, and the part that is done
+    std::function<void(bool resumed)> begin = {};                             ///< before the first step, if given
   };
 
   /// Moves the sheet from its first step, or the checkpoint found, until it does not go on or a signal comes. Then, and

@@ -2,7 +2,7 @@
 from html import escape
 
 from claims_text import CLAIMS, PLOTS, explanation, heading
-from markup import figure, number, raised, row, table, verb
+from markup import figure, first_sentence, number, raised, row, table, verb
 from summary import VERDICTS, ratio_text, tally_of
 
 # More rows than these are folded.
@@ -88,7 +88,7 @@ def plot_figure(plot, run, png, metrics, name_run):
     items = "".join(f"<li>{escape(metric)}</li>" for metric in metrics)
     of_run = f" Run {escape(run.name)}." if name_run else ""
     caption = f'<ul class="metrics">{items}</ul>{escape(plot.caption)}{of_run} ({plot.name}.csv)'
-    return figure(png, f"{plot.name} of the run {run.name}", caption)
+    return figure(png, f"{plot.name}, run {run.name}. {first_sentence(plot.caption)}", caption)
 
 
 def rows_of_claim(name, entries, show_runs):

@@ -1,18 +1,23 @@
 #!/usr/bin/python3
-"""Draws the cracks of a finished study and writes a page of them, gallery.md, its pictures in pictures/ beside it.
+"""Draws the cracks of a study and writes a page of them, gallery.md, its pictures in pictures/ beside it.
 
-Exit codes, those of latcon: 0 done; 2 no study there, or a damaged file; 5 a file cannot be written.
+With --latcon it first runs what is missing: the study, and the cracks below that the study has not, or not as a film.
+Exit codes, those of latcon: 0 done; 2 no study there, or a damaged file; 4 a run failed; 5 a file cannot be written.
 """
 import argparse
+import re
+import subprocess
 import sys
 import textwrap
 from pathlib import Path
 
 sys.dont_write_bytecode = True  # this folder stays as it is
 
+from animation import draw_animation
 from crack_path import draw_crack_path
-from files import DONE, UnwritableFile, exit_code_of, write_file
-from pictures import shrink
+from files import CLAIM_FAILS, DONE, UnwritableFile, exit_code_of, read_text, write_file
+from frame import read_last_frame
+from pictures import draw_sheet, shrink
 from runs import has_rows, read_run
 from study import draw_run
 from study_page import RUN_PICTURES
@@ -22,9 +27,19 @@ from study_runs import mean_of, read_study, value_text
 LARGEST_PICTURE = 250_000  # [bytes]
 SWEEPS = ("zeta", "Sheet/height")  # what cracks are plotted against
 SHELLS = "Next-nearest neighbours/present"
-# What is shown: heading, pattern, whether there are next-nearest neighbours.
-CASES = (("Oscillating", "oscillating", True), ("Straight, with next-nearest neighbours", "straight", True),
-         ("Without next-nearest neighbours", "straight", False))
+ALL_KINDS = ("sheet", "path", "velocity", "stress")
+# What is shown: heading, pattern, whether there are next-nearest neighbours, which pictures.
+CASES = (("Oscillating", "oscillating", True, ALL_KINDS),
+         ("Straight, with next-nearest neighbours", "straight", True, ALL_KINDS),
+         ("Without next-nearest neighbours", "straight", False, ALL_KINDS),
+         ("Branching", "branching", True, ("sheet", "path")))
+# Cracks that are run for the gallery: what is changed of the case of Fig. 1.
+EXTRA_RUNS = {
+    "fig1": [],
+    "arrested": ["Sheet/length=8 cm", "Sheet/height=4 cm", "Fracture/breaking stretch=10", "Time/end=3 ms",
+                 "Output/frame interval=0", "Output/motion frames=0"],
+}
+RUN_FAILED = 4  # exit code of latcon
 # Pictures of a run in their order: what is said of each, and the numbers beside it: quantity, name, scale, unit.
 CAPTIONS = {
     "sheet": (RUN_PICTURES["sheet"], (("speed_lagrangian", "speed", 1, " m/s"),
@@ -45,24 +60,24 @@ CAPTIONS = {
 
 
 def cases_of(study):
-    """[(heading, seed), ...]: of each case the first run in `pictures` that shows it, and of that the first such seed.
+    """[(heading, seed, pictures), ...]: of each case the first run in `pictures` that shows it, of that the first seed.
 
     Without next-nearest neighbours any pattern will do if no run is straight.
     """
     shown = [name for name in study.document["pictures"] if name in study.runs]
     found = []
-    for heading, pattern, has_both_shells in CASES:
+    for heading, pattern, has_both_shells, kinds in CASES:
         seeds = [seed for name in shown if (study.runs[name][1].get(SHELLS) != "false") == has_both_shells
                  for seed in study.runs[name][2] if seed.state == "measured"]
         fitting = [seed for seed in seeds if seed.pattern == pattern and seed.conclusive]
         fitting += [] if has_both_shells else seeds
-        found += [(heading, seed) for seed in fitting[:1]]
+        found += [(heading, seed, kinds) for seed in fitting[:1]]
     return found
 
 
-def draw_case(seed, folder):
-    """All pictures of a run, as far as it left what they need: {kind of CAPTIONS: PNG}."""
-    drawn = draw_run(seed, folder, LARGEST_PICTURE)
+def draw_case(seed, kinds, folder):
+    """Pictures of a run, as far as it left what they need: {kind of CAPTIONS: PNG}."""
+    drawn = draw_run(seed, folder, LARGEST_PICTURE, kinds)
     run = read_run(seed.folder)
     if has_rows(run.tip, 2):
         drawn["path"] = folder / f"{seed.run}-path.png"
@@ -128,6 +143,60 @@ def claims_section(study):
     return lines
 
 
+def film_section(run, folder):
+    """The crack of Fig. 1 as it runs: ([line, ...], [picture, ...]); nothing if there is no such run."""
+    gif = folder / "fig1.gif"
+    if not draw_animation(run, gif):
+        return [], []
+    return ["", "## Fig. 1 as it runs", "", "![the sheet of Fig. 1, torn from left to right](pictures/fig1.gif)", "",
+            "The sheet as it is, coloured by the speed of the material, in slow motion of one pace: waves run ahead of "
+            "the crack, its flanks snap back behind it. Made of the frames in `motion.pvd` of `./run fracture "
+            "verification/cases/fig1.prm`; every run's report has such a film."], [gif]
+
+
+def arrested_section(run, folder):
+    """A crack that stopped: ([line, ...], [picture, ...]); nothing if there is no such run."""
+    frame = read_last_frame(run.folder)
+    if run.crack is None or frame is None:
+        return [], []
+    png = folder / "arrested-sheet.png"
+    breaking_stretch = run.input_number("Fracture", "breaking stretch")
+    draw_sheet(frame, breaking_stretch, png)
+    shrink(png, LARGEST_PICTURE)
+    changes = ", ".join(entry.replace("=", " = ") for entry in EXTRA_RUNS["arrested"] if not entry.startswith("Output"))
+    return ["", f"## {run.crack['pattern'].capitalize()}: `arrested`", "",
+            f"Bonds too tough for the loading. Changed of Fig. 1: {changes}. "
+            f"Measured: {run.crack['pattern']}, {run.crack['reason']}.", "",
+            f"![sheet of arrested](pictures/{png.name})", "", RUN_PICTURES["sheet"]], [png]
+
+
+def beside_section(folder):
+    """The picture that ParaView made of `latcon compare`: ([line, ...], [picture, ...]); nothing where it is not."""
+    png = folder / "paraview-side-by-side.png"
+    if not png.exists():
+        return [], []
+    return ["", "## Lattice beside continuum", "", f"![lattice, continuum and difference](pictures/{png.name})", "",
+            "A sheet with a hole, pulled along y: sites of the lattice, finite elements of its continuum with gradient "
+            "energy, and what is between them, in ParaView. Made by the last commands of "
+            "[how-to/paraview.md](how-to/paraview.md)."], [png]
+
+
+def run_missing(latcon, folder):
+    """Runs the study and the cracks of EXTRA_RUNS unless they are there. @return whether all went well"""
+    wanted = [] if (folder / "study.json").exists() else [["study", "paper", "--output-dir", folder]]
+    case = Path(__file__).resolve().parents[1] / "cases" / "fig1.prm"
+    for name, changes in EXTRA_RUNS.items():
+        out = folder / "gallery" / name
+        if not (out / "crack.json").exists():
+            settings = [word for change in changes for word in ("--set", change)]
+            wanted.append(["fracture", case, "--no-report", "--quiet", "--output-dir", out, *settings])
+    for words in wanted:
+        print("Running latcon", *words[:2], "into", words[words.index("--output-dir") + 1], flush=True)
+        if subprocess.run([latcon, *words], check=False).returncode not in (DONE, CLAIM_FAILS):
+            return False
+    return True
+
+
 def gallery(study, docs):
     """Draws everything and writes the page."""
     folder = docs / "pictures"
@@ -141,17 +210,25 @@ def gallery(study, docs):
              f"{len(study.seeds)} runs{', quick version' if document['quick'] else ''}); do not edit. Numbers are those "
              "of its `study.json`: of the seed shown, and mean ± standard deviation over all seeds."]
     pictures = set()
-    for heading, seed in cases_of(study):
-        drawn = draw_case(seed, folder)
+    extra = {name: read_run(study.folder / "gallery" / name) for name in EXTRA_RUNS}
+    section, drawn = film_section(extra["fig1"], folder)
+    lines += section
+    pictures |= set(drawn)
+    for heading, seed, kinds in cases_of(study):
+        drawn = draw_case(seed, kinds, folder)
         pictures |= set(drawn.values())
         lines += ["", *case_section(study, heading, seed, drawn)]
+    for section, drawn in (arrested_section(extra["arrested"], folder), beside_section(folder)):
+        lines += section
+        pictures |= set(drawn)
     for section, png in sweep_sections(study, folder):
         pictures.add(png)
         lines += ["", *section]
     lines += ["", *claims_section(study)[:-1]]
+    before = set(re.findall(r"\]\(pictures/([^)]*)\)", read_text(docs / "gallery.md") or ""))
     write_file(docs / "gallery.md", lambda beside: beside.write_text(wrapped(lines), encoding="utf-8"))
-    for png in set(folder.glob("*.png")) - pictures:
-        png.unlink()  # of another study
+    for name in before - {picture.name for picture in pictures}:
+        (folder / name).unlink(missing_ok=True)  # of another study
     print(docs / "gallery.md")
     return DONE
 
@@ -168,8 +245,13 @@ def main(words=None):
     parser = argparse.ArgumentParser(description="Draw the cracks of a study and write gallery.md.")
     parser.add_argument("directory", metavar="STUDY", help="output directory of latcon study")
     parser.add_argument("docs", metavar="DOCS", help="where to write gallery.md and pictures/")
+    parser.add_argument("--latcon", metavar="PROGRAM", help="run what is missing with it")
     arguments = parser.parse_args(words)
-    return exit_code_of(lambda: gallery(read_study(Path(arguments.directory)), Path(arguments.docs)),
+    folder = Path(arguments.directory)
+    if arguments.latcon and not run_missing(arguments.latcon, folder):
+        print("error: latcon failed, see above", file=sys.stderr)
+        return RUN_FAILED
+    return exit_code_of(lambda: gallery(read_study(folder), Path(arguments.docs)),
                         hint="; `latcon study paper` makes one")
 
 

@@ -1,5 +1,6 @@
 """Pieces of HTML that the sections of the page share."""
 import base64
+import re
 from html import escape
 
 MARKS = {"holds": "✓", "fails": "✗", "reported": "·", "interrupted": "!", "unfinished": "!"}
@@ -12,9 +13,11 @@ def verb(count, one, many):
 
 def table(head, rows, kind=""):
     """A table that scrolls in its own box; columns whose head begins with # hold numbers."""
-    cells = "".join(f'<th class="number">{name[1:]}</th>' if name[0] == "#" else f"<th>{name}</th>" for name in head)
+    cells = "".join(f'<th scope="col" class="{"number" if name[0] == "#" else "words"}">{name.lstrip("#")}</th>'
+                    for name in head)
     body = "".join(rows)
-    return f'<div class="scroll {kind}"><table><thead><tr>{cells}</tr></thead><tbody>{body}</tbody></table></div>'
+    return (f'<div class="scroll {kind}" tabindex="0"><table><thead><tr>{cells}</tr></thead>'
+            f"<tbody>{body}</tbody></table></div>")
 
 
 def row(verdict, cells, word=None):
@@ -28,11 +31,32 @@ def plain_row(cells):
     return "<tr>" + "".join(f'<td class="{kind}">{text}</td>' for kind, text in cells) + "</tr>"
 
 
-def figure(png, alt, caption):
-    """A PNG file, in the page itself; the caption is HTML."""
-    data = base64.b64encode(png.read_bytes()).decode("ascii")
-    return (f'<figure><div class="picture"><img alt="{escape(alt)}" src="data:image/png;base64,{data}"></div>'
-            f"<figcaption>{caption}</figcaption></figure>")
+def data_url(path):
+    """A picture, in the page itself."""
+    return f"data:image/{path.suffix[1:]};base64,{base64.b64encode(path.read_bytes()).decode('ascii')}"
+
+
+def folded(summary, text):
+    """Preformatted text behind a line."""
+    return (f'<details><summary>{escape(summary)}</summary><div class="scroll" tabindex="0">'
+            f"<pre>{escape(text)}</pre></div></details>")
+
+
+def first_sentence(text):
+    """What a picture shows, for those who do not see it."""
+    return re.split(r"(?<=[.:])\s", text, maxsplit=1)[0]
+
+
+def figure(picture, alt, caption, still=None):
+    """A picture with its caption, which is HTML.
+
+    alt: what it shows, in words. still: what stands for an animation in print, and where readers asked for less motion.
+    """
+    image = f'<img alt="{escape(alt)}" src="{data_url(picture)}">'
+    if still is not None:
+        image = (f'<picture><source media="print, (prefers-reduced-motion: reduce)" srcset="{data_url(still)}">'
+                 f"{image}</picture>")
+    return f'<figure><div class="picture" tabindex="0">{image}</div><figcaption>{caption}</figcaption></figure>'
 
 
 def number(value, form):

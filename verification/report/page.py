@@ -4,13 +4,18 @@ from html import escape
 from pathlib import Path
 
 from claim_sections import claim_links, claim_sections
-from markup import figure, number, raised, row, table, verb
+from markup import figure, first_sentence, folded, number, raised, row, table, verb
 from near_tip_table import near_tip_table
 from summary import VERDICTS, comparisons, percent, ratio_text, tallies, tally_of, with_uncertainty
 
 CAPTIONS = {
+    "animation.gif": "The crack as it runs, in slow motion of one pace: the sheet as it is, coloured by the speed of "
+                     "the material. What is filled has all its bonds; lines are bonds of sites that have lost some.",
     "sheet.png": "The sheet in its last frame, as it is: every unbroken bond is a line, the crack is the white "
                  "opening; lines across it are bonds that still hold.",
+    "sheet_fields.png": "Fields of the last frame: speed and opening stress in the sheet as it is, damage where it was "
+                        "before the loading. Stress is force per current length and undeformed thickness. Scales end "
+                        "where 1 % of the sites are beyond.",
     "crack_path.png": "The crack in the undeformed sheet. Above: its tip, the right-most site that has lost enough "
                       "bonds; the dashed sinusoid has the measured wavelength and amplitude, its phase, offset and "
                       "slope are least squares. Below: where bonds broke, coloured by time.",
@@ -29,14 +34,15 @@ CAPTIONS = {
 def page(title, runs, pictures, plots):
     """The whole page.
 
-    pictures: of cracks, {folder of a run: [(file name, PNG file), ...]}
+    pictures: of cracks, {folder of a run: {name in CAPTIONS: (picture, still picture for print or None)}}
     plots: of claims, {folder of a run: {plot name: (PNG file, error metrics)}}
     """
     style = (Path(__file__).parent / "style.css").read_text(encoding="utf-8")
     versions = sorted({f"latcon {run.info['version']}" for run in runs if run.info and "version" in run.info})
-    sections = [run_section(run, number, pictures.get(run.folder, [])) for number, run in enumerate(runs)]
-    links = ['<a href="#claims">Claims:</a>', *claim_links(runs, plots), "<span>Runs:</span>"]
-    links += [f'<a href="#run-{number}">{escape(run.name)}</a>' for number, run in enumerate(runs)]
+    cracks = [crack_section(run, number, pictures.get(run.folder, {})) for number, run in enumerate(runs)
+              if run.is_fracture]
+    links = [f'<a href="#crack-{number}">{escape(run.name)}</a>' for number, run in enumerate(runs) if run.is_fracture]
+    links += ['<a href="#claims">Claims:</a>', *claim_links(runs, plots), '<a href="#inputs">Inputs and versions</a>']
     return f"""<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -49,12 +55,17 @@ def page(title, runs, pictures, plots):
 <body>
 <h1>latcon report: {escape(title)}</h1>
 <p class="soft">{escape(", ".join(versions) or "latcon")}: what was checked, what came out, and whether it holds</p>
+<main>
 {banner(runs)}
-<nav>{"".join(links)}</nav>
-{overview(runs)}
+{key_numbers(runs)}
+<nav aria-label="sections">{"".join(links)}</nav>
+{"".join(cracks)}
 <h2 id="claims">Claims</h2>
+{overview(runs)}
 {claim_sections(runs, plots)}
-{"".join(sections)}
+<h2 id="inputs">Inputs and versions</h2>
+{"".join(inputs_section(run, number) for number, run in enumerate(runs))}
+</main>
 </body>
 </html>
 """
@@ -115,25 +126,27 @@ def overview(runs):
     return table(head, rows, "narrow") if rows else ""
 
 
-def run_section(run, position, pictures):
-    """A run: its crack if it has one, then its inputs and versions."""
-    parts = [f'<h2 id="run-{position}">{escape(run.name)}</h2>', facts(run)]
-    if run.is_fracture:
-        parts += [pattern_sentence(run), comparison_table(run)]
-        shown = [name for name, _ in pictures]
-        parts += [figure(png, f"{name} of the run {run.name}", CAPTIONS[name]) for name, png in pictures]
-        if run.near_tip is not None:
-            parts.append(near_tip_table(run.near_tip))
-        missing = [name for name in CAPTIONS if name not in shown]
-        if missing:
-            parts.append(f'<p class="soft">Not drawn, for the run left nothing to draw: {", ".join(missing)}</p>')
+def crack_section(run, position, pictures):
+    """A crack: what it did, as pictures and numbers."""
+    parts = [f'<h2 id="crack-{position}">Crack: {escape(run.name)}</h2>', pattern_sentence(run)]
+    parts += [figure(pictures[name][0], f"{run.name}: {first_sentence(caption)}", caption, pictures[name][1])
+              for name, caption in CAPTIONS.items() if name in pictures]
+    if run.near_tip is not None:
+        parts.append(near_tip_table(run.near_tip))
+    missing = [name for name in CAPTIONS if name not in pictures]
+    if missing:
+        parts.append(f'<p class="soft">Not drawn, for the run left nothing to draw: {", ".join(missing)}</p>')
+    return "\n".join(parts)
+
+
+def inputs_section(run, position):
+    """What a run was given, and what it ran on."""
+    parts = [f'<h3 id="run-{position}">{escape(run.name)}</h3>', facts(run)]
     if run.case_text is not None:
-        parts.append(f'<details><summary>Inputs (case.prm, SI units)</summary><div class="scroll">'
-                     f"<pre>{escape(run.case_text)}</pre></div></details>")
+        parts.append(folded("Inputs (case.prm, SI units)", run.case_text))
     if run.info is not None:
-        text = json.dumps(run.info, indent=2, ensure_ascii=False)
-        parts.append(f'<details><summary>Versions, threads, wall times (run.json)</summary><div class="scroll">'
-                     f"<pre>{escape(text)}</pre></div></details>")
+        parts.append(folded("Versions, machine, threads, wall times (run.json)",
+                            json.dumps(run.info, indent=2, ensure_ascii=False)))
     return "\n".join(part for part in parts if part)
 
 
@@ -167,12 +180,13 @@ def pattern_sentence(run):
     return f"<p>The crack is <b>{escape(run.crack['pattern'])}</b>{escape(reason)}.{sure}</p>"
 
 
-def comparison_table(run):
-    """Published beside measured values."""
+def key_numbers(runs):
+    """What was measured of the cracks, beside what was published."""
+    several = sum(run.crack is not None for run in runs) > 1
     rows = [row(c.verdict, [
-        ("words", raised(c.quantity)), ("short", raised(c.unit)), ("number", number(c.published, ".4g")),
+        *([("short", escape(run.name))] if several else []), ("words", raised(c.quantity)),
         ("number", "not measured" if c.measured is None else with_uncertainty(c.measured, c.uncertainty)),
-        ("number", percent(c.difference))])
-        for c in comparisons(run)]
-    head = ["verdict", "quantity", "unit", "#paper", "#latcon", "#difference"]
-    return table(head, rows, "narrow") if rows else ""
+        ("number", number(c.published, ".4g")), ("short", raised(c.unit)), ("number", percent(c.difference))])
+        for run in runs for c in comparisons(run)]
+    head = ["verdict", *(["run"] if several else []), "quantity", "#latcon", "#paper", "unit", "#difference"]
+    return f'<div class="key">{table(head, rows, "narrow")}</div>' if rows else ""

@@ -39,17 +39,25 @@ plt.rcParams.update({
 })
 
 
-def save(figure, path):
-    """Writes a picture as PNG and closes it."""
+def figure_pixels(figure):
+    """Draws a figure and closes it. @return its colours, (rows, columns, 3)"""
     figure.canvas.draw()
-    save_png(Image.fromarray(np.asarray(figure.canvas.buffer_rgba())).convert("RGB"), path)
+    pixels = np.asarray(figure.canvas.buffer_rgba())[..., :3].copy()
     plt.close(figure)
+    return pixels
 
 
-def save_png(picture, path):
-    """Writes a PIL picture as PNG. 256 colours are a quarter of the bytes, each within 10 of 255 of what it is for."""
-    few = picture.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
-    write_file(path, lambda beside: few.save(beside, format="PNG", optimize=True))
+def save(figure, path, few_colours=True):
+    """Writes a picture as PNG and closes it."""
+    save_png(Image.fromarray(figure_pixels(figure)), path, few_colours)
+
+
+def save_png(picture, path, few_colours=True):
+    """Writes a PIL picture as PNG. 256 colours are a quarter of the bytes, each within 10 of 255 of what it is for;
+    smooth fields show the steps between them."""
+    if few_colours:
+        picture = picture.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
+    write_file(path, lambda beside: picture.save(beside, format="PNG", optimize=True))
 
 
 def shrink(path, most):

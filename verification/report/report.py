@@ -11,8 +11,10 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True  # this folder stays as it is
 
+from animation import draw_animation
 from claims_text import PLOTS
 from crack_path import draw_crack_path
+from field_pictures import draw_fields, has_fields
 from files import CLAIM_FAILS, DONE, exit_code_of, write_file
 from frame import read_last_frame
 from near_tip_plots import opening_stress_picture, velocity_picture
@@ -23,24 +25,30 @@ from summary import text_summary
 
 
 def draw_pictures(run):
-    """Pictures of a fracture run, as far as its files go: [(file name, PNG file), ...]."""
-    drawn = []
+    """Pictures of a fracture run, as far as its files go: {name: (picture, still picture for print or None)}."""
+    drawn = {}
+
+    def place(name, still=None):
+        drawn[name] = (run.folder / name, still)
+        return run.folder / name
+
+    gif, still = run.folder / "animation.gif", run.folder / "animation.png"
+    if draw_animation(run, gif, still):
+        place("animation.gif", still)
     frame = read_last_frame(run.folder)
     if frame is not None:
-        drawn.append("sheet.png")
-        draw_sheet(frame, run.input_number("Fracture", "breaking stretch"), run.folder / drawn[-1])
+        draw_sheet(frame, run.input_number("Fracture", "breaking stretch"), place("sheet.png"))
+        if has_fields(frame):
+            draw_fields(frame, place("sheet_fields.png"))
     if has_rows(run.tip, 2):
-        drawn.append("crack_path.png")
-        draw_crack_path(run, run.folder / drawn[-1])
+        draw_crack_path(run, place("crack_path.png"))
     if has_rows(run.energy, 2):
-        drawn.append("energy.png")
-        draw_energy(run.energy, run.folder / drawn[-1])
+        draw_energy(run.energy, place("energy.png"))
     means = run.folder / "near_tip_folded.vti"
     if means.exists():
-        drawn += ["near_tip_velocity.png", "near_tip_stress.png"]
-        velocity_picture(means, run.folder / drawn[-2], crack_speed=(run.crack or {}).get("speed_laboratory"))
-        opening_stress_picture(means, run.folder / drawn[-1])
-    return [(name, run.folder / name) for name in drawn]
+        velocity_picture(means, place("near_tip_velocity.png"), crack_speed=(run.crack or {}).get("speed_laboratory"))
+        opening_stress_picture(means, place("near_tip_stress.png"))
+    return drawn
 
 
 def draw_plots(run):

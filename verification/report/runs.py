@@ -51,7 +51,7 @@ class Run:
     crack: dict  # crack.json, SI units
     near_tip: dict  # near_tip.json, SI units
     tip: dict  # crack.csv: t [s], X, Y [m] in the undeformed sheet
-    broken: dict  # broken_bonds.csv: t [s], X, Y [m] in the undeformed sheet
+    broken: dict  # broken_bonds.csv: t [s], the two sites, X, Y [m] in the undeformed sheet
     energy: dict  # energy.csv: t [s], the rest in J per metre of sheet thickness
     tables: dict  # of the claims, {file name without ".csv": {column: array}}; those that are there
 
@@ -122,7 +122,7 @@ def read_run(folder):
         crack=read_crack(folder / "crack.json"),
         near_tip=read_near_tip(folder / "near_tip.json"),
         tip=read_table(folder / "crack.csv", ("t", "X", "Y")),
-        broken=read_table(folder / "broken_bonds.csv", ("t", "X", "Y")),
+        broken=read_table(folder / "broken_bonds.csv", ("t", "site", "other_site", "X", "Y")),
         energy=read_table(
             folder / "energy.csv",
             ("t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "imbalance"),

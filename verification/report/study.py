@@ -15,7 +15,7 @@ from frame import read_last_frame
 from near_tip_plots import opening_stress_picture, velocity_picture
 from pictures import draw_sheet, shrink
 from runs import read_run
-from study_page import page
+from study_page import RUN_PICTURES, page
 from study_plots import draw_paths, draw_speeds, draw_sweep
 from study_runs import first_measured, read_study
 
@@ -63,7 +63,7 @@ def draw_sweeps(study, number, claim, folder):
     return list(drawn.values())
 
 
-def draw_run(seed, folder, most):
+def draw_run(seed, folder, most, kinds=tuple(RUN_PICTURES)):
     """The sheet of a run and the fields near its tip, as far as it left them: {kind: PNG of at most `most` bytes}."""
     drawn = {}
     frame = read_last_frame(seed.folder)
@@ -71,9 +71,10 @@ def draw_run(seed, folder, most):
         drawn["sheet"] = folder / f"{seed.run}-sheet.png"
         draw_sheet(frame, read_run(seed.folder).input_number("Fracture", "breaking stretch"), drawn["sheet"])
     means = seed.folder / "near_tip_folded.vti"
-    if means.exists():
+    if means.exists() and "velocity" in kinds:
         drawn["velocity"] = folder / f"{seed.run}-velocity.png"
         velocity_picture(means, drawn["velocity"], crack_speed=seed.values["speed_laboratory"])
+    if means.exists() and "stress" in kinds:
         drawn["stress"] = folder / f"{seed.run}-stress.png"
         opening_stress_picture(means, drawn["stress"])
     for png in drawn.values():

@@ -3,7 +3,7 @@ import re
 from html import escape
 from pathlib import Path
 
-from markup import figure, number, row, table, verb
+from markup import figure, first_sentence, number, row, table, verb
 from study_plots import pattern_text
 from study_runs import mean_of, value_text
 
@@ -136,9 +136,9 @@ def claim_section(number, claim, pictures):
     if claim["note"]:
         parts.append(f'<p>{escape(claim["note"])}</p>')
     for caption, png in pictures["sweeps"].get(number, []):
-        parts.append(figure(png, f"sweep of claim {number + 1}", escape(caption)))
+        parts.append(figure(png, first_sentence(caption), escape(caption)))
     if number in pictures["paths"]:
-        parts.append(figure(pictures["paths"][number], f"paths of claim {number + 1}",
+        parts.append(figure(pictures["paths"][number], f"Paths of the crack tip: {claim['claim']}",
                             "Paths of the crack tip in the undeformed sheet, the seeds of a run on top of each other. "
                             "Y is drawn larger than X."))
     return "".join(parts) + "</section>"
@@ -154,7 +154,7 @@ def check_section(check, pictures):
              f'<p>{escape(check["about"])}</p>']
     if check["name"] in pictures["checks"]:
         caption, png = pictures["checks"][check["name"]]
-        parts.append(figure(png, f"check {check['name']}", escape(caption)))
+        parts.append(figure(png, f"Check {check['name']}. {first_sentence(caption)}", escape(caption)))
     parts.append(table(["verdict", "quantity", "#viscosity β", "#driving Δ/Δ_G", "#simulator", "#exact", "#error",
                         "#tolerance"], lines))
     return "".join(parts) + "</section>"
@@ -175,12 +175,13 @@ def common_pictures(pictures):
     """What belongs to no single claim."""
     parts = []
     if pictures["speeds"]:
-        parts.append(figure(pictures["speeds"], "speeds by pattern",
+        parts.append(figure(pictures["speeds"], "Speeds of all cracks by pattern",
                             "Speed of every crack over the shear speed of the stretched sheet, by its pattern. Above "
                             "the dashed line cracks are supersonic."))
     for run, seed, drawn in pictures["runs"]:
         parts.append(f"<h3>{escape(run)}, seed {seed}</h3>")
-        parts += [figure(png, f"{kind} of {run}", escape(RUN_PICTURES[kind])) for kind, png in drawn.items()]
+        parts += [figure(png, f"{run}: {first_sentence(RUN_PICTURES[kind])}", escape(RUN_PICTURES[kind]))
+                  for kind, png in drawn.items()]
     return f'<h2 id="pictures">Pictures</h2>{"".join(parts)}' if parts else ""
 
 

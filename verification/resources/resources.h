@@ -61,7 +61,7 @@ void require_memory(const MemoryNeed &need);
                                      double steps, double frames);
 
 /// The claims in their small versions, and the pictures and the page of a crack, on one core [s].
-inline constexpr double seconds_of_claims = 8., seconds_of_report = 5.; ///< see above
+inline constexpr double seconds_of_claims = 8., seconds_of_report = 9.; ///< see above
 
 /// Steps that a crack as fast as the shear waves of the unloaded sheet takes to the stop position, at most all.
 [[nodiscard]] double expected_steps(const Case &input, const lattice::TimeStepping &stepping);

@@ -38,7 +38,8 @@ PlannedRun plan_run(const Study &study, const StudyRun &run, const std::uint64_t
   planned.seed = seed;
   Settings all = run.all;
   override_settings(all, settings);
-  override_settings(all, {{seed_entry, std::to_string(seed)}, {"Output/frame interval", "0"}});
+  override_settings(
+    all, {{seed_entry, std::to_string(seed)}, {"Output/frame interval", "0"}, {"Output/motion frames", "0"}});
   for (const auto &[key, value] : all)
     planned.overrides.push_back(key + "=" + value);
 

@@ -40,8 +40,8 @@ struct Case;
 /// which a wave passes one spacing (theory.md, eq. (L.5)). None for linear bonds, which have no a.
 [[nodiscard]] std::optional<double> zeta(const Case &input);
 
-/// All runs of a study with all their seeds, in the order of the file. The noise seed and `Output/frame interval = 0`
-/// are set here.
+/// All runs of a study with all their seeds, in the order of the file. The noise seed is set here, and that there are
+/// no frames but the first and the last.
 /// @param settings `Section/Name=value` for all runs, over those of the study
 /// @throws InputError with the problems of every case, and of rows whose `against` has no number in any of their runs
 [[nodiscard]] std::vector<PlannedRun> plan_runs(const Study &study, const std::vector<std::string> &settings);

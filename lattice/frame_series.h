@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <string>
+#include <vector>
+
+class vtkPolyData;
+
+namespace lattice
+{
+
+/// Frames of one sheet over time, for ParaView: `NAME.pvd` and a file `NAME-NNNN.vtp` a frame, in one directory. Every
+/// file is written beside its place and renamed.
+class FrameSeries
+{
+public:
+  FrameSeries(std::filesystem::path directory, std::string name);
+
+  /// Adds a frame, in the place of the last one if that is of the same time, and notes the time in it (TimeValue).
+  /// @param time [s] @throws std::filesystem::filesystem_error if a file cannot be written
+  void add(vtkPolyData &frame, double time);
+
+  /// Writes `NAME.pvd`, so that it names the frames there are. @throws std::filesystem::filesystem_error
+  void write_collection() const;
+
+  /// Saves or loads which frames there are; see Simulation.
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive("times", times_);
+  }
+
+private:
+  std::string file_name(std::size_t frame) const;
+
+  std::filesystem::path directory_;
+  std::string name_;
+  std::vector<double> times_; // of the frames [s]
+};
+
+} // namespace lattice

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "lattice/frame_series.h"
+#include "lattice/state.h"
+
+namespace lattice
+{
+
+/// Writes where the sites are and how they move, and nothing else: frames of a tenth of the size of FieldWriter's, for
+/// animations. `motion.pvd` and a file `motion-NNNN.vtp` a frame, in one directory.
+///
+/// Points are the sites at their reference positions [m], in the order of FieldWriter's, each a vertex; warp by
+/// `displacement` for the current ones. Point data: displacement [m], velocity [m/s]. All in single precision.
+class MotionWriter
+{
+public:
+  MotionWriter(const TriangularLattice &lattice, std::filesystem::path directory);
+
+  /// Adds the state as the next frame, in the place of the last one if that is of the same time. @throws
+  /// std::filesystem::filesystem_error if a file cannot be written
+  void add_frame(const State &state);
+
+  /// Writes `motion.pvd`, so that it names the frames there are. @throws std::filesystem::filesystem_error
+  void write_collection() const { series_.write_collection(); }
+
+  /// Saves or loads which frames there are; see Simulation.
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    series_.archive(archive);
+  }
+
+private:
+  const TriangularLattice &lattice_;
+  FrameSeries series_;
+};
+
+} // namespace lattice

@@ -1,0 +1,52 @@
+"""Runs the scripts of verification/paraview/ with ParaView's modules, on a display of memory."""
+import os
+import pathlib
+import shutil
+import subprocess
+import sys
+import tempfile
+import unittest
+
+SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "verification" / "paraview"
+MODULES = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else pathlib.Path()
+SKIPPED = 77  # exit code
+
+
+class ParaView(unittest.TestCase):
+    """Has a folder and a display."""
+
+    @classmethod
+    def setUpClass(cls):
+        cls.temporary = tempfile.TemporaryDirectory()
+        cls.folder = pathlib.Path(cls.temporary.name)
+        read_end, write_end = os.pipe()
+        # -displayfd: told once connections are taken; -noreset: also after the last one has gone.
+        cls.display = subprocess.Popen(["Xvfb", "-displayfd", str(write_end), "-noreset", "-nolisten", "tcp", "-screen",
+                                        "0", "1280x1024x24"], pass_fds=[write_end], stdout=subprocess.DEVNULL,
+                                       stderr=subprocess.DEVNULL)
+        cls.addClassCleanup(cls.end_display)  # also where the rest of a set-up fails
+        os.close(write_end)
+        with os.fdopen(read_end) as told:
+            number = told.readline().strip()
+        # Interpreted as pvpython would, by the interpreter that ParaView was built for.
+        cls.environment = dict(os.environ, DISPLAY=f":{number}", PYTHONPATH=str(MODULES), PYTHONDONTWRITEBYTECODE="1",
+                               OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+
+    @classmethod
+    def end_display(cls):
+        cls.display.terminate()
+        cls.display.wait()
+        cls.temporary.cleanup()
+
+    def script(self, name, *arguments):
+        """What a script of that folder does."""
+        return subprocess.run(["/usr/bin/python3", str(SCRIPTS / name), *map(str, arguments)], capture_output=True,
+                              text=True, timeout=300, env=self.environment, check=False)
+
+
+def run_tests():
+    """Those of the file that is run; none, and exit code 77, without ParaView or a display."""
+    if not (MODULES / "paraview").is_dir() or shutil.which("Xvfb") is None:
+        print(f"no ParaView in {MODULES}, or no Xvfb")
+        sys.exit(SKIPPED)
+    unittest.main(verbosity=2)

@@ -1,0 +1,48 @@
+#pragma once
+
+#include <filesystem>
+
+#include "lattice/motion_writer.h"
+#include "lattice/simulation.h"
+#include "verification/case.h"
+
+namespace verification
+{
+
+/// Light frames of a crack for animations, evenly spread over the way of its tip. On every rank alike; the first
+/// writes.
+class CrackFilm
+{
+public:
+  /// @param seed_tip_X where the crack starts [m]; its way ends at the stop position
+  CrackFilm(const Case &input, lattice::Simulation &simulation, double seed_tip_X, std::filesystem::path directory);
+
+  /// Writes the first frame, or, of a run that goes on from a checkpoint, takes back what was written after that.
+  /// Collective. @throws std::filesystem::filesystem_error if a file cannot be written, as the others do
+  void begin(bool resumed);
+
+  /// Adds a frame if the tip, at tip_X [m], has come to where the next one is due. Collective.
+  void step(double tip_X);
+
+  /// Adds the last frame. Collective.
+  void end() { add_frame(); }
+
+  /// Saves or loads which frames there are; see lattice::Simulation.
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive("frames", frames_);
+    archive("next_frame", next_frame_);
+  }
+
+private:
+  void add_frame();
+
+  lattice::Simulation &simulation_;
+  lattice::MotionWriter frames_;
+  bool wanted_;
+  double pitch_;      // of the tip between frames [m]
+  double next_frame_; // X of the tip [m]
+};
+
+} // namespace verification
