@@ -22,6 +22,7 @@ from program import CASES, LATCON, TemporaryFolder, frames, latcon, latcon_on_ra
 
 # A strip so short that a crack runs through it in a second.
 TINY = ["--set", "Sheet/length=2.5 cm", "--set", "Sheet/height=1.5 cm", "--set", "Time/end=1.5 ms"]
+BARE = [*TINY, "--no-report"]
 
 
 class Fracture(unittest.TestCase):
@@ -238,7 +239,7 @@ class DryRun(TemporaryFolder):
 class Reproducible(TemporaryFolder):
     def test_threads_leave_no_trace(self):
         for threads in [1, 2, 3]:
-            run = latcon("fracture", CASES / "quick.prm", "--output-dir", self.folder / str(threads), *TINY, "--threads",
+            run = latcon("fracture", CASES / "quick.prm", "--output-dir", self.folder / str(threads), *BARE, "--threads",
                          threads, "--skip-verification", "--quiet")
             self.assertEqual((run.returncode, run.stdout), (0, ""), run.stderr)
         for name in ["crack.csv", "broken_bonds.csv", "energy.csv", "crack.json", "lattice-0001.vtp"]:
@@ -247,7 +248,7 @@ class Reproducible(TemporaryFolder):
                 self.assertEqual(one, (self.folder / threads / name).read_bytes(), name)
 
     def test_skipped_verification_is_written_down(self):
-        latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, "--set", "Time/end=0.01 ms",
+        latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, "--set", "Time/end=0.01 ms", "--no-report",
                "--skip-verification")
         self.assertTrue(json.loads((self.out / "run.json").read_text())["skip_verification"])
         self.assertTrue(json.loads((self.out / "crack.json").read_text())["skip_verification"])
@@ -372,7 +373,7 @@ class ExitCodes(TemporaryFolder):
     def test_seed_that_does_not_fit_is_2(self):
         for key, value, part in [("seed offset", "2 cm", "within two spacings"), ("seed position", "0.9", "right end"),
                                  ("seed sites", "34", "stop position"), ("seed shape", "slit", "no site")]:
-            run = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, *TINY, "--set",
+            run = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, *BARE, "--set",
                          f"Fracture/{key}={value}", "--set", "Fracture/seed offset=0.1 mm" if key == "seed shape" else
                          "Output/frame interval=0")
             self.assertEqual(run.returncode, 2, key)
@@ -380,7 +381,7 @@ class ExitCodes(TemporaryFolder):
             self.assertIn("Fracture/seed ", run.stderr)
 
     def test_slit_runs_between_ends_that_absorb(self):
-        run = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, *TINY, "--skip-verification", "--set",
+        run = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, *BARE, "--skip-verification", "--set",
                      "Fracture/left end=free", "--set", "Fracture/right end=absorbing", "--set",
                      "Fracture/seed shape=slit", "--set", "Fracture/seed length=4 mm", "--set",
                      "Fracture/seed height=2 mm")
@@ -401,7 +402,7 @@ class ExitCodes(TemporaryFolder):
         self.assertIn("Fracture/breaking stretch", run.stderr)
 
     def test_claim_that_fails_is_3(self):
-        run = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, *TINY, "--skip-verification", "--set",
+        run = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, *BARE, "--skip-verification", "--set",
                      "Reference/speed=1 m/s")
         self.assertEqual(run.returncode, 3, run.stderr)
         self.assertIn("fails", run.stdout)
@@ -409,7 +410,7 @@ class ExitCodes(TemporaryFolder):
 
     def test_unverified_material_is_refused_with_3(self):
         # A Mooney-Rivlin ratio with which the law loses ellipticity on the way.
-        run = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, *TINY, "--set", "Continuum/ratio=-0.2")
+        run = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, *BARE, "--set", "Continuum/ratio=-0.2")
         self.assertEqual(run.returncode, 3, run.stderr + run.stdout)
         self.assertFalse((self.out / "crack.csv").exists())
 

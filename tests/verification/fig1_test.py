@@ -28,7 +28,7 @@ def main():
             os.environ["XDG_CACHE_HOME"] = f"{folder}/cache"  # no verdicts of an earlier run
             # Seeds differ in noise alone: the material is verified with the first.
             skip = [] if seed == SEEDS[0] else ["--skip-verification"]
-            run = subprocess.run([latcon, "fracture", str(case), "--quiet", "--output-dir", folder, "--set",
+            run = subprocess.run([latcon, "fracture", str(case), "--quiet", "--no-report", "--output-dir", folder, "--set",
                                   f"Lattice/noise seed={seed}", "--set", "Output/frame interval=0", *skip])
             crack = json.loads((pathlib.Path(folder) / "crack.json").read_text())
         print(f"seed {seed}: exit {run.returncode}, {crack['pattern']}, imbalance {crack['energy_imbalance']:.1e}, " +

@@ -45,7 +45,7 @@ class Gate(TemporaryFolder):
 
     def fracture(self, *arguments, expect=0, ranks=1):
         """Runs the crack. @return (what was printed, run.json)"""
-        words = ["fracture", CASES / "quick.prm", "--output-dir", self.out, *TINY, *arguments]
+        words = ["fracture", CASES / "quick.prm", "--no-report", "--output-dir", self.out, *TINY, *arguments]
         run = (latcon(*words, env=self.environment) if ranks == 1
                else latcon_on_ranks(ranks, *words, env=self.environment))
         self.assertEqual(run.returncode, expect, run.stdout + run.stderr)
@@ -100,7 +100,7 @@ class Gate(TemporaryFolder):
         with open(LATCON, "rb") as file:
             other.write_bytes(file.read() + b"\0")  # behind its end, where nothing looks
         other.chmod(0o755)
-        words = ["fracture", CASES / "quick.prm", "--output-dir", self.out, *TINY]
+        words = ["fracture", CASES / "quick.prm", "--no-report", "--output-dir", self.out, *TINY]
         self.assertEqual(latcon(*words, program=other, env=self.environment).returncode, 0)
         second = json.loads((self.out / "run.json").read_text())
         self.assertFalse(second["verification"]["reused"])
