@@ -1,7 +1,7 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
-#include <cstring>
 #include <type_traits>
 #include <vector>
 
@@ -93,7 +93,8 @@ std::vector<T> RowBand::joined(const std::vector<T> &own) const
     return own;
   const std::vector<char> bytes = joined_bytes(reinterpret_cast<const char *>(own.data()), own.size() * sizeof(T));
   std::vector<T> all(bytes.size() / sizeof(T));
-  std::memcpy(all.data(), bytes.data(), bytes.size());
+  // Not memcpy, which may not be given the null pointers of empty vectors.
+  std::copy(bytes.begin(), bytes.end(), reinterpret_cast<char *>(all.data()));
   return all;
 }
 
