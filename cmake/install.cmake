@@ -24,11 +24,12 @@ install(FILES ${PROJECT_BINARY_DIR}/latcon.bash DESTINATION share/bash-completio
 
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME development)
 set(latcon_cmake_folder ${CMAKE_INSTALL_LIBDIR}/cmake/latcon)
+set_target_properties(latcon_support PROPERTIES EXPORT_NAME support)
 set_target_properties(latcon_lattice PROPERTIES EXPORT_NAME lattice)
 set_target_properties(latcon_continuum PROPERTIES EXPORT_NAME continuum)
-install(TARGETS latcon_options latcon_lattice latcon_continuum EXPORT latconTargets)
+install(TARGETS latcon_options latcon_support latcon_lattice latcon_continuum EXPORT latconTargets)
 install(EXPORT latconTargets NAMESPACE latcon:: DESTINATION ${latcon_cmake_folder})
-install(DIRECTORY lattice continuum DESTINATION include/latcon FILES_MATCHING PATTERN "*.h" PATTERN "*.inc" PATTERN precompiled.h EXCLUDE)
+install(DIRECTORY support lattice continuum DESTINATION include/latcon FILES_MATCHING PATTERN "*.h" PATTERN "*.inc" PATTERN precompiled.h EXCLUDE)
 configure_package_config_file(cmake/latconConfig.cmake.in latconConfig.cmake INSTALL_DESTINATION ${latcon_cmake_folder})
 # Before 1.0 a minor version may change what programs are written for.
 write_basic_package_version_file(latconConfigVersion.cmake COMPATIBILITY SameMinorVersion)

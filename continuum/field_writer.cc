@@ -2,13 +2,13 @@
 
 #include "continuum/collective.h"
 #include "continuum/errors.h"
+#include "support/atomic_file.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/numerics/data_out.h>
 #include <deal.II/numerics/data_postprocessor.h>
 
-#include <cerrno>
-#include <fstream>
+#include <filesystem>
 #include <iomanip>
 #include <limits>
 #include <sstream>
@@ -86,25 +86,16 @@ private:
   const Constitution &laws_;
 };
 
-// Writes beside the place and renames, so that a reader never sees half a file, then or after a crash.
 void write_whole(const std::filesystem::path &path, const std::string &text)
 {
-  std::filesystem::path beside = path;
-  beside += ".part";
-  std::error_code failure;
-  errno = 0;
-  std::ofstream file(beside, std::ios::binary);
-  file << text;
-  file.close();
-  if (!file)
-    failure = std::error_code(errno, std::generic_category());
-  else
-    std::filesystem::rename(beside, path, failure);
-  if (file && !failure)
-    return;
-  std::error_code ignored;
-  std::filesystem::remove(beside, ignored);
-  throw OutputFailed("cannot write " + path.string() + (failure ? ": " + failure.message() : ""));
+  try
+  {
+    latcon::support::write_atomically(path, text, latcon::support::Sync::no);
+  }
+  catch (const latcon::support::WriteError &error)
+  {
+    throw OutputFailed(error.what());
+  }
 }
 
 // deal.II tells the date in a comment whatever the flags; the same fields are to make the same file.
@@ -144,7 +135,7 @@ FieldWriter::FieldWriter(const MPI_Comm communicator, std::filesystem::path dire
                [&]
                {
                  std::error_code failure;
-                 std::filesystem::create_directories(directory_, failure);
+                 std::filesystem::create_directory(directory_, failure);
                  if (failure)
                    throw OutputFailed("cannot make the folder " + directory_.string() + ": " + failure.message());
                });

@@ -21,7 +21,7 @@ namespace continuum
 class FieldWriter
 {
 public:
-  /// Makes `directory` if it is not there. Collective. Throws OutputFailed on every rank.
+  /// Makes `directory` if it does not exist; the folder above it has to. Collective. Throws OutputFailed on every rank.
   FieldWriter(MPI_Comm communicator, std::filesystem::path directory, std::string name = "continuum");
 
   /// Adds the state `u` (nodal displacement [m], with ghost entries), and its velocity `v` [m/s] if given, at `time`,

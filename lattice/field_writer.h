@@ -23,7 +23,7 @@ public:
   FieldWriter(const TriangularLattice &lattice, const Material &material, std::filesystem::path directory);
 
   /// Adds the state as the next frame, in the place of the last one if that is of the same time. @throws
-  /// std::filesystem::filesystem_error if a file cannot be written
+  /// latcon::support::WriteError if a file cannot be written
   void add_frame(const State &state);
 
   /// Saves or loads which frames there are; see Simulation.
@@ -33,7 +33,7 @@ public:
     series_.archive(archive);
   }
 
-  /// Writes `lattice.pvd`, so that it names the frames there are. @throws std::filesystem::filesystem_error
+  /// Writes `lattice.pvd`, so that it names the frames there are. @throws latcon::support::WriteError
   void write_collection() const { series_.write_collection(); }
 
 private:

@@ -2,8 +2,6 @@
 
 #include <charconv>
 #include <cstdio>
-#include <fstream>
-#include <system_error>
 
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
@@ -12,16 +10,13 @@
 #include <vtkXMLPolyDataWriter.h>
 
 #include "lattice/field_units.h"
+#include "lattice/vtk_file.h"
+#include "support/atomic_file.h"
 
 namespace lattice
 {
 namespace
 {
-
-[[noreturn]] void fail(const std::filesystem::path &path, const char *what)
-{
-  throw std::filesystem::filesystem_error(what, path, std::make_error_code(std::errc::io_error));
-}
 
 std::string shortest(double value)
 {
@@ -54,40 +49,24 @@ void FrameSeries::add(vtkPolyData &frame, double time)
 
   if (!times_.empty() && times_.back() == time)
     times_.pop_back();
-  const std::string name = file_name(times_.size());
-  const std::filesystem::path path = directory_ / name;
-  const std::filesystem::path beside = directory_ / (name + ".part");
   vtkNew<vtkXMLPolyDataWriter> writer;
-  writer->SetFileName(beside.c_str());
   writer->SetInputData(&frame);
-  writer->SetDataModeToAppended();
-  writer->EncodeAppendedDataOff();
-  writer->SetCompressorTypeToZLib();
   writer->SetCompressionLevel(1); // higher ones take a sixth of a crack's time to save a few percent
-  if (writer->Write() != 1 || writer->GetErrorCode() != 0)
-    fail(path, "cannot write lattice frame");
-  std::filesystem::rename(beside, path);
+  write_vtk_file(*writer, directory_ / file_name(times_.size()));
   times_.push_back(time);
   write_collection();
 }
 
 void FrameSeries::write_collection() const
 {
-  const std::filesystem::path path = directory_ / (name_ + ".pvd");
-  const std::filesystem::path beside = path.string() + ".part";
-  {
-    std::ofstream out(beside);
-    out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
-           "  <Collection>\n";
-    for (std::size_t frame = 0; frame < times_.size(); ++frame)
-      out << "    <DataSet timestep=\"" << shortest(times_[frame]) << "\" part=\"0\" file=\"" << file_name(frame)
-          << "\"/>\n";
-    out << "  </Collection>\n</VTKFile>\n";
-    out.flush();
-    if (!out)
-      fail(path, "cannot write");
-  }
-  std::filesystem::rename(beside, path);
+  std::string text =
+    "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
+    "  <Collection>\n";
+  for (std::size_t frame = 0; frame < times_.size(); ++frame)
+    text +=
+      "    <DataSet timestep=\"" + shortest(times_[frame]) + "\" part=\"0\" file=\"" + file_name(frame) + "\"/>\n";
+  text += "  </Collection>\n</VTKFile>\n";
+  latcon::support::write_atomically(directory_ / (name_ + ".pvd"), text, latcon::support::Sync::no);
 }
 
 } // namespace lattice

@@ -18,10 +18,10 @@ public:
   FrameSeries(std::filesystem::path directory, std::string name);
 
   /// Adds a frame, in the place of the last one if that is of the same time, and notes the time in it (TimeValue).
-  /// @param time [s] @throws std::filesystem::filesystem_error if a file cannot be written
+  /// @param time [s] @throws latcon::support::WriteError if a file cannot be written
   void add(vtkPolyData &frame, double time);
 
-  /// Writes `NAME.pvd`, so that it names the frames there are. @throws std::filesystem::filesystem_error
+  /// Writes `NAME.pvd`, so that it names the frames there are. @throws latcon::support::WriteError
   void write_collection() const;
 
   /// Saves or loads which frames there are; see Simulation.

@@ -17,10 +17,10 @@ public:
   MotionWriter(const TriangularLattice &lattice, std::filesystem::path directory);
 
   /// Adds the state as the next frame, in the place of the last one if that is of the same time. @throws
-  /// std::filesystem::filesystem_error if a file cannot be written
+  /// latcon::support::WriteError if a file cannot be written
   void add_frame(const State &state);
 
-  /// Writes `motion.pvd`, so that it names the frames there are. @throws std::filesystem::filesystem_error
+  /// Writes `motion.pvd`, so that it names the frames there are. @throws latcon::support::WriteError
   void write_collection() const { series_.write_collection(); }
 
   /// Saves or loads which frames there are; see Simulation.

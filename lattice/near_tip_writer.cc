@@ -1,7 +1,6 @@
 #include "lattice/near_tip_writer.h"
 
 #include <string>
-#include <system_error>
 
 #include <vtkDoubleArray.h>
 #include <vtkFieldData.h>
@@ -11,6 +10,7 @@
 #include <vtkXMLImageDataWriter.h>
 
 #include "lattice/field_units.h"
+#include "lattice/vtk_file.h"
 
 namespace lattice
 {
@@ -72,17 +72,9 @@ void write_near_tip_field(const NearTipField &field, const std::filesystem::path
   samples->InsertNextValue(static_cast<double>(field.samples));
   image->GetFieldData()->AddArray(samples);
 
-  const std::filesystem::path beside = path.string() + ".part";
   vtkNew<vtkXMLImageDataWriter> writer;
-  writer->SetFileName(beside.c_str());
   writer->SetInputData(image);
-  writer->SetDataModeToAppended();
-  writer->EncodeAppendedDataOff();
-  writer->SetCompressorTypeToZLib();
-  if (writer->Write() != 1 || writer->GetErrorCode() != 0)
-    throw std::filesystem::filesystem_error("cannot write the fields near the tip", path,
-                                            std::make_error_code(std::errc::io_error));
-  std::filesystem::rename(beside, path);
+  write_vtk_file(*writer, path);
 }
 
 } // namespace lattice

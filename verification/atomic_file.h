@@ -8,10 +8,8 @@
 namespace verification
 {
 
-/// Replaces the file `path` by `text`. The text goes to `path + ".part"` in the same folder, is forced to the disk, and
-/// is then renamed, so that at any moment, also after a kill or a full disk, `path` is whole: the old file or the new
-/// one.
-/// @throws OutputError naming `path` and the system's reason; the old file is untouched and the part removed.
+/// Replaces the file `path` by `text`, forced to the disk; see latcon::support::AtomicFile.
+/// @throws OutputError naming `path` and the system's reason; the old file is untouched.
 void write_file(const std::string &path, const std::string &text);
 
 /// The same for a text that `writer` prints. Nothing is written if `writer` throws; what it throws is passed on.

@@ -14,7 +14,7 @@ struct Options
   std::string case_file;
   std::string output_dir = "output";
   std::vector<std::string> claims; ///< none: all
-  unsigned int threads = 0;        ///< 0: as many as the machine has
+  unsigned int threads = 0;        ///< 0: as many cores as this process may use
   bool quick = false;
   bool quiet = false;
   bool dry_run = false;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <chrono>
 #include <cstdlib>
 #include <ctime>
 #include <filesystem>
@@ -12,10 +13,10 @@
 
 #include <link.h>
 #include <sys/stat.h>
-#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
+#include "support/atomic_file.h"
 #include "verification/atomic_file.h"
 #include "verification/claim_inputs.h"
 #include "verification/errors.h"
@@ -214,16 +215,9 @@ void VerdictStore::write(const VerdictKey &key, const std::string &text) const
   std::filesystem::create_directories(folder_, error);
   if (error)
     throw OutputError(folder_, error.message());
-  // Runs of the same inputs may end at the same time: each has a name of its own until its file is whole.
-  const std::string own = path(key) + "." + std::to_string(::getpid());
-  write_file(own, text);
-  std::filesystem::rename(own, path(key), error);
-  if (error)
-  {
-    std::error_code ignored;
-    std::filesystem::remove(own, ignored);
-    throw OutputError(path(key), error.message());
-  }
+  // Other runs may write here now, in milliseconds: what is older was left by killed ones.
+  latcon::support::remove_stale_parts(folder_, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
+  write_file(path(key), text);
 }
 
 } // namespace verification

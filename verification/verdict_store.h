@@ -60,7 +60,7 @@ public:
 [[nodiscard]] Verdicts read_verdicts(const VerdictKey &key, const std::string &text);
 
 /// A folder with a file HASH.json for each key. Verdicts that fail are kept like those that hold: the same inputs would
-/// fail again. Nothing is ever removed.
+/// fail again. They are never removed. Any number of processes may read and write at once.
 class VerdictStore
 {
 public:
@@ -75,7 +75,7 @@ public:
   /// @throws UnusableVerdicts if it is there and cannot be read or is empty
   [[nodiscard]] std::optional<std::string> read(const VerdictKey &key) const;
 
-  /// Puts a text in the place of the file of the key, whole at any moment, also with several runs at once.
+  /// Puts a text in the place of the file of the key, whole at any moment.
   /// @throws OutputError
   void write(const VerdictKey &key, const std::string &text) const;
 

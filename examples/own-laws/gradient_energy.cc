@@ -9,11 +9,11 @@
 #include <cstdio>
 
 #include <deal.II/base/function.h>
-#include <deal.II/base/mpi.h>
 #include <deal.II/base/symmetric_tensor.h>
 
 #include "continuum/gradient_law.h"
 #include "continuum/mooney_rivlin.h"
+#include "continuum/parallel_session.h"
 #include "continuum/rectangle.h"
 #include "continuum/static_solver.h"
 
@@ -119,9 +119,9 @@ struct Layer
 
 } // namespace
 
-int main(int argc, char **argv)
+int main()
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const continuum::ParallelSession session;
 
   // With C2 = 0 simple shear leaves the thickness alone, and the local law is linear in it (theory-continuum.md, eq.
   // (C.35)).

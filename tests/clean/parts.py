@@ -6,7 +6,7 @@ import shutil
 
 from checks import LOGS, ROOT, Job, Part
 
-SOURCES = ("lattice", "continuum", "verification", "tests")
+SOURCES = ("support", "lattice", "continuum", "verification", "tests")
 CASES = ROOT / "verification" / "cases"
 HERE = ROOT / "tests" / "clean"
 # What clang, clang-tidy and cppcheck print.
@@ -42,7 +42,7 @@ def with_headers(path, known):
 def tidy():
     known = {}
     settings = (ROOT / ".clang-tidy").read_bytes()
-    files = sorted(path for folder in ("lattice", "continuum", "verification", "tests/lattice")
+    files = sorted(path for folder in ("support", "lattice", "continuum", "verification", "tests/lattice")
                    for path in (ROOT / folder).rglob("*.cc"))
     jobs = []
     for path in files:

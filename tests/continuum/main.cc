@@ -1,7 +1,7 @@
 // One main for every continuum test program: MPI and the thread limit have to be set before the first test.
-#include <deal.II/base/mpi.h>
-
 #include <gtest/gtest.h>
+
+#include "continuum/parallel_session.h"
 
 // Under AddressSanitizer: MPI and Trilinos keep memory until the process ends, some of it in modules unloaded by then,
 // which no suppression can name. Every other check stays on.
@@ -14,6 +14,6 @@ extern "C" const char *__asan_default_options()
 int main(int argc, char **argv)
 {
   testing::InitGoogleTest(&argc, argv);
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const continuum::ParallelSession session;
   return RUN_ALL_TESTS();
 }

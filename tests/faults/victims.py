@@ -86,7 +86,7 @@ def kill(process):
 def contents(folder):
     """What a run found, by the names of files; what tells how it went left out."""
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*"))
-            if path.is_file() and path.suffix != ".part" and path.name not in ("run.json", "log.txt")
+            if path.is_file() and path.suffix != ".part" and path.name not in ("run.json", "log.txt", ".latcon.lock")
             and "checkpoints" not in path.parts}
 
 

@@ -63,12 +63,12 @@ READERS = {
 
 
 def check(folder):
-    """Reads all files in a folder and those below it. Parts of files beside their places do not count, nor what a
-    program said while it ran. @return how many were read"""
+    """Reads all files in a folder and those below it. Parts of files beside their places do not count, nor locks, nor
+    what a program said while it ran. @return how many were read"""
     n = 0
     for path in sorted(folder.rglob("*")):
         inside = path.relative_to(folder)
-        if not path.is_file() or path.suffix == ".part" or path.name == "log.txt":
+        if not path.is_file() or path.suffix == ".part" or path.name in ("log.txt", ".latcon.lock"):
             continue
         if path.suffix not in READERS:
             raise Broken(f"{path}: no reader for it")

@@ -19,8 +19,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <deal.II/base/mpi.h>
-
+#include "continuum/parallel_session.h"
 #include "verification/commands/command_line.h"
 
 namespace
@@ -83,12 +82,12 @@ std::string outcome(const pid_t child, const double limit)
 
 } // namespace
 
-int main(int argc, char **argv)
+int main()
 {
   // Threads do not survive a fork.
   setenv("OMP_NUM_THREADS", "1", 1);
   setenv("OPENBLAS_NUM_THREADS", "1", 1);
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const continuum::ParallelSession session;
   std::string line;
   while (std::getline(std::cin, line))
   {

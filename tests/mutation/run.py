@@ -43,9 +43,9 @@ FILES = {
                      "prestretch/cut_study.cc", "prestretch/equivalent_sheet.cc", "prestretch/prestretch_claim.cc",
                      "wave_speeds/bloch.cc", "wave_speeds/continuum_waves.cc", "wave_speeds/lattice_waves.cc",
                      "wave_speeds/oscillation.cc", "wave_speeds/plane_waves.cc", "wave_speeds/wave_speeds_claim.cc"]}
-STAGES = {"lattice": ["lattice_tests", "lattice_ranks_tests"], "continuum": ["continuum_tests"],
+STAGES = {"support": ["support_tests"], "lattice": ["lattice_tests", "lattice_ranks_tests"], "continuum": ["continuum_tests"],
           "verification": ["claims_tests"]}
-PROGRAMS = {"lattice_tests": GoogleTests(), "lattice_ranks_tests": Ranks(3), "continuum_tests": GoogleTests(),
+PROGRAMS = {"support_tests": GoogleTests(), "lattice_tests": GoogleTests(), "lattice_ranks_tests": Ranks(3), "continuum_tests": GoogleTests(),
             "claims_tests": GoogleTests(), "verification_tests": GoogleTests()}
 
 

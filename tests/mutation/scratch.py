@@ -12,7 +12,7 @@ import subprocess
 
 from testing import Failed, Verdict
 
-SOURCES = ("lattice", "continuum", "verification", "tests")
+SOURCES = ("support", "lattice", "continuum", "verification", "tests")
 SOURCE_NAMES = (".h", ".cc", ".inc")
 BUILT_NAMES = (".o", ".a", ".gch", ".hxx", ".h")
 FEW = 8  # objects that are built at once

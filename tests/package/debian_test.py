@@ -58,7 +58,7 @@ class Packages(unittest.TestCase):
         root = FOLDER / "root-dev"
         run("dpkg-deb", "--extract", self.libraries, root)
         self.assertEqual(mentions_of_sources(root), [])
-        for side in ("lattice", "continuum"):
+        for side in ("support", "lattice", "continuum"):
             self.assertEqual({path.name for path in files_below(root / "usr/include/latcon" / side)},
                              {path.name for pattern in ("*.h", "*.inc") for path in (SOURCE / side).glob(pattern)}
                              - {"precompiled.h"})

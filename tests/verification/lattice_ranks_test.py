@@ -66,7 +66,7 @@ class LatticeRanks(TemporaryFolder):
         self.assertIn("lattice-0002.vtp", written)
 
     def test_error_of_one_rank_ends_all(self):
-        (self.out / "lattice-0001.vtp.part" / "in the way").mkdir(parents=True)
+        (self.out / "lattice-0001.vtp" / "in the way").mkdir(parents=True)
         run = latcon_on_ranks(2, *STRIP, "--output-dir", self.out)
         self.assertEqual(run.returncode, 5, run.stderr)
         self.assertIn("lattice-0001.vtp", run.stderr)

@@ -9,6 +9,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include "support/folder_lock.h"
 #include "verification/atomic_file.h"
 #include "verification/case.h"
 #include "verification/errors.h"
@@ -224,7 +225,8 @@ void Checkpoints::save(std::size_t step, double time, const std::function<void(C
     const std::string head = first_words + sha256(std::string_view(bytes).substr(Hdf5Image::user_block)) + "\n";
     bytes.replace(0, head.size(), head);
     std::error_code error;
-    fs::create_directories(folder_, error);
+    latcon::support::require_in_place(folder_);
+    fs::create_directory(folder_, error); // not the folder above: if that was removed, so was the run
     if (error)
       throw OutputError(folder_.string(), error.message());
     write_file((folder_ / name_of(step)).string(), bytes);

@@ -8,6 +8,7 @@
 
 #include <deal.II/base/mpi.h>
 
+#include "support/atomic_file.h"
 #include "verification/checkpoint/checkpoints.h"
 
 namespace verification
@@ -60,6 +61,24 @@ void print_dry_run(const Options &options, const std::string &text)
     std::cout << text << std::flush;
 }
 
+std::unique_ptr<latcon::support::FolderLock> lock_directory(const std::string &directory,
+                                                            std::chrono::milliseconds patience)
+{
+  namespace support = latcon::support;
+  try
+  {
+    auto lock = std::make_unique<support::FolderLock>(directory, patience);
+    if (lock->is_held())
+      for (const std::string &folder : {directory, directory + "/checkpoints"})
+        support::remove_stale_parts(folder, std::filesystem::file_time_type::max());
+    return lock;
+  }
+  catch (const support::FolderInUse &error)
+  {
+    throw InputError(std::string(error.what()) + "; wait until it has ended, or choose another folder (--output-dir)");
+  }
+}
+
 Run::Run(const Options &options, const Parameters &parameters) : Run(options, &parameters) {}
 
 Run::Run(const Options &options, const Parameters *parameters)
@@ -74,6 +93,7 @@ Run::Run(const Options &options, const Parameters *parameters)
     std::filesystem::create_directories(directory_, error);
     if (error)
       throw OutputError(directory_, error.message());
+    lock_ = lock_directory(directory_);
     if (parameters != nullptr)
       parameters->write(directory_ + "/case.prm");
     info_.write(directory_ + "/run.json", std::nullopt);

@@ -1,8 +1,11 @@
 #pragma once
 
+#include <chrono>
+#include <memory>
 #include <string>
 #include <vector>
 
+#include "support/folder_lock.h"
 #include "verification/case.h"
 #include "verification/claim_outcome.h"
 #include "verification/errors.h"
@@ -34,6 +37,10 @@ ExitCode compare_frames(const Options &options, const CompareOptions &chosen); /
 ExitCode report(const Options &options, const std::string &directory);         ///< `latcon report`
 ExitCode run_study(const Options &options, const std::string &study);          ///< `latcon study`
 
+/// Draws pictures and report.html of a run, or of a folder of several, in a directory that this process has locked. On
+/// rank 0. @return the exit code of the script @throws OutputError
+ExitCode draw_report(const std::string &directory, bool quiet);
+
 /// Draws the page of a study, study.html, from the files in its output directory. @throws OutputError
 void study_page(const std::string &directory);
 
@@ -45,12 +52,19 @@ class Checkpoints;
 /// Prints a part of what --dry-run says, on the first rank, unless --quiet.
 void print_dry_run(const Options &options, const std::string &text);
 
-/// The output directory of a run, and the record of how it came about. Rank 0 alone writes.
+/// Locks an existing directory, and removes the unfinished files that killed runs left in it and in its checkpoints.
+/// Waits up to `patience` for another process to end.
+/// @throws InputError if another process writes there @throws latcon::support::WriteError
+std::unique_ptr<latcon::support::FolderLock>
+lock_directory(const std::string &directory, std::chrono::milliseconds patience = std::chrono::seconds(1));
+
+/// The output directory of a run, locked until the run has ended, and the record of how it came about. Rank 0 alone
+/// writes.
 class Run
 {
 public:
-  /// Creates the directory and writes case.prm and run.json. To be made once the input is known to be good.
-  /// @throws OutputError
+  /// Creates and locks the directory and writes case.prm and run.json. To be made once the input is known to be good.
+  /// @throws InputError if another process writes to the directory: nothing is written then @throws OutputError
   Run(const Options &options, const Parameters &parameters);
 
   /// The same for a run without a case: run.json alone.
@@ -79,6 +93,7 @@ private:
   void print(const Results &results) const;
 
   std::string directory_;
+  std::unique_ptr<latcon::support::FolderLock> lock_; // on rank 0
   bool writes_, talks_, resumes_;
   RunInfo info_;
 };

@@ -1,6 +1,5 @@
 #include "verification/commands/command_line.h"
 
-#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <functional>
@@ -16,6 +15,8 @@
 
 #include "continuum/errors.h"
 #include "continuum/solver_report.h"
+#include "support/atomic_file.h"
+#include "support/available_cores.h"
 #include "verification/commands/command.h"
 #include "verification/data_folder.h"
 
@@ -43,6 +44,7 @@ Failure describe(const std::exception &error)
       dynamic_cast<const continuum::NonPhysicalState *>(&error) != nullptr)
     return {ExitCode::bad_input, error.what()};
   if (dynamic_cast<const continuum::OutputFailed *>(&error) != nullptr ||
+      dynamic_cast<const latcon::support::WriteError *>(&error) != nullptr ||
       dynamic_cast<const std::filesystem::filesystem_error *>(&error) != nullptr)
     return {ExitCode::output_failed, error.what()};
   if (dynamic_cast<const std::bad_alloc *>(&error) != nullptr)
@@ -50,20 +52,10 @@ Failure describe(const std::exception &error)
   return {ExitCode::internal_error, std::string("internal error: ") + error.what()};
 }
 
-// Ranks that share this machine.
-unsigned int local_ranks()
-{
-  MPI_Comm local = MPI_COMM_NULL;
-  MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &local);
-  const unsigned int ranks = dealii::Utilities::MPI::n_mpi_processes(local);
-  MPI_Comm_free(&local);
-  return ranks;
-}
-
-// As many threads on each rank as said, or as the machine has for it.
+// As many threads on each rank as said, or as there are cores for it.
 void set_threads(unsigned int threads)
 {
-  const unsigned int wanted = threads > 0 ? threads : std::max(1u, std::thread::hardware_concurrency() / local_ranks());
+  const unsigned int wanted = threads > 0 ? threads : latcon::support::available_cores_per_rank();
   omp_set_num_threads(static_cast<int>(wanted));
   dealii::MultithreadInfo::set_thread_limit(1);
   // A threaded BLAS sums in an order that depends on the number of threads. OpenBLAS is asked if it is the one in use.

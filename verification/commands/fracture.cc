@@ -166,9 +166,8 @@ ExitCode run_fracture(const Options &options)
   const ExitCode exit_code = signal_came() ? run.interrupted(results) : run.finish(results);
   if (options.no_report)
     return exit_code;
-  Options silent = options;
-  silent.quiet = true;
-  report(silent, run.directory()); // pictures and page; the verdict in them is the one returned here
+  if (run.writes())
+    draw_report(run.directory(), true); // the verdict in it is the one returned here
   return exit_code;
 }
 

@@ -48,8 +48,14 @@ ExitCode report(const Options &options, const std::string &directory)
     throw InputError(directory + " is not a directory");
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) != 0)
     return ExitCode::done;
+  const auto lock = lock_directory(directory);
+  return draw_report(directory, options.quiet);
+}
+
+ExitCode draw_report(const std::string &directory, bool quiet)
+{
   // The script uses the exit codes of this program.
-  return static_cast<ExitCode>(run_script("report.py", directory, "report.html", options.quiet));
+  return static_cast<ExitCode>(run_script("report.py", directory, "report.html", quiet));
 }
 
 void study_page(const std::string &directory)

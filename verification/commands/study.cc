@@ -1,12 +1,14 @@
 #include <algorithm>
+#include <chrono>
 #include <filesystem>
 #include <iostream>
 #include <numeric>
 #include <system_error>
-#include <thread>
 
 #include <deal.II/base/mpi.h>
 
+#include "support/available_cores.h"
+#include "support/folder_lock.h"
 #include "verification/atomic_file.h"
 #include "verification/commands/command.h"
 #include "verification/progress.h"
@@ -21,6 +23,9 @@ namespace
 {
 
 namespace fs = std::filesystem;
+
+// Runs of a killed study get SIGTERM, and write a checkpoint before they end.
+constexpr std::chrono::seconds patience_with_orphans(10);
 
 // A run's directory, and the one beside it that takes its place once the run has ended.
 struct Folders
@@ -124,6 +129,8 @@ bool run_children(StudyResults &results, const Options &options, bool skip_verif
   if (run.talks())
     std::cout << jobs.size() << " runs, " << results.plan.size() - jobs.size() << " are there already" << std::endl;
 
+  if (!jobs.empty())
+    fs::create_directory(run.directory() + "/runs");
   PoolProgress progress(results.plan, jobs, run.talks());
   ProcessPool pool;
   pool.n_jobs = jobs.size();
@@ -132,16 +139,20 @@ bool run_children(StudyResults &results, const Options &options, bool skip_verif
   {
     const PlannedRun &planned = results.plan[jobs[job]];
     const std::string folder = folders_of(run, planned).part;
+    latcon::support::require_in_place(folder);
+    if (fs::exists(folder))
+      lock_directory(folder, patience_with_orphans); // released at once: the run locks it for itself
     const bool goes_on = options.resume && is_begun(planned, folder, skip_verification);
     if (!goes_on)
       fs::remove_all(folder);
-    fs::create_directories(folder);
+    fs::create_directory(folder);
     return {command_of(planned, results.study, folder, skip_verification, goes_on), folder + "/log.txt"};
   };
   pool.ended = [&](std::size_t job, int status)
   {
     const PlannedRun &planned = results.plan[jobs[job]];
     const Folders folders = folders_of(run, planned);
+    latcon::support::require_in_place(folders.whole);
     replace(folders);
     results.outcomes[jobs[job]] = read_outcome(planned, folders.whole, status);
     progress.ended(jobs[job], results.outcomes[jobs[job]]);
@@ -213,7 +224,7 @@ ExitCode run_study(const Options &options, const std::string &name)
   results.plan = plan_runs(results.study, options.overrides);
   results.outcomes.resize(results.plan.size());
   results.quick = options.quick;
-  const std::size_t n_cores = options.threads > 0 ? options.threads : std::max(1u, std::thread::hardware_concurrency());
+  const std::size_t n_cores = options.threads > 0 ? options.threads : latcon::support::available_cores();
   const MemoryNeed memory = memory_of(results.plan, n_cores);
   if (options.dry_run)
   {

@@ -18,7 +18,7 @@ public:
   CrackFilm(const Case &input, lattice::Simulation &simulation, double seed_tip_X, std::filesystem::path directory);
 
   /// Writes the first frame, or, of a run that goes on from a checkpoint, takes back what was written after that.
-  /// Collective. @throws std::filesystem::filesystem_error if a file cannot be written, as the others do
+  /// Collective. @throws latcon::support::WriteError if a file cannot be written, as the others do
   void begin(bool resumed);
 
   /// Adds a frame if the tip, at tip_X [m], has come to where the next one is due. Collective.

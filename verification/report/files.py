@@ -2,6 +2,8 @@
 import csv
 import json
 import os
+import pathlib
+import secrets
 import sys
 
 import numpy as np
@@ -97,10 +99,21 @@ def read_table(path, columns, texts=(), finite=True):
 
 
 def write_file(path, write):
-    """Calls `write` with the name of a file beside `path`, which then takes its place."""
-    beside = path.with_name(path.name + ".part")
+    """Calls `write` with the name of a new file, which then takes the place of `path`.
+
+    As in support/atomic_file.h: the part lies beside its place under a random name, is created and never opened there,
+    and is written to by its descriptor, so that no link that others put there is followed.
+    """
+    part = path.with_name(f"{path.name}.{secrets.token_hex(8)}.part")
     try:
-        write(beside)
-        os.replace(beside, path)
+        descriptor = os.open(part, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o666)
+        try:
+            write(pathlib.Path(f"/proc/self/fd/{descriptor}"))
+            os.replace(part, path)
+        except BaseException:
+            part.unlink(missing_ok=True)
+            raise
+        finally:
+            os.close(descriptor)
     except OSError as error:
         raise UnwritableFile(path, error.strerror or error) from error

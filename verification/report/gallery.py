@@ -13,6 +13,8 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True  # this folder stays as it is
 
+import own_settings  # before matplotlib
+
 from animation import draw_animation
 from crack_path import draw_crack_path
 from files import CLAIM_FAILS, DONE, UnwritableFile, exit_code_of, read_text, write_file

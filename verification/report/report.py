@@ -11,6 +11,8 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True  # this folder stays as it is
 
+import own_settings  # before matplotlib
+
 from animation import draw_animation
 from claims_text import PLOTS
 from crack_path import draw_crack_path

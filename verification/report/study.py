@@ -9,6 +9,8 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True  # this folder stays as it is
 
+import own_settings  # before matplotlib
+
 from check_plots import PLOTS
 from files import DONE, UnwritableFile, exit_code_of, write_file
 from frame import read_last_frame

@@ -12,6 +12,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include "support/mpi_session.h"
 #include "verification/errors.h"
 
 extern char **environ;
@@ -31,7 +32,7 @@ std::vector<char *> environment_of_children()
   for (char **variable = environ; *variable != nullptr; ++variable)
   {
     const std::string text = *variable;
-    if (text.rfind("OMPI_", 0) != 0 && text.rfind("PMIX_", 0) != 0)
+    if (text.rfind("OMPI_", 0) != 0 && text.rfind("PMIX_", 0) != 0 && !latcon::support::is_launcher_variable(text))
       kept.push_back(*variable);
   }
   kept.push_back(nullptr);
@@ -45,7 +46,7 @@ pid_t start_process(ProcessPool::Job job)
     arguments.push_back(word.data());
   arguments.push_back(nullptr);
   std::vector<char *> environment = environment_of_children();
-  const int log = open(job.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, 0666);
+  const int log = open(job.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
   if (log < 0)
     throw OutputError(job.log, std::generic_category().message(errno));
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);

@@ -31,9 +31,9 @@ struct ProcessPool
 };
 
 /// Starts the jobs in their order, at most `limit` at once, and waits for all of them. Children have no standard input
-/// and none of the variables by which Open MPI tells its own children who they are (OMPI_*, PMIX_*), so that a child
-/// may use MPI by itself. They get SIGTERM if this process dies. A job that fails stops no other. Exceptions of the
-/// functions are passed on once no child is left.
+/// and none of the variables of Open MPI and of launchers (OMPI_*, PMIX_*, support::is_launcher_variable), so that each
+/// child is an MPI job of its own. They get SIGTERM if this process dies. A job that fails stops no other. Exceptions
+/// of the functions are passed on once no child is left.
 /// @return whether all jobs ended by themselves; `ended` was called for these alone
 bool run_processes(const ProcessPool &pool);
 

@@ -1,7 +1,7 @@
 // MPI has to run before the first test.
-#include <mpi.h>
-
 #include <gtest/gtest.h>
+
+#include "support/mpi_session.h"
 
 // Under AddressSanitizer: MPI keeps memory until the process ends, some of it in modules unloaded by then, which no
 // suppression can name. Every other check stays on.
@@ -14,8 +14,6 @@ extern "C" const char *__asan_default_options()
 int main(int argc, char **argv)
 {
   testing::InitGoogleTest(&argc, argv);
-  MPI_Init(&argc, &argv);
-  const int failed = RUN_ALL_TESTS();
-  MPI_Finalize();
-  return failed;
+  const latcon::support::MpiSession session;
+  return RUN_ALL_TESTS();
 }

@@ -1,9 +1,10 @@
-#include <deal.II/base/mpi.h>
 #include <gtest/gtest.h>
+
+#include "continuum/parallel_session.h"
 
 int main(int argc, char **argv)
 {
-  const dealii::Utilities::MPI::MPI_InitFinalize mpi(argc, argv, 1);
+  const continuum::ParallelSession session;
   testing::InitGoogleTest(&argc, argv);
   return RUN_ALL_TESTS();
 }

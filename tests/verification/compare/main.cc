@@ -1,12 +1,11 @@
 #include <gtest/gtest.h>
-#include <mpi.h>
+
+#include "support/mpi_session.h"
 
 // Sites are shared over ranks, of which there is one here.
 int main(int argc, char **argv)
 {
-  MPI_Init(&argc, &argv);
+  const latcon::support::MpiSession session;
   testing::InitGoogleTest(&argc, argv);
-  const int status = RUN_ALL_TESTS();
-  MPI_Finalize();
-  return status;
+  return RUN_ALL_TESTS();
 }

@@ -1,0 +1,50 @@
+#include "support/mpi_session.h"
+
+#include <algorithm>
+#include <array>
+#include <cstdlib>
+#include <exception>
+#include <stdexcept>
+
+#include <mpi.h>
+#include <unistd.h>
+
+namespace latcon::support
+{
+
+MpiSession::MpiSession()
+{
+  if (!is_started_by_launcher())
+  {
+    constexpr int keep = 0; // what the user has set
+    setenv("OMPI_MCA_ess_singleton_isolated", "1", keep);
+    setenv("OMPI_MCA_orte_create_session_dirs", "0", keep);
+  }
+  int provided = MPI_THREAD_SINGLE;
+  if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
+    throw std::runtime_error("MPI cannot be started");
+}
+
+MpiSession::~MpiSession()
+{
+  if (std::uncaught_exceptions() == 0)
+    MPI_Finalize();
+}
+
+bool is_launcher_variable(const std::string &variable)
+{
+  constexpr std::array prefixes{"PMIX_NAMESPACE", "PMIX_RANK",        "PMIX_SERVER_", "PMI_",
+                                "PMI2_",          "OMPI_COMM_WORLD_", "FLUX_JOB_ID"};
+  return std::any_of(prefixes.begin(), prefixes.end(),
+                     [&](const char *prefix) { return variable.rfind(prefix, 0) == 0; });
+}
+
+bool is_started_by_launcher()
+{
+  bool found = false;
+  for (char **variable = environ; *variable != nullptr; ++variable)
+    found = found || is_launcher_variable(*variable);
+  return found;
+}
+
+} // namespace latcon::support

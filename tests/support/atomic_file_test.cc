@@ -1,0 +1,266 @@
+// A place holds the old file or the new one, and nothing but a part that this process created is ever written to.
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <thread>
+#include <vector>
+
+#include <sys/resource.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include "support/atomic_file.h"
+#include "tests/verification/temporary_folder.h"
+
+using namespace latcon::support;
+namespace fs = std::filesystem;
+
+namespace
+{
+
+// The message of the error when a file is written; empty if there is none.
+std::string complaint(const std::string &path, const std::string &text = "new")
+{
+  try
+  {
+    write_atomically(path, text, Sync::yes);
+  }
+  catch (const WriteError &error)
+  {
+    return error.what();
+  }
+  return "";
+}
+
+std::vector<fs::path> entries(const TemporaryFolder &folder)
+{
+  return {fs::directory_iterator(folder.path()), fs::directory_iterator()};
+}
+
+// The part in a folder that holds nothing else.
+fs::path only_part(const TemporaryFolder &folder)
+{
+  const std::vector<fs::path> found = entries(folder);
+  EXPECT_EQ(found.size(), 1U);
+  return found.at(0);
+}
+
+// Files of this process may not grow beyond some bytes: the disk is full in the middle of a file.
+class SmallDisk
+{
+public:
+  explicit SmallDisk(rlim_t bytes)
+  {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit now{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &now);
+    std::signal(SIGXFSZ, SIG_IGN);
+  }
+  ~SmallDisk()
+  {
+    setrlimit(RLIMIT_FSIZE, &before_);
+    std::signal(SIGXFSZ, SIG_DFL);
+  }
+
+private:
+  rlimit before_{};
+};
+
+} // namespace
+
+TEST(AtomicFile, WritesAndReplaces)
+{
+  for (const Sync sync : {Sync::no, Sync::yes})
+  {
+    const TemporaryFolder folder;
+    const std::string path = folder / "a.txt";
+    write_atomically(path, "old and longer", sync);
+    EXPECT_EQ(content_of(path), "old and longer");
+    write_atomically(path, "new\n", sync);
+    EXPECT_EQ(content_of(path), "new\n");
+    EXPECT_EQ(entries(folder).size(), 1U);
+  }
+}
+
+TEST(AtomicFile, WritesMoreThanOneBlockAndEveryByte)
+{
+  const TemporaryFolder folder;
+  std::string text;
+  for (int i = 0; i < 3000000; ++i)
+    text += static_cast<char>(i % 256);
+  write_atomically(folder / "large", text, Sync::no);
+  EXPECT_TRUE(content_of(folder / "large") == text);
+}
+
+TEST(AtomicFile, HasTheRightsOfAnyOtherFile)
+{
+  const TemporaryFolder folder;
+  const mode_t before = umask(027);
+  write_atomically(folder / "a.txt", "", Sync::no);
+  umask(before);
+  struct stat status
+  {
+  };
+  ASSERT_EQ(stat((folder / "a.txt").c_str(), &status), 0);
+  EXPECT_EQ(status.st_mode & 07777U, 0640U);
+}
+
+TEST(AtomicFile, IsOnItsPlaceOnceItIsWhole)
+{
+  const TemporaryFolder folder;
+  {
+    AtomicFile file(folder / "a.txt");
+    file.write("half of ");
+    EXPECT_FALSE(fs::exists(folder / "a.txt"));
+    file.write("it");
+    file.commit(Sync::no);
+  }
+  EXPECT_EQ(content_of(folder / "a.txt"), "half of it");
+  {
+    AtomicFile file(folder / "a.txt");
+    file.write("never committed");
+  }
+  EXPECT_EQ(content_of(folder / "a.txt"), "half of it");
+  EXPECT_EQ(entries(folder).size(), 1U);
+}
+
+TEST(AtomicFile, LibrariesOpenItByName)
+{
+  const TemporaryFolder folder;
+  AtomicFile file(folder / "a.txt");
+  // Whatever happens to the name of the part meanwhile.
+  const fs::path part = only_part(folder);
+  std::ofstream(folder / "victim") << "mine";
+  fs::rename(part, folder / "moved");
+  fs::create_symlink(folder / "victim", part);
+  std::ofstream(file.name()) << "whole";
+  EXPECT_EQ(content_of(folder / "victim"), "mine");
+  EXPECT_EQ(content_of(folder / "moved"), "whole");
+  fs::rename(folder / "moved", part);
+  file.commit(Sync::no);
+  EXPECT_EQ(content_of(folder / "a.txt"), "whole");
+}
+
+TEST(AtomicFile, PartsHaveNamesThatNobodyForesees)
+{
+  const TemporaryFolder folder;
+  const AtomicFile one(folder / "a"), other(folder / "a");
+  const std::vector<fs::path> found = entries(folder);
+  ASSERT_EQ(found.size(), 2U);
+  for (const fs::path &part : found)
+    EXPECT_EQ(part.filename().string().size(), std::string("a..part").size() + 16);
+}
+
+TEST(AtomicFile, LinksInItsPlaceAreReplaced)
+{
+  const TemporaryFolder folder;
+  std::ofstream(folder / "victim") << "mine";
+  fs::create_symlink(folder / "victim", folder / "a.txt");
+  fs::create_symlink(folder / "victim", folder / "a.txt.part");
+  write_atomically(folder / "a.txt", "new", Sync::no);
+  EXPECT_EQ(content_of(folder / "victim"), "mine");
+  EXPECT_EQ(content_of(folder / "a.txt"), "new");
+  EXPECT_FALSE(fs::is_symlink(folder / "a.txt"));
+}
+
+TEST(AtomicFile, MissingFolderIsNamedWithTheReason)
+{
+  const TemporaryFolder folder;
+  const std::string path = folder / "missing/a.txt";
+  EXPECT_EQ(complaint(path), "cannot write " + path + ": No such file or directory");
+}
+
+TEST(AtomicFile, FullDiskLeavesTheOldFile)
+{
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.txt";
+  write_atomically(path, "old", Sync::yes);
+  {
+    const SmallDisk disk(1000);
+    EXPECT_EQ(complaint(path, std::string(2000, 'x')), "cannot write " + path + ": File too large");
+  }
+  EXPECT_EQ(content_of(path), "old");
+  EXPECT_EQ(entries(folder).size(), 1U);
+}
+
+TEST(AtomicFile, UnwritableFolderLeavesTheOldFile)
+{
+  // Not even root may create a file here.
+  EXPECT_NE(complaint("/proc/latcon_test"), "");
+  if (geteuid() == 0)
+    return;
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.txt";
+  write_atomically(path, "old", Sync::no);
+  ASSERT_EQ(chmod(folder.path().c_str(), 0500), 0);
+  EXPECT_EQ(complaint(path), "cannot write " + path + ": Permission denied");
+  EXPECT_EQ(content_of(path), "old");
+  ASSERT_EQ(chmod(folder.path().c_str(), 0700), 0);
+}
+
+TEST(AtomicFile, NeverReplacesADeviceOrAFolder)
+{
+  const TemporaryFolder folder;
+  fs::create_directory(folder / "sub");
+  EXPECT_EQ(complaint(folder / "sub"), "cannot write " + (folder / "sub") + ": it is a folder");
+  // A pipe stands for every device: code that failed this test as root would destroy a real one.
+  const std::string pipe = folder / "pipe";
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  EXPECT_EQ(complaint(pipe), "cannot write " + pipe + ": it is not a regular file");
+  EXPECT_TRUE(fs::is_fifo(pipe));
+}
+
+TEST(AtomicFile, ReadersAndWritersAtOnceSeeWholeFiles)
+{
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.txt";
+  write_atomically(path, std::string(50000, 'a'), Sync::no);
+  std::vector<std::thread> writers;
+  for (const char letter : {'b', 'c', 'd', 'e'})
+    writers.emplace_back(
+      [&path, letter]
+      {
+        for (int i = 0; i < 100; ++i)
+          write_atomically(path, std::string(50000, letter), Sync::no);
+      });
+  int n_torn = 0;
+  for (int i = 0; i < 500; ++i)
+  {
+    const std::string text = content_of(path);
+    n_torn += text.size() == 50000 && text.find_first_not_of(text[0]) == std::string::npos ? 0 : 1;
+  }
+  for (std::thread &writer : writers)
+    writer.join();
+  EXPECT_EQ(n_torn, 0);
+  EXPECT_EQ(entries(folder).size(), 1U);
+}
+
+TEST(StaleParts, OfKilledRunsAreRemoved)
+{
+  const TemporaryFolder folder;
+  const pid_t child = fork();
+  if (child == 0)
+  {
+    AtomicFile file(folder / "a.txt");
+    file.write("half");
+    kill(getpid(), SIGKILL);
+  }
+  waitpid(child, nullptr, 0);
+  const fs::path part = only_part(folder);
+  for (const char *other : {"a.txt", "a.txt.part", "a.0123456789abcde.part", "a.0123456789abcdeg.part", ".part"})
+    std::ofstream(folder / other) << "not a part";
+  const auto hour_ago = fs::file_time_type::clock::now() - std::chrono::hours(1);
+  for (const fs::path &path : entries(folder))
+    if (path != part)
+      fs::last_write_time(path, hour_ago - std::chrono::hours(1));
+  EXPECT_EQ(remove_stale_parts(folder.path(), hour_ago), 0U);
+  EXPECT_TRUE(fs::exists(part));
+  fs::last_write_time(part, hour_ago - std::chrono::seconds(1));
+  EXPECT_EQ(remove_stale_parts(folder.path(), hour_ago), 1U);
+  EXPECT_FALSE(fs::exists(part));
+  EXPECT_EQ(entries(folder).size(), 5U);
+  EXPECT_EQ(remove_stale_parts(folder / "missing", fs::file_time_type::max()), 0U);
+}

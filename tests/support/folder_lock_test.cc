@@ -1,0 +1,187 @@
+// One process at a time has a folder, until it ends in whatever way.
+#include <chrono>
+#include <csignal>
+#include <filesystem>
+#include <fstream>
+#include <optional>
+
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <gtest/gtest.h>
+
+#include "support/atomic_file.h"
+#include "support/folder_lock.h"
+#include "tests/verification/temporary_folder.h"
+
+using namespace latcon::support;
+using namespace std::chrono_literals;
+namespace fs = std::filesystem;
+
+namespace
+{
+
+// Whether a lock is refused, and with which message.
+std::string refusal(const std::string &folder)
+{
+  try
+  {
+    const FolderLock lock(folder, 0ms);
+  }
+  catch (const FolderInUse &error)
+  {
+    return error.what();
+  }
+  return "";
+}
+
+// A process that locks a folder and waits for a signal.
+class Holder
+{
+public:
+  explicit Holder(const std::string &folder)
+  {
+    int ready[2];
+    EXPECT_EQ(pipe(ready), 0);
+    process_ = fork();
+    if (process_ == 0)
+    {
+      const FolderLock lock(folder);
+      EXPECT_EQ(write(ready[1], "x", 1), 1);
+      pause();
+    }
+    char byte = 0;
+    EXPECT_EQ(read(ready[0], &byte, 1), 1);
+    close(ready[0]);
+    close(ready[1]);
+  }
+  ~Holder() { end(); }
+
+  pid_t process() const { return process_; }
+
+  void end()
+  {
+    if (process_ > 0)
+    {
+      kill(process_, SIGKILL);
+      waitpid(process_, nullptr, 0);
+    }
+    process_ = 0;
+  }
+
+private:
+  pid_t process_ = 0;
+};
+
+} // namespace
+
+TEST(FolderLock, IsRefusedWithTheProcessThatHasIt)
+{
+  const TemporaryFolder folder;
+  Holder holder(folder.path());
+  const std::string told = refusal(folder.path());
+  EXPECT_EQ(told.find(folder.path() + " is in use by process " + std::to_string(holder.process()) + " on "), 0U)
+    << told;
+  holder.end(); // by SIGKILL
+  EXPECT_EQ(refusal(folder.path()), "");
+}
+
+TEST(FolderLock, EndsWithItsObject)
+{
+  const TemporaryFolder folder;
+  std::optional<FolderLock> lock(folder.path());
+  EXPECT_TRUE(lock->is_held());
+  EXPECT_NE(refusal(folder.path()), "");
+  lock.reset();
+  EXPECT_EQ(refusal(folder.path()), "");
+}
+
+TEST(FolderLock, WaitsForAProcessThatIsAboutToEnd)
+{
+  const TemporaryFolder folder;
+  const Holder holder(folder.path());
+  const pid_t helper = fork();
+  if (helper == 0)
+  {
+    usleep(100000);
+    kill(holder.process(), SIGKILL);
+    _exit(0);
+  }
+  EXPECT_TRUE(FolderLock(folder.path(), 30s).is_held());
+  waitpid(helper, nullptr, 0);
+}
+
+TEST(FolderLock, IsNotInherited)
+{
+  const TemporaryFolder folder;
+  std::optional<FolderLock> lock(folder.path());
+  const pid_t child = fork();
+  if (child == 0)
+    execl("/bin/sleep", "sleep", "30", nullptr);
+  // Until the child has become the other program it has this one's descriptors.
+  lock.reset();
+  EXPECT_TRUE(FolderLock(folder.path(), 20s).is_held());
+  EXPECT_EQ(waitpid(child, nullptr, WNOHANG), 0);
+  kill(child, SIGKILL);
+  waitpid(child, nullptr, 0);
+}
+
+TEST(FolderLock, NoticesThatTheFolderHasGone)
+{
+  const TemporaryFolder folder;
+  const std::string out = folder / "out";
+  fs::create_directory(out);
+  const FolderLock lock(out);
+  EXPECT_TRUE(lock.is_in_place());
+  fs::remove_all(out);
+  EXPECT_FALSE(lock.is_in_place());
+  fs::create_directory(out);
+  EXPECT_FALSE(lock.is_in_place());
+  std::ofstream(out + "/.latcon.lock") << "of another process";
+  EXPECT_FALSE(lock.is_in_place());
+}
+
+TEST(FolderLock, FilesAreNotWrittenToAFolderThatTookThePlace)
+{
+  const TemporaryFolder folder;
+  const std::string out = folder / "out", file = out + "/a.txt", below = out + "/sub/b.txt";
+  const std::string why = ": the folder " + out + " was removed or replaced during the run";
+  fs::create_directories(out + "/sub");
+  {
+    const FolderLock lock(out + "/"); // however it is spelled
+    EXPECT_NO_THROW(write_atomically(file, "mine", Sync::no));
+    EXPECT_NO_THROW(write_atomically(out + "/../out/sub/b.txt", "mine", Sync::no));
+    AtomicFile begun(file);
+    fs::remove_all(out);
+    fs::create_directories(out + "/sub");
+    EXPECT_THROW(begun.commit(Sync::no), WriteError);
+    for (const std::string &place : {file, below})
+      try
+      {
+        write_atomically(place, "mine", Sync::no);
+        ADD_FAILURE() << place;
+      }
+      catch (const WriteError &error)
+      {
+        EXPECT_EQ(error.what(), "cannot write " + place + why);
+      }
+    EXPECT_NO_THROW(write_atomically(folder / "beside.txt", "mine", Sync::no));
+    EXPECT_TRUE(fs::is_empty(out + "/sub"));
+    EXPECT_EQ(std::distance(fs::directory_iterator(out), fs::directory_iterator()), 1);
+  }
+  EXPECT_NO_THROW(write_atomically(file, "mine", Sync::no)); // without a lock nothing is known
+}
+
+TEST(FolderLock, FollowsNoLinksAndWaitsForNoPipes)
+{
+  const TemporaryFolder folder;
+  std::ofstream(folder / "victim") << "mine";
+  fs::create_symlink(folder / "victim", folder / ".latcon.lock");
+  EXPECT_THROW(FolderLock(folder.path()), WriteError);
+  EXPECT_EQ(content_of(folder / "victim"), "mine");
+  fs::remove(folder / ".latcon.lock");
+  ASSERT_EQ(mkfifo((folder / ".latcon.lock").c_str(), 0600), 0);
+  EXPECT_THROW(FolderLock(folder.path()), WriteError);
+  EXPECT_THROW(FolderLock(folder / "missing"), WriteError);
+}

@@ -1,0 +1,102 @@
+#!/usr/bin/python3
+"""Many processes on one machine: what they share when they start, and what each leaves to the others.
+
+Usage: processes_test.py PATH_OF_LATCON [PATHS_OF_TEST_PROGRAMS...]
+"""
+import os
+import signal
+import socket
+import subprocess
+import sys
+import time
+import unittest
+
+sys.dont_write_bytecode = True
+TEST_PROGRAMS = sys.argv[2:]
+del sys.argv[2:]
+from program import CASES, LATCON, TemporaryFolder, latcon
+
+SMALL = ["--set", "Sheet/length=8 mm", "--set", "Sheet/height=6 mm"]
+LAUNCHED = ("OMPI_", "PMIX_", "PMI_")
+
+
+def environment(**variables):
+    """That of a user who has set nothing for MPI, and started nothing by mpirun."""
+    kept = {name: value for name, value in os.environ.items() if not name.startswith(LAUNCHED)}
+    return dict(kept, **variables)
+
+
+def names_in(folder):
+    return sorted(str(path.relative_to(folder)) for path in folder.rglob("*"))
+
+
+class Start(TemporaryFolder):
+    def setUp(self):
+        super().setUp()
+        self.tmp = self.folder / "tmp"
+        self.tmp.mkdir()
+
+    def block_session_folder(self):
+        """Puts files where Open MPI would make the session folder that a user's processes share."""
+        host = socket.gethostname()
+        for name in {host, host.partition(".")[0]}:
+            (self.tmp / f"ompi.{name}.{os.geteuid()}").write_text("in the way")
+
+    def commands(self):
+        quick = str(CASES / "quick.prm")
+        yield [LATCON, "--version"]
+        yield [LATCON, "lattice", quick, "--dry-run"]
+        yield [LATCON, "lattice", quick, *SMALL, "--output-dir", str(self.folder / "out"), "--quiet"]
+        for program in TEST_PROGRAMS:
+            yield [program, "--gtest_filter=-*"]
+
+    def test_shares_no_folder(self):
+        self.block_session_folder()
+        before = names_in(self.tmp)
+        for command in self.commands():
+            with self.subTest(command[:2]):
+                run = subprocess.run(command, capture_output=True, text=True, timeout=120,
+                                     env=environment(TMPDIR=str(self.tmp)))
+                self.assertEqual(run.returncode, 0, run.stderr)
+                self.assertNotIn("mkdir", run.stderr)
+        self.assertEqual(names_in(self.tmp), before)
+
+    def test_the_files_in_the_way_are_in_the_way(self):
+        """Of mpirun, which makes the folder. If this fails, the test above shows nothing."""
+        self.block_session_folder()
+        run = subprocess.run(["mpirun", "-n", "1", "true"], capture_output=True, text=True, timeout=120,
+                             env=environment(TMPDIR=str(self.tmp), OMPI_ALLOW_RUN_AS_ROOT="1",
+                                             OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1"))
+        self.assertNotEqual(run.returncode, 0)
+
+    def test_of_many_at_once(self):
+        starts = [subprocess.Popen([LATCON, "--version"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
+                                   env=environment(TMPDIR=str(self.tmp))) for _ in range(24)]
+        for start in starts:
+            said, _ = start.communicate(timeout=120)
+            self.assertEqual(start.returncode, 0, said)
+        self.assertEqual(names_in(self.tmp), [])
+
+    def test_leaves_nothing_when_killed(self):
+        run = subprocess.Popen([LATCON, "fracture", CASES / "quick.prm", "--skip-verification", "--quiet",
+                                "--output-dir", self.folder / "out"], env=environment(TMPDIR=str(self.tmp)))
+        while not (self.folder / "out" / "energy.csv").exists() and run.poll() is None:
+            time.sleep(0.01)
+        run.kill()
+        self.assertEqual(run.wait(), -signal.SIGKILL)
+        self.assertEqual(names_in(self.tmp), [])
+
+
+class Cores(TemporaryFolder):
+    def test_default_of_threads_and_of_processes_is_what_may_be_used(self):
+        one = str(min(os.sched_getaffinity(0)))
+        bound = ["taskset", "-c", one, LATCON]
+        study = subprocess.run([*bound, "study", "patterns", "--dry-run"], capture_output=True, text=True, timeout=120)
+        self.assertIn("on 1 cores", study.stdout)
+        case = subprocess.run([*bound, "lattice", CASES / "quick.prm", "--dry-run", "--set", "Lattice/solution=motion"],
+                              capture_output=True, text=True, timeout=120)
+        self.assertIn("1 threads of each rank", case.stdout)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
