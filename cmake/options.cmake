@@ -28,7 +28,7 @@ if(LATCON_AUDIT)
 endif()
 
 # The libraries behind deal.II make linking the slowest step; lld takes a tenth of the time of the default linker, but does not
-# know gcc's link-time optimisation.
-if(NOT CMAKE_INTERPROCEDURAL_OPTIMIZATION)
+# know gcc's link-time optimisation, and is not found by Debian's cross compilers.
+if(NOT CMAKE_INTERPROCEDURAL_OPTIMIZATION AND NOT CMAKE_CROSSCOMPILING)
   add_link_options(-fuse-ld=lld)
 endif()

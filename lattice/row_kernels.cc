@@ -33,9 +33,13 @@ HWY_INLINE std::size_t width()
   return hn::Lanes(D());
 }
 
-// Numbers to the formulas that are written for any.
+// Numbers to the formulas that are written for any. The constructors are written out: a compiler makes its own where the file
+// ends, for another instruction set.
 struct Lanes
 {
+  HWY_INLINE Lanes() {}
+  HWY_INLINE Lanes(Vector vector) : v(vector) {}
+
   Vector v;
 };
 HWY_INLINE Lanes operator+(Lanes a, Lanes b)
