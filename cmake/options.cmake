@@ -6,8 +6,9 @@ if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
 endif()
 add_compile_options(${latcon_warnings})
 
+get_filename_component(latcon_root ${CMAKE_CURRENT_LIST_DIR} DIRECTORY)
 add_library(latcon_options INTERFACE)
-target_include_directories(latcon_options INTERFACE $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}> $<INSTALL_INTERFACE:include/latcon>)
+target_include_directories(latcon_options INTERFACE $<BUILD_INTERFACE:${latcon_root}> $<INSTALL_INTERFACE:include/latcon>)
 target_compile_features(latcon_options INTERFACE cxx_std_17)
 # Contraction to fused multiply-add would make the bits of a result depend on the instruction set. A user's laws are part of
 # the result, and so are the functions that headers bring into a user's program.
@@ -26,14 +27,8 @@ if(LATCON_AUDIT)
   target_compile_definitions(latcon_options INTERFACE _GLIBCXX_ASSERTIONS)
 endif()
 
-# deal.II's debug build checks what it is given; programs must not mix it with the other.
-set(latcon_dealii_target ${DEAL_II_TARGET_RELEASE})
-set(latcon_dealii_definitions ${DEAL_II_USER_DEFINITIONS})
-if(CMAKE_BUILD_TYPE STREQUAL "Debug" OR LATCON_AUDIT)
-  set(latcon_dealii_target ${DEAL_II_TARGET_DEBUG})
-  list(APPEND latcon_dealii_definitions ${DEAL_II_USER_DEFINITIONS_DEBUG})
+# The libraries behind deal.II make linking the slowest step; lld takes a tenth of the time of the default linker, but does not
+# know gcc's link-time optimisation, and is not found by Debian's cross compilers.
+if(NOT CMAKE_INTERPROCEDURAL_OPTIMIZATION AND NOT CMAKE_CROSSCOMPILING)
+  add_link_options(-fuse-ld=lld)
 endif()
-include(cmake/dealii.cmake)
-
-# The libraries behind deal.II make linking the slowest step; lld takes a tenth of the time of the default linker.
-add_link_options(-fuse-ld=lld)

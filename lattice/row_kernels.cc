@@ -6,8 +6,9 @@
 #include <type_traits>
 #include <variant>
 
-// This file is compiled once per instruction set. Those between SSSE3, AVX2 and AVX-512 would gain nothing.
-#define HWY_DISABLED_TARGETS (HWY_SSE4 | HWY_AVX3_DL)
+// This file is compiled once per instruction set. Those between SSSE3, AVX2 and AVX-512 would gain nothing. Vectors of
+// SVE have no size known to the compiler, so no struct can hold one; processors with SVE use NEON.
+#define HWY_DISABLED_TARGETS (HWY_SSE4 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lattice/row_kernels.cc"
 #include <hwy/cache_control.h>
@@ -32,9 +33,13 @@ HWY_INLINE std::size_t width()
   return hn::Lanes(D());
 }
 
-// Numbers to the formulas that are written for any.
+// Numbers to the formulas that are written for any. The constructors are written out: a compiler makes its own where the file
+// ends, for another instruction set.
 struct Lanes
 {
+  HWY_INLINE Lanes() {}
+  HWY_INLINE Lanes(Vector vector) : v(vector) {}
+
   Vector v;
 };
 HWY_INLINE Lanes operator+(Lanes a, Lanes b)

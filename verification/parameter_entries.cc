@@ -30,9 +30,9 @@ std::string allowed_numbers(const std::string &what, const Range &range, const s
 }
 
 // Reads a number with a unit or without, or says what is wrong with it.
-Quantity number_in(const std::string &text, const Range &range, const std::string &unit)
+ParsedNumber number_in(const std::string &text, const Range &range, const std::string &unit)
 {
-  Quantity quantity = read_quantity(text, unit);
+  ParsedNumber quantity = read_quantity(text, unit);
   if (quantity.wrong.empty() && !range.contains(quantity.value))
     quantity.wrong = "out of range";
   return quantity;
@@ -84,7 +84,7 @@ void Parameters::add(const std::string &section, const std::string &name, double
   Entry entry{section, name, documentation, unit, range.text(), allowed_numbers("a number", range, unit), presence};
   entry.read = [&member, range, unit](const std::string &text)
   {
-    const Quantity quantity = number_in(text, range, unit);
+    const ParsedNumber quantity = number_in(text, range, unit);
     if (quantity.wrong.empty())
       member = quantity.value;
     return quantity.wrong;
@@ -106,7 +106,7 @@ void Parameters::add(const std::string &section, const std::string &name, std::o
       member.reset();
       return "";
     }
-    const Quantity quantity = number_in(text, range, unit);
+    const ParsedNumber quantity = number_in(text, range, unit);
     if (quantity.wrong.empty())
       member = quantity.value;
     return quantity.wrong;
@@ -134,7 +134,7 @@ void Parameters::add(const std::string &section, const std::string &name, std::v
     for (std::size_t at = 0; !text.empty() && at <= text.size();)
     {
       const std::size_t end = std::min(text.find(',', at), text.size());
-      const Quantity quantity = number_in(text.substr(at, end - at), range, unit);
+      const ParsedNumber quantity = number_in(text.substr(at, end - at), range, unit);
       if (!quantity.wrong.empty())
         return "number " + std::to_string(values.size() + 1) + " in the list: " + quantity.wrong;
       values.push_back(quantity.value);

@@ -156,9 +156,9 @@ std::string units_like(const std::string &unit)
   return unit + " and other units of that dimension";
 }
 
-Quantity read_quantity(const std::string &text, const std::string &unit)
+ParsedNumber read_quantity(const std::string &text, const std::string &unit)
 {
-  Quantity quantity;
+  ParsedNumber quantity;
   std::string_view rest = text;
   while (!rest.empty() && is_blank(rest.front()))
     rest.remove_prefix(1);

@@ -27,8 +27,8 @@ struct Unit
 /// Units of the same dimension, for a message: for "m" it is "m, nm, um, mm, cm, km".
 [[nodiscard]] std::string units_like(const std::string &unit);
 
-/// What came of reading a number with a unit.
-struct Quantity
+/// Result of reading a number with a unit.
+struct ParsedNumber
 {
   double value = 0.;     ///< in the SI unit that was asked for
   bool has_unit = false; ///< whether the text had a unit of its own
@@ -38,6 +38,6 @@ struct Quantity
 /// Reads a finite number, followed by a unit or not.
 /// @param text the number, e.g. "0.625 mm", "1e-3", "0.1MPa"; a plain number is in `unit`
 /// @param unit the SI unit wanted, one that parse_unit() understands as having power 0 and factor 1
-[[nodiscard]] Quantity read_quantity(const std::string &text, const std::string &unit);
+[[nodiscard]] ParsedNumber read_quantity(const std::string &text, const std::string &unit);
 
 } // namespace verification

@@ -1,7 +1,5 @@
 """The parts of tests/clean/run: which programs each runs."""
-import hashlib
 import pathlib
-import re
 import shutil
 
 from checks import LOGS, ROOT, Job, Part
@@ -27,31 +25,8 @@ def cppcheck():
         "--error-exitcode=1", "-I", ".", *SOURCES])]
 
 
-def with_headers(path, known):
-    """The files of the project that a source is made of."""
-    if path not in known:
-        known[path] = {path}
-        for name in re.findall(r'^\s*#\s*include "([^"]+)"', path.read_text(encoding="utf-8"), re.MULTILINE):
-            for place in (ROOT / name, path.parent / name):
-                if place.exists():
-                    known[path] = known[path] | with_headers(place, known)
-                    break
-    return known[path]
-
-
 def tidy():
-    known = {}
-    settings = (ROOT / ".clang-tidy").read_bytes()
-    files = sorted(path for folder in ("support", "lattice", "continuum", "verification", "tests/lattice")
-                   for path in (ROOT / folder).rglob("*.cc"))
-    jobs = []
-    for path in files:
-        key = hashlib.sha256(settings)
-        for part in sorted(with_headers(path, known)):
-            key.update(part.read_bytes())
-        name = path.relative_to(ROOT)
-        jobs.append(Job(str(name), ["clang-tidy", "-p", "build/clang", "--quiet", name], key=key.hexdigest()))
-    return jobs
+    return [Job(folder, ["run-clang-tidy", "-p", "build/clang", "-quiet", "-j", "1", f"^{ROOT}/{folder}/"]) for folder in SOURCES]
 
 
 def latcon(preset, name, *arguments, **environment):
@@ -64,15 +39,33 @@ def crack(preset, **environment):
                   "--set", "Output/frame interval=0.05 ms", **environment)
 
 
+# Minutes each under valgrind, or without optimisation.
+SLOW = ("Contact.LedgerCloses*", "Contact.GivesTheSameBits*", "*BitsDoNotDependOn*", "CrackMeasurement.*",
+        "EnergyBalance.*", "Cutout.Relaxed*", "RungeKuttaChebyshev.Is*", "RungeKuttaChebyshev.ComesTo*",
+        "RungeKuttaChebyshev/*", "TimeStepLimits.*", "Fracture/*", "EndLoads/*", "LinkCells.Show*", "CorrelatedNoise.*")
+
+
+def tests_of(preset, environment, *names):
+    """Programs of tests, given as folder/name."""
+    return [Job(name.split("/")[-1], [program(preset, f"tests/{name}"), "--gtest_brief=1"], environment) for name in names]
+
+
+def lto():
+    return [Job("lattice_tests", [program("lto", "tests/lattice/lattice_tests"), "--gtest_brief=1",
+                                  "--gtest_filter=-" + ":".join(SLOW)]),
+            *tests_of("lto", {}, "continuum/continuum_tests", "verification/verification_tests",
+                      "verification/claims_tests", "verification/compare_tests"),
+            Job("study", [program("lto", "verification/latcon"), "study", "patterns", "--dry-run"]),
+            crack("lto")]
+
+
 def asan():
     leaks = {"ASAN_OPTIONS": "detect_leaks=1"}
     # MPI keeps memory until the process ends, some of it in modules unloaded by then, which no suppression can name.
     no_leaks = {"ASAN_OPTIONS": "detect_leaks=0"}
-    tests = [Job(name, [program("debug", f"tests/{folder}/{name}"), "--gtest_brief=1"], environment)
-             for folder, name, environment in (("lattice", "lattice_tests", leaks),
-                                               ("verification", "verification_tests", no_leaks),
-                                               ("verification", "compare_tests", no_leaks),
-                                               ("continuum", "continuum_tests", no_leaks))]
+    tests = [*tests_of("debug", leaks, "lattice/lattice_tests"),
+             *tests_of("debug", no_leaks, "verification/verification_tests", "verification/compare_tests",
+                       "continuum/continuum_tests")]
     ranks = [Job(name, ["mpirun", "--oversubscribe", "-np", "2", program("debug", f"tests/{folder}/{name}"),
                         "--gtest_brief=1"], dict(no_leaks, LATCON_RANKS="2"))
              for folder, name in (("lattice", "lattice_ranks_tests"), ("continuum", "continuum_ranks_tests"))]
@@ -91,17 +84,12 @@ def tsan():
                    "TSAN_OPTIONS": "ignore_noninstrumented_modules=1 report_signal_unsafe=0"}
     # Where the system places memory at random over a wide range, ThreadSanitizer cannot start.
     fixed = ["setarch", "--addr-no-randomize"]
-    jobs = [Job("lattice_tests", [program("clang", "tests/lattice/lattice_tests"), "--gtest_brief=1"], environment),
+    jobs = [*tests_of("clang", environment, "lattice/lattice_tests"),
+            Job("motions", [program("clang", "tests/arm64/motion_bits")], environment),
             crack("clang", **environment)]
     for job in jobs:
         job.command = fixed + job.command
     return jobs
-
-
-# Minutes each under valgrind.
-SLOW = ("Contact.LedgerCloses*", "Contact.GivesTheSameBits*", "*BitsDoNotDependOn*", "CrackMeasurement.*",
-        "EnergyBalance.*", "Cutout.Relaxed*", "RungeKuttaChebyshev.Is*", "RungeKuttaChebyshev.ComesTo*",
-        "RungeKuttaChebyshev/*", "TimeStepLimits.*", "Fracture/*", "EndLoads/*", "LinkCells.Show*", "CorrelatedNoise.*")
 
 
 def valgrind():
@@ -112,10 +100,13 @@ def valgrind():
 
 
 PARTS = {
+    "lto": Part(lto, r"\[-Werror=(odr|lto-type-mismatch)\]|: Assertion '|^\[  FAILED  \] [^0-9]", "lto"),
     "clang": Part(lambda: [Job("built", ["true"])], MESSAGE, "clang"),
     "cppcheck": Part(cppcheck, MESSAGE),
-    "tidy": Part(tidy, MESSAGE, "clang", ("latcon",)),
+    "tidy": Part(tidy, MESSAGE, "clang", ("verification/latcon_git_commit", *(f"{folder}/CMakeFiles/latcon_{folder}.dir/cmake_pch.hxx.pch"
+                                          for folder in ("continuum", "verification")))),
     "asan": Part(asan, r"ERROR: (AddressSanitizer|LeakSanitizer)|runtime error:|^\[  FAILED  \] [^0-9]", "debug"),
-    "tsan": Part(tsan, r"WARNING: ThreadSanitizer|^\[  FAILED  \] [^0-9]", "clang", ("lattice_tests", "latcon")),
+    "tsan": Part(tsan, r"WARNING: ThreadSanitizer|^\[  FAILED  \] [^0-9]", "clang",
+                 ("lattice_tests", "motion_bits", "latcon")),
     "valgrind": Part(valgrind, r"^==\d+== [A-Z]|^\[  FAILED  \] [^0-9]", "release", ("lattice_tests",)),
 }

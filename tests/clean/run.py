@@ -1,10 +1,11 @@
 #!/usr/bin/python3
 """Looks for the mistakes that tests do not show.
 
+  lto       nothing optimised, with checks of the standard library: gcc links whole programs at once and compares all types
+            (one definition rule), then tests and a crack run
   clang     clang++ builds everything with the warnings that gcc gets, as errors
   cppcheck  all sources
-  tidy      clang-tidy over all sources of the program and of the lattice's tests, as .clang-tidy says; a file whose text and
-            headers did not change keeps its result
+  tidy      clang-tidy over all sources, tests included, as .clang-tidy says
   asan      tests and short runs of the program under AddressSanitizer and UndefinedBehaviorSanitizer, with the debug
             libraries of deal.II; leaks are looked for where MPI does not start
   tsan      tests of the lattice and a crack on three threads under ThreadSanitizer, with clang++ and LLVM's OpenMP, which

@@ -17,10 +17,6 @@ class Mutant:
     after: str   # and with the fault
     kind: str    # of fault
 
-    @property
-    def folder(self):
-        return self.file.split("/")[0]
-
     def planted(self, text):
         """The text of the file with the fault in it."""
         lines = text.split("\n")
@@ -158,20 +154,6 @@ def of_file(path, file):
     return mutants
 
 
-def sample(mutants, size, seed):
-    """`size` of the mutants, in turns from each file, so that small files are not lost among large ones. A mutant's
-    place in the order depends on the seed and itself alone."""
-    of_files = {}
-    for mutant in mutants:
-        of_files.setdefault(mutant.file, []).append(mutant)
-    queues = []
-    for file in sorted(of_files):
-        ordered = sorted(of_files[file], key=lambda m: (m.line, m.after))
-        random.Random(f"{seed} {file}").shuffle(ordered)
-        queues.append(ordered)
-    chosen = []
-    while len(chosen) < size and any(queues):
-        for queue in queues:
-            if queue and len(chosen) < size:
-                chosen.append(queue.pop())
-    return sorted(chosen, key=lambda m: (m.file, m.line, m.after))
+def in_random_order(mutants, seed):
+    """So that the first N are a sample of all, each as likely as any other. A mutant's place depends on the seed and itself alone."""
+    return sorted(mutants, key=lambda m: random.Random(f"{seed} {m.file} {m.line} {m.before} {m.after}").random())

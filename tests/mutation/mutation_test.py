@@ -16,7 +16,7 @@ sys.dont_write_bytecode = True
 import mutants
 import testing
 from equivalents import Equivalents
-from run import EQUIVALENTS, ROOT
+from run import EQUIVALENTS, PLACES, ROOT, Report, programs_for
 from scratch import Scratch
 
 CXX = "c++"
@@ -65,14 +65,39 @@ class Faults(unittest.TestCase):
         # A statement that goes on from the line before is none.
         self.assertNotIn("dropped", [kind for _, kind, _ in self.found("  const double sum = a[0] +\n    f(1);\n")])
 
-    def test_are_sampled_by_seed_and_in_turns(self):
-        many = [mutants.Mutant(f"lattice/{file}", line, "a", f"b{line}", "sign") for file, n in (("a.cc", 50), ("b.cc", 5))
+    def test_are_drawn_by_seed(self):
+        many = [mutants.Mutant(f"lattice/{file}", line, "a", f"b{line}", "sign") for file, n in (("a.cc", 900), ("b.cc", 100))
                 for line in range(n)]
-        sample = mutants.sample(many, 12, "1")
-        self.assertEqual(sample, mutants.sample(many[::-1], 12, "1"))
-        self.assertNotEqual(sample, mutants.sample(many, 12, "2"))
-        self.assertEqual(sum(m.file == "lattice/b.cc" for m in sample), 5)
-        self.assertEqual(set(mutants.sample(many, 99, "1")), set(many))
+        drawn = mutants.in_random_order(many, "1")
+        self.assertEqual(drawn, mutants.in_random_order(many[::-1], "1"))
+        self.assertNotEqual(drawn, mutants.in_random_order(many, "2"))
+        self.assertEqual(set(drawn), set(many))
+        # The place of each depends on itself alone.
+        some = [m for m in many if m.line % 2]
+        self.assertEqual(mutants.in_random_order(some, "1"), [m for m in drawn if m in some])
+        # As many of a file as it has a share in all: 20 of 200, give or take three standard deviations.
+        self.assertLess(abs(sum(m.file == "lattice/b.cc" for m in drawn[:200]) - 20), 3 * (200 * 0.1 * 0.9) ** 0.5)
+
+    def test_each_source_has_its_programs(self):
+        self.assertEqual(programs_for("lattice/forces.cc")[0], "lattice_tests")
+        self.assertEqual(programs_for("verification/units.cc")[0], "verification_tests")
+        self.assertEqual(programs_for("verification/wave_speeds/bloch.cc")[0], "claims_tests")
+        self.assertEqual(programs_for("verification/commands/gate.cc"), [])
+        # Each beginning of a name is that of a source.
+        for place in PLACES:
+            self.assertTrue(any(ROOT.glob(f"{place}*")), place)
+
+
+class Scores(unittest.TestCase):
+    def test_interval_is_wilsons(self):
+        with_faults = [mutants.Mutant("lattice/a.cc", line, "a", f"b{line}", "sign") for line in range(10)]
+        report = Report(None, Equivalents({}), with_faults, 1000)
+        for mutant in with_faults:
+            report.add(mutant, testing.Verdict("survived" if mutant.line == 0 else "killed"), 1.)
+        # 9 of 10: E. B. Wilson, J. Am. Stat. Assoc. 22, 209 (1927).
+        for bound, expected in zip(report.uncertainty(), (0.5958, 0.9821)):
+            self.assertAlmostEqual(bound, expected, places=3)
+        self.assertIn("10 of 1000 faults were planted", report.text())
 
 
 class Reviewed(unittest.TestCase):
@@ -144,6 +169,11 @@ class Project(unittest.TestCase):
         self.assertEqual(sum(m["outcome"] == "killed" for m in record["mutants"]), 6)
         self.assertTrue(all(m["by"].startswith("lattice_tests: ") for m in record["mutants"]))
         self.assertIn("100.0 %", text)
+
+    def test_none_begins_after_the_hours(self):
+        (self.root / "record.json").write_text('{"mutants": []}', encoding="utf-8")
+        status, text, record = self.planted("--hours", "0")
+        self.assertEqual((status, record["mutants"]), (0, []), text)
 
     def test_what_no_test_sees_is_reported(self):
         (self.root / "tests/lattice/bond_law_test.cc").write_text(EMPTY, encoding="utf-8")

@@ -9,6 +9,7 @@ import argparse
 import collections
 import concurrent.futures
 import json
+import math
 import pathlib
 import shutil
 import signal
@@ -20,41 +21,46 @@ sys.dont_write_bytecode = True
 
 import mutants
 from equivalents import Equivalents
-from scratch import Scratch
+from scratch import SOURCE_NAMES, Scratch
 from testing import Failed, GoogleTests, Ranks
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 EQUIVALENTS = pathlib.Path(__file__).with_name("equivalents.txt")
 
-# What carries the physics, by folder; and the test programs that are to see a fault there.
-FILES = {
-    "lattice": ["bond_law.h", "bond_force.inc", "chebyshev_stages.cc", "contact.cc", "end_loads.cc", "energy.cc", "energy.h",
-                "forces.cc", "fracture.cc", "integrator.cc", "link_cells.cc", "material.cc", "row_kernels.cc",
-                "runge_kutta_chebyshev.cc", "simulation.cc", "state.cc", "time_step.cc", "triangular_lattice.cc",
-                "velocity_verlet.cc"],
-    "continuum": ["cauchy_born.cc", "dynamic_ledger.cc", "dynamic_step.cc", "element_integrals.cc", "element_kernels.cc",
-                  "fibres.cc", "gradient_law.cc", "isotropic_gradient.cc", "lattice_gradient.cc", "local_to_global.cc",
-                  "material.cc", "mooney_rivlin.cc", "point_density.cc", "sheet_assembly.cc", "viscosity.cc",
-                  "viscous_forces.cc"],
-    "verification": ["affine_displacement.h", "homogenisation.cc", "order_fit.h", "energy/energy_claim.cc",
-                     "energy/wave_energy.cc", "intrinsic_length/dispersion.cc", "intrinsic_length/edge_layer.cc",
-                     "intrinsic_length/gradient_positivity.cc", "intrinsic_length/intrinsic_length_claim.cc",
-                     "prestretch/cut_claim.cc", "prestretch/cut_comparison.cc", "prestretch/cut_lattice.cc",
-                     "prestretch/cut_study.cc", "prestretch/equivalent_sheet.cc", "prestretch/prestretch_claim.cc",
-                     "wave_speeds/bloch.cc", "wave_speeds/continuum_waves.cc", "wave_speeds/lattice_waves.cc",
-                     "wave_speeds/oscillation.cc", "wave_speeds/plane_waves.cc", "wave_speeds/wave_speeds_claim.cc"]}
-STAGES = {"support": ["support_tests"], "lattice": ["lattice_tests", "lattice_ranks_tests"], "continuum": ["continuum_tests"],
-          "verification": ["claims_tests"]}
-PROGRAMS = {"support_tests": GoogleTests(), "lattice_tests": GoogleTests(), "lattice_ranks_tests": Ranks(3), "continuum_tests": GoogleTests(),
-            "claims_tests": GoogleTests(), "verification_tests": GoogleTests()}
+# Where faults are planted, by the longest of these beginnings of a file's name; and the test programs that are to see them.
+PLACES = {
+    "support/": ["support_tests"],
+    "lattice/": ["lattice_tests", "lattice_ranks_tests"],
+    "continuum/": ["continuum_tests"],
+    "verification/": ["verification_tests", "claims_tests"],
+    **dict.fromkeys(["verification/affine_displacement.h", "verification/homogenisation.cc", "verification/order_fit.h",
+                     "verification/crack_oracle/", "verification/energy/", "verification/intrinsic_length/",
+                     "verification/prestretch/", "verification/wave_speeds/"], ["claims_tests", "verification_tests"]),
+    "verification/compare/": ["compare_tests"],
+    # What scripts test: commands, files of results, and messages.
+    **dict.fromkeys(["lattice/field_units.h", "lattice/field_writer.", "lattice/frame_series.", "lattice/motion_writer.",
+                     "lattice/near_tip_writer.", "lattice/vtk_file.", "verification/commands/", "verification/compare/difference_writer.",
+                     "verification/compare/quiet_vtk.", "verification/continuum_model.", "verification/continuum_record.",
+                     "verification/fracture/", "verification/main.cc", "verification/precompiled.h", "continuum/precompiled.h",
+                     "verification/study/study_output."], []),
+}
+PROGRAMS = {"support_tests": GoogleTests(), "lattice_tests": GoogleTests(), "lattice_ranks_tests": Ranks(3),
+            "continuum_tests": GoogleTests(),
+            "claims_tests": GoogleTests(), "compare_tests": GoogleTests(), "verification_tests": GoogleTests()}
+
+
+def programs_for(file):
+    """Names of the test programs that are to see faults of a source."""
+    return PLACES[max(filter(file.startswith, PLACES), key=len)]
 
 
 def arguments():
     parser = argparse.ArgumentParser(prog="tests/mutation/run", description=__doc__,
                                      formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--only", nargs="+", metavar="FILE", help="of these sources or folders, relative to the root; by "
-                        "default those that carry the physics")
-    parser.add_argument("--sample", type=int, metavar="N", help="N faults, in turns from each file; by default all of them")
+                        "default all that test programs, and not scripts alone, are to see")
+    parser.add_argument("--sample", type=int, metavar="N", help="N faults, drawn at random; by default all of them")
+    parser.add_argument("--hours", type=float, metavar="H", help="begin no further fault after H hours, those without faults included")
     parser.add_argument("--seed", default="1", metavar="S", help="what the sample depends on (1)")
     parser.add_argument("--list", action="store_true", help="show the faults, plant none")
     parser.add_argument("--programs", nargs="+", choices=PROGRAMS, metavar="NAME", help="test programs to run instead of "
@@ -73,17 +79,15 @@ def arguments():
 
 def files(root, only):
     """Names of the sources to plant faults in. @throws Failed for a name that is none"""
-    standard = [f"{folder}/{name}" for folder, names in FILES.items() for name in names]
+    known = [str(path.relative_to(root)) for folder in sorted({place.split("/")[0] for place in PLACES})
+             for path in sorted((root / folder).rglob("*")) if path.suffix in SOURCE_NAMES]
     if not only:
-        return standard
+        return [file for file in known if programs_for(file)]
     chosen = []
     for name in only:
-        path = (root / name).resolve()
-        inside = [f for f in standard if (root / f).is_relative_to(path)]
-        if path.is_file() and path.is_relative_to(root) and path.relative_to(root).parts[0] in FILES:
-            inside = [str(path.relative_to(root))]
+        inside = [file for file in known if (root / file).is_relative_to((root / name).resolve())]
         if not inside:
-            raise Failed(f"--only {name}: neither a source of {', '.join(FILES)} nor a folder with some that are listed")
+            raise Failed(f"--only {name}: neither a source of the program nor a folder with some")
         chosen += inside
     return list(dict.fromkeys(chosen))
 
@@ -91,8 +95,8 @@ def files(root, only):
 class Report:
     """What came out so far, on the screen and in a file."""
 
-    def __init__(self, path, equivalents, chosen):
-        self._path, self._equivalents, self._n_mutants = path, equivalents, len(chosen)
+    def __init__(self, path, equivalents, chosen, n_all):
+        self._path, self._equivalents, self._n_mutants, self._n_all = path, equivalents, len(chosen), n_all
         self._records = []
         self.survivors = []
         self.rest = list(chosen)  # still to be planted
@@ -129,6 +133,12 @@ class Report:
         seen = outcomes["killed"] + outcomes["survived"]
         return outcomes["killed"] / seen if seen else None
 
+    def uncertainty(self):
+        """Wilson's interval of 95 % for the score of all faults of which these are a sample."""
+        n, p, z = sum(r["outcome"] in ("killed", "survived") for r in self._records), self.score(), 1.96
+        centre, half = p + z**2 / (2 * n), z * math.sqrt(p * (1 - p) / n + z**2 / (4 * n**2))
+        return [(centre + sign * half) / (1 + z**2 / n) for sign in (-1, 1)]
+
     def text(self):
         """Table of the folders and the survivors in full."""
         lines = [f"{'folder':14}{'killed':>8}{'survived':>10}{'equivalent':>12}{'no program':>12}{'score':>8}"]
@@ -137,15 +147,19 @@ class Report:
             score = self.score(folder)
             lines.append(f"{folder or 'all':14}{outcomes['killed']:8}{outcomes['survived']:10}{outcomes['equivalent']:12}"
                          f"{outcomes['no program']:12}" + (f"{100. * score:6.1f} %" if score is not None else f"{'-':>8}"))
+        if self.score() is not None and len(self._records) < self._n_all:
+            low, high = self.uncertainty()
+            lines.append(f"{len(self._records)} of {self._n_all} faults were planted; with 95 % confidence the score of all is between "
+                         f"{100. * low:.1f} % and {100. * high:.1f} %")
         for mutant in sorted(self.survivors, key=lambda m: (m.file, m.line)):
             lines.append(f"\nsurvived: {mutant}")
         return "\n".join(lines)
 
 
-def tested(chosen, options, report):
+def tested(chosen, options, report, deadline):
     """Plants the mutants and has the report take note of each."""
-    stages = {folder: options.programs or names for folder, names in STAGES.items()}
-    names = {name for mutant in chosen for name in stages[mutant.folder]}
+    stages = {mutant.file: options.programs or programs_for(mutant.file) for mutant in chosen}
+    names = {name for programs in stages.values() for name in programs}
     with tempfile.TemporaryDirectory(prefix="mutation-", dir=options.build.parent) as place:
         folder = pathlib.Path(place)
         scratch = Scratch(options.root, options.build, folder, {name: p for name, p in PROGRAMS.items() if name in names})
@@ -154,7 +168,9 @@ def tested(chosen, options, report):
 
         def test(number):
             start, own = time.monotonic(), folder / f"mutant-{number}"
-            verdict = scratch.test(chosen[number], stages[chosen[number].folder], own)
+            if start > deadline:
+                return None
+            verdict = scratch.test(chosen[number], stages[chosen[number].file], own)
             shutil.rmtree(own)
             return chosen[number], verdict, time.monotonic() - start
 
@@ -162,7 +178,8 @@ def tested(chosen, options, report):
             running = [pool.submit(test, number) for number in range(len(chosen))]
             try:
                 for done in concurrent.futures.as_completed(running):
-                    report.add(*done.result())
+                    if done.result():
+                        report.add(*done.result())
             except BaseException:
                 pool.shutdown(cancel_futures=True)
                 raise
@@ -171,18 +188,20 @@ def tested(chosen, options, report):
 def main():
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that the copy goes
     options = arguments()
+    deadline = math.inf if options.hours is None else time.monotonic() + 3600. * options.hours
     try:
         chosen = [mutant for file in files(options.root, options.only)
                   for mutant in mutants.of_file(options.root / file, file)]
-        if options.sample is not None:
-            chosen = mutants.sample(chosen, options.sample, options.seed)
+        n_all = len(chosen)
+        if not options.list or options.sample is not None:
+            chosen = mutants.in_random_order(chosen, options.seed)[:options.sample]
         if options.list:
             print("\n".join(map(str, chosen)))
             return 0
         equivalents = Equivalents.read(EQUIVALENTS)
-        report = Report(options.output, equivalents, chosen)
+        report = Report(options.output, equivalents, chosen, n_all)
         if report.rest:
-            tested(report.rest, options, report)
+            tested(report.rest, options, report, deadline)
     except (Failed, OSError, ValueError) as error:
         print(f"tests/mutation/run: {error}", file=sys.stderr)
         return 2

@@ -6,7 +6,7 @@
 #include <string>
 
 using verification::parse_unit;
-using verification::Quantity;
+using verification::ParsedNumber;
 using verification::read_quantity;
 
 namespace
@@ -14,7 +14,7 @@ namespace
 
 double read(const std::string &text, const std::string &unit)
 {
-  const Quantity quantity = read_quantity(text, unit);
+  const ParsedNumber quantity = read_quantity(text, unit);
   EXPECT_EQ(quantity.wrong, "") << text;
   return quantity.value;
 }

@@ -20,7 +20,7 @@ std::optional<double> time_option(const std::string &name, const std::string &te
 {
   if (text.empty())
     return {};
-  const Quantity quantity = read_quantity(text, "s");
+  const ParsedNumber quantity = read_quantity(text, "s");
   if (!quantity.wrong.empty())
     throw InputError(name + " " + text + ": " + quantity.wrong);
   return quantity.value;
@@ -45,7 +45,7 @@ std::map<std::string, double> read_tolerances(const std::vector<std::string> &te
       problems.push_back("--tolerance " + text + ": FIELD=VALUE is wanted, FIELD one of " + names);
       continue;
     }
-    const Quantity quantity = read_quantity(text.substr(equals + 1), "1");
+    const ParsedNumber quantity = read_quantity(text.substr(equals + 1), "1");
     if (!quantity.wrong.empty() || !(quantity.value > 0.))
       problems.push_back("--tolerance " + text + ": " +
                          (quantity.wrong.empty() ? "must be larger than 0" : quantity.wrong));

@@ -9,7 +9,8 @@ namespace
 {
 
 // A measured number and its uncertainty, one standard deviation.
-void add_measured(std::vector<Quantity> &all, const std::string &name, const std::string &unit, Quantity::Source source)
+void add_measured(std::vector<StudyQuantity> &all, const std::string &name, const std::string &unit,
+                  StudyQuantity::Source source)
 {
   all.push_back({name, unit, source});
   all.push_back({name + "_uncertainty", unit, source});
@@ -18,10 +19,10 @@ void add_measured(std::vector<Quantity> &all, const std::string &name, const std
 // Known in m, and over d as well.
 const std::vector<std::string> lengths_of_oscillation{"wavelength", "amplitude", "crest_amplitude"};
 
-std::vector<Quantity> all_quantities()
+std::vector<StudyQuantity> all_quantities()
 {
-  using Source = Quantity::Source;
-  std::vector<Quantity> all{{"zeta", "1", Source::derived}};
+  using Source = StudyQuantity::Source;
+  std::vector<StudyQuantity> all{{"zeta", "1", Source::derived}};
   for (const char *name : {"speed_lagrangian", "speed_laboratory"})
     add_measured(all, name, "m/s", Source::crack);
   for (const std::string &name : lengths_of_oscillation)
@@ -71,9 +72,9 @@ std::vector<Quantity> all_quantities()
 
 } // namespace
 
-const std::vector<Quantity> &quantities()
+const std::vector<StudyQuantity> &quantities()
 {
-  static const std::vector<Quantity> all = all_quantities();
+  static const std::vector<StudyQuantity> all = all_quantities();
   return all;
 }
 
@@ -86,7 +87,7 @@ const std::vector<std::string> &pattern_words()
 std::string unit_of(const std::string &quantity)
 {
   const auto found = std::find_if(quantities().begin(), quantities().end(),
-                                  [&quantity](const Quantity &known) { return known.name == quantity; });
+                                  [&quantity](const StudyQuantity &known) { return known.name == quantity; });
   if (found == quantities().end())
     throw std::logic_error("study: '" + quantity + "' is no quantity");
   return found->unit;

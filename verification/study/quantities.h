@@ -8,8 +8,8 @@
 namespace verification
 {
 
-/// A number of a run.
-struct Quantity
+/// Number that a study records of each run.
+struct StudyQuantity
 {
   /// Where the number is read.
   enum class Source
@@ -25,7 +25,7 @@ struct Quantity
 };
 
 /// All numbers, in the order of study.csv. Those that a run does not have are left empty there.
-[[nodiscard]] const std::vector<Quantity> &quantities();
+[[nodiscard]] const std::vector<StudyQuantity> &quantities();
 
 /// The one quantity that is a word: "straight", "oscillating", "branching" or "arrested".
 inline constexpr const char *pattern_quantity = "pattern";

@@ -43,9 +43,9 @@ Value value_or(const Json &object, const std::string &key, const Value &otherwis
   }
 }
 
-void read_numbers(const Json &object, const Quantity::Source source, Values &values)
+void read_numbers(const Json &object, const StudyQuantity::Source source, Values &values)
 {
-  for (const Quantity &quantity : quantities())
+  for (const StudyQuantity &quantity : quantities())
     if (quantity.source == source && object.contains(quantity.name) && object[quantity.name].is_number())
       values[quantity.name] = object[quantity.name].get<double>();
 }
@@ -94,8 +94,8 @@ RunOutcome read_outcome(const PlannedRun &run, const std::string &folder, const 
     outcome.state = RunState::measured;
     outcome.conclusive = value_or(crack, "conclusive", false);
     outcome.reason = value_or(crack, "reason", std::string());
-    read_numbers(crack, Quantity::Source::crack, outcome.values);
-    read_numbers(object_in(folder + "/near_tip.json"), Quantity::Source::near_tip, outcome.values);
+    read_numbers(crack, StudyQuantity::Source::crack, outcome.values);
+    read_numbers(object_in(folder + "/near_tip.json"), StudyQuantity::Source::near_tip, outcome.values);
     add_derived(outcome.values, run.spacing);
     return outcome;
   }

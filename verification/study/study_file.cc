@@ -307,7 +307,7 @@ private:
   static std::vector<std::string> quantity_names()
   {
     std::vector<std::string> names{pattern_quantity};
-    for (const Quantity &quantity : quantities())
+    for (const StudyQuantity &quantity : quantities())
       names.push_back(quantity.name);
     return names;
   }

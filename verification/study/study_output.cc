@@ -47,7 +47,7 @@ Json json_of(const PlannedRun &planned, const RunOutcome &outcome)
   run["sites"] = planned.sites;
   run["wall_time_s"] = outcome.wall_time;
   run["values"] = Json::object();
-  for (const Quantity &quantity : quantities())
+  for (const StudyQuantity &quantity : quantities())
   {
     const auto found = outcome.values.find(quantity.name);
     run["values"][quantity.name] = found == outcome.values.end() ? Json(nullptr) : Json(found->second);
@@ -146,7 +146,7 @@ std::string study_json(const StudyResults &results)
   document["verification"] = results.verification;
   document["settings"] = json_of(results.study.settings);
   document["units"] = Json::object();
-  for (const Quantity &quantity : quantities())
+  for (const StudyQuantity &quantity : quantities())
     document["units"][quantity.name] = quantity.unit;
   document["runs"] = Json::array();
   for (const StudyRun &run : results.study.runs)
@@ -177,7 +177,7 @@ std::string study_json(const StudyResults &results)
 std::string study_csv(const StudyResults &results)
 {
   std::vector<std::string> columns{"run", "seed", "set", "state", "pattern", "conclusive"};
-  for (const Quantity &quantity : quantities())
+  for (const StudyQuantity &quantity : quantities())
     columns.push_back(quantity.name + " [" + quantity.unit + "]");
   Table table(columns);
   for (const RunOutcome &outcome : results.outcomes)
@@ -193,7 +193,7 @@ std::string study_csv(const StudyResults &results)
                                  std::string(outcome.state != RunState::measured ? ""
                                              : outcome.conclusive                ? "true"
                                                                                  : "false")};
-    for (const Quantity &quantity : quantities())
+    for (const StudyQuantity &quantity : quantities())
     {
       const auto found = outcome.values.find(quantity.name);
       row.push_back(found == outcome.values.end() ? Table::Cell(std::string()) : Table::Cell(found->second));
