@@ -31,9 +31,10 @@ CAPTIONS = {
 }
 
 
-def page(title, runs, pictures, plots):
+def page(title, runs, pictures, plots, unreadable=()):
     """The whole page.
 
+    unreadable: runs that cannot be shown
     pictures: of cracks, {folder of a run: {name in CAPTIONS: (picture, still picture for print or None)}}
     plots: of claims, {folder of a run: {plot name: (PNG file, error metrics)}}
     """
@@ -56,7 +57,7 @@ def page(title, runs, pictures, plots):
 <h1>latcon report: {escape(title)}</h1>
 <p class="soft">{escape(", ".join(versions) or "latcon")}: what was checked, what came out, and whether it holds</p>
 <main>
-{banner(runs)}
+{banner(runs, unreadable)}
 {key_numbers(runs)}
 <nav aria-label="sections">{"".join(links)}</nav>
 {"".join(cracks)}
@@ -71,7 +72,7 @@ def page(title, runs, pictures, plots):
 """
 
 
-def banner(runs):
+def banner(runs, unreadable=()):
     """The verdict over everything, and what a reader must know first."""
     checks = [check for run in runs for check in run.checks]
     total = tally_of(None, "", checks).count
@@ -83,12 +84,14 @@ def banner(runs):
         notes += [f'<b class="fails">{escape(run.name)}, {escape(check.claim)}: {escape(check.quantity)}</b>, '
                   f"error {number(check.error, '.3g')}, allowed {number(check.tolerance, '.3g')}"
                   for run in runs for check in run.checks if check.verdict == "fails"]
-    elif incomplete:
+    elif incomplete or unreadable:
         kind, head = "warns", f"! Not complete: {'what is there holds' if checked else 'nothing was checked'}"
     elif checked:
         kind, head = "holds", f"✓ Holds: all {checked} checks are within their tolerances"
     else:
         kind, head = "reported", "· Reported: nothing here has a tolerance"
+    notes += [f'<b class="fails">{escape(run.name)}: cannot be read, not shown</b>: {escape(run.problem)}'
+              for run in unreadable]
     notes += [f"{escape(run.name)}: the run {'was interrupted' if run.state == 'interrupted' else 'has not ended'}; "
               "what it had written by then is shown" for run in incomplete]
     notes += [f"{escape(run.name)}: the crack was run without its material and pre-stretch having been verified "
