@@ -108,7 +108,7 @@ def headline(run):
     """A crack in one line."""
     found = [f"{escape(c.quantity.split(',')[0])} {with_uncertainty(c.measured, c.uncertainty)} {escape(c.unit)} "
              f"({percent(c.difference)} from the paper)" for c in comparisons(run) if c.measured is not None]
-    return "; ".join([f"the crack is {escape(run.crack['pattern'])}"] + found)
+    return "; ".join([pattern_phrase(run.crack)] + found)
 
 
 def overview(runs):
@@ -174,13 +174,19 @@ def facts(run):
     return f'<p class="soft">{escape(" · ".join(found))}</p>' if found else ""
 
 
+def pattern_phrase(crack):
+    """The pattern of a crack in words."""
+    word = escape(crack["pattern"])
+    return "the pattern of the crack is <b>undecided</b>" if word == "undecided" else f"the crack is <b>{word}</b>"
+
+
 def pattern_sentence(run):
-    """What the crack did, and how sure that is."""
+    """What the crack did, and why it is called that."""
     if run.crack is None:
         return "<p>The run did not get to the measurement of its crack (no crack.json).</p>"
-    sure = "" if run.crack.get("conclusive", True) else " The record does not settle it."
-    reason = f": {run.crack['reason']}" if run.crack.get("reason") else ""
-    return f"<p>The crack is <b>{escape(run.crack['pattern'])}</b>{escape(reason)}.{sure}</p>"
+    phrase = pattern_phrase(run.crack)
+    reason = f": {escape(run.crack['reason'])}" if run.crack.get("reason") else ""
+    return f"<p>{phrase[:1].upper()}{phrase[1:]}{reason}.</p>"
 
 
 def key_numbers(runs):
