@@ -1,6 +1,7 @@
 #include "verification/atomic_file.h"
 
 #include "verification/errors.h"
+#include "verification/output_list.h"
 
 #include <array>
 #include <cerrno>
@@ -49,6 +50,12 @@ int write_and_sync(const int descriptor, const std::string &text)
 } // namespace
 
 void write_file(const std::string &path, const std::string &text)
+{
+  list_output(path);
+  replace_file(path, text);
+}
+
+void replace_file(const std::string &path, const std::string &text)
 {
   // Renaming over a device or a folder would destroy it or fail late.
   struct stat status

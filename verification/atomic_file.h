@@ -10,7 +10,7 @@ namespace verification
 
 /// Replaces the file `path` by `text`. The text goes to `path + ".part"` in the same folder, is forced to the disk, and
 /// is then renamed, so that at any moment, also after a kill or a full disk, `path` is whole: the old file or the new
-/// one.
+/// one. The file is listed in its folder first (output_list.h).
 /// @throws OutputError naming `path` and the system's reason; the old file is untouched and the part removed.
 void write_file(const std::string &path, const std::string &text);
 
@@ -19,6 +19,9 @@ void write_file(const std::string &path, const std::string &text);
 /// full_precision().
 /// @throws OutputError as above, and if `writer` leaves the stream in a failed state.
 void write_file(const std::string &path, const std::function<void(std::ostream &)> &writer);
+
+/// The same without listing the file.
+void replace_file(const std::string &path, const std::string &text);
 
 /// The shortest decimal text that reads back to the same double, bit for bit, in any locale: 0.1 -> "0.1".
 /// Not-a-number gives "nan" (its sign and payload are lost), infinities "inf" and "-inf".

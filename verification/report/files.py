@@ -21,6 +21,8 @@ class UnwritableFile(Exception):
         super().__init__(f"cannot write {path}: {problem}")
 
 
+# Names of the files that latcon wrote into an output directory, and of folders with those of runs before.
+OUTPUT_LIST, EARLIER = ".latcon-files", "earlier-run"
 # Exit codes, those of latcon.
 DONE, BAD_INPUT, CLAIM_FAILS, IO_FAILED = 0, 2, 3, 5
 
@@ -97,10 +99,28 @@ def read_table(path, columns, texts=(), finite=True):
 
 
 def write_file(path, write):
-    """Calls `write` with the name of a file beside `path`, which then takes its place."""
-    beside = path.with_name(path.name + ".part")
+    """Calls `write` with the name of a file beside `path`, which then takes its place. In the output directory of a run
+    the file is listed, as those of the run are (output_list.h)."""
     try:
-        write(beside)
-        os.replace(beside, path)
+        list_output(path)
+        replace_file(path, write)
     except OSError as error:
         raise UnwritableFile(path, error.strerror or error) from error
+
+
+def replace_file(path, write):
+    """The same without listing the file."""
+    beside = path.with_name(path.name + ".part")
+    write(beside)
+    os.replace(beside, path)
+
+
+def list_output(path):
+    """Puts a file into the list of its folder; nothing if the folder has none."""
+    listing = path.with_name(OUTPUT_LIST)
+    if not listing.exists():
+        return
+    names = listing.read_text(encoding="utf-8").splitlines()
+    if path.name not in names:
+        text = "".join(f"{name}\n" for name in sorted([*names, path.name]))
+        replace_file(listing, lambda beside: beside.write_text(text, encoding="utf-8"))

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from claim_tables import read_claim_tables
-from files import DamagedFile, read_json, read_table, read_text
+from files import EARLIER, DamagedFile, read_json, read_table, read_text
 
 # Any of these makes a folder that of a run, whole or interrupted.
 SIGNS_OF_A_RUN = ("results.json", "run.json", "crack.json", "crack.csv", "lattice.pvd")
@@ -110,7 +110,8 @@ def find_runs(folder):
     @return (list of Run, list of Unreadable)
     """
     try:
-        candidates = [folder] + sorted(path for path in folder.iterdir() if path.is_dir())
+        candidates = [folder] + sorted(path for path in folder.iterdir()
+                                       if path.is_dir() and not path.name.startswith(EARLIER))
         candidates = [path for path in candidates if any((path / sign).exists() for sign in SIGNS_OF_A_RUN)]
     except OSError as error:
         raise DamagedFile(folder, error.strerror) from error
