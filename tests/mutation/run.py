@@ -41,8 +41,8 @@ FILES = {
                      "intrinsic_length/gradient_positivity.cc", "intrinsic_length/intrinsic_length_claim.cc",
                      "prestretch/cut_claim.cc", "prestretch/cut_comparison.cc", "prestretch/cut_lattice.cc",
                      "prestretch/cut_study.cc", "prestretch/equivalent_sheet.cc", "prestretch/prestretch_claim.cc",
-                     "wave_speeds/bloch.cc", "wave_speeds/continuum_waves.cc", "wave_speeds/lattice_waves.cc",
-                     "wave_speeds/oscillation.cc", "wave_speeds/plane_waves.cc", "wave_speeds/wave_speeds_claim.cc"]}
+                     "bloch.cc", "wave_speeds/continuum_waves.cc", "wave_speeds/lattice_waves.cc",
+                     "wave_speeds/oscillation.cc", "plane_waves.cc", "wave_speeds/wave_speeds_claim.cc"]}
 STAGES = {"lattice": ["lattice_tests", "lattice_ranks_tests"], "continuum": ["continuum_tests"],
           "verification": ["claims_tests"]}
 PROGRAMS = {"lattice_tests": GoogleTests(), "lattice_ranks_tests": Ranks(3), "continuum_tests": GoogleTests(),

@@ -79,7 +79,7 @@ def write_fracture(folder, rows):
     write_table(folder / "broken_bonds.csv", "t,site,other_site,X,Y,stretch", (t, 0 * t, 0 * t + 1, X, Y, 0 * t + 3))
     write_table(folder / "energy.csv", "t,elastic,kinetic,viscous,broken,boundary_work,contact,imbalance",
                 (t, 100 - 1e4 * t, 2e3 * t, 5e3 * t, 3e3 * t, 0 * t, 0 * t, 1e-6 * t))
-    crack = {"pattern": "oscillating", "conclusive": True, "reason": "it winds", "window_begin": BEGIN,
+    crack = {"pattern": "oscillating", "reason": "it winds", "window_begin": BEGIN,
              "window_end": END, "speed_lagrangian": 20.0, "speed_lagrangian_uncertainty": 0.2,
              "wavelength": WAVELENGTH, "wavelength_uncertainty": 1.5e-4, "amplitude": AMPLITUDE,
              "amplitude_uncertainty": 1e-4}
