@@ -55,10 +55,14 @@ preset=$1
 shift
 build="$root/build/$preset"
 cd "$root"
-if [ ! -f "$build/build.ninja" ]; then
+# A build folder that came along when the clone was copied or moved still names the old place, and would build there.
+configured=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "$build/CMakeCache.txt" 2>/dev/null || true)
+if [ ! -f "$build/build.ninja" ] || [ ! "$configured" -ef "$root" ]; then
   echo "Configuring ($preset)" >&2
-  cmake --preset "$preset" >"$root/configure.log" 2>&1 || { cat "$root/configure.log" >&2; exit 1; }
+  cmake --fresh --preset "$preset" >"$root/configure.log" 2>&1 || { cat "$root/configure.log" >&2; exit 1; }
   rm -f "$root/configure.log"
 fi
-# Two compilers at once: a deal.II translation unit takes up to 2 GB.
-cmake --build "$build" --parallel 2 ${1:+--target "$@"} >&2
+# Two compilers at once: a deal.II translation unit takes up to 2 GB. The steps of every build, which look for new files and
+# for the commit, are not shown.
+cmake --build "$build" --parallel 2 ${1:+--target "$@"} |
+  sed -u -e '/Re-checking globbed directories/d' -e '/git_commit\.cmake/d' -e '/^ninja: no work to do/d' >&2

@@ -37,9 +37,9 @@ void check(const CrackMeasurementOptions &o)
   require(o.run_in_fraction >= 0. && o.clamp_fraction >= 0. && o.run_in_fraction + o.clamp_fraction < 1.,
           "crack measurement: run-in and clamp zone must be fractions and leave something of the strip");
   require(o.min_wavelength >= 6. && o.min_amplitude >= 0. && o.max_steepness > 0. && o.max_straight_rms > 0. &&
-            o.min_periods >= 1.,
-          "crack measurement: needs a shortest wavelength >= 6 d, an amplitude >= 0, slope and straying > 0 and at "
-          "least one period");
+            o.min_periods >= 1. && o.clear_periods >= o.min_periods,
+          "crack measurement: needs a shortest wavelength >= 6 d, an amplitude >= 0, slope and straying > 0, at "
+          "least one period, and no fewer to be clear");
   require(in_unit_interval(o.min_share) && in_unit_interval(o.settled_amplitude) &&
             in_unit_interval(o.arrest_fraction) && in_unit_interval(o.min_branched_fraction),
           "crack measurement: the thresholds on share, settling, arrest and branching lie between 0 and 1");
@@ -112,50 +112,65 @@ bool stands_still(const std::vector<TipRecord> &tip, const CrackMeasurementOptio
   return patience <= o.end_time && X_last - X_at(tip, o.end_time - patience, o.seed_tip_X) < 0.1 * expected;
 }
 
-/// Sets pattern, conclusive and reason of a crack that neither branched nor stopped.
+/// Sets pattern and reason of a crack that neither branched nor stopped.
 void decide_oscillating_or_straight(CrackMeasurement &m, bool is_long_enough, const CrackMeasurementOptions &o)
 {
-  m.pattern = CrackPattern::straight;
   if (!m.sinusoid)
   {
-    m.conclusive = is_long_enough;
+    if (is_long_enough)
+      m.pattern = CrackPattern::straight;
     m.reason = is_long_enough ? "the path has no waviness at all"
                               : text("only %.3g mm of path to measure, or too few entries in it: too short to tell",
                                      1e3 * (m.X_end - m.X_begin));
     return;
   }
   const SinusoidFit &fit = *m.sinusoid;
-  const bool is_high = fit.amplitude.value >= o.min_amplitude * o.lattice_spacing;
+  const double amplitude = fit.amplitude.value / o.lattice_spacing, share = 100. * fit.share_of_path;
+  const bool is_high = amplitude >= o.min_amplitude;
   const bool has_periods = m.periods >= o.min_periods;
   const bool is_path = 2. * std::acos(-1.) * fit.curve.amplitude() / fit.curve.wavelength <= o.max_steepness;
-  m.reason =
-    text("a sinusoid of %.3g mm length and %.3g mm amplitude makes up %.0f %% of the path over %.1f periods, "
-         "log evidence %.1f",
-         1e3 * fit.wavelength.value, 1e3 * fit.amplitude.value, 100. * fit.share_of_path, m.periods, fit.log_evidence);
+  const std::string sinusoid =
+    text("the best-fitting sinusoid has an amplitude of %.3g d, %s the %.3g d of an oscillation (%.3g mm, wavelength "
+         "%.3g mm, %.1f periods)",
+         amplitude, is_high ? "at least" : "less than", o.min_amplitude, 1e3 * fit.amplitude.value,
+         1e3 * fit.wavelength.value, m.periods);
   if (is_high && is_path && has_periods && fit.share_of_path >= o.min_share && fit.log_evidence >= o.min_log_evidence)
   {
-    m.pattern = CrackPattern::oscillating;
     m.wavelength = fit.wavelength;
     m.amplitude = fit.amplitude;
-    m.conclusive = m.periods >= 2. && fit.log_evidence >= o.clear_log_evidence;
-    if (!m.conclusive)
-      m.reason += m.periods < 2. ? ": fewer than two periods" : ": likely, not certain";
+    if (m.periods < o.clear_periods)
+      m.reason =
+        sinusoid + text(", but fewer than %.3g periods: an oscillation is likely, not certain", o.clear_periods);
+    else if (fit.log_evidence < o.clear_log_evidence)
+      m.reason = sinusoid + text(", but its log evidence %.1f is below %.3g: an oscillation is likely, not certain",
+                                 fit.log_evidence, o.clear_log_evidence);
+    else
+    {
+      m.pattern = CrackPattern::oscillating;
+      m.reason = sinusoid + text(" and makes up %.0f %% of the path, log evidence %.1f", share, fit.log_evidence);
+    }
     return;
   }
   // Here hops count: a straight path with hops all about it is straight, one that a sinusoid follows or that strays far
   // is doubtful.
-  const double strayed_rms = fit.residual_rms / std::sqrt(std::max(1. - fit.R_squared, 1e-12)); // about a straight line
-  const bool is_wavy =
-    is_high && (fit.R_squared >= o.min_share || strayed_rms > o.max_straight_rms * o.lattice_spacing);
-  m.conclusive = !is_wavy;
+  const double strayed_rms = fit.residual_rms / std::sqrt(std::max(1. - fit.R_squared, 1e-12)) / o.lattice_spacing;
+  const bool is_wavy = is_high && (fit.R_squared >= o.min_share || strayed_rms > o.max_straight_rms);
   if (!is_wavy)
-    m.reason += ": no oscillation";
+    m.pattern = CrackPattern::straight;
+  if (!is_high)
+    m.reason = sinusoid;
+  else if (!is_wavy)
+    m.reason =
+      sinusoid + text(", but explains only %.0f %% of a path that stays within %.2g d (rms) of a straight line",
+                      100. * fit.R_squared, strayed_rms);
   else if (!is_path)
-    m.reason += ": the tip jumps between places, which is no path";
+    m.reason = sinusoid + ", but is too steep: the tip jumps between places, which is no path";
   else if (!has_periods)
-    m.reason += ": a bend, too long for the window to be called an oscillation";
+    m.reason = sinusoid + text(", but fewer than %.3g periods: it may be a bend", o.min_periods);
   else
-    m.reason += ": the path wanders, not regularly enough to be called an oscillation";
+    m.reason = sinusoid + text(", but makes up %.0f %% of the path with log evidence %.1f, where an oscillation has at "
+                               "least %.0f %% and %.3g: the path wanders",
+                               share, fit.log_evidence, 100. * o.min_share, o.min_log_evidence);
 }
 
 } // namespace
@@ -172,6 +187,8 @@ const char *to_string(CrackPattern pattern)
     return "branching";
   case CrackPattern::arrested:
     return "arrested";
+  case CrackPattern::undecided:
+    return "undecided";
   }
   throw std::invalid_argument("unknown crack pattern");
 }
@@ -196,7 +213,6 @@ CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vec
   if (advance < least_advance && (tip.empty() || tip.back().t < 0.5 * options.end_time))
   {
     m.pattern = CrackPattern::arrested;
-    m.conclusive = true;
     m.reason = text("the tip advanced %.3g mm from the seed and stood for at least half of the run", 1e3 * advance);
     return m;
   }
@@ -228,19 +244,17 @@ CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vec
   if (m.branched_fraction >= options.min_branched_fraction)
   {
     m.pattern = CrackPattern::branching;
-    m.conclusive = true;
     m.reason = text("broken bonds form two or more strands over %.0f %% of the crack", 100. * m.branched_fraction);
   }
   else if (stands_still(tip, options))
   {
     m.pattern = CrackPattern::arrested;
-    m.conclusive = true;
     m.reason = text("the tip stopped at X = %.3g mm, Y = %.3g mm, %.3g ms before the end of the run", 1e3 * X_last,
                     1e3 * tip.back().Y, 1e3 * (options.end_time - tip.back().t));
   }
   else
     decide_oscillating_or_straight(m, settled.is_long_enough, options);
-  if (m.pattern == CrackPattern::oscillating)
+  if (m.wavelength)
   {
     m.crest_amplitude = crest_amplitude(steady, options.lattice_spacing, m.sinusoid->curve);
     if (m.crest_amplitude)

@@ -18,10 +18,11 @@ enum class CrackPattern
   straight,
   oscillating,
   branching,
-  arrested
+  arrested,
+  undecided ///< the record is too short or not clear enough to tell
 };
 
-/// The word that outputs use: "straight", "oscillating", "branching", "arrested".
+/// The word that outputs use: "straight", "oscillating", "branching", "arrested", "undecided".
 const char *to_string(CrackPattern pattern);
 
 /// What the sheet was, and where the rules of the measurement draw their lines. The first four have no default: NaN is
@@ -51,13 +52,15 @@ struct CrackMeasurementOptions
   /// Least SinusoidFit::share_of_path [-]: the sinusoid must be most of what the path does.
   double min_share = 0.5;
   /// Greatest root mean square distance from a straight line of a path that is surely straight, in d, > 0: hops of a
-  /// few d are no more than this after averaging. A straight path that strays further is not conclusive.
+  /// few d are no more than this after averaging. A path that strays further is undecided unless it oscillates.
   double max_straight_rms = 4.;
   /// Least number of wavelengths in the window: below it a bend and an oscillation are one and the same.
   double min_periods = 1.5;
+  /// From here on the number of wavelengths leaves no doubt. In between, the pattern is undecided.
+  double clear_periods = 2.;
   /// Least SinusoidFit::log_evidence of an oscillation [-]: odds of 20 to 1 against a straight path that wanders.
   double min_log_evidence = 3.;
-  /// From here on the evidence leaves no doubt [-]: odds of 150 to 1. In between, the pattern is not conclusive.
+  /// From here on the evidence leaves no doubt [-]: odds of 150 to 1. In between, the pattern is undecided.
   double clear_log_evidence = 5.;
   /// The window begins where the amplitude over one wavelength has come to this part of its later value [-], in (0, 1).
   double settled_amplitude = 0.75;
@@ -74,11 +77,10 @@ struct CrackMeasurementOptions
 /// What the record of a crack says.
 struct CrackMeasurement
 {
-  CrackPattern pattern = CrackPattern::straight;
-  /// False where the record is too short, or its path too wavy for straight and not regular enough for an oscillation,
-  /// or an oscillation holds fewer than two periods or lacks clear evidence. `reason` says which.
-  bool conclusive = false;
-  std::string reason; ///< one sentence for a reader, with the numbers that decided
+  /// Undecided where the record is too short, or its path too wavy for straight and not regular enough for an
+  /// oscillation, or an oscillation that is likely holds fewer than two periods or lacks clear evidence.
+  CrackPattern pattern = CrackPattern::undecided;
+  std::string reason; ///< one sentence for a reader: the criterion that decided, with its numbers
 
   /// Window that everything below was measured in, reference [m]. Equal ends where there is nothing to measure.
   double X_begin = 0., X_end = 0.;
@@ -86,9 +88,10 @@ struct CrackMeasurement
   std::optional<Measured> speed_lagrangian; ///< dX/dt [m/s]; none if the tip moved fewer than 10 times in the window
   std::optional<Measured> speed_laboratory; ///< dx/dt [m/s]; none likewise
 
-  std::optional<Measured> wavelength; ///< reference [m]; oscillating cracks only
-  std::optional<Measured> amplitude;  ///< of the nearest sinusoid, reference [m]; oscillating cracks only
-  /// Half the height from trough to crest, reference [m]; oscillating cracks of two wavelengths or more only. What one
+  /// Reference [m]; of cracks that oscillate, or are likely to.
+  std::optional<Measured> wavelength;
+  std::optional<Measured> amplitude; ///< of the nearest sinusoid, reference [m]; likewise
+  /// Half the height from trough to crest, reference [m]; likewise, with two wavelengths or more only. What one
   /// reads off a drawn path: a zigzag is higher than its nearest sinusoid, up to pi^2 / 8 = 1.23 times.
   std::optional<Measured> crest_amplitude;
 
@@ -107,7 +110,8 @@ struct CrackMeasurement
 /// 3. arrested: the tip stopped before the clamp zone and stood while it could have run `arrest_fraction` of the strip;
 /// 4. oscillating: a sinusoid of sufficient amplitude is most of what the path does, over enough periods, and explains
 ///    it better than a straight path that wanders does;
-/// 5. straight otherwise.
+/// 5. straight: the amplitude is too small for an oscillation, or hops outweigh the sinusoid;
+/// 6. undecided otherwise, and where the record is too short for any of these.
 ///
 /// The window runs from the end of the run-in to the clamp zone or the last position of the tip. Its beginning moves on
 /// to where the oscillation has reached its later amplitude, but two wavelengths stay in it where there are two.

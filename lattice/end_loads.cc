@@ -65,6 +65,12 @@ Eigen::Matrix2d tangent_along_x(const TriangularLattice &lattice, const Material
   return tangent;
 }
 
+bool waves_run_along_x(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F)
+{
+  const Eigen::Matrix2d tangent = tangent_along_x(lattice, material, F);
+  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(tangent).eigenvalues().minCoeff() > 0.;
+}
+
 EndLoads::EndLoads(const RowBand &band, const Material &material, const State &state, const Eigen::Matrix2d &F,
                    End left, End right)
   : impedance_(Eigen::Matrix2d::Zero())
@@ -88,9 +94,9 @@ EndLoads::EndLoads(const RowBand &band, const Material &material, const State &s
     }
   if (left != End::absorbing && right != End::absorbing)
     return;
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> modes(material.density * tangent_along_x(lattice, material, F));
-  if (!(modes.eigenvalues().minCoeff() > 0.))
+  if (!waves_run_along_x(lattice, material, F))
     throw std::invalid_argument("no waves run along x in the loaded sheet, so that an end cannot absorb them");
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> modes(material.density * tangent_along_x(lattice, material, F));
   const bool along = lattice.orientation() == Orientation::rows_along_crack;
   impedance_ = (along ? std::sqrt(3.) / 2. : 1.) * lattice.spacing() * modes.operatorSqrt();
 }

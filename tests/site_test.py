@@ -9,6 +9,7 @@ import pathlib
 import re
 import subprocess
 import sys
+import tempfile
 import unittest
 import urllib.parse
 
@@ -21,6 +22,14 @@ def module(path):
     loaded = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(loaded)
     return loaded
+
+
+# What a page says in its title once its formulas are set: boxes of equations and code, and those whose text is cut off.
+MEASURE = """<script>addEventListener("load", () => MathJax.Hub.Queue(() => {
+  const boxes = [...document.querySelectorAll("div.fragment, pre.fragment, .MathJax_Display")];
+  const cut = boxes.filter(box => box.scrollWidth > box.clientWidth + 1);
+  document.title = [boxes.length, ...cut.map(box => box.textContent.slice(0, 60))].join("|");
+}));</script>"""
 
 
 class Page(html.parser.HTMLParser):
@@ -122,6 +131,28 @@ class Site(unittest.TestCase):
                                                            "fonts/TeX/AMS/Regular/Main")),
                  "fonts/HTML-CSS/TeX/woff/MathJax_Main-Regular.woff", "MathJax.js"]
         self.assertEqual([file for file in loads if not (SITE / "mathjax" / file).is_file()], [])
+
+    def test_equations_and_the_front_page_s_code_fit_a_laptop(self):
+        for name in ("index.html", *(f"{path.stem}.html" for path in sorted((ROOT / "docs").glob("theory*.md")))):
+            self.assertEqual(self.cut_off(name, 1280), [], name)
+        self.assertNotEqual(self.cut_off("theory.html", 700), [])  # and what does not fit is seen
+
+    def cut_off(self, name, width):
+        """Equations and code of a page that are wider than their boxes in a window of so many pixels, in Chromium."""
+        measured = SITE / f"measured-{name}"
+        measured.write_text((SITE / name).read_text().replace("</body>", MEASURE + "</body>"))
+        try:
+            with tempfile.TemporaryDirectory() as folder:
+                shown = subprocess.run(["chromium", "--headless", "--no-sandbox", "--disable-gpu",
+                                        "--allow-file-access-from-files", f"--user-data-dir={folder}",
+                                        f"--window-size={width},2000", "--virtual-time-budget=60000", "--dump-dom",
+                                        measured.as_uri()], capture_output=True, text=True, timeout=200, check=True,
+                                       stdin=subprocess.DEVNULL).stdout
+        finally:
+            measured.unlink()
+        count, *found = re.search(r"<title>(.*?)</title>", shown, re.DOTALL)[1].split("|")
+        self.assertGreater(int(count), 3, name)  # boxes there are
+        return found
 
     def test_warnings_are_seen(self):
         judged = module(BUILD).warnings

@@ -8,11 +8,18 @@
 
 #include "support/atomic_file.h"
 #include "verification/errors.h"
+#include "verification/output_list.h"
 
 namespace verification
 {
 
 void write_file(const std::string &path, const std::string &text)
+{
+  list_output(path);
+  replace_file(path, text);
+}
+
+void replace_file(const std::string &path, const std::string &text)
 {
   try
   {

@@ -8,7 +8,8 @@
 namespace verification
 {
 
-/// Replaces the file `path` by `text`, forced to the disk; see latcon::support::AtomicFile.
+/// Replaces the file `path` by `text`, forced to the disk; see latcon::support::AtomicFile. The file is listed in its folder
+/// first (output_list.h).
 /// @throws OutputError naming `path` and the system's reason; the old file is untouched.
 void write_file(const std::string &path, const std::string &text);
 
@@ -17,6 +18,9 @@ void write_file(const std::string &path, const std::string &text);
 /// full_precision().
 /// @throws OutputError as above, and if `writer` leaves the stream in a failed state.
 void write_file(const std::string &path, const std::function<void(std::ostream &)> &writer);
+
+/// The same without listing the file.
+void replace_file(const std::string &path, const std::string &text);
 
 /// The shortest decimal text that reads back to the same double, bit for bit, in any locale: 0.1 -> "0.1".
 /// Not-a-number gives "nan" (its sign and payload are lost), infinities "inf" and "-inf".

@@ -42,9 +42,17 @@ private:
 } // namespace
 
 ContinuumModel::ContinuumModel(const Case &input)
-  : subject_(verification::subject(input)), mooney_rivlin_(subject_.mooney_rivlin.law), law_(input.continuum.law),
-    penalty_(input.continuum.penalty), mesh_(MPI_COMM_WORLD)
+  : subject_(verification::subject(input)), penalty_(input.continuum.penalty), mesh_(MPI_COMM_WORLD)
 {
+  if (input.continuum.law == ContinuumLaw::mooney_rivlin)
+  {
+    if (!subject_.mooney_rivlin)
+      throw InputError(
+        "Continuum/law: no Mooney-Rivlin law has a thickness in equilibrium all along the loading path to "
+        "Loading/strain x, strain y; give law = cauchy-born" +
+        std::string(input.continuum.mooney_rivlin_ratio ? ", or another Continuum/ratio" : ""));
+    mooney_rivlin_.emplace(subject_.mooney_rivlin->law);
+  }
   const lattice::TriangularLattice sheet = input.lattice();
   extent_ = std::min(sheet.length(), sheet.height());
   const GradientLengths lengths = gradient_lengths(sheet, subject_.material);
@@ -129,8 +137,8 @@ void ContinuumModel::make_conditions(const Case &input)
 continuum::Constitution ContinuumModel::constitution() const
 {
   const continuum::Material *law = &subject_.cauchy_born;
-  if (law_ == ContinuumLaw::mooney_rivlin)
-    law = &mooney_rivlin_;
+  if (mooney_rivlin_)
+    law = &*mooney_rivlin_;
   continuum::Constitution constitution(*law);
   constitution.gradient = gradient_.get();
   constitution.penalty = penalty_;

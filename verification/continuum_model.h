@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "continuum/conditions.h"
 #include "continuum/constitution.h"
@@ -16,8 +17,7 @@ namespace verification
 class ContinuumModel
 {
 public:
-  /// @throws InputError if the mesh file cannot be used; continuum::NonPhysicalState if the law breaks down on the
-  /// loading path.
+  /// @throws InputError if the mesh file cannot be used, or no Mooney-Rivlin law is known for the loading path.
   explicit ContinuumModel(const Case &input);
 
   continuum::Sheet::Mesh &mesh() { return mesh_; }
@@ -34,8 +34,7 @@ private:
   void make_conditions(const Case &input);
 
   Subject subject_;
-  continuum::MooneyRivlin mooney_rivlin_;
-  ContinuumLaw law_;
+  std::optional<continuum::MooneyRivlin> mooney_rivlin_; // if it is the case's law
   double penalty_;
   double extent_ = 0.;
   double static_length_ = 0.;

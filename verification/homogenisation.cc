@@ -123,6 +123,8 @@ GradientLengths gradient_lengths(const lattice::TriangularLattice &lattice, cons
 Calibration calibrate_mooney_rivlin(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                                     const Eigen::Matrix2d &F)
 {
+  if (F.isIdentity(1e-12)) // every ratio is exact
+    return with_ratio(lattice, material, F, 0.);
   const double mu = small_strain(lattice, material).shear_modulus;
   const continuum::CauchyBorn exact = cauchy_born(lattice, material);
   const auto law = [mu](double ratio)
@@ -151,12 +153,13 @@ Calibration calibrate_mooney_rivlin(const lattice::TriangularLattice &lattice, c
   };
 
   // A scan that brackets the minimum, then golden sections. The residual is smooth with one minimum where it is finite.
-  constexpr double lowest = -0.9, highest = 0.9, scan_step = 0.01;
+  constexpr int scan_steps = 90; // of a hundredth, to either side
+  constexpr double scan_step = largest_ratio / scan_steps;
   double best = 0.;
-  for (double ratio = lowest; ratio <= highest; ratio += scan_step)
-    if (mean_square_residual(ratio) < mean_square_residual(best))
-      best = ratio;
-  double low = best - scan_step, high = best + scan_step;
+  for (int i = -scan_steps; i <= scan_steps; ++i)
+    if (mean_square_residual(i * scan_step) < mean_square_residual(best))
+      best = i * scan_step;
+  double low = std::max(best - scan_step, -largest_ratio), high = std::min(best + scan_step, largest_ratio);
   const double golden = (std::sqrt(5.) - 1.) / 2.;
   // A minimum is located to the square root of round-off.
   while (high - low > 1e-9)
@@ -167,8 +170,10 @@ Calibration calibrate_mooney_rivlin(const lattice::TriangularLattice &lattice, c
     else
       low = left;
   }
-
-  return with_ratio(lattice, material, F, 0.5 * (low + high));
+  // An end of the interval is met exactly.
+  const double found = 0.5 * (low + high);
+  const bool is_end = largest_ratio - std::abs(found) < 1e-8;
+  return with_ratio(lattice, material, F, is_end ? std::copysign(largest_ratio, found) : found);
 }
 
 Calibration with_ratio(const lattice::TriangularLattice &lattice, const lattice::Material &material,
@@ -181,7 +186,7 @@ Calibration with_ratio(const lattice::TriangularLattice &lattice, const lattice:
   for (int point = 1; point <= path_points; ++point)
   {
     const dealii::Tensor<2, 2> state = to_continuum(on_path(F, point));
-    const double difference = fitted.energy(state) / exact.energy(state) - 1.;
+    const double difference = F.isIdentity(1e-12) ? 0. : fitted.energy(state) / exact.energy(state) - 1.;
     calibration.energy_residual += difference * difference / path_points;
     calibration.largest_energy_residual = std::max(calibration.largest_energy_residual, std::abs(difference));
     calibration.smallest_acoustic_eigenvalue =

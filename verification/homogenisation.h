@@ -61,8 +61,14 @@ struct Calibration
   continuum::MooneyRivlin::Constants law; ///< [Pa]
 };
 
+/// End of the interval [-r, r] of ratios in which the calibration looks for the best [-]: towards -1 and 1 one of the
+/// constants that eq. (H.4) gives loses all weight beside the other.
+inline constexpr double largest_ratio = 0.9;
+
 /// Calibrates r along F(t) = I + t (F - I), 0 < t <= 1, by least squares of the relative energy difference
-/// (theory-comparison.md, eq. (H.5)). @param F end of the loading path [-], not I
+/// (theory-comparison.md, eq. (H.5)), within [-largest_ratio, largest_ratio]: the best ratio may be an end of that.
+/// Without a path, at F = I, the ratio is 0. @param F end of the loading path [-]
+/// @throws continuum::NonPhysicalState if no ratio gives a law that has a thickness all along the path
 Calibration calibrate_mooney_rivlin(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                                     const Eigen::Matrix2d &F);
 

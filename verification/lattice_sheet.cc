@@ -1,6 +1,7 @@
 #include "verification/lattice_sheet.h"
 
 #include "lattice/cutout.h"
+#include "lattice/end_loads.h"
 
 namespace verification
 {
@@ -96,6 +97,12 @@ void require_fracture_case(const Case &input, Parameters &p)
     p.error("Fracture/breaking stretch", "fracture needs a breaking stretch");
   if (!(input.end_time > 0.))
     p.error("Time/end", "fracture needs an end time larger than 0");
+  const bool absorbs = input.left_end == Case::End::absorbing || input.right_end == Case::End::absorbing;
+  if (p.good() && absorbs && !lattice::waves_run_along_x(input.lattice(), input.material(), input.deformation()))
+    p.error(input.left_end == Case::End::absorbing ? "Fracture/left end" : "Fracture/right end",
+            "no waves run along x in the sheet as it is loaded, which buckles there, so that an end cannot absorb "
+            "them; give held or free",
+            {"Loading/strain x", "Loading/strain y"});
 }
 
 lattice::State lattice_state(const Case &input, const lattice::RowBand &band, double breaking_stretch)

@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <stdexcept>
+#include <utility>
 #include <vector>
 
 namespace verification
@@ -28,5 +29,32 @@ inline double fitted_order(const std::vector<double> &h, const std::vector<doubl
   }
   return std::isfinite(mean_y) ? xy / xx : std::nan("");
 }
+
+/// Order of the errors of many waves at once, each at the same sizes: that of their root mean square. A single wave
+/// whose leading error happens to vanish does not hide it, and a single one of a lower order shows.
+class CommonOrder
+{
+public:
+  explicit CommonOrder(std::vector<double> sizes) : sizes_(std::move(sizes)), squares_(sizes_.size(), 0.) {}
+
+  /// @param errors of one wave, one for each size
+  void add(const std::vector<double> &errors)
+  {
+    for (std::size_t i = 0; i < squares_.size(); ++i)
+      squares_[i] += errors.at(i) * errors.at(i);
+  }
+
+  /// See fitted_order.
+  double order() const
+  {
+    std::vector<double> errors;
+    for (const double square : squares_)
+      errors.push_back(std::sqrt(square));
+    return fitted_order(sizes_, errors);
+  }
+
+private:
+  std::vector<double> sizes_, squares_;
+};
 
 } // namespace verification

@@ -215,6 +215,9 @@ public:
   /// All keys and the values of the members as they now stand, as text that reads back to them bit for bit; by key.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> values() const;
 
+  /// SI unit of an entry; "1" for a pure number, empty for what is no quantity. @throws std::logic_error for no entry
+  [[nodiscard]] std::string unit(const std::string &key) const { return find(key).unit; }
+
   /// FNV-1a hash of all keys and values as they now stand. Does not depend on how the case was written down (order,
   /// comments, units, file or override), nor on the order of declaration, nor on the machine.
   [[nodiscard]] std::uint64_t hash() const;

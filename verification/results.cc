@@ -92,6 +92,31 @@ Verdict Results::verdict() const
   return all;
 }
 
+std::size_t Results::count(const Verdict verdict) const
+{
+  return static_cast<std::size_t>(
+    std::count_if(rows_.begin(), rows_.end(), [verdict](const Result &row) { return row.verdict() == verdict; }));
+}
+
+std::string Results::verdict_text(const std::size_t most) const
+{
+  const std::size_t failing = count(Verdict::fails), judged = failing + count(Verdict::holds);
+  const auto checks = [](const std::size_t n) { return std::to_string(n) + (n == 1 ? " check" : " checks"); };
+  if (judged == 0)
+    return "nothing was checked\n";
+  if (failing == 0)
+    return checks(judged) + (judged == 1 ? " holds\n" : " hold\n");
+  std::string text = std::to_string(failing) + " of " + checks(judged) + (failing == 1 ? " fails:\n" : " fail:\n");
+  std::size_t named = 0;
+  for (const Result &row : rows_)
+    if (row.verdict() == Verdict::fails && named++ < most)
+      text += "  " + row.claim + ": " + row.quantity + ": error " + (row.error ? table_number(row.error, 3) : "none") +
+              ", tolerance " + table_number(row.tolerance, 3) + "\n";
+  if (failing > most)
+    text += "  and " + std::to_string(failing - most) + " more, see results.csv\n";
+  return text;
+}
+
 std::string Results::json() const
 {
   nlohmann::ordered_json claims = nlohmann::ordered_json::array();

@@ -56,6 +56,13 @@ public:
   /// Whether at least one row was checked and none fails.
   [[nodiscard]] bool all_hold() const { return verdict() == Verdict::holds; }
 
+  /// Number of rows that have this verdict.
+  [[nodiscard]] std::size_t count(Verdict verdict) const;
+
+  /// How the checks came out: "98 checks hold", or how many fail and, a line each, which: claim, quantity, error,
+  /// tolerance. @param most rows that are named; of more the number alone
+  [[nodiscard]] std::string verdict_text(std::size_t most) const;
+
   /// The rows as JSON: {"claims": [{"claim": ..., "quantity": ..., "unit": ..., "lattice": ..., "continuum": ...,
   /// "theory": ..., "error": ..., "tolerance": ..., "verdict": ...}, ...], "verdict": ...}. Doubles in full precision,
   /// empty values null, numbers that are not finite as the strings "nan", "inf", "-inf".

@@ -1,10 +1,15 @@
 #pragma once
 
 #include <memory>
+#include <optional>
+#include <string>
 
+#include "continuum/errors.h"
 #include "continuum/isotropic_gradient.h"
 #include "verification/case.h"
 #include "verification/homogenisation.h"
+#include "verification/laws.h"
+#include "verification/slowest_wave.h"
 
 namespace verification
 {
@@ -19,21 +24,40 @@ struct Subject
   lattice::Material material;
   Eigen::Matrix2d deformation; ///< F of the loaded sheet [-]
   SmallStrain theory;
+  SlowestWave slowest_wave; ///< about the loaded sheet
   continuum::CauchyBorn cauchy_born;
-  Calibration mooney_rivlin;
-  bool ratio_is_calibrated; ///< the Mooney-Rivlin ratio was fitted, not given
+  std::optional<Calibration> mooney_rivlin; ///< none if no such law has a thickness all along the loading path
+  bool ratio_is_calibrated;                 ///< the Mooney-Rivlin ratio was fitted, not given
   GradientLengths lengths;
   std::shared_ptr<const continuum::GradientLaw> lattice_gradient;   ///< with lengths.lattice
   std::shared_ptr<const continuum::GradientLaw> isotropic_gradient; ///< with lengths.isotropic_static
+  Laws laws; ///< those that are judged; what is found about others is reported
+
+  /// Whether the loaded lattice stays homogeneous. If not there are no waves about it, and no sheet to compare.
+  bool is_stable() const { return slowest_wave.squared_speed > 0.; }
+
+  /// The tolerance of a row about a law: none, so that the row is reported, if the law is not to be judged.
+  std::optional<double> tolerance(Law law, double value) const
+  {
+    return laws.count(law) > 0 ? std::optional(value) : std::nullopt;
+  }
 };
 
 /// The subject of a case; `material` may differ from the case's own.
-inline Subject subject(const Case &input, const lattice::Material &material)
+inline Subject subject(const Case &input, const lattice::Material &material, const Laws &laws = all_laws())
 {
   const lattice::TriangularLattice sheet = input.lattice();
-  Calibration calibration = calibrate_mooney_rivlin(sheet, material, input.deformation());
-  if (input.continuum.mooney_rivlin_ratio)
-    calibration = with_ratio(sheet, material, input.deformation(), *input.continuum.mooney_rivlin_ratio);
+  const std::optional<double> given = input.continuum.mooney_rivlin_ratio;
+  std::optional<Calibration> calibration;
+  try
+  {
+    calibration = given ? with_ratio(sheet, material, input.deformation(), *given)
+                        : calibrate_mooney_rivlin(sheet, material, input.deformation());
+  }
+  catch (const continuum::NonPhysicalState &)
+  {
+    // Claims say so.
+  }
   const SmallStrain theory = small_strain(sheet, material);
   const GradientLengths lengths = gradient_lengths(sheet, material);
   return {material.next_nearest ? "NN+NNN" : "NN",
@@ -42,15 +66,17 @@ inline Subject subject(const Case &input, const lattice::Material &material)
           material,
           input.deformation(),
           theory,
+          slowest_wave(sheet, material, input.deformation()),
           cauchy_born(sheet, material),
           calibration,
-          !input.continuum.mooney_rivlin_ratio,
+          !given,
           lengths,
           std::make_shared<continuum::LatticeGradient>(bond_families(sheet, material), lengths.lattice),
-          std::make_shared<continuum::IsotropicGradient>(theory.shear_modulus, lengths.isotropic_static)};
+          std::make_shared<continuum::IsotropicGradient>(theory.shear_modulus, lengths.isotropic_static),
+          laws};
 }
 
-/// The subject of a case as it stands.
+/// The subject of a case as it stands, all laws judged.
 inline Subject subject(const Case &input)
 {
   return subject(input, input.material());

@@ -49,6 +49,12 @@ def read_checkpoint(path):
             raise Broken(f"{path}: no step")
 
 
+def read_list(path):
+    names = path.read_text().splitlines()
+    if names != sorted(set(names)):
+        raise Broken(f"{path}: names are not sorted, or not once")
+
+
 READERS = {
     ".csv": read_csv,
     ".json": lambda path: json.loads(path.read_text()),
@@ -59,6 +65,7 @@ READERS = {
     ".vti": lambda path: read_vtk(vtk.vtkXMLImageDataReader(), path),
     ".h5": read_checkpoint,
     ".prm": lambda path: path.read_text(),
+    ".latcon-files": read_list,  # which has no ending
 }
 
 
@@ -70,10 +77,11 @@ def check(folder):
         inside = path.relative_to(folder)
         if not path.is_file() or path.suffix == ".part" or path.name in ("log.txt", ".latcon.lock"):
             continue
-        if path.suffix not in READERS:
+        kind = path.suffix or path.name
+        if kind not in READERS:
             raise Broken(f"{path}: no reader for it")
         try:
-            READERS[path.suffix](path)
+            READERS[kind](path)
         except Broken:
             raise
         except Exception as error:  # each reader has its own

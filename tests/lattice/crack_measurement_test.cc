@@ -24,7 +24,7 @@ constexpr unsigned int n_seeds = 200;
 /// How often an ensemble of cracks was found to be what, and how far its numbers were from the truth.
 struct Ensemble
 {
-  unsigned int n_oscillating = 0, n_surely_oscillating = 0, n_straight = 0, n_conclusive = 0;
+  unsigned int n_likely_oscillating = 0, n_oscillating = 0, n_straight = 0, n_decided = 0;
   unsigned int wavelength_within_1 = 0, wavelength_within_2 = 0, amplitude_within_1 = 0, amplitude_within_2 = 0;
   unsigned int speed_within_1 = 0, speed_within_2 = 0;
 
@@ -40,10 +40,10 @@ struct Ensemble
     for (unsigned int seed = 1; seed <= n_seeds; ++seed)
     {
       const CrackMeasurement m = measure(crack, seed);
+      n_likely_oscillating += m.wavelength.has_value();
       n_oscillating += m.pattern == CrackPattern::oscillating;
-      n_surely_oscillating += m.pattern == CrackPattern::oscillating && m.conclusive;
       n_straight += m.pattern == CrackPattern::straight;
-      n_conclusive += m.conclusive;
+      n_decided += m.pattern != CrackPattern::undecided;
       // Coverage is that of the fit, whatever the pattern: to leave out unclear cases would bias what remains.
       count(m.sinusoid.value().wavelength, true_wavelength, wavelength_within_1, wavelength_within_2);
       count(m.sinusoid.value().amplitude, true_amplitude, amplitude_within_1, amplitude_within_2);
@@ -71,7 +71,6 @@ TEST(CrackMeasurement, PureSinusoidIsExact)
   crack.on_sites = false;
   const CrackMeasurement m = measure(crack);
   ASSERT_EQ(m.pattern, CrackPattern::oscillating) << m.reason;
-  EXPECT_TRUE(m.conclusive);
   // The wave number is sought to 1e-7 of itself; the amplitude is stationary there.
   EXPECT_NEAR(m.wavelength->value, wavelength, 1e-6 * wavelength);
   EXPECT_NEAR(m.amplitude->value, amplitude, 1e-6 * amplitude);
@@ -137,7 +136,6 @@ TEST(CrackMeasurement, SinusoidOnLatticeSites)
   {
     const CrackMeasurement m = measure(crack, seed);
     ASSERT_EQ(m.pattern, CrackPattern::oscillating) << m.reason;
-    EXPECT_TRUE(m.conclusive);
     EXPECT_NEAR(m.wavelength->value, wavelength, 4. * 0.05e-3);
     EXPECT_NEAR(m.amplitude->value, amplitude, 3. * 0.09 * d);
   }
@@ -168,7 +166,7 @@ TEST(CrackMeasurement, UncertaintiesCoverTheTruthWithIndependentNoise)
   crack.path = sinusoid(wavelength, amplitude);
   crack.hops = d;
   const Ensemble ensemble(crack);
-  EXPECT_EQ(ensemble.n_surely_oscillating, n_seeds);
+  EXPECT_EQ(ensemble.n_oscillating, n_seeds);
   EXPECT_COVERS(ensemble.wavelength_within_1, ensemble.wavelength_within_2);
   EXPECT_COVERS(ensemble.amplitude_within_1, ensemble.amplitude_within_2);
 }
@@ -181,7 +179,7 @@ TEST(CrackMeasurement, UncertaintiesCoverTheTruthWithCorrelatedNoise)
   crack.hops = d;
   crack.wander = d;
   const Ensemble ensemble(crack);
-  EXPECT_GE(ensemble.n_oscillating, 0.95 * n_seeds);
+  EXPECT_GE(ensemble.n_likely_oscillating, 0.95 * n_seeds);
   EXPECT_COVERS(ensemble.wavelength_within_1, ensemble.wavelength_within_2);
   EXPECT_COVERS(ensemble.amplitude_within_1, ensemble.amplitude_within_2);
 }
@@ -194,7 +192,7 @@ TEST(CrackMeasurement, UncertaintiesCoverTheTruthWithLongMemory)
   crack.wander = d;
   crack.memory = 12. * d;
   const Ensemble ensemble(crack);
-  EXPECT_GE(ensemble.n_oscillating, 0.95 * n_seeds);
+  EXPECT_GE(ensemble.n_likely_oscillating, 0.95 * n_seeds);
   EXPECT_COVERS(ensemble.wavelength_within_1, ensemble.wavelength_within_2);
   EXPECT_COVERS(ensemble.amplitude_within_1, ensemble.amplitude_within_2);
 }
@@ -206,7 +204,7 @@ TEST(CrackMeasurement, HopsOfSeveralSpacingsDoNotHideAnOscillation)
   crack.path = sinusoid(wavelength, amplitude);
   crack.hops = 3. * d;
   const Ensemble ensemble(crack);
-  EXPECT_GE(ensemble.n_oscillating, 0.85 * n_seeds);
+  EXPECT_GE(ensemble.n_likely_oscillating, 0.85 * n_seeds);
 }
 
 TEST(CrackMeasurement, DriftDoesNotMatter)
@@ -301,8 +299,8 @@ TEST(CrackMeasurement, FewerThanTwoPeriodsAreFoundButNotConclusive)
   crack.hops = 0.3 * d;
   crack.wander = 0.2 * d;
   const Ensemble ensemble(crack, lambda);
-  EXPECT_GE(ensemble.n_oscillating, 0.9 * n_seeds);
-  EXPECT_EQ(ensemble.n_surely_oscillating, 0u);
+  EXPECT_GE(ensemble.n_likely_oscillating, 0.9 * n_seeds);
+  EXPECT_EQ(ensemble.n_oscillating, 0u);
   EXPECT_COVERS(ensemble.wavelength_within_1, ensemble.wavelength_within_2);
 }
 
@@ -312,8 +310,7 @@ TEST(CrackMeasurement, LessThanOnePeriodAndAHalfIsABend)
   crack.path = sinusoid(0.7 * length / 1.2, 2. * amplitude);
   crack.hops = 0.5 * d;
   const CrackMeasurement m = measure(crack);
-  EXPECT_EQ(m.pattern, CrackPattern::straight);
-  EXPECT_FALSE(m.conclusive) << m.reason;
+  EXPECT_EQ(m.pattern, CrackPattern::undecided) << m.reason;
   EXPECT_FALSE(m.wavelength);
 }
 
@@ -328,8 +325,8 @@ TEST(CrackMeasurement, HoppingStraightPathIsStraight)
   {
     crack.hops = hops;
     const Ensemble ensemble(crack);
-    EXPECT_LE(ensemble.n_oscillating, 0.01 * n_seeds);
-    EXPECT_GE(ensemble.n_conclusive, 0.98 * n_seeds);
+    EXPECT_LE(ensemble.n_likely_oscillating, 0.01 * n_seeds);
+    EXPECT_GE(ensemble.n_decided, 0.98 * n_seeds);
   }
 }
 
@@ -344,8 +341,8 @@ TEST(CrackMeasurement, WanderingStraightPathIsNotOscillating)
   {
     crack.memory = memory;
     const Ensemble ensemble(crack);
-    EXPECT_LE(ensemble.n_oscillating, 0.02 * n_seeds);
-    EXPECT_EQ(ensemble.n_surely_oscillating, 0u);
+    EXPECT_LE(ensemble.n_likely_oscillating, 0.02 * n_seeds);
+    EXPECT_EQ(ensemble.n_oscillating, 0u);
   }
 }
 
@@ -357,9 +354,9 @@ TEST(CrackMeasurement, RandomWalkIsNotOscillating)
   SyntheticCrack crack;
   crack.walk = 0.5 * d;
   const Ensemble ensemble(crack);
-  EXPECT_LE(ensemble.n_oscillating, 0.03 * n_seeds);
-  EXPECT_LE(ensemble.n_surely_oscillating, 0.01 * n_seeds);
-  EXPECT_LE(ensemble.n_conclusive, 0.6 * n_seeds);
+  EXPECT_LE(ensemble.n_likely_oscillating, 0.03 * n_seeds);
+  EXPECT_LE(ensemble.n_oscillating, 0.01 * n_seeds);
+  EXPECT_LE(ensemble.n_decided, 0.6 * n_seeds);
 }
 
 TEST(CrackMeasurement, RippleOnAWanderingPathIsNotItsPattern)
@@ -375,7 +372,8 @@ TEST(CrackMeasurement, RippleOnAWanderingPathIsNotItsPattern)
     const CrackMeasurement m = measure(crack, seed);
     if (m.sinusoid.value().log_evidence < 3. || m.sinusoid->share_of_path >= 0.5)
       continue;
-    EXPECT_EQ(m.pattern, CrackPattern::straight) << m.reason;
+    EXPECT_NE(m.pattern, CrackPattern::oscillating) << m.reason;
+    EXPECT_FALSE(m.wavelength);
     ++n_ripples;
   }
   EXPECT_GE(n_ripples, 10u) << "nothing was tested";
@@ -401,7 +399,6 @@ TEST(CrackMeasurement, ExactlyStraightPath)
   EXPECT_EQ(m.pattern, CrackPattern::straight);
   EXPECT_FALSE(m.wavelength);
   EXPECT_TRUE(m.speed_lagrangian);
-  EXPECT_TRUE(m.conclusive) << m.reason;
 }
 
 // --- speed -----------------------------------------------------------------------------------------------------------

@@ -50,7 +50,6 @@ TEST(CrackMeasurement, TwoDivergingStrandsBranch)
   const BranchedCrack crack;
   const CrackMeasurement m = measure_crack(crack.tip, crack.breaks, options_for(crack.tip));
   EXPECT_EQ(m.pattern, CrackPattern::branching) << m.reason;
-  EXPECT_TRUE(m.conclusive);
   EXPECT_FALSE(m.wavelength);
   // From where the strands are 10 d (and 2 d of breadth) apart, 12 d / (2 tan 30) past the fork, to 0.9 L; a column of
   // 4 d at either end.
@@ -72,8 +71,7 @@ TEST(CrackMeasurement, WithoutBreaksNothingBranches)
 {
   const BranchedCrack crack;
   const CrackMeasurement m = measure_crack(crack.tip, {}, options_for(crack.tip));
-  EXPECT_EQ(m.pattern, CrackPattern::straight) << m.reason;
-  EXPECT_FALSE(m.conclusive) << m.reason;
+  EXPECT_EQ(m.pattern, CrackPattern::undecided) << m.reason;
   EXPECT_EQ(m.branched_fraction, 0.);
 }
 
@@ -82,8 +80,7 @@ TEST(CrackMeasurement, TipThatJumpsBetweenBranchesByTurnsDoesNotOscillate)
   // The jumps are periodic to the eye of a sinusoid: 6 mm long, 49 mm high.
   const BranchedCrack crack(30., 0.98 * length, true);
   const CrackMeasurement m = measure_crack(crack.tip, {}, options_for(crack.tip));
-  EXPECT_EQ(m.pattern, CrackPattern::straight);
-  EXPECT_FALSE(m.conclusive) << m.reason;
+  EXPECT_EQ(m.pattern, CrackPattern::undecided) << m.reason;
 }
 
 class OscillatingCrackWithBreaks : public ::testing::Test
@@ -166,7 +163,6 @@ TEST(CrackMeasurement, CrackThatStopsIsArrested)
   options.end_time = 2. * tip.back().t;
   const CrackMeasurement m = measure_crack(tip, {}, options);
   EXPECT_EQ(m.pattern, CrackPattern::arrested) << m.reason;
-  EXPECT_TRUE(m.conclusive);
   ASSERT_TRUE(m.speed_lagrangian); // while it ran
   EXPECT_NEAR(m.speed_lagrangian->value, speed, 6. * d / (0.25 * length) * speed);
 }
@@ -219,13 +215,34 @@ TEST(CrackMeasurement, SeedThatNeverRanIsArrested)
   options.end_time = 3. * tip.back().t;
   const CrackMeasurement m = measure_crack(tip, {}, options);
   EXPECT_EQ(m.pattern, CrackPattern::arrested);
-  EXPECT_TRUE(m.conclusive);
+}
+
+// --- the sentence
+// --------------------------------------------------------------------------------------------------------------
+
+TEST(CrackMeasurement, SentenceNamesTheCriterionThatDecided)
+{
+  const auto expect = [](const CrackMeasurement &m, CrackPattern pattern, std::initializer_list<const char *> parts)
+  {
+    EXPECT_EQ(m.pattern, pattern) << m.reason;
+    for (const char *part : parts)
+      EXPECT_NE(m.reason.find(part), std::string::npos) << m.reason;
+  };
+  SyntheticCrack crack;
+  crack.on_sites = false;
+  crack.path = sinusoid(wavelength, 0.4 * d);
+  expect(measure(crack), CrackPattern::straight, {"an amplitude of 0.4 d, less than the 0.75 d of an oscillation"});
+  crack.path = sinusoid(wavelength, 3. * d);
+  expect(measure(crack), CrackPattern::oscillating,
+         {"an amplitude of 3 d, at least the 0.75 d of an oscillation", "% of the path"});
+  crack.path = sinusoid(0.7 * length / 1.2, 6. * d);
+  expect(measure(crack), CrackPattern::undecided, {"an amplitude of", "fewer than 1.5 periods: it may be a bend"});
 }
 
 // --- records and options that cannot be used
 // ---------------------------------------------------------------------------
 
-TEST(CrackMeasurement, ShortRecordOfARunningCrackIsNotConclusive)
+TEST(CrackMeasurement, ShortRecordOfARunningCrackIsUndecided)
 {
   SyntheticCrack crack;
   crack.path = sinusoid(wavelength, amplitude);
@@ -235,8 +252,7 @@ TEST(CrackMeasurement, ShortRecordOfARunningCrackIsNotConclusive)
   {
     const std::vector<TipRecord> tip(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n));
     const CrackMeasurement m = measure_crack(tip, {}, options_for(tip));
-    EXPECT_EQ(m.pattern, CrackPattern::straight) << n << " entries";
-    EXPECT_FALSE(m.conclusive) << n << " entries";
+    EXPECT_EQ(m.pattern, CrackPattern::undecided) << n << " entries";
     EXPECT_FALSE(m.wavelength) << n << " entries";
     EXPECT_FALSE(m.reason.empty()) << n << " entries";
     EXPECT_LE(m.X_begin, m.X_end) << n << " entries";
@@ -248,8 +264,7 @@ TEST(CrackMeasurement, RunStoppedBeforeItsFirstStepSaysNothing)
   CrackMeasurementOptions options = options_for({});
   options.end_time = 0.;
   const CrackMeasurement m = measure_crack({}, {}, options);
-  EXPECT_NE(m.pattern, CrackPattern::arrested);
-  EXPECT_FALSE(m.conclusive);
+  EXPECT_EQ(m.pattern, CrackPattern::undecided);
   EXPECT_NE(m.reason.find("before its first step"), std::string::npos) << m.reason;
 }
 
@@ -354,6 +369,7 @@ TEST(CrackMeasurement, RefusesBadOptions)
   refuses([&](auto &o) { o.run_in_fraction = -0.1; }, "run-in");
   refuses([&](auto &o) { o.min_wavelength = 2.; }, "wavelength");
   refuses([&](auto &o) { o.min_periods = 0.5; }, "periods");
+  refuses([&](auto &o) { o.clear_periods = 1.; }, "clear periods");
   refuses([&](auto &o) { o.min_amplitude = -1.; }, "amplitude");
   refuses([&](auto &o) { o.max_steepness = 0.; }, "steepness");
   refuses([&](auto &o) { o.max_straight_rms = 0.; }, "straying");
@@ -371,6 +387,7 @@ TEST(CrackMeasurement, PatternsHaveTheNamesOfTheOutputs)
   EXPECT_STREQ(lattice::to_string(CrackPattern::oscillating), "oscillating");
   EXPECT_STREQ(lattice::to_string(CrackPattern::branching), "branching");
   EXPECT_STREQ(lattice::to_string(CrackPattern::arrested), "arrested");
+  EXPECT_STREQ(lattice::to_string(CrackPattern::undecided), "undecided");
 }
 
 } // namespace

@@ -35,7 +35,8 @@ PLACES = {
     "verification/": ["verification_tests", "claims_tests"],
     **dict.fromkeys(["verification/affine_displacement.h", "verification/homogenisation.cc", "verification/order_fit.h",
                      "verification/crack_oracle/", "verification/energy/", "verification/intrinsic_length/",
-                     "verification/prestretch/", "verification/wave_speeds/"], ["claims_tests", "verification_tests"]),
+                     "verification/prestretch/", "verification/wave_speeds/", "verification/bloch.",
+                     "verification/plane_waves."], ["claims_tests", "verification_tests"]),
     "verification/compare/": ["compare_tests"],
     # What scripts test: commands, files of results, and messages.
     **dict.fromkeys(["lattice/field_units.h", "lattice/field_writer.", "lattice/frame_series.", "lattice/motion_writer.",

@@ -194,8 +194,8 @@ TEST(ClaimInputs, MakeTheSubjectOfTheCase)
   EXPECT_EQ(read.deformation, whole.deformation);
   EXPECT_EQ(read.theory.shear_modulus, whole.theory.shear_modulus);
   EXPECT_EQ(read.theory.shear_speed, whole.theory.shear_speed);
-  EXPECT_EQ(read.mooney_rivlin.ratio, whole.mooney_rivlin.ratio);
-  EXPECT_EQ(read.mooney_rivlin.energy_residual, whole.mooney_rivlin.energy_residual);
+  EXPECT_EQ(read.mooney_rivlin->ratio, whole.mooney_rivlin->ratio);
+  EXPECT_EQ(read.mooney_rivlin->energy_residual, whole.mooney_rivlin->energy_residual);
 }
 
 // A claim that read an entry that is not listed would find its default, whatever the case says.

@@ -8,6 +8,7 @@ import sys
 import tempfile
 import unittest
 from pathlib import Path
+from unittest import mock
 
 import numpy as np
 from PIL import Image
@@ -15,6 +16,8 @@ from PIL import Image
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification" / "report"))
 
+import made_up_claims
+import pictures
 import report
 from claim_tables import FORMATS, fitted_order, groups
 from claims_text import CLAIMS, PLOTS
@@ -54,6 +57,25 @@ class ClaimSections(unittest.TestCase):
     def section(self, html, claim):
         """One claim's part of the page."""
         return re.search(rf'<section id="claim-{claim}">.*?</section>', html, re.S)[0]
+
+    def test_nothing_is_cut_off_at_the_edges_of_a_plot(self):
+        self.write_run(self.folder, [check_row(claim, 0) for claim in CLAIMS])
+        with mock.patch.object(made_up_claims, "K", 0.3 * made_up_claims.K):  # numbers beside the axes get long
+            write_claims(self.folder)
+        beyond = []
+
+        def measured(figure):
+            figure.canvas.draw()
+            box = figure.get_tightbbox(figure.canvas.get_renderer())  # [in]
+            width, height = figure.get_size_inches()
+            beyond.append(max(-box.x0, -box.y0, box.x1 - width, box.y1 - height))
+            return drawn(figure)
+
+        drawn = pictures.figure_pixels
+        with mock.patch.object(pictures, "figure_pixels", measured):
+            self.report()
+        self.assertEqual(len(beyond), len(PLOTS))
+        self.assertLess(max(beyond), 0)
 
     def test_each_claim_has_its_text_plots_and_error_metrics(self):
         self.write_run(self.folder, [check_row(claim, 0) for claim in CLAIMS])

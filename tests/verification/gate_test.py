@@ -19,8 +19,8 @@ from program import CASES, LATCON, TemporaryFolder, latcon, latcon_on_ranks
 # A strip on which a crack does not come far, of nearest neighbours alone, which are checked sooner.
 TINY = ["--set", "Sheet/length=2.5 cm", "--set", "Sheet/height=1.5 cm", "--set", "Time/end=0.01 ms", "--set",
         "Next-nearest neighbours/present=false"]
-# A Mooney-Rivlin ratio with which the law loses ellipticity on the way.
-FAILING = ["--set", "Continuum/ratio=-0.2"]
+# A sheet that is pushed together along x, and buckles.
+FAILING = ["--set", "Loading/strain x=-0.3"]
 
 
 class Gate(TemporaryFolder):
@@ -136,6 +136,34 @@ class Gate(TemporaryFolder):
         self.assertIn(f"delete {self.stored()[0]}", text)
         self.assertTrue(any(row["verdict"] == "fails" for row in self.claims()))
         self.assertFalse([path.name for path in self.out.iterdir() if re.match(r"crack|broken|lattice", path.name)])
+
+    def test_last_lines_name_the_rows_that_fail(self):
+        text, run = self.fracture(*FAILING, expect=3)
+        failing = [row for row in self.claims() if row["verdict"] == "fails"]
+        self.assertEqual(run["exit_code"], 3)
+        lines = text.splitlines()
+        self.assertIn(f"{len(failing)} of ", lines[-len(failing) - 1])
+        for row, line in zip(failing, lines[-len(failing):]):
+            self.assertIn(f"{row['claim']}: {row['quantity']}: error {row['error']:.3g}, tolerance", line)
+        self.assertTrue(any("it buckles in waves of kd = " in line for line in lines[-len(failing):]), text)
+        self.assertLess(len(lines), 16)
+
+    def test_refused_crack_leaves_its_report(self):
+        words = ["fracture", CASES / "quick.prm", "--output-dir", self.out, *TINY, *FAILING]
+        run = latcon(*words, env=self.environment)
+        self.assertEqual(run.returncode, 3)
+        self.assertIn(f"{self.out}/report.html\n", run.stdout)
+        page = (self.out / "report.html").read_text()
+        self.assertIn("it buckles", page)
+
+    def test_laws_that_no_crack_uses_do_not_refuse_it(self):
+        # The fitted law has its best ratio at the end of the interval, or a given one loses ellipticity on the way.
+        for settings, word in ((["Loading/strain x=0", "Fracture/breaking stretch=3.2"], "at the end of the search interval"),
+                               (["Continuum/ratio=-0.2"], "the law loses ellipticity")):
+            self.fracture(*(word for setting in settings for word in ("--set", setting)))
+            rows = [row for row in self.claims() if word in row["quantity"]]
+            self.assertEqual([row["verdict"] for row in rows], ["reported"], word)
+            self.assertGreater(sum(row["verdict"] == "holds" for row in self.claims()), 30)
 
     def test_store_that_cannot_be_written_stops_nothing(self):
         shutil.rmtree(self.cache)

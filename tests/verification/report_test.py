@@ -79,7 +79,7 @@ def write_fracture(folder, rows):
     write_table(folder / "broken_bonds.csv", "t,site,other_site,X,Y,stretch", (t, 0 * t, 0 * t + 1, X, Y, 0 * t + 3))
     write_table(folder / "energy.csv", "t,elastic,kinetic,viscous,broken,boundary_work,contact,imbalance",
                 (t, 100 - 1e4 * t, 2e3 * t, 5e3 * t, 3e3 * t, 0 * t, 0 * t, 1e-6 * t))
-    crack = {"pattern": "oscillating", "conclusive": True, "reason": "it winds", "window_begin": BEGIN,
+    crack = {"pattern": "oscillating", "reason": "it winds", "window_begin": BEGIN,
              "window_end": END, "speed_lagrangian": 20.0, "speed_lagrangian_uncertainty": 0.2,
              "wavelength": WAVELENGTH, "wavelength_uncertainty": 1.5e-4, "amplitude": AMPLITUDE,
              "amplitude_uncertainty": 1e-4}
@@ -379,12 +379,43 @@ class ReportTest(unittest.TestCase):
             for damaged in (content[:len(content) * 2 // 3], b"\xff\xfe"):
                 with self.subTest(name=name, length=len(damaged)):
                     (self.folder / name).write_bytes(damaged)
+                    (self.folder / "report.html").write_text("stale")
                     out, err = self.report(expect=2)
-                    self.assertEqual(out, "")
+                    self.assertIn("cannot be read", out)
                     self.assertRegex(err, rf"\Aerror: .*{re.escape(name)}: .+\n\Z")
-                    self.assertFalse((self.folder / "report.html").exists())
+                    _, page = self.page()
+                    self.assertRegex(page.text, rf"cannot be read, not shown : .*{re.escape(name)}: ")
+                    self.assertNotIn("Holds: all", page.text)
             (self.folder / name).write_bytes(content)
         self.report("--quiet", expect=0)
+
+    def test_one_unreadable_run_does_not_cost_the_others(self):
+        write_verification(self.folder / "verify", [HOLDS, FAILS])
+        write_fracture(self.folder / "fig", [HOLDS, PUBLISHED])
+        write_fracture(self.folder / "damaged", [HOLDS])
+        (self.folder / "damaged" / "crack.json").write_text("{")
+        write_fracture(self.folder / "torn", [HOLDS])
+        (self.folder / "torn" / "motion-0002.vtp").write_bytes(b"\xff\xfe")
+        out, err = self.report(expect=2)
+        self.assertRegex(err, r"\Aerror: .*damaged/crack.json: .*\nerror: .*torn/motion-0002.vtp: .*\n\Z")
+        self.assertRegex(out, r"fig +wavelength +cm +2\.1 +2\.000 \+- 0\.015 +-4\.8 % +holds")
+        self.assertRegex(out, r"damaged +cannot be read\ntorn +cannot be read\n")
+        _, page = self.page()
+        for words in ("Fails: 1 of 4 checks", "damaged: cannot be read", "torn: cannot be read", "Crack: fig"):
+            self.assertIn(words, page.text)
+
+    def test_shows_runs_of_the_continuum(self):
+        for name, energies in (("equilibrium", "load_factor,elastic\n0.5,1.25\n1,5\n"),
+                               ("motion", "t,elastic,kinetic,micro_inertia,viscous,boundary_work,imbalance\n"
+                                          "0,5,0,0,0,0,0\n0.001,4,1,0,0,0,1e-9\n")):
+            write_verification(self.folder / name, [check_row("continuum", f"energy of the {name}", "reported")])
+            (self.folder / name / "energy.csv").write_text(energies)
+        write_fracture(self.folder / "fig", [HOLDS, PUBLISHED])
+        out, err = self.report(expect=0)
+        self.assertEqual(err, "")
+        self.assertIn("fig", out)
+        for name in ("equilibrium", "motion"):
+            self.assertIn(f"energy of the {name}", self.page()[1].text)
 
     def test_does_not_believe_a_verdict_against_its_numbers(self):
         write_verification(self.folder, [{**FAILS, "verdict": "holds"}])

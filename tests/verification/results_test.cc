@@ -236,3 +236,23 @@ TEST(Results, TableIsAlignedAndFitsTheScreen)
   // Nothing is cut away: the wrapped pieces hold all the words.
   EXPECT_NE(table.find("about it"), std::string::npos);
 }
+
+TEST(Results, SayHowTheChecksCameOutAndWhichFail)
+{
+  Results results;
+  EXPECT_EQ(results.verdict_text(3), "nothing was checked\n");
+  results.add(checked(0.5, {}));
+  EXPECT_EQ(results.verdict_text(3), "nothing was checked\n");
+  results.add(checked(0.5, 1.));
+  EXPECT_EQ(results.verdict_text(3), "1 check holds\n");
+  results.add(checked(0.25, 1.));
+  EXPECT_EQ(results.verdict_text(3), "2 checks hold\n");
+  results.add(checked(not_a_number, 0.5));
+  EXPECT_EQ(results.verdict_text(3), "1 of 3 checks fails:\n  energy: energy density: error nan, tolerance 0.5\n");
+  results.add(checked(2., 1e-10));
+  results.add(checked({}, 1.));
+  EXPECT_EQ(results.verdict_text(2), "3 of 5 checks fail:\n  energy: energy density: error nan, tolerance 0.5\n"
+                                     "  energy: energy density: error 2, tolerance 1e-10\n"
+                                     "  and 1 more, see results.csv\n");
+  EXPECT_EQ(results.count(Verdict::reported), 1u);
+}

@@ -123,11 +123,19 @@ class SideBySide(ParaView):
             self.assertLess(self.at(right, x, y).max(), 30, (x, y))
         self.assertGreater(self.at(right, 0.75, 0.75).min(), 100)
 
-    def test_leaves_out_sites_that_lack_bonds(self):
-        left, middle, _ = self.picture("--field", "cauchy_stress", "--component", "yy", "--undeformed")
-        self.assertAlmostEqual(len(self.sheet(left)) / len(self.sheet(middle)), 0.48, delta=0.04)
-        ends = [self.at(self.sheet(left), x, 0.5) for x in (0.05, 0.95)]
-        self.assertGreater(abs(ends[0] - ends[1]).max(), 100)  # the scale is that of the sites shown
+    def test_shows_sites_that_lack_bonds_in_grey(self):
+        views = self.picture("--field", "cauchy_stress", "--component", "yy", "--undeformed")
+        left, middle, right = map(self.sheet, views)
+        self.assertAlmostEqual(len(left) / len(middle), 1, delta=0.03)  # none is left out
+        self.assertAlmostEqual(len(right) / len(middle), 1, delta=0.03)
+        for view in (left, right):
+            for y in (0.1, 0.9):
+                self.assertLess(np.ptp(self.at(view, 0.5, y)), 6)
+                self.assertAlmostEqual(self.at(view, 0.5, y).mean(), 0.75 * 255, delta=6)
+        ends = [self.at(left, x, 0.5) for x in (0.05, 0.95)]
+        self.assertGreater(abs(ends[0] - ends[1]).max(), 100)  # the scale is that of the sites that are coloured
+        titles = [np.count_nonzero(view[:40].min(axis=2) < 128) for view in views]
+        self.assertGreater(min(titles[0], titles[2]), 2 * titles[1])  # and it is said
 
     def test_refuses_what_it_cannot_show(self):
         for arguments, part in ([self.folder / "none"], "difference_sites.vtp"), ([self.folder, "--component", "z"], "x, y"), \

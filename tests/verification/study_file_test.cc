@@ -174,6 +174,42 @@ TEST(StudyFile, UnknownWordsAreNamedWithTheirPlaceAndTheNearestKnownOne)
              "checks/1: 'stady-crack' is no check; nearest: steady-crack");
 }
 
+TEST(StudyFile, WordsOfAStudyOfOnesOwnMayBeLeftOut)
+{
+  nlohmann::ordered_json document = example();
+  document["claims"][0].erase("paper");
+  document["claims"][0]["note"] = "";
+  document["runs"]["big"]["about"] = "";
+  const Study study = read(document);
+  EXPECT_EQ(study.claims.front().paper, "");
+  EXPECT_EQ(study.claims.front().note, "");
+  EXPECT_EQ(study.run("big").about, "");
+  EXPECT_HAS(problem_after([](nlohmann::ordered_json &d) { d["claims"][0]["paper"] = 3; }), "paper: must be a text");
+}
+
+TEST(StudyFile, RowsKnowTheUnitOfWhatTheyAreAgainst)
+{
+  const std::vector<StudyRow> rows = read(example()).claims.front().rows;
+  EXPECT_EQ(rows[1].against_unit, "1"); // zeta
+  EXPECT_EQ(rows[2].against_unit, "m"); // Sheet/height
+  EXPECT_EQ(rows[4].against_unit, "");
+}
+
+TEST(StudyFile, ShippedStudiesAreThoseInTheFolder)
+{
+  EXPECT_EQ(shipped_studies(), (std::vector<std::string>{"paper", "patterns", "time-stepping"}));
+  EXPECT_EQ(study_choices(), "study file (.json), or a shipped one: paper, patterns, time-stepping");
+  try
+  {
+    (void)read_study_file(study_path("nosuch"), false);
+    FAIL();
+  }
+  catch (const InputError &error)
+  {
+    EXPECT_HAS(std::string(error.what()), "nosuch: cannot read the study; give a " + study_choices());
+  }
+}
+
 TEST(StudyFile, WrongTypesAndMissingKeysAreNamed)
 {
   using Json = nlohmann::ordered_json;

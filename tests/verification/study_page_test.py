@@ -18,30 +18,31 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification" / "r
 
 import gallery
 import study
+import study_plots
 from check_plots import draw_steady_crack
 from near_tip_plots_test import write_field
 from pictures import shrink
 from report_test import MOTION_FRAMES, Page, write_fracture
-from study_page import MEASURED, NEAR_TIP
 from study_plots import draw_sweep
+from study_quantities import MEASURED, NEAR_TIP, PATH, asked_quantities
 from study_runs import read_study
 
-QUANTITIES = {quantity: None for quantity, *_ in MEASURED + NEAR_TIP} | {"speed_laboratory": 40.0}
+QUANTITIES = {quantity: None for quantity, *_ in MEASURED + NEAR_TIP} | {"speed_laboratory": 40.0, "end_time": 3e-3}
 WITHOUT = {"Next-nearest neighbours/present": "false"}
 BLUE = np.array((0x00, 0x72, 0xB2))
 
 
-def made_up_seed(run, seed, pattern, conclusive=True, state="measured", **values):
+def made_up_seed(run, seed, pattern, state="measured", **values):
     """A seed as study.json has it."""
     return {"run": run, "seed": seed, "folder": f"runs/{run}-{seed}", "state": state, "problem": "", "exit_code": 0,
-            "pattern": pattern, "conclusive": conclusive, "reason": "", "sites": 96, "wall_time_s": 1.0,
+            "pattern": pattern, "reason": "", "sites": 96, "wall_time_s": 1.0,
             "values": {**QUANTITIES, **values}}
 
 
 def made_up_row(runs, quantity, verdict="reported", against=None, **more):
     """A row of a claim."""
     values = [{"run": run, "against": place} for place, run in enumerate(runs, start=1)] if against else []
-    return {"runs": runs, "quantity": quantity, "against": against, "expected": "", "measured": "", "note": "",
+    return {"runs": runs, "quantity": quantity, "against": against, "against_unit": "1" if against else None, "expected": "", "measured": "", "note": "",
             "verdict": verdict, "values": values, **more}
 
 
@@ -50,6 +51,7 @@ def made_up_study():
     names = {"wavy": {}, "calm": {}, "along": WITHOUT, "across": WITHOUT}
     return {
         "title": "Made up", "version": "1.2.3", "git_commit": "0" * 40, "quick": False, "verification": "none",
+        "units": {"wavelength": "m", "amplitude": "m", "crest_amplitude": "m", "speed_lagrangian": "m/s", "end_time": "s"},
         "settings": {}, "left_out": [], "pictures": ["along", "wavy", "calm", "across"],
         "runs": [{"run": name, "about": f"the {name} one", "set": changed} for name, changed in names.items()],
         "seeds": [
@@ -158,15 +160,54 @@ class StudyPage(MadeUpStudy):
         for words in ("2.20 ± 0.14 (2)", "14.0 ± 1.4 (2)", "1.75 (1)", "1.07 (1)", "33 (1)", "0.15 (1)"):
             self.assertIn(words, page.text)
 
+    def sweep(self, row, *quantities):
+        """What is drawn of a sweep, and the labels of its panels."""
+        labels = []
+        with mock.patch.object(study_plots, "save", wraps=study_plots.save) as saved:
+            self.assertTrue(draw_sweep(self.read(), row, quantities, self.folder / "sweep.png"))
+            labels = [(axes.get_xlabel(), axes.get_ylabel()) for axes in saved.call_args.args[0].axes]
+        return np.asarray(Image.open(self.folder / "sweep.png").convert("RGB"), dtype=float), labels
+
     def test_sweeps_show_both_amplitudes(self):
         row = self.document["claims"][0]["rows"][1]
         pictures = []
         for crest in (1.5e-3, None):
             self.document["seeds"][1]["values"]["crest_amplitude"] = crest
-            self.assertTrue(draw_sweep(self.read(), row, self.folder / "sweep.png"))
-            pictures.append(np.asarray(Image.open(self.folder / "sweep.png").convert("RGB"), dtype=float))
+            pictures.append(self.sweep(row, *PATH)[0])
         columns = np.nonzero(np.abs(pictures[0] - pictures[1]).max(axis=(0, 2)) > 30)[0]
         self.assertGreater(columns.min(), 0.6 * pictures[0].shape[1])
+
+    def test_sweeps_show_what_is_asked_for_with_units(self):
+        row = made_up_row(["calm", "wavy"], "speed_lagrangian", against="Near tip/interval", against_unit="s")
+        pictures = []
+        for speed in (20.0, 10.0):
+            self.document["seeds"][1]["values"]["speed_lagrangian"] = speed
+            self.document["seeds"][3]["values"]["speed_lagrangian"] = 21.0
+            picture, labels = self.sweep(row, "speed_lagrangian", "end_time")
+            pictures.append(picture)
+        self.assertEqual(labels, [("Near tip/interval [s]", "speed [m/s]"), ("Near tip/interval [s]", "end time [ms]")])
+        changed = np.nonzero(np.abs(pictures[0] - pictures[1]).max(axis=(0, 2)) > 30)[0]
+        self.assertGreater(len(changed), 5)
+        self.assertLess(changed.max(), 0.5 * pictures[0].shape[1])
+        self.assertEqual(asked_quantities([row, made_up_row([], "pattern"), made_up_row([], "wavelength")]),
+                         ["speed_lagrangian", *PATH])
+
+    def test_page_shows_a_picture_for_each_sweep(self):
+        rows = self.document["claims"][0]["rows"]
+        for run, speed in ((1, 20.0), (3, 21.0)):
+            self.document["seeds"][run]["values"]["speed_lagrangian"] = speed
+        rows += [made_up_row(["calm", "wavy"], "speed_lagrangian", against="zeta"),
+                 made_up_row(["calm", "wavy"], "speed_lagrangian", against="Loading/strain y")]
+        page, _ = self.page()
+        self.assertIn("Wavelength, speed lagrangian against zeta: mean", page.text)
+        self.assertIn("Speed lagrangian against Loading/strain y: mean", page.text)
+        self.assertEqual(sorted(path.name for path in (self.folder / "pictures").glob("sweep-*")),
+                         ["sweep-1-1.png", "sweep-1-2.png"])
+
+    def test_a_claim_of_one_s_own_needs_no_paper(self):
+        self.assertIn("Paper:", self.page()[0].text)
+        self.document["claims"][0]["paper"] = ""
+        self.assertNotIn("Paper:", self.page()[0].text)
 
 
 class Pictures(MadeUpStudy):
@@ -201,7 +242,7 @@ class Gallery(MadeUpStudy):
     def test_shows_the_first_run_of_each_kind(self):
         self.assertEqual(self.shown(), [("Oscillating", "wavy", 2), ("Straight, with next-nearest neighbours", "calm", 1),
                                         ("Without next-nearest neighbours", "across", 1)])
-        self.document["seeds"][3]["conclusive"] = False  # calm: not known to be straight
+        self.document["seeds"][3]["pattern"] = "undecided"  # calm: not known to be straight
         self.document["seeds"][5]["pattern"] = "branching"  # across: so that none is straight there
         self.assertEqual(self.shown(), [("Oscillating", "wavy", 2), ("Without next-nearest neighbours", "along", 1)])
         self.document["seeds"][2]["pattern"] = "branching"  # wavy 3

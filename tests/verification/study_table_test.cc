@@ -41,7 +41,6 @@ public:
     outcome.seed = planned.seed;
     outcome.state = RunState::measured;
     outcome.pattern = pattern;
-    outcome.conclusive = true;
     outcomes.push_back(outcome);
     return outcomes.back();
   }
@@ -167,16 +166,16 @@ TEST(StudyTable, PatternHoldsIfEverySeedShowsIt)
   EXPECT_NEAR(mixed.number.value(), 2. / 3., 1e-15);
 }
 
-TEST(StudyTable, PatternsThatAreNotConclusiveDoNotCount)
+TEST(StudyTable, UndecidedPatternsDoNotCount)
 {
   MadeUpStudy table;
   table.add("a", {0.02, 0.02, 0.02});
-  table.outcomes[2].conclusive = false;
+  table.outcomes[2].pattern = "undecided";
   const RowOutcome one = table.judged(pattern_row({"a"}, "oscillating"));
   EXPECT_EQ(one.verdict, RowVerdict::holds);
-  EXPECT_EQ(one.measured, "oscillating 2/3, oscillating 1/3 (not conclusive)");
-  EXPECT_HAS(one.note, "a: not measured in 1 of 3 (seed 3 oscillating, not conclusive)");
-  table.outcomes[1].conclusive = false;
+  EXPECT_EQ(one.measured, "oscillating 2/3, undecided 1/3");
+  EXPECT_HAS(one.note, "a: not measured in 1 of 3 (seed 3 undecided)");
+  table.outcomes[1].pattern = "undecided";
   EXPECT_EQ(table.judged(pattern_row({"a"}, "oscillating")).verdict, RowVerdict::not_measured);
 }
 
@@ -309,7 +308,7 @@ TEST(StudyTable, OutputsHoldEveryRunAndRow)
 
   const std::string csv = study_csv(results);
   EXPECT_HAS(csv, "wavelength [m]");
-  EXPECT_HAS(csv, "a,1,Sheet/height=2 cm,measured,oscillating,true,");
+  EXPECT_HAS(csv, "a,1,Sheet/height=2 cm,measured,oscillating,");
   EXPECT_HAS(csv, "a,2,Sheet/height=2 cm,failed,");
   const auto json = nlohmann::json::parse(study_json(results));
   EXPECT_EQ(json["seeds"][0]["values"]["wavelength"], 0.010);

@@ -10,6 +10,7 @@
 
 #include "support/atomic_file.h"
 #include "verification/checkpoint/checkpoints.h"
+#include "verification/output_list.h"
 
 namespace verification
 {
@@ -94,12 +95,29 @@ Run::Run(const Options &options, const Parameters *parameters)
     if (error)
       throw OutputError(directory_, error.message());
     lock_ = lock_directory(directory_);
+    clear(options, parameters != nullptr);
     if (parameters != nullptr)
       parameters->write(directory_ + "/case.prm");
     info_.write(directory_ + "/run.json", std::nullopt);
   }
   // No rank writes beside rank 0 before the directory is there.
   MPI_Barrier(MPI_COMM_WORLD);
+}
+
+void Run::clear(const Options &options, bool has_case) const
+{
+  const std::filesystem::path own = directory_ + "/case.prm";
+  std::error_code none;
+  if (has_case && std::filesystem::equivalent(own, options.case_file, none) && !is_listed_output(own))
+    throw InputError("the run would overwrite its own case " + options.case_file +
+                     "; give another --output-dir, or move the case out of it");
+  if (!resumes_)
+  {
+    const std::filesystem::path aside = set_earlier_output_aside(directory_, options.case_file);
+    if (talks_ && !aside.empty())
+      std::cout << "The files of the run before in " << directory_ << " are now in " << aside.string() << std::endl;
+  }
+  begin_output_list(directory_);
 }
 
 void Run::note(const Checkpoints &checkpoints)
@@ -128,16 +146,25 @@ ExitCode Run::end(const Results &results, ExitCode exit_code)
   return exit_code;
 }
 
+ExitCode exit_code_of(const Results &results)
+{
+  return results.verdict() == Verdict::fails ? ExitCode::claim_failed : ExitCode::done;
+}
+
 void Run::print(const Results &results) const
 {
-  if (talks_)
-    results.print(std::cout);
+  if (!talks_)
+    return;
+  results.print(std::cout);
+  // What fails is said last as well, where a reader looks first.
+  constexpr std::size_t most_failing_rows = 20;
+  if (results.count(Verdict::fails) > 0)
+    std::cout << "\n" << results.verdict_text(most_failing_rows);
 }
 
 ExitCode Run::finish(const Results &results)
 {
-  const ExitCode exit_code =
-    end(results, results.verdict() == Verdict::fails ? ExitCode::claim_failed : ExitCode::done);
+  const ExitCode exit_code = end(results, exit_code_of(results));
   print(results);
   return exit_code;
 }

@@ -9,6 +9,7 @@
 #include "verification/case.h"
 #include "verification/claim_outcome.h"
 #include "verification/errors.h"
+#include "verification/laws.h"
 #include "verification/options.h"
 #include "verification/results.h"
 #include "verification/run_info.h"
@@ -63,8 +64,10 @@ lock_directory(const std::string &directory, std::chrono::milliseconds patience 
 class Run
 {
 public:
-  /// Creates and locks the directory and writes case.prm and run.json. To be made once the input is known to be good.
-  /// @throws InputError if another process writes to the directory: nothing is written then @throws OutputError
+  /// Creates and locks the directory, moves what a run before left in it aside (see output_list.h) unless this one
+  /// resumes, and writes case.prm and run.json. To be made once the input is known to be good.
+  /// @throws InputError if another process writes to the directory, or case.prm would replace the user's own case:
+  /// nothing is written then @throws OutputError
   Run(const Options &options, const Parameters &parameters);
 
   /// The same for a run without a case: run.json alone.
@@ -79,7 +82,8 @@ public:
   /// Whether to print: on rank 0, unless --quiet.
   bool talks() const { return talks_; }
 
-  /// Writes results.json, results.csv, the final run.json, prints the table, and says how the run ended.
+  /// Writes results.json, results.csv, the final run.json, prints the table and then the rows that fail, and says how
+  /// the run ended.
   ExitCode finish(const Results &results);
 
   /// The same for a run that was stopped by a signal: what is known is written.
@@ -90,6 +94,8 @@ public:
 
 private:
   Run(const Options &options, const Parameters *parameters);
+  // Makes room in the directory: the files of a run before are moved aside, unless this one goes on with them.
+  void clear(const Options &options, bool has_case) const;
   void print(const Results &results) const;
 
   std::string directory_;
@@ -97,6 +103,9 @@ private:
   bool writes_, talks_, resumes_;
   RunInfo info_;
 };
+
+/// What the program ends with if nothing but the results decides.
+ExitCode exit_code_of(const Results &results);
 
 /// On which lattices claims are checked.
 enum class Shells
@@ -106,13 +115,15 @@ enum class Shells
 };
 
 /// Runs the claims named, or all of them, on the subject of a case, small versions if `quick`. Collective.
-ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names, bool quick, Shells shells);
+/// @param laws those that are judged; what is found about others is reported
+ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names, bool quick, Shells shells,
+                        const Laws &laws);
 
 /// Checks the claims, in their small versions, on the case's own material, shells and pre-stretch, or takes the
 /// verdicts that are stored for exactly these inputs and this program. Says which of the two, in words and in run.json,
 /// and writes the tables. Collective; all ranks return the same.
 /// @return the rows, at least one of them checked and none failing
-/// @throws ClaimFailed if a claim fails; results.json and run.json are then written
+/// @throws ClaimFailed that names the rows which fail, if any; results.json and run.json are then written
 Results passed_claims(const Case &input, Run &run);
 
 /// From here on SIGINT and SIGTERM are noted and end nothing by themselves.

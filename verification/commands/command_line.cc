@@ -19,6 +19,7 @@
 #include "support/available_cores.h"
 #include "verification/commands/command.h"
 #include "verification/data_folder.h"
+#include "verification/study/study_file.h"
 
 namespace verification
 {
@@ -85,6 +86,7 @@ ExitCode run_program(int argc, char **argv)
     ->check(CLI::Range(1u, 4096u))
     ->type_name("N");
   app.add_flag("--quiet", options.quiet, "print errors only");
+  app.add_flag("--verbose", options.verbose, "of a crack, print every row that was checked, not only those that fail");
   app.add_flag("--resume", options.resume,
                "go on from the last checkpoint, or keep the runs of a study that are there");
   app.add_flag("--dry-run", options.dry_run, "check the input, print the resolved case and its cost, run nothing");
@@ -94,10 +96,17 @@ ExitCode run_program(int argc, char **argv)
   verify_command->add_option("CLAIM", options.claims, "claims to check; default: all")
     ->check(CLI::IsMember(claim_names()))
     ->type_name("");
-  verify_command->add_option("--case", options.case_file, "case whose material and loading to verify")
+  verify_command
+    ->add_option("--case", options.case_file,
+                 "case whose material, loading and laws to verify; default: every law on the rubber of Fig. 1")
     ->type_name("FILE");
   verify_command->add_flag("--quick", options.quick, "small versions");
-  verify_command->callback([&] { command = [&] { return verify(options); }; });
+  verify_command->callback(
+    [&]
+    {
+      options.case_is_given = verify_command->count("--case") > 0 || !options.overrides.empty();
+      command = [&] { return verify(options); };
+    });
 
   const auto add_case_command = [&](const std::string &name, const std::string &help, ExitCode (*run)(const Options &))
   {
@@ -114,7 +123,7 @@ ExitCode run_program(int argc, char **argv)
 
   std::string study;
   CLI::App *study_command = app.add_subcommand("study", "a sweep of cracks, set beside what a source states");
-  study_command->add_option("STUDY", study, "study file (.json), or a shipped one: paper")->required()->type_name("");
+  study_command->add_option("STUDY", study, study_choices())->required()->type_name("");
   study_command->add_flag("--quick", options.quick, "small version");
   study_command->add_flag("--skip-verification", options.skip_verification,
                           "run the cracks unverified; noted in every output");

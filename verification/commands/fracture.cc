@@ -2,6 +2,7 @@
 #include <sstream>
 
 #include "verification/commands/command.h"
+#include "verification/commands/crack_summary.h"
 #include "verification/commands/dry_run.h"
 #include "verification/commands/lattice_motion.h"
 #include "verification/fracture/crack_film.h"
@@ -74,9 +75,15 @@ std::string progress_text(const lattice::Simulation &simulation, const CrackReco
   return text.str();
 }
 
+struct Crack
+{
+  lattice::CrackMeasurement measurement;
+  Results results;
+};
+
 // Moves the sheet until the crack is through or the time is up. On every rank, with the same results.
-Results break_sheet(const Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
-                    bool skip_verification, Checkpoints &checkpoints, Run &run)
+Crack break_sheet(const Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
+                  bool skip_verification, Checkpoints &checkpoints, Run &run)
 {
   const lattice::Edges edges{input.left_end == Case::End::held, input.right_end == Case::End::held, true, true};
   const lattice::RowBand band(sheet, MPI_COMM_WORLD);
@@ -123,9 +130,34 @@ Results break_sheet(const Case &input, const lattice::TriangularLattice &sheet, 
   record.write_measurement(run.directory(), crack, seed_tip, *input.breaking_stretch, skip_verification);
   if (run.writes())
     near_tip.write(run.directory(), crack);
-  if (run.talks())
-    std::cout << "The crack is " << lattice::to_string(crack.pattern) << ": " << crack.reason << "\n";
-  return measured_results(input, record, crack);
+  return {crack, measured_results(input, record, crack)};
+}
+
+// Pictures and page of a run, and where the page is. @return whether they could be made, on rank 0
+ExitCode draw_report(const Run &run)
+{
+  if (!run.writes())
+    return ExitCode::done;
+  const ExitCode exit_code = draw_report(run.directory(), true);
+  const bool drawn = exit_code == ExitCode::done || exit_code == ExitCode::claim_failed;
+  if (run.talks() && drawn)
+    std::cout << run.directory() << "/report.html" << std::endl;
+  return drawn ? ExitCode::done : exit_code;
+}
+
+// The claims on the case's own material and pre-stretch. A crack that they refuse leaves its page all the same.
+Results passed_or_reported(const Case &input, const Options &options, Run &run)
+{
+  try
+  {
+    return passed_claims(input, run);
+  }
+  catch (const ClaimFailed &)
+  {
+    if (!options.no_report)
+      draw_report(run);
+    throw;
+  }
 }
 
 } // namespace
@@ -161,14 +193,21 @@ ExitCode run_fracture(const Options &options)
   run.info().add("skip_verification", options.skip_verification);
   Results results;
   if (claims)
-    results = passed_claims(input, run);
-  results.add(break_sheet(input, sheet, material, options.skip_verification, checkpoints, run));
-  const ExitCode exit_code = signal_came() ? run.interrupted(results) : run.finish(results);
+    results = passed_or_reported(input, options, run);
+  const Crack crack = break_sheet(input, sheet, material, options.skip_verification, checkpoints, run);
+  results.add(crack.results);
+  const ExitCode exit_code = run.end(results, signal_came() ? ExitCode::interrupted : exit_code_of(results));
+  if (run.talks())
+  {
+    if (options.verbose)
+      results.print(std::cout);
+    std::cout << crack_summary(input, crack.measurement, results) << std::flush;
+  }
   if (options.no_report)
     return exit_code;
-  if (run.writes())
-    draw_report(run.directory(), true); // the verdict in it is the one returned here
-  return exit_code;
+  // The verdict in the page is the one returned here; a crack without its page did not end well.
+  const ExitCode drawn = draw_report(run);
+  return exit_code == ExitCode::done ? drawn : exit_code;
 }
 
 } // namespace verification

@@ -91,7 +91,7 @@ Results passed_claims(const Case &input, Run &run)
   bool kept = false;
   if (!reused)
   {
-    verdicts.emplace(run_claims(input, {}, quick, Shells::own));
+    verdicts.emplace(run_claims(input, {}, quick, Shells::own, laws_of_lattice())); // bonds break, no finite elements
     // A signal may have cut a claim short.
     if (run.writes() && folder && !key.text.empty() && !signal_came())
       try
@@ -122,9 +122,13 @@ Results passed_claims(const Case &input, Run &run)
     verdicts->write_tables(run.directory());
   if (!verdicts->results.all_hold())
   {
-    run.finish(verdicts->results);
-    throw ClaimFailed("the material and pre-stretch of this case fail their verification; no crack was run" +
-                      (reused ? " (" + origin + "; to have them checked again, delete " + path + ")" : ""));
+    run.end(verdicts->results, ExitCode::claim_failed);
+    constexpr std::size_t most_failing_rows = 8;
+    std::string rows = verdicts->results.verdict_text(most_failing_rows);
+    rows.pop_back(); // the end of its last line
+    throw ClaimFailed("no crack was run: the material and pre-stretch of this case fail their verification" +
+                      (reused ? " (" + origin + "; to have them checked again, delete " + path + ")" : "") + "\n" +
+                      rows);
   }
   return verdicts->results;
 }

@@ -64,7 +64,7 @@ std::string result_line(const RunOutcome &outcome)
 {
   if (outcome.state != RunState::measured)
     return to_string(outcome.state) + ": " + outcome.problem;
-  return outcome.pattern + (outcome.conclusive ? "" : " (not conclusive)");
+  return outcome.pattern;
 }
 
 // Shows how far the pool is: by the cost of the runs that have ended, for they differ.

@@ -10,6 +10,7 @@
 #include "verification/intrinsic_length/intrinsic_length_claim.h"
 #include "verification/prestretch/cut_study.h"
 #include "verification/prestretch/prestretch_claim.h"
+#include "verification/stability_row.h"
 #include "verification/wave_speeds/wave_speeds_claim.h"
 
 namespace verification
@@ -17,20 +18,24 @@ namespace verification
 namespace
 {
 
-// The states about which waves are looked at: at rest, stretched alike along both axes, and as the case is loaded.
+// The states about which waves are looked at: at rest, stretched alike along both axes, and as the case is loaded,
+// unless the lattice buckles there and has no waves.
 std::vector<Eigen::Matrix2d> states(const Subject &subject, bool quick)
 {
   const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
-  if (subject.deformation.isApprox(I, 1e-12))
-    return {I};
-  if (quick)
-    return {I, subject.deformation};
-  return {I, 1.5 * I, subject.deformation};
+  std::vector<Eigen::Matrix2d> list{I};
+  if (!quick && !subject.deformation.isApprox(I, 1e-12))
+    list.emplace_back(1.5 * I);
+  if (subject.is_stable() && !subject.deformation.isApprox(I, 1e-12))
+    list.push_back(subject.deformation);
+  return list;
 }
 
 ClaimOutcome energy(const Subject &subject, bool quick)
 {
   ClaimOutcome outcome{energy_claim(subject, quick ? 200 : 2000), {}};
+  if (!subject.is_stable())
+    outcome.results.add(stability_row(subject, "energy"));
   WaveEnergyOptions options;
   options.states = states(subject, true);
   if (quick)
@@ -48,9 +53,12 @@ ClaimOutcome wave_speeds(const Subject &subject, bool quick)
   {
     options.kd = {0.1, 0.5};
     options.mesh.cells = 4;
-    options.damped_states = {subject.deformation};
+    options.damped_states = {options.states.back()};
   }
-  return wave_speeds_claim(subject, options);
+  ClaimOutcome outcome = wave_speeds_claim(subject, options);
+  if (!subject.is_stable())
+    outcome.results.add(stability_row(subject, "wave-speeds"));
+  return outcome;
 }
 
 ClaimOutcome intrinsic_length(const Subject &subject, bool quick)
@@ -78,7 +86,7 @@ ClaimOutcome prestretch(const Subject &subject, bool quick)
   }
   outcome.add(cut_claim(subject, hole_study(quick)));
   outcome.add(cut_claim(subject, notch_study(quick)));
-  if (!quick && (subject.deformation - Eigen::Matrix2d::Identity()).norm() > 0.01)
+  if (!quick && subject.is_stable() && (subject.deformation - Eigen::Matrix2d::Identity()).norm() > 0.01)
     outcome.add(cut_claim(subject, loaded_hole_study(subject.deformation)));
   return outcome;
 }
@@ -109,15 +117,16 @@ const std::vector<std::string> &claim_names()
   return names;
 }
 
-ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names, bool quick, Shells shells)
+ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names, bool quick, Shells shells,
+                        const Laws &laws)
 {
   const Case read = claim_inputs(input);
-  std::vector<Subject> subjects{subject(read)};
+  std::vector<Subject> subjects{subject(read, read.material(), laws)};
   if (read.has_next_nearest && shells == Shells::own_and_nearest)
   {
     lattice::Material nearest_only = read.material();
     nearest_only.next_nearest.reset();
-    subjects.push_back(subject(read, nearest_only));
+    subjects.push_back(subject(read, nearest_only, laws));
   }
   ClaimOutcome outcome;
   for (const auto &[name, claim] : claims())
@@ -142,7 +151,8 @@ ExitCode verify(const Options &options)
   ClaimOutcome outcome;
   {
     const auto phase = run.info().stopwatch().phase("claims");
-    outcome = run_claims(input, options.claims, options.quick, Shells::own_and_nearest);
+    outcome = run_claims(input, options.claims, options.quick, Shells::own_and_nearest,
+                         options.case_is_given ? laws_of(input) : all_laws());
   }
   if (run.writes())
     outcome.write_tables(run.directory());

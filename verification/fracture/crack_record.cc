@@ -196,7 +196,6 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory,
     return;
   nlohmann::ordered_json json;
   json["pattern"] = lattice::to_string(measurement.pattern);
-  json["conclusive"] = measurement.conclusive;
   json["reason"] = measurement.reason;
   const auto put = [&json](const std::string &name, const std::optional<lattice::Measured> &measured)
   {

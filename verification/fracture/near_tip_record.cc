@@ -8,7 +8,7 @@
 
 #include "lattice/near_tip_writer.h"
 #include "verification/atomic_file.h"
-#include "verification/wave_speeds/bloch.h"
+#include "verification/bloch.h"
 
 namespace verification
 {

@@ -4,7 +4,7 @@
 
 #include <Eigen/LU>
 
-#include "verification/wave_speeds/bloch.h"
+#include "verification/bloch.h"
 
 namespace verification
 {

@@ -122,7 +122,8 @@ void dispersion(const Subject &subject, const IntrinsicLengthOptions &options, C
   {
     const std::string name = std::string("alpha of ") + wave_names[w] + " waves, ";
     rows.add(name + "mean over directions, isotropic gradient continuum against lattice", "1", mean[w],
-             isotropic_alpha[w], {}, std::abs(isotropic_alpha[w] - mean[w]), equal_formulas);
+             isotropic_alpha[w], {}, std::abs(isotropic_alpha[w] - mean[w]),
+             subject.tolerance(Law::isotropic_gradient, equal_formulas));
     rows.add(name + "largest difference of the isotropic continuum from the lattice", "1", {}, {}, {},
              isotropic_loss[w], {});
     if (subject.material.next_nearest)
@@ -134,7 +135,7 @@ void dispersion(const Subject &subject, const IntrinsicLengthOptions &options, C
   // Not a fault of the code: a positive gradient energy alone cannot soften.
   const double least_hardening = std::max(hardening[0], hardening[1]);
   rows.add("hardening: alpha of a positive gradient energy without micro-inertia is negative", "1", {}, least_hardening,
-           {}, std::max(0., least_hardening), 0.);
+           {}, std::max(0., least_hardening), subject.tolerance(Law::isotropic_gradient, 0.));
 }
 
 // The length that keeps the gradient energy positive.
@@ -159,7 +160,9 @@ void positivity(const Subject &subject, ClaimOutcome &outcome)
     const std::string where = std::string(", ") + name;
     const double critical = critical_length(sheet, subject.material, F);
     // Positive at l_d: no shorter length than the critical one.
-    rows.add("shortest length with a positive gradient energy, against l_d" + where, "m", critical,
+    // Bonds under compression can leave none.
+    const std::string none = std::isnan(critical) ? ": no length makes it positive" : "";
+    rows.add("shortest length with a positive gradient energy, against l_d" + where + none, "m", critical,
              subject.lengths.lattice, {}, std::max(0., critical / subject.lengths.lattice - 1.), equal_formulas);
     const double at_length = smallest_eigenvalue(*subject.lattice_gradient, F) / unit;
     rows.add("smallest eigenvalue of the gradient energy over mu d^2 at l_d" + where, "1", {}, at_length, {},

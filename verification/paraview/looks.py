@@ -104,12 +104,15 @@ class View:
         text.FontSize = 16
         text.Color = TEXT
 
-    def show(self, source, field=None, on="POINTS"):
-        """Shows a source, by the colours of a field, without shading. @return its display, the colours' scale"""
+    def show(self, source, field=None, on="POINTS", colour=None):
+        """Shows a source, by the colours of a field or in one colour, without shading. @return its display, the
+        colours' scale"""
         display = self.pv.Show(source, self.view)
         display.Ambient, display.Diffuse, display.Specular = 1.0, 0.0, 0.0  # colours as in the bar
         if field is None:
-            self.pv.ColorBy(display, None)
+            display.ColorArrayName = ["POINTS", ""]  # none
+            if colour is not None:
+                display.AmbientColor = display.DiffuseColor = colour
             return display, None
         self.pv.ColorBy(display, (on, field))
         return display, self.pv.GetColorTransferFunction(field)

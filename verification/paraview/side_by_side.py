@@ -12,11 +12,11 @@ sys.dont_write_bytecode = True  # this folder stays as it is
 from looks import (TENSOR, VECTOR, View, array, beside, finish, parser_of, require, set_scale, size_for, symmetric,
                    value_range)
 
-# Fields that on the lattice come from the bonds of a site: shown where it has all of them.
+# Fields that on the lattice come from the bonds of a site: coloured where it has all of them, grey elsewhere.
 FROM_BONDS = ("deformation_gradient", "first_piola_stress", "cauchy_stress", "strain_energy_density")
 FIELDS = {"displacement": (VECTOR, "m"), "velocity": (VECTOR, "m/s"), "deformation_gradient": (TENSOR, "1"),
           "first_piola_stress": (TENSOR, "Pa"), "cauchy_stress": (TENSOR, "Pa"), "strain_energy_density": ({}, "J/m^3")}
-OUTSIDE = [0.75, 0.75, 0.75]  # sites outside the continuum
+OUTSIDE = [0.75, 0.75, 0.75]  # sites outside the continuum, and those whose field is not shown
 VIEW_WIDTH = 640  # [pixels]
 FILES = ("difference_sites.vtp", "difference_continuum.vtu")
 
@@ -35,6 +35,13 @@ def arguments():
     return chosen
 
 
+def as_lattice(display):
+    """Draws sites as points and bonds as lines."""
+    display.SetRepresentationType("Surface")
+    display.LineWidth = 2.5
+    display.PointSize = 4.0
+
+
 def draw(chosen):
     """The layout of the three views, and its size [pixels]."""
     components, unit = FIELDS[chosen.field]
@@ -49,15 +56,20 @@ def draw(chosen):
         source.TimeArray = "None"
         source.UpdatePipeline()
         array(source, chosen.field)
+    all_sites, grey = sites, ""
     if chosen.field in FROM_BONDS:
         sites = pv.Threshold(Input=sites, Scalars=["POINTS", "complete"], LowerThreshold=1.0, UpperThreshold=1.0)
         sites.UpdatePipeline()
+        grey = " (grey: sites that lack bonds)"
     # What the continuum does between the sites, in a corner for instance, does not wash out the rest.
     ranges = [value_range(sites, name, component) for name in (chosen.field, f"{chosen.field}_continuum")]
     off = value_range(sites, difference, component)
     if not chosen.undeformed:
-        sites, cells = (pv.WarpByVector(Input=source, Vectors=["POINTS", "displacement"]) for source in (sites, cells))
-    left, middle, right = (View(pv, title) for title in ("lattice", "continuum", "lattice less continuum"))
+        all_sites, sites, cells = (pv.WarpByVector(Input=source, Vectors=["POINTS", "displacement"])
+                                   for source in (all_sites, sites, cells))
+    left, middle, right = (View(pv, title) for title in (f"lattice{grey}", "continuum", f"lattice less continuum{grey}"))
+    for view in (left, right) if grey else ():
+        as_lattice(view.show(all_sites, colour=OUTSIDE)[0])
     lattice, lut = left.show(sites, chosen.field)
     continuum, _ = middle.show(cells, chosen.field)
     differs, off_lut = right.show(sites, difference)
@@ -68,10 +80,8 @@ def draw(chosen):
     else:
         set_scale(off_lut, symmetric(off), "Cool to Warm", component)
     lut.NanColor = off_lut.NanColor = OUTSIDE
-    for display in (lattice, differs):  # a lattice is shown as one
-        display.SetRepresentationType("Surface")
-        display.LineWidth = 2.5
-        display.PointSize = 4.0
+    for display in (lattice, differs):
+        as_lattice(display)
     continuum.NonlinearSubdivisionLevel = 3
     left.show_bar(lattice, lut, size_of + shown)
     middle.show_bar(continuum, lut, size_of + shown)

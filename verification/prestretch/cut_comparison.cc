@@ -216,6 +216,10 @@ std::optional<CutErrors> compare(const CutLattice &cut, const CutSheet &sheet, c
   {
     failure = error.what();
   }
+  catch (const continuum::LinearSolverFailed &error)
+  {
+    failure = error.what();
+  }
   catch (const continuum::NonPhysicalState &error)
   {
     failure = error.what();

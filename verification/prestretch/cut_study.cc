@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
 
 #include "continuum/mooney_rivlin.h"
 
@@ -77,13 +80,27 @@ CutStudy loaded_hole_study(const Eigen::Matrix2d &F)
 std::vector<CutResult> compare_sizes(const Subject &subject, const CutStudy &study, const Eigen::Matrix2d &F)
 {
   const double d = subject.spacing;
-  const continuum::MooneyRivlin mooney_rivlin(subject.mooney_rivlin.law);
+  std::optional<continuum::MooneyRivlin> mooney_rivlin;
+  if (subject.mooney_rivlin)
+    mooney_rivlin.emplace(subject.mooney_rivlin->law);
   std::vector<CutResult> results;
   for (std::size_t i = 0; i < study.sizes.size(); ++i)
   {
     const double size = study.sizes[i];
     const CutSheet sheet = study.sheet(subject, size * d, F);
-    CutLattice lattice = relaxed_lattice(subject, sheet);
+    std::optional<CutLattice> relaxed;
+    try
+    {
+      relaxed.emplace(relaxed_lattice(subject, sheet));
+    }
+    catch (const std::runtime_error &error)
+    {
+      if (!study.is_reported)
+        throw;
+      results.push_back({size, no_lattice, {}, error.what(), std::numeric_limits<double>::quiet_NaN()});
+      continue;
+    }
+    CutLattice &lattice = *relaxed;
     if (study.spoil)
       study.spoil(lattice);
     const EquivalentSheet domain =
@@ -108,7 +125,8 @@ std::vector<CutResult> compare_sizes(const Subject &subject, const CutStudy &stu
     add("local-nominal", local, nominal_sheet(lattice.lattice, sheet.cutout));
     add("lattice", {subject.cauchy_born, *subject.lattice_gradient}, domain);
     add("isotropic", {subject.cauchy_born, *subject.isotropic_gradient}, domain);
-    add("mooney-rivlin", {mooney_rivlin}, domain);
+    if (mooney_rivlin)
+      add("mooney-rivlin", {*mooney_rivlin}, domain);
   }
   return results;
 }

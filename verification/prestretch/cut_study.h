@@ -36,6 +36,9 @@ CutStudy notch_study(bool quick);
 /// A hole in the loaded sheet of the subject, to say which laws have an equilibrium there.
 CutStudy loaded_hole_study(const Eigen::Matrix2d &F);
 
+/// In the place of a law: the lattice itself did not come to rest, and there is nothing to compare a law with.
+inline constexpr const char *no_lattice = "lattice that does not come to rest";
+
 /// One law beside one lattice.
 struct CutResult
 {
@@ -49,7 +52,7 @@ struct CutResult
 /// Everything that is compared in one state, laws in the order in which tables have them: "local", "local-nominal" (the
 /// same in the sheet as a case describes it), "local-moved" (the same at the largest size, the rim or tip moved by what
 /// its place is known to, twice), "lattice", "isotropic", "mooney-rivlin". Collective.
-/// @throws std::runtime_error if a lattice does not come to rest
+/// @throws std::runtime_error if a lattice does not come to rest, unless the study is only reported
 std::vector<CutResult> compare_sizes(const Subject &subject, const CutStudy &study, const Eigen::Matrix2d &F);
 
 /// The part of the claim `prestretch` on fields that are not homogeneous: rows for each state, and a table named after

@@ -6,11 +6,13 @@
 
 #include <deal.II/base/function.h>
 
+#include "continuum/errors.h"
 #include "continuum/rectangle.h"
 #include "continuum/static_solver.h"
 #include "lattice/relaxation.h"
 #include "lattice/site_fields.h"
 #include "verification/affine_displacement.h"
+#include "verification/stability_row.h"
 
 namespace verification
 {
@@ -89,7 +91,7 @@ struct Row
   std::string quantity;
   std::string unit;
   std::optional<double> lattice, continuum;
-  double error;
+  std::optional<double> error;
 };
 
 std::vector<Row> compare(const Subject &subject, const lattice::TriangularLattice &sheet, const LatticeSide &side,
@@ -140,15 +142,56 @@ std::vector<Row> compare(const Subject &subject, const lattice::TriangularLattic
     {"first Piola stress, largest difference / largest", "1", {}, {}, stress_error / stress_scale}};
 }
 
+// The same with the law that was fitted along the loading path, for information: it is not the lattice's, and need not
+// have an equilibrium.
+Results mooney_rivlin_rows(const Subject &subject, const lattice::TriangularLattice &sheet, const LatticeSide &side,
+                           const PrestretchOptions &options)
+{
+  Results results;
+  const auto add = [&](const std::string &quantity, const Row &row)
+  {
+    results.add({"prestretch",
+                 subject.name + ": " + quantity + ", Mooney-Rivlin",
+                 row.unit,
+                 row.lattice,
+                 row.continuum,
+                 {},
+                 row.error,
+                 {}});
+  };
+  if (!subject.mooney_rivlin)
+    return results;
+  try
+  {
+    for (const Row &row : compare(subject, sheet, side, continuum::MooneyRivlin(subject.mooney_rivlin->law), options))
+      add(row.quantity, row);
+  }
+  catch (const continuum::SolverFailed &)
+  {
+    add("no equilibrium of the loaded sheet", {"", "1", {}, {}, {}});
+  }
+  catch (const continuum::LinearSolverFailed &)
+  {
+    add("no equilibrium of the loaded sheet", {"", "1", {}, {}, {}});
+  }
+  catch (const continuum::NonPhysicalState &)
+  {
+    add("no equilibrium of the loaded sheet", {"", "1", {}, {}, {}});
+  }
+  return results;
+}
+
 } // namespace
 
 Results prestretch_claim(const Subject &subject, const PrestretchOptions &options)
 {
+  Results results;
+  results.add(stability_row(subject, "prestretch"));
+  if (!subject.is_stable())
+    return results; // nothing homogeneous to compare
   const lattice::TriangularLattice sheet(subject.spacing, options.length * subject.spacing,
                                          options.height * subject.spacing, subject.orientation);
   const LatticeSide side = relaxed_lattice(subject, sheet, options.noise);
-
-  Results results;
   for (const Row &row : compare(subject, sheet, side, subject.cauchy_born, options))
     results.add({"prestretch",
                  subject.name + ": " + row.quantity + ", Cauchy-Born",
@@ -158,15 +201,7 @@ Results prestretch_claim(const Subject &subject, const PrestretchOptions &option
                  {},
                  row.error,
                  solver_tolerance});
-  for (const Row &row : compare(subject, sheet, side, continuum::MooneyRivlin(subject.mooney_rivlin.law), options))
-    results.add({"prestretch",
-                 subject.name + ": " + row.quantity + ", Mooney-Rivlin",
-                 row.unit,
-                 row.lattice,
-                 row.continuum,
-                 {},
-                 row.error,
-                 {}});
+  results.add(mooney_rivlin_rows(subject, sheet, side, options));
   return results;
 }
 

@@ -10,7 +10,8 @@ namespace verification
 
 /// Claim `prestretch`: a lattice sheet between held edges, relaxed from noise, and a finite element sheet of the same
 /// size whose edges are displaced alike, agree in energy density, edge tractions and fields; exactly (to solver
-/// tolerance) with the Cauchy-Born law, reported with the calibrated Mooney-Rivlin law. Collective over MPI_COMM_WORLD.
+/// tolerance) with the Cauchy-Born law, reported with the calibrated Mooney-Rivlin law. A loaded lattice that buckles
+/// fails and is not compared. Collective over MPI_COMM_WORLD.
 struct PrestretchOptions
 {
   double length = 40.; ///< of the sheet, in spacings

@@ -61,9 +61,9 @@ PLOTS = (
     Plot("wave_speeds", "wave-speeds", draw_wave_speeds,
          "The local continuum knows one speed for all wavelengths; with the lattice's gradient energy and "
          "micro-inertia the speed falls with shorter waves as it does in the lattice.",
-         "Phase velocity over that of long waves against k d, both per undeformed length. Dashed: exact dispersion "
-         "of the lattice; dotted: closed formula of the gradient continuum; circles: measured in a run of the "
-         "lattice; solid with crosses: finite elements. Right: relative difference from the exact dispersion, "
+         "Phase velocity, in percent off that of long waves, against k d, both per undeformed length. Dashed: exact "
+         "dispersion of the lattice; dotted: closed formula of the gradient continuum; circles: measured in a run of "
+         "the lattice; solid with crosses: finite elements. Right: relative difference from the exact dispersion, "
          "triangles longitudinal, circles shear; the order is the slope over the half of the points with the "
          "smallest k d."),
     Plot("attenuation", "wave-speeds", draw_attenuation,

@@ -23,6 +23,8 @@ class UnwritableFile(Exception):
         super().__init__(f"cannot write {path}: {problem}")
 
 
+# Names of the files that latcon wrote into an output directory, and of folders with those of runs before.
+OUTPUT_LIST, EARLIER = ".latcon-files", "earlier-run"
 # Exit codes, those of latcon.
 DONE, BAD_INPUT, CLAIM_FAILS, IO_FAILED = 0, 2, 3, 5
 
@@ -99,21 +101,39 @@ def read_table(path, columns, texts=(), finite=True):
 
 
 def write_file(path, write):
-    """Calls `write` with the name of a new file, which then takes the place of `path`.
+    """Calls `write` with the name of a new file, which then takes the place of `path`. In the output directory of a run
+    the file is listed, as those of the run are (output_list.h)."""
+    try:
+        list_output(path)
+        replace_file(path, write)
+    except OSError as error:
+        raise UnwritableFile(path, error.strerror or error) from error
+
+
+def replace_file(path, write):
+    """The same without listing the file.
 
     As in support/atomic_file.h: the part lies beside its place under a random name, is created and never opened there,
     and is written to by its descriptor, so that no link that others put there is followed.
     """
     part = path.with_name(f"{path.name}.{secrets.token_hex(8)}.part")
+    descriptor = os.open(part, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o666)
     try:
-        descriptor = os.open(part, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o666)
-        try:
-            write(pathlib.Path(f"/proc/self/fd/{descriptor}"))
-            os.replace(part, path)
-        except BaseException:
-            part.unlink(missing_ok=True)
-            raise
-        finally:
-            os.close(descriptor)
-    except OSError as error:
-        raise UnwritableFile(path, error.strerror or error) from error
+        write(pathlib.Path(f"/proc/self/fd/{descriptor}"))
+        os.replace(part, path)
+    except BaseException:
+        part.unlink(missing_ok=True)
+        raise
+    finally:
+        os.close(descriptor)
+
+
+def list_output(path):
+    """Puts a file into the list of its folder; nothing if the folder has none."""
+    listing = path.with_name(OUTPUT_LIST)
+    if not listing.exists():
+        return
+    names = listing.read_text(encoding="utf-8").splitlines()
+    if path.name not in names:
+        text = "".join(f"{name}\n" for name in sorted([*names, path.name]))
+        replace_file(listing, lambda beside: beside.write_text(text, encoding="utf-8"))

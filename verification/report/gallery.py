@@ -24,6 +24,7 @@ from runs import has_rows, read_run
 from study import draw_run
 from study_page import RUN_PICTURES
 from study_plots import draw_sweep, pattern_text
+from study_quantities import asked_quantities, sweeps_of
 from study_runs import mean_of, read_study, value_text
 
 LARGEST_PICTURE = 250_000  # [bytes]
@@ -71,7 +72,7 @@ def cases_of(study):
     for heading, pattern, has_both_shells, kinds in CASES:
         seeds = [seed for name in shown if (study.runs[name][1].get(SHELLS) != "false") == has_both_shells
                  for seed in study.runs[name][2] if seed.state == "measured"]
-        fitting = [seed for seed in seeds if seed.pattern == pattern and seed.conclusive]
+        fitting = [seed for seed in seeds if seed.pattern == pattern]
         fitting += [] if has_both_shells else seeds
         found += [(heading, seed, kinds) for seed in fitting[:1]]
     return found
@@ -106,7 +107,7 @@ def case_section(study, heading, seed, drawn):
     changes = ", ".join(f"{entry} = {value}" for entry, value in changed.items())
     lines = [f"## {heading}: `{seed.run}`", "", f"{about[:1].upper()}{about[1:]}{'. ' if about else ''}"
              f"{'Changed: ' + changes + '. ' if changes else ''}Patterns of its seeds: {pattern_text(seeds)}. "
-             f"Pictures of seed {seed.seed}: {seed.pattern}{'' if seed.conclusive else ', not conclusive'}."]
+             f"Pictures of seed {seed.seed}: {seed.pattern}."]
     for kind, (text, numbers) in CAPTIONS.items():
         if kind in drawn:
             found = numbers_text(seed, seeds, numbers)
@@ -119,15 +120,14 @@ def sweep_sections(study, folder):
     """Sweeps, one for each set of runs along one abscissa: [(lines, PNG), ...]."""
     sections, known = [], set()
     for claim in study.claims:
-        rows = [row for row in claim["rows"] if row["against"] in SWEEPS]
-        for row in rows:
-            key = (row["against"], tuple(row["runs"]))
+        for rows in sweeps_of([row for row in claim["rows"] if row["against"] in SWEEPS]):
+            key = (rows[0]["against"], tuple(rows[0]["runs"]))
             png = folder / f"sweep-{len(sections) + 1}.png"
-            if key in known or not draw_sweep(study, row, png):
+            if key in known or not draw_sweep(study, rows[0], asked_quantities(rows), png):
                 continue
             known.add(key)
             words = [f"- {r['quantity']}, {r['expected'] or 'for information'}: **{r['verdict']}**. {r['measured']}"
-                     for r in rows if (r["against"], tuple(r["runs"])) == key]
+                     for r in rows]
             sections.append(([f"## {claim['claim']}", "", f"![sweep](pictures/{png.name})", "", "Means and standard "
                               "deviations over the seeds; open symbols at 0: the crack has none.", "", *words], png))
     return sections
@@ -137,7 +137,7 @@ def claims_section(study):
     """What the source says, what was measured, whether it holds: a line a row."""
     lines = ["## What the paper says, and what latcon measures", ""]
     for claim in study.claims:
-        lines += [f"**{claim['claim']}** ({claim['verdict']}). The paper: {claim['paper']}"
+        lines += [f"**{claim['claim']}** ({claim['verdict']}).{' The paper: ' + claim['paper'] if claim['paper'] else ''}"
                   f"{' Note: ' + claim['note'] if claim['note'] else ''}", ""]
         lines += [f"- {row['verdict']}: {', '.join(row['runs'])}; {row['quantity']}: {row['measured']}"
                   f"{' [' + row['expected'] + ']' if row['expected'] else ''}" for row in claim["rows"]]

@@ -31,9 +31,10 @@ CAPTIONS = {
 }
 
 
-def page(title, runs, pictures, plots):
+def page(title, runs, pictures, plots, unreadable=()):
     """The whole page.
 
+    unreadable: runs that cannot be shown
     pictures: of cracks, {folder of a run: {name in CAPTIONS: (picture, still picture for print or None)}}
     plots: of claims, {folder of a run: {plot name: (PNG file, error metrics)}}
     """
@@ -56,7 +57,7 @@ def page(title, runs, pictures, plots):
 <h1>latcon report: {escape(title)}</h1>
 <p class="soft">{escape(", ".join(versions) or "latcon")}: what was checked, what came out, and whether it holds</p>
 <main>
-{banner(runs)}
+{banner(runs, unreadable)}
 {key_numbers(runs)}
 <nav aria-label="sections">{"".join(links)}</nav>
 {"".join(cracks)}
@@ -71,7 +72,7 @@ def page(title, runs, pictures, plots):
 """
 
 
-def banner(runs):
+def banner(runs, unreadable=()):
     """The verdict over everything, and what a reader must know first."""
     checks = [check for run in runs for check in run.checks]
     total = tally_of(None, "", checks).count
@@ -83,12 +84,14 @@ def banner(runs):
         notes += [f'<b class="fails">{escape(run.name)}, {escape(check.claim)}: {escape(check.quantity)}</b>, '
                   f"error {number(check.error, '.3g')}, allowed {number(check.tolerance, '.3g')}"
                   for run in runs for check in run.checks if check.verdict == "fails"]
-    elif incomplete:
+    elif incomplete or unreadable:
         kind, head = "warns", f"! Not complete: {'what is there holds' if checked else 'nothing was checked'}"
     elif checked:
         kind, head = "holds", f"✓ Holds: all {checked} checks are within their tolerances"
     else:
         kind, head = "reported", "· Reported: nothing here has a tolerance"
+    notes += [f'<b class="fails">{escape(run.name)}: cannot be read, not shown</b>: {escape(run.problem)}'
+              for run in unreadable]
     notes += [f"{escape(run.name)}: the run {'was interrupted' if run.state == 'interrupted' else 'has not ended'}; "
               "what it had written by then is shown" for run in incomplete]
     notes += [f"{escape(run.name)}: the crack was run without its material and pre-stretch having been verified "
@@ -105,7 +108,7 @@ def headline(run):
     """A crack in one line."""
     found = [f"{escape(c.quantity.split(',')[0])} {with_uncertainty(c.measured, c.uncertainty)} {escape(c.unit)} "
              f"({percent(c.difference)} from the paper)" for c in comparisons(run) if c.measured is not None]
-    return "; ".join([f"the crack is {escape(run.crack['pattern'])}"] + found)
+    return "; ".join([pattern_phrase(run.crack)] + found)
 
 
 def overview(runs):
@@ -171,13 +174,19 @@ def facts(run):
     return f'<p class="soft">{escape(" · ".join(found))}</p>' if found else ""
 
 
+def pattern_phrase(crack):
+    """The pattern of a crack in words."""
+    word = escape(crack["pattern"])
+    return "the pattern of the crack is <b>undecided</b>" if word == "undecided" else f"the crack is <b>{word}</b>"
+
+
 def pattern_sentence(run):
-    """What the crack did, and how sure that is."""
+    """What the crack did, and why it is called that."""
     if run.crack is None:
         return "<p>The run did not get to the measurement of its crack (no crack.json).</p>"
-    sure = "" if run.crack.get("conclusive", True) else " The record does not settle it."
-    reason = f": {run.crack['reason']}" if run.crack.get("reason") else ""
-    return f"<p>The crack is <b>{escape(run.crack['pattern'])}</b>{escape(reason)}.{sure}</p>"
+    phrase = pattern_phrase(run.crack)
+    reason = f": {escape(run.crack['reason'])}" if run.crack.get("reason") else ""
+    return f"<p>{phrase[:1].upper()}{phrase[1:]}{reason}.</p>"
 
 
 def key_numbers(runs):

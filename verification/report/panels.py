@@ -8,7 +8,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 
 from pictures import BLACK, BLUE, GREEN, RED, WIDTH, Page
 
-LEFT, RIGHT, GAP = 0.85, 0.2, 0.85  # margins of the grid and space between its columns [in]
+LEFT, RIGHT, GAP = 0.95, 0.2, 0.85  # margins of the grid and space between its columns [in]
 NAME, TITLE, HEIGHT, FOOT = 0.27, 0.35, 2.25, 0.6  # of a row: its name, titles of its axes, axes, below them [in]
 LEGEND_LINE = 0.24  # [in]
 WAVES = {"L": "longitudinal", "S": "shear"}

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Draws the pictures of latcon's runs and writes report.html.
 
-Exit codes, those of latcon: 0 done and no claim fails; 2 no run there, or a damaged file; 3 a claim fails; 5 a file
-cannot be written.
+Exit codes, those of latcon: 0 done and no claim fails; 2 no run there, or one that cannot be read; 3 a claim fails; 5 a
+file cannot be written. A run that cannot be read is listed with its error and does not cost the others.
 """
 import argparse
 import os
@@ -17,12 +17,12 @@ from animation import draw_animation
 from claims_text import PLOTS
 from crack_path import draw_crack_path
 from field_pictures import draw_fields, has_fields
-from files import CLAIM_FAILS, DONE, exit_code_of, write_file
+from files import BAD_INPUT, CLAIM_FAILS, DONE, DamagedFile, exit_code_of, write_file
 from frame import read_last_frame
 from near_tip_plots import opening_stress_picture, velocity_picture
 from page import page
 from pictures import draw_energy, draw_sheet
-from runs import find_runs, has_rows
+from runs import Unreadable, find_runs, has_rows
 from summary import text_summary
 
 
@@ -66,15 +66,25 @@ def draw_plots(run):
 def report(directory, quiet):
     """Everything, for the folder as the user gave it. @return exit code"""
     folder = Path(directory)
-    runs = find_runs(folder)
-    pictures = {run.folder: draw_pictures(run) for run in runs if run.is_fracture}
-    plots = {run.folder: draw_plots(run) for run in runs}
-    html = page(folder.resolve().name, runs, pictures, plots)
+    found, unreadable = find_runs(folder)
+    runs, pictures, plots = [], {}, {}
+    for run in found:
+        try:  # frames and fields are read only now
+            pictures[run.folder] = draw_pictures(run) if run.is_fracture else {}
+            plots[run.folder] = draw_plots(run)
+            runs.append(run)
+        except DamagedFile as error:
+            unreadable.append(Unreadable(run.name, run.folder, str(error)))
+    html = page(folder.resolve().name, runs, pictures, plots, unreadable)
     write_file(folder / "report.html", lambda beside: beside.write_text(html, encoding="utf-8"))
+    for one in unreadable:
+        print(f"error: {one.problem}", file=sys.stderr)
     if not quiet:
         sys.stdout.reconfigure(errors="replace")
-        print(text_summary(runs))
+        print(text_summary(runs, unreadable))
         print(f"\n{os.path.join(directory, 'report.html')}")
+    if unreadable:
+        return BAD_INPUT
     return CLAIM_FAILS if any(c.verdict == "fails" for run in runs for c in run.checks) else DONE
 
 

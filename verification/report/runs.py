@@ -5,10 +5,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from claim_tables import read_claim_tables
-from files import DamagedFile, read_json, read_table, read_text
+from files import EARLIER, DamagedFile, read_json, read_table, read_text
 
 # Any of these makes a folder that of a run, whole or interrupted.
 SIGNS_OF_A_RUN = ("results.json", "run.json", "crack.json", "crack.csv", "lattice.pvd")
+# First columns of energy.csv of an equilibrium and of a motion of the continuum.
+CONTINUUM_ENERGIES = ("load_factor,", "t,elastic,kinetic,micro_inertia,")
 INTERRUPTED = 130  # exit code of latcon
 
 
@@ -52,7 +54,7 @@ class Run:
     near_tip: dict  # near_tip.json, SI units
     tip: dict  # crack.csv: t [s], X, Y [m] in the undeformed sheet
     broken: dict  # broken_bonds.csv: t [s], the two sites, X, Y [m] in the undeformed sheet
-    energy: dict  # energy.csv: t [s], the rest in J per metre of sheet thickness
+    energy: dict  # energy.csv of a motion of the lattice: t [s], the rest in J per metre of sheet thickness
     tables: dict  # of the claims, {file name without ".csv": {column: array}}; those that are there
 
     @property
@@ -87,26 +89,42 @@ class Run:
         return None
 
 
+@dataclass(frozen=True)
+class Unreadable:
+    """A run that cannot be shown."""
+
+    name: str
+    folder: Path
+    problem: str  # the file and what is wrong with it
+
+
 def has_rows(table, at_least=1):
     """Whether a table was read and has rows enough."""
     return table is not None and len(table["t"]) >= at_least
 
 
 def find_runs(folder):
-    """The run in `folder` and those in its sub-folders, runs without a crack first.
+    """The run in `folder` and those in its sub-folders, runs without a crack first, and the runs that cannot be read.
 
     Studies have a page of their own and are left out where there is anything else.
+    @return (list of Run, list of Unreadable)
     """
     try:
-        candidates = [folder] + sorted(path for path in folder.iterdir() if path.is_dir())
+        candidates = [folder] + sorted(path for path in folder.iterdir()
+                                       if path.is_dir() and not path.name.startswith(EARLIER))
         candidates = [path for path in candidates if any((path / sign).exists() for sign in SIGNS_OF_A_RUN)]
-        plain = [path for path in candidates if not (path / "study.json").exists()]
-        runs = [read_run(path) for path in plain or candidates]
     except OSError as error:
         raise DamagedFile(folder, error.strerror) from error
-    if not runs:
+    if not candidates:
         raise DamagedFile(folder, "no run in it (no results.json, here or in a folder in it)")
-    return sorted(runs, key=lambda run: run.is_fracture)
+    plain = [path for path in candidates if not (path / "study.json").exists()]
+    runs, unreadable = [], []
+    for path in plain or candidates:
+        try:
+            runs.append(read_run(path))
+        except DamagedFile as error:
+            unreadable.append(Unreadable(path.resolve().name, path, str(error)))
+    return sorted(runs, key=lambda run: run.is_fracture), unreadable
 
 
 def read_run(folder):
@@ -123,12 +141,18 @@ def read_run(folder):
         near_tip=read_near_tip(folder / "near_tip.json"),
         tip=read_table(folder / "crack.csv", ("t", "X", "Y")),
         broken=read_table(folder / "broken_bonds.csv", ("t", "site", "other_site", "X", "Y")),
-        energy=read_table(
-            folder / "energy.csv",
-            ("t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "imbalance"),
-        ),
+        energy=read_energy(folder / "energy.csv"),
         tables=read_claim_tables(folder),
     )
+
+
+def read_energy(path):
+    """energy.csv of a motion of the lattice; None if there is none, and for the two kinds that the continuum writes
+    (docs/reference.md), whose columns are others."""
+    text = read_text(path)
+    if text is None or text.startswith(CONTINUUM_ENERGIES):
+        return None
+    return read_table(path, ("t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "imbalance"))
 
 
 def read_checks(path, results):

@@ -19,6 +19,7 @@ from pictures import draw_sheet, shrink
 from runs import read_run
 from study_page import RUN_PICTURES, page
 from study_plots import draw_paths, draw_speeds, draw_sweep
+from study_quantities import asked_quantities, sweeps_of
 from study_runs import first_measured, read_study
 
 LARGEST_PICTURE = 400_000  # [bytes], of a run: the page holds all of them
@@ -54,15 +55,17 @@ def draw_pictures(study):
 
 
 def draw_sweeps(study, number, claim, folder):
-    """One picture for each set of runs along one abscissa: [(caption, PNG), ...]."""
-    drawn = {}
-    for row in claim["rows"]:
-        key = (row["against"], tuple(row["runs"]))
+    """One picture for each set of runs along one abscissa, of the quantities that its rows ask for: [(caption, PNG),
+    ...]."""
+    drawn = []
+    for sweep in sweeps_of(claim["rows"]):
+        quantities = asked_quantities(sweep)
         png = folder / f"sweep-{number + 1}-{len(drawn) + 1}.png"
-        if row["against"] and key not in drawn and draw_sweep(study, row, png):
-            drawn[key] = (f"Wavelength and amplitudes against {row['against']}: mean and standard deviation over the "
-                          "seeds. Open symbols at 0: the crack has none.", png)
-    return list(drawn.values())
+        if draw_sweep(study, sweep[0], quantities, png):
+            names = ", ".join(name.replace("_", " ") for name in quantities)
+            drawn.append((f"{names[:1].upper()}{names[1:]} against {sweep[0]['against']}: mean and standard deviation "
+                          "over the seeds. Open symbols at 0: the crack has none.", png))
+    return drawn
 
 
 def draw_run(seed, folder, most, kinds=tuple(RUN_PICTURES)):

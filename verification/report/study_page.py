@@ -5,6 +5,7 @@ from pathlib import Path
 
 from markup import figure, first_sentence, number, row, table, verb
 from study_plots import pattern_text
+from study_quantities import MEASURED, NEAR_TIP
 from study_runs import mean_of, value_text
 
 RUN_PICTURES = {
@@ -13,18 +14,6 @@ RUN_PICTURES = {
                 "descends. Blue: against the way of the crack.",
     "stress": "Stress across the crack, in the same mean.",
 }
-# Columns of tables of runs: quantity, scale to the unit shown, head.
-MEASURED = (("speed_lagrangian", 1, "speed<br>[m/s]"), ("wavelength", 100, "wavelength<br>[cm]"),
-            ("amplitude", 100, "amplitude of<br>sinusoid [cm]"),
-            ("crest_amplitude", 100, "half trough<br>to crest [cm]"),
-            ("bridged_length", 100, "bridged<br>length [cm]"), ("detached_sites", 1, "detached<br>sites"))
-NEAR_TIP = (("speed_over_shear", 1, "speed over<br>shear speed"),
-            ("negative_zone_area", 1e6, "area moving<br>back [mm²]"),
-            ("negative_zone_depth", 1, "most negative<br>v_x [m/s]"),
-            ("velocity_asymmetry", 1, "asymmetry<br>of velocity"),
-            ("process_zone_length", 1e3, "process<br>zone [mm]"),
-            ("opening_stress_ratio_4d", 1, "σ_yy at 4 d:<br>peak / ahead"),
-            ("opening_stress_angle_4d", 1, "angle of<br>the peak [°]"), ("wedge_angle", 1, "wedge<br>angle [°]"))
 KINDS = {"holds": "holds", "does not hold": "fails", "reported": "reported", "not measured": "reported"}
 
 
@@ -101,7 +90,7 @@ def banner(study):
     elif count["not measured"] or broken:
         kind, head = "warns", f"! {count['holds']} rows hold, but not everything was measured"
     else:
-        kind, head = "holds", f"✓ All {judged} rows hold"
+        kind, head = "holds", f"✓ {verb(judged, 'The only row that was judged holds', f'All {judged} rows hold')}"
     notes = [f'<b class="fails">{escape(seed.run)}, seed {seed.seed}: {escape(seed.state)}</b> {escape(seed.problem)}'
              for seed in broken]
     if count["not measured"]:
@@ -131,7 +120,7 @@ def claim_section(number, claim, pictures):
         ("words", escape(r["expected"]) or "–"), ("words", broken(r["measured"])), ("words", broken(r["note"]))],
         r["verdict"]) for r in claim["rows"]]
     parts = [f'<section id="claim-{number}"><h2>{escape(claim["claim"])}</h2>',
-             f'<p><b>Paper:</b> {escape(claim["paper"])}</p>',
+             *([f'<p><b>Paper:</b> {escape(claim["paper"])}</p>'] if claim["paper"] else []),
              table(["verdict", "runs", "quantity", "expected", "latcon", "missing"], lines)]
     if claim["note"]:
         parts.append(f'<p>{escape(claim["note"])}</p>')

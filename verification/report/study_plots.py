@@ -3,20 +3,14 @@ import numpy as np
 from matplotlib.lines import Line2D
 
 from pictures import BLACK, BLUE, GREEN, GREY, RED, SKY, WIDTH, Page, save
+from study_quantities import against_axis, quantity_axis
 from study_runs import mean_of, patterns_of, tip_path
 
-PATTERNS = {"oscillating": ("o", BLUE), "straight": ("s", GREEN), "branching": ("v", RED), "arrested": ("X", GREY)}
+PATTERNS = {"oscillating": ("o", BLUE), "straight": ("s", GREEN), "branching": ("v", RED), "arrested": ("X", GREY),
+            "undecided": ("D", SKY)}
 LEFT, RIGHT, GAP = 0.75, 0.2, 0.75  # of a grid of panels [in]
 SEED_COLOURS = [BLUE, RED, GREEN, SKY, BLACK, GREY]
-# Abscissas: scale to the unit shown, label; others are in SI.
-AGAINST = {"zeta": (1, "ζ = (η/a) / (d √(ρ/a))"), "Sheet/spacing": (1e3, "d [mm]"),
-           "Sheet/height": (100, "height of the sheet, undeformed [cm]"),
-           "Sheet/length": (100, "length of the sheet, undeformed [cm]"),
-           "Lattice/noise amplitude": (1, "noise amplitude / d")}
 DECADES = 30.0  # from this ratio of the largest to the smallest abscissa on, the axis is logarithmic
-# Quantity, scale to the unit shown, label.
-ALONG = (("wavelength", 100, "wavelength [cm]"), ("amplitude", 100, "amplitude of sinusoid [cm]"),
-         ("crest_amplitude", 100, "half trough to crest [cm]"))
 
 
 class Panels:
@@ -61,23 +55,23 @@ def draw_paths(study, names, path):
 
 def pattern_text(seeds):
     """Patterns of a run with their counts."""
-    doubts = sum(seed.pattern is not None and not seed.conclusive for seed in seeds)
-    words = [f"{pattern} {count}/{len(seeds)}" for pattern, count in patterns_of(seeds).items()]
-    return ", ".join(words + ([f"{doubts} not conclusive"] if doubts else [])) or "not run"
+    return ", ".join(f"{pattern} {count}/{len(seeds)}" for pattern, count in patterns_of(seeds).items()) or "not run"
 
 
-def draw_sweep(study, row, path):
-    """Wavelength and amplitudes along what a row varies. @return whether any run was measured"""
+def draw_sweep(study, row, quantities, path):
+    """Quantities along what a row varies, a panel each. @return whether any run was measured"""
     points = [(value["against"], study.runs[value["run"]][2]) for value in row["values"]
               if value["against"] is not None]
     points = [(x, seeds) for x, seeds in points if patterns_of(seeds)]
     if not points:
         return False
-    unit, name = AGAINST.get(row["against"], (1, f"{row['against']} [SI]"))
+    unit, name = against_axis(row)
     points = [(unit * x, seeds) for x, seeds in points]
-    panels = Panels(len(ALONG), len(ALONG), 2.2)
-    for number, (quantity, scale, label) in enumerate(ALONG):
+    columns = min(3, len(quantities))
+    panels = Panels(len(quantities), columns, 2.2 if columns == 3 else 2.6)
+    for number, quantity in enumerate(quantities):
         axes = panels.axes(number)
+        scale, label = quantity_axis(quantity, study.document["units"][quantity])
         for x, seeds in points:
             marker, colour = PATTERNS[next(iter(patterns_of(seeds)))]
             found = mean_of(seeds, quantity)
@@ -85,8 +79,9 @@ def draw_sweep(study, row, path):
             axes.errorbar(x, y, yerr=error, marker=marker, color=colour, capsize=3, markersize=6, linestyle="none",
                           markerfacecolor=colour if found else "white")
         axes.set(xlabel=name, ylabel=label)
-        top = max(axes.get_ylim()[1], 0.01)
-        axes.set_ylim(-0.04 * top, top)
+        if axes.get_ylim()[0] >= 0:  # from 0 on, unless there is something below
+            top = max(axes.get_ylim()[1], 1e-12)
+            axes.set_ylim(-0.04 * top, top)
         if min(x for x, _ in points) > 0 and max(x for x, _ in points) > DECADES * min(x for x, _ in points):
             axes.set_xscale("log")
     shown = {next(iter(patterns_of(seeds))) for _, seeds in points}

@@ -18,7 +18,6 @@ class Seed:
     state: str  # "measured", "refused: verification", "failed", "not run"
     problem: str
     pattern: str  # None if not measured
-    conclusive: bool
     wall_time: float  # [s]
     values: dict  # {quantity: number or None}, SI
 
@@ -61,7 +60,7 @@ def read_study(folder):
         raise DamagedFile(path, "no study was run here")
     try:
         seeds = [Seed(s["run"], s["seed"], folder / s["folder"], s["state"], s["problem"], s["pattern"],
-                      s["conclusive"], s["wall_time_s"], s["values"]) for s in document["seeds"]]
+                      s["wall_time_s"], s["values"]) for s in document["seeds"]]
         runs = {run["run"]: (run["about"], run["set"], [seed for seed in seeds if seed.run == run["run"]])
                 for run in document["runs"]}
     except (KeyError, TypeError) as error:

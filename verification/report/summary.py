@@ -109,8 +109,9 @@ def text_table(header, rows, numbers, width=120):
     return "\n".join(lines)
 
 
-def text_summary(runs):
-    """What is printed: claims of every run, what fails, and measured beside published values."""
+def text_summary(runs, unreadable=()):
+    """What is printed: claims of every run, what fails, and measured beside published values. `unreadable`: runs that
+    cannot be shown."""
     parts = []
     rows = []
     for run in runs:
@@ -121,6 +122,7 @@ def text_summary(runs):
             name = ""
         if run.state != "complete":
             rows.append([name, run.state, "", "", "", ""])
+    rows += [[shortened(run.name), "cannot be read", "", "", "", ""] for run in unreadable]
     parts.append(text_table(["run", "claim", "holds", "fails", "reported", "worst error / tolerance"], rows,
                             (2, 3, 4, 5)))
     failing = [[shortened(run.name), f"{check.claim}: {check.quantity}", ratio_text(check.ratio)]

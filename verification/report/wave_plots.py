@@ -8,7 +8,7 @@ from pictures import BLACK, BLUE, GREY, save
 
 
 def draw_wave_speeds(tables, path):
-    """Phase velocities of both waves over that of long ones, and what the continua's are off the exact ones."""
+    """Phase velocities of both waves, less that of long ones, and what the continua's are off the exact ones."""
     table = tables["wave_speeds"]
     colours, angles = colours_of(table["angle [deg]"], "waves along", "°")
     laws = [law for law in ("local", "isotropic", "gradient") if np.isfinite(table[f"{law} [m/s]"]).any()]
@@ -21,7 +21,7 @@ def draw_wave_speeds(tables, path):
         for column, wave in enumerate(WAVES):
             axes = grid.axes(number, column, title=f"{WAVES[wave]} waves", xlabel="k d [1]")
             if column == 0:
-                axes.set_ylabel("phase velocity / that of\nlong waves [1]")
+                axes.set_ylabel("phase velocity off\nthat of long waves [%]")
             for (_, angle), part in groups(state, "wave", "angle [deg]"):
                 if part["wave"][0] == wave:
                     draw_speeds(axes, sorted_by(part, "k d"), colours[angle])
@@ -38,13 +38,15 @@ def draw_wave_speeds(tables, path):
 
 
 def draw_speeds(axes, part, colour):
-    """One wave along one direction, over its speed when it is long."""
-    k, scale = part["k d"], part["local [m/s]"]
-    axes.plot(k, part["bloch [m/s]"] / scale, "--", color=colour)
-    axes.plot(k, part["gradient [m/s]"] / scale, ":", color=colour)
-    done = np.isfinite(part["fem [m/s]"])
-    axes.plot(k[done], (part["fem [m/s]"] / scale)[done], "-x", color=colour, linewidth=1, markersize=5)
-    axes.plot(k, part["lattice [m/s]"] / scale, "o", color=colour, markerfacecolor="none", markersize=6)
+    """One wave along one direction, relative to its speed when it is long, in percent."""
+    k = part["k d"]
+    bloch, gradient, fem, lattice = (100 * (part[f"{side} [m/s]"] / part["local [m/s]"] - 1)
+                                     for side in ("bloch", "gradient", "fem", "lattice"))
+    axes.plot(k, bloch, "--", color=colour)
+    axes.plot(k, gradient, ":", color=colour)
+    done = np.isfinite(fem)
+    axes.plot(k[done], fem[done], "-x", color=colour, linewidth=1, markersize=5)
+    axes.plot(k, lattice, "o", color=colour, markerfacecolor="none", markersize=6)
 
 
 def draw_speed_errors(axes, state, laws):

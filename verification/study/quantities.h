@@ -29,8 +29,10 @@ struct StudyQuantity
 
 /// The one quantity that is a word: "straight", "oscillating", "branching" or "arrested".
 inline constexpr const char *pattern_quantity = "pattern";
+/// The word for a crack whose record does not settle its pattern.
+inline constexpr const char *undecided_pattern = "undecided";
 
-/// The words for a pattern.
+/// The words for a pattern that a row can state.
 [[nodiscard]] const std::vector<std::string> &pattern_words();
 
 /// The SI unit of a quantity. @throws std::logic_error for a name that is none

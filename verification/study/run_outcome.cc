@@ -92,7 +92,6 @@ RunOutcome read_outcome(const PlannedRun &run, const std::string &folder, const 
   if (ended && !outcome.pattern.empty())
   {
     outcome.state = RunState::measured;
-    outcome.conclusive = value_or(crack, "conclusive", false);
     outcome.reason = value_or(crack, "reason", std::string());
     read_numbers(crack, StudyQuantity::Source::crack, outcome.values);
     read_numbers(object_in(folder + "/near_tip.json"), StudyQuantity::Source::near_tip, outcome.values);

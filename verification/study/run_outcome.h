@@ -32,8 +32,7 @@ struct RunOutcome
   RunState state = RunState::not_run;
   int exit_code = 0;   ///< of the child process
   std::string problem; ///< of one that was refused or failed: the last line it printed
-  std::string pattern;
-  bool conclusive = false;
+  std::string pattern; ///< "undecided" included
   std::string reason;
   Values values;
   double wall_time = 0.; ///< [s]

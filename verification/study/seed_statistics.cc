@@ -79,11 +79,14 @@ SeedStatistics statistics(const std::string &run, const std::string &quantity, c
     }
     if (quantity == pattern_quantity)
     {
-      ++(outcome.conclusive ? seeds.patterns : seeds.unsettled)[outcome.pattern];
-      if (outcome.conclusive)
-        ++seeds.n;
-      else
-        seeds.missing.push_back(seed + outcome.pattern + ", not conclusive");
+      if (outcome.pattern == undecided_pattern)
+      {
+        ++seeds.n_undecided;
+        seeds.missing.push_back(seed + outcome.pattern);
+        continue;
+      }
+      ++seeds.patterns[outcome.pattern];
+      ++seeds.n;
       continue;
     }
     const auto value = outcome.values.find(quantity);
@@ -112,14 +115,12 @@ std::string SeedStatistics::text(const std::string &unit) const
   if (mean)
     return quantity_text(*mean, deviation, unit) + " (" + std::to_string(n) + ")";
   std::string words;
-  const auto add = [&](const std::map<std::string, std::size_t> &counts, const std::string &doubt)
-  {
-    for (const auto &[pattern, count] : counts)
-      words +=
-        (words.empty() ? "" : ", ") + pattern + " " + std::to_string(count) + "/" + std::to_string(n_seeds) + doubt;
-  };
-  add(patterns, "");
-  add(unsettled, " (not conclusive)");
+  const auto add = [&](const std::string &pattern, std::size_t count)
+  { words += (words.empty() ? "" : ", ") + pattern + " " + std::to_string(count) + "/" + std::to_string(n_seeds); };
+  for (const auto &[pattern, count] : patterns)
+    add(pattern, count);
+  if (n_undecided > 0)
+    add(undecided_pattern, n_undecided);
   return words.empty() ? "not measured" : words;
 }
 

@@ -22,15 +22,20 @@ namespace verification
 namespace
 {
 
-std::vector<std::string> case_entries()
+// An entry of a case that a study may change or vary.
+struct CaseEntry
+{
+  std::string key, unit;
+};
+
+std::vector<CaseEntry> case_entries()
 {
   Case input;
   Parameters parameters;
   input.declare(parameters);
-  std::vector<std::string> entries;
-  for (const auto &item : read_prm(parameters.resolved_text(), "case"))
-    if (const auto *assignment = std::get_if<Assignment>(&item))
-      entries.push_back(assignment->section + "/" + assignment->name);
+  std::vector<CaseEntry> entries;
+  for (const auto &[key, value] : parameters.values())
+    entries.push_back({key, parameters.unit(key)});
   return entries;
 }
 
@@ -44,7 +49,15 @@ struct Change
 class Reader
 {
 public:
-  Reader(const std::string &path, bool quick) : quick_(quick), entries_(case_entries()) { study_.file = path; }
+  Reader(const std::string &path, bool quick) : quick_(quick)
+  {
+    study_.file = path;
+    for (const CaseEntry &entry : case_entries())
+    {
+      entries_.push_back(entry.key);
+      units_[entry.key] = entry.unit;
+    }
+  }
 
   Study read(const std::string &text)
   {
@@ -135,7 +148,7 @@ private:
     names_.push_back(name);
     if (!place.is_object({"about", "set", "seeds", "quick"}))
       return;
-    StudyRun run{name, place.has("about") ? place.at("about").text() : "", {}, {}, {}};
+    StudyRun run{name, place.optional_text("about"), {}, {}, {}};
     const Change own = change(place);
     Change small;
     bool left_out = false;
@@ -193,10 +206,8 @@ private:
     StudyClaim claim;
     if (const auto text = place.required("claim"))
       claim.claim = text->text();
-    if (const auto text = place.required("paper"))
-      claim.paper = text->text();
-    if (place.has("note"))
-      claim.note = place.at("note").text();
+    claim.paper = place.optional_text("paper");
+    claim.note = place.optional_text("note");
     if (const auto rows = place.required("rows"))
       for (const JsonPlace &row : rows->list())
         claim.rows.push_back(read_row(row));
@@ -227,6 +238,8 @@ private:
       row.against = against.text();
       if (std::find(known.begin(), known.end(), row.against) == known.end())
         against.problem("neither zeta nor an entry of a case" + nearest_hint(row.against, known));
+      else
+        row.against_unit = units_.at(row.against);
     }
     read_rule(place, row);
     if (place.has("quick") && !place.at("quick").boolean() && quick_)
@@ -314,7 +327,8 @@ private:
 
   bool quick_;
   std::vector<std::string> entries_;
-  std::vector<std::string> names_; // of all runs of the file
+  std::map<std::string, std::string> units_{{"zeta", "1"}}; // of all that a row can be against
+  std::vector<std::string> names_;                          // of all runs of the file
   std::vector<std::string> problems_;
   Change whole_, quick_change_;
   Study study_;
@@ -348,11 +362,28 @@ const StudyRun &Study::run(const std::string &name) const
   return *found;
 }
 
+std::vector<std::string> shipped_studies()
+{
+  std::vector<std::string> names;
+  std::error_code status;
+  for (const auto &file : std::filesystem::directory_iterator(data_folder() + "/studies", status))
+    if (file.path().extension() == ".json")
+      names.push_back(file.path().stem());
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+std::string study_choices()
+{
+  const std::vector<std::string> names = shipped_studies();
+  return "study file (.json)" + (names.empty() ? std::string() : ", or a shipped one: " + comma_separated(names));
+}
+
 std::string study_path(const std::string &name)
 {
-  const std::string shipped = data_folder() + "/studies/" + name + ".json";
-  const bool is_word = name.find_first_of("/.") == std::string::npos;
-  return is_word && !std::filesystem::exists(name) && std::filesystem::exists(shipped) ? shipped : name;
+  const std::vector<std::string> names = shipped_studies();
+  const bool is_shipped = std::find(names.begin(), names.end(), name) != names.end();
+  return is_shipped && !std::filesystem::exists(name) ? data_folder() + "/studies/" + name + ".json" : name;
 }
 
 Study read_study(const std::string &text, const std::string &path, const bool quick)
@@ -365,7 +396,7 @@ Study read_study_file(const std::string &path, const bool quick)
   std::error_code status;
   std::ifstream file(path, std::ios::binary);
   if (std::filesystem::is_directory(path, status) || !file)
-    throw InputError(printable(path) + ": cannot read the study; give a file, or the name of a shipped one: paper");
+    throw InputError(printable(path) + ": cannot read the study; give a " + study_choices());
   return read_study({std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()}, path, quick);
 }
 

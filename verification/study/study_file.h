@@ -54,6 +54,7 @@ struct StudyRow
   std::string bound_run;    ///< the run whose mean is the bound instead; empty if there is none
   double tolerance = 0.;    ///< of `is near`, relative
   std::string against;      ///< "zeta" or an entry `Section/Name`; empty if there is none
+  std::string against_unit; ///< SI unit of `against`, "1" for a pure number
   std::string unit() const; ///< SI unit of the quantity; "1" for the pattern, whose number is a share
 };
 
@@ -61,7 +62,7 @@ struct StudyRow
 struct StudyClaim
 {
   std::string claim; ///< in few words
-  std::string paper; ///< what the source says
+  std::string paper; ///< what the source says; empty if there is none
   std::string note;
   std::vector<StudyRow> rows;
 };
@@ -82,6 +83,12 @@ struct Study
   /// @throws std::logic_error for a name that is none of `runs`
   const StudyRun &run(const std::string &name) const;
 };
+
+/// Names of the shipped studies, sorted: those in the folder of data.
+[[nodiscard]] std::vector<std::string> shipped_studies();
+
+/// What a user may name as a study, in words.
+[[nodiscard]] std::string study_choices();
 
 /// Path of the study that a user names: a file, or a shipped study without folder and ending.
 [[nodiscard]] std::string study_path(const std::string &name);

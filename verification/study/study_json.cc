@@ -88,6 +88,13 @@ std::string JsonPlace::text() const
   return {};
 }
 
+std::string JsonPlace::optional_text(const std::string &key) const
+{
+  if (!has(key) || at(key).value() == "")
+    return {};
+  return at(key).text();
+}
+
 double JsonPlace::number() const
 {
   if (value_->is_number())

@@ -35,6 +35,9 @@ public:
   /// A member; an empty place, and a problem, if it is missing.
   std::optional<JsonPlace> required(const std::string &key) const;
 
+  /// Text of a member, which may be missing or empty.
+  std::string optional_text(const std::string &key) const;
+
   // Values; one of another type is a problem, and gives an empty one.
   std::string text() const;
   double number() const;

@@ -42,7 +42,6 @@ Json json_of(const PlannedRun &planned, const RunOutcome &outcome)
   run["exit_code"] = outcome.exit_code;
   run["problem"] = outcome.problem;
   run["pattern"] = outcome.pattern.empty() ? Json(nullptr) : Json(outcome.pattern);
-  run["conclusive"] = outcome.conclusive;
   run["reason"] = outcome.reason;
   run["sites"] = planned.sites;
   run["wall_time_s"] = outcome.wall_time;
@@ -65,7 +64,7 @@ Json json_of(const SeedStatistics &seeds)
   run["mean"] = json_of(seeds.mean);
   run["standard_deviation"] = json_of(seeds.deviation);
   run["patterns"] = seeds.patterns;
-  run["not_conclusive"] = seeds.unsettled;
+  run["undecided"] = seeds.n_undecided;
   return run;
 }
 
@@ -76,6 +75,7 @@ Json json_of(const RowOutcome &outcome)
   row["quantity"] = outcome.row.quantity;
   row["unit"] = outcome.row.unit();
   row["against"] = outcome.row.against.empty() ? Json(nullptr) : Json(outcome.row.against);
+  row["against_unit"] = outcome.row.against.empty() ? Json(nullptr) : Json(outcome.row.against_unit);
   row["expected"] = outcome.expected;
   row["measured"] = outcome.measured;
   row["number"] = json_of(outcome.number);
@@ -176,7 +176,7 @@ std::string study_json(const StudyResults &results)
 
 std::string study_csv(const StudyResults &results)
 {
-  std::vector<std::string> columns{"run", "seed", "set", "state", "pattern", "conclusive"};
+  std::vector<std::string> columns{"run", "seed", "set", "state", "pattern"};
   for (const StudyQuantity &quantity : quantities())
     columns.push_back(quantity.name + " [" + quantity.unit + "]");
   Table table(columns);
@@ -185,14 +185,8 @@ std::string study_csv(const StudyResults &results)
     std::string set;
     for (const auto &[key, value] : results.study.run(outcome.run).own)
       set += (set.empty() ? "" : "; ") + key + "=" + value;
-    std::vector<Table::Cell> row{outcome.run,
-                                 std::to_string(outcome.seed),
-                                 set,
-                                 to_string(outcome.state),
-                                 outcome.pattern,
-                                 std::string(outcome.state != RunState::measured ? ""
-                                             : outcome.conclusive                ? "true"
-                                                                                 : "false")};
+    std::vector<Table::Cell> row{outcome.run, std::to_string(outcome.seed), set, to_string(outcome.state),
+                                 outcome.pattern};
     for (const StudyQuantity &quantity : quantities())
     {
       const auto found = outcome.values.find(quantity.name);

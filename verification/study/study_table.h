@@ -39,15 +39,15 @@ struct SeedStatistics
   /// One standard error of the mean, from the spread over the seeds or from the uncertainties of the single
   /// measurements, whichever is more; 0 where neither is known.
   double standard_error = 0.;
-  std::map<std::string, std::size_t> patterns;  ///< how many seeds showed each, conclusively
-  std::map<std::string, std::size_t> unsettled; ///< likewise, not conclusively: these do not have the pattern
-  std::vector<std::string> missing;             ///< "seed 3 failed", for each seed without the quantity
+  std::map<std::string, std::size_t> patterns; ///< how many seeds showed each; none of them "undecided"
+  std::size_t n_undecided = 0;                 ///< seeds whose pattern is undecided: these have none
+  std::vector<std::string> missing;            ///< "seed 3 failed", for each seed without the quantity
 
   /// Whether more than half of the seeds have it: what every rule asks of a run.
   bool is_measured() const { return 2 * n > n_seeds; }
   /// Whether it is measured, and all seeds that have a pattern have this one.
   bool shows(const std::string &pattern) const;
-  /// "2.29 ± 0.04 cm (5)", "oscillating 4/5, straight 1/5 (not conclusive)", or "not measured".
+  /// "2.29 ± 0.04 cm (5)", "oscillating 4/5, undecided 1/5", or "not measured".
   std::string text(const std::string &unit) const;
 };
 

@@ -3,8 +3,8 @@
 #include "continuum/constitution.h"
 #include "continuum/dynamic_solver.h"
 #include "continuum/viscosity.h"
+#include "verification/plane_waves.h"
 #include "verification/wave_speeds/oscillation.h"
-#include "verification/wave_speeds/plane_waves.h"
 
 namespace verification
 {

@@ -7,7 +7,7 @@
 
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
-#include "verification/wave_speeds/bloch.h"
+#include "verification/bloch.h"
 
 namespace verification
 {
@@ -136,15 +136,19 @@ WaveCell wave_cell(double spacing, lattice::Orientation orientation, const WaveD
   }
 }
 
+double smallest_stretch(const lattice::TriangularLattice &lattice, const Eigen::Matrix2d &F)
+{
+  double smallest = 1.;
+  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+    smallest = std::min(smallest, (F * lattice.bond_vector(kind)).norm() / lattice.rest_length(kind));
+  return smallest;
+}
+
 std::array<Oscillation, 2> lattice_waves(const WaveCell &cell, const lattice::Material &material,
                                          const Eigen::Matrix2d &F)
 {
   const std::array<PlaneWave, 2> waves = bloch_waves(cell.sheet, material, F, cell.K);
-  double smallest_stretch = 1.;
-  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
-    smallest_stretch =
-      std::min(smallest_stretch, (F * cell.sheet.bond_vector(kind)).norm() / cell.sheet.rest_length(kind));
-  const double limit = 0.9 * lattice::time_step_limits(cell.sheet, material, smallest_stretch).combined;
+  const double limit = 0.9 * lattice::time_step_limits(cell.sheet, material, smallest_stretch(cell.sheet, F)).combined;
   const double fastest = std::max(waves[0].frequency, waves[1].frequency);
   const double time_step = std::min(limit, phase_per_step / fastest);
   // Dashpots can ask for steps so short that there is no error to extrapolate, and no news in every step.

@@ -34,6 +34,10 @@ double angle(const WaveDirection &direction, lattice::Orientation orientation);
 /// @param kd |K| d [-], > 0
 WaveCell wave_cell(double spacing, lattice::Orientation orientation, const WaveDirection &direction, double kd);
 
+/// Smallest stretch of all bonds at the homogeneous deformation F, 1 if none is compressed [-]: limits of the time step
+/// depend on it.
+double smallest_stretch(const lattice::TriangularLattice &lattice, const Eigen::Matrix2d &F);
+
 /// Frequencies and decays of the longitudinal and the shear wave of a cell, measured on the moving lattice.
 ///
 /// Both stand in the sheet at once, with strains of 1e-5, polarised as the lattice's own (see bloch_waves), released

@@ -5,7 +5,7 @@
 
 #include "lattice/forces.h"
 #include "tests/verification/claims/faults.h"
-#include "verification/wave_speeds/bloch.h"
+#include "verification/bloch.h"
 #include "verification/wave_speeds/lattice_waves.h"
 
 namespace

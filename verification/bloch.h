@@ -1,7 +1,7 @@
 #pragma once
 
 #include "lattice/material.h"
-#include "verification/wave_speeds/plane_waves.h"
+#include "verification/plane_waves.h"
 
 namespace verification
 {

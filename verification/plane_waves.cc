@@ -1,4 +1,4 @@
-#include "verification/wave_speeds/plane_waves.h"
+#include "verification/plane_waves.h"
 
 #include <algorithm>
 #include <cmath>

@@ -1,4 +1,4 @@
-#include "verification/wave_speeds/bloch.h"
+#include "verification/bloch.h"
 
 #include <cmath>
 

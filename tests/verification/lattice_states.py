@@ -1,0 +1,68 @@
+"""What a loaded lattice is by itself, worked out apart from the program: whether it is stable, and whether its gradient
+energy is positive. Equations are those of docs/theory-comparison.md."""
+import numpy as np
+
+SPACING = 1.0  # of the lattice; all that is asked here has no length
+SECTIONS = {"nearest": 0.72, "next": 0.81}  # of quick.prm
+LONGEST = {"NN": 1.0, "NN+NNN": np.sqrt(3)}  # bond, in spacings
+
+
+def rod(a, b):
+    """Force and stiffness of a Mooney-Rivlin bond, eq. (L.3)."""
+    return (lambda s: a * (s - s**-2) + b * (1 - s**-3)), (lambda s: a * (1 + 2 * s**-3) + 3 * b * s**-4)
+
+
+def spring(modulus):
+    """Those of a linear bond."""
+    return (lambda s: modulus * (s - 1)), (lambda s: modulus)
+
+
+class Lattice:
+    """A lattice of one bond law at the stretches (x, y), eq. (W.1): for each bond direction its unit vector N, length l,
+    weight c = A0 l / V and stiffness matrix h."""
+
+    def __init__(self, law, shells, x, y):
+        force, stiffness = law
+        self.longest = LONGEST[shells]
+        kinds = [("nearest", 1.0, (0, 60, 120))] + ([("next", np.sqrt(3), (30, 90, 150))] if shells == "NN+NNN" else [])
+        N = np.array([[np.cos(np.radians(angle)), np.sin(np.radians(angle))] for _, _, angles in kinds for angle in angles])
+        self.N = N
+        self.length = np.array([length for _, length, angles in kinds for _ in angles])
+        self.weight = self.length * np.array([SECTIONS[name] for name, _, angles in kinds for _ in angles])
+        bond = N * np.array([x, y])
+        stretch = np.linalg.norm(bond, axis=1)
+        n = bond / stretch[:, np.newaxis]
+        along = n[:, :, np.newaxis] * n[:, np.newaxis, :]
+        axial, pull = np.array([[stiffness(s), force(s) / s] for s in stretch]).T[:, :, np.newaxis, np.newaxis]
+        self.h = axial * along + pull * (np.eye(2) - along)
+
+    def smallest_squared_speed(self):
+        """Smallest w^2 / k^2 of all waves, up to a factor; not positive: unstable."""
+        angles, lengths = np.meshgrid(np.pi * np.arange(120) / 120, np.linspace(0.01, 4 * np.pi / 3, 61))
+        K = np.stack((np.cos(angles) * lengths, np.sin(angles) * lengths), axis=-1).reshape(-1, 2)
+        phase = 4 * np.sin(0.5 * (K @ self.N.T) * self.length)**2 * self.weight / self.length**2
+        matrices = np.einsum("kb,bij->kij", phase, self.h)
+        return (np.linalg.eigvalsh(matrices)[:, 0] / (K**2).sum(axis=1)).min()
+
+    def smallest_gradient_energy(self):
+        """Smallest eigenvalue of the lattice's gradient energy with l_d, up to a factor: theory-continuum.md, eq. (C.22)."""
+        half = np.sqrt(0.5)
+        units = np.array([[[1, 0], [0, 0]], [[0, 0], [0, 1]], [[0, half], [half, 0]]])
+        first = np.einsum("ujk,bk->buj", units, self.N)  # G N, for each i
+        second = np.einsum("buj,bj->bu", first, self.N)  # N G N
+        length = self.longest**2 / 12
+        local = (length * np.einsum("b,buj,bvj->buv", self.weight, first, first)
+                 - np.einsum("b,bu,bv->buv", self.weight * self.length**2 / 12, second, second))
+        matrix = np.einsum("bij,buv->iujv", self.h, local).reshape(6, 6)
+        return np.linalg.eigvalsh(matrix)[0]
+
+    def outcome(self):
+        """What becomes of a crack in a sheet loaded like this: accepted, or refused because the sheet buckles, or because
+        its gradient energy is not positive."""
+        if self.smallest_squared_speed() <= 0:
+            return BUCKLES
+        scale = np.abs(self.h).max()
+        return ACCEPTED if self.smallest_gradient_energy() >= -1e-12 * scale else NOT_POSITIVE
+
+
+ACCEPTED, BUCKLES, NOT_POSITIVE = "·", "B", "G"

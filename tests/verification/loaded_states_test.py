@@ -1,0 +1,93 @@
+#!/usr/bin/python3
+"""Which loaded states of which materials the claims accept before a crack: all that are stable and have a positive gradient
+energy, and no others. The table in docs/limits.md says so.
+
+Usage: loaded_states_test.py LATCON [--full]     --full: the whole map, some hours
+"""
+import itertools
+import json
+import pathlib
+import sys
+import unittest
+
+sys.dont_write_bytecode = True
+from lattice_states import ACCEPTED, BUCKLES, NOT_POSITIVE, Lattice, rod, spring
+from program import CASES, TemporaryFolder, latcon
+
+PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "limits.md"
+STRAINS_X = (-0.3, -0.15, 0.0, 0.3, 0.8, 1.3, 2.0, 3.0)
+STRAINS_Y = (0.03, 0.1, 0.3, 0.6, 1.0, 1.8, 2.4, 3.0)
+
+
+def both(**entries):
+    """The same entries of both shells."""
+    return [f"{shell}/{name}={value}" for shell in ("Nearest neighbours", "Next-nearest neighbours")
+            for name, value in entries.items()]
+
+
+# Law for the comparison, entries of the case that differ from quick.prm. Moduli from 10 kPa to 10 MPa.
+MATERIALS = {
+    "rubber": (rod(1e5, 1.5e5), []),
+    "b = 0": (rod(1, 0), both(a=2.5e5, b=0)),
+    "a = 0": (rod(0, 1), both(a=0, b=2.5e5)),
+    "linear": (spring(1), both(law="linear", modulus=2.35e5)),
+    "10 kPa": (rod(1, 1), both(a=5e3, b=5e3)),
+    "10 MPa": (rod(1, 1), both(a=5e6, b=5e6)),
+    "10 kPa, b = 0": (rod(1, 0), both(a=1e4, b=0)),
+    "10 MPa, a = 0": (rod(0, 1), both(a=0, b=1e7)),
+    "10 MPa, linear": (spring(1), both(law="linear", modulus=1e7)),
+    "undamped": (rod(1e5, 1.5e5), both(viscosity=0)),
+}
+WAVES = ("energy", "wave-speeds", "intrinsic-length")
+# Pure shear, as in the rubber test strip; uniaxial; far stretched; pushed together; at the border of stability.
+SOME = [("rubber", 0.0, 0.3), ("rubber", 0.0, 1.8), ("rubber", 2.0, 0.5), ("rubber", 3.0, 3.0), ("rubber", -0.3, 0.03),
+        ("rubber", -0.3, 1.0), ("rubber", -0.15, 0.1), ("a = 0", 0.0, 3.0), ("linear", -0.15, 0.6), ("10 MPa", 0.3, 0.03),
+        ("10 kPa", 1.3, 1.8), ("undamped", 3.0, 0.03)]
+# Rows by which a state may be refused.
+REASONS = {BUCKLES: ("stability of the loaded lattice",),
+           NOT_POSITIVE: ("positive gradient energy, against l_d, loaded", "gradient energy over mu d^2 at l_d, loaded",
+                          "the shortest length: negative, loaded", "gradient continuum")}
+REASONS[BUCKLES] += REASONS[NOT_POSITIVE]  # as well, where bonds push
+
+
+class LoadedStates(TemporaryFolder):
+    def check(self, material, x, y, claims=()):
+        """The claims of both sets of shells come out as the lattice by itself says."""
+        law, entries = MATERIALS[material]
+        settings = [f"Loading/strain x={x}", f"Loading/strain y={y}", "Fracture/breaking stretch=auto", *entries]
+        run = latcon("verify", *claims, "--quick", "--quiet", "--case", CASES / "quick.prm", "--output-dir", self.out,
+                     *(word for setting in settings for word in ("--set", setting)))
+        expected = {shells: Lattice(law, shells, 1 + x, 1 + y).outcome() for shells in ("NN+NNN", "NN")}
+        refused = any(outcome != ACCEPTED for outcome in expected.values())
+        self.assertEqual(run.returncode, 3 if refused else 0, run.stderr)
+        rows = json.loads((self.out / "results.json").read_text())["claims"]
+        for shells, outcome in expected.items():
+            failing = [row["quantity"] for row in rows
+                       if row["verdict"] == "fails" and row["quantity"].startswith((f"{shells}:", f"{shells},"))]
+            self.assertEqual(bool(failing), outcome != ACCEPTED, (shells, outcome, failing))
+            for quantity in failing:
+                self.assertTrue(any(reason in quantity for reason in REASONS[outcome]), quantity)
+
+    def test_states_are_accepted_or_refused_for_what_they_are(self):
+        states = (itertools.product(MATERIALS, STRAINS_X, STRAINS_Y) if FULL else SOME)
+        for material, x, y in states:
+            with self.subTest(material=material, x=x, y=y):
+                # The sheets with a hole or a notch depend on the material alone.
+                self.check(material, x, y, () if FULL else WAVES)
+
+    def test_page_has_the_map(self):
+        page = PAGE.read_text(encoding="utf-8")
+        for shells in ("NN+NNN", "NN"):
+            for x in STRAINS_X:
+                outcomes = [Lattice(MATERIALS["rubber"][0], shells, 1 + x, 1 + y).outcome() for y in STRAINS_Y]
+                line = f"| {shells} | {x:g} | {' | '.join(outcomes)} |"
+                if set(outcomes) != {ACCEPTED}:
+                    self.assertIn(line, page)
+                else:
+                    self.assertNotIn(f"| {shells} | {x:g} |", page)
+
+
+FULL = "--full" in sys.argv
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

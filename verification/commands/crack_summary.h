@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include "lattice/crack_measurement.h"
+#include "verification/case.h"
+#include "verification/results.h"
+
+namespace verification
+{
+
+/// What a crack ends with on the terminal, at most a dozen lines of 120 columns: its pattern and why, what was measured
+/// with uncertainties and, if the case has any, beside the reference, and the checks that fail.
+[[nodiscard]] std::string crack_summary(const Case &input, const lattice::CrackMeasurement &crack,
+                                        const Results &results);
+
+} // namespace verification
