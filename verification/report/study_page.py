@@ -25,7 +25,9 @@ NEAR_TIP = (("speed_over_shear", 1, "speed over<br>shear speed"),
             ("process_zone_length", 1e3, "process<br>zone [mm]"),
             ("opening_stress_ratio_4d", 1, "σ_yy at 4 d:<br>peak / ahead"),
             ("opening_stress_angle_4d", 1, "angle of<br>the peak [°]"), ("wedge_angle", 1, "wedge<br>angle [°]"))
-KINDS = {"holds": "holds", "does not hold": "fails", "reported": "reported", "not measured": "reported"}
+# Verdicts of rows, and of claims, by the class that colours them.
+KINDS = {"holds": "holds", "does not hold": "fails", "reported": "reported", "not measured": "warns"}
+CLAIM_KINDS = {**KINDS, "incomplete": "warns"}
 
 
 def page(study, pictures):
@@ -94,12 +96,17 @@ def banner(study):
     """What all rows amount to, and what a reader must know first."""
     count = counts([r for judged in (*study.claims, *study.checks) for r in judged["rows"]])
     judged = count["holds"] + count["does not hold"]
+    verified = study.document.get("verified") is True
     broken = [seed for seed in study.seeds if seed.state != "measured"]
     if count["does not hold"]:
         kind = "fails"
         head = f"✗ {count['does not hold']} of {judged} rows {verb(count['does not hold'], 'does', 'do')} not hold"
     elif count["not measured"] or broken:
-        kind, head = "warns", f"! {count['holds']} rows hold, but not everything was measured"
+        kind, head = "warns", f"! Incomplete: {count['holds']} rows hold, but not everything was measured"
+    elif not judged:
+        kind, head = "reported", "· Reported: no row has a rule"
+    elif not verified:
+        kind, head = "warns", f"! Not verified: all {judged} rows hold, but not every run was verified"
     else:
         kind, head = "holds", f"✓ All {judged} rows hold"
     notes = [f'<b class="fails">{escape(seed.run)}, seed {seed.seed}: {escape(seed.state)}</b> {escape(seed.problem)}'
@@ -118,7 +125,7 @@ def overview(study):
               for number, claim in enumerate(study.claims)]
     judged += [(f"check-{check['name']}", f"Check {check['name']}", verdict_of(check), check["rows"])
                for check in study.checks]
-    lines = [row(KINDS[verdict], [("words", f'<a href="#{escape(place)}">{escape(heading)}</a>'),
+    lines = [row(CLAIM_KINDS[verdict], [("words", f'<a href="#{escape(place)}">{escape(heading)}</a>'),
                                   *(("number", str(count)) for count in counts(rows).values())], verdict)
              for place, heading, verdict, rows in judged]
     return table(["verdict", "claim", "#hold", "#do not", "#reported", "#not measured"], lines, "narrow")
