@@ -166,7 +166,7 @@ class StudyPage(MadeUpStudy):
 
     def test_is_green_only_if_everything_was_verified_measured_and_holds(self):
         self.document["verified"] = True
-        self.assertEqual(self.banner(), ("holds", "✓ All 2 rows hold"))
+        self.assertEqual(self.banner(), ("holds", "✓ Holds: all 2 rows"))
         for verified in (False, None, "yes"):
             self.document["verified"] = verified
             self.assertEqual(self.banner(), ("warns", "! Not verified: all 2 rows hold, but not every run was verified"))
@@ -175,7 +175,7 @@ class StudyPage(MadeUpStudy):
         self.document["verified"] = True
         rows = self.document["claims"][0]["rows"]
         rows[0]["verdict"], self.document["claims"][0]["verdict"] = "not measured", "incomplete"
-        self.assertEqual(self.banner(), ("warns", "! Incomplete: 1 rows hold, but not everything was measured"))
+        self.assertEqual(self.banner(), ("warns", "! Incomplete: 1 row holds, but not everything was measured"))
         page, html = self.page()
         self.assertIn("! incomplete", page.text)
         self.assertIn('<tr class="warns"><td class="verdict">! not measured</td>', html)

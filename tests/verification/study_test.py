@@ -106,7 +106,7 @@ class Study(TemporaryFolder):
         self.assertEqual(json.loads(self.text("results.json"))["verdict"], "holds")
         page = self.text("study.html")
         self.assertTrue((self.out / "pictures" / "base-sheet.png").exists())
-        for part in ("The crack runs", "Not verified: all 1 rows hold", "data:image/png", "It does."):
+        for part in ("The crack runs", "Not verified: the only row holds", "data:image/png", "It does."):
             self.assertIn(part, page)
         self.assertNotIn('class="banner holds"', page)
         self.assertNotIn("http", page.replace("http://www.w3.org", ""))
@@ -124,7 +124,7 @@ class Study(TemporaryFolder):
         self.assertEqual([row["verdict"] for row in results["claims"]], ["holds", "fails"])
         self.assertEqual((results["claims"][1]["error"], results["verdict"]), ("nan", "fails"))
         self.assertEqual(json.loads(self.text("run.json"))["exit_code"], 3)
-        self.assertIn("Incomplete: 1 rows hold", self.text("study.html"))
+        self.assertIn("Incomplete: 1 row holds", self.text("study.html"))
 
     def test_child_that_fails_is_4_and_stops_no_other(self):
         def change(document):  # a step that squeezed bonds, which are stiffer, do not bear

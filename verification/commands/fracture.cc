@@ -6,6 +6,7 @@
 #include "verification/commands/lattice_motion.h"
 #include "verification/fracture/crack_film.h"
 #include "verification/fracture/near_tip_record.h"
+#include "verification/largest_error.h"
 #include "verification/lattice_sheet.h"
 
 namespace verification
@@ -46,7 +47,7 @@ Results measured_results(const Case &input, const CrackRecord &record, const lat
     {
       row.tolerance = input.reference_tolerance;
       // A quantity that was published but could not be measured does not agree.
-      row.error = measured ? std::abs(measured->value / *published - 1.) : std::numeric_limits<double>::quiet_NaN();
+      row.error = measured ? relative_error(measured->value, *published) : std::numeric_limits<double>::quiet_NaN();
     }
     results.add(row);
   };

@@ -1,12 +1,13 @@
 #include "verification/energy/wave_energy.h"
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <sstream>
 
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
+#include "verification/largest_error.h"
 #include "verification/order_fit.h"
 #include "verification/state_name.h"
 #include "verification/wave_speeds/bloch.h"
@@ -96,13 +97,9 @@ void sinusoidal(const Subject &subject, const Eigen::Matrix2d &F, const WaveEner
   const double d = subject.spacing, l_d = subject.lengths.lattice;
   Table &table = outcome.table("sinusoidal_energy", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d", "lattice",
                                                      "local", "gradient", "filtered", "fem"});
-  double lattice_error = 0., element_error = 0., excess_error = 0.;
-  std::array<double, 3> orders{2., 2., 4.}, order_errors{}; // local, gradient, filtered
-  const auto worse = [](double &largest, double error)
-  {
-    if (!(error <= largest)) // keeps a NaN
-      largest = error;
-  };
+  LargestError lattice_error, element_error, excess_error;
+  constexpr std::array<double, 3> claimed_orders{2., 2., 4.}; // local, gradient, filtered
+  std::array<LargestError, 3> orders;
   for (const WaveDirection &direction : {WaveDirection{1, 0}, WaveDirection{1, 2}})
   {
     const Eigen::Vector2d N = unit_vector(direction, subject.orientation);
@@ -120,8 +117,8 @@ void sinusoidal(const Subject &subject, const Eigen::Matrix2d &F, const WaveEner
                      bloch = bloch_stiffness(cell.sheet, material, F, cell.K, p),
                      measured = lattice_stiffness(cell, material, F, p),
                      elements = sinusoidal_energy(media.gradient, F, cell.K, p, strain / cell.K.norm(), options.mesh);
-        worse(lattice_error, std::abs(measured / bloch - 1.));
-        worse(element_error, std::abs(elements / gradient - 1.));
+        lattice_error.add_relative(measured, bloch);
+        element_error.add_relative(elements, gradient);
         table.add({subject.name, F(0, 0), F(1, 1), angle(direction, subject.orientation), std::string(wave_names[w]),
                    cell.K.norm() * d, measured / local, 1., gradient / local, gradient / inertia / local,
                    elements / local});
@@ -143,17 +140,10 @@ void sinusoidal(const Subject &subject, const Eigen::Matrix2d &F, const WaveEner
         errors[2].push_back(std::abs(gradient / (1. + l_d * l_d * K.squaredNorm()) / exact - 1.));
         // To leading order the excess is l_d^2 k^2, whatever the wave; what follows is of fourth order.
         if (kd == order_kd[0])
-          worse(excess_error, std::abs((gradient / exact - 1.) / (l_d * l_d * K.squaredNorm()) - 1.));
+          excess_error.add_relative(gradient / exact - 1., l_d * l_d * K.squaredNorm());
       }
       for (std::size_t c = 0; c < 3; ++c)
-      {
-        const double order = fitted_order(lengths, errors[c]), claimed = c < 2 ? 2. : 4.;
-        if (!(std::abs(order - claimed) <= order_errors[c]))
-        {
-          orders[c] = order;
-          order_errors[c] = std::abs(order - claimed);
-        }
-      }
+        orders[c].add_difference(fitted_order(lengths, errors[c]), claimed_orders[c]);
     }
   }
   const std::string prefix = subject.name + ", sinusoidal field about " + state_name(F) + ": ";
@@ -161,17 +151,19 @@ void sinusoidal(const Subject &subject, const Eigen::Matrix2d &F, const WaveEner
                        double error, double tolerance) {
     outcome.results.add({"energy", prefix + quantity, "1", {}, continuum_value, theory, error, tolerance});
   };
-  add("energy of the lattice against Bloch, worst of all fields", {}, {}, lattice_error, lattice_tolerance);
+  add("energy of the lattice against Bloch, worst of all fields", {}, {}, lattice_error.error(), lattice_tolerance);
   // Nodal values of a wave are not the best that the elements can do.
-  add("energy of the finite elements against their continuum, worst of all fields", {}, {}, element_error,
+  add("energy of the finite elements against their continuum, worst of all fields", {}, {}, element_error.error(),
       4. * discretisation_bound(options.mesh));
-  add("order in kd to which local continuum and lattice agree", orders[0], 2., order_errors[0], order_tolerance);
-  add("order in kd to which the gradient continuum's energy as it stands and the lattice's agree: no better", orders[1],
-      2., order_errors[1], order_tolerance);
-  add("excess of the gradient continuum's energy over l_d^2 k^2 at kd = 0.05", 1. + excess_error, 1., excess_error,
-      std::pow(order_kd[0], 2));
-  add("order in kd to which the gradient continuum's energy over 1 + l_d^2 k^2 and the lattice's agree", orders[2], 4.,
-      order_errors[2], order_tolerance);
+  const auto add_order = [&](const std::string &quantity, const LargestError &order)
+  { add(quantity, order.value(), order.reference(), order.error(), order_tolerance); };
+  add_order("order in kd to which local continuum and lattice agree", orders[0]);
+  add_order("order in kd to which the gradient continuum's energy as it stands and the lattice's agree: no better",
+            orders[1]);
+  add("excess of the gradient continuum's energy over l_d^2 k^2 at kd = 0.05",
+      excess_error.value() / excess_error.reference(), 1., excess_error.error(), std::pow(order_kd[0], 2));
+  add_order("order in kd to which the gradient continuum's energy over 1 + l_d^2 k^2 and the lattice's agree",
+            orders[2]);
 }
 
 struct Densities
@@ -201,7 +193,7 @@ Densities travelling_lattice(const WaveCell &cell, const lattice::Material &mate
     }
   const double limit = lattice::time_step_limits(sheet, material, 0.9).combined;
   const double eighth = 0.25 * M_PI / wave.frequency;
-  const auto steps = static_cast<int>(std::ceil(eighth / std::min(0.5 * limit, eighth / 40.)));
+  const auto steps = static_cast<int>(std::ceil(eighth / smallest_of({0.5 * limit, eighth / 40.})));
   lattice::Simulation simulation(sheet, material, std::move(state), eighth / steps);
   for (int step = 0; step < steps; ++step)
     simulation.step();
@@ -222,6 +214,9 @@ void travelling(const Subject &subject, const Eigen::Matrix2d &F, double wanted_
   const double inertia = 1. + std::pow(subject.lengths.lattice / d * kd, 2);
   const auto bloch = bloch_waves(cell.sheet, material, F, cell.K),
              closed = plane_waves(continuum_matrices(media.gradient, F, cell.K), wave_normal(F, cell.K));
+  // Both sides are followed for an eighth of a period, if there is one.
+  for (const auto &waves : {bloch, closed})
+    static_cast<void>(fastest_frequency(waves));
   Table &table =
     outcome.table("travelling_waves", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d",
                                        "lattice_elastic [J/m^3]", "lattice_kinetic [J/m^3]", "fem_elastic [J/m^3]",
@@ -251,19 +246,19 @@ void travelling(const Subject &subject, const Eigen::Matrix2d &F, double wanted_
     // (w h)^2 / 8 at most, the lattice with a fiftieth of a radian a step, the elements with a fortieth.
     constexpr double tolerance = 2e-4;
     add("elastic against kinetic energy, lattice and finite elements", run.elastic, elements.elastic, 0.5 * theory,
-        std::max(std::abs(run.elastic / run.kinetic - 1.), std::abs(elements.elastic / elements.kinetic - 1.)),
+        largest_of({relative_error(run.elastic, run.kinetic), relative_error(elements.elastic, elements.kinetic)}),
         tolerance);
     add("energy, lattice and finite elements each against its theory", total, element_total, theory,
-        std::max(std::abs(total / theory - 1.), std::abs(element_total / continuum_theory - 1.)), tolerance);
+        largest_of({relative_error(total, theory), relative_error(element_total, continuum_theory)}), tolerance);
     // The speeds differ by 1e-4 at most here (claim wave-speeds), energies by twice that and the time stepping.
     add("energy of the finite elements over 1 + l_d^2 k^2, against the lattice", total, element_total / inertia, theory,
-        std::abs(element_total / inertia / total - 1.), 2e-4 + tolerance);
+        relative_error(element_total / inertia, total), 2e-4 + tolerance);
     // The second harmonic that grows on the way has an amplitude of about the strain, and sixteen times the
     // micro-inertia.
     constexpr double harmonic_tolerance = 1e-4;
     add("micro-inertia's share of the kinetic energy, l_d^2 k^2 / (1 + l_d^2 k^2)", {}, elements.micro_inertia,
         elements.kinetic * (1. - 1. / inertia),
-        std::abs(elements.micro_inertia / (elements.kinetic * (1. - 1. / inertia)) - 1.), harmonic_tolerance);
+        relative_error(elements.micro_inertia, elements.kinetic * (1. - 1. / inertia)), harmonic_tolerance);
   }
 }
 
@@ -272,11 +267,17 @@ void travelling(const Subject &subject, const Eigen::Matrix2d &F, double wanted_
 ClaimOutcome wave_energy_claim(const Subject &subject, const WaveEnergyOptions &options)
 {
   ClaimOutcome outcome;
+  const auto attempt = [&](const std::string &part, const std::function<void()> &compute)
+  { outcome.results.attempt("energy", subject.name + ", " + part, compute); };
   for (const Eigen::Matrix2d &F : options.states)
-    sinusoidal(subject, F, options, outcome);
+    attempt("sinusoidal field about " + state_name(F), [&] { sinusoidal(subject, F, options, outcome); });
   for (const Eigen::Matrix2d &F : options.states)
     for (const double kd : options.kd)
-      travelling(subject, F, kd, options.mesh, outcome);
+    {
+      std::ostringstream part;
+      part << "travelling waves about " << state_name(F) << ", kd = " << kd;
+      attempt(part.str(), [&] { travelling(subject, F, kd, options.mesh, outcome); });
+    }
   return outcome;
 }
 

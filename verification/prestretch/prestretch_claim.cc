@@ -1,16 +1,17 @@
 #include "verification/prestretch/prestretch_claim.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include <deal.II/base/function.h>
 
+#include "continuum/errors.h"
 #include "continuum/rectangle.h"
 #include "continuum/static_solver.h"
 #include "lattice/relaxation.h"
 #include "lattice/site_fields.h"
 #include "verification/affine_displacement.h"
+#include "verification/largest_error.h"
 
 namespace verification
 {
@@ -108,20 +109,19 @@ std::vector<Row> compare(const Subject &subject, const lattice::TriangularLattic
     points.emplace_back(sheet.reference(place).x(), sheet.reference(place).y());
   const std::vector<continuum::PointState> continuum_states = solver.evaluate(points);
 
-  double displacement_error = 0., gradient_error = 0., stress_error = 0.;
-  double stress_scale = 0.;
+  LargestError displacement_error, gradient_error, stress_error;
+  Extremes stress_scale;
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     const std::size_t place = side.interior[i];
     const continuum::PointState &state = continuum_states[i];
     const Eigen::Vector2d X = sheet.reference(place);
     const Eigen::Vector2d u(side.state.x[place] - X.x(), side.state.y[place] - X.y());
-    displacement_error =
-      std::max(displacement_error, (u - Eigen::Vector2d(state.displacement[0], state.displacement[1])).norm());
+    displacement_error.add((u - Eigen::Vector2d(state.displacement[0], state.displacement[1])).norm());
     const Eigen::Matrix2d F = to_lattice(state.F), P = to_lattice(state.P);
-    gradient_error = std::max(gradient_error, (side.fields.deformation_gradient[place] - F).norm() / F.norm());
-    stress_error = std::max(stress_error, (side.fields.first_piola_stress[place] - P).norm());
-    stress_scale = std::max(stress_scale, P.norm());
+    gradient_error.add((side.fields.deformation_gradient[place] - F).norm() / F.norm());
+    stress_error.add((side.fields.first_piola_stress[place] - P).norm());
+    stress_scale.add(P.norm());
   }
 
   const double area = sheet.length() * sheet.height();
@@ -135,38 +135,65 @@ std::vector<Row> compare(const Subject &subject, const lattice::TriangularLattic
      relative(side.energy_density, energy_density)},
     {"traction on the right edge", "Pa", side.right_traction.x(), right, relative(side.right_traction.x(), right)},
     {"traction on the top edge", "Pa", side.top_traction.y(), top, relative(side.top_traction.y(), top)},
-    {"displacement, largest difference / length", "1", {}, {}, displacement_error / sheet.length()},
-    {"deformation gradient, largest relative difference", "1", {}, {}, gradient_error},
-    {"first Piola stress, largest difference / largest", "1", {}, {}, stress_error / stress_scale}};
+    {"displacement, largest difference / length", "1", {}, {}, displacement_error.error() / sheet.length()},
+    {"deformation gradient, largest relative difference", "1", {}, {}, gradient_error.error()},
+    {"first Piola stress, largest difference / largest", "1", {}, {}, stress_error.error() / stress_scale.largest()}};
 }
 
 } // namespace
 
 Results prestretch_claim(const Subject &subject, const PrestretchOptions &options)
 {
-  const lattice::TriangularLattice sheet(subject.spacing, options.length * subject.spacing,
-                                         options.height * subject.spacing, subject.orientation);
-  const LatticeSide side = relaxed_lattice(subject, sheet, options.noise);
-
   Results results;
-  for (const Row &row : compare(subject, sheet, side, subject.cauchy_born, options))
-    results.add({"prestretch",
-                 subject.name + ": " + row.quantity + ", Cauchy-Born",
-                 row.unit,
-                 row.lattice,
-                 row.continuum,
-                 {},
-                 row.error,
-                 solver_tolerance});
-  for (const Row &row : compare(subject, sheet, side, continuum::MooneyRivlin(subject.mooney_rivlin.law), options))
-    results.add({"prestretch",
-                 subject.name + ": " + row.quantity + ", Mooney-Rivlin",
-                 row.unit,
-                 row.lattice,
-                 row.continuum,
-                 {},
-                 row.error,
-                 {}});
+  const auto attempt = [&](const std::string &part, const std::function<void()> &compute)
+  { return results.attempt("prestretch", subject.name + ": " + part, compute); };
+  std::optional<lattice::TriangularLattice> sheet;
+  LatticeSide side;
+  if (!attempt("relaxed lattice",
+               [&]
+               {
+                 sheet.emplace(subject.spacing, options.length * subject.spacing, options.height * subject.spacing,
+                               subject.orientation);
+                 side = relaxed_lattice(subject, *sheet, options.noise);
+               }))
+    return results;
+
+  const auto add = [&](const continuum::Material &law, const std::string &name, std::optional<double> tolerance)
+  {
+    for (const Row &row : compare(subject, *sheet, side, law, options))
+      results.add({"prestretch",
+                   subject.name + ": " + row.quantity + ", " + name,
+                   row.unit,
+                   row.lattice,
+                   row.continuum,
+                   {},
+                   row.error,
+                   tolerance});
+  };
+  attempt("equilibrium, Cauchy-Born", [&] { add(subject.cauchy_born, "Cauchy-Born", solver_tolerance); });
+  // A calibrated law is compared for information: neither its errors nor a missing equilibrium are judged.
+  const auto no_equilibrium = [&](const std::exception &failure)
+  {
+    results.add(
+      {"prestretch", subject.name + ": no equilibrium, Mooney-Rivlin: " + failure.what(), "1", {}, {}, {}, {}, {}});
+  };
+  attempt("equilibrium, Mooney-Rivlin",
+          [&]
+          {
+            const continuum::MooneyRivlin law(subject.mooney_rivlin.law);
+            try
+            {
+              add(law, "Mooney-Rivlin", {});
+            }
+            catch (const continuum::SolverFailed &failure)
+            {
+              no_equilibrium(failure);
+            }
+            catch (const continuum::NonPhysicalState &failure)
+            {
+              no_equilibrium(failure);
+            }
+          });
   return results;
 }
 

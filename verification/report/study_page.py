@@ -102,13 +102,15 @@ def banner(study):
         kind = "fails"
         head = f"✗ {count['does not hold']} of {judged} rows {verb(count['does not hold'], 'does', 'do')} not hold"
     elif count["not measured"] or broken:
-        kind, head = "warns", f"! Incomplete: {count['holds']} rows hold, but not everything was measured"
+        rows = verb(count["holds"], "1 row holds", f"{count['holds']} rows hold")
+        kind, head = "warns", f"! Incomplete: {rows}, but not everything was measured"
     elif not judged:
         kind, head = "reported", "· Reported: no row has a rule"
     elif not verified:
-        kind, head = "warns", f"! Not verified: all {judged} rows hold, but not every run was verified"
+        rows = verb(judged, "the only row holds", f"all {judged} rows hold")
+        kind, head = "warns", f"! Not verified: {rows}, but not every run was verified"
     else:
-        kind, head = "holds", f"✓ All {judged} rows hold"
+        kind, head = "holds", f"✓ Holds: {verb(judged, 'the only row', f'all {judged} rows')}"
     notes = [f'<b class="fails">{escape(seed.run)}, seed {seed.seed}: {escape(seed.state)}</b> {escape(seed.problem)}'
              for seed in broken]
     if count["not measured"]:
