@@ -6,6 +6,7 @@
 #include <ostream>
 
 #include "verification/atomic_file.h"
+#include "verification/largest_error.h"
 
 namespace verification
 {
@@ -14,10 +15,11 @@ namespace
 
 double largest(const std::map<dealii::types::boundary_id, dealii::Tensor<1, 2>> &reactions)
 {
-  double result = 0.;
+  Extremes sizes;
+  sizes.add(0.);
   for (const auto &[id, force] : reactions)
-    result = std::max(result, force.norm());
-  return result;
+    sizes.add(force.norm());
+  return sizes.largest();
 }
 
 void print_names(std::ostream &out, const std::map<dealii::types::boundary_id, dealii::Tensor<1, 2>> &reactions)

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "continuum/errors.h"
+#include "verification/largest_error.h"
 
 namespace verification
 {
@@ -159,7 +160,8 @@ Calibration calibrate_mooney_rivlin(const lattice::TriangularLattice &lattice, c
   for (int i = -scan_steps; i <= scan_steps; ++i)
     if (mean_square_residual(i * scan_step) < mean_square_residual(best))
       best = i * scan_step;
-  double low = std::max(best - scan_step, -largest_ratio), high = std::min(best + scan_step, largest_ratio);
+  double low = std::clamp(best - scan_step, -largest_ratio, largest_ratio),
+         high = std::clamp(best + scan_step, -largest_ratio, largest_ratio);
   const double golden = (std::sqrt(5.) - 1.) / 2.;
   // A minimum is located to the square root of round-off.
   while (high - low > 1e-9)
@@ -182,16 +184,18 @@ Calibration with_ratio(const lattice::TriangularLattice &lattice, const lattice:
   const double mu = small_strain(lattice, material).shear_modulus;
   const continuum::CauchyBorn exact = cauchy_born(lattice, material);
   const continuum::MooneyRivlin fitted(continuum::MooneyRivlin::Constants::with_equal_lame_constants(mu, ratio));
-  Calibration calibration{ratio, 0., 0., std::numeric_limits<double>::infinity(), fitted.constants()};
+  Calibration calibration{ratio, 0., 0., 0., fitted.constants()};
+  Extremes differences, eigenvalues;
   for (int point = 1; point <= path_points; ++point)
   {
     const dealii::Tensor<2, 2> state = to_continuum(on_path(F, point));
     const double difference = F.isIdentity(1e-12) ? 0. : fitted.energy(state) / exact.energy(state) - 1.;
     calibration.energy_residual += difference * difference / path_points;
-    calibration.largest_energy_residual = std::max(calibration.largest_energy_residual, std::abs(difference));
-    calibration.smallest_acoustic_eigenvalue =
-      std::min(calibration.smallest_acoustic_eigenvalue, continuum::minimum_acoustic_eigenvalue(fitted, state) / mu);
+    differences.add(std::abs(difference));
+    eigenvalues.add(continuum::minimum_acoustic_eigenvalue(fitted, state) / mu);
   }
+  calibration.largest_energy_residual = differences.largest();
+  calibration.smallest_acoustic_eigenvalue = eigenvalues.smallest();
   calibration.energy_residual = std::sqrt(calibration.energy_residual);
   return calibration;
 }

@@ -19,7 +19,7 @@ struct WaveMatrices
 /// A free wave exp(-g t) cos(w t) of one polarisation. At F = I theory-continuum.md, eq. (C.48), has g.
 struct PlaneWave
 {
-  double frequency;             ///< w [rad/s], >= 0; 0 if it is overdamped
+  double frequency;             ///< w [rad/s], >= 0; 0 if the wave is overdamped or the sheet is not stable
   double decay;                 ///< g [1/s]
   Eigen::Vector2d polarisation; ///< unit vector p [-], current frame
 };
@@ -32,9 +32,14 @@ enum class Wave
 };
 
 /// Both waves: first the one whose polarisation is closer to `normal`, the longitudinal one, then the shear wave. Names
-/// that fit exactly at F = I in directions of symmetry.
+/// that fit exactly at F = I in directions of symmetry. All numbers of both are not-a-number if an entry of the
+/// matrices is not finite.
 /// @param normal direction in which the wave fronts travel in the deformed sheet
 std::array<PlaneWave, 2> plane_waves(const WaveMatrices &matrices, const Eigen::Vector2d &normal);
+
+/// Larger frequency of the two waves [rad/s].
+/// @throws std::runtime_error if one of them does not oscillate: its frequency is 0 or not finite
+double fastest_frequency(const std::array<PlaneWave, 2> &waves);
 
 /// Direction of the wave fronts of K in the deformed sheet, F^-T K normalised.
 Eigen::Vector2d wave_normal(const Eigen::Matrix2d &F, const Eigen::Vector2d &K);

@@ -2,6 +2,7 @@
 
 #include "verification/atomic_file.h"
 #include "verification/csv.h"
+#include "verification/errors.h"
 #include "verification/text_wrap.h"
 
 #include <nlohmann/json.hpp>
@@ -11,7 +12,10 @@
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
+#include <limits>
+#include <new>
 #include <ostream>
+#include <system_error>
 
 namespace verification
 {
@@ -65,9 +69,15 @@ Verdict Result::verdict() const
 {
   if (!tolerance)
     return Verdict::reported;
-  // Written so that not-a-number on either side fails.
-  const bool holds = error && std::isfinite(*error) && std::isfinite(*tolerance) && *error <= *tolerance;
-  return holds ? Verdict::holds : Verdict::fails;
+  for (const Value &value : {lattice, continuum, theory, error, tolerance})
+    if (value && !std::isfinite(*value))
+      return Verdict::fails;
+  return error && *error <= *tolerance ? Verdict::holds : Verdict::fails;
+}
+
+Result not_computed(const std::string &claim, const std::string &quantity, const std::string &reason)
+{
+  return {claim, quantity + ": not computed: " + reason, "1", {}, {}, {}, std::numeric_limits<double>::quiet_NaN(), 0.};
 }
 
 void Results::add(Result result)
@@ -79,6 +89,32 @@ void Results::add(const Results &others)
 {
   const std::vector<Result> copy = others.rows_; // `others` may be this object
   rows_.insert(rows_.end(), copy.begin(), copy.end());
+}
+
+bool Results::attempt(const std::string &claim, const std::string &quantity, const std::function<void()> &compute)
+{
+  try
+  {
+    compute();
+    return true;
+  }
+  catch (const Error &)
+  {
+    throw;
+  }
+  catch (const std::bad_alloc &)
+  {
+    throw;
+  }
+  catch (const std::system_error &)
+  {
+    throw;
+  }
+  catch (const std::exception &error)
+  {
+    add(not_computed(claim, quantity, error.what()));
+    return false;
+  }
 }
 
 Verdict Results::verdict() const

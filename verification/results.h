@@ -1,6 +1,7 @@
 /// What was checked, what came out, and whether it holds.
 #pragma once
 
+#include <functional>
 #include <iosfwd>
 #include <optional>
 #include <string>
@@ -13,7 +14,7 @@ namespace verification
 enum class Verdict
 {
   holds,   ///< the error is within the tolerance
-  fails,   ///< it is not, or it is not a finite number, or it is missing
+  fails,   ///< it is not, or it is missing, or a number of the row is not finite
   reported ///< no tolerance was set: for information
 };
 
@@ -32,9 +33,14 @@ struct Result
   std::optional<double> error;     ///< as the claim defines it, usually relative; smaller is better
   std::optional<double> tolerance; ///< largest error with which the claim holds; empty for information only
 
-  /// Holds if both error and tolerance are finite and error <= tolerance.
+  /// Reported without a tolerance. With one it holds if the error is there, error <= tolerance, and every number that
+  /// is given, of lattice, continuum, theory, error, and tolerance, is finite.
   [[nodiscard]] Verdict verdict() const;
 };
+
+/// Row of a claim in place of those that could not be computed: it fails, and gives the reason.
+/// @param quantity subject and what was to be computed, in words
+[[nodiscard]] Result not_computed(const std::string &claim, const std::string &quantity, const std::string &reason);
 
 /// All results of a run.
 class Results
@@ -73,6 +79,12 @@ public:
 
   /// Writes results.json and results.csv into `folder`, which must exist. @throws OutputError
   void write(const std::string &folder) const;
+
+  /// Calls `compute`. If that throws, adds the row not_computed() with the text of the exception: a claim of which a
+  /// part could not be checked does not hold. What the user or the machine must set right passes through: exceptions of
+  /// the kinds Error, std::system_error, and std::bad_alloc. What is collective must throw on all ranks.
+  /// @return whether it did not throw
+  bool attempt(const std::string &claim, const std::string &quantity, const std::function<void()> &compute);
 
   /// Prints an aligned table, at most 120 columns wide, values with seven significant digits. Long names are wrapped.
   void print(std::ostream &out) const;

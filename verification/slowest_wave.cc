@@ -28,6 +28,8 @@ SlowestWave slowest_wave(const lattice::TriangularLattice &lattice, const lattic
         Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(bloch_matrices(lattice, material, F, K).stiffness)
           .eigenvalues()[0] /
         K.squaredNorm();
+      if (!std::isfinite(smallest))
+        return {smallest, K};
       if (smallest < slowest.squared_speed)
         slowest = {smallest, K};
     }

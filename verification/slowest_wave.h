@@ -8,7 +8,8 @@ namespace verification
 /// The wave of an endless lattice that comes nearest to standing still, or grows.
 struct SlowestWave
 {
-  double squared_speed;        ///< smallest w^2 / k^2 [m^2/s^2] of all waves; not positive: the lattice is unstable
+  double squared_speed; ///< smallest w^2 / k^2 [m^2/s^2] of all waves; not positive: the lattice is unstable; not a
+                        ///< number if one is none
   Eigen::Vector2d wave_vector; ///< referential K of that wave [1/m]
 };
 

@@ -1,9 +1,9 @@
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <sstream>
 
+#include "verification/largest_error.h"
 #include "verification/results.h"
 #include "verification/subject.h"
 
@@ -24,7 +24,7 @@ inline Result stability_row(const Subject &subject, const std::string &claim)
   }
   const double smallest = subject.slowest_wave.squared_speed / std::pow(subject.theory.shear_speed, 2);
   // At zero the lattice is about to buckle, which is no stability either.
-  const double error = subject.is_stable() ? 0. : std::max(-smallest, 1e-15);
+  const double error = subject.is_stable() ? 0. : largest_of({-smallest, 1e-15});
   return {claim, quantity.str(), "1", smallest, {}, {}, error, 0.};
 }
 

@@ -81,7 +81,7 @@ class Faults(unittest.TestCase):
     def test_each_source_has_its_programs(self):
         self.assertEqual(programs_for("lattice/forces.cc")[0], "lattice_tests")
         self.assertEqual(programs_for("verification/units.cc")[0], "verification_tests")
-        self.assertEqual(programs_for("verification/wave_speeds/bloch.cc")[0], "claims_tests")
+        self.assertEqual(programs_for("verification/bloch.cc")[0], "claims_tests")
         self.assertEqual(programs_for("verification/commands/gate.cc"), [])
         # Each beginning of a name is that of a source.
         for place in PLACES:

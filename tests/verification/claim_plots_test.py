@@ -3,6 +3,7 @@
 import contextlib
 import io
 import json
+import math
 import re
 import sys
 import tempfile
@@ -19,7 +20,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification" / "r
 import made_up_claims
 import pictures
 import report
-from claim_tables import FORMATS, fitted_order, groups
+from claim_tables import FORMATS, fitted_order, groups, largest_text, range_text
 from claims_text import CLAIMS, PLOTS
 from files import DamagedFile, read_table
 from length_plots import decay_of
@@ -206,6 +207,16 @@ class Numbers(unittest.TestCase):
         self.assertAlmostEqual(decay_of(0.3 * (-0.2) ** np.arange(20)), -0.2, places=12)
         self.assertAlmostEqual(decay_of(0.3 * 0.5 ** np.arange(5)), 0.5, places=12)
         self.assertTrue(np.isnan(decay_of(np.zeros(4))))
+
+    def test_says_how_much_was_not_computed(self):
+        self.assertEqual(largest_text(np.array([-1e-7, 1e-8])), "up to 1.0e-07")
+        self.assertEqual(largest_text(np.array([np.nan, 1e-7, 1e-8])), "up to 1.0e-07 (1 of 3 not computed)")
+        self.assertEqual(largest_text(np.array([np.nan, np.inf])), "an amount that could not be computed (2 of 2 not computed)")
+        for place in range(3):
+            values = [1.98, 2.0, 2.03]
+            values.insert(place, math.nan)
+            self.assertEqual(range_text(values), "1.98 to 2.03 (1 of 4 not computed)")
+        self.assertIsNone(range_text([None, math.nan]))
 
     def test_table_of_words_and_numbers(self):
         with tempfile.TemporaryDirectory() as folder:

@@ -6,6 +6,7 @@ import io
 import json
 import math
 import re
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -256,6 +257,16 @@ class ReportTest(unittest.TestCase):
         self.assertRegex(out, r"prestretch: traction +17\n")
         self.assertRegex(out, r"energy: lost +inf\n")
 
+    def test_a_side_that_is_no_number_fails(self):
+        for side in ("lattice", "continuum", "theory", "error", "tolerance"):
+            for value in ("nan", "inf", "-inf"):
+                row = check_row("energy", "side", "fails", **{"error": 0.0, "tolerance": 1.0, side: value})
+                write_verification(self.folder, [row])
+                self.assertRegex(self.report(expect=3)[0], r"energy: side +inf\n")
+                (self.folder / "results.json").write_text(json.dumps({"claims": [{**row, "verdict": "holds"}]}))
+                self.assertIn("its numbers say otherwise", self.report(expect=2)[1])
+                shutil.rmtree(self.folder)
+
     def test_needs_nothing_beside_it(self):
         write_fracture(self.folder, [HOLDS, PUBLISHED])
         self.report("--quiet", expect=0)
@@ -355,8 +366,20 @@ class ReportTest(unittest.TestCase):
     def test_a_skipped_verification_is_said(self):
         write_fracture(self.folder, [PUBLISHED])
         (self.folder / "run.json").write_text(json.dumps({"exit_code": 0, "skip_verification": True}))
-        self.report("--quiet", expect=0)
-        self.assertIn("without its material and pre-stretch having been verified", self.page()[1].text)
+        out, _ = self.report(expect=0)
+        html, page = self.page()
+        self.assertIn("without its material and pre-stretch having been verified", page.text)
+        self.assertIn("Not verified: what was checked holds", page.text)
+        self.assertNotIn('class="banner holds"', html)
+        self.assertIn('class="banner warns"', html)
+        self.assertIn("not verified", out)
+        # Beside a run that was verified as well.
+        write_verification(self.folder.parent / "both" / "verify", [HOLDS])
+        write_fracture(self.folder.parent / "both" / "fig", [PUBLISHED])
+        (self.folder.parent / "both" / "fig" / "run.json").write_text(
+            json.dumps({"exit_code": 0, "skip_verification": True}))
+        self.report("--quiet", expect=0, folder=self.folder.parent / "both")
+        self.assertNotIn('class="banner holds"', self.page(self.folder.parent / "both")[0])
 
     def test_reused_verdicts_are_said(self):
         write_fracture(self.folder, [HOLDS, PUBLISHED])

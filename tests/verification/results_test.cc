@@ -9,7 +9,9 @@
 
 #include <cmath>
 #include <limits>
+#include <new>
 #include <sstream>
+#include <stdexcept>
 
 using verification::Result;
 using verification::Results;
@@ -95,6 +97,41 @@ TEST(Results, WhatIsNotFiniteFails)
   EXPECT_EQ(checked(infinity, infinity).verdict(), Verdict::fails);
   EXPECT_EQ(checked(-infinity, 1.).verdict(), Verdict::fails);
   EXPECT_EQ(checked(0., infinity).verdict(), Verdict::fails);
+}
+
+TEST(Results, WhatIsNotFiniteOnAnySideFails)
+{
+  for (std::optional<double> Result::*side : {&Result::lattice, &Result::continuum, &Result::theory})
+  {
+    Result row = checked(0., 1.);
+    row.*side = 2.;
+    EXPECT_EQ(row.verdict(), Verdict::holds);
+    for (const double value : {not_a_number, infinity, -infinity})
+    {
+      row.*side = value;
+      EXPECT_EQ(row.verdict(), Verdict::fails);
+      Result reported = row;
+      reported.tolerance.reset();
+      EXPECT_EQ(reported.verdict(), Verdict::reported);
+    }
+  }
+}
+
+TEST(Results, APartThatThrowsIsARowThatFailsAndSaysWhy)
+{
+  Results results;
+  EXPECT_TRUE(results.attempt("energy", "NN: waves", [&] { results.add(checked(0., 1.)); }));
+  EXPECT_TRUE(results.all_hold());
+  EXPECT_FALSE(results.attempt("energy", "NN: waves", [] { throw std::invalid_argument("no positive step"); }));
+  ASSERT_EQ(results.rows().size(), 2u);
+  EXPECT_EQ(results.rows()[1].verdict(), Verdict::fails);
+  EXPECT_EQ(results.rows()[1].claim, "energy");
+  EXPECT_EQ(results.rows()[1].quantity, "NN: waves: not computed: no positive step");
+  // These have exit codes of their own.
+  EXPECT_THROW(results.attempt("energy", "", [] { throw verification::InputError("wrong"); }),
+               verification::InputError);
+  EXPECT_THROW(results.attempt("energy", "", [] { throw std::bad_alloc(); }), std::bad_alloc);
+  EXPECT_EQ(results.rows().size(), 2u);
 }
 
 TEST(Results, MissingErrorFailsAndMissingToleranceOnlyReports)

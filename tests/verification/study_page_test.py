@@ -157,7 +157,7 @@ class StudyPage(MadeUpStudy):
 
     def test_numbers_of_runs_are_means_over_seeds(self):
         page, _ = self.page()
-        for words in ("2.20 ± 0.14 (2)", "14.0 ± 1.4 (2)", "1.75 (1)", "1.07 (1)", "33 (1)", "0.15 (1)"):
+        for words in ("2.20 ± 0.14 (2 of 3)", "14.0 ± 1.4 (2 of 3)", "1.75 (1 of 3)", "1.07 (1)", "33 (1)", "0.15 (1 of 3)"):
             self.assertIn(words, page.text)
 
     def sweep(self, row, *quantities):
@@ -167,6 +167,30 @@ class StudyPage(MadeUpStudy):
             self.assertTrue(draw_sweep(self.read(), row, quantities, self.folder / "sweep.png"))
             labels = [(axes.get_xlabel(), axes.get_ylabel()) for axes in saved.call_args.args[0].axes]
         return np.asarray(Image.open(self.folder / "sweep.png").convert("RGB"), dtype=float), labels
+    def banner(self):
+        """Class and head of the banner of a study whose rows were all judged."""
+        self.document["checks"] = []
+        self.document["seeds"] = [seed for seed in self.document["seeds"] if seed["state"] == "measured"]
+        return re.search(r'<div class="banner (\w+)"><strong>(.*?)</strong>', self.page()[1]).groups()
+
+    def test_is_green_only_if_everything_was_verified_measured_and_holds(self):
+        self.document["verified"] = True
+        self.assertEqual(self.banner(), ("holds", "✓ Holds: all 2 rows"))
+        for verified in (False, None, "yes"):
+            self.document["verified"] = verified
+            self.assertEqual(self.banner(), ("warns", "! Not verified: all 2 rows hold, but not every run was verified"))
+        del self.document["verified"]
+        self.assertEqual(self.banner()[0], "warns")
+        self.document["verified"] = True
+        rows = self.document["claims"][0]["rows"]
+        rows[0]["verdict"], self.document["claims"][0]["verdict"] = "not measured", "incomplete"
+        self.assertEqual(self.banner(), ("warns", "! Incomplete: 1 row holds, but not everything was measured"))
+        page, html = self.page()
+        self.assertIn("! incomplete", page.text)
+        self.assertIn('<tr class="warns"><td class="verdict">! not measured</td>', html)
+        for row in rows:
+            row["verdict"] = "reported"
+        self.assertEqual(self.banner(), ("reported", "· Reported: no row has a rule"))
 
     def test_sweeps_show_both_amplitudes(self):
         row = self.document["claims"][0]["rows"][1]

@@ -96,17 +96,21 @@ TEST(StudyTable, MeanAndStandardDeviationOverSeeds)
   const SeedStatistics seeds = statistics("a", "wavelength", table.outcomes);
   EXPECT_DOUBLE_EQ(seeds.mean.value(), 0.022);
   EXPECT_NEAR(seeds.deviation.value(), 0.002, 1e-15);
-  EXPECT_NEAR(seeds.standard_error, 0.002 / std::sqrt(3.), 1e-15);
+  EXPECT_NEAR(seeds.sample().variance, 4e-6, 1e-18);
   EXPECT_EQ(seeds.text("m"), "2.20 ± 0.20 cm (3)");
 }
 
-TEST(StudyTable, UncertaintyOfASingleMeasurementCountsAsError)
+// Of the seeds that give one, whatever the others do.
+TEST(StudyTable, UncertaintyIsTheRootMeanSquareOverTheSeedsThatGiveOne)
 {
   MadeUpStudy table;
-  table.add("a", {0.02});
-  EXPECT_DOUBLE_EQ(statistics("a", "wavelength", table.outcomes).standard_error, 0.);
+  table.add("a", {0.02, 0.021, 0.022});
+  EXPECT_FALSE(statistics("a", "wavelength", table.outcomes).uncertainty.has_value());
   table.outcomes[0].values["wavelength_uncertainty"] = 0.003;
-  EXPECT_DOUBLE_EQ(statistics("a", "wavelength", table.outcomes).standard_error, 0.003);
+  table.outcomes[1].values["wavelength_uncertainty"] = 0.004;
+  const SeedStatistics seeds = statistics("a", "wavelength", table.outcomes);
+  EXPECT_NEAR(seeds.uncertainty.value(), std::sqrt(12.5e-6), 1e-15);
+  EXPECT_NEAR(seeds.sample().floored_variance(), 12.5e-6, 1e-18); // the spread is 0.001
 }
 
 TEST(StudyTable, IsNearHoldsWithinItsTolerance)
@@ -131,17 +135,59 @@ TEST(StudyTable, AboveAndBelow)
 TEST(StudyTable, BoundMayBeThatOfAnotherRun)
 {
   MadeUpStudy table;
-  table.add("a", {0.02});
-  table.add("b", {0.03});
+  table.add("a", {0.020, 0.021, 0.022});
+  table.add("b", {0.030, 0.031, 0.032});
   table.add("none", {NAN});
   StudyRow row = row_of({"a"}, Rule::below);
   row.bound_run = "b";
-  EXPECT_EQ(table.judged(row).verdict, RowVerdict::holds);
+  const RowOutcome below = table.judged(row);
+  EXPECT_EQ(below.verdict, RowVerdict::holds);
+  EXPECT_NEAR(below.misfit.value(), 1.28e-4, 1e-6); // t = 12.25 with 4 degrees of freedom
+  EXPECT_HAS(below.measured, "p = 0.0001");
+  EXPECT_HAS(below.expected, "below that of b (3.1 cm)");
   row.rule = Rule::above;
   EXPECT_EQ(table.judged(row).verdict, RowVerdict::does_not_hold);
   row.bound_run = "none";
   EXPECT_EQ(table.judged(row).verdict, RowVerdict::not_measured);
   EXPECT_HAS(table.judged(row).note, "none, to compare with");
+}
+
+// A difference that the scatter of the seeds explains is none; and without a scatter nothing is clear.
+TEST(StudyTable, ARunBesideAnotherMustDifferClearly)
+{
+  MadeUpStudy table;
+  table.add("a", {0.018, 0.022});
+  table.add("b", {0.019, 0.025});
+  table.add("one", {0.9});
+  table.add("same", {0.9, 0.9});
+  StudyRow row = row_of({"a"}, Rule::below);
+  row.bound_run = "b";
+  EXPECT_EQ(table.judged(row).verdict, RowVerdict::does_not_hold);
+  row.bound_run = "one";
+  EXPECT_EQ(table.judged(row).verdict, RowVerdict::not_measured);
+  EXPECT_HAS(table.judged(row).note, "a beside one: how much seeds scatter is unknown");
+  row.runs = {"same"};
+  row.rule = Rule::above;
+  row.bound_run = "same";
+  EXPECT_EQ(table.judged(row).verdict, RowVerdict::not_measured);
+  // All of several runs must lie on that side.
+  table.add("c", {0.0100, 0.0101, 0.0102, 0.0103});
+  row = row_of({"c", "a"}, Rule::below);
+  row.bound_run = "b";
+  EXPECT_EQ(table.judged(row).verdict, RowVerdict::does_not_hold);
+}
+
+// 0 / 0: a relative distance from nothing.
+TEST(StudyTable, WhatIsNoNumberDoesNotHold)
+{
+  MadeUpStudy table;
+  table.add("a", {0., 0.});
+  table.add("b", {0.02, 0.02});
+  StudyRow row = row_of({"a", "b"}, Rule::is_near, 0., 0.1);
+  row.bound_run = "a";
+  const RowOutcome outcome = table.judged(row);
+  EXPECT_EQ(outcome.verdict, RowVerdict::does_not_hold);
+  EXPECT_EQ(outcome.result("c").value().verdict(), Verdict::fails);
 }
 
 TEST(StudyTable, ARuleForEachRunWantsAllOfThem)
@@ -169,30 +215,52 @@ TEST(StudyTable, PatternHoldsIfEverySeedShowsIt)
 TEST(StudyTable, UndecidedPatternsDoNotCount)
 {
   MadeUpStudy table;
-  table.add("a", {0.02, 0.02, 0.02});
+  table.add("a", {0.02, 0.02, 0.02, 0.02});
   table.outcomes[2].pattern = "undecided";
   const RowOutcome one = table.judged(pattern_row({"a"}, "oscillating"));
   EXPECT_EQ(one.verdict, RowVerdict::holds);
-  EXPECT_EQ(one.measured, "oscillating 2/3, undecided 1/3");
-  EXPECT_HAS(one.note, "a: not measured in 1 of 3 (seed 3 undecided)");
+  EXPECT_EQ(one.measured, "oscillating 3/4, undecided 1/4");
+  EXPECT_HAS(one.note, "a: not measured in 1 of 4 (seed 3 undecided)");
   table.outcomes[1].pattern = "undecided";
   EXPECT_EQ(table.judged(pattern_row({"a"}, "oscillating")).verdict, RowVerdict::not_measured);
 }
 
-TEST(StudyTable, SeedsWithoutTheNumberAreNamedAndHalfOfThemAreTooMany)
+TEST(StudyTable, SeedsWithoutTheNumberAreNamedAndMoreThanAQuarterAreTooMany)
 {
   MadeUpStudy table;
-  table.add("a", {0.02, NAN, 0.022});
+  table.add("a", {0.02, NAN, 0.022, 0.021});
   const RowOutcome some = table.judged(row_of({"a"}, Rule::is_near, 0.021, 0.1));
   EXPECT_EQ(some.verdict, RowVerdict::holds);
-  EXPECT_HAS(some.measured, "(2)");
-  EXPECT_EQ(some.note, "a: not measured in 1 of 3 (seed 2 straight)");
+  EXPECT_HAS(some.measured, "cm (3 of 4)");
+  EXPECT_EQ(some.note, "a: not measured in 1 of 4 (seed 2 straight)");
   RunOutcome &failed = table.add_seed("a", "");
   failed.state = RunState::failed;
-  const RowOutcome half = table.judged(row_of({"a"}, Rule::is_near, 0.021, 0.1));
-  EXPECT_EQ(half.verdict, RowVerdict::not_measured);
-  EXPECT_HAS(half.note, "seed 4 failed");
-  EXPECT_FALSE(half.result("c").has_value());
+  const RowOutcome more = table.judged(row_of({"a"}, Rule::is_near, 0.021, 0.1));
+  EXPECT_EQ(more.verdict, RowVerdict::not_measured);
+  EXPECT_HAS(more.note, "seed 5 failed");
+  EXPECT_EQ(more.result("c").value().verdict(), Verdict::fails);
+}
+
+// A claim is as good as all of its rows.
+TEST(StudyTable, AClaimWithARowThatWasNotMeasuredIsIncomplete)
+{
+  const auto verdict = [](const std::vector<RowVerdict> &rows)
+  {
+    ClaimResult claim;
+    for (const RowVerdict row : rows)
+    {
+      claim.rows.emplace_back();
+      claim.rows.back().verdict = row;
+    }
+    return claim.verdict();
+  };
+  using V = RowVerdict;
+  EXPECT_EQ(verdict({V::holds, V::reported}), V::holds);
+  EXPECT_EQ(verdict({V::holds, V::not_measured, V::reported}), V::incomplete);
+  EXPECT_EQ(verdict({V::not_measured, V::reported}), V::not_measured);
+  EXPECT_EQ(verdict({V::holds, V::not_measured, V::does_not_hold}), V::does_not_hold);
+  EXPECT_EQ(verdict({V::reported}), V::reported);
+  EXPECT_EQ(to_string(V::incomplete), "incomplete");
 }
 
 TEST(StudyTable, RisesAndFalls)
@@ -201,10 +269,48 @@ TEST(StudyTable, RisesAndFalls)
   table.add("a", {0.010, 0.011});
   table.add("b", {0.020, 0.021});
   table.add("c", {0.0205, 0.0206}); // saturated
-  EXPECT_EQ(table.judged(row_of({"c", "a", "b"}, Rule::rises)).verdict, RowVerdict::holds);
-  EXPECT_EQ(table.judged(row_of({"c", "a", "b"}, Rule::falls)).verdict, RowVerdict::does_not_hold);
+  const RowOutcome rises = table.judged(row_of({"c", "a", "b"}, Rule::rises));
+  EXPECT_EQ(rises.verdict, RowVerdict::holds);
+  EXPECT_HAS(rises.measured, "rise: p = 0.00");
+  EXPECT_HAS(rises.measured, "a fall in between: p = 1");
+  const RowOutcome falls = table.judged(row_of({"c", "a", "b"}, Rule::falls));
+  EXPECT_EQ(falls.verdict, RowVerdict::does_not_hold);
+  EXPECT_HAS(falls.measured, "fall: p = 1");
   table.add("d", {0.012, 0.013}); // above the first, but clearly below the others
-  EXPECT_EQ(table.judged(row_of({"a", "b", "c", "d"}, Rule::rises)).verdict, RowVerdict::does_not_hold);
+  const RowOutcome broken = table.judged(row_of({"a", "b", "c", "d"}, Rule::rises));
+  EXPECT_EQ(broken.verdict, RowVerdict::does_not_hold);
+  EXPECT_EQ(broken.misfit, 1.);
+  EXPECT_HAS(broken.measured, "clearly from 2 to 4");
+}
+
+// One seed a run, however many runs: how much seeds scatter is not known, so no difference is clear.
+TEST(StudyTable, NoTrendIsMeasuredWithoutAScatterOfSeeds)
+{
+  MadeUpStudy table;
+  table.add("a", {0.01});
+  table.add("b", {0.02});
+  table.add("c", {0.03});
+  for (RunOutcome &outcome : table.outcomes)
+    outcome.values["wavelength_uncertainty"] = 1e-4; // of the measurement, not of the cracks
+  const RowOutcome single = table.judged(row_of({"a", "b", "c"}, Rule::rises));
+  EXPECT_EQ(single.verdict, RowVerdict::not_measured);
+  EXPECT_HAS(single.note, "how much seeds scatter is unknown");
+  table.add("d", {0.05, 0.05}); // nor by seeds that agree to the last bit
+  EXPECT_EQ(table.judged(row_of({"a", "b", "c", "d"}, Rule::rises)).verdict, RowVerdict::not_measured);
+  table.add("e", {0.0500, 0.0501, 0.0502});
+  EXPECT_EQ(table.judged(row_of({"a", "b", "c", "d", "e"}, Rule::rises)).verdict, RowVerdict::holds);
+}
+
+// Two seeds that agree by luck do not make a trend of what their measurements cannot tell apart.
+TEST(StudyTable, ScatterIsNotBelowTheUncertaintyOfAMeasurement)
+{
+  MadeUpStudy table;
+  table.add("a", {0.0200, 0.0201});
+  table.add("b", {0.0210, 0.0211});
+  EXPECT_EQ(table.judged(row_of({"a", "b"}, Rule::rises)).verdict, RowVerdict::holds);
+  for (RunOutcome &outcome : table.outcomes)
+    outcome.values["wavelength_uncertainty"] = 0.002;
+  EXPECT_EQ(table.judged(row_of({"a", "b"}, Rule::rises)).verdict, RowVerdict::does_not_hold);
 }
 
 TEST(StudyTable, NoRiseThatIsWithinTheErrors)
@@ -219,7 +325,7 @@ TEST(StudyTable, ExponentOfATrend)
 {
   MadeUpStudy table;
   for (const double zeta : {1., 2., 3., 4.})
-    table.add("z" + std::to_string(int(zeta)), {0.01 * std::sqrt(zeta)});
+    table.add("z" + std::to_string(int(zeta)), {0.0099 * std::sqrt(zeta), 0.0101 * std::sqrt(zeta)});
   const RowOutcome row = table.judged(row_of({"z1", "z2", "z3", "z4"}, Rule::rises));
   EXPECT_NEAR(row.number.value(), 0.5, 1e-12);
 }
@@ -260,8 +366,8 @@ TEST(StudyTable, BracketLiesBetweenTheTwoPatterns)
 TEST(StudyTable, RunsThatTheQuickStudyLeavesOut)
 {
   MadeUpStudy table;
-  table.add("a", {0.010});
-  table.add("b", {0.020});
+  table.add("a", {0.0100, 0.0101});
+  table.add("b", {0.0200, 0.0201});
   const RowOutcome alone = table.judged(row_of({"big"}, Rule::above, 0.), {"big"});
   EXPECT_EQ(alone.verdict, RowVerdict::not_measured);
   EXPECT_EQ(alone.note, "big is not part of the quick study");
@@ -277,15 +383,16 @@ TEST(StudyTable, ResultsHaveTheVerdictsOfTheTable)
   for (const StudyRow &row :
        {row_of({"a"}, Rule::is_near, 0.0105, 0.01), row_of({"a"}, Rule::is_near, 0.02, 0.1),
         row_of({"a"}, Rule::above, 1.), row_of({"a"}, Rule::below, 1.), row_of({"a", "b"}, Rule::rises),
-        row_of({"a", "b"}, Rule::falls), pattern_row({"a"}, "oscillating"), pattern_row({"a"}, "straight"),
-        bracket_row({"a", "s"}), row_of({"a"}, Rule::reported)})
+        row_of({"a", "b"}, Rule::falls), row_of({"s"}, Rule::above), pattern_row({"a"}, "oscillating"),
+        pattern_row({"a"}, "straight"), bracket_row({"a", "s"}), row_of({"a"}, Rule::reported)})
   {
     const RowOutcome outcome = table.judged(row);
     const Result result = outcome.result("c").value();
     const Verdict verdict = result.verdict();
-    EXPECT_GE(result.error.value_or(0.), 0.) << outcome.expected; // an error is no sign of how far inside a bound it is
+    EXPECT_FALSE(result.error.value_or(0.) < 0.)
+      << outcome.expected; // an error is no sign of how far inside a bound it is
     EXPECT_EQ(verdict == Verdict::holds, outcome.verdict == RowVerdict::holds) << outcome.expected;
-    EXPECT_EQ(verdict == Verdict::fails, outcome.verdict == RowVerdict::does_not_hold) << outcome.expected;
+    EXPECT_EQ(verdict == Verdict::reported, outcome.verdict == RowVerdict::reported) << outcome.expected;
   }
 }
 
@@ -314,6 +421,8 @@ TEST(StudyTable, OutputsHoldEveryRunAndRow)
   EXPECT_EQ(json["seeds"][0]["values"]["wavelength"], 0.010);
   EXPECT_TRUE(json["seeds"][0]["values"]["amplitude"].is_null());
   EXPECT_EQ(json["claims"][0]["rows"].size(), 2u);
+  EXPECT_EQ(json["verified"], false);
+  EXPECT_EQ(json["claims"][0]["verdict"], "not measured");
   EXPECT_EQ(json["checks"][0]["about"], "about it");
   EXPECT_EQ(json["checks"][0]["rows"][0]["theory"], 0.5);
   EXPECT_EQ(json["checks"][0]["rows"][0]["verdict"], "does not hold");

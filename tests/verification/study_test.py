@@ -32,8 +32,7 @@ TINY = {
         {"claim": "The crack runs", "paper": "It does.", "rows": [
             {"run": "base", "quantity": "speed_lagrangian", "above": 1},
             {"runs": ["low", "base"], "quantity": "speed_lagrangian", "against": "Sheet/height"},
-            {"run": "base", "quantity": "pattern"},
-            {"run": "base", "quantity": "wavelength", "above": 0}]},
+            {"run": "base", "quantity": "pattern"}]},
     ],
 }
 FOLDERS = ["base-1", "base-2", "low-1", "thin-1"]
@@ -96,9 +95,9 @@ class Study(TemporaryFolder):
         self.assertNotIn("report.html", os.listdir(self.out / "runs" / "base-1"))
         document = json.loads(self.text("study.json"))
         rows = document["claims"][0]["rows"]
-        self.assertEqual([row["verdict"] for row in rows], ["holds", "reported", "reported", "not measured"])
+        self.assertEqual([row["verdict"] for row in rows], ["holds", "reported", "reported"])
         self.assertEqual(rows[0]["values"][0]["n"], 2)
-        self.assertEqual(document["verification"], "none (--skip-verification)")
+        self.assertEqual((document["verification"], document["verified"]), ("none (--skip-verification)", False))
         lines = read_csv(self.out / "study.csv")
         self.assertEqual([(line["run"], line["seed"]) for line in lines],
                          [("base", "1"), ("base", "2"), ("low", "1"), ("thin", "1")])
@@ -107,9 +106,25 @@ class Study(TemporaryFolder):
         self.assertEqual(json.loads(self.text("results.json"))["verdict"], "holds")
         page = self.text("study.html")
         self.assertTrue((self.out / "pictures" / "base-sheet.png").exists())
-        for part in ("The crack runs", "not measured", "data:image/png", "It does."):
+        for part in ("The crack runs", "Not verified: the only row holds", "data:image/png", "It does."):
             self.assertIn(part, page)
+        self.assertNotIn('class="banner holds"', page)
         self.assertNotIn("http", page.replace("http://www.w3.org", ""))
+
+    def test_claim_that_could_not_be_measured_is_3(self):
+        def change(document):  # a straight crack has no wavelength
+            document["runs"] = {"base": {}}
+            document["claims"][0]["rows"] = [{"run": "base", "quantity": "speed_lagrangian", "above": 1},
+                                             {"run": "base", "quantity": "wavelength", "above": 0}]
+        printed = self.study(change=change, expect=3)
+        self.assertIn("The crack runs: incomplete", printed)
+        self.assertIn("not measured in 1 of 1", printed)
+        self.assertEqual(json.loads(self.text("study.json"))["claims"][0]["verdict"], "incomplete")
+        results = json.loads(self.text("results.json"))
+        self.assertEqual([row["verdict"] for row in results["claims"]], ["holds", "fails"])
+        self.assertEqual((results["claims"][1]["error"], results["verdict"]), ("nan", "fails"))
+        self.assertEqual(json.loads(self.text("run.json"))["exit_code"], 3)
+        self.assertIn("Incomplete: 1 row holds", self.text("study.html"))
 
     def test_child_that_fails_is_4_and_stops_no_other(self):
         def change(document):  # a step that squeezed bonds, which are stiffer, do not bear
@@ -125,7 +140,7 @@ class Study(TemporaryFolder):
         def change(document):
             document["runs"] = {"base": {"set": {"Continuum/ratio": -0.2}}}
             document["claims"][0]["rows"] = [{"run": "base", "quantity": "pattern"}]
-        self.assertIn("refused: verification", self.study(change=change, skip=False))
+        self.assertIn("refused: verification", self.study(change=change, skip=False, expect=3))
         self.assertIn("refused: verification", self.text("study.csv"))
 
     def test_resume_repeats_nothing_and_gives_the_same_files(self):

@@ -13,7 +13,7 @@ sys.dont_write_bytecode = True
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "docs"))
 import verification_page
 from documented import undocumented
-from program import TemporaryFolder, latcon
+from program import CASES, TemporaryFolder, latcon
 
 PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "verification.md"
 
@@ -55,6 +55,40 @@ class Verify(TemporaryFolder):
         page = (self.out / "report.html").read_text()
         self.assertGreaterEqual(page.count("<img "), len(TABLES) - 1)  # dispersion and its runs share one
         self.assertEqual(undocumented(self.out), [])
+
+
+# A sheet of nearest neighbours, compressed so far along x that its shear waves along x have no speed: it buckles.
+BUCKLED = [word for setting in (
+    "Loading/strain x=-0.11", "Loading/strain y=0.75", "Next-nearest neighbours/present=false",
+    "Nearest neighbours/viscosity=0", "Next-nearest neighbours/viscosity=0") for word in ("--set", setting)]
+
+
+@unittest.skipIf("--full" in sys.argv, "the quick versions are enough")
+class WithoutNumbers(TemporaryFolder):
+    def failing(self, claim, *settings):
+        """Rows that fail in a claim on the case of quick.prm with other settings; nothing that is no number holds."""
+        result = latcon("verify", claim, "--quick", "--case", CASES / "quick.prm", *settings, "--output-dir", self.out)
+        self.assertEqual(result.returncode, 3, result.stdout + result.stderr)
+        rows = json.loads((self.out / "results.json").read_text())["claims"]
+        for row in rows:
+            if row["verdict"] == "holds":
+                self.assertFalse({"nan", "inf", "-inf"} & {str(value) for value in row.values()}, row)
+        return [row["quantity"] for row in rows if row["verdict"] == "fails"]
+
+    def test_waves_that_never_ran_fail(self):
+        failing = self.failing("wave-speeds", *BUCKLED)
+        self.assertIn(",nan,", (self.out / "wave_speeds.csv").read_text())
+        for words in ("lattice run, waves at 0 degrees, kd = 0.1: not computed: a wave does not oscillate",
+                      "phase velocity, lattice run against Bloch", "long-wave speed, S"):
+            self.assertTrue(any(words in quantity for quantity in failing), f"{words}: {failing}")
+
+    def test_a_claim_that_throws_fails(self):
+        failing = self.failing("energy", *BUCKLED)
+        self.assertTrue(any("kd = 0.25: not computed: a wave does not oscillate" in quantity for quantity in failing), failing)
+
+    def test_a_length_that_is_not_there_fails(self):
+        failing = self.failing("intrinsic-length", "--set", "Loading/strain x=-0.3")
+        self.assertTrue(any("loaded: there is none, bonds are compressed" in quantity for quantity in failing), failing)
 
 
 VERSION = [] if "--full" in sys.argv else ["--quick"]

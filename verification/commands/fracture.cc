@@ -7,6 +7,7 @@
 #include "verification/commands/lattice_motion.h"
 #include "verification/fracture/crack_film.h"
 #include "verification/fracture/near_tip_record.h"
+#include "verification/largest_error.h"
 #include "verification/lattice_sheet.h"
 
 namespace verification
@@ -47,7 +48,7 @@ Results measured_results(const Case &input, const CrackRecord &record, const lat
     {
       row.tolerance = input.reference_tolerance;
       // A quantity that was published but could not be measured does not agree.
-      row.error = measured ? std::abs(measured->value / *published - 1.) : std::numeric_limits<double>::quiet_NaN();
+      row.error = measured ? relative_error(measured->value, *published) : std::numeric_limits<double>::quiet_NaN();
     }
     results.add(row);
   };
@@ -134,7 +135,7 @@ Crack break_sheet(const Case &input, const lattice::TriangularLattice &sheet, co
 }
 
 // Pictures and page of a run, and where the page is. @return whether they could be made, on rank 0
-ExitCode draw_report(const Run &run)
+ExitCode draw_page(const Run &run)
 {
   if (!run.writes())
     return ExitCode::done;
@@ -155,7 +156,7 @@ Results passed_or_reported(const Case &input, const Options &options, Run &run)
   catch (const ClaimFailed &)
   {
     if (!options.no_report)
-      draw_report(run);
+      draw_page(run);
     throw;
   }
 }
@@ -206,7 +207,7 @@ ExitCode run_fracture(const Options &options)
   if (options.no_report)
     return exit_code;
   // The verdict in the page is the one returned here; a crack without its page did not end well.
-  const ExitCode drawn = draw_report(run);
+  const ExitCode drawn = draw_page(run);
   return exit_code == ExitCode::done ? drawn : exit_code;
 }
 

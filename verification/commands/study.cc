@@ -207,10 +207,14 @@ MemoryNeed memory_of(const std::vector<PlannedRun> &plan, std::size_t n_cores)
 
 ExitCode exit_code_of(const StudyResults &results, const Results &rows)
 {
-  const auto failed = [](const RunOutcome &outcome) { return outcome.state == RunState::failed; };
-  if (std::any_of(results.outcomes.begin(), results.outcomes.end(), failed))
+  const auto any = [&](RunState state)
+  {
+    return std::any_of(results.outcomes.begin(), results.outcomes.end(),
+                       [state](const RunOutcome &outcome) { return outcome.state == state; });
+  };
+  if (any(RunState::failed))
     return ExitCode::solver_failed;
-  return rows.verdict() == Verdict::fails ? ExitCode::claim_failed : ExitCode::done;
+  return any(RunState::refused) || rows.verdict() == Verdict::fails ? ExitCode::claim_failed : ExitCode::done;
 }
 
 } // namespace
@@ -245,6 +249,7 @@ ExitCode run_study(const Options &options, const std::string &name)
   results.verification = options.skip_verification ? "none (--skip-verification)"
                          : options.quick           ? "material and pre-stretch of the base case alone (--quick)"
                                                    : "material and pre-stretch of every run";
+  results.is_verified = !skip_verification;
   if (options.quick && !options.skip_verification)
     verify_base(results.study, options.overrides, run);
   bool complete = run_children(results, options, skip_verification, n_cores, run);

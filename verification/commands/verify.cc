@@ -132,7 +132,7 @@ ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names
   for (const auto &[name, claim] : claims())
     if (names.empty() || std::find(names.begin(), names.end(), name) != names.end())
       for (const Subject &one : subjects)
-        outcome.add(claim(one, quick));
+        outcome.results.attempt(name, one.name, [&, &check = claim] { outcome.add(check(one, quick)); });
   return outcome;
 }
 

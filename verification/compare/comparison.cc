@@ -12,6 +12,7 @@
 
 #include "verification/atomic_file.h"
 #include "verification/errors.h"
+#include "verification/largest_error.h"
 
 namespace verification
 {
@@ -39,14 +40,11 @@ struct Bounds
 
 Bounds bounds(const std::vector<Position> &points)
 {
-  Bounds box{points.front(), points.front()};
+  std::array<Extremes, 2> extremes;
   for (const Position &point : points)
     for (std::size_t k = 0; k < 2; ++k)
-    {
-      box.low[k] = std::min(box.low[k], point[k]);
-      box.high[k] = std::max(box.high[k], point[k]);
-    }
-  return box;
+      extremes[k].add(point[k]);
+  return {{{extremes[0].smallest(), extremes[1].smallest()}}, {{extremes[0].largest(), extremes[1].largest()}}};
 }
 
 std::string both_files(const Frame &lattice, const Frame &continuum)
@@ -79,30 +77,29 @@ double component(const FieldValues &field, std::size_t point, std::size_t c)
 
 struct Norms
 {
-  double largest = 0.;
-  double root_mean_square = 0.;
+  double largest, root_mean_square; // NaN if a value is not finite
 };
 
 template <typename Value>
 Norms norms_of(const std::vector<std::size_t> &sites, std::size_t n_components, const Value &value)
 {
-  Norms norms;
+  Extremes sizes;
+  sizes.add(0.);
   double sum = 0.;
   for (const std::size_t site : sites)
   {
     double square = 0.;
     for (std::size_t c = 0; c < n_components; ++c)
       square += value(site, c) * value(site, c);
-    norms.largest = std::max(norms.largest, std::sqrt(square));
+    sizes.add(std::sqrt(square));
     sum += square;
   }
-  norms.root_mean_square = sites.empty() ? 0. : std::sqrt(sum / static_cast<double>(sites.size()));
-  return norms;
+  return {sizes.largest(), sites.empty() ? 0. : std::sqrt(sum / static_cast<double>(sites.size()))};
 }
 
 double relative(double difference, double lattice, double continuum)
 {
-  return difference == 0. ? 0. : difference / std::max(lattice, continuum);
+  return difference == 0. ? 0. : difference / largest_of({lattice, continuum});
 }
 
 // A site at the rim of a curved hole may be outside for the rounding of the rim, but then some of its neighbours are
@@ -170,7 +167,7 @@ void require_same_units(const LatticeFrame &lattice, const ContinuumFrame &conti
 double position_tolerance(const ContinuumFrame &frame)
 {
   const Bounds box = bounds(frame.points);
-  return 1e-6 * std::max(box.side(0), box.side(1));
+  return 1e-6 * largest_of({box.side(0), box.side(1)});
 }
 
 void require_same_time(const LatticeFrame &lattice, const ContinuumFrame &continuum)
@@ -198,10 +195,13 @@ void require_same_bounds(const LatticeFrame &lattice, const ContinuumFrame &cont
     here = {{{(*given)[0], (*given)[2]}}, {{(*given)[1], (*given)[3]}}};
   const Bounds there = bounds(continuum.points);
   const double tolerance = position_tolerance(continuum);
-  double largest = 0.;
+  LargestError distance;
   for (std::size_t k = 0; k < 2; ++k)
-    largest = std::max({largest, std::abs(here.low[k] - there.low[k]), std::abs(here.high[k] - there.high[k])});
-  if (largest <= tolerance)
+  {
+    distance.add_difference(here.low[k], there.low[k]);
+    distance.add_difference(here.high[k], there.high[k]);
+  }
+  if (distance.error() <= tolerance)
     return;
   std::string why;
   const Position ratio{{there.side(0) / here.side(0), there.side(1) / here.side(1)}};
@@ -227,7 +227,9 @@ Comparison compare(const LatticeFrame &lattice, const ContinuumFrame &continuum,
   Comparison comparison;
   comparison.continuum = probe(continuum, lattice.points, position_tolerance(continuum), communicator);
   require_no_missing_part(lattice, continuum, comparison.continuum);
-  const unsigned int most = *std::max_element(lattice.n_bonds.begin(), lattice.n_bonds.end());
+  unsigned int most = 0;
+  for (const unsigned int n : lattice.n_bonds)
+    most = std::max<unsigned int>(most, n);
   for (const unsigned int n : lattice.n_bonds)
     comparison.complete.push_back(n == most ? 1 : 0);
   for (const FieldValues &there : comparison.continuum.fields)

@@ -9,6 +9,7 @@
 #include "lattice/relaxation.h"
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
+#include "verification/largest_error.h"
 
 namespace verification
 {
@@ -117,16 +118,16 @@ void Run::cut(lattice::State &state, double length) const
 double Run::largest_elsewhere(const lattice::State &state, std::size_t tip) const
 {
   const std::size_t reach = std::min<std::size_t>(4, options_.strip.free_rows);
-  double largest = 0.;
+  Extremes elongations;
   for (std::size_t row = row_below_crack() - reach; row <= row_below_crack() + reach; ++row)
     for (std::size_t column = sheet_.column_of(tip) - 2 * reach; column <= sheet_.column_of(tip) + 2 * reach; ++column)
       for (std::size_t kind = 0; kind < lattice::n_nearest_kinds; ++kind)
       {
         const std::size_t place = sheet_.index(row, column);
         if (!crosses_crack(place, kind) && state.bonds.present(place, kind))
-          largest = std::max(largest, lattice::stretch(state, sheet_, place, kind) - 1.);
+          elongations.add(lattice::stretch(state, sheet_, place, kind) - 1.);
       }
-  return largest / options_.breaking_strain;
+  return elongations.largest() / options_.breaking_strain;
 }
 
 // Slope of the least-squares line through points that are added one by one.
@@ -159,6 +160,7 @@ CrackRun Run::measure()
     lattice::Fracture(sheet_, material_, 1. + options_.breaking_strain, lattice::NoToughening{}, F));
 
   CrackRun run{};
+  Extremes elsewhere;
   Slope line;
   std::optional<lattice::EnergyBalance> begin;
   std::optional<std::size_t> tip;
@@ -169,7 +171,7 @@ CrackRun Run::measure()
     const std::vector<lattice::BrokenBond> &broken = simulation.step();
     const double t = simulation.state().time;
     if (begin)
-      run.largest_elsewhere = std::max(run.largest_elsewhere, largest_elsewhere(simulation.state(), *tip));
+      elsewhere.add(largest_elsewhere(simulation.state(), *tip));
     if (broken.empty())
     {
       if (t - last_break > patience)
@@ -195,6 +197,7 @@ CrackRun Run::measure()
   const lattice::EnergyBalance end = simulation.energies();
   const auto per_bond = [&](double difference)
   { return difference / (static_cast<double>(run.bonds_broken) * scales_.energy); };
+  run.largest_elsewhere = elsewhere.largest();
   run.speed = line.value();
   run.broken = per_bond(end.broken - begin->broken);
   run.viscous = per_bond(end.viscous - begin->viscous);

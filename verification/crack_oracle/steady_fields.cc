@@ -6,6 +6,7 @@
 #include <unsupported/Eigen/FFT>
 
 #include "verification/crack_oracle/steady_crack.h"
+#include "verification/largest_error.h"
 
 namespace verification
 {
@@ -109,7 +110,10 @@ Spectrum factor_before(const HalfStrip &half, Record &record)
 
 double largest(const std::vector<double> &values, double base)
 {
-  return base + *std::max_element(values.begin(), values.end());
+  Extremes extremes;
+  for (const double value : values)
+    extremes.add(base + value);
+  return extremes.largest();
 }
 
 } // namespace
@@ -142,10 +146,11 @@ SteadyFields steady_fields(const CrackStrip &strip, double speed, double duratio
     return rate;
   };
 
+  Extremes elsewhere, before;
   const auto visit_whole_bond = [&](std::size_t layer, Complex HalfStrip::Layer::*bond, double base)
   {
     const Spectrum rate = spectrum(layer, bond);
-    fields.largest_elsewhere = std::max(fields.largest_elsewhere, largest(record.integral(rate), base));
+    elsewhere.add(largest(record.integral(rate), base));
     double power = 0.5 * std::norm(rate[0]); // Parseval over omega >= 0
     for (std::size_t i = 1; i < n_frequencies; ++i)
       power += std::norm(rate[i]);
@@ -173,10 +178,12 @@ SteadyFields steady_fields(const CrackStrip &strip, double speed, double duratio
     fields.time.push_back(record.time(j));
     fields.elongation.push_back(ahead + across[j]);
     if (record.time(j) < -0.1 * interval)
-      fields.largest_before = std::max(fields.largest_before, fields.elongation.back());
+      before.add(fields.elongation.back());
     if (record.time(j) < 0.)
       power += across_rate[j] * across_rate[j];
   }
+  fields.largest_elsewhere = elsewhere.largest();
+  fields.largest_before = before.largest();
   fields.dissipation += strip.viscosity * power * record.step();
   fields.dissipation *= 2.; // over k e_c^2 / 2
   return fields;

@@ -1,6 +1,6 @@
 #include "verification/energy/wave_energy.h"
 
-#include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -8,6 +8,7 @@
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
 #include "verification/bloch.h"
+#include "verification/largest_error.h"
 #include "verification/order_fit.h"
 #include "verification/state_name.h"
 #include "verification/wave_speeds/lattice_waves.h"
@@ -96,13 +97,8 @@ void sinusoidal(const Subject &subject, const Eigen::Matrix2d &F, const WaveEner
   const double d = subject.spacing, l_d = subject.lengths.lattice;
   Table &table = outcome.table("sinusoidal_energy", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d", "lattice",
                                                      "local", "gradient", "filtered", "fem"});
-  double lattice_error = 0., element_error = 0., excess_error = 0.;
+  LargestError lattice_error, element_error, excess_error;
   CommonOrder local_order(order_kd), gradient_order(order_kd), filtered_order(order_kd);
-  const auto worse = [](double &largest, double error)
-  {
-    if (!(error <= largest)) // keeps a NaN
-      largest = error;
-  };
   for (const WaveDirection &direction : {WaveDirection{1, 0}, WaveDirection{1, 2}})
   {
     const Eigen::Vector2d N = unit_vector(direction, subject.orientation);
@@ -120,8 +116,8 @@ void sinusoidal(const Subject &subject, const Eigen::Matrix2d &F, const WaveEner
                      bloch = bloch_stiffness(cell.sheet, material, F, cell.K, p),
                      measured = lattice_stiffness(cell, material, F, p),
                      elements = sinusoidal_energy(media.gradient, F, cell.K, p, strain / cell.K.norm(), options.mesh);
-        worse(lattice_error, std::abs(measured / bloch - 1.));
-        worse(element_error, std::abs(elements / gradient - 1.));
+        lattice_error.add_relative(measured, bloch);
+        element_error.add_relative(elements, gradient);
         table.add({subject.name, F(0, 0), F(1, 1), angle(direction, subject.orientation), std::string(wave_names[w]),
                    cell.K.norm() * d, measured / local, 1., gradient / local, gradient / inertia / local,
                    elements / local});
@@ -141,7 +137,7 @@ void sinusoidal(const Subject &subject, const Eigen::Matrix2d &F, const WaveEner
         filtered_errors.push_back(std::abs(gradient / (1. + l_d * l_d * K.squaredNorm()) / exact - 1.));
         // To leading order the excess is l_d^2 k^2, whatever the wave; what follows is of fourth order.
         if (kd == order_kd[0])
-          worse(excess_error, std::abs((gradient / exact - 1.) / (l_d * l_d * K.squaredNorm()) - 1.));
+          excess_error.add_relative(gradient / exact - 1., l_d * l_d * K.squaredNorm());
       }
       local_order.add(local_errors);
       gradient_order.add(gradient_errors);
@@ -153,9 +149,9 @@ void sinusoidal(const Subject &subject, const Eigen::Matrix2d &F, const WaveEner
                        double error, double tolerance) {
     outcome.results.add({"energy", prefix + quantity, "1", {}, continuum_value, theory, error, tolerance});
   };
-  add("energy of the lattice against Bloch, worst of all fields", {}, {}, lattice_error, lattice_tolerance);
+  add("energy of the lattice against Bloch, worst of all fields", {}, {}, lattice_error.error(), lattice_tolerance);
   // Nodal values of a wave are not the best that the elements can do.
-  add("energy of the finite elements against their continuum, worst of all fields", {}, {}, element_error,
+  add("energy of the finite elements against their continuum, worst of all fields", {}, {}, element_error.error(),
       4. * discretisation_bound(options.mesh));
   const auto add_order = [&](const std::string &quantity, const CommonOrder &found, double claimed)
   {
@@ -164,8 +160,8 @@ void sinusoidal(const Subject &subject, const Eigen::Matrix2d &F, const WaveEner
   };
   add_order("local continuum and lattice agree", local_order, 2.);
   add_order("the gradient continuum's energy as it stands and the lattice's agree: no better", gradient_order, 2.);
-  add("excess of the gradient continuum's energy over l_d^2 k^2 at kd = 0.05", 1. + excess_error, 1., excess_error,
-      std::pow(order_kd[0], 2));
+  add("excess of the gradient continuum's energy over l_d^2 k^2 at kd = 0.05",
+      excess_error.value() / excess_error.reference(), 1., excess_error.error(), std::pow(order_kd[0], 2));
   add_order("the gradient continuum's energy over 1 + l_d^2 k^2 and the lattice's agree", filtered_order, 4.);
 }
 
@@ -197,7 +193,7 @@ Densities travelling_lattice(const WaveCell &cell, const lattice::Material &mate
   // The wave itself shortens bonds a little more.
   const double limit = lattice::time_step_limits(sheet, material, 0.99 * smallest_stretch(sheet, F)).combined;
   const double eighth = 0.25 * M_PI / wave.frequency;
-  const auto steps = static_cast<int>(std::ceil(eighth / std::min(0.5 * limit, eighth / 40.)));
+  const auto steps = static_cast<int>(std::ceil(eighth / smallest_of({0.5 * limit, eighth / 40.})));
   lattice::Simulation simulation(sheet, material, std::move(state), eighth / steps);
   for (int step = 0; step < steps; ++step)
     simulation.step();
@@ -220,6 +216,9 @@ void travelling(const Subject &subject, const Eigen::Matrix2d &F, double wanted_
   const double inertia = 1. + std::pow(subject.lengths.lattice / d * kd, 2);
   const auto bloch = bloch_waves(cell.sheet, material, F, cell.K),
              closed = plane_waves(continuum_matrices(media.gradient, F, cell.K), wave_normal(F, cell.K));
+  // Both sides are followed for an eighth of a period, if there is one.
+  for (const auto &waves : {bloch, closed})
+    static_cast<void>(fastest_frequency(waves));
   Table &table =
     outcome.table("travelling_waves", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d",
                                        "lattice_elastic [J/m^3]", "lattice_kinetic [J/m^3]", "fem_elastic [J/m^3]",
@@ -249,18 +248,18 @@ void travelling(const Subject &subject, const Eigen::Matrix2d &F, double wanted_
     // of a radian a step, the elements with a fortieth.
     constexpr double tolerance = 2e-4;
     add("elastic against kinetic energy, lattice and finite elements", run.elastic, elements.elastic, 0.5 * theory,
-        std::max(std::abs(run.elastic / run.kinetic - 1.), std::abs(elements.elastic / elements.kinetic - 1.)),
+        largest_of({relative_error(run.elastic, run.kinetic), relative_error(elements.elastic, elements.kinetic)}),
         tolerance);
     add("energy, lattice and finite elements each against its theory", total, element_total, theory,
-        std::max(std::abs(total / theory - 1.), std::abs(element_total / continuum_theory - 1.)), tolerance);
+        largest_of({relative_error(total, theory), relative_error(element_total, continuum_theory)}), tolerance);
     // The speeds differ by 1e-4 at most here (claim wave-speeds), energies by twice that and the time stepping.
     add("energy of the finite elements over 1 + l_d^2 k^2, against the lattice", total, element_total / inertia, theory,
-        std::abs(element_total / inertia / total - 1.), 2e-4 + tolerance);
+        relative_error(element_total / inertia, total), 2e-4 + tolerance);
     // Sixteen times the square of the second harmonic's amplitude.
     constexpr double harmonic_tolerance = 1e-4;
     add("micro-inertia's share of the kinetic energy, l_d^2 k^2 / (1 + l_d^2 k^2)", {}, elements.micro_inertia,
         elements.kinetic * (1. - 1. / inertia),
-        std::abs(elements.micro_inertia / (elements.kinetic * (1. - 1. / inertia)) - 1.), harmonic_tolerance);
+        relative_error(elements.micro_inertia, elements.kinetic * (1. - 1. / inertia)), harmonic_tolerance);
   }
 }
 
@@ -269,11 +268,17 @@ void travelling(const Subject &subject, const Eigen::Matrix2d &F, double wanted_
 ClaimOutcome wave_energy_claim(const Subject &subject, const WaveEnergyOptions &options)
 {
   ClaimOutcome outcome;
+  const auto attempt = [&](const std::string &part, const std::function<void()> &compute)
+  { outcome.results.attempt("energy", subject.name + ", " + part, compute); };
   for (const Eigen::Matrix2d &F : options.states)
-    sinusoidal(subject, F, options, outcome);
+    attempt("sinusoidal field about " + state_name(F), [&] { sinusoidal(subject, F, options, outcome); });
   for (const Eigen::Matrix2d &F : options.states)
     for (const double kd : options.kd)
-      travelling(subject, F, kd, options.mesh, outcome);
+    {
+      std::ostringstream part;
+      part << "travelling waves about " << state_name(F) << ", kd = " << kd;
+      attempt(part.str(), [&] { travelling(subject, F, kd, options.mesh, outcome); });
+    }
   return outcome;
 }
 

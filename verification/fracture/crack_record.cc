@@ -12,6 +12,7 @@
 #include "lattice/fragments.h"
 #include "verification/atomic_file.h"
 #include "verification/errors.h"
+#include "verification/largest_error.h"
 
 namespace verification
 {
@@ -129,11 +130,14 @@ lattice::EnergyBalance CrackRecord::sound_energies()
 
 double CrackRecord::largest_imbalance() const
 {
-  double largest = 0.;
+  LargestError largest;
   for (const EnergyRow &row : energies_)
-    largest = std::max(largest,
-                       std::abs(row.balance.imbalance()) / (row.balance.initial + std::abs(row.balance.boundary_work)));
-  return largest;
+  {
+    const double imbalance = std::abs(row.balance.imbalance());
+    // A sheet at rest has been given nothing, and nothing is missing.
+    largest.add(imbalance == 0. ? 0. : imbalance / (row.balance.initial + std::abs(row.balance.boundary_work)));
+  }
+  return largest.error();
 }
 
 lattice::CrackMeasurement CrackRecord::measure(double seed_tip_X) const

@@ -34,7 +34,8 @@ public:
   double tip_X() const { return tip_.empty() ? 0. : tip_.back().X; }
   /// Lagrangian speed over the last few spacings [m/s]; 0 while there is none.
   double speed() const { return speeds_.empty() ? 0. : speeds_.back(); }
-  /// Largest |imbalance| of the energies noted, over initial energy plus work of the edges [-].
+  /// Largest |imbalance| of the recorded energies, over initial energy plus work of the edges [-]; not-a-number if one
+  /// is not finite or none is recorded.
   double largest_imbalance() const;
 
   lattice::CrackMeasurement measure(double seed_tip_X) const;

@@ -73,8 +73,11 @@ Parts lattice_parts(const lattice::TriangularLattice &lattice, const lattice::Ma
   return parts;
 }
 
+// Not-a-number if the matrix is not finite: the solver may return anything then.
 double smallest(const Matrix6 &matrix)
 {
+  if (!matrix.allFinite())
+    return std::numeric_limits<double>::quiet_NaN();
   return Eigen::SelfAdjointEigenSolver<Matrix6>(matrix).eigenvalues()[0];
 }
 
@@ -105,15 +108,17 @@ double smallest_lattice_eigenvalue(const lattice::TriangularLattice &lattice, co
   return smallest(length * length * parts.positive - parts.negative);
 }
 
-double critical_length(const lattice::TriangularLattice &lattice, const lattice::Material &material,
-                       const Eigen::Matrix2d &F)
+std::optional<double> critical_length(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                                      const Eigen::Matrix2d &F)
 {
   const Parts parts = lattice_parts(lattice, material, F);
+  if (!parts.positive.allFinite() || !parts.negative.allFinite())
+    return std::numeric_limits<double>::quiet_NaN();
   const Eigen::SelfAdjointEigenSolver<Matrix6> positive(parts.positive);
   // A gradient that no bond feels counts for neither part. One that makes the positive part negative leaves no length.
   const double round_off = 1e-12 * positive.eigenvalues()[5];
   if (positive.eigenvalues()[0] < -round_off)
-    return std::numeric_limits<double>::quiet_NaN();
+    return {};
   Matrix6 scaled = Matrix6::Zero(); // positive^(-1/2), on its range
   for (int i = 0; i < 6; ++i)
     if (positive.eigenvalues()[i] > round_off)

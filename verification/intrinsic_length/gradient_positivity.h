@@ -1,5 +1,7 @@
 #pragma once
 
+#include <optional>
+
 #include "continuum/gradient_law.h"
 #include "lattice/material.h"
 
@@ -16,8 +18,9 @@ double smallest_lattice_eigenvalue(const lattice::TriangularLattice &lattice, co
                                    const Eigen::Matrix2d &F, double length);
 
 /// Length l_d [m] below which the lattice's gradient energy at F is no longer positive, exactly: largest eigenvalue of
-/// its two parts against each other. Bonds in compression can leave none; then it is not-a-number.
-double critical_length(const lattice::TriangularLattice &lattice, const lattice::Material &material,
-                       const Eigen::Matrix2d &F);
+/// its two parts against each other. None if bonds in compression leave no length with a positive energy; not-a-number
+/// if the bonds have no finite stiffness.
+std::optional<double> critical_length(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                                      const Eigen::Matrix2d &F);
 
 } // namespace verification

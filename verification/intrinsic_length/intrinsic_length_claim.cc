@@ -1,12 +1,12 @@
 #include "verification/intrinsic_length/intrinsic_length_claim.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "verification/intrinsic_length/dispersion.h"
 #include "verification/intrinsic_length/edge_layer.h"
 #include "verification/intrinsic_length/gradient_positivity.h"
+#include "verification/largest_error.h"
 
 namespace verification
 {
@@ -36,6 +36,11 @@ public:
                           theory, error, tolerance});
   }
 
+  bool attempt(const std::string &part, const std::function<void()> &compute)
+  {
+    return outcome_.results.attempt("intrinsic-length", subject_.name + ": " + part, compute);
+  }
+
 private:
   const Subject &subject_;
   ClaimOutcome &outcome_;
@@ -61,8 +66,10 @@ void dispersion(const Subject &subject, const IntrinsicLengthOptions &options, C
   // All directions.
   Table &table = outcome.table("dispersion", {"shells", "angle [deg]", "alpha_L", "alpha_S", "nearest_L", "nearest_S",
                                               "isotropic_L", "isotropic_S"});
-  double bloch_error = 0., continuum_error = 0., softest = -1e300, hardest = 1e300;
-  Alpha mean{}, isotropic_alpha{}, isotropic_loss{}, nearest_mean{};
+  LargestError bloch_error, continuum_error;
+  Extremes alphas;
+  std::array<LargestError, 2> isotropic_loss;
+  Alpha mean{}, isotropic_alpha{}, nearest_mean{};
   const auto n_angles = static_cast<int>(std::lround(180. / options.angle_step));
   for (int i = 0; i <= n_angles; ++i)
   {
@@ -74,11 +81,10 @@ void dispersion(const Subject &subject, const IntrinsicLengthOptions &options, C
     isotropic_alpha = continuum_alpha(isotropic, I, N, d);
     for (std::size_t w = 0; w < 2; ++w)
     {
-      bloch_error = std::max(bloch_error, std::abs(bloch[w] - closed[w]));
-      continuum_error = std::max(continuum_error, std::abs(continuum[w] - closed[w]));
-      softest = std::max(softest, bloch[w]);
-      hardest = std::min(hardest, bloch[w]);
-      isotropic_loss[w] = std::max(isotropic_loss[w], std::abs(isotropic_alpha[w] - closed[w]));
+      bloch_error.add_difference(bloch[w], closed[w]);
+      continuum_error.add_difference(continuum[w], closed[w]);
+      alphas.add(bloch[w]);
+      isotropic_loss[w].add_difference(isotropic_alpha[w], closed[w]);
       if (i < n_angles) // 180 degrees are 0 degrees
       {
         mean[w] += closed[w] / n_angles;
@@ -95,29 +101,23 @@ void dispersion(const Subject &subject, const IntrinsicLengthOptions &options, C
   {
     const Eigen::Vector2d N = unit_vector(direction, subject.orientation);
     const double degrees = angle(direction, subject.orientation);
-    Alpha run{nothing, nothing};
-    try
-    {
-      run = running_alpha(d, subject.orientation, direction, material, I);
-    }
-    catch (const std::runtime_error &)
-    {
-      // No wave, no number: the rows fail.
-    }
+    const std::string at = " at " + std::to_string(std::lround(degrees)) + " degrees";
+    Alpha run{nothing, nothing}; // without waves there is no number, and the rows fail
+    rows.attempt("lattice run, waves" + at,
+                 [&] { run = running_alpha(d, subject.orientation, direction, material, I); });
     runs.add({subject.name, degrees, run[0], run[1]});
     const Alpha closed = lattice_alpha(sheet, material, I, N), continuum = continuum_alpha(gradient, I, N, d);
     for (std::size_t w = 0; w < 2; ++w)
-      rows.add("alpha of " + std::string(wave_names[w]) + " waves at " + std::to_string(std::lround(degrees)) +
-                 " degrees, lattice run against closed form",
-               "1", run[w], continuum[w], closed[w], std::abs(run[w] - closed[w]), run_tolerance);
+      rows.add("alpha of " + std::string(wave_names[w]) + " waves" + at + ", lattice run against closed form", "1",
+               run[w], continuum[w], closed[w], std::abs(run[w] - closed[w]), run_tolerance);
   }
 
-  rows.add("alpha in all directions, Bloch against closed form", "1", {}, {}, {}, bloch_error, bloch_tolerance);
-  rows.add("alpha in all directions, gradient continuum against closed form", "1", {}, {}, {}, continuum_error,
+  rows.add("alpha in all directions, Bloch against closed form", "1", {}, {}, {}, bloch_error.error(), bloch_tolerance);
+  rows.add("alpha in all directions, gradient continuum against closed form", "1", {}, {}, {}, continuum_error.error(),
            equal_formulas);
   // A positive alpha softens; the claim is the sign.
-  rows.add("softening: smallest alpha of any wave", "1", hardest, {}, {}, std::max(0., -hardest), 0.);
-  rows.add("largest alpha of any wave", "1", softest, {}, {}, {}, {});
+  rows.add("softening: smallest alpha of any wave", "1", alphas.smallest(), {}, {}, one_sided(-alphas.smallest()), 0.);
+  rows.add("largest alpha of any wave", "1", alphas.largest(), {}, {}, {}, {});
   for (std::size_t w = 0; w < 2; ++w)
   {
     const std::string name = std::string("alpha of ") + wave_names[w] + " waves, ";
@@ -125,7 +125,7 @@ void dispersion(const Subject &subject, const IntrinsicLengthOptions &options, C
              isotropic_alpha[w], {}, std::abs(isotropic_alpha[w] - mean[w]),
              subject.tolerance(Law::isotropic_gradient, equal_formulas));
     rows.add(name + "largest difference of the isotropic continuum from the lattice", "1", {}, {}, {},
-             isotropic_loss[w], {});
+             isotropic_loss[w].error(), {});
     if (subject.material.next_nearest)
       rows.add(name + "mean over directions, the part of the next-nearest bonds", "1", mean[w] - nearest_mean[w], {},
                {}, {}, {});
@@ -133,9 +133,9 @@ void dispersion(const Subject &subject, const IntrinsicLengthOptions &options, C
   const WaveContinuum no_inertia{{subject.cauchy_born, *subject.isotropic_gradient}, {rho, 0.}};
   const Alpha hardening = continuum_alpha(no_inertia, I, Eigen::Vector2d(1., 0.), d);
   // Not a fault of the code: a positive gradient energy alone cannot soften.
-  const double least_hardening = std::max(hardening[0], hardening[1]);
+  const double least_hardening = largest_of({hardening[0], hardening[1]});
   rows.add("hardening: alpha of a positive gradient energy without micro-inertia is negative", "1", {}, least_hardening,
-           {}, std::max(0., least_hardening), subject.tolerance(Law::isotropic_gradient, 0.));
+           {}, one_sided(least_hardening), subject.tolerance(Law::isotropic_gradient, 0.));
 }
 
 // The length that keeps the gradient energy positive.
@@ -148,7 +148,7 @@ void positivity(const Subject &subject, ClaimOutcome &outcome)
   const double longest = subject.material.next_nearest ? std::sqrt(3.) * d : d;
   rows.add("intrinsic length l_d, the longest bond over sqrt(12)", "m", longest / std::sqrt(12.),
            subject.lengths.lattice, longest / std::sqrt(12.),
-           std::abs(subject.lengths.lattice * std::sqrt(12.) / longest - 1.), equal_formulas);
+           relative_error(subject.lengths.lattice, longest / std::sqrt(12.)), equal_formulas);
 
   struct State
   {
@@ -158,17 +158,22 @@ void positivity(const Subject &subject, ClaimOutcome &outcome)
   for (const auto &[name, F] : {State{"F = I", I}, State{"loaded", subject.deformation}})
   {
     const std::string where = std::string(", ") + name;
-    const double critical = critical_length(sheet, subject.material, F);
+    const std::optional<double> critical = critical_length(sheet, subject.material, F);
     // Positive at l_d: no shorter length than the critical one.
-    // Bonds under compression can leave none.
-    const std::string none = std::isnan(critical) ? ": no length makes it positive" : "";
-    rows.add("shortest length with a positive gradient energy, against l_d" + where + none, "m", critical,
-             subject.lengths.lattice, {}, std::max(0., critical / subject.lengths.lattice - 1.), equal_formulas);
+    const std::string shortest = "shortest length with a positive gradient energy, against l_d" + where;
+    if (critical)
+      rows.add(shortest, "m", critical, subject.lengths.lattice, {},
+               one_sided(*critical / subject.lengths.lattice - 1.), equal_formulas);
+    else
+      rows.add(shortest + ": there is none, bonds are compressed", "m", {}, subject.lengths.lattice, {}, nothing,
+               equal_formulas);
     const double at_length = smallest_eigenvalue(*subject.lattice_gradient, F) / unit;
     rows.add("smallest eigenvalue of the gradient energy over mu d^2 at l_d" + where, "1", {}, at_length, {},
-             std::max(0., -at_length), 1e-12);
-    const double below = smallest_lattice_eigenvalue(sheet, subject.material, F, 0.99 * critical) / unit;
-    rows.add("the same 1 % below the shortest length: negative" + where, "1", below, {}, {}, std::max(0., below), 0.);
+             one_sided(-at_length), 1e-12);
+    if (!critical)
+      continue;
+    const double below = smallest_lattice_eigenvalue(sheet, subject.material, F, 0.99 * *critical) / unit;
+    rows.add("the same 1 % below the shortest length: negative" + where, "1", below, {}, {}, one_sided(below), 0.);
   }
 }
 
@@ -177,15 +182,10 @@ void edge_layer(const Subject &subject, const IntrinsicLengthOptions &options, C
 {
   Rows rows(subject, outcome);
   const lattice::Material material = lattice::without_dashpots(subject.material);
+  // Without an equilibrium there is no number, and the rows fail.
   EdgeLayer layer{nothing, std::vector<double>(options.edge_rows, nothing), nothing};
-  try
-  {
-    layer = relaxed_edge(subject.spacing, material, options.edge_stretch, options.edge_rows);
-  }
-  catch (const std::runtime_error &)
-  {
-    // No equilibrium, no number: the rows fail.
-  }
+  rows.attempt("edge layer, relaxed strip",
+               [&] { layer = relaxed_edge(subject.spacing, material, options.edge_stretch, options.edge_rows); });
   const double root = edge_decay(subject.spacing, material, options.edge_stretch, layer.stretch_across);
   // Linear from the third spacing on, where the deviation is below 1e-3; anchored there.
   constexpr std::size_t anchor = 2;
@@ -198,11 +198,12 @@ void edge_layer(const Subject &subject, const IntrinsicLengthOptions &options, C
            layer.residual / (subject.theory.shear_modulus * subject.spacing), {}, {}, {}, {});
   if (!subject.material.next_nearest)
   {
-    double largest = 0.;
+    LargestError largest;
     for (const double deviation : layer.deviations)
-      largest = std::abs(deviation) <= largest ? largest : std::abs(deviation);
+      largest.add_difference(deviation, 0.);
     // Statics of nearest neighbours know no length: every row feels the next one alone.
-    rows.add("no edge layer: largest deviation of a row spacing at a free edge", "1", largest, {}, 0., largest, 1e-10);
+    rows.add("no edge layer: largest deviation of a row spacing at a free edge", "1", largest.error(), {}, 0.,
+             largest.error(), 1e-10);
     return;
   }
   rows.add("edge layer: deviation of the first row spacing, stretch " +
@@ -213,7 +214,7 @@ void edge_layer(const Subject &subject, const IntrinsicLengthOptions &options, C
   const double decay = -std::pow(std::abs(layer.deviations[last] / layer.deviations[first]), 1. / (last - first));
   const bool alternates = layer.deviations[first] * layer.deviations[first + 1] < 0.;
   rows.add("edge layer: decay from row to row, against its characteristic equation", "1", alternates ? decay : -decay,
-           {}, root, std::abs((alternates ? decay : -decay) / root - 1.), 0.01);
+           {}, root, relative_error(alternates ? decay : -decay, root), 0.01);
   // What a continuum with that gradient energy can have: exp(-Y / l), of one sign.
   const WaveContinuum gradient{{subject.cauchy_born, *subject.lattice_gradient}, {subject.material.density, 0.}};
   Eigen::Matrix2d F = Eigen::Matrix2d::Identity();
@@ -229,9 +230,10 @@ void edge_layer(const Subject &subject, const IntrinsicLengthOptions &options, C
 ClaimOutcome intrinsic_length_claim(const Subject &subject, const IntrinsicLengthOptions &options)
 {
   ClaimOutcome outcome;
-  dispersion(subject, options, outcome);
-  positivity(subject, outcome);
-  edge_layer(subject, options, outcome);
+  Rows rows(subject, outcome);
+  rows.attempt("alpha", [&] { dispersion(subject, options, outcome); });
+  rows.attempt("positive gradient energy", [&] { positivity(subject, outcome); });
+  rows.attempt("edge layer", [&] { edge_layer(subject, options, outcome); });
   return outcome;
 }
 

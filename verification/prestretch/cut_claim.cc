@@ -1,8 +1,10 @@
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
 
+#include <boost/math/distributions/students_t.hpp>
+
+#include "verification/largest_error.h"
 #include "verification/prestretch/cut_study.h"
 
 namespace verification
@@ -12,11 +14,10 @@ namespace
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-// Student's t that a sample with so many degrees of freedom exceeds in one case out of forty.
+// Student's t that a sample with so many degrees of freedom, one or more, exceeds in one case out of forty.
 double students_t(std::size_t freedom)
 {
-  constexpr double t[] = {12.71, 4.30, 3.18, 2.78, 2.57, 2.45};
-  return t[std::clamp<std::size_t>(freedom, 1, std::size(t)) - 1];
+  return boost::math::quantile(boost::math::students_t(static_cast<double>(freedom)), 0.975);
 }
 
 // Least squares of log(error) = log(factor) - order log(size), and how uncertain it is: the staircase that a lattice
@@ -68,14 +69,16 @@ public:
     : subject_(subject), study_(study), results_(results), is_hole_(study.name == "hole"),
       where_(subject.name + ": " + study.name + ", F = " + in_words(F) + ", ")
   {
-    std::ostringstream text;
-    text << (is_hole_ ? "R/d" : "length/d") << " = " << study.sizes.back();
-    largest_ = text.str();
+    largest_ = size_text(study.sizes.back());
   }
 
   Results judged() const
   {
     Results rows;
+    // Without an equilibrium of the local law there is no number, and the rows fail.
+    for (const CutResult &result : results_)
+      if (!result.errors && (result.law == "local" || result.law == "local-moved"))
+        rows.add(not_computed("prestretch", where_ + "local law at " + size_text(result.size), result.failure));
     const std::vector<double> displacement = series("local", &CutErrors::displacement);
     const PowerLaw all = fit(study_.sizes, displacement, study_.sizes.back());
     // At a rim the lattice differs from the continuum by O(d), which is the least order there. About the tip of a
@@ -87,7 +90,7 @@ public:
     if (is_hole_)
     {
       order.theory = 1.;
-      order.error = std::max(0., 1. - all.order);
+      order.error = one_sided(1. - all.order);
       order.tolerance = students_t(displacement.size() - 2) * all.order_deviation;
     }
     rows.add(order);
@@ -96,8 +99,8 @@ public:
     add_expected(rows, "stress, rms", series("local", &CutErrors::stress), is_hole_);
 
     // What the place of rim and tip is not known better than: half the recession, half a spacing.
-    const std::optional<CutErrors> here = find("local", study_.sizes.back());
-    const std::optional<CutErrors> moved = find("local-moved", study_.sizes.back());
+    const std::optional<CutErrors> here = errors_of("local", study_.sizes.back());
+    const std::optional<CutErrors> moved = errors_of("local-moved", study_.sizes.back());
     for (const auto &[quantity, error] :
          {std::pair("stress, all in one", &CutErrors::stress_scale), std::pair("energy", &CutErrors::energy),
           std::pair("reactions", &CutErrors::reaction), std::pair("shape of the cut", &CutErrors::shape)})
@@ -111,21 +114,17 @@ public:
     for (const auto &[law, kind] : {std::pair(std::string("lattice"), Law::lattice_gradient),
                                     std::pair(std::string("isotropic"), Law::isotropic_gradient),
                                     std::pair(std::string("mooney-rivlin"), Law::mooney_rivlin)})
-      if (std::any_of(results_.begin(), results_.end(), [&law = law](const CutResult &r) { return r.law == law; }))
+      if (const CutResult *other = find(law, study_.sizes.back()))
       {
-        const std::optional<CutErrors> other = find(law, study_.sizes.back());
         const std::string name = law == "mooney-rivlin" ? "Mooney-Rivlin" : "with the " + law + " gradient energy";
-        if (!other)
-          rows.add({"prestretch", where_ + name + ": no equilibrium", "1", {}, {}, {}, {}, {}});
+        const std::optional<double> tolerance =
+          kind == Law::mooney_rivlin || !is_hole_ ? std::nullopt : subject_.tolerance(kind, allowed);
+        if (other->errors)
+          add(rows, name + ": displacement", other->errors->displacement, tolerance);
+        else if (tolerance)
+          rows.add(not_computed("prestretch", where_ + name, other->failure));
         else
-          rows.add({"prestretch",
-                    where_ + name + ": displacement",
-                    "1",
-                    {},
-                    {},
-                    {},
-                    other->displacement,
-                    kind == Law::mooney_rivlin || !is_hole_ ? std::nullopt : subject_.tolerance(kind, allowed)});
+          add(rows, name + ": no equilibrium: " + other->failure, {}, {});
       }
     return rows;
   }
@@ -136,19 +135,21 @@ public:
     Results rows;
     for (const CutResult &result : results_)
       if (result.size == study_.sizes.back() && result.law != "local-nominal")
-        rows.add({"prestretch",
-                  where_ + result.law + (result.errors ? ": displacement" : ": no equilibrium"),
-                  "1",
-                  {},
-                  {},
-                  {},
-                  result.errors ? std::optional<double>(result.errors->displacement) : std::nullopt,
-                  {}});
+        add(rows, result.law + (result.errors ? ": displacement" : ": no equilibrium: " + result.failure),
+            result.errors ? std::optional<double>(result.errors->displacement) : std::nullopt, {});
     return rows;
   }
 
 private:
-  void add(Results &rows, const std::string &quantity, double error, std::optional<double> tolerance) const
+  std::string size_text(double size) const
+  {
+    std::ostringstream text;
+    text << (is_hole_ ? "R/d" : "length/d") << " = " << size;
+    return text.str();
+  }
+
+  void add(Results &rows, const std::string &quantity, std::optional<double> error,
+           std::optional<double> tolerance) const
   {
     rows.add({"prestretch", where_ + quantity, "1", {}, {}, {}, error, tolerance});
   }
@@ -172,12 +173,19 @@ private:
     return allowed;
   }
 
-  std::optional<CutErrors> find(const std::string &law, double size) const
+  const CutResult *find(const std::string &law, double size) const
   {
     for (const CutResult &result : results_)
       if (result.law == law && result.size == size)
-        return result.errors;
-    return {};
+        return &result;
+    return nullptr;
+  }
+
+  // None also where there is no equilibrium.
+  std::optional<CutErrors> errors_of(const std::string &law, double size) const
+  {
+    const CutResult *found = find(law, size);
+    return found != nullptr ? found->errors : std::nullopt;
   }
 
   std::vector<double> series(const std::string &law, double CutErrors::*error) const
@@ -185,7 +193,7 @@ private:
     std::vector<double> values;
     for (const double size : study_.sizes)
     {
-      const std::optional<CutErrors> found = find(law, size);
+      const std::optional<CutErrors> found = errors_of(law, size);
       values.push_back(found ? (*found).*error : unknown);
     }
     return values;
@@ -207,7 +215,7 @@ ClaimOutcome cut_claim(const Subject &subject, const CutStudy &study)
                                             "displacement", "stress", "energy", "reaction", "shape", "displacement_all",
                                             "displacement_max", "cauchy_stress", "stress_scale", "residual", "unknowns",
                                             "fem_error"});
-  for (const Eigen::Matrix2d &F : study.states)
+  const auto compare_at = [&](const Eigen::Matrix2d &F)
   {
     const std::vector<CutResult> results = compare_sizes(subject, study, F);
     for (const CutResult &r : results)
@@ -224,7 +232,10 @@ ClaimOutcome cut_claim(const Subject &subject, const CutStudy &study)
     }
     const Judge judge(subject, study, F, results);
     outcome.results.add(study.is_reported ? judge.reported() : judge.judged());
-  }
+  };
+  for (const Eigen::Matrix2d &F : study.states)
+    outcome.results.attempt("prestretch", subject.name + ": " + study.name + ", F = " + in_words(F),
+                            [&] { compare_at(F); });
   return outcome;
 }
 

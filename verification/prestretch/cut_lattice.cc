@@ -1,6 +1,5 @@
 #include "verification/prestretch/cut_lattice.h"
 
-#include <algorithm>
 #include <array>
 #include <cmath>
 #include <complex>
@@ -8,6 +7,7 @@
 
 #include "lattice/energy.h"
 #include "lattice/forces.h"
+#include "verification/largest_error.h"
 #include "verification/prestretch/equivalent_sheet.h"
 
 namespace verification
@@ -28,7 +28,7 @@ Eigen::Vector2d reactions(const lattice::TriangularLattice &sheet, const lattice
     {
       const Eigen::Vector2d X = sheet.reference(place);
       const double right = sheet.length() - X.x(), top = 0.5 * sheet.height() - X.y();
-      const double others = std::min(X.x(), 0.5 * sheet.height() + X.y());
+      const double others = smallest_of({X.x(), 0.5 * sheet.height() + X.y()});
       if (right < top && right < others)
         reaction.x() -= forces.fx()[place];
       if (top <= right && top < others)
@@ -55,7 +55,7 @@ double roundest_radius(const Subject &subject, double R, double length, double h
                          {
                            const lattice::Shell &shell = *subject.material.shell(kind);
                            const Eigen::Vector2d bond = lattice.bond_vector(kind), X = lattice.reference(near) - middle;
-                           const double distance = std::min(X.norm(), (X + bond).norm());
+                           const double distance = smallest_of({X.norm(), (X + bond).norm()});
                            const Eigen::Vector2d centre = X + 0.5 * bond;
                            const double step = (distance - first) / d * (n_radii - 1);
                            if (step >= n_radii - 1 || centre.norm() < 0.1 * d)
@@ -96,14 +96,15 @@ CutSheet sheet_with_hole(const Subject &subject, double R, const Eigen::Matrix2d
 CutSheet sheet_with_notch(const Subject &subject, double a, const Eigen::Matrix2d &F)
 {
   const lattice::TriangularLattice lattice(subject.spacing, 4. * a, 4. * a, subject.orientation);
-  double last = 0.;
+  Extremes inside;
+  inside.add(0.);
   for (std::size_t place = 0; place < lattice.n_places(); ++place)
   {
     const Eigen::Vector2d X = lattice.reference(place);
     if (lattice.is_site(place) && std::abs(X.y()) < 0.1 * subject.spacing && X.x() < a + 0.1 * subject.spacing)
-      last = std::max(last, X.x());
+      inside.add(X.x());
   }
-  return {lattice::Notch{last + 0.25 * subject.spacing}, a, 4. * a, 4. * a, {false, true, true, true}, F};
+  return {lattice::Notch{inside.largest() + 0.25 * subject.spacing}, a, 4. * a, 4. * a, {false, true, true, true}, F};
 }
 
 CutLattice relaxed_lattice(const Subject &subject, const CutSheet &sheet)

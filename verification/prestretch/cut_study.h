@@ -56,8 +56,8 @@ struct CutResult
 std::vector<CutResult> compare_sizes(const Subject &subject, const CutStudy &study, const Eigen::Matrix2d &F);
 
 /// The part of the claim `prestretch` on fields that are not homogeneous: rows for each state, and a table named after
-/// the study with a row for each size and law (reference.md). Collective.
-/// @throws std::runtime_error if a lattice does not come to rest
+/// the study with a row for each size and law (reference.md). Rows fail where a lattice does not come to rest, or a law
+/// that is judged finds no equilibrium. Collective.
 ClaimOutcome cut_claim(const Subject &subject, const CutStudy &study);
 
 } // namespace verification

@@ -6,6 +6,8 @@
 
 #include <Eigen/LU>
 
+#include "verification/largest_error.h"
+
 namespace verification
 {
 namespace
@@ -70,14 +72,16 @@ double held_depth(const lattice::TriangularLattice &lattice, const lattice::Mate
                   const Eigen::Vector2d &normal)
 {
   const double d = lattice.spacing();
-  double pitch = d;
+  Extremes pitches;
+  pitches.add(d);
   std::array<double, lattice::n_bond_kinds> across{};
   for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
   {
     across[kind] = std::abs(lattice.bond_vector(kind).dot(normal));
     if (across[kind] > 0.1 * d)
-      pitch = std::min(pitch, across[kind]);
+      pitches.add(across[kind]);
   }
+  const double pitch = pitches.smallest();
   std::size_t reach = 0;
   std::array<std::vector<double>, 2> springs;
   for (const bool along : {false, true})
@@ -91,7 +95,7 @@ double held_depth(const lattice::TriangularLattice &lattice, const lattice::Mate
         continue;
       const double cosine = across[kind] / lattice.rest_length(kind);
       springs[along][planes] += k * (along ? 1. - cosine * cosine : cosine * cosine);
-      reach = std::max(reach, planes);
+      reach = std::max<std::size_t>(reach, planes);
     }
   }
   return 0.5 * pitch * (chain_depth(springs[0], reach) + chain_depth(springs[1], reach));
@@ -116,19 +120,20 @@ EquivalentSheet equivalent_sheet(const lattice::TriangularLattice &lattice, cons
                         -0.5 * lattice.height() + depth(edges.bottom, y), 0.5 * lattice.height() - depth(edges.top, y),
                         0.};
   std::size_t removed = 0;
-  double last = 0.; // X of the last site in a notch
+  Extremes X; // of the sites in a notch
+  X.add(0.);
   for (std::size_t place = 0; place < lattice.n_places(); ++place)
     if (lattice.is_site(place) && state.removed[place] != 0)
     {
       ++removed;
-      last = std::max(last, lattice.reference(place).x());
+      X.add(lattice.reference(place).x());
     }
   if (std::holds_alternative<lattice::RoundHole>(cutout))
     sheet.cut = std::sqrt(static_cast<double>(removed) * lattice.site_area() / M_PI) + recession;
   else
     // The cell of the last site ends half way to the next one on the line.
     sheet.cut =
-      last - sheet.left +
+      X.largest() - sheet.left +
       (lattice.orientation() == lattice::Orientation::rows_along_crack ? 0.5 : 0.5 * std::sqrt(3.)) * lattice.spacing();
   return sheet;
 }

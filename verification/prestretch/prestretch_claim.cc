@@ -1,6 +1,5 @@
 #include "verification/prestretch/prestretch_claim.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,6 +11,7 @@
 #include "lattice/relaxation.h"
 #include "lattice/site_fields.h"
 #include "verification/affine_displacement.h"
+#include "verification/largest_error.h"
 #include "verification/stability_row.h"
 
 namespace verification
@@ -110,20 +110,19 @@ std::vector<Row> compare(const Subject &subject, const lattice::TriangularLattic
     points.emplace_back(sheet.reference(place).x(), sheet.reference(place).y());
   const std::vector<continuum::PointState> continuum_states = solver.evaluate(points);
 
-  double displacement_error = 0., gradient_error = 0., stress_error = 0.;
-  double stress_scale = 0.;
+  LargestError displacement_error, gradient_error, stress_error;
+  Extremes stress_scale;
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     const std::size_t place = side.interior[i];
     const continuum::PointState &state = continuum_states[i];
     const Eigen::Vector2d X = sheet.reference(place);
     const Eigen::Vector2d u(side.state.x[place] - X.x(), side.state.y[place] - X.y());
-    displacement_error =
-      std::max(displacement_error, (u - Eigen::Vector2d(state.displacement[0], state.displacement[1])).norm());
+    displacement_error.add((u - Eigen::Vector2d(state.displacement[0], state.displacement[1])).norm());
     const Eigen::Matrix2d F = to_lattice(state.F), P = to_lattice(state.P);
-    gradient_error = std::max(gradient_error, (side.fields.deformation_gradient[place] - F).norm() / F.norm());
-    stress_error = std::max(stress_error, (side.fields.first_piola_stress[place] - P).norm());
-    stress_scale = std::max(stress_scale, P.norm());
+    gradient_error.add((side.fields.deformation_gradient[place] - F).norm() / F.norm());
+    stress_error.add((side.fields.first_piola_stress[place] - P).norm());
+    stress_scale.add(P.norm());
   }
 
   const double area = sheet.length() * sheet.height();
@@ -137,9 +136,9 @@ std::vector<Row> compare(const Subject &subject, const lattice::TriangularLattic
      relative(side.energy_density, energy_density)},
     {"traction on the right edge", "Pa", side.right_traction.x(), right, relative(side.right_traction.x(), right)},
     {"traction on the top edge", "Pa", side.top_traction.y(), top, relative(side.top_traction.y(), top)},
-    {"displacement, largest difference / length", "1", {}, {}, displacement_error / sheet.length()},
-    {"deformation gradient, largest relative difference", "1", {}, {}, gradient_error},
-    {"first Piola stress, largest difference / largest", "1", {}, {}, stress_error / stress_scale}};
+    {"displacement, largest difference / length", "1", {}, {}, displacement_error.error() / sheet.length()},
+    {"deformation gradient, largest relative difference", "1", {}, {}, gradient_error.error()},
+    {"first Piola stress, largest difference / largest", "1", {}, {}, stress_error.error() / stress_scale.largest()}};
 }
 
 // The same with the law that was fitted along the loading path, for information: it is not the lattice's, and need not
@@ -161,22 +160,25 @@ Results mooney_rivlin_rows(const Subject &subject, const lattice::TriangularLatt
   };
   if (!subject.mooney_rivlin)
     return results;
+  const auto no_equilibrium = [&](const std::exception &failure) {
+    add(std::string("no equilibrium: ") + failure.what(), {"", "1", {}, {}, {}});
+  };
   try
   {
     for (const Row &row : compare(subject, sheet, side, continuum::MooneyRivlin(subject.mooney_rivlin->law), options))
       add(row.quantity, row);
   }
-  catch (const continuum::SolverFailed &)
+  catch (const continuum::SolverFailed &failure)
   {
-    add("no equilibrium of the loaded sheet", {"", "1", {}, {}, {}});
+    no_equilibrium(failure);
   }
-  catch (const continuum::LinearSolverFailed &)
+  catch (const continuum::LinearSolverFailed &failure)
   {
-    add("no equilibrium of the loaded sheet", {"", "1", {}, {}, {}});
+    no_equilibrium(failure);
   }
-  catch (const continuum::NonPhysicalState &)
+  catch (const continuum::NonPhysicalState &failure)
   {
-    add("no equilibrium of the loaded sheet", {"", "1", {}, {}, {}});
+    no_equilibrium(failure);
   }
   return results;
 }
@@ -189,19 +191,33 @@ Results prestretch_claim(const Subject &subject, const PrestretchOptions &option
   results.add(stability_row(subject, "prestretch"));
   if (!subject.is_stable())
     return results; // nothing homogeneous to compare
-  const lattice::TriangularLattice sheet(subject.spacing, options.length * subject.spacing,
-                                         options.height * subject.spacing, subject.orientation);
-  const LatticeSide side = relaxed_lattice(subject, sheet, options.noise);
-  for (const Row &row : compare(subject, sheet, side, subject.cauchy_born, options))
-    results.add({"prestretch",
-                 subject.name + ": " + row.quantity + ", Cauchy-Born",
-                 row.unit,
-                 row.lattice,
-                 row.continuum,
-                 {},
-                 row.error,
-                 solver_tolerance});
-  results.add(mooney_rivlin_rows(subject, sheet, side, options));
+  const auto attempt = [&](const std::string &part, const std::function<void()> &compute)
+  { return results.attempt("prestretch", subject.name + ": " + part, compute); };
+  std::optional<lattice::TriangularLattice> sheet;
+  LatticeSide side;
+  if (!attempt("relaxed lattice",
+               [&]
+               {
+                 sheet.emplace(subject.spacing, options.length * subject.spacing, options.height * subject.spacing,
+                               subject.orientation);
+                 side = relaxed_lattice(subject, *sheet, options.noise);
+               }))
+    return results;
+
+  attempt("equilibrium, Cauchy-Born",
+          [&]
+          {
+            for (const Row &row : compare(subject, *sheet, side, subject.cauchy_born, options))
+              results.add({"prestretch",
+                           subject.name + ": " + row.quantity + ", Cauchy-Born",
+                           row.unit,
+                           row.lattice,
+                           row.continuum,
+                           {},
+                           row.error,
+                           solver_tolerance});
+          });
+  attempt("equilibrium, Mooney-Rivlin", [&] { results.add(mooney_rivlin_rows(subject, *sheet, side, options)); });
   return results;
 }
 

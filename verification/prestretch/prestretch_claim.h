@@ -20,7 +20,8 @@ struct PrestretchOptions
   unsigned int cells_x = 8, cells_y = 6, degree = 2;
 };
 
-/// @throws std::runtime_error if the lattice does not relax, continuum::SolverFailed if Newton's method fails
+/// Runs the claim. Where the lattice does not relax, or the finite elements with the Cauchy-Born law find no
+/// equilibrium, a row fails; an equilibrium that the Mooney-Rivlin law lacks is reported.
 Results prestretch_claim(const Subject &subject, const PrestretchOptions &options);
 
 } // namespace verification

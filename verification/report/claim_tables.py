@@ -86,12 +86,13 @@ def fitted_order(x, error, share=1.0):
 
 
 def range_text(values, form=".2f"):
-    """Values as one number or as a range, "1.98 to 2.03"; None for none."""
-    values = [value for value in values if value is not None]
-    if not values:
+    """Values as one number or as a range, "1.98 to 2.03", with the number of those that are not finite; None for none."""
+    values = np.array([value for value in values if value is not None], dtype=float)
+    finite = values[np.isfinite(values)]
+    if not len(finite):
         return None
-    low, high = format(min(values), form), format(max(values), form)
-    return low if low == high else f"{low} to {high}"
+    low, high = format(finite.min(), form), format(finite.max(), form)
+    return (low if low == high else f"{low} to {high}") + not_computed(values)
 
 
 def largest(values):
@@ -99,3 +100,15 @@ def largest(values):
     values = np.abs(np.asarray(values, dtype=float))
     values = values[np.isfinite(values)]
     return float(values.max()) if len(values) else None
+
+
+def largest_text(values):
+    """The largest absolute value in words, "up to 1.2e-07", with the number of values that are not finite."""
+    worst = largest(values)
+    return ("an amount that could not be computed" if worst is None else f"up to {worst:.1e}") + not_computed(values)
+
+
+def not_computed(values):
+    """How many values are not finite: " (1 of 32 not computed)"; nothing if all are."""
+    missing = np.count_nonzero(~np.isfinite(values))
+    return f" ({missing} of {len(values)} not computed)" if missing else ""

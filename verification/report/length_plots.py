@@ -1,7 +1,7 @@
 """Plots of the intrinsic length and of fields that vary. Each draws a PNG file and returns error metrics in words."""
 import numpy as np
 
-from claim_tables import fitted_order, groups, largest, range_text, sorted_by, states
+from claim_tables import fitted_order, groups, largest, largest_text, range_text, sorted_by, states
 from panels import LAW_COLOURS, MARKERS, Grid, colours_of, entry, headroom, logarithmic, note
 from pictures import BLACK, BLUE, GREEN, GREY, RED, SKY, save
 
@@ -35,10 +35,9 @@ def draw_dispersion(tables, path):
                     axes.plot(measured["angle [deg]"], measured[f"alpha_{wave}"], "o", color=colour,
                               markerfacecolor="none", markersize=6)
                     exact = np.interp(measured["angle [deg]"], angle, alpha)
-                    worst.append(largest(measured[f"alpha_{wave}"] / exact - 1))
+                    worst.append(measured[f"alpha_{wave}"] / exact - 1)
         axes.set_ylim(bottom=min(0, axes.get_ylim()[0]))
-        found = [value for value in worst if value is not None]
-        text = f"; fitted to runs off the exact one by up to {max(found):.1e}" if found else ""
+        text = f"; fitted to runs off the exact one by {largest_text(np.concatenate(worst))}" if worst else ""
         spread = ", ".join(f"{name} {range_text(part[f'alpha_{wave}'], '.4f')}" for wave, (name, _) in waves.items())
         metrics.append(f"{name}: α {spread}{text}")
     save(grid.page.figure, path)
@@ -65,8 +64,11 @@ def draw_edge_layer(tables, path):
             axes.plot(row[shown], np.abs(deviation[shown]), "o", color=colours[name], markersize=6,
                       markerfacecolor=colours[name] if wider else "white")
         worst = largest(deviation)
-        if worst is None or worst < 1e-10:
-            metrics.append(f"{name}: no layer, every row within {worst or 0.0:.1e} of the bulk")
+        if not np.isfinite(deviation).all():
+            metrics.append(f"{name}: not computed")
+            continue
+        if worst < 1e-10:
+            metrics.append(f"{name}: no layer, every row within {worst:.1e} of the bulk")
             continue
         decay, expected = decay_of(deviation), decay_of(theory)
         metrics.append(f"{name}: first row off the bulk by {deviation[0]:+.3e} (theory {theory[0]:+.3e}); "
@@ -124,9 +126,8 @@ def draw_sinusoidal_energy(tables, path):
         headroom(error, 2.2)
         orders = {law: range_text(found[law]) for law in laws}
         note(error, [(f"{law}{f': order {orders[law]}' if orders[law] else ''}", LAW_COLOURS[law]) for law in laws])
-        worst = largest(state["fem"] / state["gradient"] - 1)
         found = [f"order of the {law} energy {orders[law]}" for law in laws if orders[law]]
-        found += [] if worst is None else [f"finite elements off the gradient energy by up to {worst:.1e}"]
+        found.append(f"finite elements off the gradient energy by {largest_text(state['fem'] / state['gradient'] - 1)}")
         metrics.append(f"{name}: {'; '.join(found)}")
     save(grid.page.figure, path)
     return metrics

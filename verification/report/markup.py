@@ -3,7 +3,7 @@ import base64
 import re
 from html import escape
 
-MARKS = {"holds": "✓", "fails": "✗", "reported": "·", "interrupted": "!", "unfinished": "!"}
+MARKS = {"holds": "✓", "fails": "✗", "reported": "·", "warns": "!", "interrupted": "!", "unfinished": "!"}
 
 
 def verb(count, one, many):

@@ -78,6 +78,7 @@ def banner(runs, unreadable=()):
     total = tally_of(None, "", checks).count
     checked = total["holds"] + total["fails"]
     incomplete = [run for run in runs if run.state != "complete"]
+    unverified = [run for run in runs if run.skipped_verification]
     notes = []
     if total["fails"]:
         kind, head = "fails", f"✗ Fails: {total['fails']} of {checked} checks {verb(total['fails'], 'fails', 'fail')}"
@@ -86,6 +87,8 @@ def banner(runs, unreadable=()):
                   for run in runs for check in run.checks if check.verdict == "fails"]
     elif incomplete or unreadable:
         kind, head = "warns", f"! Not complete: {'what is there holds' if checked else 'nothing was checked'}"
+    elif unverified:
+        kind, head = "warns", f"! Not verified: {'what was checked holds' if checked else 'nothing was checked'}"
     elif checked:
         kind, head = "holds", f"✓ Holds: all {checked} checks are within their tolerances"
     else:
@@ -95,7 +98,7 @@ def banner(runs, unreadable=()):
     notes += [f"{escape(run.name)}: the run {'was interrupted' if run.state == 'interrupted' else 'has not ended'}; "
               "what it had written by then is shown" for run in incomplete]
     notes += [f"{escape(run.name)}: the crack was run without its material and pre-stretch having been verified "
-              "(--skip-verification)" for run in runs if run.skipped_verification]
+              "(--skip-verification)" for run in unverified]
     notes += [f"{escape(run.name)}: {headline(run)}" for run in runs if run.crack is not None]
     if total["reported"]:
         rows = verb(total["reported"], "1 row has", f"{total['reported']} rows have")

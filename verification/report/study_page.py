@@ -14,7 +14,9 @@ RUN_PICTURES = {
                 "descends. Blue: against the way of the crack.",
     "stress": "Stress across the crack, in the same mean.",
 }
-KINDS = {"holds": "holds", "does not hold": "fails", "reported": "reported", "not measured": "reported"}
+# Verdicts of rows, and of claims, by the class that colours them.
+KINDS = {"holds": "holds", "does not hold": "fails", "reported": "reported", "not measured": "warns"}
+CLAIM_KINDS = {**KINDS, "incomplete": "warns"}
 
 
 def page(study, pictures):
@@ -83,14 +85,21 @@ def banner(study):
     """What all rows amount to, and what a reader must know first."""
     count = counts([r for judged in (*study.claims, *study.checks) for r in judged["rows"]])
     judged = count["holds"] + count["does not hold"]
+    verified = study.document.get("verified") is True
     broken = [seed for seed in study.seeds if seed.state != "measured"]
     if count["does not hold"]:
         kind = "fails"
         head = f"✗ {count['does not hold']} of {judged} rows {verb(count['does not hold'], 'does', 'do')} not hold"
     elif count["not measured"] or broken:
-        kind, head = "warns", f"! {count['holds']} rows hold, but not everything was measured"
+        rows = verb(count["holds"], "1 row holds", f"{count['holds']} rows hold")
+        kind, head = "warns", f"! Incomplete: {rows}, but not everything was measured"
+    elif not judged:
+        kind, head = "reported", "· Reported: no row has a rule"
+    elif not verified:
+        rows = verb(judged, "the only row holds", f"all {judged} rows hold")
+        kind, head = "warns", f"! Not verified: {rows}, but not every run was verified"
     else:
-        kind, head = "holds", f"✓ {verb(judged, 'The only row that was judged holds', f'All {judged} rows hold')}"
+        kind, head = "holds", f"✓ Holds: {verb(judged, 'the only row', f'all {judged} rows')}"
     notes = [f'<b class="fails">{escape(seed.run)}, seed {seed.seed}: {escape(seed.state)}</b> {escape(seed.problem)}'
              for seed in broken]
     if count["not measured"]:
@@ -107,7 +116,7 @@ def overview(study):
               for number, claim in enumerate(study.claims)]
     judged += [(f"check-{check['name']}", f"Check {check['name']}", verdict_of(check), check["rows"])
                for check in study.checks]
-    lines = [row(KINDS[verdict], [("words", f'<a href="#{escape(place)}">{escape(heading)}</a>'),
+    lines = [row(CLAIM_KINDS[verdict], [("words", f'<a href="#{escape(place)}">{escape(heading)}</a>'),
                                   *(("number", str(count)) for count in counts(rows).values())], verdict)
              for place, heading, verdict, rows in judged]
     return table(["verdict", "claim", "#hold", "#do not", "#reported", "#not measured"], lines, "narrow")

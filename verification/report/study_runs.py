@@ -49,7 +49,8 @@ class Mean:
 
     mean: float
     deviation: float  # 0 for a single seed
-    n: int
+    n: int  # seeds that have it
+    n_seeds: int  # of the run
 
 
 def read_study(folder):
@@ -73,7 +74,7 @@ def mean_of(seeds, quantity):
     values = np.array([s.values[quantity] for s in seeds if s.state == "measured" and s.values[quantity] is not None])
     if not len(values):
         return None
-    return Mean(values.mean(), values.std(ddof=1) if len(values) > 1 else 0.0, len(values))
+    return Mean(values.mean(), values.std(ddof=1) if len(values) > 1 else 0.0, len(values), len(seeds))
 
 
 def patterns_of(seeds):
@@ -94,10 +95,10 @@ def first_measured(study, name):
 
 
 def value_text(mean, scale=1.0):
-    """Mean and standard deviation in few words: "2.29 ± 0.04 (5)"; a dash for none."""
+    """Mean and standard deviation in few words: "2.29 ± 0.04 (5)", or "(4 of 5)" if a seed lacks it; a dash for none."""
     if mean is None:
         return "–"
     value, deviation = scale * mean.mean, scale * mean.deviation
     digits = max(0, 1 - math.floor(math.log10(deviation))) if deviation > 0 else None
     text = f"{value:.4g}" if digits is None else f"{value:.{digits}f} ± {deviation:.{digits}f}"
-    return f"{text} ({mean.n})"
+    return f"{text} ({mean.n}{f' of {mean.n_seeds}' if mean.n < mean.n_seeds else ''})"

@@ -120,8 +120,10 @@ def text_summary(runs, unreadable=()):
             rows.append([name, tally.claim] + [str(tally.count[v]) for v in ("holds", "fails", "reported")]
                         + [ratio_text(tally.worst)])
             name = ""
-        if run.state != "complete":
-            rows.append([name, run.state, "", "", "", ""])
+        for word in [*([run.state] if run.state != "complete" else []),
+                     *(["not verified"] if run.skipped_verification else [])]:
+            rows.append([name, word, "", "", "", ""])
+            name = ""
     rows += [[shortened(run.name), "cannot be read", "", "", "", ""] for run in unreadable]
     parts.append(text_table(["run", "claim", "holds", "fails", "reported", "worst error / tolerance"], rows,
                             (2, 3, 4, 5)))

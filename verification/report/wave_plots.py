@@ -1,7 +1,7 @@
 """Plots of waves: speeds, attenuation, energies. Each draws into a PNG file and returns its error metrics in words."""
 import numpy as np
 
-from claim_tables import fitted_order, groups, largest, range_text, sorted_by, states
+from claim_tables import fitted_order, groups, largest, largest_text, range_text, sorted_by, states
 from panels import (LAW_COLOURS, MARKERS, WAVES, Grid, colours_of, entry, headroom, logarithmic, logarithmic_along_x,
                     note)
 from pictures import BLACK, BLUE, GREY, save
@@ -66,9 +66,8 @@ def draw_speed_errors(axes, state, laws):
 
 
 def off(what, values, reference, of):
-    """The largest relative difference in words; None if nothing was computed."""
-    worst = largest(values / reference - 1)
-    return None if worst is None else f"{what} off {of} by up to {worst:.1e}"
+    """The largest relative difference in words."""
+    return f"{what} off {of} by {largest_text(values / reference - 1)}"
 
 
 def draw_attenuation(tables, path):
@@ -100,8 +99,9 @@ def draw_attenuation(tables, path):
         logarithmic_along_x(panels[1])
         panels[1].set_ylim(bottom=0)
         worst = {side: largest(rate_error(state, side)) for side in sides}
-        metrics.append(f"{name}: " + "; ".join(f"{words[side]} off the theory by up to {value:.1e} of |ω + iγ|"
-                                               for side, value in worst.items() if value is not None))
+        metrics.append(f"{name}: " + "; ".join(
+            f"{words[side]}: not computed" if value is None else
+            f"{words[side]} off the theory by up to {value:.1e} of |ω + iγ|" for side, value in worst.items()))
     save(grid.page.figure, path)
     return metrics
 

@@ -50,12 +50,13 @@ void add_mean(SeedStatistics &seeds, const std::vector<double> &values, const st
     for (const double value : values)
       squares += (value - *seeds.mean) * (value - *seeds.mean);
     seeds.deviation = std::sqrt(squares / (n - 1.));
-    seeds.standard_error = *seeds.deviation / std::sqrt(n);
   }
+  if (uncertainties.empty())
+    return;
   double squares = 0.;
   for (const double uncertainty : uncertainties)
     squares += uncertainty * uncertainty;
-  seeds.standard_error = std::max(seeds.standard_error, std::sqrt(squares) / n);
+  seeds.uncertainty = std::sqrt(squares / static_cast<double>(uncertainties.size()));
 }
 
 } // namespace
@@ -105,6 +106,11 @@ SeedStatistics statistics(const std::string &run, const std::string &quantity, c
   return seeds;
 }
 
+SampleMean SeedStatistics::sample() const
+{
+  return {mean.value(), n, std::pow(deviation.value_or(0.), 2), std::pow(uncertainty.value_or(0.), 2)};
+}
+
 bool SeedStatistics::shows(const std::string &pattern) const
 {
   return is_measured() && patterns.size() == 1 && patterns.count(pattern) == 1;
@@ -113,7 +119,8 @@ bool SeedStatistics::shows(const std::string &pattern) const
 std::string SeedStatistics::text(const std::string &unit) const
 {
   if (mean)
-    return quantity_text(*mean, deviation, unit) + " (" + std::to_string(n) + ")";
+    return quantity_text(*mean, deviation, unit) + " (" + std::to_string(n) +
+           (n < n_seeds ? " of " + std::to_string(n_seeds) : "") + ")";
   std::string words;
   const auto add = [&](const std::string &pattern, std::size_t count)
   { words += (words.empty() ? "" : ", ") + pattern + " " + std::to_string(count) + "/" + std::to_string(n_seeds); };

@@ -144,6 +144,7 @@ std::string study_json(const StudyResults &results)
   document["git_commit"] = git_commit();
   document["quick"] = results.quick;
   document["verification"] = results.verification;
+  document["verified"] = results.is_verified;
   document["settings"] = json_of(results.study.settings);
   document["units"] = Json::object();
   for (const StudyQuantity &quantity : quantities())

@@ -21,6 +21,7 @@ struct StudyResults
   std::vector<CheckResult> checks; ///< those of the study, unless it was interrupted before
   bool quick = false;
   std::string verification; ///< what was verified, in words
+  bool is_verified = false; ///< material and pre-stretch of every run were
 };
 
 /// study.json: everything, for the page and for other programs. The same runs give the same text.
@@ -29,8 +30,8 @@ struct StudyResults
 /// study.csv: a line for each run and seed, units in the header, empty fields for what was not measured.
 [[nodiscard]] std::string study_csv(const StudyResults &results);
 
-/// The rows that have a number or were judged, in the form that all commands have, then those of the checks. A row
-/// holds here if it does in the table; what was not measured is left out.
+/// The rows that have a number or a rule, in the form that all commands have, then those of the checks. A row holds
+/// here if it does in the table; one that was to be judged and was not measured fails.
 [[nodiscard]] Results study_rows(const StudyResults &results);
 
 /// Prints the table, at most 120 columns wide.

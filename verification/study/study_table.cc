@@ -4,6 +4,8 @@
 #include <cmath>
 #include <limits>
 
+#include "verification/largest_error.h"
+
 namespace verification
 {
 namespace
@@ -39,9 +41,9 @@ std::string expectation(const StudyRow &row, const std::optional<double> &bound)
   case Rule::is_near:
     return "near " + value() + " within " + quantity_text(100. * row.tolerance, {}, "1") + " %";
   case Rule::above:
-    return "at least " + value();
+    return (row.bound_run.empty() ? "at least " : "above ") + value();
   case Rule::below:
-    return "at most " + value();
+    return (row.bound_run.empty() ? "at most " : "below ") + value();
   case Rule::rises:
     return "rises with " + row.against;
   case Rule::falls:
@@ -53,13 +55,42 @@ std::string expectation(const StudyRow &row, const std::optional<double> &bound)
   }
 }
 
+std::string p_text(double p)
+{
+  return p < 1e-4 ? "p < 0.0001" : "p = " + quantity_text(std::round(1e4 * p) / 1e4, {}, "1");
+}
+
+constexpr const char *no_scatter = "how much seeds scatter is unknown: it takes two with different numbers";
+
+// Each run against another: all of them must lie on the side of it that the rule says, clearly.
+void judge_beside(RowOutcome &outcome, const SeedStatistics &other)
+{
+  LargestError worst;
+  for (const SeedStatistics &run : outcome.runs)
+  {
+    if (!run.is_measured())
+      return;
+    const bool above = outcome.row.rule == Rule::above;
+    const std::optional<double> p = welch_p_value((above ? other : run).sample(), (above ? run : other).sample());
+    if (!p)
+    {
+      append(outcome.note, run.run + " beside " + other.run + ": " + no_scatter);
+      return;
+    }
+    worst.add(*p, *run.mean);
+  }
+  outcome.number = worst.value();
+  outcome.misfit = worst.error();
+  append(outcome.measured, p_text(worst.error()));
+}
+
 // Rules for each run by itself: all of them must fit, the worst one counts.
 void judge_each(RowOutcome &outcome)
 {
   const StudyRow &row = outcome.row;
   if (has_bound(row) && !outcome.bound)
     return;
-  double worst = -std::numeric_limits<double>::infinity();
+  LargestError worst;
   for (const SeedStatistics &run : outcome.runs)
   {
     if (!run.is_measured())
@@ -80,13 +111,10 @@ void judge_each(RowOutcome &outcome)
                : row.rule == Rule::above ? *outcome.bound - number
                                          : number - *outcome.bound;
     }
-    if (misfit > worst)
-    {
-      worst = misfit;
-      outcome.number = number;
-    }
+    worst.add(misfit, number);
   }
-  outcome.misfit = worst;
+  outcome.number = worst.value();
+  outcome.misfit = worst.error();
 }
 
 // Slope of ln(mean) over ln(abscissa), least squares; none unless all are positive and differ.
@@ -105,16 +133,6 @@ std::optional<double> exponent(const std::vector<const SeedStatistics *> &points
   return spread > 1e-12 * n * sxx ? std::optional<double>((n * sxy - sx * sy) / spread) : std::nullopt;
 }
 
-// By how many of its standard errors the later mean exceeds the earlier one, if `sign` is 1; infinite without errors.
-double excess(const SeedStatistics &earlier, const SeedStatistics &later, double sign)
-{
-  const double difference = sign * (*later.mean - *earlier.mean);
-  const double error = std::hypot(earlier.standard_error, later.standard_error);
-  return difference == 0. ? 0. : error > 0. ? difference / error : std::copysign(INFINITY, difference);
-}
-
-constexpr double clear_excess = 2.; // standard errors, some 95 %
-
 // What was measured along `against`, in the order of the row.
 std::vector<const SeedStatistics *> measured_along(const RowOutcome &outcome)
 {
@@ -125,20 +143,56 @@ std::vector<const SeedStatistics *> measured_along(const RowOutcome &outcome)
   return points;
 }
 
-// Along `against` the last mean must clearly exceed the first one, and none may clearly fall short of an earlier one;
-// a quantity that saturates still rises.
+// Pairs of means of which the later one is clearly the smaller, after Holm over all pairs, in words.
+std::string falling_pairs(const std::vector<const SeedStatistics *> &points, const std::vector<SampleMean> &samples)
+{
+  std::vector<std::pair<std::size_t, std::size_t>> pairs;
+  std::vector<double> p_values;
+  for (std::size_t i = 0; i < samples.size(); ++i)
+    for (std::size_t j = i + 1; j < samples.size(); ++j)
+    {
+      pairs.emplace_back(i, j);
+      p_values.push_back(welch_p_value(samples[j], samples[i]).value_or(std::numeric_limits<double>::quiet_NaN()));
+    }
+  const std::vector<double> adjusted = holm_adjusted(p_values);
+  std::string text;
+  for (std::size_t pair = 0; pair < pairs.size(); ++pair)
+    if (adjusted[pair] <= significance)
+      append(text,
+             "from " + quantity_text(*points[pairs[pair].first]->abscissa, {}, "1") + " to " +
+               quantity_text(*points[pairs[pair].second]->abscissa, {}, "1"),
+             ", ");
+  return text;
+}
+
+// Along `against` the means must rise, and may fall nowhere: a quantity that saturates still rises.
 void judge_trend(RowOutcome &outcome)
 {
   const std::vector<const SeedStatistics *> points = measured_along(outcome);
   if (points.size() < 2)
     return;
-  const double sign = outcome.row.rule == Rule::rises ? 1. : -1.;
-  double against_it = excess(*points.front(), *points.back(), sign) > clear_excess ? 0. : 1.;
-  for (std::size_t i = 0; i < points.size(); ++i)
-    for (std::size_t j = i + 1; j < points.size(); ++j)
-      against_it += excess(*points[i], *points[j], sign) < -clear_excess ? 1. : 0.;
-  outcome.misfit = against_it;
+  const bool rises = outcome.row.rule == Rule::rises;
+  std::vector<SampleMean> samples;
+  for (const SeedStatistics *point : points)
+  {
+    samples.push_back(point->sample());
+    samples.back().mean *= rises ? 1. : -1.;
+  }
   outcome.number = exponent(points);
+  const std::optional<TrendTest> test = isotonic_test(samples);
+  if (!test)
+  {
+    append(outcome.note, no_scatter);
+    return;
+  }
+  const std::string with_it = rises ? "rise" : "fall", against_it = rises ? "fall" : "rise";
+  // Means that go against the rule somewhere do not follow it, whatever they do elsewhere.
+  const bool is_broken = !(test->p_fall > significance);
+  outcome.misfit = is_broken ? 1. : test->p_rise;
+  append(outcome.measured, with_it + ": " + p_text(test->p_rise));
+  append(outcome.measured, "a " + against_it + " in between: " + p_text(test->p_fall));
+  if (const std::string pairs = is_broken ? falling_pairs(points, samples) : ""; !pairs.empty())
+    append(outcome.measured, "clearly " + pairs);
   if (outcome.number)
     append(outcome.measured, "exponent " + quantity_text(*outcome.number, {}, "1"));
 }
@@ -193,9 +247,9 @@ RowOutcome judge(const StudyRow &row, const std::vector<PlannedRun> &plan, const
 {
   RowOutcome outcome;
   outcome.row = row;
+  const SeedStatistics other = statistics(row.bound_run, row.quantity, outcomes);
   if (!row.bound_run.empty())
   {
-    const SeedStatistics other = statistics(row.bound_run, row.quantity, outcomes);
     if (other.is_measured())
       outcome.bound = other.mean;
     else
@@ -225,8 +279,10 @@ RowOutcome judge(const StudyRow &row, const std::vector<PlannedRun> &plan, const
     judge_bracket(outcome);
   else if (along)
     judge_trend(outcome);
-  else if (row.rule != Rule::reported && without.empty())
+  else if (row.rule != Rule::reported && without.empty() && !outcome.is_test())
     judge_each(outcome);
+  else if (row.rule != Rule::reported && without.empty() && outcome.bound)
+    judge_beside(outcome, other);
   else if (outcome.runs.size() == 1)
     outcome.number = outcome.runs.front().mean;
 
@@ -266,14 +322,27 @@ std::string to_string(const RowVerdict verdict)
     return "does not hold";
   case RowVerdict::reported:
     return "reported";
+  case RowVerdict::incomplete:
+    return "incomplete";
   default:
     return "not measured";
   }
 }
 
+bool RowOutcome::is_test() const
+{
+  const bool is_bound_by_run = !row.bound_run.empty() && row.rule != Rule::is_near;
+  return row.rule == Rule::rises || row.rule == Rule::falls || is_bound_by_run;
+}
+
+double RowOutcome::allowed() const
+{
+  return row.rule == Rule::is_near ? row.tolerance : is_test() ? significance : 0.;
+}
+
 std::optional<Result> RowOutcome::result(const std::string &claim) const
 {
-  if (!number && !misfit)
+  if (!number && verdict == RowVerdict::reported)
     return {};
   std::string names;
   for (const std::string &run : row.runs)
@@ -288,9 +357,10 @@ std::optional<Result> RowOutcome::result(const std::string &claim) const
     result.quantity += ", " + expected;
     result.unit = "1";
   }
-  if (misfit)
+  if (verdict != RowVerdict::reported)
   {
-    result.error = std::max(*misfit, 0.); // beyond the bound; not how far inside
+    // Beyond the bound; not how far inside.
+    result.error = misfit ? one_sided(*misfit) : std::numeric_limits<double>::quiet_NaN();
     result.tolerance = allowed();
   }
   return result;
@@ -298,10 +368,14 @@ std::optional<Result> RowOutcome::result(const std::string &claim) const
 
 RowVerdict ClaimResult::verdict() const
 {
-  for (const RowVerdict first : {RowVerdict::does_not_hold, RowVerdict::holds, RowVerdict::not_measured})
-    if (std::any_of(rows.begin(), rows.end(), [first](const RowOutcome &row) { return row.verdict == first; }))
-      return first;
-  return RowVerdict::reported;
+  const auto any = [this](RowVerdict verdict) {
+    return std::any_of(rows.begin(), rows.end(), [verdict](const RowOutcome &row) { return row.verdict == verdict; });
+  };
+  if (any(RowVerdict::does_not_hold))
+    return RowVerdict::does_not_hold;
+  if (any(RowVerdict::not_measured))
+    return any(RowVerdict::holds) ? RowVerdict::incomplete : RowVerdict::not_measured;
+  return any(RowVerdict::holds) ? RowVerdict::holds : RowVerdict::reported;
 }
 
 } // namespace verification

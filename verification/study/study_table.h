@@ -9,21 +9,23 @@
 
 #include "verification/results.h"
 #include "verification/study/run_outcome.h"
+#include "verification/study/statistical_tests.h"
 #include "verification/study/study_file.h"
 
 namespace verification
 {
 
-/// Verdict of a row.
+/// Verdict of a row, or of a claim.
 enum class RowVerdict
 {
   holds,
   does_not_hold,
-  reported,    ///< the row has no rule
-  not_measured ///< too few seeds or runs have what the rule needs
+  reported,     ///< the row has no rule
+  not_measured, ///< too few seeds or runs have what the rule needs, or their scatter is unknown
+  incomplete    ///< of a claim: rows hold, and others were not measured
 };
 
-/// "holds", "does not hold", "reported", "not measured".
+/// "holds", "does not hold", "reported", "not measured", "incomplete".
 [[nodiscard]] std::string to_string(RowVerdict verdict);
 
 /// A quantity of one run over its seeds.
@@ -36,18 +38,21 @@ struct SeedStatistics
 
   std::optional<double> mean;      ///< none if n = 0 or for the pattern
   std::optional<double> deviation; ///< standard deviation over the seeds, n - 1; none if n < 2
-  /// One standard error of the mean, from the spread over the seeds or from the uncertainties of the single
-  /// measurements, whichever is more; 0 where neither is known.
-  double standard_error = 0.;
+  /// Root mean square of the uncertainties of the single measurements, of seeds that give one; none if none does.
+  std::optional<double> uncertainty;
   std::map<std::string, std::size_t> patterns; ///< how many seeds showed each; none of them "undecided"
   std::size_t n_undecided = 0;                 ///< seeds whose pattern is undecided: these have none
   std::vector<std::string> missing;            ///< "seed 3 failed", for each seed without the quantity
 
-  /// Whether more than half of the seeds have it: what every rule asks of a run.
-  bool is_measured() const { return 2 * n > n_seeds; }
+  /// Returns whether at least three quarters of the seeds have the quantity, as every rule requires. A mean over those
+  /// that have it is biased if the others lack it for a reason: without the lowest quarter of a normal distribution by
+  /// 0.42 standard deviations, without the lowest half by 0.80.
+  bool is_measured() const { return n > 0 && 4 * n >= 3 * n_seeds; }
+  /// Mean and scatter over the seeds, for tests. The run must have a mean.
+  SampleMean sample() const;
   /// Whether it is measured, and all seeds that have a pattern have this one.
   bool shows(const std::string &pattern) const;
-  /// "2.29 ± 0.04 cm (5)", "oscillating 4/5, undecided 1/5", or "not measured".
+  /// "2.29 ± 0.04 cm (5)", or "(4 of 5)" if a seed lacks it; "oscillating 4/5, undecided 1/5", or "not measured".
   std::string text(const std::string &unit) const;
 };
 
@@ -64,9 +69,13 @@ struct RowOutcome
   std::optional<double> number; ///< of the row as a whole: mean, share of seeds with the pattern, exponent, middle of
                                 ///< the bracket
   std::optional<double> misfit; ///< holds if not larger than allowed(); none unless the row was judged
-  double allowed() const { return row.rule == Rule::is_near ? row.tolerance : 0.; }
+  /// Returns whether the rule is a statistical test, whose misfit is a p-value.
+  bool is_test() const;
+  /// Largest misfit with which the row holds.
+  double allowed() const;
 
-  /// As a row of results.json; none if the row has no number and was not judged.
+  /// As a row of results.json, which fails if it was to be judged and was not measured; none if the row has no number
+  /// and no rule.
   std::optional<Result> result(const std::string &claim) const;
 };
 
@@ -75,7 +84,8 @@ struct ClaimResult
 {
   StudyClaim claim;
   std::vector<RowOutcome> rows;
-  /// "does not hold" if a row does not, else "holds" if one does, else "not measured" if one was to be judged.
+  /// "does not hold" if a row does not; else "holds" if all that were to be judged do, "not measured" if none of them
+  /// was, "incomplete" if some were; "reported" if no row was to be judged.
   RowVerdict verdict() const;
 };
 

@@ -1,5 +1,6 @@
 #include "verification/wave_speeds/continuum_waves.h"
 
+#include <algorithm>
 #include <cmath>
 #include <stdexcept>
 
@@ -9,6 +10,7 @@
 #include "continuum/rectangle.h"
 #include "verification/affine_displacement.h"
 #include "verification/homogenisation.h"
+#include "verification/largest_error.h"
 
 namespace verification
 {
@@ -158,6 +160,8 @@ std::array<Oscillation, 2> measure(const WaveContinuum &medium, const Eigen::Mat
       const Vector &shape = wave_sheet.shape(w);
       const double value = wave_sheet.form(wave_sheet.mass(), shape, difference) /
                            (amplitude * wave_sheet.form(wave_sheet.mass(), shape, shape));
+      if (!std::isfinite(value))
+        throw std::runtime_error("a wave has an amplitude that is not finite");
       if (!amplitudes[w].empty() && value * amplitudes[w].back() < 0.)
         ++sign_changes[w];
       amplitudes[w].push_back(value);
@@ -165,7 +169,7 @@ std::array<Oscillation, 2> measure(const WaveContinuum &medium, const Eigen::Mat
   };
   observe();
   constexpr std::size_t max_steps = 2000;
-  for (std::size_t step = 0; std::min(sign_changes[0], sign_changes[1]) < 2; ++step)
+  for (std::size_t step = 0; std::min<unsigned int>(sign_changes[0], sign_changes[1]) < 2; ++step)
   {
     if (step == max_steps)
       throw std::runtime_error("a wave of the finite element sheet did not oscillate: it is overdamped, or unstable");
@@ -233,7 +237,7 @@ std::array<double, 2> discrete_frequencies(const WaveContinuum &medium, const Ei
   continuum::Sheet::Matrix shifted;
   sheet.make_matrix(sheet.continuity(), shifted);
   shifted.add(1., stiffness);
-  shifted.add(0.1 * std::min(quotient(0), quotient(1)), wave_sheet.mass());
+  shifted.add(0.1 * smallest_of({quotient(0), quotient(1)}), wave_sheet.mass());
   Vector b = sheet.make_owned();
   for (Vector &y : x)
   {
@@ -253,11 +257,13 @@ std::array<double, 2> discrete_frequencies(const WaveContinuum &medium, const Ei
       K2(v, w) = wave_sheet.form(stiffness, x[v], x[w]);
       M2(v, w) = wave_sheet.form(wave_sheet.mass(), x[v], x[w]);
     }
+  if (!K2.allFinite() || !M2.allFinite())
+    throw std::runtime_error("the finite elements have no waves: their tangent is not finite");
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> ritz(K2, M2);
-  const Eigen::Vector2d frequencies = ritz.eigenvalues().cwiseMax(0.).cwiseSqrt();
+  const auto frequency = [&](int i) { return std::sqrt(one_sided(ritz.eigenvalues()[i])); };
   const bool first_is_longitudinal = std::abs(ritz.eigenvectors()(0, 0)) * std::sqrt(M2(0, 0)) >
                                      std::abs(ritz.eigenvectors()(1, 0)) * std::sqrt(M2(1, 1));
-  return {frequencies[first_is_longitudinal ? 0 : 1], frequencies[first_is_longitudinal ? 1 : 0]};
+  return {frequency(first_is_longitudinal ? 0 : 1), frequency(first_is_longitudinal ? 1 : 0)};
 }
 
 std::array<Oscillation, 2> finite_element_waves(const WaveContinuum &medium, const Eigen::Matrix2d &F,
@@ -265,7 +271,7 @@ std::array<Oscillation, 2> finite_element_waves(const WaveContinuum &medium, con
 {
   const std::array<PlaneWave, 2> waves = plane_waves(continuum_matrices(medium, F, K), wave_normal(F, K));
   // The error of average acceleration is (w h)^2 / 12 before extrapolation, which leaves some (w h)^4 / 300 of it.
-  const double time_step = 2. * M_PI / 28. / std::max(waves[0].frequency, waves[1].frequency);
+  const double time_step = 2. * M_PI / 28. / fastest_frequency(waves);
   const std::array<Oscillation, 2> coarse = measure(medium, F, K, mesh, time_step);
   std::array<Oscillation, 2> result = measure(medium, F, K, mesh, 0.5 * time_step);
   for (std::size_t w = 0; w < 2; ++w)

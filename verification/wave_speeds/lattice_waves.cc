@@ -8,6 +8,7 @@
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
 #include "verification/bloch.h"
+#include "verification/largest_error.h"
 
 namespace verification
 {
@@ -62,6 +63,8 @@ std::array<Oscillation, 2> measure(const WaveCell &cell, const lattice::Material
     for (std::size_t w = 0; w < 2; ++w)
     {
       const double value = waves[w].polarisation.dot(sum) / (amplitude * norm);
+      if (!std::isfinite(value))
+        throw std::runtime_error("a wave has an amplitude that is not finite");
       if (!amplitudes[w].empty() && value * amplitudes[w].back() < 0.)
         ++sign_changes[w];
       amplitudes[w].push_back(value);
@@ -70,7 +73,7 @@ std::array<Oscillation, 2> measure(const WaveCell &cell, const lattice::Material
   observe();
   // Slow waves take a few thousand steps; one that is overdamped never turns.
   constexpr std::size_t max_steps = 200000;
-  for (std::size_t step = 1; std::min(sign_changes[0], sign_changes[1]) < 2; ++step)
+  for (std::size_t step = 1; std::min<unsigned int>(sign_changes[0], sign_changes[1]) < 2; ++step)
   {
     if (step > max_steps)
       throw std::runtime_error("a wave of the lattice did not oscillate: it is overdamped, or unstable");
@@ -138,10 +141,11 @@ WaveCell wave_cell(double spacing, lattice::Orientation orientation, const WaveD
 
 double smallest_stretch(const lattice::TriangularLattice &lattice, const Eigen::Matrix2d &F)
 {
-  double smallest = 1.;
+  Extremes stretches;
+  stretches.add(1.);
   for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
-    smallest = std::min(smallest, (F * lattice.bond_vector(kind)).norm() / lattice.rest_length(kind));
-  return smallest;
+    stretches.add((F * lattice.bond_vector(kind)).norm() / lattice.rest_length(kind));
+  return stretches.smallest();
 }
 
 std::array<Oscillation, 2> lattice_waves(const WaveCell &cell, const lattice::Material &material,
@@ -149,8 +153,8 @@ std::array<Oscillation, 2> lattice_waves(const WaveCell &cell, const lattice::Ma
 {
   const std::array<PlaneWave, 2> waves = bloch_waves(cell.sheet, material, F, cell.K);
   const double limit = 0.9 * lattice::time_step_limits(cell.sheet, material, smallest_stretch(cell.sheet, F)).combined;
-  const double fastest = std::max(waves[0].frequency, waves[1].frequency);
-  const double time_step = std::min(limit, phase_per_step / fastest);
+  const double fastest = fastest_frequency(waves);
+  const double time_step = smallest_of({limit, phase_per_step / fastest});
   // Dashpots can ask for steps so short that there is no error to extrapolate, and no news in every step.
   const double phase = fastest * time_step;
   const auto stride = std::max<std::size_t>(1, static_cast<std::size_t>(0.5 * phase_per_step / phase));

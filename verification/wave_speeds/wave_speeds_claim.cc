@@ -1,11 +1,12 @@
 #include "verification/wave_speeds/wave_speeds_claim.h"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <stdexcept>
 
 #include "verification/bloch.h"
+#include "verification/largest_error.h"
 #include "verification/order_fit.h"
 #include "verification/state_name.h"
 #include "verification/wave_speeds/lattice_waves.h"
@@ -33,23 +34,6 @@ std::array<double, 2> frequencies(const std::array<PlaneWave, 2> &waves)
   return {waves[0].frequency, waves[1].frequency};
 }
 
-// The largest of some relative differences, with the two values that it is between.
-struct Worst
-{
-  double value = nothing, reference = nothing, error = 0.;
-
-  void look_at(double a, double b)
-  {
-    const double difference = std::abs(a / b - 1.);
-    if (!(difference <= error)) // keeps a NaN
-    {
-      value = a;
-      reference = b;
-      error = difference;
-    }
-  }
-};
-
 // Everything about waves of one direction at one state.
 class Waves
 {
@@ -76,15 +60,8 @@ public:
 
   std::array<double, 2> run(const WaveCell &cell) const
   {
-    try
-    {
-      const std::array<Oscillation, 2> found = lattice_waves(cell, material_, F_);
-      return {found[0].frequency, found[1].frequency};
-    }
-    catch (const std::runtime_error &)
-    {
-      return {nothing, nothing}; // not a wave: fails the rows that ask for it
-    }
+    const std::array<Oscillation, 2> found = lattice_waves(cell, material_, F_);
+    return {found[0].frequency, found[1].frequency};
   }
 
   std::array<double, 2> finite_elements(const Eigen::Vector2d &K, const WaveMesh &mesh) const
@@ -109,12 +86,13 @@ void speeds_at(const Subject &subject, const Eigen::Matrix2d &F, const WaveSpeed
 {
   const Waves waves(subject, F);
   const double d = subject.spacing;
+  const std::string prefix = subject.name + ", " + state_name(F) + ": ";
   Table &table =
     outcome.table("wave_speeds", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d", "local [m/s]", "bloch [m/s]",
                                   "lattice [m/s]", "gradient [m/s]", "isotropic [m/s]", "fem [m/s]"});
-  Worst run_against_bloch, elements_against_closed, gradient_against_bloch;
+  LargestError run_against_bloch, elements_against_closed, gradient_against_bloch;
   CommonOrder local_order(order_kd), gradient_order(order_kd);
-  std::array<Worst, 2> long_waves;
+  std::array<LargestError, 2> long_waves;
   for (const WaveDirection &direction : wave_directions(subject.orientation))
   {
     std::array<std::array<double, 2>, 2> longest{}; // speeds of the two longest waves run, by wave
@@ -125,12 +103,22 @@ void speeds_at(const Subject &subject, const Eigen::Matrix2d &F, const WaveSpeed
       const WaveCell cell = wave_cell(d, subject.orientation, direction, options.kd[i]);
       const double k = cell.K.norm();
       const auto local = waves.local(cell.K), bloch = waves.bloch(cell.K), gradient = waves.gradient(cell.K),
-                 isotropic = waves.isotropic(cell.K), run = waves.run(cell),
-                 elements = waves.finite_elements(cell.K, options.mesh);
+                 isotropic = waves.isotropic(cell.K);
+      // Without a wave there is no number, and the rows that ask for one fail.
+      std::array<double, 2> run{nothing, nothing}, elements = run;
+      const auto attempt = [&](const std::string &side, const std::function<void()> &compute)
+      {
+        std::ostringstream where;
+        where << prefix << side << ", waves at " << std::lround(angle(direction, subject.orientation))
+              << " degrees, kd = " << options.kd[i];
+        outcome.results.attempt("wave-speeds", where.str(), compute);
+      };
+      attempt("lattice run", [&] { run = waves.run(cell); });
+      attempt("finite elements", [&] { elements = waves.finite_elements(cell.K, options.mesh); });
       for (std::size_t w = 0; w < 2; ++w)
       {
-        run_against_bloch.look_at(run[w] / k, bloch[w] / k);
-        elements_against_closed.look_at(elements[w] / k, gradient[w] / k);
+        run_against_bloch.add_relative(run[w] / k, bloch[w] / k);
+        elements_against_closed.add_relative(elements[w] / k, gradient[w] / k);
         if (i < 2)
         {
           longest[w][i] = run[w] / k;
@@ -145,7 +133,7 @@ void speeds_at(const Subject &subject, const Eigen::Matrix2d &F, const WaveSpeed
     { return frequency[w] * d / compared_kd; };
     for (std::size_t w = 0; w < 2; ++w)
     {
-      gradient_against_bloch.look_at(speed(waves.gradient(K), w), speed(waves.bloch(K), w));
+      gradient_against_bloch.add_relative(speed(waves.gradient(K), w), speed(waves.bloch(K), w));
       std::vector<double> local_errors, gradient_errors;
       for (const double kd : order_kd)
       {
@@ -161,11 +149,10 @@ void speeds_at(const Subject &subject, const Eigen::Matrix2d &F, const WaveSpeed
       const double closed = F.isIdentity(1e-12)
                               ? (w == 0 ? subject.theory.longitudinal_speed : subject.theory.shear_speed)
                               : waves.local(N / d)[w] * d;
-      long_waves[w].look_at(extrapolated, closed);
+      long_waves[w].add_relative(extrapolated, closed);
     }
   }
 
-  const std::string prefix = subject.name + ", " + state_name(F) + ": ";
   const auto add = [&](const std::string &quantity, const std::string &unit, std::optional<double> lattice_value,
                        std::optional<double> continuum_value, std::optional<double> theory, double error,
                        double tolerance)
@@ -178,15 +165,16 @@ void speeds_at(const Subject &subject, const Eigen::Matrix2d &F, const WaveSpeed
   const double remainder = std::pow(options.kd[0] * options.kd[1] * 1.02 * 1.02, 2) / 20.;
   for (std::size_t w = 0; w < 2; ++w)
     add(std::string("long-wave speed, ") + wave_names[w] + ", lattice run against closed form, worst of 4 directions",
-        "m/s", long_waves[w].value, {}, long_waves[w].reference, long_waves[w].error,
-        std::max(remainder, lattice_tolerance));
-  add("phase velocity, lattice run against Bloch, worst of all waves", "m/s", run_against_bloch.value, {},
-      run_against_bloch.reference, run_against_bloch.error, lattice_tolerance);
-  add("phase velocity, finite elements against their continuum, worst of all waves", "m/s", {},
-      elements_against_closed.value, elements_against_closed.reference, elements_against_closed.error,
-      discretisation_bound(options.mesh));
-  add("phase velocity at kd = 0.25, gradient continuum against Bloch, worst of all waves", "m/s", {},
-      gradient_against_bloch.value, gradient_against_bloch.reference, gradient_against_bloch.error, gradient_tolerance);
+        "m/s", long_waves[w].value(), {}, long_waves[w].reference(), long_waves[w].error(),
+        largest_of({remainder, lattice_tolerance}));
+  add("phase velocity, lattice run against Bloch, worst of all waves", "m/s", run_against_bloch.value(), {},
+      run_against_bloch.reference(), run_against_bloch.error(), lattice_tolerance);
+  const auto add_continuum = [&](const std::string &quantity, const LargestError &error, double tolerance)
+  { add(quantity + ", worst of all waves", "m/s", {}, error.value(), error.reference(), error.error(), tolerance); };
+  add_continuum("phase velocity, finite elements against their continuum", elements_against_closed,
+                discretisation_bound(options.mesh));
+  add_continuum("phase velocity at kd = 0.25, gradient continuum against Bloch", gradient_against_bloch,
+                gradient_tolerance);
   const auto add_order = [&](const std::string &name, double order, double claimed)
   {
     add("order in kd of the " + name + " continuum's error, all waves together", "1", {}, order, claimed,
@@ -206,8 +194,14 @@ void attenuation_at(const Subject &subject, const Eigen::Matrix2d &F, ClaimOutco
 
   // Damping grows with kd; a third of critical is seen well within one period.
   constexpr double probe = 0.01, wanted_ratio = 0.33;
-  const auto at_probe = damped(Eigen::Vector2d(probe / subject.spacing, 0.));
-  const double ratio = std::max(at_probe[0].decay / at_probe[0].frequency, at_probe[1].decay / at_probe[1].frequency);
+  double ratio = 0.; // of decay and frequency, infinite if a wave is overdamped
+  for (const PlaneWave &wave : damped(Eigen::Vector2d(probe / subject.spacing, 0.)))
+  {
+    if (!std::isfinite(wave.frequency) || !std::isfinite(wave.decay))
+      throw std::runtime_error("long waves have no frequency and decay");
+    if (wave.decay / wave.frequency > ratio)
+      ratio = wave.decay / wave.frequency;
+  }
   const double kd = std::clamp(probe * wanted_ratio / ratio, 0.005, 0.5);
   const WaveCell cell = wave_cell(subject.spacing, subject.orientation, {1, 0}, kd);
   const double k = cell.K.norm();
@@ -218,17 +212,15 @@ void attenuation_at(const Subject &subject, const Eigen::Matrix2d &F, ClaimOutco
                              viscosity.get()};
   const std::array<PlaneWave, 2> theory = damped(cell.K),
                                  kelvin = plane_waves(continuum_matrices(medium, F, cell.K), wave_normal(F, cell.K));
+  std::ostringstream where;
+  where << subject.name << ", " << state_name(F) << ", kd = " << std::round(1e4 * k * subject.spacing) / 1e4 << ": ";
+  // Without a wave there is no number, and the rows that ask for one fail.
   std::array<Oscillation, 2> run{{{nothing, nothing, 0.}, {nothing, nothing, 0.}}}, elements = run;
-  try
-  {
-    run = lattice_waves(cell, subject.material, F);
-    // Waves this long hardly feel the gradient energy: the error in space is below 1e-6.
-    elements = finite_element_waves(medium, F, cell.K, {4, 4});
-  }
-  catch (const std::runtime_error &)
-  {
-    // No wave, no number: the rows fail.
-  }
+  const auto attempt = [&](const std::string &side, const std::function<void()> &compute)
+  { outcome.results.attempt("wave-speeds", where.str() + side + ", damped waves", compute); };
+  attempt("lattice run", [&] { run = lattice_waves(cell, subject.material, F); });
+  // Waves this long hardly feel the gradient energy: the error in space is below 1e-6.
+  attempt("finite elements", [&] { elements = finite_element_waves(medium, F, cell.K, {4, 4}); });
 
   Table &table =
     outcome.table("attenuation",
@@ -245,8 +237,6 @@ void attenuation_at(const Subject &subject, const Eigen::Matrix2d &F, ClaimOutco
                  exact[w].frequency, exact[w].decay, nothing, nothing, closed[w].frequency, closed[w].decay, nothing,
                  nothing});
   }
-  std::ostringstream where;
-  where << subject.name << ", " << state_name(F) << ", kd = " << std::round(1e4 * k * subject.spacing) / 1e4 << ": ";
   // Both sides step with (w h)^4 left over after extrapolation: 1e-5 for 28 steps a period, and at a third of critical
   // damping the decay has a third of the frequency's digits.
   constexpr double tolerance = 1e-4;
@@ -261,7 +251,7 @@ void attenuation_at(const Subject &subject, const Eigen::Matrix2d &F, ClaimOutco
     {
       outcome.results.add({"wave-speeds", name + quantity + ", lattice and finite elements each against its theory",
                            unit, lattice_value, element_value, bloch,
-                           std::max(std::abs(lattice_value / bloch - 1.), std::abs(element_value / closed - 1.)),
+                           largest_of({relative_error(lattice_value, bloch), relative_error(element_value, closed)}),
                            tolerance});
     };
     add("damped frequency", "rad/s", run[w].frequency, elements[w].frequency, theory[w].frequency, kelvin[w].frequency);
@@ -273,7 +263,7 @@ void attenuation_at(const Subject &subject, const Eigen::Matrix2d &F, ClaimOutco
                          {},
                          kelvin[w].decay,
                          theory[w].decay,
-                         std::abs(kelvin[w].decay / theory[w].decay - 1.),
+                         relative_error(kelvin[w].decay, theory[w].decay),
                          std::pow(subject.lengths.lattice * k, 2)});
   }
 }
@@ -283,13 +273,16 @@ void attenuation_at(const Subject &subject, const Eigen::Matrix2d &F, ClaimOutco
 ClaimOutcome wave_speeds_claim(const Subject &subject, const WaveSpeedsOptions &options)
 {
   ClaimOutcome outcome;
+  const auto attempt = [&](const Eigen::Matrix2d &F, const std::string &part, const std::function<void()> &compute)
+  { outcome.results.attempt("wave-speeds", subject.name + ", " + state_name(F) + ": " + part, compute); };
   for (const Eigen::Matrix2d &F : options.states)
-    speeds_at(subject, F, options, outcome);
-  const bool has_dashpots = subject.material.nearest.viscosity > 0. ||
-                            (subject.material.next_nearest && subject.material.next_nearest->viscosity > 0.);
-  if (has_dashpots)
+    attempt(F, "waves", [&] { speeds_at(subject, F, options, outcome); });
+  // Not `> 0.`: a viscosity that is no number is not left out.
+  const auto has_dashpot = [](const lattice::Shell &shell) { return shell.viscosity != 0.; };
+  if (has_dashpot(subject.material.nearest) ||
+      (subject.material.next_nearest && has_dashpot(*subject.material.next_nearest)))
     for (const Eigen::Matrix2d &F : options.damped_states)
-      attenuation_at(subject, F, outcome);
+      attempt(F, "damped waves", [&] { attenuation_at(subject, F, outcome); });
   return outcome;
 }
 

@@ -93,14 +93,30 @@ TEST(GradientPositivity, IsLostBelowTheCriticalLengthAndNotAboveIt)
   const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
   for (const lattice::Material &material : {input.material(), subjects::nearest_only(input)})
   {
-    const double critical = critical_length(input.lattice(), material, I);
+    const double critical = critical_length(input.lattice(), material, I).value();
     EXPECT_LT(smallest_lattice_eigenvalue(input.lattice(), material, I, 0.999 * critical), 0.);
     EXPECT_GT(smallest_lattice_eigenvalue(input.lattice(), material, I, 1.001 * critical), 0.);
   }
   // Nearest neighbours alone need all of d / sqrt(12); together with the next-nearest, less than d / 2 will do.
-  EXPECT_NEAR(critical_length(input.lattice(), subjects::nearest_only(input), I), input.spacing / std::sqrt(12.),
-              1e-12 * input.spacing);
-  EXPECT_LT(critical_length(input.lattice(), input.material(), I), 0.44 * input.spacing);
+  EXPECT_NEAR(critical_length(input.lattice(), subjects::nearest_only(input), I).value(),
+              input.spacing / std::sqrt(12.), 1e-12 * input.spacing);
+  EXPECT_LT(critical_length(input.lattice(), input.material(), I).value(), 0.44 * input.spacing);
+}
+
+// Bonds that are compressed push sideways: gradients across them have a negative energy, however long l_d.
+TEST(GradientPositivity, HasNoLengthWhereBondsAreCompressed)
+{
+  const Case input = subjects::paper_case();
+  const Eigen::Matrix2d compressed = Eigen::Vector2d(0.7, 1.).asDiagonal();
+  EXPECT_FALSE(critical_length(input.lattice(), subjects::nearest_only(input), compressed).has_value());
+  EXPECT_LT(smallest_lattice_eigenvalue(input.lattice(), subjects::nearest_only(input), compressed, input.spacing), 0.);
+
+  Subject subject = verification::subject(input, subjects::nearest_only(input));
+  subject.deformation = compressed;
+  const ClaimOutcome outcome = intrinsic_length_claim(subject, small_version());
+  EXPECT_EQ(faults::failing(outcome.results, "loaded: there is none, bonds are compressed"), 1u);
+  for (const Result &row : outcome.results.rows())
+    EXPECT_EQ(row.quantity.find("1 % below the shortest length: negative, loaded"), std::string::npos);
 }
 
 TEST(IntrinsicLength, HoldsForBothShellSetsAndOrientations)

@@ -1,0 +1,341 @@
+// Claim by claim and side by side: a side that is no number, or throws, fails the claim with a row that says so.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cctype>
+#include <cmath>
+#include <limits>
+#include <memory>
+#include <stdexcept>
+
+#include "tests/verification/claims/faults.h"
+#include "verification/crack_oracle/steady_crack_study.h"
+#include "verification/energy/energy_claim.h"
+#include "verification/energy/wave_energy.h"
+#include "verification/intrinsic_length/intrinsic_length_claim.h"
+#include "verification/prestretch/cut_study.h"
+#include "verification/prestretch/prestretch_claim.h"
+#include "verification/wave_speeds/wave_speeds_claim.h"
+
+namespace
+{
+
+using namespace verification;
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+// The bonds of a shell, without a value from some stretch on.
+class BondWithoutValues : public lattice::CustomBondLaw
+{
+public:
+  explicit BondWithoutValues(const lattice::MooneyRivlinBond &bond) : bond_(bond) {}
+  void set_last_stretch(double stretch) { last_stretch_ = stretch; }
+
+  double energy(double stretch) const noexcept override { return at(stretch, bond_.energy(stretch)); }
+  double force(double stretch) const noexcept override { return at(stretch, bond_.force(stretch)); }
+  double stiffness(double stretch) const noexcept override { return at(stretch, bond_.stiffness(stretch)); }
+  double largest_stiffness(double smallest_stretch) const noexcept override
+  {
+    return bond_.largest_stiffness(smallest_stretch);
+  }
+
+private:
+  double at(double stretch, double value) const { return stretch > last_stretch_ ? not_a_number : value; }
+
+  lattice::MooneyRivlinBond bond_;
+  double last_stretch_ = std::numeric_limits<double>::infinity();
+};
+
+void without_values_beyond(Subject &subject, double stretch)
+{
+  for (lattice::Shell *shell : {&subject.material.nearest, &subject.material.next_nearest.value()})
+  {
+    const auto law = std::make_shared<BondWithoutValues>(std::get<lattice::MooneyRivlinBond>(shell->law));
+    shell->law = lattice::CustomBond(law); // which must be sound at rest
+    law->set_last_stretch(stretch);
+  }
+  subject.ratio_is_calibrated = false; // no Mooney-Rivlin law is fitted to bonds from outside
+}
+
+// A gradient energy that is no number in some evaluations, or throws in all of them.
+class GradientWithoutValues : public faults::Combination
+{
+public:
+  enum class Kind
+  {
+    all,
+    strained, ///< F is not I
+    second,   ///< evaluation alone
+    throws
+  };
+  GradientWithoutValues(Law law, Kind kind) : Combination(1., law, 0., law), kind_(kind) {}
+
+  double form(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override
+  {
+    return factor(F) * Combination::form(F, G, Z);
+  }
+  dealii::Tensor<2, 2> form_by_F(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override
+  {
+    return factor(F) * Combination::form_by_F(F, G, Z);
+  }
+  dealii::Tensor<4, 2> form_by_FF(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override
+  {
+    return factor(F) * Combination::form_by_FF(F, G, Z);
+  }
+  Gradient double_stress(const dealii::Tensor<2, 2> &F, const Gradient &G) const override
+  {
+    return factor(F) * Combination::double_stress(F, G);
+  }
+  dealii::Tensor<5, 2> double_stress_by_F(const dealii::Tensor<2, 2> &F, const Gradient &G) const override
+  {
+    return factor(F) * Combination::double_stress_by_F(F, G);
+  }
+  dealii::Tensor<6, 2> double_stress_by_G(const dealii::Tensor<2, 2> &F) const override
+  {
+    return factor(F) * Combination::double_stress_by_G(F);
+  }
+
+private:
+  double factor(const dealii::Tensor<2, 2> &F) const
+  {
+    if (kind_ == Kind::throws)
+      throw std::domain_error("planted: no gradient energy");
+    const bool is_strained = (F - dealii::Tensor<2, 2>(dealii::unit_symmetric_tensor<2>())).norm() > 1e-12;
+    const bool is_planted = kind_ == Kind::all || (kind_ == Kind::strained && is_strained) ||
+                            (kind_ == Kind::second && ++n_evaluations_ == 2);
+    return is_planted ? not_a_number : 1.;
+  }
+
+  Kind kind_;
+  mutable std::atomic<std::size_t> n_evaluations_ = 0;
+};
+
+using Kind = GradientWithoutValues::Kind;
+
+std::function<void(Subject &)> lattice_gradient(Kind kind)
+{
+  return [kind](Subject &s) { s.lattice_gradient = std::make_shared<GradientWithoutValues>(s.lattice_gradient, kind); };
+}
+
+std::function<void(Subject &)> isotropic_gradient(Kind kind)
+{
+  return [kind](Subject &s)
+  { s.isotropic_gradient = std::make_shared<GradientWithoutValues>(s.isotropic_gradient, kind); };
+}
+
+// A fibre network whose energy is beyond all numbers: infinite, and its stresses not numbers.
+void overflow_cauchy_born(Subject &subject)
+{
+  std::vector<continuum::FibreFamily> families = subject.cauchy_born.families();
+  for (continuum::FibreFamily &family : families)
+  {
+    family.potential = continuum::LinearPotential{1e300};
+    family.weight = 1e300;
+  }
+  subject.cauchy_born = continuum::CauchyBorn(std::move(families));
+}
+
+WaveSpeedsOptions waves(const Subject &subject)
+{
+  WaveSpeedsOptions options;
+  options.states = {Eigen::Matrix2d::Identity(), subject.deformation};
+  options.kd = {0.25, 0.5};
+  options.mesh.cells = 4;
+  return options;
+}
+
+struct ClaimPart
+{
+  const char *name;
+  std::function<Results(const Subject &)> check;
+};
+
+const ClaimPart energy{"energy", [](const Subject &s) { return energy_claim(s, 50); }};
+const ClaimPart wave_energy{"energy, waves", [](const Subject &s)
+                            {
+                              WaveEnergyOptions options;
+                              options.states = {Eigen::Matrix2d::Identity(), s.deformation};
+                              options.kd = {0.25, 0.5};
+                              return wave_energy_claim(s, options).results;
+                            }};
+const ClaimPart wave_speeds{"wave-speeds", [](const Subject &s) { return wave_speeds_claim(s, waves(s)).results; }};
+const ClaimPart damped_waves{"wave-speeds, damped", [](const Subject &s)
+                             {
+                               WaveSpeedsOptions options = waves(s);
+                               options.states.clear();
+                               options.damped_states = {s.deformation};
+                               return wave_speeds_claim(s, options).results;
+                             }};
+const ClaimPart intrinsic_length{"intrinsic-length", [](const Subject &s)
+                                 {
+                                   IntrinsicLengthOptions options;
+                                   options.angle_step = 30.;
+                                   return intrinsic_length_claim(s, options).results;
+                                 }};
+const ClaimPart prestretch{"prestretch", [](const Subject &s)
+                           {
+                             PrestretchOptions options;
+                             options.length = 24.;
+                             options.height = 16.;
+                             options.cells_x = 4;
+                             options.cells_y = 3;
+                             return prestretch_claim(s, options);
+                           }};
+
+CutStudy small_hole()
+{
+  CutStudy study = hole_study(true);
+  study.sizes = {4., 5., 6., 8.};
+  study.other_sizes = {8.};
+  return study;
+}
+
+const ClaimPart hole{"prestretch, hole", [](const Subject &s) { return cut_claim(s, small_hole()).results; }};
+const ClaimPart notch{"prestretch, notch", [](const Subject &s)
+                      {
+                        CutStudy study = notch_study(true);
+                        study.sizes = {4., 5., 6., 8.};
+                        study.mesh.cycles = 1;
+                        return cut_claim(s, study).results;
+                      }};
+
+struct Plant
+{
+  ClaimPart claim;
+  std::string side;
+  std::function<void(Subject &)> plant;
+  std::string reason = ""; ///< words of a row that fails; none: any row
+};
+
+std::ostream &operator<<(std::ostream &out, const Plant &plant)
+{
+  return out << plant.claim.name << ": " << plant.side;
+}
+
+std::vector<Plant> every_claim_and_side()
+{
+  const auto all_bonds = [](Subject &s) { without_values_beyond(s, 0.); };
+  const auto long_bonds = [](Subject &s) { without_values_beyond(s, 2.2); };
+  const auto turned_over = [](Subject &s) { s.deformation = Eigen::Vector2d(-1.5, 1.5).asDiagonal(); };
+  const auto density = [](Subject &s) { s.material.density = not_a_number; };
+  const auto length = [](Subject &s) { s.lengths.lattice = not_a_number; };
+  const auto shear_modulus = [](Subject &s) { s.theory.shear_modulus = not_a_number; };
+  const auto shear_speed = [](Subject &s) { s.theory.shear_speed = not_a_number; };
+  const auto longitudinal_speed = [](Subject &s) { s.theory.longitudinal_speed = not_a_number; };
+  const std::string planted = "not computed: planted: no gradient energy";
+  const std::string inverted = "not computed: ";
+
+  std::vector<Plant> plants;
+  for (const ClaimPart &claim :
+       {energy, wave_energy, wave_speeds, damped_waves, intrinsic_length, prestretch, hole, notch})
+  {
+    plants.push_back({claim, "lattice", all_bonds});
+    plants.push_back({claim, "Cauchy-Born", overflow_cauchy_born});
+  }
+  // Loaded bonds are up to 2.8 times as long: in these the first of several waves, or samples, are numbers.
+  for (const ClaimPart &claim : {energy, wave_energy, wave_speeds, damped_waves, intrinsic_length, prestretch})
+    plants.push_back({claim, "lattice where bonds are long", long_bonds});
+  for (const ClaimPart &claim : {energy, wave_energy, wave_speeds, damped_waves, intrinsic_length})
+    plants.push_back({claim, "continuum throws, for it is turned inside out", turned_over, inverted});
+  for (const ClaimPart &claim : {energy, wave_energy, wave_speeds, damped_waves})
+    plants.push_back({claim, "density", density});
+  for (const ClaimPart &claim : {wave_energy, wave_speeds, damped_waves, intrinsic_length, hole})
+  {
+    plants.push_back({claim, "lattice gradient where it is strained", lattice_gradient(Kind::strained)});
+    plants.push_back({claim, "lattice gradient throws", lattice_gradient(Kind::throws), planted});
+  }
+  for (const ClaimPart &claim : {wave_energy, wave_speeds, damped_waves, intrinsic_length})
+    plants.push_back({claim, "lattice gradient", lattice_gradient(Kind::all)});
+  for (const ClaimPart &claim : {wave_energy, wave_speeds, intrinsic_length})
+    plants.push_back({claim, "lattice gradient, second evaluation", lattice_gradient(Kind::second)});
+  for (const ClaimPart &claim : {wave_energy, wave_speeds, damped_waves, intrinsic_length})
+    plants.push_back({claim, "intrinsic length", length});
+  plants.push_back({wave_speeds, "isotropic gradient throws", isotropic_gradient(Kind::throws), planted});
+  for (const ClaimPart &claim : {intrinsic_length, hole})
+    plants.push_back({claim, "isotropic gradient throws", isotropic_gradient(Kind::throws), planted});
+  plants.push_back({intrinsic_length, "isotropic gradient", isotropic_gradient(Kind::all)});
+  plants.push_back({hole, "isotropic gradient where it is strained", isotropic_gradient(Kind::strained)});
+  plants.push_back(
+    {intrinsic_length, "isotropic length", [](Subject &s) { s.lengths.isotropic_inertia = not_a_number; }});
+  plants.push_back({damped_waves, "viscosity of all bonds", [](Subject &s) {
+                      s.material.nearest.viscosity = s.material.next_nearest->viscosity = not_a_number;
+                    }});
+  for (const ClaimPart &claim : {energy, intrinsic_length, prestretch, hole})
+    plants.push_back({claim, "theory, shear modulus", shear_modulus});
+  for (const ClaimPart &claim : {energy, wave_speeds})
+  {
+    plants.push_back({claim, "theory, shear speed", shear_speed});
+    plants.push_back({claim, "theory, longitudinal speed", longitudinal_speed});
+  }
+  // The Mooney-Rivlin law is judged by the claim on energy alone.
+  plants.push_back({energy, "Mooney-Rivlin throws", [](Subject &s) { s.mooney_rivlin.law.c1 = not_a_number; },
+                    "not computed: Mooney-Rivlin constants must be finite"});
+  plants.push_back({energy, "Mooney-Rivlin", [](Subject &s) { s.mooney_rivlin.law.c1 = 1e308; }});
+  plants.push_back({energy, "ellipticity of Mooney-Rivlin",
+                    [](Subject &s) { s.mooney_rivlin.smallest_acoustic_eigenvalue = not_a_number; }, "slowest"});
+  return plants;
+}
+
+class NoNumber : public testing::TestWithParam<Plant>
+{
+};
+INSTANTIATE_TEST_SUITE_P(Claims, NoNumber, testing::ValuesIn(every_claim_and_side()),
+                         [](const auto &instance)
+                         {
+                           std::string name = instance.param.claim.name + (" with " + instance.param.side);
+                           std::replace_if(
+                             name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+                           return name;
+                         });
+
+TEST_P(NoNumber, FailsTheClaim)
+{
+  Subject wrong = subject(subjects::paper_case());
+  GetParam().plant(wrong);
+  const Results results = GetParam().claim.check(wrong);
+  EXPECT_EQ(results.verdict(), Verdict::fails);
+  std::string failing;
+  for (const Result &row : results.rows())
+    if (row.verdict() == Verdict::fails)
+      failing += row.quantity + "\n";
+  EXPECT_NE(failing.find(GetParam().reason), std::string::npos) << failing;
+}
+
+// What is planted fails them, not how: with the same wrappers around sound laws all of them hold.
+class SoundWrappers : public testing::TestWithParam<ClaimPart>
+{
+};
+INSTANTIATE_TEST_SUITE_P(Claims, SoundWrappers,
+                         testing::Values(energy, wave_energy, wave_speeds, damped_waves, intrinsic_length, prestretch));
+
+TEST_P(SoundWrappers, HoldTheClaim)
+{
+  Subject right = subject(subjects::paper_case());
+  without_values_beyond(right, std::numeric_limits<double>::infinity());
+  right.lattice_gradient =
+    std::make_shared<faults::Combination>(1., right.lattice_gradient, 0., right.lattice_gradient);
+  const Results results = GetParam().check(right);
+  for (const Result &row : results.rows())
+    EXPECT_NE(row.verdict(), Verdict::fails) << row.quantity;
+  EXPECT_TRUE(results.all_hold());
+}
+
+// Each side of the steady crack: the run of the simulator, and the exact solution.
+TEST(NoNumber, FailsTheCheckOfSteadyCracks)
+{
+  const std::pair<SteadyCrackSeries, const char *> wrong[] = {
+    {{3., {1.1}, 0.}, "the crack stopped"},                                // the run throws
+    {{3., {not_a_number}, 0.}, "not computed"},                            // and is no number
+    {{0.5, {1.57}, 8.}, "crack beyond the limit, beta 0.5"},               // the exact solution throws
+    {{not_a_number, {1.57}, 0.}, "crack, beta nan, Delta/Delta_G 1.57: "}, // and is no number
+  };
+  for (const auto &[series, reason] : wrong)
+  {
+    const Results results = steady_cracks(series).results;
+    EXPECT_EQ(results.verdict(), Verdict::fails) << reason;
+    EXPECT_GE(faults::failing(results, reason), 1u) << reason;
+  }
+}
+
+} // namespace

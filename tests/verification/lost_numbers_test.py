@@ -1,0 +1,56 @@
+#!/usr/bin/python3
+"""Fails where a source that makes rows of claims takes a maximum or minimum from which a NaN can be lost.
+
+std::max(0., NaN) is 0, and so an error that could not be computed would hold. The sources below take errors and extremes
+from verification/largest_error.h. What has an integer type by name, as std::max<std::size_t>(a, b), is not meant.
+
+Usage: lost_numbers_test.py PROJECT_ROOT
+"""
+import pathlib
+import re
+import sys
+
+# Everything that ends in a row with a verdict.
+SOURCES = ("energy/*", "wave_speeds/*", "intrinsic_length/*", "prestretch/*", "crack_oracle/*", "study/study_table.*",
+           "study/seed_statistics.*", "study/statistical_tests.*", "fracture/crack_record.*", "continuum_record.*",
+           "compare/comparison.*", "commands/verify.cc", "homogenisation.*", "subject.h", "stability_row.h", "slowest_wave.*", "bloch.*", "plane_waves.*", "order_fit.h", "largest_error.*")
+INTEGER = r"<(?:std::size_t|unsigned int|int|long|std::ptrdiff_t)>"
+LOSES = re.compile(
+    rf"std::(?:max|min)\b(?!{INTEGER})|\bstd::f(?:max|min)[fl]?\b|\bstd::(?:minmax|(?:max|min|minmax)_element)\b"
+    r"|\.cwise(?:Max|Min)\(|\.(?:max|min)Coeff\(|-?\b1e-?3\d\d\b")
+# Lines of code that must be found, and such as must not.
+PLANTED = {
+    "error = std::max(0., -x);": True, "largest = std::max({a, b});": True, "x = std::max<double>(a, b);": True,
+    "x = *std::max_element(v.begin(), v.end());": True, "y = e.cwiseMax(0.);": True, "z = std::fmin(a, b);": True,
+    "double hardest = 1e300;": True, "std::max(1e-300, x)": True, "v.lpNorm() + M.maxCoeff();": True,
+    "n = std::max<std::size_t>(1, n);": False, "x = largest_of({a, b});": False, "x = std::clamp(x, low, high);": False,
+    "// std::max(0., NaN) is 0": False, "double x = 1e30;": False,
+}
+
+
+def losses(text):
+    """[(number of the line, the line)] in which a NaN can be lost."""
+    return [(number, line.strip()) for number, line in enumerate(text.splitlines(), start=1)
+            if LOSES.search(line.partition("//")[0])]
+
+
+def main(root):
+    for line, is_found in PLANTED.items():
+        if bool(losses(line)) != is_found:
+            return f"the rule itself is wrong about: {line}"
+    folder = pathlib.Path(root) / "verification"
+    problems = []
+    for pattern in SOURCES:
+        files = sorted(path for path in folder.glob(pattern) if path.suffix in (".h", ".cc"))
+        if not files:
+            problems.append(f"verification/{pattern}: no such source; correct the list in {pathlib.Path(__file__).name}")
+        problems += [f"verification/{path.relative_to(folder)}:{number}: {line}" for path in files
+                     for number, line in losses(path.read_text(encoding="utf-8"))]
+    if problems:
+        return ("A NaN is lost here, and the row that asks for it would hold. Take LargestError, Extremes, largest_of, "
+                "smallest_of or one_sided of verification/largest_error.h:\n  " + "\n  ".join(problems))
+    return None
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))
