@@ -4,6 +4,7 @@
 #include <cmath>
 #include <sstream>
 #include <stdexcept>
+#include <tuple>
 
 #include "lattice/chebyshev_stages.h"
 #include "lattice/contact.h"
@@ -39,9 +40,10 @@ constexpr unsigned int most_stages = 200;
 
 void check_size(const Case &input, Parameters &p)
 {
-  for (const auto &[key, extent] : {std::pair("Sheet/height", input.height), std::pair("Sheet/length", input.length)})
+  for (const auto &[key, extent, way] : {std::tuple("Sheet/height", input.height, " spacings high, "),
+                                         std::tuple("Sheet/length", input.length, " spacings long, ")})
   {
-    const std::string spacings = std::string(" spacings ") + (key[6] == 'h' ? "high, " : "long, ");
+    const std::string spacings = way;
     if (extent < 8. * input.spacing)
       p.error(key, "the sheet must be at least 8" + spacings + full_precision(8. * input.spacing) + " m",
               {"Sheet/spacing"});
@@ -420,6 +422,11 @@ lattice::TimeStepping Case::lattice_time_stepping() const
 lattice::TimeStepping Case::fracture_time_stepping() const
 {
   return time_stepping(time_step_limits(true));
+}
+
+std::string case_lines(const Parameters &parameters)
+{
+  return parameters.lines("Checkpoints");
 }
 
 } // namespace verification

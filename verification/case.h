@@ -182,4 +182,8 @@ inline constexpr double smallest_stable_stretch = 0.3;
 /// The same for the oscillating modes under Runge-Kutta-Chebyshev [-].
 inline constexpr double smallest_chebyshev_stretch = 0.45;
 
+/// What a run computes, as a line `key = value` for each entry, those of Checkpoints left out, which say only how often
+/// it is saved. Its SHA-256 is `case_hash` in run.json and in checkpoints.
+[[nodiscard]] std::string case_lines(const Parameters &parameters);
+
 } // namespace verification

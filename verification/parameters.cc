@@ -220,9 +220,9 @@ void Parameters::error(const std::string &key, const std::string &text, const st
 
 bool Parameters::good() const
 {
-  return n_problems_ == 0 && std::none_of(entries_.begin(), entries_.end(),
-                                          [](const Entry &entry)
-                                          { return entry.presence == Presence::required && !entry.is_set(); });
+  return n_problems_ == 0 &&
+         std::none_of(entries_.begin(), entries_.end(),
+                      [](const Entry &entry) { return entry.presence == Presence::required && !entry.is_set(); });
 }
 
 void Parameters::finish()
@@ -336,21 +336,13 @@ std::vector<std::pair<std::string, std::string>> Parameters::values() const
   return values;
 }
 
-std::uint64_t Parameters::hash() const
+std::string Parameters::lines(const std::string &section_left_out) const
 {
-  // FNV-1a: Fowler, Noll, Vo; offset basis and prime of its 64-bit form.
-  std::uint64_t hash = 14695981039346656037ULL;
-  const auto mix = [&hash](const std::string &text)
-  {
-    for (const char c : text)
-    {
-      hash ^= static_cast<unsigned char>(c);
-      hash *= 1099511628211ULL;
-    }
-  };
+  std::string text;
   for (const auto &[key, value] : values())
-    mix(key + "=" + value + "\n");
-  return hash;
+    if (section_left_out.empty() || key.rfind(section_left_out + "/", 0) != 0)
+      text += key + " = " + value + "\n";
+  return text;
 }
 
 } // namespace verification

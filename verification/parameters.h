@@ -218,9 +218,9 @@ public:
   /// SI unit of an entry; "1" for a pure number, empty for what is no quantity. @throws std::logic_error for no entry
   [[nodiscard]] std::string unit(const std::string &key) const { return find(key).unit; }
 
-  /// FNV-1a hash of all keys and values as they now stand. Does not depend on how the case was written down (order,
-  /// comments, units, file or override), nor on the order of declaration, nor on the machine.
-  [[nodiscard]] std::uint64_t hash() const;
+  /// A line `key = value` for each of values(), those of one section left out. Does not depend on how the case was
+  /// written down (order, comments, units, file or override), nor on the order of declaration, nor on the machine.
+  [[nodiscard]] std::string lines(const std::string &section_left_out = "") const;
 
 private:
   struct Entry

@@ -4,6 +4,7 @@
 #include <array>
 #include <chrono>
 #include <cstdlib>
+#include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
@@ -12,7 +13,6 @@
 #include <thread>
 
 #include <link.h>
-#include <sys/stat.h>
 
 #include <nlohmann/json.hpp>
 
@@ -41,7 +41,8 @@ std::optional<std::string> content(const std::string &path)
   return file ? std::optional(std::move(bytes)) : std::nullopt;
 }
 
-// The program is one static file but for the libraries of the system, which are told by name, size and time of change.
+// The program is one static file but for the libraries of the system, which are named by what their linker made of
+// their content: the same on all nodes of a cluster.
 std::string hash_of_program()
 {
   const std::string hash = sha256_of_file("/proc/self/exe");
@@ -50,19 +51,42 @@ std::string hash_of_program()
   return hash;
 }
 
+// Build ID of a loaded library (a note that the linker writes), as bytes; empty if it has none.
+std::string build_id(const dl_phdr_info &library)
+{
+  const auto aligned = [](std::size_t n) { return (n + 3) / 4 * 4; };
+  for (int i = 0; i < library.dlpi_phnum; ++i)
+  {
+    const ElfW(Phdr) &segment = library.dlpi_phdr[i];
+    if (segment.p_type != PT_NOTE)
+      continue;
+    // Where the loader put it, which is known as an address.
+    const auto *bytes = reinterpret_cast<const char *>(library.dlpi_addr + segment.p_vaddr); // NOLINT
+    for (std::size_t at = 0; at + sizeof(ElfW(Nhdr)) <= segment.p_memsz;)
+    {
+      ElfW(Nhdr) note{};
+      std::memcpy(&note, bytes + at, sizeof(note));
+      const std::size_t name = at + sizeof(note), content = name + aligned(note.n_namesz);
+      if (note.n_type == NT_GNU_BUILD_ID && note.n_namesz == 4 && std::memcmp(bytes + name, "GNU", 4) == 0)
+        return {bytes + content, note.n_descsz};
+      at = content + aligned(note.n_descsz);
+    }
+  }
+  return {};
+}
+
 std::string hash_of_libraries()
 {
   std::vector<std::string> libraries;
   dl_iterate_phdr(
-    [](dl_phdr_info *info, std::size_t, void *list)
+    [](dl_phdr_info *library, std::size_t, void *list)
     {
-      struct stat status
-      {
-      };
-      if (info->dlpi_name[0] != '\0' && ::stat(info->dlpi_name, &status) == 0)
-        static_cast<std::vector<std::string> *>(list)->push_back(
-          std::string(info->dlpi_name) + ' ' + std::to_string(status.st_size) + ' ' +
-          std::to_string(status.st_mtim.tv_sec) + '.' + std::to_string(status.st_mtim.tv_nsec) + '\n');
+      const std::filesystem::path file = library->dlpi_name;
+      if (!file.is_absolute())
+        return 0; // the program itself, and what the kernel brings
+      const std::string id = build_id(*library);
+      static_cast<std::vector<std::string> *>(list)->push_back(file.filename().string() + ' ' +
+                                                               (id.empty() ? sha256_of_file(file) : id) + '\n');
       return 0;
     },
     &libraries);

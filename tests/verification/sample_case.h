@@ -104,7 +104,7 @@ inline std::string lattice_problem(const std::string &line)
 }
 
 inline Sample read(const std::string &text, const std::vector<std::string> &overrides = {},
-                   const std::string &name = "a.prm", std::uint64_t *hash = nullptr)
+                   const std::string &name = "a.prm", std::string *lines = nullptr)
 {
   Sample sample;
   Parameters p;
@@ -112,17 +112,17 @@ inline Sample read(const std::string &text, const std::vector<std::string> &over
   p.read_text(text, name);
   p.read_overrides(overrides);
   p.finish();
-  if (hash)
-    *hash = p.hash();
+  if (lines)
+    *lines = p.lines();
   return sample;
 }
 
-inline std::uint64_t hash_of(const std::string &text, const std::vector<std::string> &overrides = {},
-                             const std::string &name = "a.prm")
+inline std::string lines_of(const std::string &text, const std::vector<std::string> &overrides = {},
+                            const std::string &name = "a.prm")
 {
-  std::uint64_t hash = 0;
-  read(text, overrides, name, &hash);
-  return hash;
+  std::string lines;
+  read(text, overrides, name, &lines);
+  return lines;
 }
 
 inline bool same_bits(const double a, const double b)

@@ -30,16 +30,6 @@ constexpr std::size_t n_kept = 2;
 constexpr std::size_t n_differences_told = 3;
 const std::string first_words = "latcon checkpoint, SHA-256 of the bytes from 512 on: ";
 
-// Of what a checkpoint is made: entries that say how often leave the run what it is.
-std::string lines_of(const Parameters &parameters)
-{
-  std::string text;
-  for (const auto &[key, value] : parameters.values())
-    if (key.rfind("Checkpoints/", 0) != 0)
-      text += key + " = " + value + "\n";
-  return text;
-}
-
 std::map<std::string, std::string> entries_of(const std::string &lines)
 {
   std::map<std::string, std::string> entries;
@@ -89,7 +79,7 @@ std::string name_of(std::size_t step)
 
 Checkpoints::Checkpoints(const Options &options, const Parameters &parameters, const Case &input, std::string command)
   : folder_(fs::path(options.output_dir) / "checkpoints"), command_(std::move(command)),
-    case_text_(lines_of(parameters)), case_hash_(sha256(case_text_)), step_interval_(input.checkpoint_steps),
+    case_text_(case_lines(parameters)), case_hash_(sha256(case_text_)), step_interval_(input.checkpoint_steps),
     wall_interval_(input.checkpoint_interval),
     first_rank_(dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
 {

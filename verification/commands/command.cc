@@ -11,6 +11,7 @@
 #include "support/atomic_file.h"
 #include "verification/checkpoint/checkpoints.h"
 #include "verification/output_list.h"
+#include "verification/sha256.h"
 
 namespace verification
 {
@@ -87,7 +88,7 @@ Run::Run(const Options &options, const Parameters *parameters)
     info_(options.arguments)
 {
   if (parameters != nullptr)
-    info_.add("case_hash", parameters->hash());
+    info_.add("case_hash", sha256(case_lines(*parameters)));
   if (writes_)
   {
     std::error_code error;

@@ -31,11 +31,11 @@ def fail(problem):
     sys.exit(f"{pathlib.Path(sys.argv[0]).name}: {problem}")
 
 
-def input_number(directory, entry):
+def input_number(directory, section, entry):
     """A number in the case.prm of a run, SI unit; None if it is not there."""
     path = directory / "case.prm"
-    found = re.search(rf"^\s*set\s+{re.escape(entry)}\s*=\s*([-+.\deE]+)", path.read_text() if path.is_file() else "",
-                      re.MULTILINE)
+    found = re.search(rf"^subsection {re.escape(section)}\n(?:(?!end\b).*\n)*?\s*set\s+{re.escape(entry)}\s*=\s*([-+.\deE]+)",
+                      path.read_text() if path.is_file() else "", re.MULTILINE)
     return float(found[1]) if found else None
 
 

@@ -145,7 +145,7 @@ def claim_section(number, claim, pictures):
 def check_section(check, pictures):
     """A check: what it is, its plot, its rows."""
     lines = [row(KINDS[r["verdict"]], [
-        *zip(("words", "number", "number"), (escape(text) or "–" for text in parts_of(r["quantity"]))),
+        ("words", escape(r["quantity"])),
         *(("number", number(r[key], ".4g")) for key in ("lattice", "theory")),
         *(("number", number(r[key], ".2g")) for key in ("error", "tolerance"))], r["verdict"]) for r in check["rows"]]
     parts = [f'<section id="check-{escape(check["name"])}"><h2>Check {escape(check["name"])}</h2>',
@@ -153,15 +153,8 @@ def check_section(check, pictures):
     if check["name"] in pictures["checks"]:
         caption, png = pictures["checks"][check["name"]]
         parts.append(figure(png, f"Check {check['name']}. {first_sentence(caption)}", escape(caption)))
-    parts.append(table(["verdict", "quantity", "#viscosity β", "#driving Δ/Δ_G", "#simulator", "#exact", "#error",
-                        "#tolerance"], lines))
+    parts.append(table(["verdict", "quantity", "#simulator", "#exact", "#error", "#tolerance"], lines))
     return "".join(parts) + "</section>"
-
-
-def parts_of(quantity):
-    """A quantity of a check, its viscosity and its driving; empty where it has none."""
-    match = re.fullmatch(r"(.*), beta (\S+), Delta/Delta_G (\S+)", quantity)
-    return match.groups() if match else (quantity, "", "")
 
 
 def broken(text):

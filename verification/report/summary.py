@@ -59,7 +59,7 @@ def comparisons(run):
         if check.claim != "fracture" or check.theory is None:
             continue
         scale, unit = (100, "cm") if check.unit == "m" else (1, check.unit)
-        uncertainty = uncertainty_of(check.lattice, run.crack)
+        uncertainty = uncertainty_of(check.quantity, run.crack)
         result.append(Comparison(
             run, check.quantity, unit, scale * check.theory,
             None if check.lattice is None else scale * check.lattice,
@@ -67,12 +67,14 @@ def comparisons(run):
     return result
 
 
-def uncertainty_of(value, crack):
-    """Uncertainty that crack.json gives for a value, which results.json holds bit by bit the same."""
-    for name in ("speed_lagrangian", "speed_laboratory", "wavelength", "amplitude"):
-        if value is not None and crack is not None and crack[name] == value:
-            return crack[f"{name}_uncertainty"]
-    return None
+# Rows of the claim "fracture", and their names in crack.json.
+NAMES = {"Lagrangian crack speed": "speed_lagrangian", "laboratory crack speed": "speed_laboratory",
+         "wavelength, undeformed": "wavelength", "amplitude, undeformed": "amplitude"}
+
+
+def uncertainty_of(quantity, crack):
+    """Uncertainty that crack.json gives for the quantity of a row; None if there is none."""
+    return crack[f"{NAMES[quantity]}_uncertainty"] if crack is not None and quantity in NAMES else None
 
 
 def with_uncertainty(value, uncertainty, sign="±"):

@@ -269,11 +269,11 @@ std::vector<Plant> every_claim_and_side()
     plants.push_back({claim, "theory, longitudinal speed", longitudinal_speed});
   }
   // The Mooney-Rivlin law is judged by the claim on energy alone.
-  plants.push_back({energy, "Mooney-Rivlin throws", [](Subject &s) { s.mooney_rivlin.law.c1 = not_a_number; },
+  plants.push_back({energy, "Mooney-Rivlin throws", [](Subject &s) { s.mooney_rivlin->law.c1 = not_a_number; },
                     "not computed: Mooney-Rivlin constants must be finite"});
-  plants.push_back({energy, "Mooney-Rivlin", [](Subject &s) { s.mooney_rivlin.law.c1 = 1e308; }});
+  plants.push_back({energy, "Mooney-Rivlin", [](Subject &s) { s.mooney_rivlin->law.c1 = 1e308; }});
   plants.push_back({energy, "ellipticity of Mooney-Rivlin",
-                    [](Subject &s) { s.mooney_rivlin.smallest_acoustic_eigenvalue = not_a_number; }, "slowest"});
+                    [](Subject &s) { s.mooney_rivlin->smallest_acoustic_eigenvalue = not_a_number; }, "slowest"});
   return plants;
 }
 
