@@ -1,5 +1,6 @@
 #include "lattice/simulation.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "lattice/runge_kutta_chebyshev.h"
@@ -26,7 +27,7 @@ Simulation::Simulation(const RowBand &band, const Material &material, State init
     work_(lattice_.rows())
 {
   if (fracture_)
-    fracture_->watch(state_, forces_);
+    fracture_->configure(state_, forces_);
   // Long steps would break bonds late; those of velocity Verlet are so short that they need not look ahead.
   if (fracture_ && time_stepping.stages > 0)
     fracture_->look_ahead(0.5 * time_stepping.step);
@@ -81,6 +82,8 @@ void Simulation::add_work(const Ledger &before)
 
 void Simulation::let_touch(const ContactLaw &law)
 {
+  if (contact_)
+    throw std::logic_error("contact has been added to this simulation already");
   contact_.emplace(band_, law);
   integrator_->add(*contact_);
   restart();
@@ -88,6 +91,10 @@ void Simulation::let_touch(const ContactLaw &law)
 
 void Simulation::load_ends(const Eigen::Matrix2d &F, EndLoads::End left, EndLoads::End right)
 {
+  if (end_loads_)
+    throw std::logic_error("the ends of this sheet are loaded already");
+  if (std::any_of(state_.lost_bonds.begin(), state_.lost_bonds.end(), [](std::uint8_t lost) { return lost > 0; }))
+    throw std::logic_error("the ends of a sheet must be loaded before any of its bonds is cut or broken");
   end_loads_.emplace(band_, material_, state_, F, left, right);
   integrator_->add(*end_loads_);
   restart();

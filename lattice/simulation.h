@@ -35,10 +35,11 @@ public:
   Simulation(const Simulation &) = delete; // parts refer to each other
   Simulation &operator=(const Simulation &) = delete;
 
-  /// Has sites that are not bonded repel each other from now on. To be called once at most.
+  /// Adds contact between unbonded sites. @throws std::logic_error if there is contact already
   void let_touch(const ContactLaw &law);
 
-  /// Loads the short ends of the unbroken sheet as if it went on at x = F X. To be called once at most, before cut().
+  /// Loads the short ends of the unbroken sheet as if it went on at x = F X. @throws std::logic_error if they are
+  /// loaded already, or after a bond broke or was cut
   void load_ends(const Eigen::Matrix2d &F, EndLoads::End left, EndLoads::End right);
 
   /// Cuts sites out of the sheet before it moves. @throws std::logic_error without fracture rules
@@ -98,7 +99,7 @@ private:
 
   RowBand band_;
   const TriangularLattice &lattice_;
-  const Material &material_;
+  Material material_;
   State state_;
   Forces forces_;
   std::unique_ptr<Integrator> integrator_;

@@ -145,7 +145,8 @@ void check_time_stepping(const Case &input, Parameters &p)
     p.error("Time/integrator",
             "runge-kutta-chebyshev is for sheets whose bonds all have dashpots; give velocity-verlet",
             {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity"});
-  else if (input.density > 0. && input.has_sheet())
+  else if (input.density > 0. && input.has_sheet() && input.nearest.has_stiffness() &&
+           (!input.has_next_nearest || input.next_nearest.has_stiffness()))
   {
     if (chebyshev)
       check_stages(input, p);
@@ -171,7 +172,7 @@ void ShellCase::declare(Parameters &parameters, const std::string &section)
 
 void ShellCase::check(Parameters &parameters, const std::string &section) const
 {
-  if (law == Law::mooney_rivlin && a + b == 0.)
+  if (!has_stiffness())
     parameters.error(section + "/a", "a bond needs stiffness: a + b must be positive", {section + "/b"});
 }
 

@@ -37,6 +37,8 @@ struct ShellCase
 
   void declare(Parameters &parameters, const std::string &section);
   void check(Parameters &parameters, const std::string &section) const;
+  /// Whether shell() has a law to make.
+  bool has_stiffness() const { return law == Law::linear || a + b > 0.; }
   lattice::Shell shell() const;
 };
 

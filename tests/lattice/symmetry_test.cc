@@ -74,7 +74,7 @@ struct Crack
   {
     const double l = choice.units.length, d = l * sheets::spacing;
     const Edges edges{!choice.absorbs, !choice.absorbs, true, true};
-    State loaded = homogeneous_state(sheet, material, F, edges, breaking_stretch);
+    State loaded = homogeneous_state(sheet, material, F, edges);
     add_noise(loaded, sheet, 0.05 * d, 1);
     State initial = loaded;
     for (std::size_t place = 0; place < sheet.n_places(); ++place)

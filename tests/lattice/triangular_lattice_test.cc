@@ -25,7 +25,7 @@ TEST_P(BothOrientations, SitesHaveTwelveNeighboursAtTheRightDistances)
   const TriangularLattice sheet = sheets::square(12, GetParam());
   const lattice::Material material = sheets::rubber();
   const lattice::State state =
-    lattice::homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), lattice::Edges::free, sheets::unbreakable);
+    lattice::homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), lattice::Edges::free);
   std::vector<std::size_t> sites;
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
     if (sheet.is_site(place))
