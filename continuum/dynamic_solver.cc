@@ -33,7 +33,8 @@ DynamicSolver::DynamicSolver(const Sheet::Mesh &mesh, const Constitution &consti
                              const Inertia &inertia, const DynamicSettings &settings, const Viscosity *viscosity,
                              LoadFactor load_factor)
   : sheet_(mesh, constitution, settings.degree, std::move(conditions)), inertia_(inertia), settings_(settings),
-    viscosity_(viscosity), viscous_forces_(sheet_, viscosity), given_load_factor_(std::move(load_factor))
+    duration_(settings.time_step), viscosity_(viscosity), viscous_forces_(sheet_, viscosity),
+    given_load_factor_(std::move(load_factor))
 {
   check_input();
   set_up();
@@ -254,6 +255,7 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time)
   acceleration_ = a;
   start_time_ = time_ = time;
   n_steps_ = 0;
+  n_divided_steps_ = 0;
   load_factor_ = factors[0];
   ledger_ = EnergyLedger();
   report_ = SolverReport();
@@ -267,12 +269,66 @@ void DynamicSolver::step()
   if (!has_started_)
     throw InvalidInput("a motion needs a start before its first step");
   const double target = start_time_ + (n_steps_ + 1) * settings_.time_step;
-  Step step{settings_.rule,      settings_.time_step, sheet_.make_owned(),   sheet_.make_owned(),
-            sheet_.make_owned(), load_factor_,        load_factor_at(target)};
+  const auto restore = [this, time = time_, load_factor = load_factor_, u = displacement_, v = velocity_,
+                        a = acceleration_, ledger = ledger_]
+  {
+    time_ = time;
+    load_factor_ = load_factor;
+    displacement_ = u;
+    velocity_ = v;
+    acceleration_ = a;
+    ledger_ = ledger;
+    linear_solver_->forget(); // a multigrid that may be of a state far off
+  };
+  report_ = SolverReport();
+  std::string failure;
+  try
+  {
+    failure = advance_in_parts(settings_.time_step, target, settings_.max_step_halvings);
+  }
+  catch (...)
+  {
+    restore();
+    duration_ = settings_.time_step;
+    throw;
+  }
+  if (!failure.empty())
+    restore();
+  else
+    ++n_steps_;
+  if (duration_ != settings_.time_step)
+  {
+    duration_ = settings_.time_step;
+    linear_solver_->forget(); // a multigrid of a shorter step
+    n_divided_steps_ += failure.empty() ? 1 : 0;
+  }
+  report_.load_factor = load_factor_;
+  if (!failure.empty())
+    throw SolverFailed("the time step from " + std::to_string(time_) + " s failed: " + failure, report_);
+}
+
+// Advances to `end`, in halves where it must be. Returns why not, empty if it does.
+std::string DynamicSolver::advance_in_parts(const double duration, const double end, const unsigned int halvings)
+{
+  const double middle = end - 0.5 * duration;
+  std::string failure = advance(duration, end);
+  if (failure.empty() || halvings == 0)
+    return failure;
+  failure = advance_in_parts(0.5 * duration, middle, halvings - 1);
+  return failure.empty() ? advance_in_parts(0.5 * duration, end, halvings - 1) : failure;
+}
+
+// Advances to `end` at once, if that can be solved; else the state stays. Returns why not.
+std::string DynamicSolver::advance(const double duration, const double end)
+{
+  if (duration != duration_)
+    linear_solver_->forget();
+  duration_ = duration;
+  Step step{settings_.rule,      duration,     sheet_.make_owned(), sheet_.make_owned(),
+            sheet_.make_owned(), load_factor_, load_factor_at(end)};
   step.u = displacement_;
   step.v = velocity_;
   step.a = acceleration_;
-  report_ = SolverReport();
   Vector u = sheet_.make_owned();
   Vector v;
   Vector a;
@@ -293,20 +349,15 @@ void DynamicSolver::step()
     }
   report_.load_steps.push_back(
     {static_cast<unsigned int>(n_steps_ + 1), step.last_load_factor, failure.empty(), failure});
-  report_.load_factor = failure.empty() ? step.last_load_factor : load_factor_;
   if (!failure.empty())
-  {
-    linear_solver_->forget(); // a multigrid that may be of a state far off
-    throw SolverFailed("the time step from " + std::to_string(time_) + " s failed: " + failure, report_);
-  }
-
+    return failure;
   displacement_ = u;
   velocity_ = v;
   acceleration_ = a;
   load_factor_ = step.last_load_factor;
-  time_ = target;
-  ++n_steps_;
+  time_ = end;
   ledger_ = ledger;
+  return "";
 }
 
 void DynamicSolver::run_until(const double end, const Observer &observer)

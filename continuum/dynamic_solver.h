@@ -48,6 +48,7 @@ struct DynamicSettings
   double relative_tolerance = 1e-10;       ///< residual over the forces at work [-], in (0, 1)
   unsigned int max_newton_iterations = 20; ///< per time step
   unsigned int max_halvings = 10;          ///< of a Newton step that leaves det F <= 0
+  unsigned int max_step_halvings = 4;      ///< of a time step that cannot be solved; 0: it fails at once
   LinearSettings linear = LinearSettings();
 };
 
@@ -117,8 +118,9 @@ public:
   /// same degree and conditions, for one.
   void start(const Vector &displacement, const Vector &velocity, double time = 0.);
 
-  /// One time step. Throws SolverFailed with the history if it cannot be solved; the state is then the one before.
-  /// Throws InvalidInput before start().
+  /// One time step. One that cannot be solved is repeated from its start in two halves, and these likewise; throws
+  /// SolverFailed with the history if that does not help either, and the state is then the one before. Throws
+  /// InvalidInput before start().
   void step();
 
   /// Steps until the time is `end` [s] or, for want of a whole step, up to one step later. Throws as step().
@@ -131,6 +133,8 @@ public:
   void archive(Archive &archive);
 
   double time() const { return time_; } ///< [s]
+  /// Time steps that were made in parts since start().
+  unsigned long n_divided_steps() const { return n_divided_steps_; }
   double load_factor() const { return load_factor_; }
   const EnergyLedger &ledger() const { return ledger_; }
 
@@ -147,7 +151,7 @@ public:
   /// that of the time t to first order.
   const Vector &acceleration() const { return acceleration_; }
   const Sheet &sheet() const { return sheet_; }
-  /// Residuals of the last step; none at the start or from an archive.
+  /// Residuals of the last step, every attempt at it or at parts of it; none at the start or from an archive.
   const SolverReport &last_report() const { return report_; }
 
 private:
@@ -172,12 +176,15 @@ private:
   double norm_over_free(const Vector &x) const;
   double round_off(const Balance &state, const Vector &u) const;
   std::string attempt(Step &step, Vector &u);
+  std::string advance(double duration, double end);
+  std::string advance_in_parts(double duration, double end, unsigned int halvings);
   EnergyLedger settled(const Step &step, const Vector &u, const Vector &v) const;
   void take_stock(EnergyLedger &ledger, const Vector &u, const Vector &v, double load_factor) const;
 
   Sheet sheet_;
   Inertia inertia_;
   DynamicSettings settings_;
+  double duration_; // of the step, or the part of one, that is being solved [s]
   const Viscosity *viscosity_;
   ViscousForces viscous_forces_;
   LoadFactor given_load_factor_;
@@ -201,6 +208,7 @@ private:
   double start_time_ = 0.;
   double initial_energy_ = 0.;
   unsigned long n_steps_ = 0;
+  unsigned long n_divided_steps_ = 0;
   double time_ = 0.;
   double load_factor_ = 0.;
   Vector displacement_;
@@ -216,6 +224,7 @@ void DynamicSolver::archive(Archive &archive)
   archive("start_time", start_time_);
   archive("initial_energy", initial_energy_);
   archive("steps", n_steps_);
+  archive("divided_steps", n_divided_steps_);
   archive("time", time_);
   archive("load_factor", load_factor_);
   archive("ledger", ledger_);

@@ -105,7 +105,7 @@ Multigrid::Assembler DynamicSolver::level_assembler(const double load_factor) co
 {
   const TimeRule &rule = settings_.rule;
   const double stiffness_share = 1. - rule.alpha_f;
-  const double mass_share = (1. - rule.alpha_m) / (rule.beta * settings_.time_step * settings_.time_step);
+  const double mass_share = (1. - rule.alpha_m) / (rule.beta * duration_ * duration_);
   return [=](const Sheet &level, const Vector &u, const AffineConstraints<double> &constraints, Sheet::Matrix &K)
   {
     Sheet::Matrix M;
@@ -127,7 +127,7 @@ void DynamicSolver::assemble_matrix(const Vector &u, const Vector &v, const doub
     diagonal.compress(VectorOperation::insert);
   };
   const TimeRule &rule = settings_.rule;
-  const double dt = settings_.time_step;
+  const double dt = duration_;
   sheet_.tangent(u, homogeneous_, matrix_, load_factor);
   take_diagonal(elastic_diagonal_);
   viscous_forces_.add_tangent(u, v, rule.gamma / (rule.beta * dt), homogeneous_, matrix_);

@@ -43,18 +43,17 @@ private:
   const double *own_; // a ghosted vector is sorted, so the own entries follow each other
 };
 
-// Integrates densities over cells and faces for one state u. Copied once for a loop (see mesh_loop).
+// Integrates densities over cells and faces for one state u.
 class Integrator
 {
 public:
   Integrator(const Sheet &sheet, const Sheet::Vector &u, const double load_factor, const Order order)
-    : sheet_(sheet), vector_(u), u_(u, sheet.owned()), load_factor_(load_factor), order_(order), tables_(sheet)
+    : sheet_(sheet), u_(u, sheet.owned()), load_factor_(load_factor), order_(order), tables_(sheet)
   {
     for (unsigned int n = 0; n < sheet.element().n_dofs_per_cell() / 2; ++n)
       for (unsigned int i = 0; i < 2; ++i)
         system_index_[i].push_back(sheet.element().component_to_system_index(i, n));
   }
-  Integrator(const Integrator &other) : Integrator(other.sheet_, other.vector_, other.load_factor_, other.order_) {}
 
   void cell(const Iterator &cell, Contributions &contributions)
   {
@@ -246,7 +245,6 @@ private:
   static constexpr std::pair<unsigned int, unsigned int> components[3] = {{0, 0}, {1, 1}, {0, 1}}; // of second_
 
   const Sheet &sheet_;
-  const Sheet::Vector &vector_;
   NodalValues u_;
   double load_factor_;
   Order order_;
@@ -266,12 +264,15 @@ private:
   std::array<FieldJet, 2> jets_; // of u on each side
   Density density_{};
 };
-} // namespace
 
-void integrate(const Sheet &sheet, const Sheet::Vector &u, const double load_factor, const Order order,
-               const std::function<void(const Contribution &)> &add)
+// Hands over what a cell and its faces contribute, in the order in which they are visited.
+struct AddingVisitor
 {
-  const auto cell_worker = [](const Iterator &cell, Integrator &integrator, Contributions &contributions)
+  Integrator &integrator;
+  const std::function<void(const Contribution &)> &add;
+  Contributions contributions;
+
+  void cell(const Iterator &cell)
   {
     try
     {
@@ -283,29 +284,37 @@ void integrate(const Sheet &sheet, const Sheet::Vector &u, const double load_fac
       place << ", in the cell about X = (" << cell->center()[0] << ", " << cell->center()[1] << ") m";
       throw NonPhysicalState(failure.what() + place.str());
     }
-  };
-  const auto copier = [&](const Contributions &contributions)
+  }
+  void boundary(const Iterator &cell, const unsigned int face) { integrator.boundary(cell, face, contributions); }
+  void interior(const Iterator &cell, const unsigned int face, const unsigned int subface, const Iterator &neighbor,
+                const unsigned int neighbor_face, const unsigned int neighbor_subface)
+  {
+    integrator.interior(cell, face, subface, neighbor, neighbor_face, neighbor_subface, contributions);
+  }
+  void cell_end()
   {
     for (const Contribution &contribution : contributions)
       add(contribution);
-  };
-  const Integrator integrator(sheet, u, load_factor, order);
-  const Iterator begin = sheet.dof_handler().begin_active();
-  const Iterator end = sheet.dof_handler().end();
-  if (!sheet.has_gradient())
+    contributions.clear();
+  }
+};
+} // namespace
+
+void integrate(const Sheet &sheet, const Sheet::Vector &u, const double load_factor, const Order order,
+               const std::function<void(const Contribution &)> &add)
+{
+  Integrator integrator(sheet, u, load_factor, order);
+  AddingVisitor visitor{integrator, add, {}};
+  if (sheet.has_gradient())
   {
-    MeshWorker::mesh_loop(begin, end, cell_worker, copier, integrator, Contributions(), MeshWorker::assemble_own_cells);
+    for_each_cell_and_face(sheet.dof_handler(), visitor);
     return;
   }
-  const auto boundary_worker = [](const Iterator &cell, const unsigned int face, Integrator &worker,
-                                  Contributions &contributions) { worker.boundary(cell, face, contributions); };
-  const auto face_worker = [](const Iterator &cell, const unsigned int face, const unsigned int subface,
-                              const Iterator &neighbor, const unsigned int neighbor_face,
-                              const unsigned int neighbor_subface, Integrator &worker, Contributions &contributions)
-  { worker.interior(cell, face, subface, neighbor, neighbor_face, neighbor_subface, contributions); };
-  MeshWorker::mesh_loop(begin, end, cell_worker, copier, integrator, Contributions(),
-                        MeshWorker::assemble_own_cells | MeshWorker::assemble_boundary_faces |
-                          MeshWorker::assemble_own_interior_faces_once | MeshWorker::assemble_ghost_faces_once,
-                        boundary_worker, face_worker);
+  for (const Iterator &cell : sheet.dof_handler().active_cell_iterators())
+    if (cell->is_locally_owned())
+    {
+      visitor.cell(cell);
+      visitor.cell_end();
+    }
 }
 } // namespace continuum

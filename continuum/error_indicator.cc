@@ -21,7 +21,7 @@ struct FaceShare
   types::global_cell_index cells[2];
   double eta_squared;
 };
-using FaceShares = std::vector<FaceShare>;
+using Iterator = DoFHandler<2>::active_cell_iterator;
 
 // Fields on one side of a face.
 struct Side
@@ -49,10 +49,8 @@ public:
     shear_modulus_ = sheet.constitution().local->tangent(I)[0][1][0][1];
     normal_stiffness_ = sheet.has_gradient() ? sheet.constitution().gradient->normal_stiffness() : 0.;
   }
-  FaceIntegrator(const FaceIntegrator &other) : FaceIntegrator(other.sheet_, other.u_) {}
 
-  template <typename Cell>
-  FaceShare face(const Cell &cell, const unsigned int f, const unsigned int sub, const Cell &neighbor,
+  FaceShare face(const Iterator &cell, const unsigned int f, const unsigned int sub, const Iterator &neighbor,
                  const unsigned int nf, const unsigned int nsub)
   {
     values_.reinit(cell, f, sub, neighbor, nf, nsub);
@@ -96,6 +94,23 @@ private:
   double normal_stiffness_;
   Side sides_[2];
 };
+
+struct IndicatorVisitor
+{
+  FaceIntegrator integrator;
+  LinearAlgebra::distributed::Vector<double> &eta_squared;
+
+  void cell(const Iterator &) {}
+  void boundary(const Iterator &, unsigned int) {}
+  void interior(const Iterator &cell, const unsigned int face, const unsigned int subface, const Iterator &neighbor,
+                const unsigned int neighbor_face, const unsigned int neighbor_subface)
+  {
+    const FaceShare share = integrator.face(cell, face, subface, neighbor, neighbor_face, neighbor_subface);
+    for (const types::global_cell_index each : share.cells)
+      eta_squared(each) += share.eta_squared;
+  }
+  void cell_end() {}
+};
 } // namespace
 
 Vector<float> error_indicators(const Sheet &sheet, const Sheet::Vector &u)
@@ -105,22 +120,8 @@ Vector<float> error_indicators(const Sheet &sheet, const Sheet::Vector &u)
   const GuardedWork guarded(
     [&]
     {
-      using Iterator = DoFHandler<2>::active_cell_iterator;
-      const auto face_worker = [](const Iterator &cell, const unsigned int f, const unsigned int sub,
-                                  const Iterator &neighbor, const unsigned int nf, const unsigned int nsub,
-                                  FaceIntegrator &integrator, FaceShares &shares)
-      { shares.push_back(integrator.face(cell, f, sub, neighbor, nf, nsub)); };
-      const auto copier = [&](const FaceShares &shares)
-      {
-        for (const FaceShare &share : shares)
-          for (const types::global_cell_index cell : share.cells)
-            eta_squared(cell) += share.eta_squared;
-      };
-      const Iterator begin = sheet.dof_handler().begin_active();
-      const Iterator end = sheet.dof_handler().end();
-      MeshWorker::mesh_loop(begin, end, {}, copier, FaceIntegrator(sheet, u), FaceShares(),
-                            MeshWorker::assemble_own_interior_faces_once | MeshWorker::assemble_ghost_faces_once, {},
-                            face_worker);
+      IndicatorVisitor visitor{{sheet, u}, eta_squared};
+      for_each_cell_and_face(sheet.dof_handler(), visitor);
     });
   eta_squared.compress(VectorOperation::add);
   guarded.agree(sheet.communicator());

@@ -19,6 +19,10 @@ public:
 
   virtual ~GradientLaw() = default;
 
+  /// Returns whether B = 0 for every F, G and Z. Such a law is treated as absent: no gradient energy and no face terms.
+  /// A law that vanishes only for some F must return false.
+  virtual bool is_zero() const { return false; }
+
   /// B(F; G, Z) [Pa].
   virtual double form(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const = 0;
 

@@ -12,6 +12,7 @@ public:
   /// `shear_modulus` mu [Pa] > 0 and `length` l_s [m] >= 0. Throws InvalidMaterial otherwise.
   IsotropicGradient(double shear_modulus, double length);
 
+  bool is_zero() const override { return modulus_ == 0.; }
   double form(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override;
   dealii::Tensor<2, 2> form_by_F(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override;
   dealii::Tensor<4, 2> form_by_FF(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override;

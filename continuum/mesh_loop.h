@@ -1,28 +1,53 @@
 #pragma once
 
-#include <deal.II/base/config.h>
-#include <deal.II/base/template_constraints.h>
 #include <deal.II/base/types.h>
-#include <deal.II/base/work_stream.h>
-#include <deal.II/grid/filtered_iterator.h>
-#include <deal.II/grid/tria.h>
-#include <deal.II/meshworker/assemble_flags.h>
-#include <deal.II/meshworker/dof_info.h>
-#include <deal.II/meshworker/integration_info.h>
-#include <deal.II/meshworker/local_integrator.h>
-#include <deal.II/meshworker/loop.h>
+#include <deal.II/dofs/dof_handler.h>
 
-/// @file
-/// deal.II's MeshWorker::mesh_loop, which continuum/ includes from here.
+namespace continuum
+{
+/// Calls `visit.cell(cell)` with each active cell that this rank owns and then, for each of its faces in turn,
+///     visit.boundary(cell, face)     where nothing is beyond, nor a periodic edge;
+///     visit.interior(cell, face, subface, neighbor, neighbor_face, neighbor_subface)     else,
+/// and `visit.cell_end()` after the last of them. Over all ranks a face between cells is visited once: from the finer
+/// cell, of equal ones from that of the rank with the smaller number, on one rank from the first.
 ///
-/// Where deal.II checks itself, version 9.4 asserts `!cell->neighbor_is_coarser(face)` of cells of one level, also on
-/// periodic faces. There the cell has a periodic neighbour and no other, so the question itself is refused. The loop is
-/// therefore compiled without its own assertions; those of all that it calls stay, since what it includes comes before.
-
-#pragma push_macro("Assert")
-#undef Assert
-#define Assert(condition, exception)                                                                                   \
-  {                                                                                                                    \
+/// `subface` is numbers::invalid_unsigned_int, and so is `neighbor_subface` unless the neighbor is coarser. The order
+/// of calls is that of deal.II's MeshWorker::mesh_loop, which in version 9.4 fails an assertion of its own on periodic
+/// faces in debug mode.
+template <class Visitor>
+void for_each_cell_and_face(const dealii::DoFHandler<2> &dofs, Visitor &visit)
+{
+  constexpr unsigned int whole = dealii::numbers::invalid_unsigned_int;
+  for (const auto &cell : dofs.active_cell_iterators())
+  {
+    if (!cell->is_locally_owned())
+      continue;
+    visit.cell(cell);
+    for (const unsigned int face : cell->face_indices())
+    {
+      const bool periodic = cell->has_periodic_neighbor(face);
+      if (cell->at_boundary(face) && !periodic)
+      {
+        visit.boundary(cell, face);
+        continue;
+      }
+      const auto neighbor = cell->neighbor_or_periodic_neighbor(face);
+      if (periodic ? cell->periodic_neighbor_is_coarser(face) : cell->neighbor_is_coarser(face))
+      {
+        const auto [neighbor_face, neighbor_subface] = periodic
+                                                         ? cell->periodic_neighbor_of_coarser_periodic_neighbor(face)
+                                                         : cell->neighbor_of_coarser_neighbor(face);
+        visit.interior(cell, face, whole, neighbor, neighbor_face, neighbor_subface);
+        continue;
+      }
+      const bool from_beyond =
+        neighbor->has_children() ||
+        (neighbor->is_locally_owned() ? neighbor < cell : neighbor->subdomain_id() < cell->subdomain_id());
+      if (!from_beyond)
+        visit.interior(cell, face, whole, neighbor,
+                       periodic ? cell->periodic_neighbor_face_no(face) : cell->neighbor_face_no(face), whole);
+    }
+    visit.cell_end();
   }
-#include <deal.II/meshworker/mesh_loop.h>
-#pragma pop_macro("Assert")
+}
+} // namespace continuum

@@ -41,7 +41,7 @@ unsigned int mapping_degree(const Sheet::Mesh &mesh, const unsigned int degree)
 
 Sheet::Sheet(const Mesh &mesh, const Constitution &constitution, const unsigned int degree, Conditions conditions)
   : mesh_(mesh), constitution_(constitution), conditions_(std::move(conditions)), degree_(checked_degree(degree)),
-    normal_stiffness_(constitution.gradient ? constitution.gradient->normal_stiffness() : 0.),
+    normal_stiffness_(constitution.has_gradient() ? constitution.gradient->normal_stiffness() : 0.),
     element_(FE_Q<2>(degree), 2), mapping_(mapping_degree(mesh, degree)), dof_handler_(mesh)
 {
   check_input();
@@ -62,6 +62,8 @@ void Sheet::check_input() const
   };
   require(mesh_.n_levels() > 0, "a sheet needs a mesh with cells");
   require(!has_gradient() || degree_ >= 2, "a gradient law needs elements of degree 2 or more");
+  require(!has_gradient() || normal_stiffness_ > 0.,
+          "a gradient law needs a positive normal stiffness at F = I, which scales the penalty on the faces");
   require(constitution_.penalty > 0. && std::isfinite(constitution_.penalty),
           "the interior penalty must be positive and finite");
   const auto ids = mesh_.get_boundary_ids();

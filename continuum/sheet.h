@@ -117,8 +117,8 @@ public:
   const dealii::MappingQ<2> &mapping() const { return mapping_; }
   /// What makes the displacement one field: hanging nodes and periodic edges (see shared_constraints).
   const dealii::AffineConstraints<double> &continuity() const { return continuity_; }
-  /// Whether there are face terms: a gradient law that is not zero.
-  bool has_gradient() const { return normal_stiffness_ > 0.; }
+  /// Whether there is a gradient energy, and with it face terms.
+  bool has_gradient() const { return constitution_.has_gradient(); }
   /// Penalty [Pa m] on faces that are `extent` [m] of a cell away from the next: gamma p (p + 1) / h * stiffness.
   double penalty(double extent) const;
   const dealii::IndexSet &owned() const { return owned_; }

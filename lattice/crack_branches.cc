@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <stdexcept>
 
 namespace lattice
 {
@@ -39,6 +40,8 @@ double branched_fraction(const std::vector<BreakRecord> &breaks, double X_begin,
   const double width = rule.column_width * lattice_spacing;
   if (!(X_end - X_begin >= width))
     return 0.;
+  if (!(X_end - X_begin < 1e9 * width))
+    throw std::invalid_argument("branches are counted in fewer than 1e9 columns");
   const auto n_columns = static_cast<std::size_t>((X_end - X_begin) / width);
   std::vector<std::vector<double>> columns(n_columns);
   for (const BreakRecord &bond : breaks)

@@ -35,6 +35,7 @@ struct BranchRule
 /// @param X_begin, X_end stretch looked at, reference [m]
 /// @param lattice_spacing d [m], > 0
 /// @return in [0, 1]; 0 where the stretch holds no whole column
+/// @throws std::invalid_argument if it holds 1e9 columns or more
 double branched_fraction(const std::vector<BreakRecord> &breaks, double X_begin, double X_end, double lattice_spacing,
                          const BranchRule &rule = {});
 

@@ -20,6 +20,7 @@ namespace lattice
 class FieldWriter
 {
 public:
+  /// The lattice must outlive this object.
   FieldWriter(const TriangularLattice &lattice, const Material &material, std::filesystem::path directory);
 
   /// Adds the state as the next frame, in the place of the last one if that is of the same time. @throws
@@ -38,7 +39,7 @@ public:
 
 private:
   const TriangularLattice &lattice_;
-  const Material &material_;
+  Material material_;
   FrameSeries series_;
 };
 

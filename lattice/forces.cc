@@ -14,24 +14,27 @@ constexpr std::ptrdiff_t reach = 2; // of bonds, in rows
 } // namespace
 
 Forces::Forces(const RowBand &band, const Material &material)
-  : band_(band), lattice_(band.lattice()), rows_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - lattice_.stride())),
+  : band_(band),
+    lattice_(band.lattice()), laws_{{material.nearest.law, material.shell(n_nearest_kinds) ? material.next_nearest->law
+                                                                                           : material.nearest.law}},
+    rows_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - lattice_.stride())),
     columns_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - 1)), row_viscous_power_(lattice_.rows(), 0.),
-    row_events_(lattice_.rows(), 0)
+    row_events_(lattice_.rows(), 0), row_short_bonds_(lattice_.rows(), 0)
 {
   for (const std::size_t kind : {std::size_t{0}, n_nearest_kinds})
     if (const Shell *shell = material.shell(kind))
     {
       const double rest_length = lattice_.rest_length(kind), section = cross_section(*shell, lattice_);
-      const std::size_t i = kind / n_nearest_kinds;
-      laws_[i] = shell->law;
-      constants_.shells[i] = {rest_length, section, section * shell->viscosity / rest_length};
+      constants_.shells[kind / n_nearest_kinds] = {rest_length, section, section * shell->viscosity / rest_length};
     }
 }
 
 void Forces::evaluate(const State &state, const Field &vx, const Field &vy, const RowWork &work)
 {
   const bool threads = lattice_.n_places() >= worth_threads;
-  scratch_.resize(threads ? static_cast<std::size_t>(omp_get_max_threads()) : 1, Scratch(lattice_.stride()));
+  const std::size_t n_scratch = threads ? static_cast<std::size_t>(omp_get_max_threads()) : 1;
+  if (scratch_.size() != n_scratch)
+    scratch_.resize(n_scratch, Scratch(lattice_.stride()));
 #pragma omp parallel if (threads)
   {
     const auto first = static_cast<std::ptrdiff_t>(band_.rows().begin);
@@ -78,6 +81,7 @@ void Forces::evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrd
     const kernels::RowSums sums = bonds_of_row(motion, index, row, scratch.bonds, ahead);
     row_viscous_power_[index] = sums.viscous_power;
     row_events_[index] = sums.has_events ? 1 : 0;
+    row_short_bonds_[index] = sums.has_short_bonds ? 1 : 0;
     gather_row(row, scratch);
     work.after(index, scratch.fx.data(), scratch.fy.data());
   }
@@ -109,7 +113,8 @@ kernels::RowOfBonds Forces::row_of_bonds(const Motion &motion, std::size_t row) 
                             state.breaking_stretch,
                             state.toughened_stretch,
                             {},
-                            {}};
+                            nullptr,
+                            0};
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
     bonds.shift[kind] = lattice_.shift(kind, row);
   return bonds;
@@ -125,7 +130,8 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
                                       const std::vector<const double *> &ahead) const
 {
   kernels::RowOfBonds all = row_of_bonds(motion, from);
-  all.ahead = ahead;
+  all.ahead = ahead.data();
+  all.n_ahead = ahead.size();
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
     for (std::size_t component = 0; component < 2; ++component)
       all.force[kind][component] = bonds.at(row, kind, component);

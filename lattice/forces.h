@@ -28,6 +28,10 @@ public:
   /// event), which is the default. For toughening on retraction.
   void watch_retraction(const std::array<double, n_bond_kinds> &stretch) { constants_.retraction_stretch = stretch; }
 
+  /// Enables row_has_short_bonds() for bonds whose stretch is below `stretch` [-], but for linear ones; 0: for none,
+  /// the default.
+  void watch_short_bonds(double stretch) { constants_.shortness_limit = 1. / stretch; }
+
   /// What an integrator does with each row of the band during an evaluation, while it is in cache: once, in any order
   /// of rows, by several threads.
   struct RowWork
@@ -61,6 +65,9 @@ public:
 
   /// Whether a row holds bonds that were stretched past their limit (or retracted) at the last evaluation.
   bool row_has_events(std::size_t row) const { return row_events_[row] != 0; }
+
+  /// Whether a row holds short bonds, as of the last evaluation; see watch_short_bonds().
+  bool row_has_short_bonds(std::size_t row) const { return row_short_bonds_[row] != 0; }
 
   /// Whether one of the bonds that start in a row of the band will be past its limit, or have retracted, when their
   /// ends have gone on for `ahead` [s] at the velocities of the state.
@@ -128,7 +135,7 @@ private:
   std::vector<Scratch> scratch_; // one a thread
   Field fx_, fy_;
   Field row_viscous_power_;
-  std::vector<std::uint8_t> row_events_;
+  std::vector<std::uint8_t> row_events_, row_short_bonds_;
 };
 
 } // namespace lattice

@@ -17,15 +17,28 @@ void require(bool condition, const char *message)
     throw std::invalid_argument(message);
 }
 
+double factor(const NoToughening &)
+{
+  return 1.;
+}
+template <class Rule>
+double factor(const Rule &rule)
+{
+  return rule.factor;
+}
+
 } // namespace
 
 Fracture::Fracture(const RowBand &band, const Material &material, double breaking_stretch, Toughening toughening,
                    const Eigen::Matrix2d &deformation)
   : band_(band), lattice_(band.lattice()), material_(material), breaking_stretch_(breaking_stretch),
+    toughened_stretch_(breaking_stretch * std::visit([](const auto &rule) { return factor(rule); }, toughening)),
     toughening_(toughening), tip_losses_((material.coordination() + 3) / 4)
 {
   require(breaking_stretch > 0., "the breaking stretch must be positive");
   require(lattice_.images().empty(), "a periodic sheet does not break: a crack has no tip there");
+  if (const auto *given = std::get_if<GivenToughening>(&toughening_))
+    require(given->factor >= 1., "toughening of given bonds needs a factor >= 1");
   if (const auto *behind = std::get_if<BehindTipToughening>(&toughening_))
     require(behind->distance >= 0. && behind->factor >= 1.,
             "toughening behind the tip needs distance >= 0, factor >= 1");
@@ -39,12 +52,10 @@ Fracture::Fracture(const RowBand &band, const Material &material, double breakin
   }
 }
 
-void Fracture::watch(State &state, Forces &forces) const
+void Fracture::configure(State &state, Forces &forces) const
 {
-  if (const auto *behind = std::get_if<BehindTipToughening>(&toughening_))
-    state.toughened_stretch = breaking_stretch_ * behind->factor;
-  if (const auto *retraction = std::get_if<RetractionToughening>(&toughening_))
-    state.toughened_stretch = breaking_stretch_ * retraction->factor;
+  state.breaking_stretch = breaking_stretch_;
+  state.toughened_stretch = toughened_stretch_;
   forces.watch_retraction(retraction_stretch_);
 }
 
@@ -62,14 +73,21 @@ std::vector<std::uint8_t> Fracture::rows_with_events_ahead(const State &state, c
   return rows;
 }
 
-double Fracture::decisive_stretch(const State &state, std::size_t place, std::size_t kind) const
+// With the expressions of the loops over a row: one that they do not flag has no event, one that they flag has one.
+Fracture::Event Fracture::event(const State &state, std::size_t place, std::size_t kind) const
 {
+  const double longest = limit(state, place, kind);
+  const double shortest = state.bonds.toughened(place, kind) ? 0. : retraction_stretch_[kind];
+  const auto among = [](double value, double from, double to) {
+    return value > to ? Event::broken : value < from ? Event::retracted : Event::none;
+  };
   if (!(look_ahead_ > 0.))
-    return stretch(state, lattice_, place, kind);
+    return among(stretch(state, lattice_, place, kind), shortest, longest);
   const std::size_t far = place + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(place)));
-  return std::hypot((state.x[far] - state.x[place]) + look_ahead_ * (state.vx[far] - state.vx[place]),
-                    (state.y[far] - state.y[place]) + look_ahead_ * (state.vy[far] - state.vy[place])) /
-         lattice_.rest_length(kind);
+  const double l = lattice_.rest_length(kind);
+  return among(squared_length_after(look_ahead_, state.x[far] - state.x[place], state.y[far] - state.y[place],
+                                    state.vx[far] - state.vx[place], state.vy[far] - state.vy[place]),
+               squared_length(shortest, l), squared_length(longest, l));
 }
 
 double Fracture::bond_energy(const State &state, std::size_t place, std::size_t kind) const
@@ -96,10 +114,10 @@ Fracture::Loss Fracture::loss(const State &state, std::size_t place, std::size_t
 }
 
 // Takes bonds out of the sheet. @return those of all ranks in the order of storage, if `own` ones are in it
-std::vector<BrokenBond> Fracture::lose_bonds(State &state, const std::vector<Loss> &own) const
+std::vector<BrokenBond> Fracture::lose_bonds(State &state, const std::vector<Loss> &own, int *number) const
 {
   std::vector<BrokenBond> lost;
-  for (const Loss &bond : band_.joined(own))
+  for (const Loss &bond : band_.joined(own, number))
   {
     const std::size_t far =
       bond.place + static_cast<std::size_t>(lattice_.shift(bond.kind, lattice_.row_of(bond.place)));
@@ -135,11 +153,12 @@ double Fracture::remove_sites(State &state, const std::vector<std::size_t> &plac
   for (const auto &[place, kind] : bonds)
     own.push_back(loss(state, place, kind));
   double removed_energy = 0.;
-  for (const BrokenBond &bond : lose_bonds(state, own))
+  for (const BrokenBond &bond : lose_bonds(state, own, nullptr))
     removed_energy += bond.energy;
   for (const std::size_t place : places)
   {
     state.removed[place] = 1;
+    state.held[place] = 0;
     state.inverse_mass[place] = 0.;
     state.vx[place] = state.vy[place] = state.ax[place] = state.ay[place] = 0.;
   }
@@ -147,10 +166,11 @@ double Fracture::remove_sites(State &state, const std::vector<std::size_t> &plac
 }
 
 const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, const Field &evaluated_vx,
-                                               const Field &evaluated_vy)
+                                               const Field &evaluated_vy, int *number)
 {
+  if (state.breaking_stretch != breaking_stretch_ || state.toughened_stretch != toughened_stretch_)
+    throw std::logic_error("the breaking stretches of a state are set by configure() before bonds break");
   std::vector<Loss> own;
-  const auto *retraction = std::get_if<RetractionToughening>(&toughening_);
   std::vector<std::uint8_t> ahead;
   if (look_ahead_ > 0.)
     ahead = rows_with_events_ahead(state, forces);
@@ -165,15 +185,15 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
       {
         if (!state.bonds.present(place, kind))
           continue;
-        const double current = decisive_stretch(state, place, kind);
-        if (current > limit(state, place, kind))
+        const Event now = event(state, place, kind);
+        if (now == Event::broken)
           own.push_back(loss(state, place, kind));
-        else if (retraction != nullptr && current < retraction_stretch_[kind])
+        else if (now == Event::retracted)
           state.bonds.toughen(place, kind);
       }
     }
   }
-  broken_ = lose_bonds(state, own);
+  broken_ = lose_bonds(state, own, number);
   for (const BrokenBond &bond : broken_)
     forces.remove_bond(state, evaluated_vx, evaluated_vy, bond.near, bond.kind);
 
@@ -236,14 +256,14 @@ void Fracture::toughen_behind_tip(State &state)
 std::optional<StretchedBond> nearest_to_breaking(const State &state, const TriangularLattice &lattice)
 {
   std::optional<StretchedBond> nearest;
-  for_each_bond(state, lattice,
-                [&](std::size_t near, std::size_t kind, std::size_t far)
-                {
-                  const StretchedBond bond{near, far, kind, stretch(state, lattice, near, kind),
-                                           limit(state, near, kind)};
-                  if (!nearest || bond.stretch / bond.limit > nearest->stretch / nearest->limit)
-                    nearest = bond;
-                });
+  for_each_bond(
+    state, lattice,
+    [&](std::size_t near, std::size_t kind, std::size_t far)
+    {
+      const StretchedBond bond{near, far, kind, stretch(state, lattice, near, kind), limit(state, near, kind)};
+      if (!nearest || bond.stretch / bond.limit > nearest->stretch / nearest->limit)
+        nearest = bond;
+    });
   return nearest;
 }
 

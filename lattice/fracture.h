@@ -9,9 +9,16 @@
 namespace lattice
 {
 
-/// lam_f stays what it is.
+/// No toughening: one breaking stretch for all bonds.
 struct NoToughening
 {
+};
+
+/// Bonds that the caller toughened in advance (BondStates::toughen) have lam_f multiplied by `factor`; no others
+/// toughen.
+struct GivenToughening
+{
+  double factor; ///< [-], >= 1; infinity: these bonds never break
 };
 
 /// Bonds whose reference midpoint lies at X < X_tip - distance have lam_f multiplied by `factor`, for good.
@@ -30,7 +37,7 @@ struct RetractionToughening
 };
 
 /// How bonds toughen behind the crack.
-using Toughening = std::variant<NoToughening, BehindTipToughening, RetractionToughening>;
+using Toughening = std::variant<NoToughening, GivenToughening, BehindTipToughening, RetractionToughening>;
 
 /// A bond that broke.
 struct BrokenBond
@@ -67,13 +74,15 @@ class Fracture
 {
 public:
   /// @param band rows whose bonds may break, that of the simulation
+  /// @param breaking_stretch lam_f [-], > 0, of a bond that has not toughened
   /// @param deformation F of the loaded, unbroken sheet: the stretch that retraction is measured against
   /// @throws std::invalid_argument for a rule out of its range
   Fracture(const RowBand &band, const Material &material, double breaking_stretch, Toughening toughening,
            const Eigen::Matrix2d &deformation);
 
-  /// Tells `state` what toughened bonds stand, and has `forces` report the bonds this object wants to hear of.
-  void watch(State &state, Forces &forces) const;
+  /// Sets the breaking stretches of virgin and of toughened bonds in `state`, and enables retraction events in
+  /// `forces`. To be called before apply(); a Simulation does.
+  void configure(State &state, Forces &forces) const;
 
   /// Has a bond break, or toughen, in the evaluation after which it will come to its limit within `duration` [s], >= 0,
   /// at the velocities of its ends; 0 by default: once it is past it. Half a time step makes it the end of a step that
@@ -88,9 +97,11 @@ public:
   /// Breaks every bond beyond its limit at the last evaluation of `forces`, or soon to be beyond it, and takes it out
   /// of `forces`, toughens what is to be toughened, and moves the tip. Velocities of the state must be known in the
   /// halo if this looks ahead. Collective.
+  /// @param number in: of this rank, out: the largest over all ranks; see RowBand::joined
   /// @return the bonds of the whole sheet that broke now, in the order of storage
+  /// @throws std::logic_error for a state that configure() has not set
   const std::vector<BrokenBond> &apply(State &state, Forces &forces, const Field &evaluated_vx,
-                                       const Field &evaluated_vy);
+                                       const Field &evaluated_vy, int *number = nullptr);
 
   /// Finds the tip among all sites and toughens behind it; for a state that was cut or loaded from outside.
   void locate_tip(State &state);
@@ -109,18 +120,25 @@ public:
 
 private:
   std::vector<std::uint8_t> rows_with_events_ahead(const State &state, const Forces &forces) const;
-  double decisive_stretch(const State &state, std::size_t place, std::size_t kind) const;
+  enum class Event
+  {
+    none,
+    broken,   // past the limit
+    retracted // to be toughened
+  };
+  Event event(const State &state, std::size_t place, std::size_t kind) const;
   struct Loss;
   Loss loss(const State &state, std::size_t place, std::size_t kind) const;
-  std::vector<BrokenBond> lose_bonds(State &state, const std::vector<Loss> &own) const;
+  std::vector<BrokenBond> lose_bonds(State &state, const std::vector<Loss> &own, int *number) const;
   void consider_tip(const State &state, std::size_t place);
   void toughen_behind_tip(State &state);
   double bond_energy(const State &state, std::size_t place, std::size_t kind) const;
 
   RowBand band_;
   const TriangularLattice &lattice_;
-  const Material &material_;
+  Material material_;
   double breaking_stretch_;
+  double toughened_stretch_;
   Toughening toughening_;
   std::array<double, n_bond_kinds> retraction_stretch_{};
   double look_ahead_ = 0.; // [s]

@@ -14,6 +14,7 @@ namespace lattice
 class MotionWriter
 {
 public:
+  /// The lattice must outlive this object.
   MotionWriter(const TriangularLattice &lattice, std::filesystem::path directory);
 
   /// Adds the state as the next frame, in the place of the last one if that is of the same time. @throws

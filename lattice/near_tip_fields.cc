@@ -70,8 +70,8 @@ NearTipGrid make_grid(const TriangularLattice &lattice, const NearTipOptions &op
   grid.pitch_Y = along ? across : d;
   const auto points = [](double extent, double pitch)
   {
-    if (!(extent >= pitch) || !std::isfinite(extent))
-      throw std::invalid_argument("the window around the tip must reach one lattice row at least");
+    if (!(extent >= pitch && extent < 1e9 * pitch))
+      throw std::invalid_argument("the window around the tip must reach one lattice row at least, and less than 1e9");
     return static_cast<int>(std::floor(extent / pitch * (1. + 1e-12)));
   };
   grid.behind = points(options.behind, grid.pitch_X);
@@ -282,7 +282,7 @@ NearTipSample NearTipSampler::look(const State &state, const Axis &axis, std::si
   const double part = (axis.reference.x() - options_.X_begin) / (options_.X_end - options_.X_begin);
   NearTipSample sample{axis.reference.x(),
                        axis.reference.y(),
-                       part > 0. ? std::min(n_blocks - 1, static_cast<std::size_t>(part * n_blocks)) : 0,
+                       part > 0. ? static_cast<std::size_t>(std::min(part * n_blocks, n_blocks - 1.)) : 0,
                        NearTipSums(grid_),
                        {}};
   sample.sums.add_sample();

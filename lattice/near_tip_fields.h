@@ -163,6 +163,7 @@ class NearTipSampler
 public:
   static constexpr std::size_t n_blocks = 4;
 
+  /// The lattice must outlive this object.
   NearTipSampler(const TriangularLattice &lattice, const Material &material, const NearTipOptions &options);
 
   /// To be called at equal intervals of time, wherever the tip is. @param tip its place
@@ -217,7 +218,7 @@ private:
   void fold_until(double X);
 
   const TriangularLattice &lattice_;
-  const Material &material_;
+  Material material_;
   NearTipOptions options_;
   NearTipGrid grid_;
   SiteEvaluator evaluator_;

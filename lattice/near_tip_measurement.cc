@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <limits>
+#include <stdexcept>
 
 #include <Eigen/LU>
 
@@ -300,7 +301,10 @@ std::optional<OpeningStress> opening_stress(const NearTipField &field, double ra
 std::optional<double> wedge_angle(const std::vector<Eigen::Vector2d> &sites, const Eigen::Vector2d &pitch, double from,
                                   double to)
 {
-  const auto n_strips = static_cast<std::size_t>((to - from) / pitch.x());
+  const double strips_between = (to - from) / pitch.x();
+  if (!(pitch.x() > 0. && pitch.y() > 0. && strips_between >= 0. && strips_between < 1e9))
+    throw std::invalid_argument("a wedge is measured in strips of a positive pitch from one distance to a larger one");
+  const auto n_strips = static_cast<std::size_t>(strips_between);
   std::vector<std::vector<Eigen::Vector2d>> strips(n_strips);
   for (const Eigen::Vector2d &site : sites)
   {

@@ -80,7 +80,8 @@ std::optional<OpeningStress> opening_stress(const NearTipField &field, double ra
 /// Strips of width `pitch.x()` along x divide -to <= x <= -from. In each the widest gap in y between sites that follow
 /// each other is the opening, if it exceeds two pitches, and the sites on either side of it are the flanks, to each of
 /// which a straight line y(x) is fitted. None unless half the strips show an opening.
-/// @param pitch of the lattice in the loaded sheet along x and y [m]
+/// @param pitch of the lattice in the loaded sheet along x and y [m], > 0
+/// @throws std::invalid_argument for `to` < `from`, or a pitch or a distance out of range
 std::optional<double> wedge_angle(const std::vector<Eigen::Vector2d> &sites, const Eigen::Vector2d &pitch, double from,
                                   double to);
 

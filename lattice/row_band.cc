@@ -1,6 +1,7 @@
 #include "lattice/row_band.h"
 
 #include <algorithm>
+#include <array>
 #include <numeric>
 
 namespace lattice
@@ -97,11 +98,19 @@ double RowBand::sum(std::vector<double> values) const
   return std::accumulate(values.begin(), values.end(), 0.);
 }
 
-std::vector<char> RowBand::joined_bytes(const char *own, std::size_t size) const
+std::vector<char> RowBand::joined_bytes(const char *own, std::size_t size, int *number) const
 {
   const int own_size = static_cast<int>(size);
-  std::vector<int> sizes(n_ranks()), offsets(n_ranks(), 0);
-  MPI_Allgather(&own_size, 1, MPI_INT, sizes.data(), 1, MPI_INT, communicator_);
+  const std::array<int, 2> given{own_size, number != nullptr ? *number : 0};
+  std::vector<std::array<int, 2>> all_given(n_ranks());
+  MPI_Allgather(given.data(), 2, MPI_INT, all_given.data(), 2, MPI_INT, communicator_);
+  std::vector<int> sizes, offsets(n_ranks(), 0);
+  for (const auto &[of_size, of_number] : all_given)
+  {
+    sizes.push_back(of_size);
+    if (number != nullptr)
+      *number = std::max(*number, of_number);
+  }
   std::partial_sum(sizes.begin(), sizes.end() - 1, offsets.begin() + 1);
   std::vector<char> all(static_cast<std::size_t>(offsets.back() + sizes.back()));
   if (!all.empty())

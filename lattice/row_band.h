@@ -63,8 +63,9 @@ public:
   double sum(std::vector<double> values) const;
 
   /// The lists of all ranks one after the other. Collective; costs one short message where all lists are empty.
+  /// @param number in: of this rank, out: the largest over all ranks, sent with the same message; nullptr: none
   template <class T>
-  std::vector<T> joined(const std::vector<T> &own) const;
+  std::vector<T> joined(const std::vector<T> &own, int *number = nullptr) const;
 
   /// Gives every rank the values of `fields` at some places. Collective. @param places the same on all ranks
   void share(const std::vector<std::size_t> &places, const std::vector<Field *> &fields) const;
@@ -75,7 +76,7 @@ public:
 
 private:
   std::size_t padded_row(std::size_t place) const { return place / lattice_->stride(); }
-  std::vector<char> joined_bytes(const char *own, std::size_t size) const;
+  std::vector<char> joined_bytes(const char *own, std::size_t size, int *number) const;
   void gather_bytes(void *field, std::size_t bytes_of_place, Rows rows) const;
 
   const TriangularLattice *lattice_;
@@ -86,12 +87,13 @@ private:
 };
 
 template <class T>
-std::vector<T> RowBand::joined(const std::vector<T> &own) const
+std::vector<T> RowBand::joined(const std::vector<T> &own, int *number) const
 {
   static_assert(std::is_trivially_copyable_v<T>);
   if (!is_shared())
     return own;
-  const std::vector<char> bytes = joined_bytes(reinterpret_cast<const char *>(own.data()), own.size() * sizeof(T));
+  const std::vector<char> bytes =
+    joined_bytes(reinterpret_cast<const char *>(own.data()), own.size() * sizeof(T), number);
   std::vector<T> all(bytes.size() / sizeof(T));
   // Not memcpy, which may not be given the null pointers of empty vectors.
   std::copy(bytes.begin(), bytes.end(), reinterpret_cast<char *>(all.data()));

@@ -179,7 +179,7 @@ bool any_event(const SheetConstants &sheet, const RowOfBonds &row, std::size_t s
 // Forces of the bonds of a kind. @return their stretch
 template <std::size_t kind, class Law>
 HWY_INLINE Lanes bonds_of_kind(const Law &law, const SheetConstants &sheet, const RowOfBonds &row, const Sites &near,
-                               Lanes vx, Lanes vy, const Lengths &lengths, Lanes &power)
+                               Lanes vx, Lanes vy, const Lengths &lengths, Lanes &power, Lanes &shortness)
 {
   const BondConstants &bond = sheet.shells[kind < n_nearest_kinds ? 0 : 1];
   const std::size_t far = near.first + static_cast<std::size_t>(row.shift[kind]);
@@ -188,10 +188,14 @@ HWY_INLINE Lanes bonds_of_kind(const Law &law, const SheetConstants &sheet, cons
   const Lanes rate = (load(row.vx + far) - vx) * nx + (load(row.vy + far) - vy) * ny;
   const Lanes stretch = stretch_of(bond, kind, lengths);
   const Lanes viscous = bond.damping * rate;
-  const Lanes axial = bond.cross_section * force(law, stretch, bond.rest_length * inverse) + viscous;
+  const Lanes inverse_stretch = bond.rest_length * inverse;
+  const Lanes axial = bond.cross_section * force(law, stretch, inverse_stretch) + viscous;
   store(axial * nx, row.force[kind][0] + near.first);
   store(axial * ny, row.force[kind][1] + near.first);
   power = power + viscous * rate;
+  // It is 0 for absent bonds; the stiffness of linear bonds does not depend on their stretch.
+  if constexpr (!std::is_same_v<Law, LinearBond>)
+    shortness.v = hn::Max(shortness.v, inverse_stretch.v);
   return stretch;
 }
 
@@ -227,8 +231,8 @@ RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, con
                       const RowOfBonds &given)
 {
   const RowOfBonds row = given; // a copy, which no store can change
-  const double *const *const ahead = row.ahead.data();
-  const std::size_t n_ahead = row.ahead.size();
+  const double *const *const ahead = row.ahead;
+  const std::size_t n_ahead = row.n_ahead;
   constexpr bool has_next_nearest = !std::is_same_v<NextNearest, NoBonds>;
   constexpr std::size_t n_kinds = has_next_nearest ? n_bond_kinds : n_nearest_kinds;
   const std::array<double, n_bond_kinds> retraction = sheet.retraction_stretch;
@@ -236,6 +240,7 @@ RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, con
   Lanes power[block];
   for (Lanes &sum : power)
     sum = lanes(0.);
+  Lanes shortness = lanes(0.);
   bool has_events = false;
   const std::size_t end = (row.n + block - 1) / block * block;
   Lengths lengths[2];
@@ -253,14 +258,14 @@ RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, con
     Lanes &sum = power[site % block / width()];
     const Lengths &here = lengths[turn];
     Extremes<watches_retraction> extremes{lanes(0.), lanes(1e30)};
-    extremes.add(bonds_of_kind<0>(nearest, sheet, row, near, vx, vy, here, sum), retraction[0]);
-    extremes.add(bonds_of_kind<1>(nearest, sheet, row, near, vx, vy, here, sum), retraction[1]);
-    extremes.add(bonds_of_kind<2>(nearest, sheet, row, near, vx, vy, here, sum), retraction[2]);
+    extremes.add(bonds_of_kind<0>(nearest, sheet, row, near, vx, vy, here, sum, shortness), retraction[0]);
+    extremes.add(bonds_of_kind<1>(nearest, sheet, row, near, vx, vy, here, sum, shortness), retraction[1]);
+    extremes.add(bonds_of_kind<2>(nearest, sheet, row, near, vx, vy, here, sum, shortness), retraction[2]);
     if constexpr (has_next_nearest)
     {
-      extremes.add(bonds_of_kind<3>(next_nearest, sheet, row, near, vx, vy, here, sum), retraction[3]);
-      extremes.add(bonds_of_kind<4>(next_nearest, sheet, row, near, vx, vy, here, sum), retraction[4]);
-      extremes.add(bonds_of_kind<5>(next_nearest, sheet, row, near, vx, vy, here, sum), retraction[5]);
+      extremes.add(bonds_of_kind<3>(next_nearest, sheet, row, near, vx, vy, here, sum, shortness), retraction[3]);
+      extremes.add(bonds_of_kind<4>(next_nearest, sheet, row, near, vx, vy, here, sum, shortness), retraction[4]);
+      extremes.add(bonds_of_kind<5>(next_nearest, sheet, row, near, vx, vy, here, sum, shortness), retraction[5]);
     }
     // Few bonds are near a limit, so whose it is can be asked then.
     if (HWY_UNLIKELY(!has_events && extremes.may_be_events(first_limit)))
@@ -273,7 +278,7 @@ RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, con
   double total = 0.;
   for (const double sum : sums)
     total += sum;
-  return {total, has_events};
+  return {total, has_events, !hn::AllFalse(D(), hn::Gt(shortness.v, lanes(sheet.shortness_limit).v))};
 }
 
 RowSums BondsOfRow(const BondLaws &laws, const SheetConstants &sheet, const RowOfBonds &row)
@@ -374,16 +379,14 @@ bool AnyEventAhead(const SheetConstants &sheet, const RowOfBonds &row, double ah
     for (std::size_t kind = 0; kind < n_kinds; ++kind)
     {
       const double l = sheet.shell(kind).rest_length;
-      const double shortest = sheet.retraction_stretch[kind] * l;
       const std::size_t far = site + static_cast<std::size_t>(row.shift[kind]);
-      const Lanes dx = (load(row.x + far) - near.x) + ahead * (load(row.vx + far) - vx);
-      const Lanes dy = (load(row.y + far) - near.y) + ahead * (load(row.vy + far) - vy);
-      const Lanes square = dx * dx + dy * dy;
+      const Lanes square = squared_length_after(ahead, load(row.x + far) - near.x, load(row.y + far) - near.y,
+                                                load(row.vx + far) - vx, load(row.vy + far) - vy);
       const auto toughened = near.toughened(kind);
-      const auto squared_limit = [l](double stretch) { return lanes(stretch * l * (stretch * l)).v; };
-      const auto beyond = hn::Gt(
-        square.v, hn::IfThenElse(toughened, squared_limit(row.toughened_stretch), squared_limit(row.breaking_stretch)));
-      const auto retracted = hn::AndNot(toughened, hn::Lt(square.v, lanes(shortest * shortest).v));
+      const auto squared = [l](double stretch) { return lanes(squared_length(stretch, l)).v; };
+      const auto beyond =
+        hn::Gt(square.v, hn::IfThenElse(toughened, squared(row.toughened_stretch), squared(row.breaking_stretch)));
+      const auto retracted = hn::AndNot(toughened, hn::Lt(square.v, squared(sheet.retraction_stretch[kind])));
       events = hn::Or(events, hn::And(near.present(kind), hn::Or(beyond, retracted)));
     }
   }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,7 @@
 namespace lattice::kernels
 {
 
-/// Laws of nearest and next-nearest neighbours.
+/// Laws of nearest and next-nearest neighbours; the second is unused in a sheet of nearest neighbours alone.
 using BondLaws = std::array<BondLaw, 2>;
 
 /// What the bonds of a shell have in common besides their law.
@@ -34,6 +35,8 @@ struct SheetConstants
 {
   std::array<BondConstants, 2> shells;                   ///< nearest and next-nearest neighbours
   std::array<double, n_bond_kinds> retraction_stretch{}; ///< see Forces::watch_retraction; 0: not watched
+  /// Inverse of the stretch below which bonds are short [-]; see Forces::watch_short_bonds.
+  double shortness_limit = std::numeric_limits<double>::infinity();
 
   const BondConstants &shell(std::size_t kind) const { return shells[TriangularLattice::is_nearest(kind) ? 0 : 1]; }
 };
@@ -48,15 +51,17 @@ struct RowOfBonds
   double breaking_stretch, toughened_stretch;     ///< as in State
   /// Forces on the near ends [N/m], x (0) and y (1) for each kind: what is computed.
   std::array<std::array<double *, 2>, n_bond_kinds> force;
-  /// As many places of other arrays that are fetched from memory meanwhile, since they are worked on next.
-  std::vector<const double *> ahead;
+  /// `n_ahead` arrays whose same slots are prefetched, since they are needed next.
+  const double *const *ahead;
+  std::size_t n_ahead;
 };
 
 /// Sums over the bonds that start in a row.
 struct RowSums
 {
-  double viscous_power = 0.; ///< of their dashpots [W/m]
-  bool has_events = false;   ///< whether one is past its limit, or has retracted
+  double viscous_power = 0.;    ///< of their dashpots [W/m]
+  bool has_events = false;      ///< whether one is past its limit, or has retracted
+  bool has_short_bonds = false; ///< whether one has an inverse stretch above SheetConstants::shortness_limit
 };
 
 /// Forces of all bonds that start in a row (theory.md, eq. (L.3)). Only `row.force` of kinds with a shell is written.

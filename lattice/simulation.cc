@@ -1,5 +1,6 @@
 #include "lattice/simulation.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "lattice/runge_kutta_chebyshev.h"
@@ -21,15 +22,14 @@ std::unique_ptr<Integrator> integrator(const RowBand &band, Forces &forces, cons
 
 Simulation::Simulation(const RowBand &band, const Material &material, State initial, TimeStepping time_stepping,
                        std::optional<Fracture> fracture)
-  : band_(band), lattice_(band.lattice()), material_(material), state_(std::move(initial)), forces_(band, material),
-    integrator_(integrator(band, forces_, time_stepping)), fracture_(std::move(fracture)), powers_(lattice_.rows()),
-    work_(lattice_.rows())
+  : band_(band), lattice_(band.lattice()), material_(material), state_(std::move(initial)),
+    time_stepping_(time_stepping), forces_(band, material), integrator_(integrator(band, forces_, time_stepping)),
+    fracture_(std::move(fracture)), powers_(lattice_.rows()), work_(lattice_.rows())
 {
   if (fracture_)
-    fracture_->watch(state_, forces_);
-  // Long steps would break bonds late; those of velocity Verlet are so short that they need not look ahead.
-  if (fracture_ && time_stepping.stages > 0)
-    fracture_->look_ahead(0.5 * time_stepping.step);
+    fracture_->configure(state_, forces_);
+  forces_.watch_short_bonds(fracture_ ? watched_stretch(time_stepping, lattice_, material_, state_.breaking_stretch)
+                                      : short_stretch);
   restart();
   initial_energy_ = elastic_energy(state_, band_, material_) + kinetic_energy(state_, band_);
 }
@@ -40,6 +40,38 @@ void Simulation::restart()
     contact_->find_candidates(state_);
   integrator_->initialise(state_);
   note_powers();
+  parts_ = needed_parts();
+  band_.joined(std::vector<char>(), &parts_);
+}
+
+// Number of parts, a power of two, of which the next step must consist for each part to be stable in own rows: with
+// every short bond at its extrapolated stretch at the end of the part.
+int Simulation::needed_parts() const
+{
+  constexpr int most = 1 << 20;
+  constexpr double shortest = 1e-6; // to which bonds are followed
+  const double h = time_stepping_.step;
+  const ContactLaw *const contact = contact_law_ ? &*contact_law_ : nullptr;
+  const Field &vx = integrator_->evaluated_vx(state_), &vy = integrator_->evaluated_vy(state_);
+  int parts = 1;
+  const auto divide_for = [&](std::size_t near, std::size_t kind, std::size_t far)
+  {
+    const Eigen::Vector2d bond(state_.x[far] - state_.x[near], state_.y[far] - state_.y[near]);
+    const double now = stretch(state_, lattice_, near, kind);
+    const double rate =
+      bond.dot(Eigen::Vector2d(vx[far] - vx[near], vy[far] - vy[near])) / (bond.norm() * lattice_.rest_length(kind));
+    for (; parts < most; parts *= 2)
+    {
+      const double then = now + std::min(rate, 0.) * h / parts;
+      if (!(then < short_stretch) ||
+          !(h / parts > recoil_step(time_stepping_, lattice_, material_, kind, std::max(then, shortest), contact)))
+        return;
+    }
+  };
+  for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
+    if (forces_.row_has_short_bonds(row))
+      for_each_bond(state_, lattice_, {row, row + 1}, divide_for);
+  return parts;
 }
 
 void Simulation::note_powers()
@@ -67,10 +99,10 @@ void Simulation::note_powers()
       powers_.boundary[lattice_.row_of(on.place)] += power(on);
 }
 
-// Trapezoidal rule over a time step.
-void Simulation::add_work(const Ledger &before)
+// Trapezoidal rule over a time step, or a part of one.
+void Simulation::add_work(const Ledger &before, double duration)
 {
-  const double half = 0.5 * time_step();
+  const double half = 0.5 * duration;
   for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
   {
     work_.viscous[row] += half * (before.viscous[row] + powers_.viscous[row]);
@@ -81,13 +113,20 @@ void Simulation::add_work(const Ledger &before)
 
 void Simulation::let_touch(const ContactLaw &law)
 {
+  if (contact_)
+    throw std::logic_error("contact has been added to this simulation already");
   contact_.emplace(band_, law);
+  contact_law_ = law;
   integrator_->add(*contact_);
   restart();
 }
 
 void Simulation::load_ends(const Eigen::Matrix2d &F, EndLoads::End left, EndLoads::End right)
 {
+  if (end_loads_)
+    throw std::logic_error("the ends of this sheet are loaded already");
+  if (std::any_of(state_.lost_bonds.begin(), state_.lost_bonds.end(), [](std::uint8_t lost) { return lost > 0; }))
+    throw std::logic_error("the ends of a sheet must be loaded before any of its bonds is cut or broken");
   end_loads_.emplace(band_, material_, state_, F, left, right);
   integrator_->add(*end_loads_);
   restart();
@@ -130,17 +169,44 @@ void Simulation::set_velocities(const Field &vx, const Field &vy)
 
 const std::vector<BrokenBond> &Simulation::step()
 {
+  if (parts_ == 1)
+    return advance(time_stepping_.step);
+  broken_in_parts_.clear();
+  const double end = state_.time + time_stepping_.step;
+  // Shares are powers of two, so that their sum is exact. After each part the rest is divided anew.
+  for (double left = 1.; left > 0.;)
+  {
+    const double share = std::min(left, 1. / parts_);
+    const std::vector<BrokenBond> &broken = advance(share * time_stepping_.step);
+    broken_in_parts_.insert(broken_in_parts_.end(), broken.begin(), broken.end());
+    left -= share;
+  }
+  state_.time = end;
+  ++n_divided_steps_;
+  return broken_in_parts_;
+}
+
+const std::vector<BrokenBond> &Simulation::advance(double duration)
+{
+  integrator_->set_time_step(duration);
   integrator_->step(state_);
 
   // Powers are taken before bonds break, so that each interval of the trapezoidal rule sees one set of bonds.
   const Ledger before = powers_;
   note_powers();
-  add_work(before);
+  add_work(before, duration);
+  parts_ = needed_parts();
   if (!fracture_)
+  {
+    band_.joined(std::vector<char>(), &parts_);
     return no_bonds_;
+  }
 
+  // Long steps would break bonds late; those of velocity Verlet are so short that they need not look ahead.
+  if (time_stepping_.stages > 0)
+    fracture_->look_ahead(0.5 * duration);
   const std::vector<BrokenBond> &broken =
-    fracture_->apply(state_, forces_, integrator_->evaluated_vx(state_), integrator_->evaluated_vy(state_));
+    fracture_->apply(state_, forces_, integrator_->evaluated_vx(state_), integrator_->evaluated_vy(state_), &parts_);
   if (!broken.empty())
   {
     for (const BrokenBond &bond : broken)

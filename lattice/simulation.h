@@ -35,10 +35,11 @@ public:
   Simulation(const Simulation &) = delete; // parts refer to each other
   Simulation &operator=(const Simulation &) = delete;
 
-  /// Has sites that are not bonded repel each other from now on. To be called once at most.
+  /// Adds contact between unbonded sites. @throws std::logic_error if there is contact already
   void let_touch(const ContactLaw &law);
 
-  /// Loads the short ends of the unbroken sheet as if it went on at x = F X. To be called once at most, before cut().
+  /// Loads the short ends of the unbroken sheet as if it went on at x = F X. @throws std::logic_error if they are
+  /// loaded already, or after a bond broke or was cut
   void load_ends(const Eigen::Matrix2d &F, EndLoads::End left, EndLoads::End right);
 
   /// Cuts sites out of the sheet before it moves. @throws std::logic_error without fracture rules
@@ -50,7 +51,8 @@ public:
   /// Adds a velocity field to the free sites; for waves and for tests. One (vx, vy) a place [m/s].
   void set_velocities(const Field &vx, const Field &vy);
 
-  /// Advances by one time step. @return bonds of the whole sheet that broke in it
+  /// Advances by one time step, in parts if a bond is so short that the whole step would be unstable (theory.md,
+  /// eq. (L.24)). @return bonds of the whole sheet that broke in it
   const std::vector<BrokenBond> &step();
 
   /// Lets the first rank know positions, velocities and bonds in some rows. @return its state() there, and that of
@@ -76,9 +78,10 @@ public:
   const State &state() const { return state_; }      ///< in the rows that the band knows
   Eigen::Vector2d position(std::size_t place) const; ///< of any site [m]
   const Forces &forces() const { return forces_; }
-  double time_step() const { return integrator_->time_step(); }
+  double time_step() const { return time_stepping_.step; } ///< of a whole step [s]
   std::optional<std::size_t> tip() const;
   std::size_t n_broken() const { return n_broken_; } ///< bonds broken since the start, the seed's not counted
+  std::size_t n_divided_steps() const { return n_divided_steps_; } ///< time steps made in parts since the start
   EnergyBalance energies() const;
   const Contact *contact() const { return contact_ ? &*contact_ : nullptr; } ///< nullptr: sites do not touch
 
@@ -94,20 +97,27 @@ private:
 
   void restart();
   void note_powers();
-  void add_work(const Ledger &before);
+  void add_work(const Ledger &before, double duration);
+  const std::vector<BrokenBond> &advance(double duration);
+  int needed_parts() const;
 
   RowBand band_;
   const TriangularLattice &lattice_;
-  const Material &material_;
+  Material material_;
   State state_;
+  TimeStepping time_stepping_;
   Forces forces_;
   std::unique_ptr<Integrator> integrator_;
   std::optional<Fracture> fracture_;
+  std::optional<ContactLaw> contact_law_;
   std::optional<Contact> contact_;
   std::optional<EndLoads> end_loads_;
   std::vector<BrokenBond> no_bonds_;
+  std::vector<BrokenBond> broken_in_parts_;
 
   bool edges_move_ = false;
+  int parts_ = 1; // that the next step needs, a power of two: the same on all ranks
+  std::size_t n_divided_steps_ = 0;
   std::size_t n_broken_ = 0;
   double initial_energy_ = 0.;
   double broken_ = 0.;
@@ -133,6 +143,8 @@ void Simulation::archive(Archive &archive)
     archive_rows(archive, name + "_contact", ledger->contact, band_);
     archive_rows(archive, name + "_boundary", ledger->boundary, band_);
   }
+  archive("parts", parts_);
+  archive("n_divided_steps", n_divided_steps_);
   archive("n_broken", n_broken_);
   archive("initial_energy", initial_energy_);
   archive("broken_energy", broken_);

@@ -7,14 +7,14 @@
 namespace lattice
 {
 
-SiteEvaluator::SiteEvaluator(const TriangularLattice &lattice, const Material &material) : lattice_(lattice)
+SiteEvaluator::SiteEvaluator(const TriangularLattice &lattice, const Material &material)
+  : lattice_(lattice), material_(material)
 {
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
   {
     const Shell *shell = material.shell(kind);
     const Eigen::Vector2d R = lattice.bond_vector(kind);
-    kinds_[kind] = {shell,
-                    R,
+    kinds_[kind] = {R,
                     R * R.transpose(),
                     lattice.rest_length(kind),
                     shell != nullptr ? cross_section(*shell, lattice) : 0.,
@@ -33,16 +33,17 @@ SiteValues SiteEvaluator::at(const State &state, std::size_t place) const
     [&](std::size_t near, std::size_t number)
     {
       const Kind &kind = kinds_[number];
+      const Shell &shell = *material_.shell(number);
       const std::size_t far = near + static_cast<std::size_t>(kind.shift[lattice_.row_of(near) % 2]);
       const Eigen::Vector2d bond(state.x[far] - state.x[near], state.y[far] - state.y[near]);
       const Eigen::Vector2d rate(state.vx[far] - state.vx[near], state.vy[far] - state.vy[near]);
       const double length = bond.norm();
       const Eigen::Vector2d direction = bond / length;
       const double stretch = length / kind.rest_length;
-      const double axial = kind.section * (force(kind.shell->law, stretch) +
-                                           kind.shell->viscosity * rate.dot(direction) / kind.rest_length);
+      const double axial =
+        kind.section * (force(shell.law, stretch) + shell.viscosity * rate.dot(direction) / kind.rest_length);
       ++values.bonds;
-      values.strain_energy_density += 0.5 * kind.section * kind.rest_length * energy(kind.shell->law, stretch);
+      values.strain_energy_density += 0.5 * kind.section * kind.rest_length * energy(shell.law, stretch);
       values.first_piola_stress += 0.5 * axial * direction * kind.reference.transpose();
       reference_moment += kind.reference_moment;
       mixed_moment += bond * kind.reference.transpose();

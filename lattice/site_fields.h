@@ -34,6 +34,7 @@ struct SiteValues
 class SiteEvaluator
 {
 public:
+  /// The lattice must outlive this object.
   SiteEvaluator(const TriangularLattice &lattice, const Material &material);
 
   /// @param place of a site, not in the margin
@@ -42,13 +43,13 @@ public:
 private:
   struct Kind
   {
-    const Shell *shell; // null: there are no such bonds
     Eigen::Vector2d reference;
     Eigen::Matrix2d reference_moment;
     double rest_length, section;
     std::array<std::ptrdiff_t, 2> shift; // from even and odd rows
   };
   const TriangularLattice &lattice_;
+  Material material_;
   std::array<Kind, n_bond_kinds> kinds_;
 };
 

@@ -79,8 +79,7 @@ void update_images(State &state, const RowBand &band)
   }
 }
 
-State homogeneous_state(const RowBand &band, const Material &material, const Eigen::Matrix2d &F, Edges edges,
-                        double breaking_stretch)
+State homogeneous_state(const RowBand &band, const Material &material, const Eigen::Matrix2d &F, Edges edges)
 {
   const TriangularLattice &lattice = band.lattice();
   const std::size_t n = lattice.n_places();
@@ -90,7 +89,6 @@ State homogeneous_state(const RowBand &band, const Material &material, const Eig
   for (Marks *marks : {&state.held, &state.removed, &state.lost_bonds})
     *marks = Marks(n);
   state.bonds.clear(n);
-  state.breaking_stretch = state.toughened_stretch = breaking_stretch;
 
   state.periods = F;
   for (std::size_t place = 0; place < n; ++place)

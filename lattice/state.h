@@ -34,10 +34,10 @@ struct State
   Field vx, vy;                           ///< velocity [m/s]
   Field ax, ay;                           ///< acceleration [m/s^2]; 0 at held sites and in the margin
   BondStates bonds;                       ///< by the place where they start
-  double breaking_stretch = unbreakable;  ///< lam_f [-], beyond which a bond breaks
-  double toughened_stretch = unbreakable; ///< that of toughened bonds [-]
+  double breaking_stretch = unbreakable;  ///< lam_f [-], beyond which a bond breaks; set by Fracture::configure()
+  double toughened_stretch = unbreakable; ///< that of toughened bonds [-]; set likewise
   Field inverse_mass;                     ///< h / m [m/kg]; 0 at held and removed sites and in the margin
-  Marks held;                             ///< 1 at sites whose motion is prescribed
+  Marks held;                             ///< 1 at sites whose motion is prescribed, 0 at removed ones
   Marks removed;                          ///< 1 at sites cut out as seed crack
   Marks lost_bonds;                       ///< bonds a site has lost, to breaking or to removed neighbours
   Eigen::Matrix2d periods = Eigen::Matrix2d::Identity(); ///< F that takes reference periods to current ones [-]
@@ -59,10 +59,9 @@ inline constexpr Edges Edges::held{true, true, true, true};
 inline constexpr Edges Edges::free{false, false, false, false};
 
 /// The unbroken sheet at the homogeneous deformation x = F X, at rest, in the rows that `band` knows. Edges across
-/// which the sheet is periodic do not exist, whatever `edges` says of them.
-/// @param breaking_stretch lam_f [-] of every bond, toughened or not
-State homogeneous_state(const RowBand &band, const Material &material, const Eigen::Matrix2d &F, Edges edges,
-                        double breaking_stretch = unbreakable);
+/// which the sheet is periodic do not exist, whatever `edges` says of them. Bonds are unbreakable; a Fracture sets at
+/// which stretch they break.
+State homogeneous_state(const RowBand &band, const Material &material, const Eigen::Matrix2d &F, Edges edges);
 
 /// Stretch beyond which a bond that is present breaks [-].
 inline double limit(const State &state, std::size_t place, std::size_t kind)

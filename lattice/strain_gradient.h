@@ -26,6 +26,7 @@ struct StrainGradient
 class StrainGradientFit
 {
 public:
+  /// The lattice must outlive this object.
   explicit StrainGradientFit(const TriangularLattice &lattice) : lattice_(lattice) {}
 
   /// None where the bonds left do not fix a quadratic: a flank of a lattice of nearest neighbours has four, and five

@@ -1,7 +1,10 @@
 #include "lattice/time_step.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <complex>
+#include <limits>
 
 #include "lattice/chebyshev_stages.h"
 #include "lattice/contact.h"
@@ -21,13 +24,20 @@ struct Rates
 // "Long steps").
 constexpr double share_of_elastic_limit = 0.35;
 
+// Of velocity Verlet: where the ledger of a crack in a sheet that is hardly damped closes to 1e-4.
+constexpr double share_for_recoil = 0.1;
+
 TimeStepLimits limits(const Rates &rates)
 {
   const auto &[omega_square, gamma] = rates;
   return {2. / std::sqrt(omega_square), 1. / gamma, 2. / (gamma + std::sqrt(gamma * gamma + omega_square))};
 }
 
-Rates bound_of_bonds(const TriangularLattice &lattice, const Material &material, double smallest_stretch)
+// The smallest stretch of the bonds of each shell.
+using SmallestStretch = std::array<double, 2>;
+
+Rates bound_of_bonds(const TriangularLattice &lattice, const Material &material,
+                     const SmallestStretch &smallest_stretch)
 {
   const double mass = site_mass(material, lattice);
   Rates rates;
@@ -36,37 +46,107 @@ Rates bound_of_bonds(const TriangularLattice &lattice, const Material &material,
     {
       // A site has two bonds of each kind, and the bound is twice the sum over its bonds.
       const double per_length = 4. * cross_section(*shell, lattice) / (lattice.rest_length(kind) * mass);
-      rates.omega_square += per_length * largest_stiffness(shell->law, smallest_stretch);
+      rates.omega_square += per_length * largest_stiffness(shell->law, smallest_stretch[kind / n_nearest_kinds]);
       rates.gamma += per_length * shell->viscosity;
     }
   return rates;
+}
+
+// 1 / kappa.
+double damped_step(const Material &material, const SmallestStretch &smallest_stretch)
+{
+  double step = std::numeric_limits<double>::infinity();
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+    if (const Shell *shell = material.shell(kind))
+      step = std::min(step, shell->viscosity / largest_stiffness(shell->law, smallest_stretch[kind / n_nearest_kinds]));
+  return step;
+}
+
+// Of a site with six contacts around it, whose sum n n is 3 I; the bound is twice the sum.
+Rates bound_of_contacts(const TriangularLattice &lattice, const Material &material, const ContactLaw &contact)
+{
+  const double per_contact = 6. / site_mass(material, lattice);
+  return {per_contact * contact.stiffness, per_contact * contact.viscosity};
+}
+
+Rates with_contacts(const Rates &bonds, const Rates &contacts)
+{
+  return {std::max(bonds.omega_square, 0.5 * bonds.omega_square + contacts.omega_square),
+          std::max(bonds.gamma, 0.5 * bonds.gamma + contacts.gamma)};
 }
 
 } // namespace
 
 TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch)
 {
-  return limits(bound_of_bonds(lattice, material, smallest_stretch));
+  return limits(bound_of_bonds(lattice, material, {smallest_stretch, smallest_stretch}));
 }
 
 TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
                                 const ContactLaw &contact)
 {
-  Rates rates = bound_of_bonds(lattice, material, smallest_stretch);
-  // Six neighbours around a site have sum n n = 3 I, and the bound is twice the sum.
-  const double per_contact = 6. / site_mass(material, lattice);
-  rates.omega_square = std::max(rates.omega_square, 0.5 * rates.omega_square + per_contact * contact.stiffness);
-  rates.gamma = std::max(rates.gamma, 0.5 * rates.gamma + per_contact * contact.viscosity);
-  return limits(rates);
+  return limits(with_contacts(bound_of_bonds(lattice, material, {smallest_stretch, smallest_stretch}),
+                              bound_of_contacts(lattice, material, contact)));
 }
 
 double chebyshev_step(const TriangularLattice &lattice, const Material &material, double smallest_stretch)
 {
-  double step = share_of_elastic_limit * time_step_limits(lattice, material, 1.).elastic;
+  return std::min(share_of_elastic_limit * time_step_limits(lattice, material, 1.).elastic,
+                  damped_step(material, {smallest_stretch, smallest_stretch}));
+}
+
+double chebyshev_step(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
+                      const ContactLaw &contact)
+{
+  const auto &[omega_square, gamma] = bound_of_contacts(lattice, material, contact);
+  return std::min({chebyshev_step(lattice, material, smallest_stretch),
+                   share_of_elastic_limit * time_step_limits(lattice, material, 1., contact).elastic,
+                   std::cbrt(4. * gamma / (omega_square * omega_square)),
+                   site_mass(material, lattice) / contact.viscosity});
+}
+
+bool amplifies_contact(const TimeStepping &stepping, const TriangularLattice &lattice, const Material &material,
+                       const ContactLaw &contact)
+{
+  const double mass = site_mass(material, lattice);
+  const double omega_square = 2. * contact.stiffness / mass, gamma = 2. * contact.viscosity / mass, h = stepping.step;
+  if (stepping.stages == 0)
+    return h > limits({omega_square, gamma}).combined;
+  // The roots of lambda^2 + gamma lambda + omega^2 = 0.
+  const std::complex<double> root = std::sqrt(std::complex<double>(0.25 * gamma * gamma - omega_square));
+  const ChebyshevStages stages(stepping.stages);
+  constexpr double round_off = 1e-12;
+  return std::abs(stages.amplification(h * (-0.5 * gamma + root))) > 1. + round_off ||
+         std::abs(stages.amplification(h * (-0.5 * gamma - root))) > 1. + round_off;
+}
+
+double recoil_step(const TimeStepping &stepping, const TriangularLattice &lattice, const Material &material,
+                   std::size_t kind, double stretch, const ContactLaw *contact)
+{
+  SmallestStretch smallest{short_stretch, short_stretch};
+  smallest[kind / n_nearest_kinds] = stretch;
+  if (stepping.stages > 0)
+    return damped_step(material, smallest);
+  const Rates bonds = bound_of_bonds(lattice, material, smallest);
+  const Rates all = contact != nullptr ? with_contacts(bonds, bound_of_contacts(lattice, material, *contact)) : bonds;
+  return std::min(limits(all).combined, share_for_recoil * limits(bonds).elastic);
+}
+
+double watched_stretch(const TimeStepping &stepping, const TriangularLattice &lattice, const Material &material,
+                       double breaking_stretch)
+{
+  double site_energy = 0., of_forces = 0.; // per sheet thickness [J/m], rate [1/s]
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
     if (const Shell *shell = material.shell(kind))
-      step = std::min(step, shell->viscosity / largest_stiffness(shell->law, smallest_stretch));
-  return step;
+    {
+      site_energy += cross_section(*shell, lattice) * lattice.rest_length(kind) * energy(shell->law, breaking_stretch);
+      of_forces =
+        std::max(of_forces, 0.5 * material.coordination() * force(shell->law, breaking_stretch) / shell->viscosity);
+    }
+  const double of_energy = std::sqrt(8. * site_energy / site_mass(material, lattice)) / lattice.spacing();
+  constexpr double most = 0.3;
+  const double loss = stepping.step * std::min(of_energy, of_forces);
+  return short_stretch + (loss < most ? loss : most);
 }
 
 TimeStepping chebyshev_time_stepping(double step, const TimeStepLimits &limits, unsigned int stages)

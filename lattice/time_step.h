@@ -42,11 +42,37 @@ TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material
 TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
                                 const ContactLaw &contact);
 
+/// Stretch below which a bond can require divided steps [-] (theory.md, eq. (L.24)).
+inline constexpr double short_stretch = 0.5;
+
+/// Longest step [s] that follows the recoil of a bond (theory.md, eq. (L.24)). For velocity Verlet: the combined
+/// limit, at most a tenth of the elastic one; for Runge-Kutta-Chebyshev: 1 / kappa. All bonds of the shell of `kind`
+/// are taken to be at `stretch`, those of the other shell at short_stretch.
+/// @param contact nullptr: sites do not touch
+double recoil_step(const TimeStepping &stepping, const TriangularLattice &lattice, const Material &material,
+                   std::size_t kind, double stretch, const ContactLaw *contact);
+
+/// Stretch below which bonds are checked after each step for whether the next step must be divided [-]: short_stretch
+/// plus what a bond may lose in one step, at most 0.3 (theory.md, eq. (L.26)).
+double watched_stretch(const TimeStepping &stepping, const TriangularLattice &lattice, const Material &material,
+                       double breaking_stretch);
+
 /// Step of Runge-Kutta-Chebyshev at which waves and the breaking of bonds are resolved [s]: a share of the elastic
 /// limit of the undeformed sheet, or, where it is smaller, h = 1 / kappa: all oscillating modes are stable then for any
 /// number of stages (theory.md, eq. (L.22)). kappa is the largest psi''_max / eta.
 /// @return 0 where a shell has no dashpots, for which the method is not made
 double chebyshev_step(const TriangularLattice &lattice, const Material &material, double smallest_stretch);
+
+/// Step for a sheet with contact [s]: also resolves and keeps stable a site with six contacts (theory.md, eqs. (L.14)
+/// and (L.23)) and the jump of a contact's dashpot, h <= m/c.
+/// @return 0 also for contacts without dashpots, whose oscillations every step would amplify
+double chebyshev_step(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
+                      const ContactLaw &contact);
+
+/// Returns whether the oscillation of two free, isolated sites in contact grows from step to step. Their relative
+/// motion has gamma = 2c/m and omega^2 = 2k/m.
+bool amplifies_contact(const TimeStepping &stepping, const TriangularLattice &lattice, const Material &material,
+                       const ContactLaw &contact);
 
 /// Runge-Kutta-Chebyshev with steps no longer than `step`, and no longer than is stable (theory.md, eqs. (L.20) and
 /// (L.22)).

@@ -22,6 +22,8 @@ constexpr std::array<RowFrameVector, n_bond_kinds> bond_directions{
 
 std::size_t intervals(double extent, double pitch)
 {
+  if (!(extent < 1e9 * pitch))
+    throw std::invalid_argument("a lattice has fewer than 1e9 rows and columns");
   return static_cast<std::size_t>(std::lround(extent / pitch));
 }
 

@@ -32,7 +32,9 @@ inline constexpr std::size_t n_nearest_kinds = 3; ///< of them nearest neighbour
 /// A rectangular piece of the triangular lattice in its reference configuration (theory.md, section "The lattice").
 ///
 /// Sites stand in rows, spacing d along a row, row pitch (sqrt3 / 2) d, every second row shifted by d / 2 and one site
-/// shorter, so that the sheet is the mirror image of itself about both centre lines. With rows along x:
+/// shorter. The sheet is its own mirror image about the line y = 0, to the last bit of its coordinates. About the
+/// centre line along y it is, to round-off, if the number of rows is odd, as it always is with rows along x; not if it
+/// is even, since the first row then has a site more than the last. With rows along x:
 ///
 ///     row 2   o     o     o     o        even rows: `columns()` sites
 ///     row 1      o     o     o           odd rows:  one site fewer
@@ -52,7 +54,7 @@ public:
   /// @param height extent along y [m], > 0
   /// Both extents are rounded to whole rows and columns, an odd number of them across y, so that one runs along y = 0;
   /// a periodic extent to whole periods of the lattice.
-  /// @throws std::invalid_argument if an extent is not positive or holds fewer than two rows or columns.
+  /// @throws std::invalid_argument if an extent is not positive or holds fewer than two rows or columns, or 1e9
   TriangularLattice(double spacing, double length, double height, Orientation orientation, Periodic periodic = {});
 
   double spacing() const { return spacing_; } ///< d [m]

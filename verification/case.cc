@@ -105,17 +105,26 @@ void check_stages(const Case &input, Parameters &p)
 {
   if (input.stages > 0)
     return;
-  const lattice::TimeStepLimits limits = input.time_step_limits(input.breaking_stretch.has_value());
+  const bool breaks = input.breaking_stretch.has_value();
+  const lattice::TimeStepLimits limits = input.time_step_limits(breaks);
   const double longest = lattice::ChebyshevStages(most_stages).real_limit() * limits.viscous;
-  const double step = input.time_step ? *input.time_step
-                                      : input.safety_factor * lattice::chebyshev_step(input.lattice(), input.material(),
-                                                                                      smallest_chebyshev_stretch);
+  const double step = input.time_step ? *input.time_step : input.chebyshev_step(breaks);
   if (!(step <= longest))
     p.error("Time/step",
             "the dashpots allow runge-kutta-chebyshev no more than " + full_precision(longest) + " s in " +
               std::to_string(most_stages) + " stages, and this step is one of " + full_precision(step) + " s",
             {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity", "Contact/viscosity", "Sheet/spacing",
              "Time/integrator"});
+}
+
+// Refuses a stated step with which the oscillation of two sites in contact grows.
+void check_contact_step(const Case &input, Parameters &p)
+{
+  if (input.breaking_stretch && input.has_contact &&
+      lattice::amplifies_contact(input.fracture_time_stepping(), input.lattice(), input.material(),
+                                 input.contact_law()))
+    p.error("Time/step", "two sites in contact would gain energy in every step; omit it, or give a smaller one",
+            {"Contact/stiffness", "Contact/viscosity", "Time/integrator", "Time/stages"});
 }
 
 // Twice the bound on the dashpots is where the undeformed lattice of nearest neighbours is certain to be unstable.
@@ -147,12 +156,22 @@ void check_time_stepping(const Case &input, Parameters &p)
     p.error("Time/integrator",
             "runge-kutta-chebyshev is for sheets whose bonds all have dashpots; give velocity-verlet",
             {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity"});
-  else if (input.density > 0. && input.has_sheet())
+  else if (chebyshev && input.breaking_stretch && input.has_contact && input.contact_viscosity == 0.)
+    p.error(
+      "Contact/viscosity",
+      "runge-kutta-chebyshev amplifies oscillations that have no dashpot, in contacts as well; give more than 0, or "
+      "integrator = velocity-verlet",
+      {"Time/integrator"});
+  else if (input.density > 0. && input.has_sheet() && input.nearest.has_stiffness() &&
+           (!input.has_next_nearest || input.next_nearest.has_stiffness()))
   {
     if (chebyshev)
       check_stages(input, p);
     if (input.time_step)
+    {
       check_time_step(input, p);
+      check_contact_step(input, p);
+    }
   }
 }
 
@@ -173,7 +192,7 @@ void ShellCase::declare(Parameters &parameters, const std::string &section)
 
 void ShellCase::check(Parameters &parameters, const std::string &section) const
 {
-  if (law == Law::mooney_rivlin && a + b == 0.)
+  if (!has_stiffness())
     parameters.error(section + "/a", "a bond needs stiffness: a + b must be positive", {section + "/b"});
 }
 
@@ -396,12 +415,19 @@ lattice::ContactLaw Case::contact_law() const
                                             contact_viscosity);
 }
 
-lattice::TimeStepping Case::time_stepping(const lattice::TimeStepLimits &limits) const
+double Case::chebyshev_step(const bool breaks) const
 {
+  if (breaks && has_contact)
+    return safety_factor * lattice::chebyshev_step(lattice(), material(), smallest_chebyshev_stretch, contact_law());
+  return safety_factor * lattice::chebyshev_step(lattice(), material(), smallest_chebyshev_stretch);
+}
+
+lattice::TimeStepping Case::time_stepping(const bool breaks) const
+{
+  const lattice::TimeStepLimits limits = time_step_limits(breaks);
   if (integrator == Integrator::velocity_verlet)
     return time_step ? *time_step : safety_factor * limits.combined;
-  const double step =
-    time_step ? *time_step : safety_factor * lattice::chebyshev_step(lattice(), material(), smallest_chebyshev_stretch);
+  const double step = time_step ? *time_step : chebyshev_step(breaks);
   if (time_step && stages > 0)
     return {step, stages};
   return lattice::chebyshev_time_stepping(step, limits, stages);
@@ -416,12 +442,12 @@ lattice::TimeStepLimits Case::time_step_limits(const bool breaks) const
 
 lattice::TimeStepping Case::lattice_time_stepping() const
 {
-  return time_stepping(time_step_limits(false));
+  return time_stepping(false);
 }
 
 lattice::TimeStepping Case::fracture_time_stepping() const
 {
-  return time_stepping(time_step_limits(true));
+  return time_stepping(true);
 }
 
 std::string case_lines(const Parameters &parameters)

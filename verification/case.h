@@ -37,6 +37,8 @@ struct ShellCase
 
   void declare(Parameters &parameters, const std::string &section);
   void check(Parameters &parameters, const std::string &section) const;
+  /// Whether shell() has a law to make.
+  bool has_stiffness() const { return law == Law::linear || a + b > 0.; }
   lattice::Shell shell() const;
 };
 
@@ -172,8 +174,11 @@ struct Case
   /// The same for a sheet that breaks, whose sites may touch.
   lattice::TimeStepping fracture_time_stepping() const;
 
+  /// Automatic step of Runge-Kutta-Chebyshev of a sheet, or of one that breaks, whose sites may touch [s].
+  double chebyshev_step(bool breaks) const;
+
 private:
-  lattice::TimeStepping time_stepping(const lattice::TimeStepLimits &limits) const;
+  lattice::TimeStepping time_stepping(bool breaks) const;
 };
 
 /// Stretch down to which the automatic time step is stable [-]; shorter bonds do not occur in a sheet under tension.

@@ -105,11 +105,11 @@ void require_fracture_case(const Case &input, Parameters &p)
             {"Loading/strain x", "Loading/strain y"});
 }
 
-lattice::State lattice_state(const Case &input, const lattice::RowBand &band, double breaking_stretch)
+lattice::State lattice_state(const Case &input, const lattice::RowBand &band)
 {
   const auto held = [&](std::size_t id) { return input.continuum.edges[id].condition == Condition::held; };
-  lattice::State state = lattice::homogeneous_state(band, input.material(), input.deformation(),
-                                                    {held(0), held(1), held(2), held(3)}, breaking_stretch);
+  lattice::State state =
+    lattice::homogeneous_state(band, input.material(), input.deformation(), {held(0), held(1), held(2), held(3)});
   if (input.hole_radius > 0.)
     lattice::cut_out(state, band.lattice(), lattice::RoundHole{input.hole_radius});
   if (input.notch_length > 0.)

@@ -64,8 +64,7 @@ private:
 
   lattice::State loaded(Work work) const
   {
-    const double limit = work == Work::linear ? sheets::unbreakable : breaking_stretch;
-    lattice::State state = homogeneous_state(sheet, bonds, deformation(work), lattice::Edges::held, limit);
+    lattice::State state = homogeneous_state(sheet, bonds, deformation(work), lattice::Edges::held);
     add_noise(state, sheet, 0.05 * sheets::spacing, 1);
     return state;
   }

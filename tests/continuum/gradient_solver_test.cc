@@ -274,6 +274,36 @@ TEST(GradientEquilibrium, IsLocalWithoutLengthAndInHomogeneousStates)
   EXPECT_NEAR(energy(Constitution(law, rubber_gradient(0.01)), homogeneous), flat, 1e-12 * flat);
 }
 
+// A law that vanishes at F = I and not under strain.
+class StiffeningGradient : public continuum::IsotropicGradient
+{
+public:
+  using IsotropicGradient::IsotropicGradient;
+  Tensor<6, 2> double_stress_by_G(const Tensor<2, 2> &F) const override
+  {
+    return (F - dealii::unit_symmetric_tensor<2>()).norm() * IsotropicGradient::double_stress_by_G(F);
+  }
+};
+
+// One answer to whether there is a gradient energy: of the law, whatever its stiffness at F = I. What that would leave
+// without a penalty on the faces is refused, not dropped from the energy alone.
+TEST(GradientEquilibrium, TakesALawForZeroOnlyIfItSaysSo)
+{
+  const continuum::CauchyBorn law = rubber_network();
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::make_rectangle(mesh, rectangle(2, 2));
+  const continuum::IsotropicGradient none(5e5, 0.), some(5e5, 0.01);
+  const StiffeningGradient stiffening(5e5, 0.01);
+  EXPECT_FALSE(Constitution(law).has_gradient());
+  EXPECT_FALSE(Constitution(law, none).has_gradient());
+  EXPECT_TRUE(Constitution(law, some).has_gradient());
+  EXPECT_TRUE(Constitution(law, stiffening).has_gradient());
+  EXPECT_FALSE(continuum::Sheet(mesh, Constitution(law, none), 2).has_gradient());
+  EXPECT_TRUE(continuum::Sheet(mesh, Constitution(law, some), 2).has_gradient());
+  EXPECT_EQ(stiffening.normal_stiffness(), 0.);
+  EXPECT_THROW(continuum::Sheet(mesh, Constitution(law, stiffening), 2), continuum::InvalidInput);
+}
+
 // A sinusoidal force of wave number k is 1 + l^2 k^2 times as large for (1 - l^2 Laplace), on every shape function: the
 // integral over the boundary makes up for the partial integration.
 // theory-continuum.md, eq. (C.32).

@@ -1,6 +1,8 @@
 #include "lattice/bond_law.h"
 
 #include <cmath>
+#include <limits>
+#include <stdexcept>
 
 #include <gtest/gtest.h>
 
@@ -53,6 +55,19 @@ TEST(BondLaw, LargestStiffnessIsThatOfTheShortestBond)
       EXPECT_LE(stiffness(law, lam), largest_stiffness(law, 0.4));
       EXPECT_LE(force(law, lam) / lam, largest_stiffness(law, 0.4));
     }
+}
+
+// The stiffness of a = 1, b = -0.4 has its largest value at no end of the stretches, and its energy no lower bound.
+TEST(BondLaw, RefusesConstantsThatBoundNoStiffness)
+{
+  const double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
+  for (const auto &[a, b] : {std::pair(1., -0.4), std::pair(-0.4, 1.), std::pair(0., 0.), std::pair(-1., -1.),
+                             std::pair(infinity, 1.), std::pair(nan, 1.), std::pair(1., nan)})
+    EXPECT_THROW(lattice::MooneyRivlinBond(a, b), std::invalid_argument) << a << ' ' << b;
+  for (const auto &[a, b] : {std::pair(1., 0.), std::pair(0., 1.)})
+    EXPECT_NO_THROW(lattice::MooneyRivlinBond(a, b));
+  for (const double modulus : {0., -1., infinity, nan})
+    EXPECT_THROW(lattice::LinearBond{modulus}, std::invalid_argument) << modulus;
 }
 
 TEST(BondLaw, RestIsFreeOfEnergyAndForce)

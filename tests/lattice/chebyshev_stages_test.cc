@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include "lattice/contact.h"
 #include "lattice/time_step.h"
 #include "tests/lattice/plane_modes.h"
 
@@ -87,6 +88,98 @@ TEST(ChebyshevStages, HoldAllWavesOfTheLattice)
       EXPECT_LT(fastest * limits.viscous, 1.);
       EXPECT_GT(fastest * limits.viscous, 0.4);
     }
+}
+
+// All modes that (L.22) and (L.23) admit, by their extremes: bonds at kappa h = 1 and below it, contacts at the bound
+// for their damping, the real axis used up or not.
+// theory.md, eqs. (L.23) and (L.25).
+TEST(ChebyshevStages, AreStableForBondsAndContactsTogether)
+{
+  for (unsigned int s = 2; s <= most_stages; ++s)
+  {
+    const ChebyshevStages stages(s);
+    const double most_damping = 0.5 * stages.real_limit(); // h gamma / 2
+    for (const double kappa : {0., 0.5, 1.})
+      for (int i = 0; i <= 40; ++i)
+        for (int j = 0; j <= 40; ++j)
+        {
+          const double rho = 4. * i / 40., of_bonds = most_damping * j / 40.; // (h omega)^2 of contacts, a
+          const double e = rho * rho / 8., re = -of_bonds - e, square = 2. * kappa * of_bonds + rho;
+          if (-re > most_damping || square < re * re)
+            continue;
+          const Complex z(re, std::sqrt(square - re * re));
+          EXPECT_LE(std::abs(stages.amplification(z)), 1. + roundoff) << s << ' ' << z;
+        }
+    // The bound is sharp for two stages and slow modes, and contacts without dashpots have none.
+    const double rho = 0.01, less = 0.9 * rho * rho / 8.;
+    if (s == 2)
+    {
+      EXPECT_GT(std::abs(stages.amplification(Complex(-less, std::sqrt(rho - less * less)))), 1. + 1e-6);
+    }
+    for (const double y : {0.01, 0.1, 0.5})
+      EXPECT_GT(std::abs(stages.amplification(Complex(0., y))), 1. + 0.02 * std::pow(y, 4)) << s;
+  }
+}
+
+// The automatic step with contacts from far softer to far stiffer than bonds, and far less to far more viscous: what
+// two free sites that touch do, six around one, and a lattice of nothing but contacts.
+TEST(ChebyshevStages, AreStableWithContactsOfAnyStiffnessAndViscosity)
+{
+  const TriangularLattice sheet = sheets::square(12);
+  const Material material = sheets::rubber();
+  const double mass = site_mass(material, sheet), bonds_alone = chebyshev_step(sheet, material, 0.45);
+  for (int i = -2; i <= 6; ++i)
+    for (int j = -3; j <= 3; ++j)
+    {
+      const ContactLaw contact =
+        contact_like_nearest_bond(sheet, material, sheets::spacing, std::pow(10., i), std::pow(10., j));
+      const TimeStepLimits limits = time_step_limits(sheet, material, 0.3, contact);
+      const TimeStepping stepping = chebyshev_time_stepping(chebyshev_step(sheet, material, 0.45, contact), limits, 0);
+      const ChebyshevStages stages(stepping.stages);
+      EXPECT_LE(stepping.step, bonds_alone);
+      EXPECT_GE(stages.real_limit(), stepping.step / limits.viscous);
+      for (const double contacts : {2., 3., 6.}) // a pair, a site between two others, a site among six
+      {
+        const double gamma = contacts * contact.viscosity / mass, square = contacts * contact.stiffness / mass;
+        const Complex root = std::sqrt(Complex(0.25 * gamma * gamma - square));
+        for (const Complex &rate : {-0.5 * gamma + root, -0.5 * gamma - root})
+          EXPECT_LE(std::abs(stages.amplification(stepping.step * rate)), 1. + roundoff) << i << ' ' << j;
+      }
+      EXPECT_FALSE(amplifies_contact(stepping, sheet, material, contact)) << i << ' ' << j;
+      EXPECT_LE(stepping.step * std::sqrt(6. * contact.stiffness / mass), 0.7 * (1. + 1e-12)) << i; // resolved
+      // Bonds with the spring and the dashpot of a contact.
+      Material touching = sheets::nearest_only();
+      touching.nearest.law = LinearBond(contact.stiffness * sheets::spacing / cross_section(touching.nearest, sheet));
+      touching.nearest.viscosity = contact.viscosity * sheets::spacing / cross_section(touching.nearest, sheet);
+      for (const Complex &rate : plane_modes::rates(sheet, touching, sheets::stretched(1., 1.), 12))
+        EXPECT_LE(std::abs(stages.amplification(stepping.step * rate)), 1. + roundoff) << i << ' ' << j;
+    }
+}
+
+// A step for the bonds alone amplifies the oscillation of two sites in stiff contact.
+TEST(ChebyshevStages, WouldAmplifyStiffContactsInTheStepOfTheBonds)
+{
+  const TriangularLattice sheet = sheets::square(12);
+  const Material material = sheets::rubber();
+  const auto contact = [&](double stiffness, double viscosity)
+  { return contact_like_nearest_bond(sheet, material, sheets::spacing, stiffness, viscosity); };
+  const TimeStepLimits limits = time_step_limits(sheet, material, 0.3, contact(1000., 1.));
+  const TimeStepping of_bonds = chebyshev_time_stepping(chebyshev_step(sheet, material, 0.45), limits, 0);
+  EXPECT_TRUE(amplifies_contact(of_bonds, sheet, material, contact(1000., 1.)));
+  EXPECT_FALSE(amplifies_contact(of_bonds, sheet, material, contact(1., 1.)));
+  // Like bonds, contacts leave the step of the bonds alone.
+  EXPECT_EQ(chebyshev_step(sheet, material, 0.45, contact(1., 1.)), chebyshev_step(sheet, material, 0.45));
+  // The jump of a very viscous one is resolved.
+  const double jump = site_mass(material, sheet) / contact(1., 100.).viscosity;
+  EXPECT_EQ(chebyshev_step(sheet, material, 0.45, contact(1., 100.)), jump);
+  // Without dashpots every step does.
+  EXPECT_EQ(chebyshev_step(sheet, material, 0.45, contact(1., 0.)), 0.);
+  EXPECT_TRUE(amplifies_contact({1e-6, 3}, sheet, material, contact(1., 0.)));
+  // Velocity Verlet: 2 / omega.
+  const ContactLaw elastic = contact(1., 0.);
+  const double limit = 2. / std::sqrt(2. * elastic.stiffness / site_mass(material, sheet));
+  EXPECT_FALSE(amplifies_contact(0.999 * limit, sheet, material, elastic));
+  EXPECT_TRUE(amplifies_contact(1.001 * limit, sheet, material, elastic));
 }
 
 } // namespace

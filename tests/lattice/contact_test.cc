@@ -19,7 +19,7 @@ using namespace lattice;
 // A sheet of which loose sites are left: free, without bonds, having lost some.
 State loose_sites(const TriangularLattice &sheet, const Material &material, const std::vector<std::size_t> &places)
 {
-  State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::free, sheets::unbreakable);
+  State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::free);
   state.bonds.clear(sheet.n_places());
   const double inverse_mass = 1. / site_mass(material, sheet);
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
@@ -180,7 +180,7 @@ TEST(Contact, OfBondedOrWholeSitesThereIsNone)
   const Material material = sheets::rubber();
   const std::size_t a = sheet.index(4, 4);
   // All sites have lost one bond, are too close, and are bonded to those they are close to.
-  State state = homogeneous_state(sheet, material, 0.8 * Eigen::Matrix2d::Identity(), Edges::free, 3.);
+  State state = homogeneous_state(sheet, material, 0.8 * Eigen::Matrix2d::Identity(), Edges::free);
   const auto n_touching = [&]
   {
     Contact contact(sheet, contact_like_nearest_bond(sheet, material, sheets::spacing, 1., 1.));
@@ -342,7 +342,6 @@ TEST(Contact, LedgerClosesWhereAPairOverlapsFromTheStart)
   {
     State state = loose_sites(sheet, material, {left, right});
     state.bonds.add(left, 0);
-    state.breaking_stretch = 0.5;
     state.x[right] = state.x[left] + 0.8 * sheets::spacing;
     Simulation simulation(sheet, material, std::move(state), time_step,
                           Fracture(sheet, material, 0.5, NoToughening{}, Eigen::Matrix2d::Identity()));
@@ -392,7 +391,7 @@ struct TouchingCrack
       material(sheets::rubber())
   {
     const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
-    State state = homogeneous_state(sheet, material, F, Edges::held, 3.05);
+    State state = homogeneous_state(sheet, material, F, Edges::held);
     add_noise(state, sheet, 0.05 * sheets::spacing, 1);
     simulation = std::make_unique<Simulation>(sheet, material, std::move(state),
                                               time_step_factor * time_step_limits(sheet, material, 0.3).combined,

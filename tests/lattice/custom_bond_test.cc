@@ -71,7 +71,7 @@ TEST(CustomBond, CracksAsTheSameLawInTheHotLoop)
   outside.nearest.law = sheets::from_outside(LinearBond{2e5});
   const auto start = [&](const Material &material)
   {
-    State state = homogeneous_state(sheet, material, F, Edges::held, 3.05);
+    State state = homogeneous_state(sheet, material, F, Edges::held);
     add_noise(state, sheet, 0.05 * sheets::spacing, 1);
     auto simulation = std::make_unique<Simulation>(sheet, material, std::move(state),
                                                    0.9 * time_step_limits(sheet, material, 0.3).combined,

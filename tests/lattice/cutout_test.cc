@@ -16,7 +16,7 @@ constexpr Orientation orientations[] = {Orientation::rows_along_crack, Orientati
 
 State with(const TriangularLattice &sheet, const Cutout &cutout, const Eigen::Matrix2d &F)
 {
-  State state = homogeneous_state(sheet, sheets::rubber(), F, Edges::held, sheets::unbreakable);
+  State state = homogeneous_state(sheet, sheets::rubber(), F, Edges::held);
   cut_out(state, sheet, cutout);
   return state;
 }
@@ -110,8 +110,8 @@ TEST(Cutout, RelaxedHoleConcentratesStretchAtItsRim)
   State state = with(sheet, RoundHole{6. * sheets::spacing}, F);
   relax(state, sheet, sheets::rubber(), 1e-10 * 5e5 * sheets::spacing);
   const SiteFields fields = site_fields(state, sheet, sheets::rubber());
-  const SiteFields whole = site_fields(homogeneous_state(sheet, sheets::rubber(), F, Edges::held, sheets::unbreakable),
-                                       sheet, sheets::rubber());
+  const SiteFields whole =
+    site_fields(homogeneous_state(sheet, sheets::rubber(), F, Edges::held), sheet, sheets::rubber());
   double beside = 0., above = 1.;
   const std::size_t middle = sheet.rows() / 2;
   for (std::size_t column = 0; column < sheet.columns(); ++column)

@@ -38,8 +38,7 @@ TEST_P(Ends, KeepTheLoadedSheetInEquilibrium)
 {
   const TriangularLattice sheet = sheets::square(14, orientation());
   const Material bonds = material();
-  Simulation simulation(
-    sheet, bonds, homogeneous_state(sheet, bonds, sheared(), {false, false, true, true}, sheets::unbreakable), 1e-7);
+  Simulation simulation(sheet, bonds, homogeneous_state(sheet, bonds, sheared(), {false, false, true, true}), 1e-7);
   const auto largest_residual = [&]
   {
     double largest = 0.;
@@ -87,7 +86,7 @@ double reflection(const Material &bonds, Orientation orientation, const Eigen::V
   const TriangularLattice sheet(d, 2. * distance * d, 8. * d, orientation, {false, true});
   const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
   const double speed = std::sqrt(polarisation.dot(tangent_along_x(sheet, bonds, F) * polarisation) / bonds.density);
-  State state = homogeneous_state(sheet, bonds, F, {false, held, true, true}, sheets::unbreakable);
+  State state = homogeneous_state(sheet, bonds, F, {false, held, true, true});
   Field vx(sheet.n_places(), 0.), vy(sheet.n_places(), 0.);
   const double amplitude = 1e-3 * d, middle = sheet.length() - distance * d;
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
@@ -176,7 +175,7 @@ TEST(EndLoads, NeedWavesToAbsorb)
   material.nearest.law = LinearBond{1e5};
   // Bonds pressed to a tenth push sideways harder than they resist.
   const Eigen::Matrix2d F = sheets::stretched(0.1, 0.1);
-  const State state = homogeneous_state(sheet, material, F, {true, false, true, true}, sheets::unbreakable);
+  const State state = homogeneous_state(sheet, material, F, {true, false, true, true});
   EXPECT_THROW(EndLoads(sheet, material, state, F, End::held, End::absorbing), std::invalid_argument);
   EXPECT_NO_THROW(EndLoads(sheet, material, state, F, End::held, End::free));
 }

@@ -22,7 +22,7 @@ struct NoisySheet
 {
   explicit NoisySheet(Material m, Edges edges, Orientation orientation = Orientation::rows_along_crack)
     : sheet(sheets::square(14, orientation)), material(std::move(m)), forces(sheet, material),
-      state(homogeneous_state(sheet, material, sheets::stretched(2.3, 2.8), edges, sheets::unbreakable))
+      state(homogeneous_state(sheet, material, sheets::stretched(2.3, 2.8), edges))
   {
     State other = state;
     add_noise(state, sheet, 0.1 * sheets::spacing, 1);
@@ -147,7 +147,7 @@ TEST(Forces, AreTheBondLawAndDashpotOfOneBond)
 {
   const TriangularLattice sheet = sheets::square(14);
   const Material material = sheets::rubber();
-  State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::free, sheets::unbreakable);
+  State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::free);
   const std::size_t left = sheet.index(6, 6), right = left + 1;
   state.bonds.clear(sheet.n_places());
   state.bonds.add(left, 0);
@@ -232,7 +232,8 @@ State random_state(const TriangularLattice &sheet, const Material &material, uns
 {
   std::mt19937 random(seed);
   const auto uniform = [&] { return std::uniform_real_distribution<double>(0., 1.)(random); };
-  State state = homogeneous_state(sheet, material, sheets::stretched(1.6, 1.9), Edges::free, first_limit);
+  State state = homogeneous_state(sheet, material, sheets::stretched(1.6, 1.9), Edges::free);
+  state.breaking_stretch = first_limit;
   state.toughened_stretch = toughened_limit;
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
   {
@@ -302,6 +303,45 @@ TEST(Forces, AreThoseOfTheReference)
     }
   }
   EXPECT_TRUE(some_retract_alone);
+}
+
+// Rows with bonds that are shorter than a limit, and no others; linear bonds do not count.
+TEST(Forces, ReportRowsWithShortBonds)
+{
+  std::size_t n_short = 0, n_others = 0;
+  for (const Subject &subject : subjects())
+  {
+    const TriangularLattice sheet = sheet_of(subject);
+    const State state = random_state(sheet, subject.material, 3);
+    Forces forces(sheet, subject.material);
+    forces.evaluate(state, state.vx, state.vy);
+    for (std::size_t row = 0; row < sheet.rows(); ++row)
+      EXPECT_FALSE(forces.row_has_short_bonds(row)); // none are watched
+    std::vector<double> shortest(sheet.rows(), 1e9);
+    for_each_bond(state, sheet,
+                  [&](std::size_t near, std::size_t kind, std::size_t)
+                  {
+                    if (std::holds_alternative<LinearBond>(subject.material.shell(kind)->law))
+                      return;
+                    double &of_row = shortest[sheet.row_of(near)];
+                    of_row = std::min(of_row, stretch(state, sheet, near, kind));
+                  });
+    for (const double limit : {0.9, 1., 1.1, 1.2})
+    {
+      forces.watch_short_bonds(limit);
+      forces.evaluate(state, state.vx, state.vy);
+      for (std::size_t row = 0; row < sheet.rows(); ++row)
+      {
+        if (std::abs(shortest[row] / limit - 1.) > 1e-12) // a row at the limit may be either
+        {
+          EXPECT_EQ(forces.row_has_short_bonds(row), shortest[row] < limit) << row << ' ' << limit;
+        }
+        ++(shortest[row] < limit ? n_short : n_others);
+      }
+    }
+  }
+  EXPECT_GT(n_short, 20u);
+  EXPECT_GT(n_others, 20u);
 }
 
 bool same_bits(const Field &a, const Field &b)

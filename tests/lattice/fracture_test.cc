@@ -24,9 +24,9 @@ struct TenSites
   explicit TenSites(Toughening toughening, double breaking_stretch = 1.5)
     : sheet(1., 3., std::sqrt(3.), Orientation::rows_along_crack), material(sheets::nearest_only()),
       forces(sheet, material), fracture(sheet, material, breaking_stretch, toughening, Eigen::Matrix2d::Identity()),
-      state(homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::free, breaking_stretch))
+      state(homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::free))
   {
-    fracture.watch(state, forces);
+    fracture.configure(state, forces);
     EXPECT_EQ(sheet.n_sites(), 11u);
     EXPECT_EQ(fracture.remove_sites(state, {sheet.index(2, 3)}), 0.); // undeformed bonds hold no energy
   }
@@ -129,6 +129,60 @@ TEST(Fracture, LooksAheadToTheMomentOfRetraction)
   EXPECT_EQ(sheet.limit(0, 0, 0), 4.5);
 }
 
+// A bond within a few units in the last place of its limit, in many directions: the row is flagged if and only if the
+// bond breaks, or toughens, whether breaking looks ahead or not.
+TEST(Fracture, FlagsARowIfAndOnlyIfOneOfItsBondsHasAnEvent)
+{
+  const TriangularLattice sheet = sheets::square(8);
+  const Material material = sheets::rubber();
+  const Eigen::Matrix2d F = Eigen::Matrix2d::Identity();
+  State state = homogeneous_state(sheet, material, F, Edges::free);
+  state.bonds.clear(sheet.n_places());
+  const std::size_t row = 4, near = sheet.index(row, 3);
+  int n_events = 0, n_none = 0;
+  for (const double ahead : {0., 1e-6})
+    for (const bool breaks : {true, false})
+      for (const std::size_t kind : {std::size_t{1}, std::size_t{4}})
+      {
+        // 1.5 is the limit, 0.8 the fraction of retraction.
+        const double limit = breaks ? 1.5 : 0.8, l = sheet.rest_length(kind);
+        const std::size_t far = near + static_cast<std::size_t>(sheet.shift(kind, row));
+        for (int direction = 0; direction < 60; ++direction)
+          for (int ulps = -3; ulps <= 3; ++ulps)
+          {
+            State trial = state;
+            trial.bonds.add(near, kind);
+            const double angle = 0.1 * direction + 0.01, speed = 100. * (direction % 7 - 3);
+            const Eigen::Vector2d n(std::cos(angle), std::sin(angle)), v(speed * n.x(), speed * n.y());
+            const double length = limit * l * (1. + ulps * 0x1p-53);
+            trial.x[near] = trial.y[near] = 0.;
+            trial.x[far] = length * n.x() - ahead * v.x();
+            trial.y[far] = length * n.y() - ahead * v.y();
+            trial.vx[far] = v.x();
+            trial.vy[far] = v.y();
+            Forces forces(sheet, material);
+            Fracture fracture(sheet, material, 1.5, RetractionToughening{0.8, 2.}, F);
+            fracture.configure(trial, forces);
+            fracture.look_ahead(ahead);
+            forces.evaluate(trial, trial.vx, trial.vy);
+            const bool flagged =
+              ahead > 0. ? forces.row_has_events_ahead(trial, row, ahead) : forces.row_has_events(row);
+            // Applied to a sheet with all rows flagged, by another bond of each that is far beyond its limit.
+            State crowded = trial;
+            const std::size_t other = sheet.index(row, 0);
+            crowded.bonds.add(other, 0);
+            crowded.x[other + 1] = crowded.x[other] + 9. * l;
+            forces.evaluate(crowded, crowded.vx, crowded.vy);
+            fracture.apply(crowded, forces, crowded.vx, crowded.vy);
+            const bool happened = breaks ? !crowded.bonds.present(near, kind) : crowded.bonds.toughened(near, kind);
+            EXPECT_EQ(flagged, happened) << ahead << ' ' << limit << ' ' << kind << ' ' << direction << ' ' << ulps;
+            ++(happened ? n_events : n_none);
+          }
+      }
+  EXPECT_GT(n_events, 200);
+  EXPECT_GT(n_none, 200);
+}
+
 // Six bonds at most: the tip needs two losses. The corner's two bonds go; then its neighbours have lost one each.
 TEST(Fracture, TipIsTheRightMostSiteThatLostAQuarterOfItsBonds)
 {
@@ -173,7 +227,7 @@ TEST(Fracture, LeavesHeldSitesHeld)
   const TriangularLattice sheet = sheets::square(8);
   const Material material = sheets::rubber();
   const Eigen::Matrix2d F = 2. * Eigen::Matrix2d::Identity();
-  const State whole = homogeneous_state(sheet, material, F, Edges::held, 1.5);
+  const State whole = homogeneous_state(sheet, material, F, Edges::held);
   for_each_bond(whole, sheet,
                 [&](std::size_t place, std::size_t kind, std::size_t)
                 {
@@ -182,6 +236,7 @@ TEST(Fracture, LeavesHeldSitesHeld)
                   state.bonds.add(place, kind);
                   Forces forces(sheet, material);
                   Fracture fracture(sheet, material, 1.5, NoToughening{}, F);
+                  fracture.configure(state, forces);
                   forces.evaluate(state, state.vx, state.vy);
                   EXPECT_EQ(fracture.apply(state, forces, state.vx, state.vy).size(), 1u);
                   EXPECT_EQ(state.held, whole.held);
@@ -206,6 +261,67 @@ TEST(Fracture, ToughensBehindTheTip)
   sheet.state.x[sheet.sheet.index(2, 0)] -= 3.;
   const std::vector<BrokenBond> broken = sheet.apply();
   EXPECT_EQ(broken.size(), 1u);
+}
+
+// A state has bonds that never break until a Fracture sets their limits. A site is pulled aside: the bond that is
+// toughened comes to 1.6 of 1.5, others come to less.
+TEST(Fracture, OwnsTheBreakingStretch)
+{
+  const TriangularLattice sheet = sheets::square(8);
+  const Material material = sheets::rubber();
+  const Eigen::Matrix2d F = sheets::stretched(1.4, 1.4);
+  State state = homogeneous_state(sheet, material, F, Edges::held);
+  const std::size_t near = sheet.index(4, 3), far = near + 1;
+  EXPECT_EQ(limit(state, near, 0), unbreakable);
+  state.x[far] += 0.2 * sheets::spacing;
+  state.bonds.toughen(near, 0);
+  const auto n_broken = [&](const Toughening &toughening)
+  {
+    Simulation simulation(sheet, material, state, 1e-12, Fracture(sheet, material, 1.5, toughening, F));
+    simulation.step();
+    return simulation.n_broken();
+  };
+  const std::size_t all = n_broken(NoToughening{});
+  EXPECT_GT(all, 1u);
+  EXPECT_EQ(n_broken(GivenToughening{1.}), all);
+  EXPECT_EQ(n_broken(GivenToughening{2.}), all - 1);
+  EXPECT_EQ(n_broken(GivenToughening{unbreakable}), all - 1);
+  EXPECT_EQ(n_broken(BehindTipToughening{1., 2.}), all - 1);
+  EXPECT_EQ(n_broken(RetractionToughening{0.5, 2.}), all - 1);
+  EXPECT_EQ(n_broken(RetractionToughening{0.5, 1.}), all);
+}
+
+// Without configure() a state has unbreakable bonds: that must not pass silently for bonds that hold.
+TEST(Fracture, RefusesAStateThatWasNotConfigured)
+{
+  const TriangularLattice sheet = sheets::square(8);
+  const Material material = sheets::rubber();
+  const Eigen::Matrix2d F = sheets::stretched(1.4, 1.4);
+  State state = homogeneous_state(sheet, material, F, Edges::held);
+  Forces forces(sheet, material);
+  Fracture fracture(sheet, material, 1.5, NoToughening{}, F);
+  forces.evaluate(state, state.vx, state.vy);
+  EXPECT_THROW(fracture.apply(state, forces, state.vx, state.vy), std::logic_error);
+  fracture.configure(state, forces);
+  EXPECT_NO_THROW(fracture.apply(state, forces, state.vx, state.vy));
+  EXPECT_THROW(Fracture(sheet, material, 1.5, GivenToughening{0.5}, F), std::invalid_argument);
+}
+
+// A held site that is cut out is no longer held and does not move with its edge.
+TEST(Fracture, CutsHeldSitesOutForGood)
+{
+  const TriangularLattice sheet = sheets::square(8);
+  const Material material = sheets::rubber();
+  const Eigen::Matrix2d F = sheets::stretched(1.2, 1.2);
+  Simulation simulation(sheet, material, homogeneous_state(sheet, material, F, Edges::held), 1e-9,
+                        Fracture(sheet, material, 3., NoToughening{}, F));
+  const std::size_t corner = sheet.index(0, 0), next = sheet.index(0, 1);
+  simulation.cut({corner});
+  simulation.move_edges(sheets::stretched(400., 200.));
+  EXPECT_EQ(simulation.state().held[corner], 0);
+  EXPECT_EQ(simulation.state().vx[corner], 0.);
+  EXPECT_EQ(simulation.state().vy[corner], 0.);
+  EXPECT_NE(simulation.state().vy[next], 0.);
 }
 
 // Bond (2, 0)-(2, 1) squeezed to 0.7 of its loaded stretch, which is 1 here, toughens at fraction 0.8; the others do
@@ -243,7 +359,7 @@ struct Crack
     : sheet(sheets::spacing, 1.5 * n * sheets::spacing, n * sheets::spacing, orientation), material(sheets::rubber())
   {
     const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
-    State state = homogeneous_state(sheet, material, F, Edges::held, 3.05);
+    State state = homogeneous_state(sheet, material, F, Edges::held);
     add_noise(state, sheet, noise * sheets::spacing, 1);
     simulation = std::make_unique<Simulation>(
       sheet, material, std::move(state), time_step_factor * time_step_limits(sheet, material, 0.3).combined,
@@ -317,7 +433,7 @@ TEST(EnergyBalance, ClosesWithMovingEdges)
   const Material material = sheets::rubber();
   const auto relative_imbalance = [&](double time_step)
   {
-    State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held, sheets::unbreakable);
+    State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
     Simulation simulation(sheet, material, std::move(state), time_step);
     simulation.move_edges(sheets::stretched(400., 200.));
     const auto steps = static_cast<std::size_t>(std::lround(2e-4 / time_step));

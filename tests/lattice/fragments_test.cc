@@ -17,7 +17,7 @@ class Cut : public testing::Test
 protected:
   Cut()
     : sheet(sheets::square(16)), material(sheets::rubber()),
-      state(homogeneous_state(sheet, material, sheets::stretched(1.2, 1.4), Edges::held, 2.))
+      state(homogeneous_state(sheet, material, sheets::stretched(1.2, 1.4), Edges::held))
   {
   }
 
@@ -80,7 +80,7 @@ TEST_F(Cut, HalvesOfTheSheetAreNoFragments)
 
 TEST_F(Cut, WithoutHeldSitesTheLargestPieceIsTheSheet)
 {
-  state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::free, 2.);
+  state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::free);
   cut_around({sheet.index(0, 0), sheet.index(0, 1)});
   const Fragments fragments = find_fragments(state, sheet);
   EXPECT_EQ(fragments.sizes, std::vector<std::size_t>{2});
@@ -93,7 +93,7 @@ TEST(Fragments, GoOnAcrossAPeriodicEdge)
 {
   const TriangularLattice sheet(1., 12., 12., Orientation::rows_along_crack, {true, false});
   const Material material = sheets::nearest_only();
-  State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held, 2.);
+  State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
   const std::size_t row = 5, last = sheet.columns() - 1;
   const auto is_inner = [&](std::size_t place)
   { return sheet.home(place) == sheet.index(row, 0) || sheet.home(place) == sheet.index(row, last); };

@@ -27,7 +27,7 @@ struct SlitSheet
   explicit SlitSheet(Orientation orientation = Orientation::rows_along_crack, const Material &rubber = sheets::rubber(),
                      const Eigen::Matrix2d &F = loading)
     : sheet(d, 40 * d, 30 * d, orientation), material(rubber),
-      state(homogeneous_state(sheet, material, F, Edges::free, sheets::unbreakable)),
+      state(homogeneous_state(sheet, material, F, Edges::free)),
       tip(orientation == Orientation::rows_along_crack ? sheet.index(sheet.rows() / 2, 20)
                                                        : sheet.index(20, sheet.columns() / 2))
   {
@@ -173,7 +173,7 @@ TEST(NearTipSampler, FoldsWhereThePathDescends)
 {
   SlitSheet slit(Orientation::rows_along_crack, sheets::rubber());
   const TriangularLattice long_sheet(d, 160 * d, 40 * d, Orientation::rows_along_crack);
-  State state = homogeneous_state(long_sheet, slit.material, loading, Edges::free, sheets::unbreakable);
+  State state = homogeneous_state(long_sheet, slit.material, loading, Edges::free);
   const double amplitude = 5 * d, wavelength = 40 * d, middle = static_cast<double>(long_sheet.rows() / 2);
   NearTipOptions options{8 * d, 8 * d, 8 * d, 30 * d, 110 * d, loading};
   NearTipSampler sampler(long_sheet, slit.material, options);

@@ -1,7 +1,9 @@
 #include "lattice/near_tip_measurement.h"
 
 #include <cmath>
+#include <limits>
 #include <random>
+#include <stdexcept>
 
 #include <Eigen/LU>
 
@@ -309,6 +311,17 @@ TEST(WedgeAngle, IsThatBetweenTheFlanks)
     for (double y = -40 * d; y < 40 * d; y += pitch.y())
       whole.push_back({x, y});
   EXPECT_FALSE(wedge_angle(whole, pitch, 5 * 2.3 * d, 25 * 2.3 * d));
+}
+
+TEST(WedgeAngle, RefusesDistancesAndPitchesOutOfRange)
+{
+  const std::vector<Eigen::Vector2d> sites{{0., 0.}};
+  const Eigen::Vector2d pitch(d, d);
+  EXPECT_FALSE(wedge_angle(sites, pitch, d, d));
+  EXPECT_THROW(wedge_angle(sites, pitch, 25. * d, 5. * d), std::invalid_argument);
+  EXPECT_THROW(wedge_angle(sites, pitch, 5. * d, std::numeric_limits<double>::infinity()), std::invalid_argument);
+  EXPECT_THROW(wedge_angle(sites, {0., d}, 5. * d, 25. * d), std::invalid_argument);
+  EXPECT_THROW(wedge_angle(sites, {-d, d}, 5. * d, 25. * d), std::invalid_argument);
 }
 
 } // namespace

@@ -34,8 +34,7 @@ TEST(PeriodicLattice, EverySiteHasAllItsBondsWhereNoEdgeIsLeft)
   {
     const TriangularLattice sheet = periodic_square(8., orientation, both);
     const Material material = sheets::rubber();
-    const State state =
-      homogeneous_state(sheet, material, sheets::stretched(1.2, 1.5), Edges::held, sheets::unbreakable);
+    const State state = homogeneous_state(sheet, material, sheets::stretched(1.2, 1.5), Edges::held);
     std::size_t sites = 0;
     for_each_site(sheet,
                   [&](std::size_t place)
@@ -67,8 +66,7 @@ TEST(PeriodicLattice, HasEdgesOnlyWhereItIsNotPeriodic)
     {
       const TriangularLattice sheet = periodic_square(10., orientation, periodic);
       const Material material = sheets::rubber();
-      const State state =
-        homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held, sheets::unbreakable);
+      const State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
       for_each_site(sheet,
                     [&](std::size_t place)
                     {
@@ -90,13 +88,12 @@ TEST(PeriodicLattice, HomogeneousDeformationIsInEquilibriumAtEverySite)
     const Material material = sheets::rubber();
     Eigen::Matrix2d F;
     F << 1.4, 0.3, -0.2, 1.7;
-    const State state = homogeneous_state(sheet, material, F, Edges::held, sheets::unbreakable);
+    const State state = homogeneous_state(sheet, material, F, Edges::held);
     Forces forces(sheet, material);
     forces.evaluate(state, state.vx, state.vy);
     const SiteFields fields = site_fields(state, sheet, material);
     const TriangularLattice finite = sheets::square(8., orientation);
-    const SiteFields inside =
-      site_fields(homogeneous_state(finite, material, F, Edges::free, sheets::unbreakable), finite, material);
+    const SiteFields inside = site_fields(homogeneous_state(finite, material, F, Edges::free), finite, material);
     const std::size_t middle = finite.index(finite.rows() / 2, finite.columns() / 2);
     const double scale = 2.5e5 * sheets::spacing; // of a bond force [N/m]
     for_each_site(sheet,
@@ -131,7 +128,7 @@ TEST(PeriodicLattice, SmallestCellFeelsWhatItsCopiesFeelInALargeSheet)
     ASSERT_EQ(cell.n_sites(), 4u);
     ASSERT_EQ(large.n_sites(), 36u);
     const Eigen::Matrix2d F = sheets::stretched(1.3, 1.6);
-    State small = homogeneous_state(cell, material, F, Edges::held, sheets::unbreakable);
+    State small = homogeneous_state(cell, material, F, Edges::held);
     add_noise(small, cell, 0.1 * sheets::spacing, 3);
     for_each_site(cell,
                   [&](std::size_t place)
@@ -140,7 +137,7 @@ TEST(PeriodicLattice, SmallestCellFeelsWhatItsCopiesFeelInALargeSheet)
                     small.vy[place] = -0.2 * static_cast<double>(place % 7);
                   });
     update_images(small, cell);
-    State copies = homogeneous_state(large, material, F, Edges::held, sheets::unbreakable);
+    State copies = homogeneous_state(large, material, F, Edges::held);
     const auto original = [&](std::size_t place)
     { return cell.index(large.row_of(place) % 2, large.column_of(place) % 2); };
     for_each_site(large,
@@ -176,7 +173,7 @@ TEST(PeriodicLattice, MotionKeepsEnergyAndMomentum)
 {
   const Material material = sheets::rubber(0.);
   const TriangularLattice sheet = periodic_square(10., Orientation::rows_along_crack, both);
-  State state = homogeneous_state(sheet, material, sheets::stretched(1.5, 1.5), Edges::held, sheets::unbreakable);
+  State state = homogeneous_state(sheet, material, sheets::stretched(1.5, 1.5), Edges::held);
   add_noise(state, sheet, 0.02 * sheets::spacing, 7);
   Simulation simulation(sheet, material, std::move(state), 1e-7);
   const double before = simulation.energies().elastic;
@@ -201,7 +198,7 @@ TEST(PeriodicLattice, RelaxesToTheHomogeneousState)
 {
   const Material material = sheets::rubber();
   const TriangularLattice sheet = periodic_square(10., Orientation::rows_across_crack, both);
-  State state = homogeneous_state(sheet, material, sheets::stretched(1.5, 1.5), Edges::held, sheets::unbreakable);
+  State state = homogeneous_state(sheet, material, sheets::stretched(1.5, 1.5), Edges::held);
   const double homogeneous = elastic_energy(state, sheet, material);
   add_noise(state, sheet, 0.05 * sheets::spacing, 7);
   EXPECT_GT(elastic_energy(state, sheet, material), homogeneous * (1. + 1e-6));
@@ -222,8 +219,7 @@ TEST(Edges, HoldOnlyThoseThatAreAskedFor)
   {
     const TriangularLattice sheet = sheets::square(12., orientation);
     const Material material = sheets::rubber();
-    const State state =
-      homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), {false, true, false, false}, sheets::unbreakable);
+    const State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), {false, true, false, false});
     for_each_site(sheet,
                   [&](std::size_t place)
                   {

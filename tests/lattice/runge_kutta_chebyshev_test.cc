@@ -72,7 +72,7 @@ TEST(RungeKuttaChebyshev, MultipliesWavesByItsPolynomial)
     const Complex factor = std::pow(stages.amplification(h * waves.rates(mode)), steps);
     // As large as linearity allows; the fast modes are motions of high velocity.
     const double amplitude = 1e-7 * sheets::spacing / waves.modes.col(mode).head<2>().norm();
-    const State rest = homogeneous_state(sheet, material, F, Edges::free, sheets::unbreakable);
+    const State rest = homogeneous_state(sheet, material, F, Edges::free);
     State state = rest;
     const auto wave = [&](std::size_t place, Eigen::Index component, Complex times)
     {
@@ -117,7 +117,7 @@ TEST(RungeKuttaChebyshev, IsStableUpToItsLimitAndNotBeyond)
       const double limit = ChebyshevStages(n_stages).real_limit() / fastest;
       const auto kinetic = [&](double factor)
       {
-        State state = homogeneous_state(sheet, material, F, Edges::held, sheets::unbreakable);
+        State state = homogeneous_state(sheet, material, F, Edges::held);
         add_noise(state, sheet, 1e-3 * sheets::spacing, 5);
         Simulation simulation(sheet, material, std::move(state), {factor * limit, n_stages});
         simulation.step();
@@ -137,7 +137,7 @@ TEST(RungeKuttaChebyshev, ComesToTheEquilibriumOfVerlet)
   const TriangularLattice sheet = sheets::square(10);
   const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
   const Material material = sheets::rubber();
-  State state = homogeneous_state(sheet, material, F, Edges::held, sheets::unbreakable);
+  State state = homogeneous_state(sheet, material, F, Edges::held);
   const State rest = state;
   add_noise(state, sheet, 0.05 * sheets::spacing, 3);
   Simulation simulation(sheet, material, std::move(state), {4e-6, 7});
@@ -154,7 +154,7 @@ TEST(RungeKuttaChebyshev, AppliesForcesOnSitesInEachStage)
   const TriangularLattice sheet = sheets::square(10);
   const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
   const Material material = sheets::rubber();
-  const State rest = homogeneous_state(sheet, material, F, {false, false, true, true}, sheets::unbreakable);
+  const State rest = homogeneous_state(sheet, material, F, {false, false, true, true});
   Simulation simulation(sheet, material, rest, {4e-6, 7});
   simulation.load_ends(F, EndLoads::End::free, EndLoads::End::free);
   for (int step = 0; step < 100; ++step)
@@ -166,9 +166,8 @@ TEST(RungeKuttaChebyshev, KeepsTheVelocityOfHeldSites)
 {
   const TriangularLattice sheet = sheets::square(10);
   const Material material = sheets::rubber();
-  Simulation simulation(
-    sheet, material, homogeneous_state(sheet, material, sheets::stretched(1.2, 1.1), Edges::held, sheets::unbreakable),
-    {4e-6, 6});
+  Simulation simulation(sheet, material, homogeneous_state(sheet, material, sheets::stretched(1.2, 1.1), Edges::held),
+                        {4e-6, 6});
   const State before = simulation.state();
   const Eigen::Matrix2d L = sheets::stretched(30., 70.);
   simulation.move_edges(L);
@@ -195,7 +194,7 @@ TEST(RungeKuttaChebyshev, BitsDoNotDependOnThreads)
     EXPECT_GE(sheet.n_places(), worth_threads);
     const Material material = sheets::rubber();
     const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
-    State state = homogeneous_state(sheet, material, F, Edges::held, 3.05);
+    State state = homogeneous_state(sheet, material, F, Edges::held);
     add_noise(state, sheet, 0.01 * sheets::spacing, 1);
     Simulation simulation(sheet, material, std::move(state), {4e-6, 7},
                           Fracture(sheet, material, 3.05, BehindTipToughening{4. * sheets::spacing, 2.}, F));

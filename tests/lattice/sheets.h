@@ -1,6 +1,5 @@
 #pragma once
 
-#include <limits>
 #include <memory>
 
 #include "lattice/simulation.h"
@@ -10,7 +9,6 @@ namespace sheets
 {
 
 inline constexpr double spacing = 0.625e-3;
-inline constexpr double unbreakable = std::numeric_limits<double>::infinity();
 
 /// A law of latcon's own, given as one from outside.
 template <class Law>

@@ -18,7 +18,7 @@ TEST(SiteFields, AreTheHandSumsOfAHomogeneousStretch)
 {
   const TriangularLattice sheet = sheets::square(12);
   const Material material{944., {LinearBond{2e5}, 0.5, 10.}, std::nullopt};
-  const State state = homogeneous_state(sheet, material, sheets::stretched(1.2, 1.), Edges::held, sheets::unbreakable);
+  const State state = homogeneous_state(sheet, material, sheets::stretched(1.2, 1.), Edges::held);
   const SiteFields fields = site_fields(state, sheet, material);
   const std::size_t middle = sheet.index(sheet.rows() / 2, 5);
   // A0 l / V = s for nearest neighbours. Stretches: 1.2 along the row, l = sqrt(0.6^2 + 3/4) at +-60 degrees.
@@ -44,8 +44,7 @@ TEST(SiteFields, DeformationGradientIsThatOfAnyHomogeneousState)
   const Material material = sheets::rubber();
   Eigen::Matrix2d F;
   F << 2.1, 0.4, -0.3, 1.7;
-  const SiteFields fields =
-    site_fields(homogeneous_state(sheet, material, F, Edges::free, sheets::unbreakable), sheet, material);
+  const SiteFields fields = site_fields(homogeneous_state(sheet, material, F, Edges::free), sheet, material);
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
     if (sheet.is_site(place))
     {
@@ -59,8 +58,7 @@ TEST(Relaxation, NoiseRelaxesToTheHomogeneousState)
 {
   const TriangularLattice sheet = sheets::square(20);
   const Material material = sheets::rubber();
-  const State homogeneous =
-    homogeneous_state(sheet, material, sheets::stretched(2.3, 2.8), Edges::held, sheets::unbreakable);
+  const State homogeneous = homogeneous_state(sheet, material, sheets::stretched(2.3, 2.8), Edges::held);
   State state = homogeneous;
   add_noise(state, sheet, 0.1 * sheets::spacing, 3);
   // Forces of single bonds are of the order A0 psi' = 2e2 N/m; round-off of sums of twelve, 1e-13.
@@ -81,7 +79,7 @@ TEST(Relaxation, SaysWhenItDoesNotGetThere)
 {
   const TriangularLattice sheet = sheets::square(20);
   const Material material = sheets::rubber();
-  State state = homogeneous_state(sheet, material, sheets::stretched(2.3, 2.8), Edges::held, sheets::unbreakable);
+  State state = homogeneous_state(sheet, material, sheets::stretched(2.3, 2.8), Edges::held);
   add_noise(state, sheet, 0.1 * sheets::spacing, 3);
   EXPECT_THROW(relax(state, sheet, material, 1e-11, 10), std::runtime_error);
 }

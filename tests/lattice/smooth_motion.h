@@ -16,9 +16,8 @@ inline lattice::State run(const lattice::Material &material, lattice::TimeSteppi
 {
   using namespace lattice;
   const TriangularLattice sheet = sheets::square(12);
-  Simulation simulation(
-    sheet, material, homogeneous_state(sheet, material, sheets::stretched(1.5, 1.4), Edges::held, sheets::unbreakable),
-    stepping);
+  Simulation simulation(sheet, material, homogeneous_state(sheet, material, sheets::stretched(1.5, 1.4), Edges::held),
+                        stepping);
   Field vx(sheet.n_places()), vy(sheet.n_places());
   for (std::size_t i = 0; i < vx.size(); ++i)
   {

@@ -25,7 +25,7 @@ TEST_P(BothOrientations, SitesHaveTwelveNeighboursAtTheRightDistances)
   const TriangularLattice sheet = sheets::square(12, GetParam());
   const lattice::Material material = sheets::rubber();
   const lattice::State state =
-    lattice::homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), lattice::Edges::free, sheets::unbreakable);
+    lattice::homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), lattice::Edges::free);
   std::vector<std::size_t> sites;
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
     if (sheet.is_site(place))
@@ -91,6 +91,38 @@ TEST_P(BothOrientations, SheetIsItsOwnMirrorImage)
     }
 }
 
+// About the centre line along y, to round-off: with an odd number of rows. With an even one, which rows across the
+// crack may have, the first row has a site more than the last.
+TEST_P(BothOrientations, SheetIsItsOwnMirrorImageInXIfItsNumberOfRowsIsOdd)
+{
+  const bool along = GetParam() == Orientation::rows_along_crack;
+  for (const double length : {11., 12.})
+  {
+    const TriangularLattice sheet(sheets::spacing, length * sheets::spacing, 11. * sheets::spacing, GetParam());
+    if (sheet.rows() % 2 == 0)
+    {
+      EXPECT_FALSE(along);
+      EXPECT_EQ(sheet.sites_in_row(sheet.rows() - 1), sheet.sites_in_row(0) - 1);
+      continue;
+    }
+    for (std::size_t row = 0; row < sheet.rows(); ++row)
+      for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
+      {
+        const Eigen::Vector2d X = sheet.reference(sheet.index(row, column));
+        const std::size_t mirror_row = along ? row : sheet.rows() - 1 - row;
+        const std::size_t mirror_column = along ? sheet.sites_in_row(row) - 1 - column : column;
+        const Eigen::Vector2d mirror = sheet.reference(sheet.index(mirror_row, mirror_column));
+        EXPECT_NEAR(mirror.x(), sheet.length() - X.x(), 1e-15 * sheet.length());
+        EXPECT_EQ(mirror.y(), X.y());
+      }
+  }
+  // Both numbers occur among these lengths.
+  const TriangularLattice odd(1., 12., 11., Orientation::rows_across_crack);
+  const TriangularLattice even(1., 11., 11., Orientation::rows_across_crack);
+  EXPECT_EQ(odd.rows() % 2, 1u);
+  EXPECT_EQ(even.rows() % 2, 0u);
+}
+
 TEST_P(BothOrientations, ExtentIsThatOfTheOutermostSites)
 {
   const TriangularLattice sheet(sheets::spacing, 0.02, 0.01, GetParam());
@@ -115,6 +147,8 @@ TEST(TriangularLattice, RefusesWhatIsNoSheet)
   EXPECT_THROW(TriangularLattice(0., 1., 1., Orientation::rows_along_crack), std::invalid_argument);
   EXPECT_THROW(TriangularLattice(1., -1., 1., Orientation::rows_along_crack), std::invalid_argument);
   EXPECT_THROW(TriangularLattice(1., 0.3, 1., Orientation::rows_along_crack), std::invalid_argument);
+  EXPECT_THROW(TriangularLattice(1., 1e10, 4., Orientation::rows_along_crack), std::invalid_argument);
+  EXPECT_THROW(TriangularLattice(1., 4., HUGE_VAL, Orientation::rows_along_crack), std::invalid_argument);
 }
 
 } // namespace

@@ -67,7 +67,7 @@ TEST(VelocityVerlet, DampingLimitOfOneDashpotIsOne)
     2. * cross_section(material.nearest, sheet) * material.nearest.viscosity / (sheets::spacing * mass);
   const auto relative_velocity_after = [&](double z, int steps)
   {
-    State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::free, sheets::unbreakable);
+    State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::free);
     const std::size_t left = sheet.index(3, 2);
     state.bonds.clear(sheet.n_places());
     state.bonds.add(left, 0);
@@ -97,7 +97,7 @@ TEST(TimeStepLimits, AreSafeAndSharp)
   const TimeStepLimits limits = time_step_limits(sheet, material, 1.);
   const auto growth = [&](double factor)
   {
-    State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held, sheets::unbreakable);
+    State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
     add_noise(state, sheet, 1e-3 * sheets::spacing, 5);
     Simulation simulation(sheet, material, std::move(state), factor * limits.combined);
     for (int step = 0; step < 3000; ++step)
@@ -131,7 +131,7 @@ TEST(Simulation, BitsDoNotDependOnThreads)
     const TriangularLattice sheet = sheets::square(32);
     const Material material = sheets::rubber();
     const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
-    State state = homogeneous_state(sheet, material, F, Edges::held, 3.05);
+    State state = homogeneous_state(sheet, material, F, Edges::held);
     add_noise(state, sheet, 0.01 * sheets::spacing, 1);
     Simulation simulation(sheet, material, std::move(state), 2e-7,
                           Fracture(sheet, material, 3.05, BehindTipToughening{4. * sheets::spacing, 2.}, F));
@@ -158,7 +158,7 @@ TEST(Noise, DependsOnSeedAloneAndKeepsItsAmplitude)
 {
   const TriangularLattice sheet = sheets::square(30);
   const Material material = sheets::rubber();
-  const State still = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held, 3.);
+  const State still = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
   State a = still, b = still, c = still;
   add_noise(a, sheet, 1e-5, 7);
   add_noise(b, sheet, 1e-5, 7);

@@ -73,14 +73,14 @@ TEST(LatticeSheet, HasTheEdgesAndTheHoleOfTheCase)
   Parameters parameters;
   Case input = read({"Sheet/hole radius=4 mm"}, parameters);
   const lattice::TriangularLattice lattice = input.lattice();
-  const lattice::State state = lattice_state(input, lattice, 2.);
+  const lattice::State state = lattice_state(input, lattice);
   EXPECT_GT(count(state.held, lattice, 100.), 40u);
   EXPECT_EQ(count(state.held, lattice, 0.007), 0u); // the sides are free
   EXPECT_NEAR(count(state.removed, lattice, 100.) * lattice.site_area(), M_PI * 16e-6, 4e-6);
 
   input.hole_radius = 0.;
   input.notch_length = 5e-3;
-  EXPECT_EQ(count(lattice_state(input, lattice, 2.).removed, lattice, 100.), 6u); // sites at 0, 1, ... 5 mm
+  EXPECT_EQ(count(lattice_state(input, lattice).removed, lattice, 100.), 6u); // sites at 0, 1, ... 5 mm
 }
 
 TEST(LatticeSheet, IsPeriodicWhereItsEdgesAre)

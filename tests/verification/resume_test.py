@@ -51,7 +51,7 @@ class Resume(TemporaryFolder):
                 steps.append(int(file["run/step"][0]))
                 self.assertEqual(path.name, f"checkpoint-{steps[-1]:012}.h5")
                 self.assertEqual(file["run/command"][0], b"fracture")
-                self.assertEqual(file["run/schema"][0], 2)
+                self.assertEqual(file["run/schema"][0], 3)
                 self.assertIn(b"Sheet/length = 0.025\n", file["run/case"][0])
                 self.assertEqual(file["run/time"][0], file["simulation/time"][0])
                 sites = file["simulation/x"].shape

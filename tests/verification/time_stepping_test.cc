@@ -94,6 +94,45 @@ TEST(TimeStepping, TakesTheStepForStages)
   EXPECT_EQ(stated.step, 2.5e-6);
 }
 
+// Of a crack, whose sites may touch; of the motion of a whole sheet there are no contacts.
+TEST(TimeStepping, CountsContactsUnderRungeKuttaChebyshev)
+{
+  const Lines breaks{chebyshev, "Fracture/breaking stretch=3.05", "Sheet/length=40 mm"};
+  const auto with = [&](const std::string &entry)
+  {
+    Lines all = breaks;
+    all.push_back(entry);
+    Case input;
+    read(all, input);
+    return std::pair(input.fracture_time_stepping(), input.lattice_time_stepping());
+  };
+  const auto [as_bonds, alone] = with("Contact/stiffness=1");
+  EXPECT_EQ(as_bonds.step, alone.step);
+  double before = as_bonds.step;
+  for (const std::string stiffness : {"1000", "1e6"})
+  {
+    const auto [stiff, without] = with("Contact/stiffness=" + stiffness);
+    EXPECT_LT(stiff.step, 0.1 * before);
+    EXPECT_EQ(without.step, alone.step);
+    before = stiff.step;
+  }
+  EXPECT_EQ(with("Contact/present=false").first.step, alone.step);
+}
+
+TEST(TimeStepping, RefusesStepsThatAmplifyContacts)
+{
+  const auto refused = [](const std::string &entry, Lines lines)
+  {
+    lines.insert(lines.end(), {"Fracture/breaking stretch=3.05", "Sheet/length=40 mm"});
+    expect_refused(entry, lines);
+  };
+  refused("Contact/viscosity = 0", {chebyshev, "Contact/viscosity=0"});
+  refused("Time/step = 3e-6", {chebyshev, "Time/step=3e-6", "Contact/stiffness=1000"});
+  refused("Time/step = 1e-7", {"Time/step=1e-7", "Contact/stiffness=1e6"});
+  // Without contact nothing is refused.
+  EXPECT_NO_THROW(stepping({chebyshev, "Contact/viscosity=0"}));
+}
+
 TEST(TimeStepping, RefusesWhatCannotBe)
 {
   expect_refused("Time/stages = 4", {"Time/stages=4"});

@@ -294,6 +294,7 @@ Results motion(const Case &input, ContinuumModel &model, Checkpoints &checkpoint
     throw SolverError(message);
   }
   write_last_state();
+  run.info().add("divided_steps", static_cast<std::uint64_t>(solver.n_divided_steps()));
   return motion_results(solver, settings.time_step);
 }
 

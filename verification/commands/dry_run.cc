@@ -34,7 +34,7 @@ std::string lattice_text(const Case &input, const lattice::TimeStepping &steppin
                          const bool claims, const bool report)
 {
   const lattice::TriangularLattice sheet = input.lattice();
-  const lattice::State state = lattice_state(input, sheet, lattice::unbreakable);
+  const lattice::State state = lattice_state(input, sheet);
   std::size_t sites = 0;
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
     sites += sheet.is_site(place) && state.removed[place] == 0;

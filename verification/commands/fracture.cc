@@ -88,8 +88,7 @@ Crack break_sheet(const Case &input, const lattice::TriangularLattice &sheet, co
 {
   const lattice::Edges edges{input.left_end == Case::End::held, input.right_end == Case::End::held, true, true};
   const lattice::RowBand band(sheet, MPI_COMM_WORLD);
-  lattice::State state =
-    lattice::homogeneous_state(band, material, input.deformation(), edges, *input.breaking_stretch);
+  lattice::State state = lattice::homogeneous_state(band, material, input.deformation(), edges);
   lattice::add_noise(state, band, input.noise_amplitude * input.spacing, input.noise_seed);
   lattice::Simulation simulation(
     band, material, std::move(state), input.fracture_time_stepping(),

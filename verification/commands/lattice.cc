@@ -108,7 +108,7 @@ ExitCode run_lattice(const Options &options)
   Results results;
   const auto state_of = [&](const lattice::RowBand &band)
   {
-    lattice::State state = lattice_state(input, band, lattice::unbreakable);
+    lattice::State state = lattice_state(input, band);
     lattice::add_noise(state, band, input.noise_amplitude * input.spacing, input.noise_seed);
     return state;
   };

@@ -74,6 +74,7 @@ void LatticeMotion::go(const Course &course, bool resumed, const std::function<v
       }
     }
     record_.energies();
+    run_.info().add("divided_steps", static_cast<std::uint64_t>(simulation_.n_divided_steps()));
   }
   catch (const SolverError &)
   {

@@ -83,14 +83,12 @@ Eigen::Matrix2d Run::deformation() const
 
 lattice::State Run::seeded_strip(const Eigen::Matrix2d &F) const
 {
-  lattice::State state =
-    lattice::homogeneous_state(sheet_, material_, F, {false, true, true, true}, 1. + options_.breaking_strain);
+  lattice::State state = lattice::homogeneous_state(sheet_, material_, F, {false, true, true, true});
   for (std::size_t column = 0; column < sheet_.sites_in_row(1); ++column)
   {
     state.held[sheet_.index(1, column)] = 1;
     state.inverse_mass[sheet_.index(1, column)] = 0.;
   }
-  state.toughened_stretch = lattice::unbreakable;
   cut(state, options_.seed);
   constexpr double at_rest = 1e-4;
   lattice::relax(state, sheet_, material_, at_rest * scales_.force);
@@ -155,9 +153,9 @@ CrackRun Run::measure()
   const double h = options_.time_step * scales_.time;
   if (!(h <= lattice::time_step_limits(sheet_, material_, 1.).combined))
     throw std::invalid_argument("the time step of a crack run is beyond the stable one");
-  lattice::Simulation simulation(
-    sheet_, material_, seeded_strip(F), h,
-    lattice::Fracture(sheet_, material_, 1. + options_.breaking_strain, lattice::NoToughening{}, F));
+  lattice::Simulation simulation(sheet_, material_, seeded_strip(F), h,
+                                 lattice::Fracture(sheet_, material_, 1. + options_.breaking_strain,
+                                                   lattice::GivenToughening{lattice::unbreakable}, F));
 
   CrackRun run{};
   Extremes elsewhere;

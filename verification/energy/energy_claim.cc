@@ -1,7 +1,6 @@
 #include "verification/energy/energy_claim.h"
 
 #include <cmath>
-#include <limits>
 #include <random>
 
 #include <Eigen/Geometry>
@@ -63,8 +62,7 @@ Eigen::Matrix2d stress_derivative(const Stress &stress, int k, int L)
 LatticeResponse homogeneous_response(const lattice::TriangularLattice &sheet, const lattice::Material &material,
                                      const Eigen::Matrix2d &F)
 {
-  const lattice::State state =
-    lattice::homogeneous_state(sheet, material, F, lattice::Edges::free, std::numeric_limits<double>::infinity());
+  const lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::free);
   lattice::Forces forces(sheet, material);
   forces.evaluate(state, state.vx, state.vy);
   const auto force = [&](std::size_t row, std::size_t column)

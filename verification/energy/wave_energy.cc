@@ -2,7 +2,6 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <sstream>
 
 #include "lattice/simulation.h"
@@ -44,8 +43,7 @@ double lattice_stiffness(const WaveCell &cell, const lattice::Material &material
                          const Eigen::Vector2d &p)
 {
   const lattice::TriangularLattice &sheet = cell.sheet;
-  const lattice::State at_rest =
-    lattice::homogeneous_state(sheet, material, F, lattice::Edges::free, std::numeric_limits<double>::infinity());
+  const lattice::State at_rest = lattice::homogeneous_state(sheet, material, F, lattice::Edges::free);
   const auto energy = [&](double amplitude)
   {
     lattice::State state = at_rest;
@@ -175,8 +173,7 @@ Densities travelling_lattice(const WaveCell &cell, const lattice::Material &mate
                              const PlaneWave &wave, double amplitude)
 {
   const lattice::TriangularLattice &sheet = cell.sheet;
-  lattice::State state =
-    lattice::homogeneous_state(sheet, material, F, lattice::Edges::free, std::numeric_limits<double>::infinity());
+  lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::free);
   const double at_rest = lattice::elastic_energy(state, sheet, material);
   for (std::size_t row = 0; row < sheet.rows(); ++row)
     for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)

@@ -46,7 +46,7 @@ double roundest_radius(const Subject &subject, double R, double length, double h
   const double first = R - 0.487 * d; // no site is at such a distance
   const lattice::TriangularLattice lattice(d, length, height, subject.orientation);
   const lattice::State whole =
-    lattice::homogeneous_state(lattice, subject.material, Eigen::Matrix2d::Identity(), lattice::Edges::held, 1.);
+    lattice::homogeneous_state(lattice, subject.material, Eigen::Matrix2d::Identity(), lattice::Edges::held);
   const Eigen::Vector2d middle(0.5 * lattice.length(), 0.);
   // Moments of the bonds that go with each radius and not with the one before.
   std::array<double, n_radii> moments{};
@@ -110,8 +110,7 @@ CutSheet sheet_with_notch(const Subject &subject, double a, const Eigen::Matrix2
 CutLattice relaxed_lattice(const Subject &subject, const CutSheet &sheet)
 {
   const lattice::TriangularLattice lattice(subject.spacing, sheet.length, sheet.height, subject.orientation);
-  const lattice::State whole =
-    lattice::homogeneous_state(lattice, subject.material, sheet.F, sheet.held, std::numeric_limits<double>::infinity());
+  const lattice::State whole = lattice::homogeneous_state(lattice, subject.material, sheet.F, sheet.held);
   CutLattice cut{lattice, whole, {}, {}, {}, 0., {}, 0., {}, 0., 0.};
   lattice::cut_out(cut.state, lattice, sheet.cutout);
   cut.relaxation = lattice::relax(cut.state, lattice, subject.material,

@@ -1,7 +1,6 @@
 #include "verification/prestretch/prestretch_claim.h"
 
 #include <cmath>
-#include <limits>
 
 #include <deal.II/base/function.h>
 
@@ -63,8 +62,7 @@ Eigen::Vector2d edge_traction(const lattice::TriangularLattice &sheet, const lat
 LatticeSide relaxed_lattice(const Subject &subject, const lattice::TriangularLattice &sheet, double noise)
 {
   LatticeSide side;
-  side.state = lattice::homogeneous_state(sheet, subject.material, subject.deformation, lattice::Edges::held,
-                                          std::numeric_limits<double>::infinity());
+  side.state = lattice::homogeneous_state(sheet, subject.material, subject.deformation, lattice::Edges::held);
   lattice::add_noise(side.state, sheet, noise * sheet.spacing(), 1);
   // Bond forces are of the order mu d; the sum of twelve is known to some 1e-15 of that.
   lattice::relax(side.state, sheet, subject.material, 1e-12 * subject.theory.shear_modulus * sheet.spacing());

@@ -121,7 +121,7 @@ double measured_seconds_per_site_step(const Case &input, const lattice::TimeStep
   const Case piece = small_piece(input);
   const lattice::TriangularLattice sheet = piece.lattice();
   const lattice::Material material = piece.material();
-  lattice::State state = lattice_state(piece, sheet, breaks ? *input.breaking_stretch : lattice::unbreakable);
+  lattice::State state = lattice_state(piece, sheet);
   lattice::add_noise(state, sheet, input.noise_amplitude * input.spacing, input.noise_seed);
   std::optional<lattice::Fracture> fracture;
   if (breaks)

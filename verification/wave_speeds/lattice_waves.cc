@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 #include "lattice/simulation.h"
@@ -27,8 +26,7 @@ std::array<Oscillation, 2> measure(const WaveCell &cell, const lattice::Material
                                    const std::array<PlaneWave, 2> &waves, double time_step, std::size_t stride)
 {
   const lattice::TriangularLattice &sheet = cell.sheet;
-  lattice::State state =
-    lattice::homogeneous_state(sheet, material, F, lattice::Edges::free, std::numeric_limits<double>::infinity());
+  lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::free);
   const lattice::State at_rest = state;
   const double amplitude = strain / cell.K.norm();
   std::vector<std::size_t> places;

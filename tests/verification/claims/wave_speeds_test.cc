@@ -79,8 +79,7 @@ TEST(Bloch, IsTheResponseOfTheForceLoop)
     const double phase = cell.K.dot(cell.sheet.reference(place));
     for (int component = 0; component < 2; ++component)
     {
-      lattice::State state = lattice::homogeneous_state(cell.sheet, material, F, lattice::Edges::free,
-                                                        std::numeric_limits<double>::infinity());
+      lattice::State state = lattice::homogeneous_state(cell.sheet, material, F, lattice::Edges::free);
       for (std::size_t row = 0; row < cell.sheet.rows(); ++row)
         for (std::size_t column = 0; column < cell.sheet.sites_in_row(row); ++column)
         {

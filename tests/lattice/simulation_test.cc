@@ -1,0 +1,167 @@
+#include "lattice/simulation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+
+#include "lattice/site_fields.h"
+#include "tests/lattice/sheets.h"
+
+namespace
+{
+
+using namespace lattice;
+
+const Eigen::Matrix2d loading = sheets::stretched(1.4, 1.4);
+
+// Objects keep a copy of their material, whatever happens to the caller's.
+TEST(Simulation, KeepsItsMaterial)
+{
+  const TriangularLattice sheet = sheets::square(8);
+  Material callers = sheets::rubber();
+  const State state = homogeneous_state(sheet, callers, loading, Edges::held);
+  Simulation simulation(sheet, callers, state, 1e-9, Fracture(sheet, callers, 1.3, NoToughening{}, loading));
+  const SiteEvaluator evaluator(sheet, callers);
+  const double elastic = simulation.energies().elastic;
+  const std::size_t middle = sheet.index(4, 3);
+  const double density = evaluator.at(state, middle).strain_energy_density;
+
+  callers.density = 1.;
+  callers.nearest.law = LinearBond(1.);
+  callers.nearest.area_factor = 7.;
+  callers.next_nearest->law = LinearBond(1.);
+  EXPECT_EQ(simulation.energies().elastic, elastic);
+  EXPECT_EQ(simulation.material().density, sheets::rubber().density);
+  EXPECT_EQ(evaluator.at(state, middle).strain_energy_density, density);
+  // All bonds are at 1.4 of 1.3: what they held is what they have lost, but for the work of one step.
+  simulation.step();
+  EXPECT_EQ(simulation.energies().elastic, 0.);
+  EXPECT_NEAR(simulation.energies().broken, elastic, 1e-6 * elastic);
+}
+
+TEST(Simulation, RefusesASecondContactAndSecondEndLoads)
+{
+  const TriangularLattice sheet = sheets::square(8);
+  const Material material = sheets::rubber();
+  const ContactLaw law = contact_like_nearest_bond(sheet, material, sheets::spacing, 1., 1.);
+  const auto end = EndLoads::End::free;
+  const Edges edges{false, false, true, true};
+  Simulation simulation(sheet, material, homogeneous_state(sheet, material, loading, edges), 1e-9,
+                        Fracture(sheet, material, 3., NoToughening{}, loading));
+  simulation.load_ends(loading, end, end);
+  EXPECT_THROW(simulation.load_ends(loading, end, end), std::logic_error);
+  simulation.let_touch(law);
+  EXPECT_THROW(simulation.let_touch(law), std::logic_error);
+  EXPECT_NO_THROW(simulation.step());
+}
+
+// Sites at a cut lack bonds as those at an end do.
+TEST(Simulation, LoadsTheEndsOfAnUnbrokenSheetAlone)
+{
+  const TriangularLattice sheet = sheets::square(8);
+  const Material material = sheets::rubber();
+  const Edges edges{false, false, true, true};
+  const State state = homogeneous_state(sheet, material, loading, edges);
+  const auto end = EndLoads::End::free;
+  Simulation cut(sheet, material, state, 1e-9, Fracture(sheet, material, 3., NoToughening{}, loading));
+  cut.cut(sheets::middle_row(sheet, 3, 2));
+  EXPECT_THROW(cut.load_ends(loading, end, end), std::logic_error);
+  Simulation broken(sheet, material, state, 1e-9, Fracture(sheet, material, 1.3, NoToughening{}, loading));
+  EXPECT_GT(broken.step().size(), 0u);
+  EXPECT_THROW(broken.load_ends(loading, end, end), std::logic_error);
+}
+
+// A crack in a small sheet with nearest neighbours so stiff that their dashpots hardly damp them: bonds recoil to a
+// thirtieth of their rest length. The automatic step, which is stable down to 0.3, is divided there.
+struct Recoil
+{
+  explicit Recoil(double modulus)
+    : sheet(0.4e-3, 6e-3, 4e-3, Orientation::rows_along_crack), material{
+                                                                  944.,
+                                                                  {MooneyRivlinBond{modulus, 1.5e5}, 0.72, 65.625},
+                                                                  Shell{MooneyRivlinBond{1e5, 1.5e5}, 0.81, 196.875}}
+  {
+    const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
+    const ContactLaw contact = contact_like_nearest_bond(sheet, material, sheet.spacing(), 1., 1.);
+    simulation = std::make_unique<Simulation>(sheet, material, homogeneous_state(sheet, material, F, Edges::held),
+                                              0.9 * time_step_limits(sheet, material, 0.3, contact).combined,
+                                              Fracture(sheet, material, 3.05, BehindTipToughening{4.5e-3, 3.}, F));
+    simulation->let_touch(contact);
+    simulation->cut(sheets::middle_row(sheet, 3, 2));
+  }
+  // Until 4e-4 of the time that a wave takes across a spacing at a = 1 Pa.
+  void run()
+  {
+    const double end = 0.4 / std::sqrt(std::get<MooneyRivlinBond>(material.nearest.law).a);
+    while (simulation->state().time < end)
+    {
+      simulation->step();
+      for_each_bond(simulation->state(), sheet,
+                    [&](std::size_t place, std::size_t kind, std::size_t)
+                    { shortest = std::min(shortest, stretch(simulation->state(), sheet, place, kind)); });
+    }
+    const EnergyBalance e = simulation->energies();
+    imbalance = std::abs(e.imbalance()) / e.initial;
+  }
+
+  TriangularLattice sheet;
+  Material material;
+  std::unique_ptr<Simulation> simulation;
+  double shortest = 1., imbalance = 0.;
+};
+
+// theory.md, eq. (L.24).
+TEST(Simulation, DividesStepsInWhichBondsAreTooShort)
+{
+  for (const double modulus : {1e10, 1e12, 1e15})
+  {
+    Recoil recoil(modulus);
+    recoil.run();
+    EXPECT_LT(recoil.shortest, 0.2) << modulus;
+    EXPECT_GT(recoil.simulation->n_broken(), 100u) << modulus;
+    EXPECT_GT(recoil.simulation->n_divided_steps(), 10u) << modulus;
+    EXPECT_LT(recoil.imbalance, 1e-3) << modulus; // 0.8 and more with steps that are not divided
+  }
+  Recoil rubber(1e5);
+  rubber.run();
+  EXPECT_EQ(rubber.simulation->n_divided_steps(), 0u);
+}
+
+// Of nearest neighbours alone, by hand: e = 3 A0 d psi, half of six bonds pull.
+// theory.md, eq. (L.26).
+TEST(TimeStep, WatchesBondsByWhatTheyCanLoseInIt)
+{
+  const TriangularLattice sheet = sheets::square(8);
+  const Material material = sheets::nearest_only();
+  const Shell &shell = material.nearest;
+  const double limit = 3., d = sheet.spacing(), m = site_mass(material, sheet);
+  const double site_energy = 3. * cross_section(shell, sheet) * d * energy(shell.law, limit);
+  const double of_energy = std::sqrt(8. * site_energy / m) / d, of_forces = 3. * force(shell.law, limit) / 65.625;
+  ASSERT_LT(of_forces, of_energy);
+  for (const double h : {1e-7, 1e-6})
+    EXPECT_NEAR(watched_stretch(h, sheet, material, limit), 0.5 + h * of_forces, 1e-12);
+  const Material elastic = sheets::nearest_only(0.);
+  EXPECT_NEAR(watched_stretch(1e-7, sheet, elastic, limit), 0.5 + 1e-7 * of_energy, 1e-12);
+  EXPECT_DOUBLE_EQ(watched_stretch(1e-4, sheet, material, limit), 0.8); // and no more
+  EXPECT_DOUBLE_EQ(watched_stretch(1e-7, sheet, material, unbreakable), 0.8);
+}
+
+// Whole steps and divided ones end at the same times.
+TEST(Simulation, KeepsItsClockInDividedSteps)
+{
+  Recoil recoil(1e10);
+  const double h = recoil.simulation->time_step();
+  double time = recoil.simulation->state().time;
+  for (int step = 0; step < 100; ++step)
+  {
+    recoil.simulation->step();
+    time += h;
+    ASSERT_EQ(recoil.simulation->state().time, time);
+  }
+  EXPECT_GT(recoil.simulation->n_divided_steps(), 3u);
+}
+
+} // namespace
