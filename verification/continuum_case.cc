@@ -309,8 +309,10 @@ void ContinuumCase::declare(Parameters &p)
         "rise of the load factor with which the loading starts");
   p.add("Continuum", "relative tolerance", relative_tolerance, Between{1e-14, 1e-4}, "1",
         "residual over the forces at work at which Newton stops; its round-off is never undercut");
-  p.add("Continuum", "direct limit", direct_limit, Between{0., 1e7},
-        "unknowns up to which linear systems are solved directly; conjugate gradients with multigrid beyond");
+  p.add(
+    "Continuum", "direct limit", direct_limit, Between{0., 1e7},
+    "unknowns up to which linear systems are solved directly; beyond, conjugate gradients or, with dashpots, GMRES, "
+    "with multigrid");
   p.add("Continuum", "solution", solution, {{"equilibrium", Solution::equilibrium}, {"motion", Solution::motion}},
         "what `latcon continuum` computes: static equilibrium, or the motion up to the end time");
   p.add("Continuum", "time step", time_step, Magnitude{}, "s",
