@@ -20,6 +20,7 @@ struct Subject
   Eigen::Matrix2d deformation; ///< F of the loaded sheet [-]
   SmallStrain theory;
   continuum::CauchyBorn cauchy_born;
+  continuum::IsotropicNetwork network; ///< mean of cauchy_born over all rotations of the lattice
   Calibration mooney_rivlin;
   bool ratio_is_calibrated; ///< the Mooney-Rivlin ratio was fitted, not given
   GradientLengths lengths;
@@ -43,6 +44,7 @@ inline Subject subject(const Case &input, const lattice::Material &material)
           input.deformation(),
           theory,
           cauchy_born(sheet, material),
+          isotropic_network(sheet, material),
           calibration,
           !input.continuum.mooney_rivlin_ratio,
           lengths,
