@@ -19,34 +19,28 @@ using namespace dealii;
 
 namespace continuum
 {
-struct DirectSolver::Factors
-{
-  std::unique_ptr<Epetra_CrsMatrix> gathered; // none on a rank that is alone
-  std::unique_ptr<Epetra_Vector> x;
-  std::unique_ptr<Epetra_Vector> b;
-  Epetra_LinearProblem problem;
-  std::unique_ptr<Amesos_BaseSolver> solver;
-};
-
 namespace
 {
-void require_success(const int code, const char *what)
-{
-  if (code != 0)
-    throw LinearSolverFailed(std::string("the linear solver failed: ") + what + " with code " + std::to_string(code));
-}
-
-// Rows of a matrix that follow each other.
-struct Rows
+// Rows of a matrix that follow each other, the unknowns of columns as numbered on all ranks.
+struct MatrixRows
 {
   std::vector<int> lengths;
   std::vector<int> columns;
   std::vector<double> values;
 };
 
-Rows own_rows(const Epetra_CrsMatrix &matrix)
+void require_success(const int code, const char *what)
 {
-  Rows rows;
+  if (code != 0)
+    throw LinearSolverFailed(std::string("the linear solver failed: ") + what + " with code " + std::to_string(code));
+}
+
+MatrixRows own_rows(const Epetra_CrsMatrix &matrix)
+{
+  MatrixRows rows;
+  rows.lengths.reserve(matrix.NumMyRows());
+  rows.columns.reserve(matrix.NumMyNonzeros());
+  rows.values.reserve(matrix.NumMyNonzeros());
   for (int row = 0; row < matrix.NumMyRows(); ++row)
   {
     int n = 0;
@@ -61,61 +55,89 @@ Rows own_rows(const Epetra_CrsMatrix &matrix)
   return rows;
 }
 
-// Of all ranks, on the first.
-std::unique_ptr<Epetra_CrsMatrix> gather(const Epetra_CrsMatrix &matrix, const MPI_Comm communicator)
+template <class T>
+std::vector<T> joined(std::vector<std::vector<T>> &&parts)
 {
-  const Rows own = own_rows(matrix);
-  auto lengths = Utilities::MPI::gather(communicator, own.lengths);
-  const auto columns = Utilities::MPI::gather(communicator, own.columns);
-  const auto values = Utilities::MPI::gather(communicator, own.values);
-  std::vector<int> all_lengths;
-  for (const std::vector<int> &of_rank : lengths)
-    all_lengths.insert(all_lengths.end(), of_rank.begin(), of_rank.end());
-  if (all_lengths.empty())
-    return nullptr;
-  const Epetra_Map map(static_cast<int>(all_lengths.size()), 0, Epetra_MpiComm(MPI_COMM_SELF));
-  auto whole = std::make_unique<Epetra_CrsMatrix>(Copy, map, map, all_lengths.data(), true);
-  int row = 0;
-  for (std::size_t rank = 0; rank < lengths.size(); ++rank)
-  {
-    std::size_t at = 0;
-    for (const int n : lengths[rank])
-    {
-      whole->InsertMyValues(row++, n, values[rank].data() + at, columns[rank].data() + at);
-      at += n;
-    }
-  }
-  whole->FillComplete();
-  return whole;
+  std::vector<T> all;
+  if (!parts.empty())
+    all = std::move(parts.front());
+  for (std::size_t rank = 1; rank < parts.size(); ++rank)
+    all.insert(all.end(), parts[rank].begin(), parts[rank].end());
+  return all;
+}
+
+// Rows of all ranks, on the first; none on the others.
+MatrixRows gathered_rows(const Epetra_CrsMatrix &matrix, const MPI_Comm communicator)
+{
+  MatrixRows own = own_rows(matrix);
+  if (Utilities::MPI::n_mpi_processes(communicator) == 1)
+    return own;
+  return {joined(Utilities::MPI::gather(communicator, own.lengths)),
+          joined(Utilities::MPI::gather(communicator, own.columns)),
+          joined(Utilities::MPI::gather(communicator, own.values))};
 }
 } // namespace
 
-DirectSolver::DirectSolver(const Sheet::Matrix &K, const Library library)
-  : communicator_(K.get_mpi_communicator()), n_own_(K.trilinos_matrix().NumMyRows())
+// A matrix on the first rank and its factors. Amesos looks at the matrix for as long as it has factors, hence a copy.
+struct DirectSolver::Factors
 {
-  std::unique_ptr<Epetra_CrsMatrix> gathered;
-  const bool is_alone = Utilities::MPI::n_mpi_processes(communicator_) == 1;
-  if (!is_alone)
-    gathered = gather(K.trilinos_matrix(), communicator_);
+  Factors(MatrixRows &&rows, const Library library)
+    : lengths(std::move(rows.lengths)), columns(std::move(rows.columns)),
+      map(static_cast<int>(lengths.size()), 0, Epetra_MpiComm(MPI_COMM_SELF)),
+      matrix(Copy, map, map, lengths.data(), true), x(map), b(map)
+  {
+    std::size_t at = 0;
+    for (std::size_t row = 0; row < lengths.size(); at += lengths[row++])
+      matrix.InsertMyValues(static_cast<int>(row), lengths[row], rows.values.data() + at, columns.data() + at);
+    matrix.FillComplete();
+    problem.SetOperator(&matrix);
+    problem.SetLHS(&x);
+    problem.SetRHS(&b);
+    Amesos factory;
+    const bool takes_mumps = library == Library::mumps && factory.Query("Amesos_Mumps");
+    solver.reset(factory.Create(takes_mumps ? "Amesos_Mumps" : "Amesos_Klu", problem));
+    require_success(solver->SymbolicFactorization(), "symbolic factorisation");
+  }
+
+  bool has_sparsity_of(const MatrixRows &rows) const { return rows.lengths == lengths && rows.columns == columns; }
+
+  void replace_values(const MatrixRows &rows)
+  {
+    std::size_t at = 0;
+    for (std::size_t row = 0; row < lengths.size(); at += lengths[row++])
+      matrix.ReplaceMyValues(static_cast<int>(row), lengths[row], rows.values.data() + at, columns.data() + at);
+  }
+
+  std::vector<int> lengths; // of rows
+  std::vector<int> columns;
+  Epetra_Map map;
+  Epetra_CrsMatrix matrix;
+  Epetra_Vector x;
+  Epetra_Vector b;
+  Epetra_LinearProblem problem;
+  std::unique_ptr<Amesos_BaseSolver> solver;
+};
+
+DirectSolver::DirectSolver(const Library library) : library_(library) {}
+
+void DirectSolver::factorise(const Sheet::Matrix &K)
+{
+  communicator_ = K.get_mpi_communicator();
+  n_own_ = K.trilinos_matrix().NumMyRows();
+  MatrixRows rows = gathered_rows(K.trilinos_matrix(), communicator_);
   collectively(communicator_,
                [&]
                {
-                 if (!is_alone && !gathered)
+                 if (rows.lengths.empty())
                    return;
-                 factors_ = std::make_unique<Factors>();
-                 factors_->gathered = std::move(gathered);
-                 Epetra_CrsMatrix &matrix =
-                   is_alone ? const_cast<Epetra_CrsMatrix &>(K.trilinos_matrix()) : *factors_->gathered;
-                 factors_->x = std::make_unique<Epetra_Vector>(matrix.DomainMap());
-                 factors_->b = std::make_unique<Epetra_Vector>(matrix.RangeMap());
-                 factors_->problem.SetOperator(&matrix);
-                 factors_->problem.SetLHS(factors_->x.get());
-                 factors_->problem.SetRHS(factors_->b.get());
-                 Amesos factory;
-                 const bool takes_mumps = library == Library::mumps && factory.Query("Amesos_Mumps");
-                 factors_->solver.reset(factory.Create(takes_mumps ? "Amesos_Mumps" : "Amesos_Klu", factors_->problem));
-                 require_success(factors_->solver->SymbolicFactorization(), "symbolic factorisation");
-                 require_success(factors_->solver->NumericFactorization(), "factorisation");
+                 // Factors that fail leave none behind.
+                 std::unique_ptr<Factors> factors = std::move(factors_);
+                 if (factors && factors->has_sparsity_of(rows))
+                   factors->replace_values(rows);
+                 else
+                   factors = std::make_unique<Factors>(std::move(rows), library_);
+                 require_success(factors->solver->NumericFactorization(), "factorisation");
+                 factors_ = std::move(factors);
                });
 }
 
@@ -129,7 +151,7 @@ void DirectSolver::solve(double *x, const double *b)
                {
                  if (!factors_)
                    return;
-                 double *to = factors_->b->Values();
+                 double *to = factors_->b.Values();
                  for (const std::vector<double> &part : parts)
                    to = std::copy(part.begin(), part.end(), to);
                  require_success(factors_->solver->Solve(), "solution by the factors");
@@ -141,7 +163,7 @@ void DirectSolver::solve(double *x, const double *b)
     places.push_back(counts.empty() ? 0 : places.back() + counts.back());
     counts.push_back(static_cast<int>(part.size()));
   }
-  MPI_Scatterv(factors_ ? factors_->x->Values() : nullptr, counts.data(), places.data(), MPI_DOUBLE, x,
+  MPI_Scatterv(factors_ ? factors_->x.Values() : nullptr, counts.data(), places.data(), MPI_DOUBLE, x,
                static_cast<int>(n_own_), MPI_DOUBLE, 0, communicator_);
 }
 

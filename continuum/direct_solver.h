@@ -12,6 +12,8 @@ namespace continuum
 /// that ranks share are rounded as messages happen to arrive, and the same matrix has to give the same bits every time
 /// for a motion to be resumed. Sheets are plane, so their factors fit one rank.
 ///
+/// The analysis of a sparsity is kept for the matrices that follow, and changes no bit of what is solved.
+///
 /// All functions are collective, and throw LinearSolverFailed on every rank.
 class DirectSolver
 {
@@ -23,13 +25,15 @@ public:
     klu    ///< slower for large matrices, faster to solve with small ones
   };
 
-  /// Factorises `K`, which must outlive the solver. Throws if it is singular.
-  explicit DirectSolver(const Sheet::Matrix &K, Library library = Library::mumps);
+  explicit DirectSolver(Library library = Library::mumps);
   ~DirectSolver();
   DirectSolver(const DirectSolver &) = delete;
   DirectSolver &operator=(const DirectSolver &) = delete;
 
-  /// Solves K x = b; the vectors have no ghost entries.
+  /// Factorises a copy of `K`. Throws if it is singular.
+  void factorise(const Sheet::Matrix &K);
+
+  /// Solves K x = b for the matrix factorised last; the vectors have no ghost entries.
   void solve(Sheet::Vector &x, const Sheet::Vector &b);
   void solve(dealii::LinearAlgebra::distributed::Vector<double> &x,
              const dealii::LinearAlgebra::distributed::Vector<double> &b);
@@ -39,8 +43,9 @@ private:
 
   void solve(double *x, const double *b);
 
-  MPI_Comm communicator_;
-  std::size_t n_own_; // rows
+  Library library_;
+  MPI_Comm communicator_ = MPI_COMM_NULL;
+  std::size_t n_own_ = 0; // rows
   std::unique_ptr<Factors> factors_;
 };
 } // namespace continuum

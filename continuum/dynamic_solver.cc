@@ -80,11 +80,9 @@ void DynamicSolver::set_up()
     sheet_.make_matrix(sheet_.continuity(), plain_mass_);
     sheet_.mass(inertia_.density, 0., sheet_.continuity(), plain_mass_);
   }
-  // Viscosity at finite strain makes the matrix unsymmetric, which conjugate gradients cannot solve.
-  LinearSettings linear = settings_.linear;
-  if (viscosity_ != nullptr)
-    linear.direct_limit = std::numeric_limits<types::global_dof_index>::max();
-  linear_solver_ = std::make_unique<LinearSolver>(sheet_, held, linear);
+  // Viscosity at finite strain makes the matrix unsymmetric.
+  linear_solver_ = std::make_unique<LinearSolver>(sheet_, held, settings_.linear,
+                                                  viscosity_ == nullptr ? Symmetry::symmetric : Symmetry::unsymmetric);
 
   double smallest = std::numeric_limits<double>::infinity();
   for (const auto &cell : sheet_.mesh().active_cell_iterators())

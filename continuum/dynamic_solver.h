@@ -7,6 +7,7 @@
 #include "continuum/viscous_forces.h"
 
 #include <functional>
+#include <map>
 #include <memory>
 #include <string>
 
@@ -38,8 +39,7 @@ struct TimeRule
   static TimeRule average_acceleration() { return {0., 0., 0.25, 0.5}; }
 };
 
-/// How motion is followed. Viscosity at finite strain makes the matrix unsymmetric, which the direct solver takes and
-/// conjugate gradients need not.
+/// How motion is followed. Viscosity at finite strain makes the matrix of a Newton step unsymmetric.
 struct DynamicSettings
 {
   double time_step;        ///< [s] > 0
@@ -167,7 +167,8 @@ private:
   void multiply_by_mass(const Sheet::Matrix &M, const Vector &x, Vector &product) const;
   Balance look_at(const Step &step, const Vector &u) const;
   Balance best_balance(const Step &step, const Vector &first, const Vector &second, Vector &u) const;
-  Multigrid::Assembler level_assembler(double load_factor) const;
+  const Sheet::Matrix &level_mass(const Sheet &level, const dealii::AffineConstraints<double> &constraints);
+  Multigrid::Assembler level_assembler(double load_factor);
   void assemble_matrix(const Vector &u, const Vector &v, double load_factor);
   void assemble(const Vector &u, const Vector &v, double load_factor);
   void note_multigrid(unsigned int before, const Vector &u, double load_factor);
@@ -189,16 +190,17 @@ private:
   ViscousForces viscous_forces_;
   LoadFactor given_load_factor_;
   std::unique_ptr<LinearSolver> linear_solver_;
-  dealii::AffineConstraints<double> homogeneous_; // what makes the field one, and held unknowns at zero
-  Vector full_lift_;                              // prescribed displacement at load factor 1, zero elsewhere
-  Vector loads_;                                  // nodal dead loads at load factor 1
-  double smallest_cell_ = 0.;                     // extent [m]
-  Sheet::Matrix mass_;                            // condensed by homogeneous_: for solving
-  Sheet::Matrix full_mass_;                       // condensed by continuity alone: for forces
-  Sheet::Matrix plain_mass_;                      // the same without micro-inertia
-  Sheet::Matrix matrix_;                          // of the Newton step
-  Vector elastic_diagonal_;                       // of the elastic tangent last assembled
-  Vector effective_diagonal_;                     // of matrix_
+  dealii::AffineConstraints<double> homogeneous_;       // what makes the field one, and held unknowns at zero
+  Vector full_lift_;                                    // prescribed displacement at load factor 1, zero elsewhere
+  Vector loads_;                                        // nodal dead loads at load factor 1
+  double smallest_cell_ = 0.;                           // extent [m]
+  Sheet::Matrix mass_;                                  // condensed by homogeneous_: for solving
+  Sheet::Matrix full_mass_;                             // condensed by continuity alone: for forces
+  Sheet::Matrix plain_mass_;                            // the same without micro-inertia
+  Sheet::Matrix matrix_;                                // of the Newton step
+  std::map<const Sheet *, Sheet::Matrix> level_masses_; // of coarser meshes of multigrid, once they are needed
+  Vector elastic_diagonal_;                             // of the elastic tangent last assembled
+  Vector effective_diagonal_;                           // of matrix_
 
   // Where the multigrid that the linear solver keeps was set up, with ghost entries: from there it can be made again.
   Vector multigrid_displacement_;

@@ -99,21 +99,33 @@ DynamicSolver::Balance DynamicSolver::best_balance(const Step &step, const Vecto
   return *state;
 }
 
-// The derivative of the residual by the displacement at the end of the step, on a coarser mesh; without viscosity,
-// which is left to the direct solver.
-Multigrid::Assembler DynamicSolver::level_assembler(const double load_factor) const
+// The mass of a coarser mesh, assembled once.
+const Sheet::Matrix &DynamicSolver::level_mass(const Sheet &level, const AffineConstraints<double> &constraints)
+{
+  if (&level == &sheet_)
+    return mass_;
+  const auto [found, is_missing] = level_masses_.try_emplace(&level);
+  if (is_missing)
+  {
+    level.make_matrix(constraints, found->second);
+    level.mass(inertia_.density, inertia_.length, constraints, found->second);
+  }
+  return found->second;
+}
+
+// The derivative of the residual by the displacement at the end of the step, on a mesh of multigrid, for a sheet at
+// rest: without the part of viscosity that is not symmetric, which vanishes with the velocity.
+Multigrid::Assembler DynamicSolver::level_assembler(const double load_factor)
 {
   const TimeRule &rule = settings_.rule;
-  const double stiffness_share = 1. - rule.alpha_f;
-  const double mass_share = (1. - rule.alpha_m) / (rule.beta * duration_ * duration_);
+  const double dt = duration_;
   return [=](const Sheet &level, const Vector &u, const AffineConstraints<double> &constraints, Sheet::Matrix &K)
   {
-    Sheet::Matrix M;
-    level.make_matrix(constraints, M);
-    level.mass(inertia_.density, inertia_.length, constraints, M);
     level.tangent(u, constraints, K, load_factor);
-    K *= stiffness_share;
-    K.add(mass_share, M);
+    ViscousForces(level, viscosity_)
+      .add_tangent(u, level.make_ghosted(), rule.gamma / (rule.beta * dt), constraints, K);
+    K *= 1. - rule.alpha_f;
+    K.add((1. - rule.alpha_m) / (rule.beta * dt * dt), level_mass(level, constraints));
   };
 }
 

@@ -12,12 +12,14 @@ struct RodPotential
 {
   double a;
   double b;
+  friend bool operator==(const RodPotential &p, const RodPotential &q) { return p.a == q.a && p.b == q.b; }
 };
 
 /// Energy of a linear spring at stretch l [-]: psi = (e/2) (l - 1)^2 [Pa], with e [Pa] > 0.
 struct LinearPotential
 {
   double e;
+  friend bool operator==(const LinearPotential &p, const LinearPotential &q) { return p.e == q.e; }
 };
 
 /// A further potential is a further alternative here.

@@ -4,6 +4,7 @@
 #include "continuum/material.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 using dealii::outer_product;
@@ -13,20 +14,50 @@ namespace continuum
 {
 namespace
 {
-// Derivatives of chi(s) = psi(l), s = l^2/2, by s: d/ds = (1/l) d/dl. In them the derivatives of psi(|f|) by the vector
-// f have no quotients, eq. (C.24).
-struct Chi
+// How a bond with f = F N resists a gradient, h(a, b) = across a.b + coupling (f.a)(f.b), both with their first two
+// derivatives by s = |f|^2/2: in them the derivatives of h by the vector f have no quotients, eq. (C.24).
+struct BondStiffness
 {
-  double first, second, third, fourth;
+  double across[3];
+  double coupling[3];
 };
 
-Chi chi(const FibrePotential &potential, const double l)
+BondStiffness stiffness(const FibrePotential &potential, const double l)
 {
   const PotentialDerivatives psi = derivatives(potential, l);
   const double r = 1. / l;
-  return {psi.first * r, (psi.second - psi.first * r) * r * r,
-          (psi.third - 3. * r * (psi.second - r * psi.first)) * r * r * r,
-          (psi.fourth - 6. * r * psi.third + 15. * r * r * (psi.second - r * psi.first)) * r * r * r * r};
+  const double chi_1 = psi.first * r;
+  const double chi_2 = (psi.second - psi.first * r) * r * r;
+  const double chi_3 = (psi.third - 3. * r * (psi.second - r * psi.first)) * r * r * r;
+  const double chi_4 = (psi.fourth - 6. * r * psi.third + 15. * r * r * (psi.second - r * psi.first)) * r * r * r * r;
+  if (l >= LatticeGradient::full_stretch)
+    return {{chi_1, chi_2, chi_3}, {chi_2, chi_3, chi_4}};
+
+  // The share 1 - w of the stiffness across the bond is taken away, eq. (C.27); that along it, across + 2 s coupling =
+  // psi'', is left.
+  constexpr double width = LatticeGradient::full_stretch - 1.;
+  const double t = std::max(0., (l - 1.) / width);
+  const double left[3] = {1. - t * t * t * (10. - t * (15. - 6. * t)), -30. * t * t * (1. - t) * (1. - t) / width,
+                          -60. * t * (1. - t) * (1. - 2. * t) / (width * width)}; // 1 - w and its derivatives by l
+  const double v = left[0];
+  const double v_1 = left[1] * r;
+  const double v_2 = (left[2] - left[1] * r) * r * r;
+  const double away = chi_1 * v;
+  const double away_1 = chi_2 * v + chi_1 * v_1;
+  const double away_2 = chi_3 * v + 2. * chi_2 * v_1 + chi_1 * v_2;
+  const double r2 = r * r;
+  return {{chi_1 - away, chi_2 - away_1, chi_3 - away_2},
+          {chi_2 + r2 * away, chi_3 + r2 * (away_1 - 2. * r2 * away),
+           chi_4 + r2 * (away_2 - 4. * r2 * (away_1 - 2. * r2 * away))}};
+}
+
+// Entries 00, 11 and 01 of a symmetric tensor, and which of them an entry is: sums over many bonds run over these
+// alone.
+constexpr unsigned int n_pairs = 3;
+constexpr unsigned int pair_of[2][2] = {{0, 2}, {2, 1}};
+std::array<double, n_pairs> pairs(const Tensor<2, 2> &A)
+{
+  return {A[0][0], A[1][1], A[0][1]};
 }
 
 Tensor<1, 2> selected(const GradientLaw::Gradient &G, const Tensor<2, 2> &selector)
@@ -37,6 +68,13 @@ Tensor<1, 2> selected(const GradientLaw::Gradient &G, const Tensor<2, 2> &select
   return a;
 }
 } // namespace
+
+void check(const BondFamily &family)
+{
+  check(family.fibre);
+  if (!(family.length > 0. && std::isfinite(family.length)))
+    throw InvalidMaterial("a bond needs a positive and finite length");
+}
 
 double LatticeGradient::smallest_length(const std::vector<BondFamily> &families)
 {
@@ -54,9 +92,7 @@ LatticeGradient::LatticeGradient(const std::vector<BondFamily> &families, const 
     throw InvalidMaterial("the micro-inertia length of a lattice gradient energy must be finite");
   for (const BondFamily &family : families)
   {
-    check(family.fibre);
-    if (!(family.length > 0. && std::isfinite(family.length)))
-      throw InvalidMaterial("a bond needs a positive and finite length");
+    check(family);
     // At the smallest length the difference vanishes but for rounding, and must not come out negative.
     constexpr double rounding = 1e-14;
     double along = length * length - family.length * family.length / 12.;
@@ -80,12 +116,12 @@ double LatticeGradient::form(const Tensor<2, 2> &F, const Gradient &G, const Gra
   for (const Family &family : families_)
   {
     const Tensor<1, 2> f = F * family.fibre.direction;
-    const Chi c = chi(family.fibre.potential, f.norm());
+    const BondStiffness h = stiffness(family.fibre.potential, f.norm());
     for (unsigned int term = 0; term < 2; ++term)
     {
       const Tensor<1, 2> a = selected(G, family.selector[term]);
       const Tensor<1, 2> b = selected(Z, family.selector[term]);
-      B += family.factor[term] * (c.first * (a * b) + c.second * (f * a) * (f * b));
+      B += family.factor[term] * (h.across[0] * (a * b) + h.coupling[0] * (f * a) * (f * b));
     }
   }
   return B;
@@ -98,14 +134,14 @@ Tensor<2, 2> LatticeGradient::form_by_F(const Tensor<2, 2> &F, const Gradient &G
   for (const Family &family : families_)
   {
     const Tensor<1, 2> f = F * family.fibre.direction;
-    const Chi c = chi(family.fibre.potential, f.norm());
+    const BondStiffness h = stiffness(family.fibre.potential, f.norm());
     Tensor<1, 2> by_f;
     for (unsigned int term = 0; term < 2; ++term)
     {
       const Tensor<1, 2> a = selected(G, family.selector[term]);
       const Tensor<1, 2> b = selected(Z, family.selector[term]);
-      by_f += family.factor[term] *
-              ((c.second * (a * b) + c.third * (f * a) * (f * b)) * f + c.second * ((f * b) * a + (f * a) * b));
+      by_f += family.factor[term] * ((h.across[1] * (a * b) + h.coupling[1] * (f * a) * (f * b)) * f +
+                                     h.coupling[0] * ((f * b) * a + (f * a) * b));
     }
     result += outer_product(by_f, family.fibre.direction);
   }
@@ -120,7 +156,7 @@ Tensor<4, 2> LatticeGradient::form_by_FF(const Tensor<2, 2> &F, const Gradient &
   {
     const Tensor<1, 2> &N = family.fibre.direction;
     const Tensor<1, 2> f = F * N;
-    const Chi c = chi(family.fibre.potential, f.norm());
+    const BondStiffness h = stiffness(family.fibre.potential, f.norm());
     Tensor<2, 2> by_ff;
     for (unsigned int term = 0; term < 2; ++term)
     {
@@ -129,12 +165,12 @@ Tensor<4, 2> LatticeGradient::form_by_FF(const Tensor<2, 2> &F, const Gradient &
       const double ab = a * b;
       const double fa_fb = (f * a) * (f * b);
       const Tensor<1, 2> mixed = (f * b) * a + (f * a) * b;
-      Tensor<2, 2> h = (c.third * ab + c.fourth * fa_fb) * outer_product(f, f) +
-                       c.third * (outer_product(f, mixed) + outer_product(mixed, f)) +
-                       c.second * (outer_product(a, b) + outer_product(b, a));
+      Tensor<2, 2> h_by_ff = (h.across[2] * ab + h.coupling[2] * fa_fb) * outer_product(f, f) +
+                             h.coupling[1] * (outer_product(f, mixed) + outer_product(mixed, f)) +
+                             h.coupling[0] * (outer_product(a, b) + outer_product(b, a));
       for (unsigned int i = 0; i < 2; ++i)
-        h[i][i] += c.second * ab + c.third * fa_fb;
-      by_ff += family.factor[term] * h;
+        h_by_ff[i][i] += h.across[1] * ab + h.coupling[1] * fa_fb;
+      by_ff += family.factor[term] * h_by_ff;
     }
     for (unsigned int i = 0; i < 2; ++i)
       for (unsigned int J = 0; J < 2; ++J)
@@ -152,11 +188,11 @@ GradientLaw::Gradient LatticeGradient::double_stress(const Tensor<2, 2> &F, cons
   for (const Family &family : families_)
   {
     const Tensor<1, 2> f = F * family.fibre.direction;
-    const Chi c = chi(family.fibre.potential, f.norm());
+    const BondStiffness h = stiffness(family.fibre.potential, f.norm());
     for (unsigned int term = 0; term < 2; ++term)
     {
       const Tensor<1, 2> a = selected(G, family.selector[term]);
-      Q += family.factor[term] * outer_product(c.first * a + c.second * (f * a) * f, family.selector[term]);
+      Q += family.factor[term] * outer_product(h.across[0] * a + h.coupling[0] * (f * a) * f, family.selector[term]);
     }
   }
   return Q;
@@ -165,54 +201,71 @@ GradientLaw::Gradient LatticeGradient::double_stress(const Tensor<2, 2> &F, cons
 Tensor<5, 2> LatticeGradient::double_stress_by_F(const Tensor<2, 2> &F, const Gradient &G) const
 {
   checked_determinant(F);
-  Tensor<5, 2> result;
+  double sum[2][n_pairs][2][2] = {}; // [i][JK][l][M]
   for (const Family &family : families_)
   {
     const Tensor<1, 2> &N = family.fibre.direction;
     const Tensor<1, 2> f = F * N;
-    const Chi c = chi(family.fibre.potential, f.norm());
+    const BondStiffness h = stiffness(family.fibre.potential, f.norm());
     for (unsigned int term = 0; term < 2; ++term)
     {
       const Tensor<1, 2> a = selected(G, family.selector[term]);
       const double fa = f * a;
-      Tensor<2, 2> h = c.second * (outer_product(a, f) + outer_product(f, a)) + c.third * fa * outer_product(f, f);
+      Tensor<2, 2> by_f = h.across[1] * outer_product(a, f) + h.coupling[0] * outer_product(f, a) +
+                          h.coupling[1] * fa * outer_product(f, f);
       for (unsigned int i = 0; i < 2; ++i)
-        h[i][i] += c.second * fa;
-      h *= family.factor[term];
+        by_f[i][i] += h.coupling[0] * fa;
+      by_f *= family.factor[term];
+      const auto S = pairs(family.selector[term]);
       for (unsigned int i = 0; i < 2; ++i)
-        for (unsigned int J = 0; J < 2; ++J)
-          for (unsigned int K = 0; K < 2; ++K)
-            for (unsigned int l = 0; l < 2; ++l)
-              for (unsigned int M = 0; M < 2; ++M)
-                result[i][J][K][l][M] += h[i][l] * family.selector[term][J][K] * N[M];
+        for (unsigned int JK = 0; JK < n_pairs; ++JK)
+          for (unsigned int l = 0; l < 2; ++l)
+            for (unsigned int M = 0; M < 2; ++M)
+              sum[i][JK][l][M] += by_f[i][l] * S[JK] * N[M];
     }
   }
+  Tensor<5, 2> result;
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int J = 0; J < 2; ++J)
+      for (unsigned int K = 0; K < 2; ++K)
+        for (unsigned int l = 0; l < 2; ++l)
+          for (unsigned int M = 0; M < 2; ++M)
+            result[i][J][K][l][M] = sum[i][pair_of[J][K]][l][M];
   return result;
 }
 
 Tensor<6, 2> LatticeGradient::double_stress_by_G(const Tensor<2, 2> &F) const
 {
   checked_determinant(F);
-  Tensor<6, 2> result;
+  double sum[n_pairs][n_pairs][n_pairs] = {}; // [il][JK][MN]
   for (const Family &family : families_)
   {
     const Tensor<1, 2> f = F * family.fibre.direction;
-    const Chi c = chi(family.fibre.potential, f.norm());
-    Tensor<2, 2> H = c.second * outer_product(f, f);
+    const BondStiffness h = stiffness(family.fibre.potential, f.norm());
+    Tensor<2, 2> by_a = h.coupling[0] * outer_product(f, f);
     for (unsigned int i = 0; i < 2; ++i)
-      H[i][i] += c.first;
+      by_a[i][i] += h.across[0];
+    const auto H = pairs(by_a);
     for (unsigned int term = 0; term < 2; ++term)
     {
-      const Tensor<2, 2> &S = family.selector[term];
-      for (unsigned int i = 0; i < 2; ++i)
-        for (unsigned int J = 0; J < 2; ++J)
-          for (unsigned int K = 0; K < 2; ++K)
-            for (unsigned int l = 0; l < 2; ++l)
-              for (unsigned int M = 0; M < 2; ++M)
-                for (unsigned int N = 0; N < 2; ++N)
-                  result[i][J][K][l][M][N] += family.factor[term] * H[i][l] * S[J][K] * S[M][N];
+      const auto S = pairs(family.selector[term]);
+      for (unsigned int il = 0; il < n_pairs; ++il)
+        for (unsigned int JK = 0; JK < n_pairs; ++JK)
+        {
+          const double factor = family.factor[term] * H[il] * S[JK];
+          for (unsigned int MN = 0; MN < n_pairs; ++MN)
+            sum[il][JK][MN] += factor * S[MN];
+        }
     }
   }
+  Tensor<6, 2> result;
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int J = 0; J < 2; ++J)
+      for (unsigned int K = 0; K < 2; ++K)
+        for (unsigned int l = 0; l < 2; ++l)
+          for (unsigned int M = 0; M < 2; ++M)
+            for (unsigned int N = 0; N < 2; ++N)
+              result[i][J][K][l][M][N] = sum[pair_of[i][l]][pair_of[J][K]][pair_of[M][N]];
   return result;
 }
 } // namespace continuum

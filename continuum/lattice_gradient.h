@@ -14,6 +14,9 @@ struct BondFamily
   double length; ///< l [m] > 0, undeformed
 };
 
+/// Throws InvalidMaterial, unless the fibre is valid and the length positive and finite.
+void check(const BondFamily &family);
+
 /// The gradient energy that gives a network of bonds its long waves to fourth order, made positive by micro-inertia of
 /// the length l_d (theory-continuum.md, eqs. (C.22) to (C.26)):
 ///   W_g = (1/2) sum over families of c_k [ l_d^2 h_k(G N T, G N T) + (l_d^2 - l_k^2/12) h_k(G N N, G N N) ]
@@ -25,6 +28,10 @@ public:
   /// `families` weighted as those of CauchyBorn; `length` l_d [m]. Throws InvalidMaterial if a family is not valid, a
   /// bond has no positive length, or l_d^2 < l_k^2/12 for one of them: the energy would not be positive.
   LatticeGradient(const std::vector<BondFamily> &families, double length);
+
+  /// Stretch [-] from which on a bond has all of its stiffness across itself, psi'/l; at stretch 1 and below it has
+  /// none, and h goes over with two continuous derivatives (theory-continuum.md, eq. (C.27)).
+  static constexpr double full_stretch = 1.02;
 
   /// The shortest l_d [m] for which the energy is positive: the longest bond over sqrt(12).
   static double smallest_length(const std::vector<BondFamily> &families);

@@ -1,9 +1,9 @@
 #include "continuum/linear_solver.h"
 
-#include "continuum/direct_solver.h"
 #include "continuum/errors.h"
 
 #include <deal.II/lac/solver_cg.h>
+#include <deal.II/lac/solver_gmres.h>
 
 #include <algorithm>
 #include <cmath>
@@ -12,9 +12,11 @@ using namespace dealii;
 
 namespace continuum
 {
-LinearSolver::LinearSolver(const Sheet &sheet, HeldBoundaries held, const LinearSettings &settings)
+LinearSolver::LinearSolver(const Sheet &sheet, HeldBoundaries held, const LinearSettings &settings,
+                           const Symmetry symmetry)
   : sheet_(sheet), held_(std::move(held)), settings_(settings),
-    is_direct_(sheet.dof_handler().n_dofs() <= settings.direct_limit || !sheet.conditions().periodic.empty())
+    is_direct_(sheet.dof_handler().n_dofs() <= settings.direct_limit || !sheet.conditions().periodic.empty()),
+    symmetry_(symmetry)
 {
   if (!(settings.relative_tolerance > 0. && settings.relative_tolerance < 1.))
     throw InvalidInput("the relative tolerance of the linear solver must lie between 0 and 1");
@@ -43,7 +45,15 @@ void LinearSolver::set_up(const Sheet::Matrix &K)
       { sheet.make_matrix(constraints, matrix); },
       held_, settings_.multigrid);
   is_worn_ = true; // until it is set up
-  multigrid_->update(state_, K, assemble_);
+  if (symmetry_ == Symmetry::symmetric)
+    multigrid_->update(state_, K, assemble_);
+  else
+  {
+    Sheet::Matrix symmetric;
+    symmetric.reinit(K); // its sparsity
+    assemble_(sheet_, state_, multigrid_->constraints(), symmetric);
+    multigrid_->update(state_, symmetric, assemble_);
+  }
   is_worn_ = false;
   is_fresh_ = true;
   fresh_effort_ = 0.;
@@ -71,13 +81,17 @@ unsigned int LinearSolver::solve(const Sheet::Matrix &K, Sheet::Vector &x, const
   try
   {
     if (is_direct_)
-      DirectSolver(K).solve(x, b);
+    {
+      direct_.factorise(K);
+      direct_.solve(x, b);
+    }
     else
       iterations = iterate(K, x, b, std::max(relative_tolerance, settings_.relative_tolerance));
   }
   catch (const SolverControl::NoConvergence &failure)
   {
-    throw LinearSolverFailed("conjugate gradients stopped after " + std::to_string(failure.last_step) + " iterations");
+    throw LinearSolverFailed(std::string(symmetry_ == Symmetry::symmetric ? "conjugate gradients" : "GMRES") +
+                             " stopped after " + std::to_string(failure.last_step) + " iterations");
   }
   catch (const ExceptionBase &failure)
   {
@@ -97,10 +111,17 @@ unsigned int LinearSolver::iterate(const Sheet::Matrix &K, Sheet::Vector &x, con
   multigrid_->initialize(to);
   Multigrid::copy(b, from);
   SolverControl control(settings_.max_iterations, relative_tolerance * from.l2_norm());
-  SolverCG<Multigrid::Vector> conjugate_gradients(control);
   try
   {
-    conjugate_gradients.solve(K, to, from, *multigrid_);
+    if (symmetry_ == Symmetry::symmetric)
+      SolverCG<Multigrid::Vector>(control).solve(K, to, from, *multigrid_);
+    else
+    {
+      // Preconditioned from the right, so that the residual that ends it is that of K. A multigrid that serves needs
+      // fewer iterations than there are vectors before a restart.
+      const SolverGMRES<Multigrid::Vector>::AdditionalData data(50, true);
+      SolverGMRES<Multigrid::Vector>(control, data).solve(K, to, from, *multigrid_);
+    }
   }
   catch (const SolverControl::NoConvergence &)
   {
@@ -110,7 +131,7 @@ unsigned int LinearSolver::iterate(const Sheet::Matrix &K, Sheet::Vector &x, con
     return control.last_step() + iterate(K, x, b, relative_tolerance);
   }
   Multigrid::copy(to, x);
-  // Conjugate gradients gain little at first: as if there were some digits more, however many are asked for.
+  // The methods gain little at first: as if there were some digits more, however many are asked for.
   constexpr double digits_at_first = 3.;
   const double effort = control.last_step() / (digits_at_first - std::log10(relative_tolerance));
   if (is_fresh_)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "continuum/direct_solver.h"
 #include "continuum/multigrid.h"
 #include "continuum/sheet.h"
 
@@ -10,38 +11,47 @@ namespace continuum
 /// How linear systems are solved.
 struct LinearSettings
 {
-  /// Largest number of unknowns for the direct solver; above it, conjugate gradients with multigrid. Periodic edges are
-  /// left to the direct solver whatever the size.
+  /// Largest number of unknowns for the direct solver; above it, Krylov methods with multigrid. Periodic edges are left
+  /// to the direct solver whatever the size.
   dealii::types::global_dof_index direct_limit = 20000;
-  /// Smallest residual of conjugate gradients relative to the right-hand side that is asked for [-], in (0, 1).
+  /// Smallest residual of a Krylov method relative to the right-hand side that is asked for [-], in (0, 1).
   double relative_tolerance = 1e-8;
   /// Iterations for the digits of the residual, over those with a multigrid that is up to date [-], >= 0, beyond which
   /// multigrid is set up anew; 0: for every tangent.
   double wear_limit = 1.5;
-  /// Conjugate-gradient iterations before giving up.
+  /// Krylov iterations before giving up.
   unsigned int max_iterations = 200;
   MultigridSettings multigrid;
 };
 
+/// Which matrices a LinearSolver is given.
+enum class Symmetry
+{
+  symmetric,  ///< and positive definite
+  unsymmetric ///< by little: Multigrid::Assembler makes a symmetric positive definite matrix that is close
+};
+
 /// Solves K x = b for the condensed tangent of a sheet. Directly: by DirectSolver.
-/// Iterative, for symmetric positive definite K: conjugate gradients, preconditioned by Multigrid. A multigrid is kept
-/// for the tangents that follow (of further Newton, load and time steps) until it is worn: until the iterations have
-/// grown beyond LinearSettings::wear_limit, or fail. That changes the work and not what is solved.
+/// Iteratively: conjugate gradients for symmetric K, GMRES for others, preconditioned by Multigrid of the symmetric
+/// matrix. A multigrid is kept for the tangents that follow (of further Newton, load and time steps) until it is worn:
+/// until the iterations have grown beyond LinearSettings::wear_limit, or fail. That changes the work and not what is
+/// solved.
 class LinearSolver
 {
 public:
   /// `sheet` must outlive the solver, `held` says what is held besides. Throws InvalidInput for settings out of range.
-  LinearSolver(const Sheet &sheet, HeldBoundaries held, const LinearSettings &settings);
+  LinearSolver(const Sheet &sheet, HeldBoundaries held, const LinearSettings &settings,
+               Symmetry symmetry = Symmetry::symmetric);
 
   /// To be called when K has changed, before the next solve: takes note of the state `u` [m] (with ghost entries) and
-  /// sets up multigrid if there is none that serves. `assemble` makes the tangents of coarser meshes; it is called in
-  /// solve, too. Collective.
+  /// sets up multigrid if there is none that serves. `assemble` makes the tangents of coarser meshes and, for
+  /// unsymmetric K, the symmetric one of the sheet itself; it is called in solve, too. Collective.
   void update(const Sheet::Vector &u, const Sheet::Matrix &K, const Multigrid::Assembler &assemble);
 
   /// The residual comes to at most `relative_tolerance` [-] times that of x = 0, but no smaller one is asked for than
-  /// LinearSettings::relative_tolerance; the direct solver ignores it. Collective. Returns the conjugate-gradient
-  /// iterations, 0 when direct. Throws LinearSolverFailed on every rank if the factorisation fails, the tolerance is
-  /// not met, or the answer is not finite.
+  /// LinearSettings::relative_tolerance; the direct solver ignores it. Collective. Returns the Krylov iterations, 0
+  /// when direct. Throws LinearSolverFailed on every rank if the factorisation fails, the tolerance is not met, or the
+  /// answer is not finite.
   unsigned int solve(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b, double relative_tolerance = 0.);
 
   /// Has multigrid set up anew at the next update: the matrices that follow are of another kind.
@@ -75,6 +85,8 @@ private:
   HeldBoundaries held_;
   LinearSettings settings_;
   bool is_direct_;
+  Symmetry symmetry_;
+  DirectSolver direct_;
   std::unique_ptr<Multigrid> multigrid_; // made when first needed
   unsigned int n_set_ups_ = 0;
   Sheet::Vector state_;

@@ -1,6 +1,7 @@
 #include "continuum/mooney_rivlin.h"
 
 #include "continuum/errors.h"
+#include "continuum/plane_invariants.h"
 
 #include <cmath>
 #include <sstream>
@@ -44,16 +45,6 @@ Invariants invariants(const MooneyRivlin::Constants &m, const Tensor<2, 2> &F)
     throw_no_thickness(F);
   s.t = (m.kappa * s.j + std::sqrt(discriminant)) / (2. * s.A);
   return s;
-}
-
-Tensor<2, 2> cofactor(const Tensor<2, 2> &F)
-{
-  Tensor<2, 2> cof;
-  cof[0][0] = F[1][1];
-  cof[0][1] = -F[1][0];
-  cof[1][0] = -F[0][1];
-  cof[1][1] = F[0][0];
-  return cof;
 }
 
 // Partial derivatives of the energy at fixed thickness, eq. (C.7).
@@ -104,39 +95,23 @@ double MooneyRivlin::energy(const Tensor<2, 2> &F) const
 Tensor<2, 2> MooneyRivlin::first_piola_stress(const Tensor<2, 2> &F) const
 {
   const Invariants s = invariants(constants_, F);
-  return 2. * energy_by_F_squared(constants_, s) * F + energy_by_j(constants_, s) * cofactor(F);
+  return continuum::first_piola_stress({0., energy_by_F_squared(constants_, s), energy_by_j(constants_, s), 0., 0., 0.},
+                                       F);
 }
 
 Tensor<4, 2> MooneyRivlin::tangent(const Tensor<2, 2> &F) const
 {
   const auto &[c1, c2, kappa] = constants_;
   const Invariants s = invariants(constants_, F);
-  const Tensor<2, 2> cof = cofactor(F);
 
   // Second derivatives with the thickness eliminated, eq. (C.8).
   const double tt = s.A + s.B / (s.t * s.t);
   const double ft = 2. * c2 * s.t;
   const double jt = kappa * (2. * s.j * s.t - 1.);
   const double jj = s.B / (s.j * s.j) + 2. * c2 + kappa * s.t * s.t;
-  const double condensed_ff = -ft * ft / tt;
-  const double condensed_fj = -ft * jt / tt;
-  const double condensed_jj = jj - jt * jt / tt;
-
-  const double by_f = energy_by_F_squared(constants_, s);
-  const double by_j = energy_by_j(constants_, s);
-  Tensor<4, 2> T;
-  for (unsigned int i = 0; i < 2; ++i)
-    for (unsigned int J = 0; J < 2; ++J)
-      for (unsigned int k = 0; k < 2; ++k)
-        for (unsigned int L = 0; L < 2; ++L)
-        {
-          // The cofactor is linear in F: d cof_iJ / dF_kL = eps_ik eps_JL.
-          const double permutation = i == k || J == L ? 0. : (i == J ? 1. : -1.);
-          T[i][J][k][L] =
-            (i == k && J == L ? 2. * by_f : 0.) + by_j * permutation + 4. * condensed_ff * F[i][J] * F[k][L] +
-            2. * condensed_fj * (F[i][J] * cof[k][L] + cof[i][J] * F[k][L]) + condensed_jj * cof[i][J] * cof[k][L];
-        }
-  return T;
+  return continuum::tangent({0., energy_by_F_squared(constants_, s), energy_by_j(constants_, s), -ft * ft / tt,
+                             -ft * jt / tt, jj - jt * jt / tt},
+                            F);
 }
 
 double MooneyRivlin::thickness_stretch(const Tensor<2, 2> &F) const

@@ -158,6 +158,9 @@ Multigrid::Multigrid(const Sheet &fine, const SheetFactory &make_sheet, const Ma
       break;
   }
   std::reverse(levels_.begin(), levels_.end());
+  constexpr types::global_dof_index small = 10000; // KLU takes too long beyond
+  const bool is_small = levels_.front()->sheet->dof_handler().n_dofs() <= small;
+  coarsest_ = std::make_unique<DirectSolver>(is_small ? DirectSolver::Library::klu : DirectSolver::Library::mumps);
 
   for (std::size_t l = 1; l < levels_.size(); ++l)
   {
@@ -178,7 +181,6 @@ Multigrid::~Multigrid() = default;
 
 void Multigrid::update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix, const Assembler &assemble)
 {
-  coarsest_.reset(); // whose matrix changes
   Vector state(levels_.back()->layout);
   {
     Sheet::Vector owned = levels_.back()->sheet->make_owned();
@@ -188,10 +190,7 @@ void Multigrid::update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix,
   for (std::size_t l = levels_.size(); l-- > 0;)
   {
     Level &level = *levels_[l];
-    if (levels_.size() == 1)
-      // A direct solver looks at its matrix when it is destroyed, and the caller's may be gone by then.
-      level.tangent.copy_from(fine_matrix);
-    else if (l + 1 < levels_.size())
+    if (l + 1 < levels_.size())
     {
       Vector coarse_state(level.layout);
       levels_[l + 1]->to_coarser.interpolate(coarse_state, state);
@@ -239,10 +238,7 @@ void Multigrid::update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix,
     }
   }
 
-  constexpr types::global_dof_index small = 10000; // KLU takes too long beyond
-  const bool is_small = levels_.front()->sheet->dof_handler().n_dofs() <= small;
-  coarsest_ = std::make_unique<DirectSolver>(levels_.front()->tangent,
-                                             is_small ? DirectSolver::Library::klu : DirectSolver::Library::mumps);
+  coarsest_->factorise(levels_.size() == 1 ? fine_matrix : levels_.front()->tangent);
 }
 
 void Multigrid::cycle(const unsigned int l, Vector &z, const Vector &r) const

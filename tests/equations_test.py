@@ -18,7 +18,8 @@ KINDS = {".h", ".cc", ".inc", ".py", ".prm", ".json"}
 
 # Steps of a derivation, which no line of code computes: what is computed is the equation that they lead to.
 DERIVATION = {"L.21": "says where damped modes lie, which (L.22) then keeps stable",
-              "L.25": "shows for two stages that (L.23) keeps touching sites stable"}
+              "L.25": "shows for two stages that (L.23) keeps touching sites stable",
+              "H.16": "leading term of (H.14), which says why the energy agrees best at one mean stretch"}
 
 TAG = re.compile(r"\\tag\{([^}]+)\}")
 NUMBER = r"[A-Z]\.\d+"

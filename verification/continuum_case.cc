@@ -271,22 +271,29 @@ ContinuumCase::ContinuumCase()
 
 void ContinuumCase::declare(Parameters &p)
 {
-  p.add("Continuum", "law", law,
-        {{"cauchy-born", ContinuumLaw::cauchy_born}, {"mooney-rivlin", ContinuumLaw::mooney_rivlin}},
-        "law of the finite element sheet: that of the lattice, or Mooney-Rivlin calibrated along the loading path");
+  p.add(
+    "Continuum", "law", law,
+    {{"cauchy-born", ContinuumLaw::cauchy_born},
+     {"mooney-rivlin-network", ContinuumLaw::mooney_rivlin_network},
+     {"mooney-rivlin", ContinuumLaw::mooney_rivlin}},
+    "law of the finite element sheet: Cauchy-Born law of the lattice, its mean over all directions of bonds, or the "
+    "plane-stress Mooney-Rivlin law of the textbooks, calibrated along the loading path");
   p.add("Continuum", "ratio", mooney_rivlin_ratio, Between{-0.9, 0.9}, "1",
-        "r = C2 / (C1 + C2) of the Mooney-Rivlin law; auto: calibrated along the loading path");
-  p.add("Continuum", "gradient", gradient,
-        {{"none", ContinuumGradient::none},
-         {"isotropic", ContinuumGradient::isotropic},
-         {"lattice", ContinuumGradient::lattice}},
-        "energy of the gradient of deformation: none, (mu l_s^2 / 2) |Grad F|^2, or that of the lattice's bonds");
+        "r = C2 / (C1 + C2) of the plane-stress law mooney-rivlin; auto: calibrated along the loading path");
+  p.add(
+    "Continuum", "gradient", gradient,
+    {{"none", ContinuumGradient::none},
+     {"isotropic", ContinuumGradient::isotropic},
+     {"lattice", ContinuumGradient::lattice},
+     {"network", ContinuumGradient::network}},
+    "energy of the gradient of deformation: none, (mu l_s^2 / 2) |Grad F|^2, that of the lattice's bonds, or its mean "
+    "over all directions, which goes with the law mooney-rivlin-network");
   p.add(
     "Continuum", "static length", static_length, MagnitudeOrZero{}, "m",
     "l_s of the isotropic gradient energy; auto: fitted to the dispersion of the lattice, averaged over directions");
   p.add("Continuum", "inertia length", inertia_length, MagnitudeOrZero{}, "m",
-        "l_d of the micro-inertia and of the lattice's gradient energy; auto: 0 without a gradient energy, fitted with "
-        "l_s for the isotropic one, the longest bond over sqrt(12) for that of the lattice");
+        "l_d of the micro-inertia and of the lattice's gradient energy or its mean; auto: 0 without a gradient energy, "
+        "fitted with l_s for the isotropic one, the longest bond over sqrt(12) for the others");
   p.add("Continuum", "penalty", penalty, Between{0.5, 1000.}, "1",
         "gamma of the interior penalty gamma p (p + 1) / h on jumps of the normal derivative");
   p.add("Continuum", "cells x", cells_x, Between{1., 65536.}, "cells along x of a sheet without hole or notch");
@@ -309,8 +316,10 @@ void ContinuumCase::declare(Parameters &p)
         "rise of the load factor with which the loading starts");
   p.add("Continuum", "relative tolerance", relative_tolerance, Between{1e-14, 1e-4}, "1",
         "residual over the forces at work at which Newton stops; its round-off is never undercut");
-  p.add("Continuum", "direct limit", direct_limit, Between{0., 1e7},
-        "unknowns up to which linear systems are solved directly; conjugate gradients with multigrid beyond");
+  p.add(
+    "Continuum", "direct limit", direct_limit, Between{0., 1e7},
+    "unknowns up to which linear systems are solved directly; beyond, conjugate gradients or, with dashpots, GMRES, "
+    "with multigrid");
   p.add("Continuum", "solution", solution, {{"equilibrium", Solution::equilibrium}, {"motion", Solution::motion}},
         "what `latcon continuum` computes: static equilibrium, or the motion up to the end time");
   p.add("Continuum", "time step", time_step, Magnitude{}, "s",

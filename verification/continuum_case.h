@@ -15,8 +15,9 @@ namespace verification
 /// Which constitutive law the finite element sheet is made of.
 enum class ContinuumLaw
 {
-  cauchy_born,  ///< exact continuum of the lattice in homogeneous deformation
-  mooney_rivlin ///< compressible Mooney-Rivlin, calibrated along the loading path
+  cauchy_born,           ///< exact continuum of the lattice in homogeneous deformation
+  mooney_rivlin_network, ///< mean of cauchy_born over all directions
+  mooney_rivlin          ///< compressible Mooney-Rivlin of the textbooks, calibrated along the loading path
 };
 
 /// Which gradient energy is added to it.
@@ -24,7 +25,8 @@ enum class ContinuumGradient
 {
   none,
   isotropic, ///< (mu l_s^2 / 2) |Grad F|^2
-  lattice    ///< that of the lattice's own bonds
+  lattice,   ///< that of the lattice's own bonds
+  network    ///< mean of lattice over all directions
 };
 
 /// A vector field as a case states it: a text for each component, in x and y [m] of the undeformed sheet.

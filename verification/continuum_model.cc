@@ -5,6 +5,7 @@
 #include "continuum/isotropic_gradient.h"
 #include "continuum/lattice_gradient.h"
 #include "continuum/meshes.h"
+#include "continuum/network_gradient.h"
 #include "verification/affine_displacement.h"
 #include "verification/errors.h"
 
@@ -66,6 +67,10 @@ ContinuumModel::ContinuumModel(const Case &input)
   case ContinuumGradient::lattice:
     inertia_length_ = input.continuum.inertia_length.value_or(lengths.lattice);
     gradient_ = std::make_unique<continuum::LatticeGradient>(bond_families(sheet, subject_.material), inertia_length_);
+    break;
+  case ContinuumGradient::network:
+    inertia_length_ = input.continuum.inertia_length.value_or(lengths.lattice);
+    gradient_ = std::make_unique<continuum::NetworkGradient>(bond_families(sheet, subject_.material), inertia_length_);
     break;
   case ContinuumGradient::none:
     inertia_length_ = input.continuum.inertia_length.value_or(0.);
@@ -136,9 +141,19 @@ void ContinuumModel::make_conditions(const Case &input)
 
 continuum::Constitution ContinuumModel::constitution() const
 {
-  const continuum::Material *law = &subject_.cauchy_born;
-  if (mooney_rivlin_)
+  const continuum::Material *law = nullptr;
+  switch (law_)
+  {
+  case ContinuumLaw::cauchy_born:
+    law = &subject_.cauchy_born;
+    break;
+  case ContinuumLaw::mooney_rivlin_network:
+    law = &subject_.network;
+    break;
+  case ContinuumLaw::mooney_rivlin:
     law = &*mooney_rivlin_;
+    break;
+  }
   continuum::Constitution constitution(*law);
   constitution.gradient = gradient_.get();
   constitution.penalty = penalty_;

@@ -89,6 +89,12 @@ continuum::CauchyBorn cauchy_born(const lattice::TriangularLattice &lattice, con
   return continuum::CauchyBorn(std::move(fibres));
 }
 
+continuum::IsotropicNetwork isotropic_network(const lattice::TriangularLattice &lattice,
+                                              const lattice::Material &material)
+{
+  return continuum::IsotropicNetwork(cauchy_born(lattice, material).families());
+}
+
 std::unique_ptr<continuum::Viscosity> homogenised_viscosity(const lattice::TriangularLattice &lattice,
                                                             const lattice::Material &material)
 {

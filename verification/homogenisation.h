@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "continuum/cauchy_born.h"
+#include "continuum/isotropic_network.h"
 #include "continuum/lattice_gradient.h"
 #include "continuum/mooney_rivlin.h"
 #include "continuum/viscosity.h"
@@ -28,6 +29,12 @@ SmallStrain small_strain(const lattice::TriangularLattice &lattice, const lattic
 /// (theory-comparison.md, eq. (H.1)). Constants alone are handed over; the continuum evaluates them with its own code.
 continuum::CauchyBorn cauchy_born(const lattice::TriangularLattice &lattice, const lattice::Material &material);
 
+/// The network of a lattice's bonds with all directions alike, the mean of its Cauchy-Born law over all rotations of
+/// the lattice (theory-comparison.md, eq. (H.13)). With Mooney-Rivlin bonds it is the Mooney-Rivlin law that agrees
+/// with the lattice but for its anisotropy; nothing is calibrated.
+continuum::IsotropicNetwork isotropic_network(const lattice::TriangularLattice &lattice,
+                                              const lattice::Material &material);
+
 /// The bonds of a lattice, for the gradient energy that its long waves have (theory-comparison.md, eq. (H.6)): families
 /// as in cauchy_born, with the undeformed length [m] of each.
 std::vector<continuum::BondFamily> bond_families(const lattice::TriangularLattice &lattice,
@@ -51,7 +58,8 @@ struct GradientLengths
 /// (theory-comparison.md, eqs. (H.7), (H.8)).
 GradientLengths gradient_lengths(const lattice::TriangularLattice &lattice, const lattice::Material &material);
 
-/// A Mooney-Rivlin law fitted to a lattice: exact at small strain, closest in energy along a loading path.
+/// The plane-stress Mooney-Rivlin law of the textbooks fitted to a lattice: exact at small strain, closest in energy
+/// along a loading path.
 struct Calibration
 {
   double ratio;                           ///< r = C2 / (C1 + C2) [-] (theory-comparison.md, eq. (H.4))

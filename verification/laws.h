@@ -10,10 +10,12 @@ namespace verification
 /// Laws of the continuum that claims set beside a lattice.
 enum class Law
 {
-  cauchy_born,        ///< the lattice's own, local
-  lattice_gradient,   ///< the same with the gradient energy of the lattice's long waves
-  isotropic_gradient, ///< the same with the isotropic gradient energy
-  mooney_rivlin       ///< local, calibrated along the loading path
+  cauchy_born,           ///< the lattice's own, local
+  lattice_gradient,      ///< the same with the gradient energy of the lattice's long waves
+  isotropic_gradient,    ///< the same with the isotropic gradient energy
+  mooney_rivlin_network, ///< local, the lattice's mean over all directions
+  network_gradient,      ///< the same with its gradient energy
+  mooney_rivlin          ///< local, of plane stress, calibrated along the loading path
 };
 
 /// Laws on which a run relies. Claims judge what they find about these, and report what they find about others.
@@ -22,7 +24,8 @@ using Laws = std::set<Law>;
 /// Every law.
 inline Laws all_laws()
 {
-  return {Law::cauchy_born, Law::lattice_gradient, Law::isotropic_gradient, Law::mooney_rivlin};
+  return {Law::cauchy_born,           Law::lattice_gradient, Law::isotropic_gradient,
+          Law::mooney_rivlin_network, Law::network_gradient, Law::mooney_rivlin};
 }
 
 /// Laws of a run on the lattice alone: the continuum that its bonds make, and no law that was fitted to it.
@@ -37,6 +40,10 @@ inline Laws laws_of(const Case &input)
   Laws laws = laws_of_lattice();
   if (input.continuum.law == ContinuumLaw::mooney_rivlin)
     laws.insert(Law::mooney_rivlin);
+  if (input.continuum.law == ContinuumLaw::mooney_rivlin_network)
+    laws.insert(Law::mooney_rivlin_network);
+  if (input.continuum.gradient == ContinuumGradient::network)
+    laws.insert(Law::network_gradient);
   if (input.continuum.gradient == ContinuumGradient::isotropic)
     laws.insert(Law::isotropic_gradient);
   return laws;

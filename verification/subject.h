@@ -26,6 +26,7 @@ struct Subject
   SmallStrain theory;
   SlowestWave slowest_wave; ///< about the loaded sheet
   continuum::CauchyBorn cauchy_born;
+  continuum::IsotropicNetwork network;      ///< mean of cauchy_born over all rotations of the lattice
   std::optional<Calibration> mooney_rivlin; ///< none if no such law has a thickness all along the loading path
   bool ratio_is_calibrated;                 ///< the Mooney-Rivlin ratio was fitted, not given
   GradientLengths lengths;
@@ -68,6 +69,7 @@ inline Subject subject(const Case &input, const lattice::Material &material, con
           theory,
           slowest_wave(sheet, material, input.deformation()),
           cauchy_born(sheet, material),
+          isotropic_network(sheet, material),
           calibration,
           !given,
           lengths,

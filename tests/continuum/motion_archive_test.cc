@@ -76,7 +76,8 @@ public:
   }
 };
 
-// With hanging nodes and a normal gradient that grows with the load, by conjugate gradients.
+// With hanging nodes and a normal gradient that grows with the load, by conjugate gradients or, with dashpots, GMRES.
+template <bool has_dashpots>
 class MultigridMotion : public Motion
 {
 public:
@@ -93,7 +94,7 @@ public:
     settings.linear.direct_limit = 0;
     settings.linear.multigrid.coarsest_size = 100;
     settings.linear.wear_limit = 1.1; // so that some of the steps, and not all, set it up
-    make_solver(conditions, settings, nullptr);
+    make_solver(conditions, settings, has_dashpots ? &viscosity_ : nullptr);
   }
 };
 
@@ -196,9 +197,10 @@ TEST(MotionArchive, GoesOnWithTheSameBitsWithTheDirectSolver)
   expect_same_bits_after_resuming<DirectMotion>(undisturbed<DirectMotion>());
 }
 
-TEST(MotionArchive, GoesOnWithTheSameBitsWithAMultigridThatIsKept)
+template <class M>
+void expect_same_bits_with_kept_multigrid()
 {
-  const std::vector<Store> states = undisturbed<MultigridMotion>();
+  const std::vector<Store> states = undisturbed<M>();
   // Stored with a fresh multigrid, with one that has served for some steps, and with a worn one.
   const auto set_ups = [&](const unsigned int at) { return value<unsigned int>(states[at], "linear_solver/set_ups"); };
   unsigned int n_keeping = 0;
@@ -206,7 +208,17 @@ TEST(MotionArchive, GoesOnWithTheSameBitsWithAMultigridThatIsKept)
     n_keeping += set_ups(at) == set_ups(at - 1);
   EXPECT_GT(n_keeping, 0u);
   EXPECT_GT(set_ups(n_steps), set_ups(0));
-  expect_same_bits_after_resuming<MultigridMotion>(states);
+  expect_same_bits_after_resuming<M>(states);
+}
+
+TEST(MotionArchive, GoesOnWithTheSameBitsWithAMultigridThatIsKept)
+{
+  expect_same_bits_with_kept_multigrid<MultigridMotion<false>>();
+}
+
+TEST(MotionArchive, GoesOnWithTheSameBitsWithDashpotsAndAMultigridThatIsKept)
+{
+  expect_same_bits_with_kept_multigrid<MultigridMotion<true>>();
 }
 
 TEST(MotionArchive, IsTakenUpByAnyNumberOfRanks)
@@ -220,7 +232,7 @@ TEST(MotionArchive, IsTakenUpByAnyNumberOfRanks)
     Store at_end;
     if (writing)
     {
-      MultigridMotion motion(writing.communicator());
+      MultigridMotion<false> motion(writing.communicator());
       motion.start();
       for (unsigned int step = 0; step < 4; ++step)
         motion.solver().step();
@@ -234,7 +246,7 @@ TEST(MotionArchive, IsTakenUpByAnyNumberOfRanks)
       const FirstRanks reading(readers);
       if (!reading)
         continue;
-      MultigridMotion motion(reading.communicator());
+      MultigridMotion<false> motion(reading.communicator());
       load(at_stop, motion.solver());
       const Store again = stored(motion.solver());
       motion.solver().step();

@@ -8,6 +8,7 @@
 
 #include "lattice/forces.h"
 #include "lattice/site_fields.h"
+#include "verification/anisotropy.h"
 #include "verification/largest_error.h"
 
 namespace verification
@@ -56,6 +57,46 @@ Eigen::Matrix2d stress_derivative(const Stress &stress, int k, int L)
   const double h = strain_step;
   return (8. * (at(h) - at(-h)) - (at(2. * h) - at(-2. * h))) / (12. * h);
 }
+
+// Network law and lattice in one deformation. Means and bounds are those over all rotations of the lattice, whose
+// stresses are components 11, 21, 12, 22.
+struct NetworkComparison
+{
+  NetworkComparison(const Subject &subject, const lattice::TriangularLattice &sheet, const Eigen::Matrix2d &F)
+    : network_energy(subject.network.energy(to_continuum(F))),
+      network_stress(to_lattice(subject.network.first_piola_stress(to_continuum(F))))
+  {
+    Eigen::MatrixXd energies(1, n_lattice_rotations), stresses(4, n_lattice_rotations);
+    for (int k = 0; k < n_lattice_rotations; ++k)
+    {
+      const Eigen::Matrix2d R = lattice_rotation(k);
+      const LatticeResponse response = homogeneous_response(sheet, subject.material, F * R);
+      const Eigen::Matrix2d rotated_stress = response.first_piola_stress * R.transpose();
+      energies(0, k) = response.energy_density;
+      stresses.col(k) = rotated_stress.reshaped();
+      if (k == 0)
+      {
+        lattice_energy = response.energy_density;
+        lattice_stress = rotated_stress;
+      }
+    }
+    energy = rotation_mean(energies);
+    stress = rotation_mean(stresses);
+  }
+
+  double energy_from_mean() const { return std::abs(network_energy / energy.mean(0) - 1.); }
+  double stress_from_mean() const { return (network_stress.reshaped() - stress.mean).norm() / stress.mean.norm(); }
+
+  // Errors [-] of the network law for the lattice as it is, and their bounds.
+  double energy_error() const { return std::abs(network_energy / lattice_energy - 1.); }
+  double energy_bound() const { return energy.bound / std::abs(lattice_energy) + equal_formulas; }
+  double stress_error() const { return (network_stress - lattice_stress).norm() / lattice_stress.norm(); }
+  double stress_bound() const { return stress.bound / lattice_stress.norm() + equal_formulas; }
+
+  double network_energy, lattice_energy;          // [J/m^3]
+  Eigen::Matrix2d network_stress, lattice_stress; // [Pa]
+  RotationMean energy, stress;
+};
 
 } // namespace
 
@@ -196,13 +237,14 @@ void mooney_rivlin_rows(const Subject &subject, const lattice::TriangularLattice
   }
   const Calibration &fit = *subject.mooney_rivlin;
   const continuum::MooneyRivlin law(fit.law);
-  moduli_rows(subject, lattice_side, Law::mooney_rivlin, "Mooney-Rivlin", continuum_moduli(subject, law), rows);
+  moduli_rows(subject, lattice_side, Law::mooney_rivlin, "plane-stress Mooney-Rivlin", continuum_moduli(subject, law),
+              rows);
 
   const double on_lattice = homogeneous_response(sheet, subject.material, subject.deformation).energy_density;
   const double on_continuum = law.energy(to_continuum(subject.deformation));
-  rows.add("energy density of the loaded sheet, Mooney-Rivlin", "J/m^3", on_lattice, on_continuum, {},
+  rows.add("energy density of the loaded sheet, plane-stress Mooney-Rivlin", "J/m^3", on_lattice, on_continuum, {},
            relative_error(on_continuum, on_lattice), {});
-  rows.add("rms energy residual of Mooney-Rivlin along the loading path", "1", {}, fit.energy_residual, {},
+  rows.add("rms energy residual of plane-stress Mooney-Rivlin along the loading path", "1", {}, fit.energy_residual, {},
            fit.energy_residual, {});
   if (subject.ratio_is_calibrated)
   {
@@ -218,7 +260,7 @@ void mooney_rivlin_rows(const Subject &subject, const lattice::TriangularLattice
     rows.add("given ratio r = C2 / (C1 + C2)", "1", {}, fit.ratio, {}, {}, {});
   // Strong ellipticity: the slowest wave on the path has rho c^2 > 0; the error is how far below zero it falls.
   const double slowest = fit.smallest_acoustic_eigenvalue;
-  rows.add(std::string("slowest rho c^2 / mu on the path, Mooney-Rivlin") +
+  rows.add(std::string("slowest rho c^2 / mu on the path, plane-stress Mooney-Rivlin") +
              (slowest < 0. ? ": the law loses ellipticity" : ""),
            "1", {}, slowest, {}, one_sided(-slowest), judged(0.));
 }
@@ -245,6 +287,43 @@ void random_deformations(const Subject &subject, const lattice::TriangularLattic
            equal_formulas);
 }
 
+// The network law leaves out the lattice's dependence on direction and nothing else: it is the mean over rotations of
+// the lattice, and no farther from the lattice than that dependence goes (theory-comparison.md, eq. (H.15)).
+void network_rows(const Subject &subject, const lattice::TriangularLattice &sheet, const Moduli &lattice_side,
+                  unsigned int samples, Rows &rows)
+{
+  const auto judged = [&](double tolerance) { return subject.tolerance(Law::mooney_rivlin_network, tolerance); };
+  moduli_rows(subject, lattice_side, Law::mooney_rivlin_network, "network", continuum_moduli(subject, subject.network),
+              rows);
+  LargestError energy_from_mean, stress_from_mean, energy_share, stress_share;
+  std::mt19937_64 generator(20061111);
+  for (unsigned int sample = 0; sample < samples; ++sample)
+  {
+    const NetworkComparison both(subject, sheet, random_deformation(generator));
+    energy_from_mean.add(both.energy_from_mean());
+    stress_from_mean.add(both.stress_from_mean());
+    energy_share.add(both.energy_error() / both.energy_bound());
+    stress_share.add(both.stress_error() / both.stress_bound());
+  }
+  const auto add = [&](const std::string &quantity, const LargestError &error, double tolerance)
+  {
+    rows.add(quantity + ", " + std::to_string(samples) + " random F", "1", {}, {}, {}, error.error(),
+             judged(tolerance));
+  };
+  add("energy density, network against the lattice's mean over rotations, largest relative error", energy_from_mean,
+      equal_formulas);
+  add("first Piola stress, network against the lattice's mean over rotations, largest relative error", stress_from_mean,
+      equal_formulas);
+  add("energy density, network, largest error over the bound of anisotropy", energy_share, 1.);
+  add("first Piola stress, network, largest error over the bound of anisotropy", stress_share, 1.);
+  const NetworkComparison stretched(subject, sheet, subject.deformation);
+  rows.add("energy density of the loaded sheet, network", "J/m^3", stretched.lattice_energy, stretched.network_energy,
+           stretched.energy.mean(0), stretched.energy_error(), judged(stretched.energy_bound()));
+  rows.add("first Piola stress of the loaded sheet, network, Frobenius norm", "Pa", stretched.lattice_stress.norm(),
+           stretched.network_stress.norm(), stretched.stress.mean.norm(), stretched.stress_error(),
+           judged(stretched.stress_bound()));
+}
+
 } // namespace
 
 Results energy_claim(const Subject &subject, unsigned int samples)
@@ -263,8 +342,10 @@ Results energy_claim(const Subject &subject, unsigned int samples)
             moduli_rows(subject, *on_lattice, Law::cauchy_born, "Cauchy-Born",
                         continuum_moduli(subject, subject.cauchy_born), rows);
           });
-  if (on_lattice)
-    attempt("Mooney-Rivlin along the loading path", [&] { mooney_rivlin_rows(subject, sheet, *on_lattice, rows); });
+  if (!on_lattice)
+    return results;
+  attempt("network", [&] { network_rows(subject, sheet, *on_lattice, samples, rows); });
+  attempt("Mooney-Rivlin along the loading path", [&] { mooney_rivlin_rows(subject, sheet, *on_lattice, rows); });
   return results;
 }
 

@@ -99,6 +99,22 @@ TEST_P(OnePercent, FailsThePrestretchClaim)
   EXPECT_EQ(failing, 4u); // energy density, two tractions, stress; displacements are those of the edges all the same
 }
 
+// The network law is judged by itself: every one of its rows, for weights that are wrong by 1 %.
+TEST(Energy, FailsForAWrongNetwork)
+{
+  for (const double factor : {1.01, 0.99})
+  {
+    Subject wrong = subject(subjects::paper_case());
+    std::vector<continuum::FibreFamily> families = wrong.cauchy_born.families();
+    for (continuum::FibreFamily &family : families)
+      family.weight *= factor;
+    wrong.network = continuum::IsotropicNetwork(families);
+    const Results results = energy_claim(wrong, samples);
+    for (const Result &row : results.rows())
+      EXPECT_EQ(row.verdict() == Verdict::fails, row.quantity.find("network") != std::string::npos) << row.quantity;
+  }
+}
+
 TEST(Energy, FailsForAWrongDensity)
 {
   Subject wrong = subject(subjects::paper_case());

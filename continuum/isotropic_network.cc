@@ -1,0 +1,73 @@
+#include "continuum/isotropic_network.h"
+
+#include "continuum/errors.h"
+
+using dealii::Tensor;
+
+namespace continuum
+{
+namespace
+{
+template <class... Functions>
+struct Overloaded : Functions...
+{
+  using Functions::operator()...;
+};
+template <class... Functions>
+Overloaded(Functions...) -> Overloaded<Functions...>;
+} // namespace
+
+IsotropicNetwork::IsotropicNetwork(const std::vector<FibreFamily> &families)
+{
+  if (families.empty())
+    throw InvalidMaterial("a fibre network needs at least one family");
+  for (const FibreFamily &family : families)
+  {
+    check(family);
+    const double c = family.weight;
+    std::visit(Overloaded{[&](const RodPotential &rod)
+                          {
+                            a_ += c * rod.a;
+                            b_ += c * rod.b;
+                          },
+                          [&](const LinearPotential &spring) { e_ += c * spring.e; }},
+               family.potential);
+  }
+}
+
+InvariantFunction IsotropicNetwork::density(const Tensor<2, 2> &F) const
+{
+  const double J = checked_determinant(F);
+  const double I = F.norm_square();
+  const StretchMeans mean = stretch_means(I, J);
+  const double r = 1. / J; // the mean of l^-2; that of l^2 is I/2
+  InvariantFunction W{};
+  add(W, a_, {0.25 * I - 1.5, 0.25, 0., 0., 0., 0.});
+  add(W, a_, mean.inverse);
+  add(W, b_, {0.5 * r - 1.5, 0., -0.5 * r * r, 0., 0., r * r * r});
+  add(W, b_ - e_, mean.stretch);
+  add(W, e_, {0.25 * I + 0.5, 0.25, 0., 0., 0., 0.});
+  return W;
+}
+
+double IsotropicNetwork::energy(const Tensor<2, 2> &F) const
+{
+  return density(F).value;
+}
+
+Tensor<2, 2> IsotropicNetwork::first_piola_stress(const Tensor<2, 2> &F) const
+{
+  return continuum::first_piola_stress(density(F), F);
+}
+
+Tensor<4, 2> IsotropicNetwork::tangent(const Tensor<2, 2> &F) const
+{
+  return continuum::tangent(density(F), F);
+}
+
+double IsotropicNetwork::thickness_stretch(const Tensor<2, 2> &F) const
+{
+  checked_determinant(F);
+  return 1.;
+}
+} // namespace continuum

@@ -1,0 +1,60 @@
+#include "continuum/network_gradient.h"
+
+#include <algorithm>
+#include <cmath>
+
+namespace continuum
+{
+namespace
+{
+// Families with the same potential as one, of their mean squared length.
+std::vector<BondFamily> merged(const std::vector<BondFamily> &families)
+{
+  std::vector<BondFamily> result;
+  for (const BondFamily &family : families)
+  {
+    check(family);
+    const auto same =
+      std::find_if(result.begin(), result.end(),
+                   [&](const BondFamily &other) { return other.fibre.potential == family.fibre.potential; });
+    if (same == result.end())
+    {
+      result.push_back(family);
+      continue;
+    }
+    const double weight = same->fibre.weight + family.fibre.weight;
+    same->length = std::sqrt(
+      (same->fibre.weight * same->length * same->length + family.fibre.weight * family.length * family.length) /
+      weight);
+    same->fibre.weight = weight;
+  }
+  return result;
+}
+
+std::vector<BondFamily> in_all_directions(const std::vector<BondFamily> &families)
+{
+  std::vector<BondFamily> result;
+  for (BondFamily family : merged(families))
+  {
+    family.fibre.weight /= NetworkGradient::n_directions;
+    for (unsigned int k = 0; k < NetworkGradient::n_directions; ++k)
+    {
+      const double angle = std::acos(-1.) * k / NetworkGradient::n_directions;
+      family.fibre.direction = dealii::Tensor<1, 2>({std::cos(angle), std::sin(angle)});
+      result.push_back(family);
+    }
+  }
+  return result;
+}
+} // namespace
+
+NetworkGradient::NetworkGradient(const std::vector<BondFamily> &families, const double length)
+  : LatticeGradient(in_all_directions(families), length)
+{
+}
+
+double NetworkGradient::smallest_length(const std::vector<BondFamily> &families)
+{
+  return LatticeGradient::smallest_length(merged(families));
+}
+} // namespace continuum

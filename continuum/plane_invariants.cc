@@ -1,0 +1,117 @@
+#include "continuum/plane_invariants.h"
+
+#include <cmath>
+#include <limits>
+
+using dealii::Tensor;
+
+namespace continuum
+{
+namespace
+{
+// P_{-1/2}(x) and the two quotients of (C.51), from which everything else follows without cancellation.
+struct LegendreQuotients
+{
+  double p, D, d;
+};
+
+// Gauss's arithmetic-geometric mean of sqrt((x + 1)/2) and 1. The squares c_n^2 of its halved differences are kept over
+// (x - 1)^2, so that nothing is lost where the principal stretches are equal.
+LegendreQuotients legendre_quotients(const double x)
+{
+  const double y = x - 1.;
+  double a = 0.5 * (std::sqrt(0.5 * (x + 1.)) + 1.);
+  double b = std::pow(0.5 * (x + 1.), 0.25);
+  double square = 1. / (64. * a * a); // (c_2 / y)^2
+  double weight = 2.;
+  double d = weight * square;
+  // Each step squares the relative difference of a and b; from any x that is a number, fewer than 16 end it.
+  for (int step = 0; step < 16 && a - b > std::numeric_limits<double>::epsilon() * a; ++step)
+  {
+    const double mean = 0.5 * (a + b);
+    b = std::sqrt(a * b);
+    a = mean;
+    square = square * y * (square * y) / (16. * a * a);
+    weight *= 2.;
+    d += weight * square;
+  }
+  return {1. / a, 0.5 - y * d, d};
+}
+} // namespace
+
+void add(InvariantFunction &sum, const double factor, const InvariantFunction &term)
+{
+  sum.value += factor * term.value;
+  sum.by_I += factor * term.by_I;
+  sum.by_J += factor * term.by_J;
+  sum.by_II += factor * term.by_II;
+  sum.by_IJ += factor * term.by_IJ;
+  sum.by_JJ += factor * term.by_JJ;
+}
+
+Tensor<2, 2> cofactor(const Tensor<2, 2> &F)
+{
+  Tensor<2, 2> cof;
+  cof[0][0] = F[1][1];
+  cof[0][1] = -F[1][0];
+  cof[1][0] = -F[0][1];
+  cof[1][1] = F[0][0];
+  return cof;
+}
+
+Tensor<2, 2> first_piola_stress(const InvariantFunction &W, const Tensor<2, 2> &F)
+{
+  return 2. * W.by_I * F + W.by_J * cofactor(F);
+}
+
+Tensor<4, 2> tangent(const InvariantFunction &W, const Tensor<2, 2> &F)
+{
+  const Tensor<2, 2> cof = cofactor(F);
+  Tensor<4, 2> T;
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int J = 0; J < 2; ++J)
+      for (unsigned int k = 0; k < 2; ++k)
+        for (unsigned int L = 0; L < 2; ++L)
+        {
+          // The cofactor is linear in F: d cof_iJ / dF_kL = eps_ik eps_JL.
+          const double permutation = i == k || J == L ? 0. : (i == J ? 1. : -1.);
+          T[i][J][k][L] = (i == k && J == L ? 2. * W.by_I : 0.) + W.by_J * permutation +
+                          4. * W.by_II * F[i][J] * F[k][L] +
+                          2. * W.by_IJ * (F[i][J] * cof[k][L] + cof[i][J] * F[k][L]) + W.by_JJ * cof[i][J] * cof[k][L];
+        }
+  return T;
+}
+
+StretchMeans stretch_means(const double I, const double J)
+{
+  const double x = I / (2. * J);
+  const auto [p, D, d] = legendre_quotients(x);
+  const double q = p * (1. + (x - 1.) * D);
+  // Derivatives of p and q by x, eq. (C.53): sums of terms of one sign.
+  const double once = p / (2. * (x + 1.));
+  const double twice = once / (2. * (x + 1.));
+  const double p1 = -once * (1. - D);
+  const double q1 = once * (1. + x * D);
+  const double p2 = twice * (3. - 4. * D + 4. * d);
+  const double q2 = -twice * (3. * (1. - D) + x * (D - 4. * d));
+
+  // eq. (C.54)
+  const double root = std::sqrt(J);
+  const double root3 = J * root;
+  const double root5 = J * root3;
+  StretchMeans means;
+  means.stretch.value = root * q;
+  means.stretch.by_I = 0.5 * q1 / root;
+  means.stretch.by_J = -p1 / root;
+  means.stretch.by_II = 0.25 * q2 / root3;
+  means.stretch.by_IJ = -0.5 * p2 / root3;
+  means.stretch.by_JJ = twice * ((x - 1.) * (2. - 3. * D + 6. * d) + 4. * d) / root3;
+  means.inverse.value = p / root;
+  means.inverse.by_I = 0.5 * p1 / root3;
+  means.inverse.by_J = -q1 / root3;
+  means.inverse.by_II = 0.25 * p2 / root5;
+  means.inverse.by_IJ = -0.5 * q2 / root5;
+  means.inverse.by_JJ = twice * (3. + 2. * x * (3. * D + x * (D + 2. * d))) / root5;
+  return means;
+}
+} // namespace continuum

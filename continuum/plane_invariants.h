@@ -1,0 +1,38 @@
+#pragma once
+
+#include <deal.II/base/tensor.h>
+
+namespace continuum
+{
+/// A function of the invariants I = |F|^2 and J = det F of an in-plane deformation, with its partial derivatives.
+struct InvariantFunction
+{
+  double value;
+  double by_I, by_J;
+  double by_II, by_IJ, by_JJ;
+};
+
+/// Adds factor * term to sum.
+void add(InvariantFunction &sum, double factor, const InvariantFunction &term);
+
+/// cof F_iJ = d det F / dF_iJ.
+dealii::Tensor<2, 2> cofactor(const dealii::Tensor<2, 2> &F);
+
+/// First Piola stress P_iJ [Pa] of an energy W(I, J) [Pa] at F (theory-continuum.md, eq. (C.55)).
+dealii::Tensor<2, 2> first_piola_stress(const InvariantFunction &W, const dealii::Tensor<2, 2> &F);
+
+/// Its tangent dP_iJ/dF_kL [Pa], index order [i][J][k][L] (theory-continuum.md, eq. (C.56)).
+dealii::Tensor<4, 2> tangent(const InvariantFunction &W, const dealii::Tensor<2, 2> &F);
+
+/// Means over all directions N of the stretch l = |F N|.
+struct StretchMeans
+{
+  InvariantFunction
+    stretch; ///< <l> [-]: the perimeter of an ellipse whose semi-axes are the principal stretches / 2 pi
+  InvariantFunction inverse; ///< <1/l> [-]: one over Gauss's arithmetic-geometric mean of the principal stretches
+};
+
+/// <l> and <1/l> with their derivatives, each to a relative error of some roundings, whatever the ratio of the
+/// principal stretches (theory-continuum.md, eqs. (C.51) to (C.54)). J > 0 and I >= 2 J but for rounding, I/J finite.
+StretchMeans stretch_means(double I, double J);
+} // namespace continuum

@@ -1,0 +1,96 @@
+// Factors of one matrix after another.
+#include "continuum/direct_solver.h"
+#include "continuum/errors.h"
+#include "sheets.h"
+
+#include <gtest/gtest.h>
+
+using namespace sheets;
+using continuum::DirectSolver;
+using continuum::Sheet;
+
+namespace
+{
+// Tangents of a sheet under several stretches, made unsymmetric.
+struct Tangents
+{
+  explicit Tangents(const unsigned int cells, const unsigned int degree = 3) : mesh(MPI_COMM_SELF)
+  {
+    continuum::make_rectangle(mesh, rectangle(cells, cells));
+    sheet = std::make_unique<Sheet>(mesh, continuum::Constitution(law), degree);
+    constraints.copy_from(continuum::homogeneous_constraints(
+      *sheet, {{continuum::edge::left, dealii::ComponentMask()}, {continuum::edge::right, dealii::ComponentMask()}}));
+    b = sheet->make_owned();
+    sheet->visit_unknowns(
+      [&](const auto dof, const unsigned int i, const Point<2> &X)
+      {
+        if (!constraints.is_constrained(dof))
+          b(dof) = std::sin(40. * X[0] + 90. * X[1] + i);
+      });
+  }
+
+  Sheet::Matrix at(const double stretch) const
+  {
+    Sheet::Matrix K;
+    sheet->make_matrix(constraints, K);
+    sheet->tangent(nodal(*sheet, [&](const Point<2> &X) { return (stretch - 1.) * Tensor<1, 2>(X); }), constraints, K);
+    for (auto entry = K.begin(); entry != K.end(); ++entry)
+      if (entry->row() < entry->column())
+        entry->value() = 1.1 * entry->value();
+    return K;
+  }
+
+  std::vector<double> solution(DirectSolver &solver, const Sheet::Matrix &K) const
+  {
+    solver.factorise(K);
+    Sheet::Vector x = sheet->make_owned();
+    solver.solve(x, b);
+    Sheet::Vector residual = b;
+    K.vmult(residual, x);
+    residual -= b;
+    EXPECT_LT(residual.l2_norm(), 1e-10 * b.l2_norm());
+    return std::vector<double>(x.begin(), x.end());
+  }
+
+  const continuum::CauchyBorn law = rubber_network();
+  Mesh mesh;
+  std::unique_ptr<Sheet> sheet;
+  dealii::AffineConstraints<double> constraints;
+  Sheet::Vector b;
+};
+} // namespace
+
+// A motion that is resumed starts with another matrix than the one it was stopped from, and has to give the same bits.
+TEST(DirectSolver, KeptAnalysisChangesNoBit)
+{
+  const Tangents sheet(12), other(7, 2);
+  for (const auto library : {DirectSolver::Library::mumps, DirectSolver::Library::klu})
+  {
+    DirectSolver kept(library);
+    std::vector<double> before;
+    for (const double stretch : {1., 1.4, 2.9})
+    {
+      DirectSolver fresh(library);
+      const Sheet::Matrix K = sheet.at(stretch);
+      const std::vector<double> x = sheet.solution(kept, K);
+      EXPECT_EQ(x, sheet.solution(fresh, K));
+      EXPECT_NE(x, before);
+      before = x;
+    }
+    // A matrix of another sparsity is analysed anew.
+    other.solution(kept, other.at(1.2));
+    EXPECT_EQ(sheet.solution(kept, sheet.at(2.9)), before);
+  }
+}
+
+TEST(DirectSolver, RecoversFromASingularMatrix)
+{
+  const Tangents sheet(4);
+  DirectSolver solver;
+  Sheet::Matrix K = sheet.at(1.3);
+  const std::vector<double> x = sheet.solution(solver, K);
+  Sheet::Matrix singular = sheet.at(1.3);
+  singular = 0.;
+  EXPECT_THROW(solver.factorise(singular), continuum::LinearSolverFailed);
+  EXPECT_EQ(sheet.solution(solver, K), x);
+}
