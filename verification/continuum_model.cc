@@ -43,7 +43,8 @@ private:
 } // namespace
 
 ContinuumModel::ContinuumModel(const Case &input)
-  : subject_(verification::subject(input)), penalty_(input.continuum.penalty), mesh_(MPI_COMM_WORLD)
+  : subject_(verification::subject(input)), law_(input.continuum.law), penalty_(input.continuum.penalty),
+    mesh_(MPI_COMM_WORLD)
 {
   if (input.continuum.law == ContinuumLaw::mooney_rivlin)
   {

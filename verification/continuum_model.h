@@ -34,6 +34,7 @@ private:
   void make_conditions(const Case &input);
 
   Subject subject_;
+  ContinuumLaw law_;
   std::optional<continuum::MooneyRivlin> mooney_rivlin_; // if it is the case's law
   double penalty_;
   double extent_ = 0.;

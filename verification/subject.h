@@ -1,11 +1,13 @@
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
 
 #include "continuum/errors.h"
 #include "continuum/isotropic_gradient.h"
+#include "continuum/lattice_gradient.h"
 #include "verification/case.h"
 #include "verification/homogenisation.h"
 #include "verification/laws.h"
@@ -41,6 +43,20 @@ struct Subject
   std::optional<double> tolerance(Law law, double value) const
   {
     return laws.count(law) > 0 ? std::optional(value) : std::nullopt;
+  }
+
+  /// The tolerance of a row by which the gradient continuum has the lattice's next order in kd about F: none, so that
+  /// the row is reported, where the gradient energy is not that of the bonds as they stand. It leaves out what bonds
+  /// that push would take from it, and so stays positive (theory-continuum.md, eq. (C.27)).
+  std::optional<double> gradient_tolerance(const Eigen::Matrix2d &F, double value) const
+  {
+    for (const continuum::FibreFamily &family : cauchy_born.families())
+    {
+      const double stretch = (to_continuum(F) * family.direction).norm();
+      if (stretch < continuum::LatticeGradient::full_stretch && std::abs(stretch - 1.) > 1e-12) // no force at 1
+        return {};
+    }
+    return tolerance(Law::lattice_gradient, value);
   }
 };
 

@@ -86,10 +86,6 @@ class WithoutNumbers(TemporaryFolder):
         failing = self.failing("energy", *BUCKLED)
         self.assertTrue(any("kd = 0.25: not computed: a wave does not oscillate" in quantity for quantity in failing), failing)
 
-    def test_a_length_that_is_not_there_fails(self):
-        failing = self.failing("intrinsic-length", "--set", "Loading/strain x=-0.3")
-        self.assertTrue(any("loaded: there is none, bonds are compressed" in quantity for quantity in failing), failing)
-
 
 VERSION = [] if "--full" in sys.argv else ["--quick"]
 

@@ -114,9 +114,17 @@ TEST(GradientPositivity, HasNoLengthWhereBondsAreCompressed)
   Subject subject = verification::subject(input, subjects::nearest_only(input));
   subject.deformation = compressed;
   const ClaimOutcome outcome = intrinsic_length_claim(subject, small_version());
-  EXPECT_EQ(faults::failing(outcome.results, "loaded: there is none, bonds are compressed"), 1u);
+  EXPECT_EQ(faults::failing(outcome.results, ""), 0u);
+  std::size_t n_reported = 0;
   for (const Result &row : outcome.results.rows())
+  {
     EXPECT_EQ(row.quantity.find("1 % below the shortest length: negative, loaded"), std::string::npos);
+    n_reported += row.quantity.find("loaded: there is none, bonds are compressed") != std::string::npos &&
+                      row.verdict() == Verdict::reported
+                    ? 1
+                    : 0;
+  }
+  EXPECT_EQ(n_reported, 1u);
 }
 
 TEST(IntrinsicLength, HoldsForBothShellSetsAndOrientations)
