@@ -35,7 +35,7 @@ void print_crack(const char *name, lattice::Orientation orientation, const latti
   const double breaking_stretch = 3.05;
   const lattice::TriangularLattice sheet = sheets::square(70, orientation); // more places than are left to one thread
   const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
-  lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::held, breaking_stretch);
+  lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::held);
   lattice::add_noise(state, sheet, 0.01 * sheets::spacing, 1);
   lattice::Simulation simulation(
     sheet, material, std::move(state), time_stepping,
