@@ -37,6 +37,8 @@ std::vector<Quantity> all_quantities()
        {"bonds_broken", "detached_sites", "detached_fragments", "largest_fragment", "overstretched_bonds"})
     all.push_back({name, "1", Source::crack});
   all.push_back({"bridged_length", "m", Source::crack});
+  all.push_back({"flank_damage_depth", "m", Source::crack});
+  all.push_back({"flank_damage_share", "1", Source::crack});
   all.push_back({"end_time", "s", Source::crack});
   all.push_back({"energy_imbalance", "1", Source::crack});
   const auto add_near_tip = [&all](const std::vector<std::string> &names, const std::string &unit)
