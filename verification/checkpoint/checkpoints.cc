@@ -24,7 +24,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-constexpr int schema = 2; // of what is in a file; another one cannot be read
+constexpr int schema = 3; // of what is in a file; another one cannot be read
 constexpr std::size_t n_kept = 2;
 constexpr std::size_t n_differences_told = 3;
 const std::string first_words = "latcon checkpoint, SHA-256 of the bytes from 512 on: ";

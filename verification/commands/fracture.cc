@@ -103,7 +103,7 @@ Results break_sheet(const Case &input, const lattice::TriangularLattice &sheet, 
              [&](const std::vector<lattice::BrokenBond> &broken)
              {
                record.step(broken);
-               near_tip.step(motion.step());
+               near_tip.step();
                film.step(record.tip_X());
              },
              [&]
