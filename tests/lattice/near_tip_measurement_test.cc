@@ -97,7 +97,7 @@ TEST(NegativeZone, OfASampleIsKnownFromItsBackwardSpeeds)
   EXPECT_GT(speeds.size(), 100u);
   EXPECT_LT(*std::max_element(speeds.begin(), speeds.end()), 0.);
   const NearTipGrid &grid = field.grid;
-  for (const double fraction : {0.02, 0.05, 0.1, 0.2})
+  for (const double fraction : {0.005, 0.02, 0.05, 0.1, 0.2})
   {
     const auto counted = std::count_if(speeds.begin(), speeds.end(), [&](double v) { return v < -fraction * speed; });
     EXPECT_NEAR(static_cast<double>(counted) * grid.pitch_X * grid.pitch_Y, negative_zone(field, speed, fraction).area,
