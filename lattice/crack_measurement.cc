@@ -240,6 +240,7 @@ CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vec
   m.speed_laboratory = steady_speed(steady, options.lattice_spacing, &TipRecord::x);
   m.branched_fraction =
     branched_fraction(breaks, options.seed_tip_X, m.X_end, options.lattice_spacing, options.branch_rule);
+  m.flanks = flank_damage(tip, breaks, m.X_begin, m.X_end, options.lattice_spacing);
 
   if (m.branched_fraction >= options.min_branched_fraction)
   {

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "lattice/crack_branches.h"
+#include "lattice/crack_flanks.h"
 #include "lattice/crack_records.h"
 #include "lattice/path_fit.h"
 
@@ -97,8 +98,9 @@ struct CrackMeasurement
 
   /// The sinusoid nearest to the path, whether or not it means anything; none where the window is too short.
   std::optional<SinusoidFit> sinusoid;
-  double periods = 0.;           ///< wavelengths of `sinusoid` in the window [-]
-  double branched_fraction = 0.; ///< part of the crack in two or more strands [-], see BranchRule
+  double periods = 0.;               ///< wavelengths of `sinusoid` in the window [-]
+  double branched_fraction = 0.;     ///< part of the crack in two or more strands [-], see BranchRule
+  std::optional<FlankDamage> flanks; ///< in the window; none where no bond broke in it
 };
 
 /// Measures speed, pattern, wavelength and amplitude of a crack.

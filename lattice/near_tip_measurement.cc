@@ -267,6 +267,34 @@ ProcessZone process_zone(const NearTipField &field, double speed)
   return zone;
 }
 
+std::vector<double> speeds_behind_tip(const NearTipField &field)
+{
+  constexpr double from = 3., to = 14., half_height = 3., rounding = 1e-9; // [d]
+  const NearTipGrid &grid = field.grid;
+  const double d = std::max(grid.pitch_X, grid.pitch_Y);
+  std::vector<double> speeds;
+  for (int j = -grid.half_height; j <= grid.half_height; ++j)
+    for (int i = -grid.behind; i <= 0; ++i)
+    {
+      const Eigen::Vector2d X = grid.reference(i, j) / d;
+      if (X.x() > -to - rounding && X.x() < -from + rounding && std::abs(X.y()) < half_height + rounding &&
+          field.holds(i, j))
+        speeds.push_back(field.velocity[grid.point(i, j)].x());
+    }
+  return speeds;
+}
+
+std::vector<double> backward_speeds(const NearTipField &field)
+{
+  const NearTipGrid &grid = field.grid;
+  std::vector<double> speeds;
+  for (int j = -grid.half_height; j <= grid.half_height; ++j)
+    for (int i = 1; i <= grid.ahead; ++i)
+      if (field.holds(i, j) && field.velocity[grid.point(i, j)].x() < 0.)
+        speeds.push_back(field.velocity[grid.point(i, j)].x());
+  return speeds;
+}
+
 std::optional<OpeningStress> opening_stress(const NearTipField &field, double radius)
 {
   constexpr int largest_angle = 120; // [degrees]

@@ -20,8 +20,11 @@ struct NegativeZone
   Eigen::Vector2d deepest;        ///< where that is, reference, relative to the tip [m]
 };
 
+/// Fraction of the crack's laboratory speed above which backward motion counts [-].
+inline constexpr double negative_zone_limit = 0.01;
+
 /// @param laboratory_speed of the crack [m/s], > 0 @param fraction of it [-]
-NegativeZone negative_zone(const NearTipField &field, double laboratory_speed, double fraction = 0.01);
+NegativeZone negative_zone(const NearTipField &field, double laboratory_speed, double fraction = negative_zone_limit);
 
 /// |v - M v| / |v| [-] of a velocity field (theory.md, eq. (N.3)), M v its mirror image in the axis Y = Y_tip: (v_x,
 /// -v_y)(X, -Y). Norms are root mean squares over the points that hold material together with their images. 0 for a
@@ -61,6 +64,23 @@ struct ProcessZone
 /// Points behind the tip with v_x > `speed`, connected to each other and to some that are at most 8 pitches from the
 /// tip: the tip is the foremost damaged site, and the sheet comes apart within a few spacings of it.
 ProcessZone process_zone(const NearTipField &field, double speed);
+
+/// v_x [m/s] of the material just behind the tip, in the order of the grid: of the points that hold material at
+/// -14 d <= X <= -3 d, |Y| <= 3 d, reference, relative to the tip. Empty if none does. Nearer to the tip bonds still
+/// break; farther behind it the flanks have parted.
+///
+/// The paper: "a small zone behind the crack tip in which the mass points move rapidly along the crack direction. Such
+/// a zone can be regarded as a process zone and exists only in the case of oscillation. It fades for a straight crack."
+/// The share of these points above a given speed measures that zone also where it is a crescent across the path, which
+/// process_zone() sees as short.
+std::vector<double> speeds_behind_tip(const NearTipField &field);
+
+/// v_x [m/s] of the points ahead of the tip that move against the crack, v_x < 0, in the order of the grid.
+///
+/// The paper: "a negative velocity zone (NVZ) ahead of the crack tip in which the mass points move in the opposite
+/// direction of the crack propagation". A zone that wanders with an oscillating path is blurred in the mean over
+/// samples. These speeds are what a sample keeps until the speed of the crack, and with it the limit, is known.
+std::vector<double> backward_speeds(const NearTipField &field);
 
 /// The stress sigma_yy around the tip, mean of both sides.
 struct OpeningStress

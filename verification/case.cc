@@ -311,8 +311,9 @@ void Case::declare(Parameters &p)
   p.add("Near tip", "behind", near_tip_behind, MagnitudeOrZero{}, "m", "how far behind it; 0: 40 spacings");
   p.add("Near tip", "half height", near_tip_half_height, MagnitudeOrZero{}, "m",
         "how far to either side; 0: 32 spacings");
-  p.add("Near tip", "interval", near_tip_interval, Between{0., 1e6},
-        "time steps between samples of the fields near the tip; 0: none are taken");
+  p.add("Near tip", "interval", near_tip_interval, MagnitudeOrZero{}, "s",
+        "time between samples of the fields near the tip; 0: none are taken; auto: that in which a shear wave of the "
+        "undeformed sheet travels half a spacing");
 
   p.add("Reference", "wavelength", reference_wavelength, Magnitude{}, "m",
         "published wavelength of the crack path, undeformed, to set the measured one beside; auto: none");

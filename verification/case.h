@@ -140,10 +140,10 @@ struct Case
   double checkpoint_interval = 600.; ///< wall time between two [s]; 0: not by time
 
   // Near tip: the window that moves with the tip, undeformed; 0: a number of spacings
-  double near_tip_ahead = 0.;           ///< [m]
-  double near_tip_behind = 0.;          ///< [m]
-  double near_tip_half_height = 0.;     ///< [m]
-  unsigned int near_tip_interval = 100; ///< time steps between samples; 0: none are taken
+  double near_tip_ahead = 0.;              ///< [m]
+  double near_tip_behind = 0.;             ///< [m]
+  double near_tip_half_height = 0.;        ///< [m]
+  std::optional<double> near_tip_interval; ///< time between samples [s]; 0: none are taken; none: near_tip_interval()
 
   // Reference: published values to set the measured ones beside; none where there are none
   std::optional<double> reference_wavelength; ///< [m]

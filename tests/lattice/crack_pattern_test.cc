@@ -151,6 +151,55 @@ TEST_F(CrackMeasurementDamage, ScatteredDebrisIsNoBranch)
   expect_oscillating();
 }
 
+// --- flanks
+// ------------------------------------------------------------------------------------------------------------
+
+// Bonds along a slanted path, and a few torn out of its flanks at a known distance.
+TEST(FlankDamage, IsMeasuredFromTheNearestPointOfThePath)
+{
+  std::vector<TipRecord> tip;
+  const double slope = 0.75; // a 3-4-5 triangle: the distance is 0.8 of that along Y
+  for (int i = 0; i <= 100; ++i)
+    tip.push_back({1e-5 * i, i * d, slope * i * d, 0., 0.});
+  std::vector<BreakRecord> breaks;
+  for (int i = 0; i < 96; ++i)
+    breaks.push_back({0., (2. + i) * d, slope * (2. + i) * d + (i % 2 == 0 ? 0.5 : -0.5) * d});
+  const auto whole = flank_damage(tip, breaks, 0., 100. * d, d);
+  ASSERT_TRUE(whole);
+  EXPECT_NEAR(whole->depth, 0.8 * 0.5 * d, 1e-12 * d);
+  EXPECT_EQ(whole->share, 0.);
+  for (const double offset : {7.45, 7.55, -12.}) // 5.96, 6.04 and 9.6 d away
+    breaks.push_back({0., 50.2 * d, (slope * 50.2 + offset) * d});
+  breaks.push_back({0., 20. * d, 15. * d + 20. * d});
+  const auto torn = flank_damage(tip, breaks, 22. * d, 90. * d, d); // without the last, and 27 of the path's
+  ASSERT_TRUE(torn);
+  EXPECT_NEAR(torn->depth, 9.6 * d, 1e-12 * d);
+  EXPECT_DOUBLE_EQ(torn->share, 2. / (96 - 27 + 3));
+  EXPECT_NEAR(flank_damage(tip, breaks, 0., 100. * d, d)->depth, 16. * d, 1e-12 * d);
+  // Beyond the ends of the path its last point is the nearest.
+  EXPECT_NEAR(flank_damage(tip, {{0., 103. * d, 79. * d}}, 0., 200. * d, d)->depth, 5. * d, 1e-12 * d);
+  EXPECT_NEAR(flank_damage(tip, {{0., -3. * d, -4. * d}}, -10. * d, 0., d)->depth, 5. * d, 1e-12 * d);
+  EXPECT_FALSE(flank_damage(tip, breaks, 100. * d, 120. * d, d));
+  EXPECT_FALSE(flank_damage({}, breaks, 0., 100. * d, d));
+}
+
+TEST_F(CrackMeasurementDamage, OfTheFlanksIsThatInTheWindow)
+{
+  const auto beside = [&](double X, double offset) { return BreakRecord{1e-3, X, crack.path(X) + offset}; };
+  breaks.push_back(beside(0.1 * length, 30. * d));  // before the window
+  breaks.push_back(beside(0.95 * length, 30. * d)); // and behind it
+  CrackMeasurement m = measure(crack, 1, breaks);
+  ASSERT_TRUE(m.flanks);
+  // Bonds at d on either side of a path that is known at the sites of its tip, d / 2 or so off.
+  EXPECT_NEAR(m.flanks->depth, d, 0.75 * d);
+  EXPECT_EQ(m.flanks->share, 0.);
+  breaks.push_back(beside(0.6 * length, 12. * d));
+  m = measure(crack, 1, breaks);
+  EXPECT_GT(m.flanks->depth, 9. * d); // nearer than along Y: the path is up to 25 degrees steep
+  EXPECT_LT(m.flanks->depth, 12.75 * d);
+  EXPECT_GT(m.flanks->share, 0.);
+}
+
 // --- arrest
 // ----------------------------------------------------------------------------------------------------------------
 

@@ -1,5 +1,6 @@
 #include "lattice/near_tip_measurement.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -83,6 +84,28 @@ TEST(NegativeZone, IsTheDiscThatMovesBack)
   EXPECT_FALSE(none.distance);
   EXPECT_DOUBLE_EQ(none.depth, -0.4);
   EXPECT_GT(negative_zone(field, speed, 0.001).area, 0.);
+}
+
+// What a sample keeps of its backward motion gives the area that the field itself gives, for any limit.
+TEST(NegativeZone, OfASampleIsKnownFromItsBackwardSpeeds)
+{
+  NearTipField field = field_of(
+    [](const Eigen::Vector2d &X) -> Eigen::Vector2d {
+      return {1e3 * (X.x() - 8. * d) + 200. * X.y(), 0.};
+    });
+  open_crack(field, 2. * d);
+  field.occupancy[field.grid.point(3, 0)] = 0.4;
+  const std::vector<double> speeds = backward_speeds(field);
+  EXPECT_GT(speeds.size(), 100u);
+  EXPECT_LT(*std::max_element(speeds.begin(), speeds.end()), 0.);
+  const NearTipGrid &grid = field.grid;
+  for (const double fraction : {0.005, 0.02, 0.05, 0.1, 0.2})
+  {
+    const auto counted = std::count_if(speeds.begin(), speeds.end(), [&](double v) { return v < -fraction * speed; });
+    EXPECT_NEAR(static_cast<double>(counted) * grid.pitch_X * grid.pitch_Y, negative_zone(field, speed, fraction).area,
+                1e-9 * d * d);
+  }
+  EXPECT_EQ(*std::min_element(speeds.begin(), speeds.end()), negative_zone(field, speed).depth);
 }
 
 // theory.md, eq. (N.3).
@@ -247,6 +270,35 @@ TEST(ProcessZone, IsWhatHangsTogetherNearTheTip)
   NearTipField cracked = field_of(velocity);
   open_crack(cracked, 1.2 * d);
   EXPECT_NEAR(process_zone(cracked, 10.).length, 11 * d, 1e-9 * d); // along the flanks
+}
+
+// The box -14 d <= X <= -3 d, |Y| <= 3 d has twelve points by seven; a crescent across it and what lies about it.
+TEST(SpeedsBehindTip, AreThoseOfTheMaterialInTheBox)
+{
+  const auto crescent = [](const Eigen::Vector2d &X) -> Eigen::Vector2d
+  {
+    const bool inside = X.x() > -14.5 * d && X.x() < -2.5 * d && std::abs(X.y()) < 3.1 * d;
+    const bool fast = X.x() > -7.5 * d && X.x() < -4.5 * d; // points -7, -6 and -5
+    return {inside ? (fast ? 20. : 5.) : 99., 0.};
+  };
+  const std::vector<double> speeds = speeds_behind_tip(field_of(crescent));
+  EXPECT_EQ(speeds.size(), 12u * 7u);
+  EXPECT_EQ(std::count(speeds.begin(), speeds.end(), 20.), 3 * 7);
+  EXPECT_EQ(std::count(speeds.begin(), speeds.end(), 5.), 9 * 7);
+  // The opening holds no material: three rows on either side are left, or none.
+  NearTipField cracked = field_of(crescent);
+  open_crack(cracked, 0.5 * d);
+  EXPECT_EQ(speeds_behind_tip(cracked).size(), 12u * 6u);
+  open_crack(cracked, 4. * d);
+  EXPECT_TRUE(speeds_behind_tip(cracked).empty());
+  // Turned by 30 degrees the pitches change places, and the box stays what it is: thirteen points by seven.
+  NearTipField turned(NearTipGrid{std::sqrt(0.75) * d, d, 30, 30, 30});
+  for (std::size_t point = 0; point < turned.grid.size(); ++point)
+  {
+    turned.occupancy[point] = 1.;
+    turned.velocity[point].setZero();
+  }
+  EXPECT_EQ(speeds_behind_tip(turned).size(), 13u * 7u); // X from -16 to -4 pitches
 }
 
 // sigma_yy = 1 + c sin^2(t) sin^2(3 t / 2) has its peak where the product has: found on a fine grid of angles.

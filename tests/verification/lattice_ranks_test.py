@@ -16,7 +16,7 @@ from program import CASES, LATCON, TemporaryFolder, latcon, latcon_on_ranks, rea
 # Everything at once: toughening, contact, an end that absorbs, samples near the tip, frames.
 STRIP = ["fracture", CASES / "quick.prm", "--skip-verification", "--no-report", "--quiet", "--threads", "1", "--set",
          "Sheet/length=3 cm", "--set", "Sheet/height=1.5 cm", "--set", "Fracture/right end=absorbing", "--set",
-         "Contact/present=true", "--set", "Near tip/interval=20", "--set", "Output/energy interval=50"]
+         "Contact/present=true", "--set", "Near tip/interval=4e-6", "--set", "Output/energy interval=50"]
 MOTION = ["lattice", CASES / "quick.prm", "--quiet", "--threads", "1", "--set", "Lattice/solution=motion", "--set",
           "Time/end=0.1 ms", "--set", "Output/frame interval=0.05 ms"]
 

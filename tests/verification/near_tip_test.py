@@ -11,9 +11,11 @@ import unittest
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLImageDataReader
 
-from program import CASES, TemporaryFolder, latcon, read
+from program import CASES, TemporaryFolder, latcon, read, read_csv
 
-STRIP = ["--skip-verification", "--quiet", "--threads", "1", "--set", "Sheet/length=4 cm", "--set",
+S, S_NNN = 0.72, 0.81  # area factors of the shells
+STRIP = ["--set", f"Nearest neighbours/area factor={S}", "--set", f"Next-nearest neighbours/area factor={S_NNN}",
+         "--skip-verification", "--quiet", "--threads", "1", "--set", "Sheet/length=4 cm", "--set",
          "Sheet/height=2.5 cm", "--set", "Output/frame interval=0", "--set", "Near tip/ahead=8 mm", "--set",
          "Near tip/behind=10 mm", "--set", "Near tip/half height=9 mm"]
 COMPONENTS = {"displacement": 3, "loading_displacement": 3, "velocity": 3, "deformation_gradient": 9,
@@ -44,7 +46,7 @@ class NearTip(TemporaryFolder):
         self.assertAlmostEqual(found["speed_over_shear"], ratio, places=12)
         # The speed of long shear waves along x, from the bonds by hand (theory-comparison.md, eqs. (W.1) and (W.2)).
         stiffness = 0.
-        for s, length, angles in ((0.72, 1., (0, 60, 120)), (0.81, math.sqrt(3), (30, 90, 150))):
+        for s, length, angles in ((S, 1., (0, 60, 120)), (S_NNN, math.sqrt(3), (30, 90, 150))):
             for angle in angles:
                 X, Y = math.cos(math.radians(angle)), math.sin(math.radians(angle))
                 stretch = math.hypot(2.3 * X, 2.8 * Y)
@@ -82,6 +84,40 @@ class NearTip(TemporaryFolder):
             self.assertLess(((speed - steady)**2).mean(), 0.5**2 * (steady**2).mean())
         self.assertTrue((self.out / "near_tip_velocity.png").exists())
         self.assertTrue((self.out / "near_tip_stress.png").exists())
+
+    def test_samples_as_often_whatever_the_time_step(self):
+        interval = 2e-5
+        for integrator in ("velocity-verlet", "runge-kutta-chebyshev"):
+            folder = self.folder / integrator
+            found = fracture(folder, "--set", f"Near tip/interval={interval}", "--set", f"Time/integrator={integrator}",
+                             "--no-report")
+            tips = read_csv(folder / "crack.csv")
+            entry = [float(tip["t"]) for tip in tips if float(tip["X"]) >= found["sampled_from"]][0]
+            last = [float(tip["t"]) for tip in tips if float(tip["X"]) > found["sampled_to"]]
+            end = last[0] if last else json.loads((folder / "crack.json").read_text())["end_time"]
+            # One in each interval, the first and the last of which are not whole.
+            self.assertAlmostEqual(found["samples"], (end - entry) / interval, delta=1.01, msg=integrator)
+            self.assertGreater(found["samples"], 10)
+
+    def test_measures_of_samples_and_of_their_mean_agree_in_kind(self):
+        found = fracture(self.out, "--no-report")
+        for name in ("process_zone_share", "process_zone_share_of_samples"):
+            self.assertLessEqual(0, found[name])
+            self.assertLessEqual(found[name], 1)
+        self.assertLess(found["negative_zone_depth_of_samples"], 0)
+        self.assertGreater(found["negative_zone_area_of_samples"], 0)
+        # Cauchy sigma_yy of the loaded sheet, from the bonds by hand: P_yY F_yy / det F, V = (sqrt3 / 2) d^2.
+        stress = 0.
+        for s, length, angles in ((S, 1., (0, 60, 120)), (S_NNN, math.sqrt(3), (30, 90, 150))):
+            for angle in angles:
+                X, Y = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+                stretch = math.hypot(2.3 * X, 2.8 * Y)
+                force = 1e5 * (stretch - stretch**-2) + 1.5e5 * (1 - stretch**-3)
+                stress += s * length * force * 2.8 * Y / stretch * Y / 2.3
+        self.assertAlmostEqual(found["far_opening_stress"] / stress, 1, delta=1e-12)
+        for radius in ("4d", "8d"):
+            self.assertAlmostEqual(found[f"opening_stress_concentration_{radius}"] * stress,
+                                   found[f"opening_stress_peak_{radius}"], delta=1e-9 * stress)
 
     def test_says_when_there_was_no_running_crack(self):
         found = fracture(self.out, "--set", "Time/end=0.05 ms")

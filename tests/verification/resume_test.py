@@ -93,6 +93,27 @@ class Resume(TemporaryFolder):
         for name, content in expected.items():
             self.assertEqual(found[name] == content, True, name)
 
+    def test_resumed_run_takes_the_same_samples_near_the_tip(self):
+        change = {"Near tip/interval=0": "Near tip/interval=7e-6", "Time/end=0.8 ms": "Time/end=1.2 ms"}
+        sampled = [*(change.get(word, word) for word in STRIP), "--set", "Near tip/ahead=4 mm", "--set",
+                   "Near tip/behind=6 mm", "--set", "Near tip/half height=4 mm"]
+        run = latcon(*sampled, "--output-dir", self.out)
+        self.assertIn(run.returncode, (0, 3), run.stderr)
+        expected = files(self.out)
+        self.assertGreater(json.loads(expected["near_tip.json"])["samples"], 20)
+        self.checkpoints()[-1].unlink()
+        last = self.checkpoints()[-1].read_bytes()
+        for ranks in (1, 2):
+            for path in self.checkpoints():
+                path.unlink()
+            (self.out / "checkpoints" / "checkpoint-0.h5").write_bytes(last)
+            run = latcon_on_ranks(ranks, *sampled, "--resume", "--output-dir", self.out)
+            self.assertIn(run.returncode, (0, 3), run.stderr)
+            self.assertIn("resumed_from", json.loads((self.out / "run.json").read_text()))
+            found = files(self.out)
+            for name in ("near_tip.json", "near_tip.vti", "near_tip_folded.vti"):
+                self.assertEqual(found[name] == expected[name], True, f"{name} on {ranks} ranks")
+
     def test_without_any_it_starts_from_the_beginning(self):
         run = self.run_to_end("--resume")
         self.assertIn("no checkpoint", run.stdout)

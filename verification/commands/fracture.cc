@@ -110,7 +110,7 @@ Crack break_sheet(const Case &input, const lattice::TriangularLattice &sheet, co
              [&](const std::vector<lattice::BrokenBond> &broken)
              {
                record.step(broken);
-               near_tip.step(motion.step());
+               near_tip.step();
                film.step(record.tip_X());
              },
              [&]

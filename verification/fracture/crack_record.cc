@@ -216,6 +216,10 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory,
   json["window_begin"] = measurement.X_begin;
   json["window_end"] = measurement.X_end;
   json["branched_fraction"] = measurement.branched_fraction;
+  const auto put_flanks = [&](const std::string &name, double lattice::FlankDamage::*number)
+  { json[name] = measurement.flanks ? nlohmann::ordered_json((*measurement.flanks).*number) : nullptr; };
+  put_flanks("flank_damage_depth", &lattice::FlankDamage::depth);
+  put_flanks("flank_damage_share", &lattice::FlankDamage::share);
   json["bonds_broken"] = simulation_.n_broken();
   const lattice::Fragments fragments = lattice::find_fragments(state, simulation_.lattice());
   json["detached_sites"] = std::accumulate(fragments.sizes.begin(), fragments.sizes.end(), std::size_t{0});

@@ -9,12 +9,15 @@
 #include "lattice/near_tip_writer.h"
 #include "verification/atomic_file.h"
 #include "verification/bloch.h"
+#include "verification/homogenisation.h"
 
 namespace verification
 {
 namespace
 {
 
+// Way of a shear wave of the undeformed sheet between two samples [d].
+constexpr double sampled_advance = 0.5;
 // Extent of the window if the case leaves it open [d]: the wake, several process zones long; both lobes of the opening
 // stress; the waves ahead.
 constexpr double default_behind = 40., default_ahead = 32., default_half_height = 32.;
@@ -28,6 +31,9 @@ constexpr double tip_loop = 8.; // radius [d]
 constexpr double vortex_limit = 2e-3;
 // In samples vortices are counted up to here [d]: the zone of negative velocity reaches 10 d, beyond 16 d little moves.
 constexpr double vortices_within = 16.;
+// Fraction of the speed of fully relaxed material, c - C (theory.md, section "Near the tip"), above which forward
+// motion is rapid, for the length of the process zone and for its share.
+constexpr double process_zone_part = 0.5;
 
 lattice::NearTipOptions sampler_options(const Case &input, double X_begin, double X_end)
 {
@@ -40,12 +46,31 @@ lattice::NearTipOptions sampler_options(const Case &input, double X_begin, doubl
           input.deformation()};
 }
 
+// Numbers of `speeds` above and below a limit.
+double number_above(const std::vector<double> &speeds, double limit)
+{
+  return static_cast<double>(std::count_if(speeds.begin(), speeds.end(), [&](double speed) { return speed > limit; }));
+}
+
+double number_below(const std::vector<double> &speeds, double limit)
+{
+  return static_cast<double>(std::count_if(speeds.begin(), speeds.end(), [&](double speed) { return speed < limit; }));
+}
+
+// Share of `speeds` above a limit; none of no speeds.
+std::optional<double> share_above(const std::vector<double> &speeds, double limit)
+{
+  if (speeds.empty())
+    return std::nullopt;
+  return number_above(speeds, limit) / static_cast<double>(speeds.size());
+}
+
 using Number = std::pair<std::string, std::optional<double>>;
 
 // What a mean field says. Numbers that need the speed of the crack have no value without it; the list is always of the
 // same names.
 std::vector<Number> field_numbers(const lattice::NearTipField &field, std::optional<double> laboratory_speed,
-                                  std::optional<double> process_zone_speed, double spacing)
+                                  std::optional<double> process_zone_speed, double far_opening_stress, double spacing)
 {
   std::vector<Number> numbers;
   const auto add = [&](const std::string &name, const std::optional<double> &value)
@@ -75,6 +100,8 @@ std::vector<Number> field_numbers(const lattice::NearTipField &field, std::optio
     process = lattice::process_zone(field, *process_zone_speed);
   add("process_zone_length", process ? std::optional<double>(process->length) : std::nullopt);
   add("process_zone_fastest", process ? std::optional<double>(process->fastest) : std::nullopt);
+  add("process_zone_share",
+      process_zone_speed ? share_above(lattice::speeds_behind_tip(field), *process_zone_speed) : std::nullopt);
   for (const int radius : {4, 8})
   {
     const std::optional<lattice::OpeningStress> stress = lattice::opening_stress(field, radius * spacing);
@@ -83,8 +110,23 @@ std::vector<Number> field_numbers(const lattice::NearTipField &field, std::optio
     add("opening_stress_angle" + at, of_stress([](const auto &s) { return s.angle; }));
     add("opening_stress_ratio" + at, of_stress([](const auto &s) { return s.ratio; }));
     add("opening_stress_peak" + at, of_stress([](const auto &s) { return s.peak; }));
+    add("opening_stress_concentration" + at,
+        far_opening_stress > 0. ? of_stress([&](const auto &s) { return s.peak / far_opening_stress; }) : std::nullopt);
   }
   return numbers;
+}
+
+// Cauchy stress of the loaded sheet [Pa]: of a site in the middle of one, all of whose bonds are stretched alike.
+Eigen::Matrix2d stress_of_loaded_sheet(const Case &input)
+{
+  const double side = 12. * input.spacing;
+  const lattice::TriangularLattice sheet(input.spacing, side, side, input.orientation);
+  const lattice::Material material = input.material();
+  const lattice::RowBand whole(sheet);
+  const lattice::State state =
+    lattice::homogeneous_state(whole, material, input.deformation(), {true, true, true, true});
+  const std::size_t row = sheet.rows() / 2;
+  return lattice::SiteEvaluator(sheet, material).at(state, sheet.index(row, sheet.sites_in_row(row) / 2)).cauchy_stress;
 }
 
 // Standard deviation of the mean of all blocks, from that of those that have a value; none from fewer than two.
@@ -116,6 +158,12 @@ WaveSpeeds wave_speeds_along_crack(const Case &input)
   return {waves[0].frequency / k, waves[1].frequency / k};
 }
 
+double near_tip_interval(const Case &input)
+{
+  return input.near_tip_interval.value_or(sampled_advance * input.spacing /
+                                          small_strain(input.lattice(), input.material()).shear_speed);
+}
+
 double near_tip_window(const Case &input)
 {
   const lattice::NearTipOptions window = sampler_options(input, 0., 0.);
@@ -123,17 +171,23 @@ double near_tip_window(const Case &input)
 }
 
 NearTipRecord::NearTipRecord(const Case &input, lattice::Simulation &simulation, double seed_tip_X)
-  : simulation_(simulation), interval_(input.near_tip_interval), deformation_(input.deformation()),
-    waves_(wave_speeds_along_crack(input)),
+  : simulation_(simulation), interval_(near_tip_interval(input)), deformation_(input.deformation()),
+    far_opening_stress_(stress_of_loaded_sheet(input)(1, 1)), waves_(wave_speeds_along_crack(input)),
     X_begin_(seed_tip_X + sampled_from * (input.stop_position * simulation.lattice().length() - seed_tip_X)),
     X_end_(seed_tip_X + sampled_to * (input.stop_position * simulation.lattice().length() - seed_tip_X)),
     sampler_(simulation.lattice(), simulation.material(), sampler_options(input, X_begin_, X_end_))
 {
 }
 
-void NearTipRecord::step(std::size_t step)
+void NearTipRecord::step()
 {
-  if (interval_ == 0 || step % interval_ != 0 || !simulation_.tip())
+  if (interval_ == 0.)
+    return;
+  const double intervals = std::floor(simulation_.state().time / interval_);
+  if (intervals == intervals_)
+    return;
+  intervals_ = intervals;
+  if (!simulation_.tip())
     return;
   const std::size_t tip = *simulation_.tip();
   if (sampler_.looks_at(tip))
@@ -148,6 +202,10 @@ void NearTipRecord::step(std::size_t step)
   const lattice::NearTipField field = sample->sums.mean();
   if (const auto asymmetry = lattice::velocity_asymmetry(field))
     block.asymmetry.add(*asymmetry);
+  block.backward_speeds.push_back(lattice::backward_speeds(field));
+  const std::vector<double> &backward = block.backward_speeds.back();
+  block.negative_zone_depth.add(backward.empty() ? 0. : *std::min_element(backward.begin(), backward.end()));
+  block.following_speeds.push_back(lattice::speeds_behind_tip(field));
   block.vortices.emplace_back();
   for (const lattice::Vortex &vortex : lattice::vortices(field, 0., vortices_within * d))
     block.vortices.back().push_back(vortex.speed);
@@ -160,7 +218,7 @@ void NearTipRecord::step(std::size_t step)
 
 void NearTipRecord::write(const std::filesystem::path &directory, const lattice::CrackMeasurement &crack)
 {
-  if (interval_ == 0)
+  if (interval_ == 0.)
     return;
   sampler_.finish();
   if (sampler_.samples() > 0)
@@ -194,17 +252,19 @@ std::string NearTipRecord::measurements(const lattice::CrackMeasurement &crack) 
   std::optional<double> laboratory_speed, process_zone_speed;
   if (crack.speed_laboratory)
     laboratory_speed = crack.speed_laboratory->value;
-  // Half of what fully relaxed rubber behind a steady crack has (theory.md, eq. (N.1)).
+  // Of what fully relaxed rubber behind a steady crack has (theory.md, eq. (N.1)).
   if (laboratory_speed && deformation_(0, 0) > 1.)
-    process_zone_speed = 0.5 * (1. - 1. / deformation_(0, 0)) * *laboratory_speed;
+    process_zone_speed = process_zone_part * (1. - 1. / deformation_(0, 0)) * *laboratory_speed;
 
   std::vector<std::vector<Number>> of_blocks;
   for (std::size_t block = 0; block < blocks_.size(); ++block)
     if (sampler_.folded_block(block).samples() > 0)
-      of_blocks.push_back(field_numbers(sampler_.folded_block(block).mean(), laboratory_speed, process_zone_speed, d));
+      of_blocks.push_back(field_numbers(sampler_.folded_block(block).mean(), laboratory_speed, process_zone_speed,
+                                        far_opening_stress_, d));
   if (sampler_.samples() == 0)
     laboratory_speed = process_zone_speed = std::nullopt; // of an empty field nothing is measured, not even 0
-  const std::vector<Number> numbers = field_numbers(sampler_.folded(), laboratory_speed, process_zone_speed, d);
+  const std::vector<Number> numbers =
+    field_numbers(sampler_.folded(), laboratory_speed, process_zone_speed, far_opening_stress_, d);
   for (std::size_t n = 0; n < numbers.size(); ++n)
   {
     std::vector<std::optional<double>> values;
@@ -229,25 +289,35 @@ std::string NearTipRecord::measurements(const lattice::CrackMeasurement &crack) 
                  uncertainty(means));
   };
   put_sums("velocity_asymmetry_of_samples", [](const Block &block) { return block.asymmetry; });
-  // Mean over samples of a function of the number of vortices in each.
-  const auto put_vortices = [&](const std::string &name, auto value_of)
+  put_sums("negative_zone_depth_of_samples", [](const Block &block) { return block.negative_zone_depth; });
+  // Mean over samples of a function of the speeds that each has left; no value without the speed that they count from.
+  const auto put_speeds =
+    [&](const std::string &name, auto speeds_of, const std::optional<double> &needed, auto value_of)
   {
     put_sums(name,
              [&](const Block &block)
              {
                Sum sum;
-               if (laboratory_speed)
-                 for (const std::vector<double> &speeds : block.vortices)
-                   sum.add(
-                     value_of(std::count_if(speeds.begin(), speeds.end(),
-                                            [&](double speed) { return speed > vortex_limit * *laboratory_speed; })));
+               if (needed)
+                 for (const std::vector<double> &speeds : block.*speeds_of)
+                   if (const std::optional<double> value = value_of(speeds))
+                     sum.add(*value);
                return sum;
              });
   };
-  put_vortices("vortices_of_samples", [](auto number) { return static_cast<double>(number); });
-  put_vortices("samples_with_vortex", [](auto number) { return number > 0 ? 1. : 0.; });
+  const auto turning = [&](const auto &speeds) { return number_above(speeds, vortex_limit * *laboratory_speed); };
+  put_speeds("vortices_of_samples", &Block::vortices, laboratory_speed, turning);
+  put_speeds("samples_with_vortex", &Block::vortices, laboratory_speed,
+             [&](const auto &speeds) { return turning(speeds) > 0. ? 1. : 0.; });
+  const double site_area = sampler_.grid().pitch_X * sampler_.grid().pitch_Y;
+  put_speeds("negative_zone_area_of_samples", &Block::backward_speeds, laboratory_speed,
+             [&](const auto &speeds)
+             { return site_area * number_below(speeds, -lattice::negative_zone_limit * *laboratory_speed); });
+  put_speeds("process_zone_share_of_samples", &Block::following_speeds, process_zone_speed,
+             [&](const auto &speeds) { return share_above(speeds, *process_zone_speed); });
   put_sums("wedge_angle", [](const Block &block) { return block.wedge_angle; });
   put("process_zone_speed", process_zone_speed);
+  put("far_opening_stress", far_opening_stress_);
   put("longitudinal_speed", waves_.longitudinal);
   put("shear_speed", waves_.shear);
   const auto over = [&](double wave) -> std::optional<double>

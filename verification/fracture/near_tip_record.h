@@ -22,6 +22,10 @@ struct WaveSpeeds
 /// Of the sheet of a case in its loaded state.
 WaveSpeeds wave_speeds_along_crack(const Case &input);
 
+/// Time between samples [s]; 0: none are taken. The default is d / (2 c_S), c_S the speed of long shear waves in the
+/// undeformed sheet: at about that speed a crack advances half a spacing between two samples, with any time step.
+double near_tip_interval(const Case &input);
+
 /// Area of the window around the tip, undeformed [m^2].
 double near_tip_window(const Case &input);
 
@@ -35,8 +39,9 @@ public:
   /// @param seed_tip_X of the seed crack, reference [m]
   NearTipRecord(const Case &input, lattice::Simulation &simulation, double seed_tip_X);
 
-  /// To be called after every step. Collective; the first rank takes the samples. @param step counted from 1
-  void step(std::size_t step);
+  /// To be called after every step; takes a sample after the first step that ends in another interval of time than the
+  /// one before. Collective; the first rank takes the samples.
+  void step();
 
   /// Writes near_tip.json and, if there are samples, near_tip.vti and near_tip_folded.vti; nothing if no samples were
   /// asked for. To be called once, at the end, on the first rank. @throws OutputError,
@@ -47,6 +52,7 @@ public:
   template <class Archive>
   void archive(Archive &archive)
   {
+    archive("intervals", intervals_);
     archive("sampler", sampler_);
     archive("blocks", blocks_);
   }
@@ -71,22 +77,30 @@ private:
   };
   struct Block
   {
-    Sum asymmetry, wedge_angle;
-    std::vector<std::vector<double>> vortices; ///< of each sample: their speeds [m/s]; which count is known at the end
+    Sum asymmetry, negative_zone_depth, wedge_angle;
+    // Of each sample; which of them count is known at the end, with the speed of the crack.
+    std::vector<std::vector<double>> vortices;         ///< their speeds [m/s]
+    std::vector<std::vector<double>> backward_speeds;  ///< see lattice::backward_speeds()
+    std::vector<std::vector<double>> following_speeds; ///< see lattice::speeds_behind_tip()
 
     template <class Archive>
     void archive(Archive &archive)
     {
       archive("asymmetry", asymmetry);
+      archive("negative_zone_depth", negative_zone_depth);
       archive("wedge_angle", wedge_angle);
       archive("vortices", vortices);
+      archive("backward_speeds", backward_speeds);
+      archive("following_speeds", following_speeds);
     }
   };
   std::string measurements(const lattice::CrackMeasurement &crack) const;
 
   lattice::Simulation &simulation_;
-  std::size_t interval_;
+  double interval_;       // [s], 0: no samples
+  double intervals_ = 0.; // whole intervals until now
   Eigen::Matrix2d deformation_;
+  double far_opening_stress_; // Cauchy sigma_yy of the loaded sheet [Pa]
   WaveSpeeds waves_;
   double X_begin_, X_end_;
   lattice::NearTipSampler sampler_;

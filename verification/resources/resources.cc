@@ -156,7 +156,7 @@ MemoryNeed lattice_memory(const Case &input, const LatticeRun run, const bool cl
   // Equilibrium is a matter of the first rank.
   (run == LatticeRun::relaxed ? need.first_rank : need.shared) = fields;
   need.first_rank += std::max(frame, checkpoint);
-  if (run == LatticeRun::broken && input.near_tip_interval > 0)
+  if (run == LatticeRun::broken && near_tip_interval(input) > 0.)
     need.first_rank += near_tip_window(input) / sheet.site_area() * bytes_of_site_near_tip;
   if (claims && need.shared + need.first_rank < bytes_of_claims)
     need.shared = bytes_of_claims - need.first_rank;

@@ -38,6 +38,8 @@ std::vector<StudyQuantity> all_quantities()
        {"bonds_broken", "detached_sites", "detached_fragments", "largest_fragment", "overstretched_bonds"})
     all.push_back({name, "1", Source::crack});
   all.push_back({"bridged_length", "m", Source::crack});
+  all.push_back({"flank_damage_depth", "m", Source::crack});
+  all.push_back({"flank_damage_share", "1", Source::crack});
   all.push_back({"end_time", "s", Source::crack});
   all.push_back({"energy_imbalance", "1", Source::crack});
   const auto add_near_tip = [&all](const std::vector<std::string> &names, const std::string &unit)
@@ -46,9 +48,9 @@ std::vector<StudyQuantity> all_quantities()
       add_measured(all, name, unit, Source::near_tip);
   };
   all.push_back({"samples", "1", Source::near_tip});
-  add_near_tip({"negative_zone_area"}, "m^2");
+  add_near_tip({"negative_zone_area", "negative_zone_area_of_samples"}, "m^2");
   add_near_tip({"negative_zone_length", "negative_zone_distance"}, "m");
-  add_near_tip({"negative_zone_depth"}, "m/s");
+  add_near_tip({"negative_zone_depth", "negative_zone_depth_of_samples"}, "m/s");
   add_near_tip({"negative_zone_depth_X", "negative_zone_depth_Y"}, "m");
   add_near_tip(
     {"velocity_asymmetry", "velocity_asymmetry_of_samples", "vortices", "vortices_of_samples", "samples_with_vortex"},
@@ -56,17 +58,20 @@ std::vector<StudyQuantity> all_quantities()
   add_near_tip({"vortex_distance"}, "m");
   add_near_tip({"vortex_circulation", "tip_circulation"}, "m^2/s");
   add_near_tip({"process_zone_length"}, "m");
+  add_near_tip({"process_zone_share", "process_zone_share_of_samples"}, "1");
   add_near_tip({"process_zone_fastest"}, "m/s");
   for (const std::string radius : {"4d", "8d"})
   {
     add_near_tip({"opening_stress_angle_" + radius}, "degrees");
     add_near_tip({"opening_stress_ratio_" + radius}, "1");
     add_near_tip({"opening_stress_peak_" + radius}, "Pa");
+    add_near_tip({"opening_stress_concentration_" + radius}, "1");
   }
   add_near_tip({"wedge_angle"}, "degrees");
   add_near_tip({"speed_over_shear", "speed_over_longitudinal"}, "1");
   for (const std::string name : {"shear_speed", "longitudinal_speed", "process_zone_speed"})
     all.push_back({name, "m/s", Source::near_tip});
+  all.push_back({"far_opening_stress", "Pa", Source::near_tip});
   return all;
 }
 
