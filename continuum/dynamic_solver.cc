@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <sstream>
 #include <vector>
 
 using namespace dealii;
@@ -302,7 +303,12 @@ void DynamicSolver::step()
   }
   report_.load_factor = load_factor_;
   if (!failure.empty())
-    throw SolverFailed("the time step from " + std::to_string(time_) + " s failed: " + failure, report_);
+  {
+    std::ostringstream message;
+    message.precision(std::numeric_limits<double>::max_digits10);
+    message << "the time step from " << time_ << " s failed: " << failure;
+    throw SolverFailed(message.str(), report_);
+  }
 }
 
 // Advances to `end`, in halves where it must be. Returns why not, empty if it does.

@@ -14,7 +14,7 @@ namespace continuum
 /// no thickness: thickness_stretch is 1.
 ///
 /// The mean depends on F^T F alone and is therefore even in det F. det F < 0 is refused as by every law: it is no state
-/// of a sheet, and the energy of rods grows without bound as det F -> 0.
+/// of a sheet, and the energy of rods with b >= 0 grows without bound as det F -> 0.
 class IsotropicNetwork : public Material
 {
 public:

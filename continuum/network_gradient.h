@@ -8,13 +8,14 @@ namespace continuum
 /// reference configuration (theory-continuum.md, eq. (C.57)), as a sum over equispaced directions. It goes with the law
 /// IsotropicNetwork as LatticeGradient goes with CauchyBorn.
 ///
-/// The sum is a law of its own, objective and with exact derivatives; what it lacks to isotropy falls as the n-th power
-/// of (l1 - l2)/(l1 + l2), l1 and l2 the principal stretches, with the number n of directions.
+/// The sum is a law of its own, objective and with exact derivatives. With all fibres beyond full_stretch, what it
+/// lacks to isotropy falls as the n-th power of (l1 - l2)/(l1 + l2), l1 and l2 the principal stretches, with the number
+/// n of directions.
 class NetworkGradient : public LatticeGradient
 {
 public:
-  /// Directions in half a turn. The dependence on direction is below 1e-6 of the energy up to l1/l2 = 3 and below 1e-2
-  /// up to 6.
+  /// Directions in half a turn. The dependence on direction is below 1e-6 of the energy up to l1/l2 = 3 if all fibres
+  /// are stretched by 2 % or more, else below 1e-2 up to 6.
   static constexpr unsigned int n_directions = 32;
 
   /// The directions of `families` do not matter; `length` l_d [m]. Throws InvalidMaterial as LatticeGradient does.

@@ -85,7 +85,7 @@ void Sheet::check_input() const
   {
     require_edge(condition.boundary);
     require_field(condition.gradient, "a prescribed normal gradient");
-    require(constitution_.gradient != nullptr, "a prescribed normal gradient needs a gradient law");
+    require(has_gradient(), "a prescribed normal gradient needs a gradient law that is not zero");
   }
   for (const auto &condition : conditions_.tractions)
   {
@@ -96,7 +96,7 @@ void Sheet::check_input() const
   {
     require_edge(condition.boundary);
     require_field(condition.traction, "a double traction");
-    require(constitution_.gradient != nullptr, "a double traction needs a gradient law");
+    require(has_gradient(), "a double traction needs a gradient law that is not zero");
   }
   if (conditions_.body_force)
   {

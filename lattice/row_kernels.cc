@@ -33,8 +33,8 @@ HWY_INLINE std::size_t width()
   return hn::Lanes(D());
 }
 
-// Numbers to the formulas that are written for any. The constructors are written out: a compiler makes its own where the file
-// ends, for another instruction set.
+// Numbers to the formulas that are written for any. The constructors are written out: a compiler generates its own at
+// the end of the file, for another instruction set.
 struct Lanes
 {
   HWY_INLINE Lanes() {}

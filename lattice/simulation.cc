@@ -28,8 +28,7 @@ Simulation::Simulation(const RowBand &band, const Material &material, State init
 {
   if (fracture_)
     fracture_->configure(state_, forces_);
-  forces_.watch_short_bonds(fracture_ ? watched_stretch(time_stepping, lattice_, material_, state_.breaking_stretch)
-                                      : short_stretch);
+  forces_.watch_short_bonds(watched_stretch(time_stepping, lattice_, material_, state_.toughened_stretch));
   restart();
   initial_energy_ = elastic_energy(state_, band_, material_) + kinetic_energy(state_, band_);
 }
@@ -56,6 +55,8 @@ int Simulation::needed_parts() const
   int parts = 1;
   const auto divide_for = [&](std::size_t near, std::size_t kind, std::size_t far)
   {
+    if (std::holds_alternative<LinearBond>(material_.shell(kind)->law))
+      return; // as stiff at any length
     const Eigen::Vector2d bond(state_.x[far] - state_.x[near], state_.y[far] - state_.y[near]);
     const double now = stretch(state_, lattice_, near, kind);
     const double rate =

@@ -38,7 +38,7 @@ public:
   /// Adds contact between unbonded sites. @throws std::logic_error if there is contact already
   void let_touch(const ContactLaw &law);
 
-  /// Loads the short ends of the unbroken sheet as if it went on at x = F X. @throws std::logic_error if they are
+  /// Loads the short ends of the unbroken sheet as if it continued at x = F X. @throws std::logic_error if they are
   /// loaded already, or after a bond broke or was cut
   void load_ends(const Eigen::Matrix2d &F, EndLoads::End left, EndLoads::End right);
 

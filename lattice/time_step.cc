@@ -135,6 +135,9 @@ double recoil_step(const TimeStepping &stepping, const TriangularLattice &lattic
 double watched_stretch(const TimeStepping &stepping, const TriangularLattice &lattice, const Material &material,
                        double breaking_stretch)
 {
+  constexpr double most = 0.3;
+  if (!std::isfinite(breaking_stretch))
+    return short_stretch + most;
   double site_energy = 0., of_forces = 0.; // per sheet thickness [J/m], rate [1/s]
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
     if (const Shell *shell = material.shell(kind))
@@ -144,7 +147,6 @@ double watched_stretch(const TimeStepping &stepping, const TriangularLattice &la
         std::max(of_forces, 0.5 * material.coordination() * force(shell->law, breaking_stretch) / shell->viscosity);
     }
   const double of_energy = std::sqrt(8. * site_energy / site_mass(material, lattice)) / lattice.spacing();
-  constexpr double most = 0.3;
   const double loss = stepping.step * std::min(of_energy, of_forces);
   return short_stretch + (loss < most ? loss : most);
 }

@@ -54,6 +54,7 @@ double recoil_step(const TimeStepping &stepping, const TriangularLattice &lattic
 
 /// Stretch below which bonds are checked after each step for whether the next step must be divided [-]: short_stretch
 /// plus what a bond may lose in one step, at most 0.3 (theory.md, eq. (L.26)).
+/// @param breaking_stretch of toughened bonds, if there are such; infinite: bonds do not break
 double watched_stretch(const TimeStepping &stepping, const TriangularLattice &lattice, const Material &material,
                        double breaking_stretch);
 

@@ -1,4 +1,4 @@
-/// What can go wrong with files and folders.
+/// Exceptions of file access.
 #pragma once
 
 #include <filesystem>

@@ -66,7 +66,7 @@ HeldLocks &held_locks()
   return locks;
 }
 
-// One name for a folder, however it is spelled.
+// One name for a folder, however it is spelled, except through symbolic links.
 std::filesystem::path name_of_folder(const std::filesystem::path &folder)
 {
   std::error_code none; // of a current folder that was removed
@@ -76,6 +76,11 @@ std::filesystem::path name_of_folder(const std::filesystem::path &folder)
 // Replaces what a lock file says. For people; the lock does not depend on it.
 void write_owner(int descriptor, const std::string &owner)
 {
+  struct stat status
+  {
+  };
+  if (::fstat(descriptor, &status) != 0 || status.st_nlink > 1)
+    return; // a file that also lies elsewhere
   const bool is_written = ::ftruncate(descriptor, 0) == 0 && ::pwrite(descriptor, owner.data(), owner.size(), 0) >= 0;
   (void)is_written;
 }

@@ -23,6 +23,8 @@ MpiSession::MpiSession()
   int provided = MPI_THREAD_SINGLE;
   if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
     throw std::runtime_error("MPI cannot be started");
+  if (provided < MPI_THREAD_FUNNELED) // all calls come from the first thread
+    throw std::runtime_error("MPI cannot be used by a program with threads");
 }
 
 MpiSession::~MpiSession()

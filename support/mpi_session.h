@@ -29,8 +29,8 @@ public:
   MpiSession &operator=(const MpiSession &) = delete;
 };
 
-/// Returns whether a variable tells a process that it is a rank of a job, and of which: those of PMI and PMIx, and
-/// OMPI_COMM_WORLD_*. `SLURM_PROCID` is none of them, for scripts of `sbatch` have it as well.
+/// Returns whether a variable marks a process as a rank of a job: those of PMI and PMIx, OMPI_COMM_WORLD_*, and
+/// FLUX_JOB_ID. `SLURM_PROCID` does not: scripts of `sbatch` have it as well.
 /// @param variable name, or name and value as in `environ`
 [[nodiscard]] bool is_launcher_variable(const std::string &variable);
 

@@ -1,4 +1,4 @@
-/// Files that are either the old ones or the new ones, never halves.
+/// Text files of a run, replaced atomically.
 #pragma once
 
 #include <functional>
@@ -8,8 +8,8 @@
 namespace verification
 {
 
-/// Replaces the file `path` by `text`, forced to the disk; see latcon::support::AtomicFile. The file is listed in its folder
-/// first (output_list.h).
+/// Replaces the file `path` by `text`, forced to the disk; see latcon::support::AtomicFile. The file is listed in its
+/// folder first (output_list.h).
 /// @throws OutputError naming `path` and the system's reason; the old file is untouched.
 void write_file(const std::string &path, const std::string &text);
 

@@ -346,12 +346,14 @@ void ContinuumCase::check(Parameters &p, const bool has_inner_edge) const
 {
   if (gradient != ContinuumGradient::none && degree < 2)
     p.error("Continuum/degree", "a gradient energy needs elements of degree 2 or more", {"Continuum/gradient"});
+  const bool has_gradient =
+    gradient != ContinuumGradient::none && !(gradient == ContinuumGradient::isotropic && static_length == 0.);
   for (const EdgeCase &edge : edges)
   {
     edge.check(p);
-    if (gradient == ContinuumGradient::none && edge.normal_gradient != EdgeCase::NormalGradient::free)
+    if (!has_gradient && edge.normal_gradient != EdgeCase::NormalGradient::free)
       p.error(edge.name + "/normal gradient", "without a gradient energy it cannot be held", {"Continuum/gradient"});
-    if (gradient == ContinuumGradient::none && !edge.double_traction.is_zero())
+    if (!has_gradient && !edge.double_traction.is_zero())
       p.error(edge.name + "/double traction x", "without a gradient energy there is none", {"Continuum/gradient"});
   }
   for (const std::size_t id : {0, 2})

@@ -50,8 +50,8 @@ ContinuumModel::ContinuumModel(const Case &input)
   {
     if (!subject_.mooney_rivlin)
       throw InputError(
-        "Continuum/law: no Mooney-Rivlin law has a thickness in equilibrium all along the loading path to "
-        "Loading/strain x, strain y; give law = cauchy-born" +
+        "Continuum/law: no plane-stress Mooney-Rivlin law has a thickness in equilibrium all along the loading path to "
+        "Loading/strain x, strain y; give law = cauchy-born or mooney-rivlin-network" +
         std::string(input.continuum.mooney_rivlin_ratio ? ", or another Continuum/ratio" : ""));
     mooney_rivlin_.emplace(subject_.mooney_rivlin->law);
   }

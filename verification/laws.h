@@ -14,7 +14,6 @@ enum class Law
   lattice_gradient,      ///< the same with the gradient energy of the lattice's long waves
   isotropic_gradient,    ///< the same with the isotropic gradient energy
   mooney_rivlin_network, ///< local, the lattice's mean over all directions
-  network_gradient,      ///< the same with its gradient energy
   mooney_rivlin          ///< local, of plane stress, calibrated along the loading path
 };
 
@@ -24,8 +23,8 @@ using Laws = std::set<Law>;
 /// Every law.
 inline Laws all_laws()
 {
-  return {Law::cauchy_born,           Law::lattice_gradient, Law::isotropic_gradient,
-          Law::mooney_rivlin_network, Law::network_gradient, Law::mooney_rivlin};
+  return {Law::cauchy_born, Law::lattice_gradient, Law::isotropic_gradient, Law::mooney_rivlin_network,
+          Law::mooney_rivlin};
 }
 
 /// Laws of a run on the lattice alone: the continuum that its bonds make, and no law that was fitted to it.
@@ -42,8 +41,6 @@ inline Laws laws_of(const Case &input)
     laws.insert(Law::mooney_rivlin);
   if (input.continuum.law == ContinuumLaw::mooney_rivlin_network)
     laws.insert(Law::mooney_rivlin_network);
-  if (input.continuum.gradient == ContinuumGradient::network)
-    laws.insert(Law::network_gradient);
   if (input.continuum.gradient == ContinuumGradient::isotropic)
     laws.insert(Law::isotropic_gradient);
   return laws;

@@ -65,7 +65,7 @@ std::vector<fs::path> files_of(const fs::path &folder, const Names &names)
   return files;
 }
 
-// A folder of that name that is not there yet, or that files were moved to before.
+// The first name that is free, or of a folder to which files were moved before.
 fs::path folder_for_earlier(const fs::path &folder)
 {
   const fs::path plain = folder / "earlier-run";
@@ -121,11 +121,15 @@ fs::path set_earlier_output_aside(const fs::path &folder, const fs::path &keep)
       return {};
     const fs::path aside = folder_for_earlier(folder);
     fs::create_directory(aside);
-    for (const fs::path &file : files_of(aside, names_in(aside)))
+    // The list is there only while the folder is whole: files that a killed run had moved by half are nobody's to
+    // remove, and the next run takes another folder.
+    const std::vector<fs::path> older = files_of(aside, names_in(aside));
+    fs::remove(aside / output_list_name);
+    for (const fs::path &file : older)
       fs::remove(file);
-    write_names(aside, names);
     for (const fs::path &file : files)
       fs::rename(file, aside / file.filename());
+    write_names(aside, names);
     return aside;
   }
   catch (const fs::filesystem_error &error)

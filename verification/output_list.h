@@ -7,7 +7,7 @@
 namespace verification
 {
 
-/// Name of the list in an output directory: a line for each file that latcon wrote, sorted. A `*` stands for the digits
+/// Name of the list in an output directory: a line for each file that latcon wrote, sorted. A `*` represents the digits
 /// and dots that number a frame.
 inline constexpr const char *output_list_name = ".latcon-files";
 

@@ -82,7 +82,7 @@ std::string hash_of_libraries()
     [](dl_phdr_info *library, std::size_t, void *list)
     {
       const std::filesystem::path file = library->dlpi_name;
-      if (!file.is_absolute())
+      if (!file.has_parent_path())
         return 0; // the program itself, and what the kernel brings
       const std::string id = build_id(*library);
       static_cast<std::vector<std::string> *>(list)->push_back(file.filename().string() + ' ' +

@@ -41,6 +41,9 @@ TEST_F(FieldWriter, IsReadByVtkWithNamesTimesAndValues)
   continuum::StaticSettings settings;
   settings.first_load_step = 1. / 3.; // a time that 6 digits would cut
   continuum::StaticSolver solver(mesh, law, on_all_edges(affine(matrix(2.3, 0.25, -0.1, 1.4))), settings);
+  // A folder above that is gone is not made anew: the run was removed with it.
+  EXPECT_THROW(continuum::FieldWriter(MPI_COMM_SELF, directory_ / "deeper"), continuum::OutputFailed);
+  fs::create_directory(directory_);
   continuum::FieldWriter writer(MPI_COMM_SELF, directory_ / "deeper");
   writer.add_frame(0., solver.sheet(), solver.displacement());
   solver.solve([&](const double factor) { writer.add_frame(factor, solver.sheet(), solver.displacement()); });

@@ -343,6 +343,17 @@ TEST(GradientEquilibrium, RefusesImpossibleInput)
   StaticSettings linear;
   linear.degree = 1;
   EXPECT_THROW(StaticSolver(mesh, Constitution(law, gradient), conditions, linear), continuum::InvalidInput);
+  // Without a gradient energy there is nothing that could hold a normal gradient or do work against it.
+  const continuum::IsotropicGradient zero(5e5, 0.);
+  Conditions held = conditions, loaded = conditions;
+  held.normal_gradients.push_back({0, field});
+  loaded.double_tractions.push_back({0, field});
+  for (const Conditions &impossible : {held, loaded})
+  {
+    EXPECT_THROW(StaticSolver(mesh, law, impossible), continuum::InvalidInput);
+    EXPECT_THROW(StaticSolver(mesh, Constitution(law, zero), impossible), continuum::InvalidInput);
+    EXPECT_NO_THROW(StaticSolver(mesh, Constitution(law, gradient), impossible));
+  }
   StaticSettings careless;
   careless.largest_forcing = 1.;
   EXPECT_THROW(StaticSolver(mesh, Constitution(law, gradient), conditions, careless), continuum::InvalidInput);

@@ -92,7 +92,7 @@ struct Recoil
     simulation->let_touch(contact);
     simulation->cut(sheets::middle_row(sheet, 3, 2));
   }
-  // Until 4e-4 of the time that a wave takes across a spacing at a = 1 Pa.
+  // Until waves have crossed some thirty to fifty spacings.
   void run()
   {
     const double end = 0.4 / std::sqrt(std::get<MooneyRivlinBond>(material.nearest.law).a);

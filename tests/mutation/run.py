@@ -40,7 +40,8 @@ PLACES = {
     "verification/compare/": ["compare_tests"],
     # What scripts test: commands, files of results, and messages.
     **dict.fromkeys(["lattice/field_units.h", "lattice/field_writer.", "lattice/frame_series.", "lattice/motion_writer.",
-                     "lattice/near_tip_writer.", "lattice/vtk_file.", "verification/commands/", "verification/compare/difference_writer.",
+                     "lattice/near_tip_writer.", "lattice/vtk_file.", "support/mpi_session.",
+                     "verification/commands/", "verification/compare/difference_writer.",
                      "verification/compare/quiet_vtk.", "verification/continuum_model.", "verification/continuum_record.",
                      "verification/fracture/", "verification/main.cc", "verification/precompiled.h", "continuum/precompiled.h",
                      "verification/study/study_output."], []),

@@ -181,6 +181,10 @@ TEST(FolderLock, FollowsNoLinksAndWaitsForNoPipes)
   EXPECT_THROW(FolderLock(folder.path()), WriteError);
   EXPECT_EQ(content_of(folder / "victim"), "mine");
   fs::remove(folder / ".latcon.lock");
+  fs::create_hard_link(folder / "victim", folder / ".latcon.lock");
+  EXPECT_NO_THROW(FolderLock(folder.path()));
+  EXPECT_EQ(content_of(folder / "victim"), "mine");
+  fs::remove(folder / ".latcon.lock");
   ASSERT_EQ(mkfifo((folder / ".latcon.lock").c_str(), 0600), 0);
   EXPECT_THROW(FolderLock(folder.path()), WriteError);
   EXPECT_THROW(FolderLock(folder / "missing"), WriteError);

@@ -13,7 +13,7 @@ import sys
 # Everything that ends in a row with a verdict.
 SOURCES = ("energy/*", "wave_speeds/*", "intrinsic_length/*", "prestretch/*", "crack_oracle/*", "study/study_table.*",
            "study/seed_statistics.*", "study/statistical_tests.*", "fracture/crack_record.*", "continuum_record.*",
-           "compare/comparison.*", "commands/verify.cc", "homogenisation.*", "subject.h", "stability_row.h", "slowest_wave.*", "bloch.*", "plane_waves.*", "order_fit.h", "largest_error.*")
+           "compare/comparison.*", "commands/verify.cc", "homogenisation.*", "subject.h", "stability_row.h", "slowest_wave.*", "bloch.*", "plane_waves.*", "anisotropy.*", "order_fit.h", "largest_error.*")
 INTEGER = r"<(?:std::size_t|unsigned int|int|long|std::ptrdiff_t)>"
 LOSES = re.compile(
     rf"std::(?:max|min)\b(?!{INTEGER})|\bstd::f(?:max|min)[fl]?\b|\bstd::(?:minmax|(?:max|min|minmax)_element)\b"

@@ -136,12 +136,15 @@ class Study(TemporaryFolder):
         self.assertEqual(states, {"base": "measured", "low": "failed", "thin": "measured"})
         self.assertIn("low, seed 1", self.text("study.html"))
 
-    def test_material_that_is_refused_is_told(self):
+    def test_state_that_is_refused_is_reported(self):
         def change(document):
-            document["runs"] = {"base": {"set": {"Continuum/ratio": -0.2}}}
+            document["runs"] = {"base": {"set": {"Loading/strain x": -0.3}}}
             document["claims"][0]["rows"] = [{"run": "base", "quantity": "pattern"}]
         self.assertIn("refused: verification", self.study(change=change, skip=False, expect=3))
         self.assertIn("refused: verification", self.text("study.csv"))
+        (seed,) = json.loads(self.text("study.json"))["seeds"]
+        self.assertIn("no crack was run", seed["problem"])
+        self.assertIn("it buckles", seed["problem"])
 
     def test_resume_repeats_nothing_and_gives_the_same_files(self):
         self.study()
@@ -260,7 +263,7 @@ class Study(TemporaryFolder):
 
     def test_quick_study_of_a_refused_base_runs_nothing(self):
         def change(document):
-            document["set"]["Continuum/ratio"] = -0.2
+            document["set"]["Loading/strain x"] = -0.3
         self.study("--quick", change=change, skip=False, expect=3)
         self.assertFalse((self.out / "runs").exists())
 

@@ -19,13 +19,13 @@ PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "verification.md"
 
 # What each claim must have said something about, whatever its wording beside it.
 SUBJECTS = {
-    "energy": ("energy density, Cauchy-Born", "c_L at F = I", "calibrated ratio", "lattice against Bloch",
+    "energy": ("energy density, Cauchy-Born", "network against the lattice's mean", "c_L at F = I", "calibrated ratio", "lattice against Bloch",
                "local continuum and lattice agree", "over 1 + l_d^2 k^2 and the lattice's", "travelling L", "travelling S"),
     "wave-speeds": ("long-wave speed, L", "long-wave speed, S", "lattice run against Bloch", "against their continuum",
                     "at kd = 0.25", "local continuum's error", "gradient continuum's error", "damped frequency", "decay"),
     "intrinsic-length": ("alpha of L waves at 0 degrees", "alpha of S waves at 90 degrees", "softening", "hardening",
                          "shortest length", "1 % below", "no edge layer", "decay from row to row"),
-    "prestretch": ("traction on the right edge", "hole", "notch"),
+    "prestretch": ("stability of the loaded lattice", "traction on the right edge", "hole", "notch"),
 }
 TABLES = ("wave_speeds", "attenuation", "dispersion", "dispersion_runs", "edge_layer", "hole", "notch", "sinusoidal_energy",
           "travelling_waves")

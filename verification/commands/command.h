@@ -94,7 +94,7 @@ public:
 
 private:
   Run(const Options &options, const Parameters *parameters);
-  // Makes room in the directory: the files of a run before are moved aside, unless this one goes on with them.
+  // Makes room in the directory: the files of a run before are moved aside, unless this run resumes.
   void clear(const Options &options, bool has_case) const;
   void print(const Results &results) const;
 

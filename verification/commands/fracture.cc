@@ -133,16 +133,21 @@ Crack break_sheet(const Case &input, const lattice::TriangularLattice &sheet, co
   return {crack, measured_results(input, record, crack)};
 }
 
-// Pictures and page of a run, and where the page is. @return whether they could be made, on rank 0
+// Pictures and page of a run, and where the page is. Collective: an exception on one rank would end the others, rank 0
+// as it draws. @return whether they could be made, on rank 0
 ExitCode draw_page(const Run &run)
 {
-  if (!run.writes())
-    return ExitCode::done;
-  const ExitCode exit_code = draw_report(run.directory(), true);
-  const bool drawn = exit_code == ExitCode::done || exit_code == ExitCode::claim_failed;
-  if (run.talks() && drawn)
-    std::cout << run.directory() << "/report.html" << std::endl;
-  return drawn ? ExitCode::done : exit_code;
+  ExitCode exit_code = ExitCode::done;
+  if (run.writes())
+  {
+    const ExitCode drawn = draw_report(run.directory(), true);
+    if (drawn != ExitCode::claim_failed)
+      exit_code = drawn;
+    if (run.talks() && exit_code == ExitCode::done)
+      std::cout << run.directory() << "/report.html" << std::endl;
+  }
+  MPI_Barrier(MPI_COMM_WORLD);
+  return exit_code;
 }
 
 // The claims on the case's own material and pre-stretch. A crack that they refuse leaves its page all the same.
@@ -155,7 +160,14 @@ Results passed_or_reported(const Case &input, const Options &options, Run &run)
   catch (const ClaimFailed &)
   {
     if (!options.no_report)
-      draw_page(run);
+      try
+      {
+        draw_page(run);
+      }
+      catch (const OutputError &error) // what the claims say weighs more
+      {
+        std::cerr << "latcon: " << error.what() << std::endl;
+      }
     throw;
   }
 }

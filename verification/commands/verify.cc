@@ -18,7 +18,7 @@ namespace verification
 namespace
 {
 
-// The states about which waves are looked at: at rest, stretched alike along both axes, and as the case is loaded,
+// The states about which waves are evaluated: at rest, stretched alike along both axes, and as the case is loaded,
 // unless the lattice buckles there and has no waves.
 std::vector<Eigen::Matrix2d> states(const Subject &subject, bool quick)
 {

@@ -116,7 +116,8 @@ public:
                                     std::pair(std::string("mooney-rivlin"), Law::mooney_rivlin)})
       if (const CutResult *other = find(law, study_.sizes.back()))
       {
-        const std::string name = law == "mooney-rivlin" ? "Mooney-Rivlin" : "with the " + law + " gradient energy";
+        const std::string name =
+          law == "mooney-rivlin" ? "plane-stress Mooney-Rivlin" : "with the " + law + " gradient energy";
         const std::optional<double> tolerance =
           kind == Law::mooney_rivlin || !is_hole_ ? std::nullopt : subject_.tolerance(kind, allowed);
         if (other->errors)

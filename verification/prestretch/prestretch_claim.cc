@@ -148,7 +148,7 @@ Results mooney_rivlin_rows(const Subject &subject, const lattice::TriangularLatt
   const auto add = [&](const std::string &quantity, const Row &row)
   {
     results.add({"prestretch",
-                 subject.name + ": " + quantity + ", Mooney-Rivlin",
+                 subject.name + ": " + quantity + ", plane-stress Mooney-Rivlin",
                  row.unit,
                  row.lattice,
                  row.continuum,
@@ -215,7 +215,8 @@ Results prestretch_claim(const Subject &subject, const PrestretchOptions &option
                            row.error,
                            solver_tolerance});
           });
-  attempt("equilibrium, Mooney-Rivlin", [&] { results.add(mooney_rivlin_rows(subject, *sheet, side, options)); });
+  attempt("equilibrium, plane-stress Mooney-Rivlin",
+          [&] { results.add(mooney_rivlin_rows(subject, *sheet, side, options)); });
   return results;
 }
 

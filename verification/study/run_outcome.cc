@@ -50,11 +50,18 @@ void read_numbers(const Json &object, const StudyQuantity::Source source, Values
       values[quantity.name] = object[quantity.name].get<double>();
 }
 
-std::string last_line(const std::string &text)
+// What the program said last, which may take several lines: from the last that begins with its name; else the last
+// line.
+std::string last_words(const std::string &text)
 {
-  const std::string all = trimmed(text);
-  const std::size_t line_break = all.find_last_of("\r\n");
-  return printable(line_break == std::string::npos ? all : all.substr(line_break + 1), 300);
+  const std::string all = "\n" + trimmed(text);
+  std::size_t begin = all.rfind("\nlatcon: ");
+  if (begin == std::string::npos)
+    begin = all.find_last_of("\r\n");
+  std::string words = all.substr(begin + 1);
+  for (std::size_t at = 0; (at = words.find('\n', at)) != std::string::npos;)
+    words.replace(at, 1, "; ");
+  return printable(words, 300);
 }
 
 } // namespace
@@ -100,7 +107,7 @@ RunOutcome read_outcome(const PlannedRun &run, const std::string &folder, const 
   }
   outcome.pattern.clear();
   outcome.state = outcome.exit_code == static_cast<int>(ExitCode::claim_failed) ? RunState::refused : RunState::failed;
-  outcome.problem = last_line(content(folder + "/log.txt"));
+  outcome.problem = last_words(content(folder + "/log.txt"));
   return outcome;
 }
 

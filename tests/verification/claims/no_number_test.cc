@@ -125,7 +125,7 @@ std::function<void(Subject &)> isotropic_gradient(Kind kind)
 }
 
 // A fibre network whose energy is beyond all numbers: infinite, and its stresses not numbers.
-void overflow_cauchy_born(Subject &subject)
+std::vector<continuum::FibreFamily> overflowing(const Subject &subject)
 {
   std::vector<continuum::FibreFamily> families = subject.cauchy_born.families();
   for (continuum::FibreFamily &family : families)
@@ -133,7 +133,17 @@ void overflow_cauchy_born(Subject &subject)
     family.potential = continuum::LinearPotential{1e300};
     family.weight = 1e300;
   }
-  subject.cauchy_born = continuum::CauchyBorn(std::move(families));
+  return families;
+}
+
+void overflow_cauchy_born(Subject &subject)
+{
+  subject.cauchy_born = continuum::CauchyBorn(overflowing(subject));
+}
+
+void overflow_network(Subject &subject)
+{
+  subject.network = continuum::IsotropicNetwork(overflowing(subject));
 }
 
 WaveSpeedsOptions waves(const Subject &subject)
@@ -268,7 +278,8 @@ std::vector<Plant> every_claim_and_side()
     plants.push_back({claim, "theory, shear speed", shear_speed});
     plants.push_back({claim, "theory, longitudinal speed", longitudinal_speed});
   }
-  // The Mooney-Rivlin law is judged by the claim on energy alone.
+  // The network and the plane-stress law are judged by the claim on energy alone.
+  plants.push_back({energy, "network", overflow_network, "network"});
   plants.push_back({energy, "Mooney-Rivlin throws", [](Subject &s) { s.mooney_rivlin->law.c1 = not_a_number; },
                     "not computed: Mooney-Rivlin constants must be finite"});
   plants.push_back({energy, "Mooney-Rivlin", [](Subject &s) { s.mooney_rivlin->law.c1 = 1e308; }});
