@@ -24,15 +24,14 @@ dealii::Tensor<2, 2> first_piola_stress(const InvariantFunction &W, const dealii
 /// Its tangent dP_iJ/dF_kL [Pa], index order [i][J][k][L] (theory-continuum.md, eq. (C.56)).
 dealii::Tensor<4, 2> tangent(const InvariantFunction &W, const dealii::Tensor<2, 2> &F);
 
-/// Means over all directions N of the stretch l = |F N|.
+/// Means over all directions N, for principal stretches l1 and l2 of F, of the stretch l = |F N|.
 struct StretchMeans
 {
-  InvariantFunction
-    stretch; ///< <l> [-]: the perimeter of an ellipse whose semi-axes are the principal stretches / 2 pi
-  InvariantFunction inverse; ///< <1/l> [-]: one over Gauss's arithmetic-geometric mean of the principal stretches
+  InvariantFunction stretch; ///< of l [-]: perimeter of the ellipse with semi-axes l1 and l2, over 2 pi
+  InvariantFunction inverse; ///< of 1/l [-]: one over Gauss's arithmetic-geometric mean of l1 and l2
 };
 
-/// <l> and <1/l> with their derivatives, each to a relative error of some roundings, whatever the ratio of the
+/// The means of l and 1/l with their derivatives, each to a relative error of some roundings, whatever the ratio of the
 /// principal stretches (theory-continuum.md, eqs. (C.51) to (C.54)). J > 0 and I >= 2 J but for rounding, I/J finite.
 StretchMeans stretch_means(double I, double J);
 } // namespace continuum
