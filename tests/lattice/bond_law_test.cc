@@ -62,7 +62,7 @@ TEST(BondLaw, RefusesConstantsThatBoundNoStiffness)
 {
   const double infinity = std::numeric_limits<double>::infinity(), nan = std::numeric_limits<double>::quiet_NaN();
   for (const auto &[a, b] : {std::pair(1., -0.4), std::pair(-0.4, 1.), std::pair(0., 0.), std::pair(-1., -1.),
-                             std::pair(infinity, 1.), std::pair(nan, 1.), std::pair(1., nan)})
+                             std::pair(infinity, 1.), std::pair(nan, 1.), std::pair(1., nan), std::pair(1e308, 1e308)})
     EXPECT_THROW(lattice::MooneyRivlinBond(a, b), std::invalid_argument) << a << ' ' << b;
   for (const auto &[a, b] : {std::pair(1., 0.), std::pair(0., 1.)})
     EXPECT_NO_THROW(lattice::MooneyRivlinBond(a, b));

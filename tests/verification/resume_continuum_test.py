@@ -157,13 +157,12 @@ class Failure(TemporaryFolder):
 
     def test_output_that_fails_on_one_rank_ends_all(self):
         self.out.mkdir()
-        for which, reason in [("continuum_0001.1.vtu", "Is a directory"), ("continuum_0002.pvtu", "Is a directory"),
-                              ("energy.csv", "it is a folder")]:
+        for which in ("continuum_0001.1.vtu", "continuum_0002.pvtu", "energy.csv"):
             (self.out / which).mkdir()
             (self.out / which / "mine").write_text("")
             run = latcon_on_ranks(2, *command(WAVES, self.out))
             self.assertEqual(run.returncode, 5, run.stderr)
-            self.assertIn(f"cannot write {self.out / which}: {reason}", run.stderr)
+            self.assertIn(f"cannot write {self.out / which}: it is a folder", run.stderr)
             (self.out / which / "mine").unlink()
             (self.out / which).rmdir()
             for _, file in frames(self.out / "continuum.pvd"):

@@ -123,8 +123,8 @@ class StudyPage(MadeUpStudy):
         self.assertIn("<img", section)
         lines = re.findall(r"<tr class=.*?</tr>", section)
         cells = [re.findall(r"<td[^>]*>(.*?)</td>", line) for line in lines]
-        self.assertEqual(cells, [["✗ does not hold", "crack speed", "0.25", "1.57", "0.4321", "0.4567", "0.054", "0.01"],
-                                 ["✓ holds", "at rest", "–", "–", "–", "1", "1e-09", "1e-08"]])
+        self.assertEqual(cells, [["✗ does not hold", "crack speed, beta 0.25, Delta/Delta_G 1.57", "0.4321", "0.4567", "0.054",
+                                  "0.01"], ["✓ holds", "at rest", "–", "1", "1e-09", "1e-08"]])
 
     def test_check_without_tables_has_no_plot(self):
         page, _ = self.page()
