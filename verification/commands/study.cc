@@ -11,6 +11,7 @@
 #include "support/folder_lock.h"
 #include "verification/atomic_file.h"
 #include "verification/commands/command.h"
+#include "verification/commands/signals.h"
 #include "verification/progress.h"
 #include "verification/resources/machine_memory.h"
 #include "verification/resources/resources.h"
@@ -158,23 +159,20 @@ bool run_children(StudyResults &results, const Options &options, bool skip_verif
     progress.ended(jobs[job], results.outcomes[jobs[job]]);
   };
   pool.waiting = [&](const std::vector<std::size_t> &running) { progress.show(running); };
-  pool.stop = signal_came;
+  pool.stop = any_rank_interrupted;
+  const SignalDeferral deferral;
   return run_processes(pool);
 }
 
-// @return whether no signal came before or meanwhile
-bool run_checks(StudyResults &results, bool quick, Run &run)
+void run_checks(StudyResults &results, bool quick, Run &run)
 {
   const auto phase = run.info().stopwatch().phase("checks");
   for (const std::string &name : results.study.checks)
   {
-    if (signal_came())
-      return false;
     if (run.talks())
       std::cout << "check " << name << std::endl;
     results.checks.push_back(run_check(name, quick, run.directory()));
   }
-  return !signal_came();
 }
 
 // Checks the claims on the base case, small version, in the place of the runs. @throws ClaimFailed
@@ -252,13 +250,20 @@ ExitCode run_study(const Options &options, const std::string &name)
   results.is_verified = !skip_verification;
   if (options.quick && !options.skip_verification)
     verify_base(results.study, options.overrides, run);
-  bool complete = run_children(results, options, skip_verification, n_cores, run);
-  complete = complete && run_checks(results, options.quick, run);
-
+  const auto write_tables = [&]
+  {
+    write_file(run.directory() + "/study.json", study_json(results));
+    write_file(run.directory() + "/study.csv", study_csv(results));
+  };
+  const bool complete = run_children(results, options, skip_verification, n_cores, run);
   results.claims = judge(results.study, results.plan, results.outcomes);
+  write_tables();
+  if (complete && !results.study.checks.empty())
+  {
+    run_checks(results, options.quick, run);
+    write_tables();
+  }
   const Results rows = study_rows(results);
-  write_file(run.directory() + "/study.json", study_json(results));
-  write_file(run.directory() + "/study.csv", study_csv(results));
   if (run.talks())
     print_table(std::cout, results);
   const ExitCode exit_code = run.end(rows, complete ? exit_code_of(results, rows) : ExitCode::interrupted);
