@@ -1,6 +1,7 @@
 #include "verification/run_info.h"
 
 #include "verification/atomic_file.h"
+#include "verification/sha256.h"
 
 #include <latcon_build_facts.h>
 #include <latcon_git_commit.h>
@@ -87,6 +88,7 @@ Json common_facts(const std::vector<std::string> &command_line, const int n_thre
   document["program"] = "latcon";
   document["version"] = program_version();
   document["git_commit"] = git_commit();
+  document["program_hash"] = program_hash();
   document["compiler"] = LATCON_COMPILER;
   document["build_type"] = LATCON_BUILD_TYPE;
   document["flags"] = LATCON_FLAGS;
@@ -159,6 +161,18 @@ std::string program_version()
 std::string git_commit()
 {
   return LATCON_GIT_COMMIT;
+}
+
+const std::string &program_hash()
+{
+  static const std::string hash = []
+  {
+    std::string digits = sha256_of_file("/proc/self/exe");
+    if (digits.empty())
+      throw std::runtime_error("the program cannot read its own file");
+    return digits;
+  }();
+  return hash;
 }
 
 std::uint64_t peak_memory()

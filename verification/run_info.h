@@ -59,6 +59,10 @@ private:
 /// if it was not built in a checkout.
 [[nodiscard]] std::string git_commit();
 
+/// SHA-256 of the running program's file, 64 hexadecimal digits. The file is read at the first call.
+/// @throws std::runtime_error if it cannot be read
+[[nodiscard]] const std::string &program_hash();
+
 /// Largest memory this process has held so far [byte].
 [[nodiscard]] std::uint64_t peak_memory();
 

@@ -120,14 +120,20 @@ void Run::note(const Checkpoints &checkpoints)
   if (found)
     info().add("resumed_from", RunInfo::Object{{"checkpoint", found->file.filename().string()},
                                                {"step", static_cast<std::uint64_t>(found->step)},
-                                               {"time", found->time}});
+                                               {"time", found->time},
+                                               {"git_commit", found->commit},
+                                               {"program_hash", found->program_hash}});
   if (!talks_ || !resumes_)
     return;
-  if (found)
-    std::cout << "Going on from " << found->file.string() << ": step " << found->step << ", t = " << found->time
-              << " s\n";
-  else
+  if (!found)
+  {
     std::cout << "There is no checkpoint in " << directory_ << ": starting from the beginning\n";
+    return;
+  }
+  std::cout << "Going on from " << found->file.string() << ": step " << found->step << ", t = " << found->time
+            << " s\n";
+  if (found->program_hash != program_hash())
+    std::cout << "Another program wrote it, of commit " << found->commit << "; run.json names both\n";
 }
 
 ExitCode Run::end(const Results &results, ExitCode exit_code)

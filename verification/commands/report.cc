@@ -42,7 +42,10 @@ int run_script(const std::string &script, const std::string &directory, const st
     throw OutputError(directory + "/" + page, "cannot start " + python);
   if (status > 128)
     throw OutputError(directory + "/" + page, "the report script was killed");
-  return status;
+  for (const ExitCode known : {ExitCode::done, ExitCode::bad_input, ExitCode::claim_failed, ExitCode::output_failed})
+    if (status == static_cast<int>(known))
+      return status;
+  throw OutputError(directory + "/" + page, "the report script failed");
 }
 
 } // namespace

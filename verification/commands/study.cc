@@ -46,18 +46,22 @@ void replace(const Folders &folders)
   fs::rename(folders.part, folders.whole);
 }
 
-std::vector<std::string> command_of(const PlannedRun &planned, const Study &study, const std::string &folder,
-                                    bool skip_verification, bool resume)
+// The resolved case of a run, which the study wrote before its first run started.
+std::string case_file_of(const Run &run, const PlannedRun &planned)
+{
+  return run.directory() + "/cases/" + planned.folder() + ".prm";
+}
+
+std::vector<std::string> command_of(const std::string &case_file, const std::string &folder, bool skip_verification,
+                                    bool resume)
 {
   // This program, whatever has become of its file since it was started.
-  std::vector<std::string> command{"/proc/self/exe", "fracture",  study.base, "--output-dir",
-                                   folder,           "--threads", "1",        "--no-report"};
+  std::vector<std::string> command{"/proc/self/exe", "fracture",  case_file, "--output-dir",
+                                   folder,           "--threads", "1",       "--no-report"};
   if (skip_verification)
     command.emplace_back("--skip-verification");
   if (resume)
     command.emplace_back("--resume");
-  for (const std::string &setting : planned.overrides)
-    command.insert(command.end(), {"--set", setting});
   return command;
 }
 
@@ -130,8 +134,10 @@ bool run_children(StudyResults &results, const Options &options, bool skip_verif
   if (run.talks())
     std::cout << jobs.size() << " runs, " << results.plan.size() - jobs.size() << " are there already" << std::endl;
 
-  if (!jobs.empty())
-    fs::create_directory(run.directory() + "/runs");
+  for (const char *folder : {"/cases", "/runs"})
+    fs::create_directory(run.directory() + folder);
+  for (const PlannedRun &planned : results.plan)
+    write_file(case_file_of(run, planned), planned.case_text);
   PoolProgress progress(results.plan, jobs, run.talks());
   ProcessPool pool;
   pool.n_jobs = jobs.size();
@@ -147,7 +153,7 @@ bool run_children(StudyResults &results, const Options &options, bool skip_verif
     if (!goes_on)
       fs::remove_all(folder);
     fs::create_directory(folder);
-    return {command_of(planned, results.study, folder, skip_verification, goes_on), folder + "/log.txt"};
+    return {command_of(case_file_of(run, planned), folder, skip_verification, goes_on), folder + "/log.txt"};
   };
   pool.ended = [&](std::size_t job, int status)
   {
