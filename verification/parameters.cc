@@ -3,17 +3,14 @@
 #include "verification/atomic_file.h"
 #include "verification/case_text.h"
 #include "verification/errors.h"
+#include "verification/input_file.h"
 #include "verification/spelling.h"
 
 #include <deal.II/base/parameter_handler.h>
 
 #include <algorithm>
-#include <cerrno>
-#include <filesystem>
-#include <fstream>
 #include <sstream>
 #include <stdexcept>
-#include <system_error>
 
 namespace verification
 {
@@ -23,8 +20,6 @@ namespace
 
 // Problems beyond these are counted, not shown: a wrong file would fill the screen and the memory.
 constexpr std::size_t most_problems = 50;
-// No case is this large; a device or the wrong file may be.
-constexpr std::size_t largest_file = std::size_t(16) << 20;
 
 } // namespace
 
@@ -41,34 +36,13 @@ Parameters::~Parameters() = default;
 void Parameters::read_file(const std::string &path)
 {
   file_ = printable(path, path.size());
-  std::string text;
-  std::string reason;
-  std::error_code status;
-  if (std::filesystem::is_directory(path, status))
-    reason = "it is a folder";
-  else
-  {
-    errno = 0;
-    std::ifstream file(path, std::ios::binary);
-    if (!file)
-      reason = std::generic_category().message(errno);
-    else
-    {
-      text.resize(largest_file + 1);
-      file.read(text.data(), static_cast<std::streamsize>(text.size()));
-      text.resize(static_cast<std::size_t>(file.gcount()));
-      if (file.bad())
-        reason = std::generic_category().message(errno);
-      else if (text.size() > largest_file)
-        reason = "it is larger than 16 MiB, which no case is";
-    }
-  }
-  if (reason.empty())
-    read_text(text, path);
+  const InputFile input = read_input_file(path);
+  if (input.problem.empty())
+    read_text(input.text, path);
   else
   {
     unreadable_ = true;
-    report(file_, "cannot read the case: " + reason);
+    report(file_, "cannot read the case: " + input.problem);
   }
 }
 

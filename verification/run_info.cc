@@ -1,6 +1,7 @@
 #include "verification/run_info.h"
 
 #include "verification/atomic_file.h"
+#include "verification/sha256.h"
 
 #include <latcon_build_facts.h>
 #include <latcon_git_commit.h>
@@ -79,13 +80,15 @@ Json json_of(const RunInfo::Scalar &value)
   return std::visit([](const auto &v) { return Json(v); }, value);
 }
 
-Json common_facts(const std::vector<std::string> &command_line, const Stopwatch &stopwatch, const double total,
-                  const std::optional<ExitCode> exit_code, const std::string &verdict)
+Json common_facts(const std::vector<std::string> &command_line, const int n_threads, const int n_ranks,
+                  const Stopwatch &stopwatch, const double total, const std::optional<ExitCode> exit_code,
+                  const std::string &verdict)
 {
   Json document;
   document["program"] = "latcon";
   document["version"] = program_version();
   document["git_commit"] = git_commit();
+  document["program_hash"] = program_hash();
   document["compiler"] = LATCON_COMPILER;
   document["build_type"] = LATCON_BUILD_TYPE;
   document["flags"] = LATCON_FLAGS;
@@ -98,8 +101,8 @@ Json common_facts(const std::vector<std::string> &command_line, const Stopwatch 
     {"Eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
     {"MPI", mpi_version()}};
   document["hardware_threads"] = std::thread::hardware_concurrency();
-  document["threads"] = n_threads();
-  document["mpi_ranks"] = n_ranks();
+  document["threads"] = n_threads;
+  document["mpi_ranks"] = n_ranks;
   document["command_line"] = command_line;
   Json phases = Json::object();
   for (const auto &[name, seconds] : stopwatch.times())
@@ -135,12 +138,19 @@ void Stopwatch::Phase::stop()
 
 void Stopwatch::add(const std::string &name, const double seconds)
 {
+  const std::lock_guard lock(mutex_);
   const auto found =
     std::find_if(times_.begin(), times_.end(), [&name](const auto &time) { return time.first == name; });
   if (found == times_.end())
     times_.emplace_back(name, seconds);
   else
     found->second += seconds;
+}
+
+std::vector<std::pair<std::string, double>> Stopwatch::times() const
+{
+  const std::lock_guard lock(mutex_);
+  return times_;
 }
 
 std::string program_version()
@@ -153,6 +163,18 @@ std::string git_commit()
   return LATCON_GIT_COMMIT;
 }
 
+const std::string &program_hash()
+{
+  static const std::string hash = []
+  {
+    std::string digits = sha256_of_file("/proc/self/exe");
+    if (digits.empty())
+      throw std::runtime_error("the program cannot read its own file");
+    return digits;
+  }();
+  return hash;
+}
+
 std::uint64_t peak_memory()
 {
   rusage usage{};
@@ -161,7 +183,8 @@ std::uint64_t peak_memory()
 }
 
 RunInfo::RunInfo(std::vector<std::string> command_line)
-  : command_line_(std::move(command_line)), start_(std::chrono::steady_clock::now())
+  : command_line_(std::move(command_line)), start_(std::chrono::steady_clock::now()), n_threads_(n_threads()),
+    n_ranks_(n_ranks())
 {
 }
 
@@ -196,8 +219,9 @@ void RunInfo::add(const std::string &key, const Object &object)
 
 void RunInfo::add_value(const std::string &key, Value value)
 {
-  if (common_facts(command_line_, stopwatch_, 0., {}, "").contains(key))
+  if (common_facts(command_line_, n_threads_, n_ranks_, stopwatch_, 0., {}, "").contains(key))
     throw std::logic_error("run.json has its own '" + key + "'");
+  const std::lock_guard lock(mutex_);
   const auto found = std::find_if(facts_.begin(), facts_.end(), [&key](const auto &fact) { return fact.first == key; });
   if (found == facts_.end())
     facts_.emplace_back(key, std::move(value));
@@ -208,7 +232,8 @@ void RunInfo::add_value(const std::string &key, Value value)
 std::string RunInfo::json(const std::optional<ExitCode> exit_code, const std::string &verdict) const
 {
   const std::chrono::duration<double> total = std::chrono::steady_clock::now() - start_;
-  Json document = common_facts(command_line_, stopwatch_, total.count(), exit_code, verdict);
+  Json document = common_facts(command_line_, n_threads_, n_ranks_, stopwatch_, total.count(), exit_code, verdict);
+  const std::lock_guard lock(mutex_);
   for (const auto &[key, value] : facts_)
     if (const auto *object = std::get_if<Object>(&value))
     {

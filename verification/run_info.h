@@ -5,6 +5,7 @@
 
 #include <chrono>
 #include <cstdint>
+#include <mutex>
 #include <optional>
 #include <string>
 #include <utility>
@@ -14,7 +15,8 @@
 namespace verification
 {
 
-/// Wall time spent in named phases. A phase may be entered again: its times add up. Phases may overlap.
+/// Wall time spent in named phases. A phase may be entered again: its times add up. Phases may overlap. Threads may
+/// share a stopwatch.
 class Stopwatch
 {
 public:
@@ -43,9 +45,10 @@ public:
   void add(const std::string &name, double seconds);
 
   /// Phases that have ended, with their wall times [s], in the order in which they first ended.
-  [[nodiscard]] const std::vector<std::pair<std::string, double>> &times() const { return times_; }
+  [[nodiscard]] std::vector<std::pair<std::string, double>> times() const;
 
 private:
+  mutable std::mutex mutex_;
   std::vector<std::pair<std::string, double>> times_;
 };
 
@@ -56,11 +59,15 @@ private:
 /// if it was not built in a checkout.
 [[nodiscard]] std::string git_commit();
 
+/// SHA-256 of the running program's file, 64 hexadecimal digits. The file is read at the first call.
+/// @throws std::runtime_error if it cannot be read
+[[nodiscard]] const std::string &program_hash();
+
 /// Largest memory this process has held so far [byte].
 [[nodiscard]] std::uint64_t peak_memory();
 
 /// What run.json tells: program, compiler, libraries, threads and ranks, times, memory, command line, outcome, and
-/// whatever the run adds. The name of the machine is not in it.
+/// whatever the run adds. The name of the machine is not in it. One thread may write it while another one adds.
 class RunInfo
 {
 public:
@@ -102,6 +109,8 @@ private:
   std::vector<std::string> command_line_;
   std::chrono::steady_clock::time_point start_;
   Stopwatch stopwatch_;
+  int n_threads_, n_ranks_;  // as the thread that constructs sees them
+  mutable std::mutex mutex_; // of facts_
   std::vector<std::pair<std::string, Value>> facts_;
 };
 

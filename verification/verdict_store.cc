@@ -12,7 +12,10 @@
 #include <system_error>
 #include <thread>
 
+#include <fcntl.h>
 #include <link.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <nlohmann/json.hpp>
 
@@ -33,22 +36,30 @@ using Json = nlohmann::ordered_json;
 constexpr int format = 1;                              // of the file
 constexpr std::uintmax_t largest_file = 256UL << 20UL; // [byte]; no check leaves as much
 
-// All bytes of a file; none if it cannot be read.
-std::optional<std::string> content(const std::string &path)
+constexpr mode_t writable_by_others = S_IWGRP | S_IWOTH;
+
+// All bytes of a file that this user alone can have written; none if it cannot be read.
+std::optional<std::string> content_of_own_file(const std::string &path)
 {
-  std::ifstream file(path, std::ios::binary);
-  std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
-  return file ? std::optional(std::move(bytes)) : std::nullopt;
+  const int descriptor = open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0)
+    return {};
+  const std::string opened = "/proc/self/fd/" + std::to_string(descriptor);
+  struct stat status = {};
+  const bool is_own =
+    fstat(descriptor, &status) == 0 && status.st_uid == geteuid() && (status.st_mode & writable_by_others) == 0;
+  std::ifstream file(is_own ? opened : "", std::ios::binary); // the file whose owner is known, under any name
+  const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  close(descriptor);
+  if (!is_own)
+    throw UnusableVerdicts("it belongs to another user, or others may write it");
+  return file ? std::optional(bytes) : std::nullopt;
 }
 
-// The program is one static file but for the libraries of the system, which are named by what their linker made of
-// their content: the same on all nodes of a cluster.
-std::string hash_of_program()
+// A name that leads out of no folder.
+bool is_table_name(const std::string &name)
 {
-  const std::string hash = sha256_of_file("/proc/self/exe");
-  if (hash.empty())
-    throw std::runtime_error("the program cannot read its own file");
-  return hash;
+  return !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_-") == std::string::npos;
 }
 
 // Build ID of a loaded library (a note that the linker writes), as bytes; empty if it has none.
@@ -75,6 +86,8 @@ std::string build_id(const dl_phdr_info &library)
   return {};
 }
 
+// The program is one static file but for the libraries of the system, which are named by what their linker made of
+// their content: the same on all nodes of a cluster.
 std::string hash_of_libraries()
 {
   std::vector<std::string> libraries;
@@ -141,7 +154,7 @@ VerdictKey::VerdictKey(std::string inputs) : text(std::move(inputs)), hash(sha25
 
 VerdictKey verdict_key(const Case &input, const std::vector<std::string> &claims, bool quick, unsigned int n_ranks)
 {
-  std::string text = "program=" + hash_of_program() + "\nlibraries=" + hash_of_libraries() + "\n";
+  std::string text = "program=" + program_hash() + "\nlibraries=" + hash_of_libraries() + "\n";
   for (const std::string &claim : claims)
     text += "claim=" + claim + "\n";
   text += std::string("quick=") + (quick ? "true" : "false") + "\nranks=" + std::to_string(n_ranks) + "\n";
@@ -191,6 +204,9 @@ Verdicts read_verdicts(const VerdictKey &key, const std::string &text)
     for (const Json &entry : document.at("results").at("claims"))
       verdicts.results.add(row(entry));
     verdicts.tables = document.at("tables").get<std::map<std::string, std::string>>();
+    for (const auto &[name, csv] : verdicts.tables)
+      if (!is_table_name(name))
+        throw UnusableVerdicts("it has a table of an impossible name");
     verdicts.checked_at = document.at("checked_at");
   }
   catch (const Json::exception &)
@@ -225,7 +241,7 @@ std::optional<std::string> VerdictStore::read(const VerdictKey &key) const
     return {};
   if (!std::filesystem::is_regular_file(status) || std::filesystem::file_size(name, error) > largest_file)
     throw UnusableVerdicts("it is no file of verdicts");
-  std::optional<std::string> text = content(name);
+  std::optional<std::string> text = content_of_own_file(name);
   if (!text)
     throw UnusableVerdicts("it cannot be read");
   if (text->empty())
@@ -242,6 +258,7 @@ void VerdictStore::write(const VerdictKey &key, const std::string &text) const
   // Other runs may write here now, in milliseconds: what is older was left by killed ones.
   latcon::support::remove_stale_parts(folder_, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
   write_file(path(key), text);
+  chmod(path(key).c_str(), S_IRUSR | S_IWUSR); // whatever the umask: read() takes no other
 }
 
 } // namespace verification

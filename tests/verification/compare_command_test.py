@@ -35,6 +35,15 @@ def found(folder):
 
 
 class Compare(TemporaryFolder):
+    def test_impossible_size_of_an_array_is_2(self):
+        frame = frames(self.lattice / "lattice.pvd")[-1][1]
+        damaged = self.folder / "damaged.vtp"
+        damaged.write_bytes(frame.read_bytes().replace(b'NumberOfComponents="4"', b'NumberOfComponents="-1"', 1))
+        run = latcon("compare", damaged, self.continuum, "--output-dir", self.out)
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertIn("damaged.vtp: damaged", run.stderr)
+        self.assertFalse(self.out.exists())
+
     @classmethod
     def setUpClass(cls):
         cls.runs = tempfile.TemporaryDirectory()

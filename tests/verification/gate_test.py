@@ -126,6 +126,29 @@ class Gate(TemporaryFolder):
         self.assertIn("it belongs to other inputs", text)
         self.assertFalse(run["verification"]["reused"])
 
+    def test_file_that_others_may_have_written_is_not_used(self):
+        path = self.stored()[0]
+        mode = path.stat().st_mode & 0o777
+        self.assertEqual(mode & 0o022, 0)
+        path.chmod(mode | 0o020)
+        printed, info = self.fracture()
+        self.assertIn("is not used: it belongs to another user, or others may write it", printed)
+        self.assertFalse(info["verification"]["reused"])
+        path = self.stored()[0]  # written anew
+        self.assertEqual(path.stat().st_mode & 0o022, 0)
+        self.assertTrue(self.fracture()[1]["verification"]["reused"])
+        if os.geteuid() == 0:
+            os.chown(path, 65534, 65534)
+            printed, info = self.fracture()
+            self.assertIn("is not used: it belongs to another user", printed)
+            self.assertFalse(info["verification"]["reused"])
+
+    def test_link_in_place_of_a_file_is_not_used(self):
+        path = self.stored()[0]
+        path.rename(self.folder / "elsewhere.json")
+        path.symlink_to(self.folder / "elsewhere.json")
+        self.assertFalse(self.fracture()[1]["verification"]["reused"])
+
     def test_failure_is_refused_also_from_the_store(self):
         shutil.rmtree(self.cache)
         text, run = self.fracture(*FAILING, expect=3)

@@ -8,6 +8,7 @@ Usage: resume_test.py PATH_OF_LATCON
 import hashlib
 import json
 import math
+import pathlib
 import re
 import signal
 import subprocess
@@ -52,7 +53,7 @@ class Resume(TemporaryFolder):
                 steps.append(int(file["run/step"][0]))
                 self.assertEqual(path.name, f"checkpoint-{steps[-1]:012}.h5")
                 self.assertEqual(file["run/command"][0], b"fracture")
-                self.assertEqual(file["run/schema"][0], 3)
+                self.assertEqual(file["run/schema"][0], 4)
                 self.assertIn(b"Sheet/length = 0.025\n", file["run/case"][0])
                 self.assertEqual(file["run/time"][0], file["simulation/time"][0])
                 sites = file["simulation/x"].shape
@@ -92,6 +93,23 @@ class Resume(TemporaryFolder):
         self.assertEqual(sorted(found), sorted(expected))
         for name, content in expected.items():
             self.assertEqual(found[name] == content, True, name)
+
+    def test_checkpoint_of_another_program_is_named(self):
+        self.run_to_end()
+        own = json.loads((self.out / "run.json").read_text())["program_hash"]
+        program = pathlib.Path(LATCON).resolve()
+        self.assertEqual(own, hashlib.sha256(program.read_bytes()).hexdigest())
+        (self.folder / "bin").mkdir()
+        (self.folder / "share").symlink_to(program.parents[1] / "share")
+        other = self.folder / "bin" / "latcon"
+        other.write_bytes(program.read_bytes() + b"\0")
+        other.chmod(0o755)
+        run = latcon(*STRIP, "--resume", "--output-dir", self.out, program=other)
+        self.assertIn(run.returncode, (0, 3), run.stderr)
+        self.assertIn("Another program wrote it, of commit ", run.stdout)
+        info = json.loads((self.out / "run.json").read_text())
+        self.assertEqual(info["resumed_from"]["program_hash"], own)
+        self.assertEqual(info["program_hash"], hashlib.sha256(other.read_bytes()).hexdigest())
 
     def test_resumed_run_takes_the_same_samples_near_the_tip(self):
         change = {"Near tip/interval=0": "Near tip/interval=7e-6", "Time/end=0.8 ms": "Time/end=1.2 ms"}

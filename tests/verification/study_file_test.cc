@@ -206,7 +206,8 @@ TEST(StudyFile, ShippedStudiesAreThoseInTheFolder)
   }
   catch (const InputError &error)
   {
-    EXPECT_HAS(std::string(error.what()), "nosuch: cannot read the study; give a " + study_choices());
+    EXPECT_HAS(std::string(error.what()),
+               "nosuch: cannot read the study: No such file or directory; give a " + study_choices());
   }
 }
 

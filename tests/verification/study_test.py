@@ -7,6 +7,7 @@ import copy
 import json
 import os
 import pathlib
+import re
 import signal
 import subprocess
 import sys
@@ -170,10 +171,37 @@ class Study(TemporaryFolder):
             document["runs"]["low"]["set"]["Sheet/height"] = "1.1 cm"
         info = self.out / "runs" / "thin-1" / "run.json"
         document = json.loads(info.read_text())
-        info.write_text(json.dumps(dict(document, git_commit="0" * 40)))
+        info.write_text(json.dumps(dict(document, program_hash="0" * 64)))
         self.assertIn("2 runs, 2 are there already", self.study("--resume", change=change))
         after = self.times()
         self.assertEqual([name for name in FOLDERS if after[name] != before[name]], ["low-1", "thin-1"])
+
+    def test_edited_base_changes_no_run(self):
+        base = self.folder / "base.prm"
+        base.write_text((CASES / "quick.prm").read_text())
+
+        document = copy.deepcopy(TINY)
+        document["base"] = str(base)
+        document["runs"] = {"base": {"seeds": [1, 2, 3]}}
+        document["claims"][0]["rows"] = document["claims"][0]["rows"][:1]
+        (self.folder / "tiny.json").write_text(json.dumps(document))
+        process = subprocess.Popen([LATCON, "study", self.folder / "tiny.json", "--output-dir", self.out, "--quiet",
+                                    "--skip-verification", "--threads", "1"])
+        runs = self.out / "runs"
+        deadline = time.time() + 60
+        while not (runs.exists() and list(runs.iterdir())) and time.time() < deadline:
+            time.sleep(0.01)
+        base.write_text(base.read_text().replace("strain y = 1.8", "strain y = 1.4"))
+        process.wait(120)
+        cases = [(runs / f"base-{seed}" / "case.prm").read_text() for seed in (1, 2, 3)]
+        self.assertEqual([re.search("strain y = (.*)", case).group(1) for case in cases], ["1.8"] * 3)
+        for seed, case in zip((1, 2, 3), cases):
+            self.assertEqual((self.out / "cases" / f"base-{seed}.prm").read_text(), case)
+
+    def test_endless_file_is_refused(self):
+        run = latcon("study", "/dev/zero", "--dry-run", timeout=30)
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("larger than 16 MiB", run.stderr)
 
     def test_killed_and_resumed_is_as_if_never_stopped(self):
         def longer(document):

@@ -198,4 +198,16 @@ TEST_F(Environment, SaysWhereTheStoreIs)
   EXPECT_FALSE(VerdictStore::folder_of_user());
 }
 
+TEST(VerdictStore, TakesNoTableThatLeavesItsFolder)
+{
+  const VerdictKey key = verdict_key(some_case(), {"energy"}, true, 1);
+  for (const char *name : {"../../planted", "/tmp/planted", ""})
+  {
+    Verdicts verdicts = some_verdicts();
+    verdicts.tables[name] = "1";
+    const std::string text = verdicts_text(key, verdicts); // with the right checksum
+    EXPECT_THROW((void)read_verdicts(key, text), UnusableVerdicts) << name;
+  }
+}
+
 } // namespace

@@ -25,7 +25,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-constexpr int schema = 3; // of what is in a file; another one cannot be read
+constexpr int schema = 4; // of what is in a file; another one cannot be read
 constexpr std::size_t n_kept = 2;
 constexpr std::size_t n_differences_told = 3;
 const std::string first_words = "latcon checkpoint, SHA-256 of the bytes from 512 on: ";
@@ -109,6 +109,8 @@ Checkpoints::Checkpoints(const Options &options, const Parameters &parameters, c
   best.file = told(best.file.string());
   best.step = told(best.step);
   best.time = told(best.time);
+  best.commit = told(best.commit);
+  best.program_hash = told(best.program_hash);
   problems = told(problems);
   if (!best.file.empty())
   {
@@ -156,6 +158,8 @@ std::string Checkpoints::problem_of(const fs::path &path, CheckpointPlace &place
     archive("run/case", text);
     if (text != case_text_)
       return "it was left by another case: " + differences(text, case_text_);
+    archive("run/commit", place.commit);
+    archive("run/program_hash", place.program_hash);
     archive("run/step", place.step);
     archive("run/time", place.time);
     place.file = path;
@@ -202,6 +206,7 @@ void Checkpoints::save(std::size_t step, double time, const std::function<void(C
   archive("run/schema", its_schema);
   for (auto [name, text] : {std::pair<std::string, std::string>("run/program", program_version()),
                             {"run/commit", git_commit()},
+                            {"run/program_hash", program_hash()},
                             {"run/command", command_},
                             {"run/case", case_text_},
                             {"run/case_hash", case_hash_}})

@@ -20,8 +20,10 @@ class Parameters;
 struct CheckpointPlace
 {
   std::filesystem::path file;
-  std::size_t step = 0; ///< steps done
-  double time = 0.;     ///< of the sheet [s]
+  std::size_t step = 0;     ///< steps done
+  double time = 0.;         ///< of the sheet [s]
+  std::string commit;       ///< of the program that wrote it, see git_commit()
+  std::string program_hash; ///< of the program that wrote it, see program_hash()
 };
 
 /// The checkpoints of a run, in the folder `checkpoints` of its output directory: HDF5 files checkpoint-STEP.h5, of

@@ -1,15 +1,15 @@
 #include "verification/commands/command.h"
 
-#include <atomic>
-#include <csignal>
 #include <filesystem>
 #include <iostream>
 #include <system_error>
+#include <utility>
 
 #include <deal.II/base/mpi.h>
 
 #include "support/atomic_file.h"
 #include "verification/checkpoint/checkpoints.h"
+#include "verification/commands/signals.h"
 #include "verification/output_list.h"
 #include "verification/sha256.h"
 
@@ -18,36 +18,12 @@ namespace verification
 namespace
 {
 
-volatile std::sig_atomic_t signal_flag = 0;
-
-void on_signal(int)
-{
-  signal_flag = 1;
-}
-
 bool first_rank()
 {
   return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
 }
 
 } // namespace
-
-void catch_signals()
-{
-  std::signal(SIGINT, on_signal);
-  std::signal(SIGTERM, on_signal);
-}
-
-bool signal_came()
-{
-  return signal_flag != 0;
-}
-
-bool signal_came_to_any_rank()
-{
-  signal_flag = dealii::Utilities::MPI::max(static_cast<int>(signal_flag), MPI_COMM_WORLD);
-  return signal_came();
-}
 
 void read_case(const Options &options, Case &input, Parameters &parameters)
 {
@@ -81,25 +57,42 @@ std::unique_ptr<latcon::support::FolderLock> lock_directory(const std::string &d
   }
 }
 
+std::shared_ptr<Run::Record> Run::last;
+
+void Run::Record::write(std::optional<ExitCode> with) const
+{
+  info.write(directory + "/run.json", with, verdict);
+}
+
+void record_exit_code(ExitCode exit_code)
+{
+  const std::shared_ptr<Run::Record> record = std::exchange(Run::last, nullptr);
+  if (record && record->exit_code != exit_code)
+    record->write(exit_code);
+}
+
 Run::Run(const Options &options, const Parameters &parameters) : Run(options, &parameters) {}
 
 Run::Run(const Options &options, const Parameters *parameters)
-  : directory_(options.output_dir), writes_(first_rank()), talks_(writes_ && !options.quiet), resumes_(options.resume),
-    info_(options.arguments)
+  : record_(std::make_shared<Record>(options)), directory_(options.output_dir), writes_(first_rank()),
+    talks_(writes_ && !options.quiet), resumes_(options.resume)
 {
   if (parameters != nullptr)
-    info_.add("case_hash", sha256(case_lines(*parameters)));
+    info().add("case_hash", sha256(case_lines(*parameters)));
   if (writes_)
   {
     std::error_code error;
     std::filesystem::create_directories(directory_, error);
     if (error)
       throw OutputError(directory_, error.message());
-    lock_ = lock_directory(directory_);
+    record_->lock = lock_directory(directory_);
     clear(options, parameters != nullptr);
     if (parameters != nullptr)
       parameters->write(directory_ + "/case.prm");
-    info_.write(directory_ + "/run.json", std::nullopt);
+    const SignalDeferral deferral; // a run.json that is there gets the exit code
+    record_->write(std::nullopt);
+    last = record_;
+    on_interruption([record = record_] { record->write(ExitCode::interrupted); });
   }
   // No rank writes beside rank 0 before the directory is there.
   MPI_Barrier(MPI_COMM_WORLD);
@@ -125,24 +118,33 @@ void Run::note(const Checkpoints &checkpoints)
 {
   const std::optional<CheckpointPlace> &found = checkpoints.found();
   if (found)
-    info_.add("resumed_from", RunInfo::Object{{"checkpoint", found->file.filename().string()},
-                                              {"step", static_cast<std::uint64_t>(found->step)},
-                                              {"time", found->time}});
+    info().add("resumed_from", RunInfo::Object{{"checkpoint", found->file.filename().string()},
+                                               {"step", static_cast<std::uint64_t>(found->step)},
+                                               {"time", found->time},
+                                               {"git_commit", found->commit},
+                                               {"program_hash", found->program_hash}});
   if (!talks_ || !resumes_)
     return;
-  if (found)
-    std::cout << "Going on from " << found->file.string() << ": step " << found->step << ", t = " << found->time
-              << " s\n";
-  else
+  if (!found)
+  {
     std::cout << "There is no checkpoint in " << directory_ << ": starting from the beginning\n";
+    return;
+  }
+  std::cout << "Going on from " << found->file.string() << ": step " << found->step << ", t = " << found->time
+            << " s\n";
+  if (found->program_hash != program_hash())
+    std::cout << "Another program wrote it, of commit " << found->commit << "; run.json names both\n";
 }
 
 ExitCode Run::end(const Results &results, ExitCode exit_code)
 {
   if (writes_)
   {
+    const SignalDeferral deferral;
     results.write(directory_);
-    info_.write(directory_ + "/run.json", exit_code, to_string(results.verdict()));
+    record_->verdict = to_string(results.verdict());
+    record_->write(exit_code);
+    record_->exit_code = exit_code;
   }
   return exit_code;
 }

@@ -2,6 +2,7 @@
 
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -61,6 +62,9 @@ lock_directory(const std::string &directory, std::chrono::milliseconds patience 
 
 /// The output directory of a run, locked until the run has ended, and the record of how it came about. Rank 0 alone
 /// writes.
+///
+/// While it is under way, and until the program ends, run.json gets the exit code of the program however that ends: see
+/// record_exit_code().
 class Run
 {
 public:
@@ -77,7 +81,7 @@ public:
   void note(const Checkpoints &checkpoints);
 
   const std::string &directory() const { return directory_; }
-  RunInfo &info() { return info_; }
+  RunInfo &info() { return record_->info; }
   bool writes() const { return writes_; } ///< true on rank 0
   /// Whether to print: on rank 0, unless --quiet.
   bool talks() const { return talks_; }
@@ -98,11 +102,28 @@ private:
   void clear(const Options &options, bool has_case) const;
   void print(const Results &results) const;
 
+  struct Record
+  {
+    explicit Record(const Options &options) : directory(options.output_dir), info(options.arguments) {}
+    void write(std::optional<ExitCode> with) const;
+
+    std::string directory;
+    std::unique_ptr<latcon::support::FolderLock> lock; // on rank 0
+    RunInfo info;
+    std::string verdict;
+    std::optional<ExitCode> exit_code; // the one written last
+  };
+  friend void record_exit_code(ExitCode exit_code);
+  static std::shared_ptr<Record> last; // on rank 0, the record of the last run that began
+
+  std::shared_ptr<Record> record_;
   std::string directory_;
-  std::unique_ptr<latcon::support::FolderLock> lock_; // on rank 0
   bool writes_, talks_, resumes_;
-  RunInfo info_;
 };
+
+/// Writes what the program ends with into the run.json of the run that began, if any, and forgets the run. To be called
+/// once signals have no effect. @throws OutputError
+void record_exit_code(ExitCode exit_code);
 
 /// What the program ends with if nothing but the results decides.
 ExitCode exit_code_of(const Results &results);
@@ -125,14 +146,5 @@ ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names
 /// @return the rows, at least one of them checked and none failing
 /// @throws ClaimFailed that names the rows which fail, if any; results.json and run.json are then written
 Results passed_claims(const Case &input, Run &run);
-
-/// From here on SIGINT and SIGTERM are noted and end nothing by themselves.
-void catch_signals();
-/// Whether one of them has come since catch_signals().
-bool signal_came();
-/// Whether one has come to any rank: so all stop at once. Collective.
-bool signal_came_to_any_rank();
-/// Time steps of a lattice between two calls of it: less than some milliseconds, or a few steps of a large sheet.
-inline constexpr std::size_t steps_between_signals = 16;
 
 } // namespace verification

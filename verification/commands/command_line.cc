@@ -1,6 +1,7 @@
 #include "verification/commands/command_line.h"
 
 #include <chrono>
+#include <cstdio>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -8,6 +9,8 @@
 
 #include <dlfcn.h>
 #include <omp.h>
+#include <poll.h>
+#include <unistd.h>
 
 #include <CLI/CLI.hpp>
 #include <deal.II/base/mpi.h>
@@ -18,6 +21,7 @@
 #include "support/atomic_file.h"
 #include "support/available_cores.h"
 #include "verification/commands/command.h"
+#include "verification/commands/signals.h"
 #include "verification/data_folder.h"
 #include "verification/study/study_file.h"
 
@@ -62,6 +66,55 @@ void set_threads(unsigned int threads)
   // A threaded BLAS sums in an order that depends on the number of threads. OpenBLAS is asked if it is the one in use.
   if (void *const symbol = dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))
     reinterpret_cast<void (*)(int)>(symbol)(1);
+}
+
+// Throws if what was printed could not be written. A reader that closed its end of a pipe has what it wanted.
+void require_printed()
+{
+  if (std::cout.flush() && std::fflush(stdout) == 0)
+    return;
+  pollfd output{STDOUT_FILENO, 0, 0};
+  if (poll(&output, 1, 0) != 1 || (output.revents & POLLERR) == 0)
+    throw OutputError("standard output", "it is closed or full");
+}
+
+// Runs a command, and sees to it that the exit code is the same wherever it is read.
+ExitCode run_command(const std::function<ExitCode()> &command)
+{
+  try
+  {
+    const ExitCode exit_code = command();
+    if (exit_code == ExitCode::done)
+      require_printed();
+    disregard_signals();
+    record_exit_code(exit_code);
+    return exit_code;
+  }
+  catch (const std::exception &error)
+  {
+    disregard_signals();
+    const Failure failure = describe(error);
+    const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
+    const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+    try
+    {
+      record_exit_code(failure.exit_code);
+    }
+    catch (const std::exception &)
+    {
+      // A disk that is full is most likely the failure itself.
+    }
+    // Most errors are met by all ranks alike: the first one reports them. One met by another rank alone is reported a
+    // moment later.
+    if (rank != 0)
+      std::this_thread::sleep_for(std::chrono::seconds(1));
+    std::cerr << "latcon: " << (n_ranks > 1 ? "rank " + std::to_string(rank) + ": " : "") << failure.message
+              << std::endl;
+    // Ranks that wait for this one in a collective call would wait for ever.
+    if (n_ranks > 1)
+      MPI_Abort(MPI_COMM_WORLD, static_cast<int>(failure.exit_code));
+    return failure.exit_code;
+  }
 }
 
 } // namespace
@@ -157,40 +210,23 @@ ExitCode run_program(int argc, char **argv)
     ->type_name("");
   report_command->callback([&] { command = [&] { return report(options, report_directory); }; });
 
-  const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
-  const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
-  try
-  {
-    app.parse(argc, argv);
-  }
-  catch (const CLI::ParseError &error)
-  {
-    // Help and version are exceptions of CLI11 as well, with exit code 0.
-    if (rank == 0)
-      app.exit(error);
-    return error.get_exit_code() == 0 ? ExitCode::done : ExitCode::bad_input;
-  }
-
-  try
-  {
-    set_threads(options.threads);
-    catch_signals();
-    return command();
-  }
-  catch (const std::exception &error)
-  {
-    const Failure failure = describe(error);
-    // Most errors are met by all ranks alike: the first one tells. One met by another rank alone is told a moment
-    // later.
-    if (rank != 0)
-      std::this_thread::sleep_for(std::chrono::seconds(1));
-    std::cerr << "latcon: " << (n_ranks > 1 ? "rank " + std::to_string(rank) + ": " : "") << failure.message
-              << std::endl;
-    // Ranks that wait for this one in a collective call would wait for ever.
-    if (n_ranks > 1)
-      MPI_Abort(MPI_COMM_WORLD, static_cast<int>(failure.exit_code));
-    return failure.exit_code;
-  }
+  return run_command(
+    [&]
+    {
+      try
+      {
+        app.parse(argc, argv);
+      }
+      catch (const CLI::ParseError &error)
+      {
+        // Help and version are exceptions of CLI11 as well, with exit code 0.
+        if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+          app.exit(error);
+        return error.get_exit_code() == 0 ? ExitCode::done : ExitCode::bad_input;
+      }
+      set_threads(options.threads);
+      return command();
+    });
 }
 
 } // namespace verification

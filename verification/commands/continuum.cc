@@ -12,6 +12,7 @@
 #include "verification/affine_displacement.h"
 #include "verification/checkpoint/checkpoints.h"
 #include "verification/commands/command.h"
+#include "verification/commands/signals.h"
 #include "verification/continuum_model.h"
 #include "verification/continuum_record.h"
 #include "verification/progress.h"
@@ -59,6 +60,11 @@ Results equilibrium(const Case &input, ContinuumModel &model, Checkpoints &check
     fields.add_frame(load_factor, solver.sheet(), solver.displacement());
   };
   write_frame(0.);
+  const auto write_tables = [&]
+  {
+    if (run.writes())
+      record.write(run.directory());
+  };
   const std::size_t n_cycles = input.continuum.adaptive_cycles;
   const auto find_equilibrium = [&](const std::string &phase_name, auto &&find)
   {
@@ -73,8 +79,7 @@ Results equilibrium(const Case &input, ContinuumModel &model, Checkpoints &check
     {
       // What was found up to here is kept.
       record.newton(failure.report());
-      if (run.writes())
-        record.write(run.directory());
+      write_tables();
       throw;
     }
   };
@@ -88,15 +93,17 @@ Results equilibrium(const Case &input, ContinuumModel &model, Checkpoints &check
                          // The frame at full load is that of the last mesh.
                          if (load_factor < 1.)
                            write_frame(load_factor);
+                         write_tables();
                        });
                    });
   record.mesh(solver);
-  for (std::size_t cycle = 1; cycle <= n_cycles && !signal_came_to_any_rank(); ++cycle)
+  for (std::size_t cycle = 1; cycle <= n_cycles; ++cycle)
   {
     solver.refine(model.mesh(), input.continuum.refined_fraction);
     find_equilibrium("adaptive cycles", [&] { return solver.equilibrate(); });
     record.equilibrium(solver);
     record.mesh(solver);
+    write_tables();
     if (run.talks())
       std::cout << "cycle " << cycle << ": " << solver.sheet().mesh().n_global_active_cells() << " cells, "
                 << solver.sheet().dof_handler().n_dofs() << " unknowns, largest reaction " << record.largest_reaction()
@@ -233,7 +240,11 @@ Results motion(const Case &input, ContinuumModel &model, Checkpoints &checkpoint
     if (run.writes())
       record.write(run.directory());
   };
-  if (checkpoints.resume(parts))
+  const bool resumed = checkpoints.resume(parts);
+  if (!resumed)
+    start(solver, input, model, run);
+  const SignalDeferral deferral;
+  if (resumed)
   {
     // What was written after the checkpoint goes.
     write_tables();
@@ -241,7 +252,6 @@ Results motion(const Case &input, ContinuumModel &model, Checkpoints &checkpoint
   }
   else
   {
-    start(solver, input, model, run);
     write_frame();
     record.motion(solver);
   }
@@ -261,7 +271,7 @@ Results motion(const Case &input, ContinuumModel &model, Checkpoints &checkpoint
     while (step < n_steps)
     {
       // A step takes far longer than to agree on this.
-      const bool is_stopped = signal_came_to_any_rank();
+      const bool is_stopped = any_rank_interrupted();
       if (is_stopped || checkpoints.due(step))
         checkpoints.write(step, solver.time(), parts);
       if (is_stopped)
@@ -350,7 +360,7 @@ ExitCode run_continuum(const Options &options)
   {
     const Results results =
       moves ? motion(input, model, checkpoints, run) : equilibrium(input, model, checkpoints, run);
-    return signal_came_to_any_rank() ? run.interrupted(results) : run.finish(results);
+    return interrupted() ? run.interrupted(results) : run.finish(results);
   }
   // The input was good as far as it could be tried, so it is the computed state that is not.
   catch (const continuum::NonPhysicalState &failure)

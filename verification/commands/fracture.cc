@@ -5,6 +5,7 @@
 #include "verification/commands/crack_summary.h"
 #include "verification/commands/dry_run.h"
 #include "verification/commands/lattice_motion.h"
+#include "verification/commands/signals.h"
 #include "verification/fracture/crack_film.h"
 #include "verification/fracture/near_tip_record.h"
 #include "verification/largest_error.h"
@@ -208,14 +209,14 @@ ExitCode run_fracture(const Options &options)
     results = passed_or_reported(input, options, run);
   const Crack crack = break_sheet(input, sheet, material, options.skip_verification, checkpoints, run);
   results.add(crack.results);
-  const ExitCode exit_code = run.end(results, signal_came() ? ExitCode::interrupted : exit_code_of(results));
+  const ExitCode exit_code = run.end(results, interrupted() ? ExitCode::interrupted : exit_code_of(results));
   if (run.talks())
   {
     if (options.verbose)
       results.print(std::cout);
     std::cout << crack_summary(input, crack.measurement, results) << std::flush;
   }
-  if (options.no_report)
+  if (options.no_report || exit_code == ExitCode::interrupted)
     return exit_code;
   // The verdict in the page is the one returned here; a crack without its page did not end well.
   const ExitCode drawn = draw_page(run);

@@ -6,6 +6,7 @@
 #include "verification/commands/command.h"
 #include "verification/commands/dry_run.h"
 #include "verification/commands/lattice_motion.h"
+#include "verification/commands/signals.h"
 #include "verification/homogenisation.h"
 #include "verification/lattice_sheet.h"
 
@@ -119,7 +120,7 @@ ExitCode run_lattice(const Options &options)
   }
   else if (run.writes()) // equilibrium is a matter of the first rank
     results = relaxed(input, sheet, material, state_of(sheet), run);
-  return signal_came() ? run.interrupted(results) : run.finish(results);
+  return interrupted() ? run.interrupted(results) : run.finish(results);
 }
 
 } // namespace verification

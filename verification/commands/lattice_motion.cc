@@ -1,5 +1,6 @@
 #include "verification/commands/lattice_motion.h"
 
+#include "verification/commands/signals.h"
 #include "verification/progress.h"
 
 namespace verification
@@ -26,6 +27,7 @@ void LatticeMotion::write_tables() const
 
 void LatticeMotion::go(const Course &course, bool resumed, const std::function<void()> &write_checkpoint)
 {
+  const SignalDeferral deferral;
   if (resumed)
   {
     // What was written after the checkpoint goes.
@@ -48,7 +50,7 @@ void LatticeMotion::go(const Course &course, bool resumed, const std::function<v
     {
       if (step_ % steps_between_signals == 0)
       {
-        if (signal_came_to_any_rank())
+        if (any_rank_interrupted())
         {
           write_checkpoint();
           break;

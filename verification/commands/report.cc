@@ -1,15 +1,14 @@
-#include <cstdlib>
 #include <filesystem>
+#include <string>
+#include <vector>
 
-#include <spawn.h>
-#include <sys/wait.h>
+#include <unistd.h>
 
 #include <deal.II/base/mpi.h>
 
+#include "verification/child_process.h"
 #include "verification/commands/command.h"
 #include "verification/data_folder.h"
-
-extern char **environ;
 
 namespace verification
 {
@@ -17,27 +16,36 @@ namespace verification
 namespace
 {
 
+// The environment of the user but for what would change the report: python and matplotlib have their own defaults.
+std::vector<std::string> environment_of_scripts()
+{
+  std::vector<std::string> kept;
+  for (char **variable = environ; *variable != nullptr; ++variable)
+  {
+    const std::string text = *variable;
+    if (text.rfind("PYTHON", 0) != 0 && text.rfind("MPLBACKEND=", 0) != 0)
+      kept.push_back(text);
+  }
+  return kept;
+}
+
 // Runs a script of the folder report/ on an output directory. @return its exit status
 int run_script(const std::string &script, const std::string &directory, const std::string &page, bool quiet)
 {
-  // Debian's interpreter, the one that sees the packages the script needs.
-  std::string python = "/usr/bin/python3";
-  std::string path = data_folder() + "/report/" + script;
-  std::string folder = directory;
-  // cppcheck-suppress variableScope ; the arguments hold its address until the script is started
-  std::string quiet_option = "--quiet";
-  std::vector<char *> arguments{python.data(), path.data(), folder.data()};
+  // Debian's interpreter, the one that sees the packages the script needs, and no packages of the user.
+  const std::string python = "/usr/bin/python3";
+  std::vector<std::string> command{python, "-s", data_folder() + "/report/" + script, directory};
   if (quiet)
-    arguments.push_back(quiet_option.data());
-  arguments.push_back(nullptr);
-  pid_t child = 0;
-  int status = 0;
-  if (posix_spawn(&child, python.c_str(), nullptr, nullptr, arguments.data(), environ) != 0 ||
-      waitpid(child, &status, 0) != child)
+    command.emplace_back("--quiet");
+  const int status = wait_for_child(start_child({command, environment_of_scripts(), ""}));
+  if (status == not_started)
     throw OutputError(directory + "/" + page, "cannot start " + python);
-  if (!WIFEXITED(status))
+  if (status > 128)
     throw OutputError(directory + "/" + page, "the report script was killed");
-  return WEXITSTATUS(status);
+  for (const ExitCode known : {ExitCode::done, ExitCode::bad_input, ExitCode::claim_failed, ExitCode::output_failed})
+    if (status == static_cast<int>(known))
+      return status;
+  throw OutputError(directory + "/" + page, "the report script failed");
 }
 
 } // namespace

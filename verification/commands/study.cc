@@ -11,6 +11,7 @@
 #include "support/folder_lock.h"
 #include "verification/atomic_file.h"
 #include "verification/commands/command.h"
+#include "verification/commands/signals.h"
 #include "verification/progress.h"
 #include "verification/resources/machine_memory.h"
 #include "verification/resources/resources.h"
@@ -45,18 +46,22 @@ void replace(const Folders &folders)
   fs::rename(folders.part, folders.whole);
 }
 
-std::vector<std::string> command_of(const PlannedRun &planned, const Study &study, const std::string &folder,
-                                    bool skip_verification, bool resume)
+// The resolved case of a run, which the study wrote before its first run started.
+std::string case_file_of(const Run &run, const PlannedRun &planned)
+{
+  return run.directory() + "/cases/" + planned.folder() + ".prm";
+}
+
+std::vector<std::string> command_of(const std::string &case_file, const std::string &folder, bool skip_verification,
+                                    bool resume)
 {
   // This program, whatever has become of its file since it was started.
-  std::vector<std::string> command{"/proc/self/exe", "fracture",  study.base, "--output-dir",
-                                   folder,           "--threads", "1",        "--no-report"};
+  std::vector<std::string> command{"/proc/self/exe", "fracture",  case_file, "--output-dir",
+                                   folder,           "--threads", "1",       "--no-report"};
   if (skip_verification)
     command.emplace_back("--skip-verification");
   if (resume)
     command.emplace_back("--resume");
-  for (const std::string &setting : planned.overrides)
-    command.insert(command.end(), {"--set", setting});
   return command;
 }
 
@@ -129,8 +134,10 @@ bool run_children(StudyResults &results, const Options &options, bool skip_verif
   if (run.talks())
     std::cout << jobs.size() << " runs, " << results.plan.size() - jobs.size() << " are there already" << std::endl;
 
-  if (!jobs.empty())
-    fs::create_directory(run.directory() + "/runs");
+  for (const char *folder : {"/cases", "/runs"})
+    fs::create_directory(run.directory() + folder);
+  for (const PlannedRun &planned : results.plan)
+    write_file(case_file_of(run, planned), planned.case_text);
   PoolProgress progress(results.plan, jobs, run.talks());
   ProcessPool pool;
   pool.n_jobs = jobs.size();
@@ -146,7 +153,7 @@ bool run_children(StudyResults &results, const Options &options, bool skip_verif
     if (!goes_on)
       fs::remove_all(folder);
     fs::create_directory(folder);
-    return {command_of(planned, results.study, folder, skip_verification, goes_on), folder + "/log.txt"};
+    return {command_of(case_file_of(run, planned), folder, skip_verification, goes_on), folder + "/log.txt"};
   };
   pool.ended = [&](std::size_t job, int status)
   {
@@ -158,23 +165,20 @@ bool run_children(StudyResults &results, const Options &options, bool skip_verif
     progress.ended(jobs[job], results.outcomes[jobs[job]]);
   };
   pool.waiting = [&](const std::vector<std::size_t> &running) { progress.show(running); };
-  pool.stop = signal_came;
+  pool.stop = any_rank_interrupted;
+  const SignalDeferral deferral;
   return run_processes(pool);
 }
 
-// @return whether no signal came before or meanwhile
-bool run_checks(StudyResults &results, bool quick, Run &run)
+void run_checks(StudyResults &results, bool quick, Run &run)
 {
   const auto phase = run.info().stopwatch().phase("checks");
   for (const std::string &name : results.study.checks)
   {
-    if (signal_came())
-      return false;
     if (run.talks())
       std::cout << "check " << name << std::endl;
     results.checks.push_back(run_check(name, quick, run.directory()));
   }
-  return !signal_came();
 }
 
 // Checks the claims on the base case, small version, in the place of the runs. @throws ClaimFailed
@@ -252,13 +256,20 @@ ExitCode run_study(const Options &options, const std::string &name)
   results.is_verified = !skip_verification;
   if (options.quick && !options.skip_verification)
     verify_base(results.study, options.overrides, run);
-  bool complete = run_children(results, options, skip_verification, n_cores, run);
-  complete = complete && run_checks(results, options.quick, run);
-
+  const auto write_tables = [&]
+  {
+    write_file(run.directory() + "/study.json", study_json(results));
+    write_file(run.directory() + "/study.csv", study_csv(results));
+  };
+  const bool complete = run_children(results, options, skip_verification, n_cores, run);
   results.claims = judge(results.study, results.plan, results.outcomes);
+  write_tables();
+  if (complete && !results.study.checks.empty())
+  {
+    run_checks(results, options.quick, run);
+    write_tables();
+  }
   const Results rows = study_rows(results);
-  write_file(run.directory() + "/study.json", study_json(results));
-  write_file(run.directory() + "/study.csv", study_csv(results));
   if (run.talks())
     print_table(std::cout, results);
   const ExitCode exit_code = run.end(rows, complete ? exit_code_of(results, rows) : ExitCode::interrupted);

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <stdexcept>
 
 #include <vtkCellArray.h>
 #include <vtkCellType.h>
@@ -36,7 +37,14 @@ auto read_data(const FrameFile &file)
   reader->SetFileName(file.path.c_str());
   if (reader->CanReadFile(file.path.c_str()) != 1)
     fail(file, "not a VTK file of the kind that its name says");
-  reader->Update();
+  try
+  {
+    reader->Update();
+  }
+  catch (const std::length_error &)
+  {
+    fail(file, "damaged: the size of an array is impossible");
+  }
   vtkSmartPointer data = reader->GetOutput();
   if (!quiet.error().empty())
     fail(file, "damaged: " + quiet.error());

@@ -115,8 +115,7 @@ bool is_begun(const PlannedRun &run, const std::string &folder, const bool skip_
 {
   const Json info = object_in(folder + "/run.json");
   return content(folder + "/case.prm") == run.case_text &&
-         value_or(info, "version", std::string()) == program_version() &&
-         value_or(info, "git_commit", std::string()) == git_commit() &&
+         value_or(info, "program_hash", std::string()) == program_hash() &&
          value_or(info, "skip_verification", !skip_verification) == skip_verification;
 }
 

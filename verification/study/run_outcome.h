@@ -44,12 +44,12 @@ struct RunOutcome
 [[nodiscard]] RunOutcome read_outcome(const PlannedRun &run, const std::string &folder,
                                       std::optional<int> exit_code = {});
 
-/// Whether a folder holds what has become so far of a run of exactly this case, by this version and commit of the
-/// program, verified or not as asked.
+/// Returns whether a folder holds a possibly unfinished run of exactly this case, by exactly this program (its bytes),
+/// verified or not as asked.
 [[nodiscard]] bool is_begun(const PlannedRun &run, const std::string &folder, bool skip_verification);
 
-/// Whether a folder holds the measured run of exactly this case, by this version and commit of the program, verified or
-/// not as asked.
+/// Returns whether a folder holds the measured run of exactly this case, by exactly this program, verified or not as
+/// asked.
 [[nodiscard]] bool is_finished(const PlannedRun &run, const std::string &folder, bool skip_verification);
 
 } // namespace verification

@@ -3,8 +3,6 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <map>
 #include <set>
 #include <stdexcept>
@@ -13,6 +11,7 @@
 #include "verification/case_text.h"
 #include "verification/data_folder.h"
 #include "verification/errors.h"
+#include "verification/input_file.h"
 #include "verification/study/quantities.h"
 #include "verification/study/study_check.h"
 #include "verification/study/study_json.h"
@@ -393,11 +392,10 @@ Study read_study(const std::string &text, const std::string &path, const bool qu
 
 Study read_study_file(const std::string &path, const bool quick)
 {
-  std::error_code status;
-  std::ifstream file(path, std::ios::binary);
-  if (std::filesystem::is_directory(path, status) || !file)
-    throw InputError(printable(path) + ": cannot read the study; give a " + study_choices());
-  return read_study({std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()}, path, quick);
+  const InputFile file = read_input_file(path);
+  if (!file.problem.empty())
+    throw InputError(printable(path) + ": cannot read the study: " + file.problem + "; give a " + study_choices());
+  return read_study(file.text, path, quick);
 }
 
 } // namespace verification

@@ -9,6 +9,7 @@
 #include "verification/case_text.h"
 #include "verification/errors.h"
 #include "verification/homogenisation.h"
+#include "verification/input_file.h"
 #include "verification/lattice_sheet.h"
 #include "verification/resources/resources.h"
 
@@ -31,7 +32,8 @@ std::map<std::string, double> numbers_in(const std::string &case_text)
   return numbers;
 }
 
-PlannedRun plan_run(const Study &study, const StudyRun &run, const std::uint64_t seed, const Settings &settings)
+PlannedRun plan_run(const Study &study, const InputFile &base, const StudyRun &run, const std::uint64_t seed,
+                    const Settings &settings)
 {
   PlannedRun planned;
   planned.run = run.name;
@@ -40,14 +42,18 @@ PlannedRun plan_run(const Study &study, const StudyRun &run, const std::uint64_t
   override_settings(all, settings);
   override_settings(
     all, {{seed_entry, std::to_string(seed)}, {"Output/frame interval", "0"}, {"Output/motion frames", "0"}});
+  std::vector<std::string> changes;
   for (const auto &[key, value] : all)
-    planned.overrides.push_back(key + "=" + value);
+    changes.push_back(key + "=" + value);
 
   Case input;
   Parameters parameters;
   input.declare(parameters);
-  parameters.read_file(study.base);
-  parameters.read_overrides(planned.overrides);
+  if (base.problem.empty())
+    parameters.read_text(base.text, study.base);
+  else
+    parameters.read_file(study.base); // which says the same
+  parameters.read_overrides(changes);
   input.check(parameters);
   require_fracture_case(input, parameters);
   parameters.finish();
@@ -124,13 +130,14 @@ std::optional<double> PlannedRun::value(const std::string &against) const
 std::vector<PlannedRun> plan_runs(const Study &study, const std::vector<std::string> &settings)
 {
   const Settings overrides = parsed(settings);
+  const InputFile base = read_input_file(study.base); // once: all runs are of the same case
   std::vector<PlannedRun> runs;
   std::vector<std::string> problems;
   for (const StudyRun &run : study.runs)
     try
     {
       for (const std::uint64_t seed : run.seeds)
-        runs.push_back(plan_run(study, run, seed, overrides));
+        runs.push_back(plan_run(study, base, run, seed, overrides));
     }
     catch (const InputError &error)
     {

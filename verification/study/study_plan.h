@@ -19,8 +19,7 @@ struct PlannedRun
 {
   std::string run;
   std::uint64_t seed = 0;
-  std::vector<std::string> overrides;    ///< `Section/Name=value` of the base case
-  std::string case_text;                 ///< the case.prm it will write
+  std::string case_text;                 ///< resolved, with every entry; the case.prm it will write
   double spacing = 0.;                   ///< d [m]
   std::optional<double> zeta;            ///< see zeta()
   std::map<std::string, double> entries; ///< those entries of the case that are numbers, in SI

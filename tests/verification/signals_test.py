@@ -1,0 +1,195 @@
+#!/usr/bin/python3
+"""Signals: every command ends soon, with exit code 130, and says so in run.json.
+
+Usage: signals_test.py PATH_OF_LATCON
+"""
+import json
+import os
+import resource
+import shutil
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+sys.dont_write_bytecode = True
+from program import CASES, LATCON, TemporaryFolder, latcon
+
+QUICK = str(CASES / "quick.prm")
+TINY = [QUICK, "--set", "Sheet/length=10 mm", "--set", "Sheet/height=6 mm"]
+INTERRUPTED = 130
+# A command that does not end by itself in this time [s] was not ended by a signal either.
+HANGS = 20
+ALL = ("SIGINT", "SIGTERM", "SIGHUP", "SIGUSR1", "SIGUSR2", "SIGALRM", "SIGXCPU")
+
+
+def wait_for(condition, process, seconds=60):
+    deadline = time.monotonic() + seconds
+    while not condition() and process.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.01)
+    return condition()
+
+
+def children(process):
+    text = (f"/proc/{process}/task/{process}/children")
+    with open(text) as file:
+        return [int(child) for child in file.read().split()]
+
+
+class Started(TemporaryFolder):
+    def start(self, *arguments, launcher=(), **keywords):
+        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+        process = subprocess.Popen([*launcher, LATCON, *map(str, arguments)], stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE, text=True, env=environment, **keywords)
+        self.addCleanup(self.end, process)
+        return process
+
+    @staticmethod
+    def end(process):
+        if process.poll() is None:
+            process.kill()
+        process.communicate()
+
+    def info(self):
+        return json.loads((self.out / "run.json").read_text())
+
+    def started(self, process):
+        self.assertTrue(wait_for((self.out / "run.json").exists, process), "it has not begun")
+
+    def ends(self, process, message="interrupted by SIG"):
+        _, errors = process.communicate(timeout=HANGS)
+        self.assertEqual(process.returncode, INTERRUPTED, errors)
+        self.assertIn(message, errors)
+        self.assertNotIn("Traceback", errors)
+
+
+class WithoutSteps(Started):
+    """Commands and phases that save nothing on the way end at once."""
+
+    def is_ended(self, *arguments, begun=None, number=signal.SIGINT):
+        process = self.start(*arguments, "--output-dir", self.out)
+        self.started(process)
+        if begun:
+            self.assertTrue(wait_for(begun, process))
+        process.send_signal(number)
+        self.ends(process)
+        self.assertEqual(self.info()["exit_code"], INTERRUPTED)
+
+    def test_verify_keeps_the_claims_that_are_done(self):
+        results = self.out / "results.json"
+        self.is_ended("verify", begun=results.exists, number=signal.SIGTERM)
+        claims = {row["claim"] for row in json.loads(results.read_text())["claims"]}
+        self.assertEqual(claims, {"energy"})
+        self.assertIsNone(self.info()["verdict"])
+
+    def test_relaxation(self):
+        self.is_ended("lattice", QUICK, "--set", "Sheet/length=45 cm", "--set", "Sheet/height=25 cm",
+                      begun=(self.out / "lattice-0000.vtp").exists)
+
+    def test_finite_element_equilibrium(self):
+        self.is_ended("continuum", CASES / "hole.prm", "--set", "Continuum/refinements=3",
+                      begun=(self.out / "continuum.pvd").exists)
+
+    def test_claims_before_a_crack(self):
+        self.is_ended("fracture", QUICK)
+        self.assertFalse((self.out / "crack.json").exists())
+
+    def test_checks_of_a_study(self):
+        study = self.folder / "study.json"
+        study.write_text(json.dumps({"title": "t", "base": QUICK, "checks": ["steady-crack"], "runs": {"a": {
+            "set": {"Sheet/length": "10 mm", "Sheet/height": "6 mm", "Time/end": "0.01 ms"}}}, "claims": [
+            {"claim": "c", "paper": "s", "rows": [{"run": "a", "quantity": "pattern"}]}]}))
+        self.is_ended("study", study, "--skip-verification", begun=(self.out / "study.json").exists)
+        self.assertTrue((self.out / "runs" / "a-1" / "crack.json").exists())
+
+    def test_dry_run(self):
+        study = self.folder / "study.json"
+        seeds = list(range(20000))
+        study.write_text(json.dumps({"title": "t", "base": QUICK, "runs": {"a": {"seeds": seeds}}, "claims": [
+            {"claim": "c", "paper": "s", "rows": [{"run": "a", "quantity": "pattern"}]}]}))
+        process = self.start("study", study, "--dry-run")
+        time.sleep(1)
+        process.send_signal(signal.SIGINT)
+        self.ends(process)
+
+    def test_report_ends_with_its_script(self):
+        self.assertEqual(latcon("fracture", *TINY, "--set", "Time/end=0.01 ms", "--skip-verification", "--no-report",
+                                "--output-dir", self.out).returncode, 0)
+        process = self.start("report", self.out, start_new_session=True)
+        self.assertTrue(wait_for(lambda: children(process.pid), process))
+        script = children(process.pid)[0]
+        time.sleep(0.5)
+        os.killpg(process.pid, signal.SIGINT)  # as the keyboard does
+        self.ends(process)
+        self.assertTrue(wait_for(lambda: not os.path.exists(f"/proc/{script}/exe"), process, 5))
+
+
+class Motions(Started):
+    """Motions write a checkpoint, their last frame and tables."""
+
+    def motion(self, *more, length="30 cm", end="1"):
+        return ["fracture", QUICK, "--skip-verification", "--set", f"Time/end={end}", "--set", f"Sheet/length={length}",
+                "--threads", "1", *more, "--output-dir", self.out]
+
+    def is_saved(self, process):
+        self.ends(process, "")
+        self.assertEqual(self.info()["exit_code"], INTERRUPTED)
+        self.assertTrue(list((self.out / "checkpoints").glob("*.h5")))
+        self.assertTrue((self.out / "crack.csv").exists())
+
+    def test_every_signal_saves_and_draws_no_report(self):
+        for name in ALL:
+            with self.subTest(name):
+                process = self.start(*self.motion())
+                self.assertTrue(wait_for((self.out / "lattice.pvd").exists, process))
+                process.send_signal(getattr(signal, name))
+                self.is_saved(process)
+                self.assertFalse((self.out / "report.html").exists())
+                shutil.rmtree(self.out)
+
+    def test_the_limit_of_the_processor_time(self):
+        process = self.start(*self.motion(), preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (4, 60)))
+        self.is_saved(process)
+
+    def test_a_signal_to_one_of_two_ranks(self):
+        for _ in range(3):
+            process = self.start(*self.motion("--set", "Fracture/stop position=0.99", length="10 cm"), launcher=["mpirun", "--oversubscribe", "-n", "2"])
+            self.assertTrue(wait_for((self.out / "lattice.pvd").exists, process))
+            os.kill(max(children(process.pid)), signal.SIGTERM)
+            self.is_saved(process)
+            shutil.rmtree(self.out)
+
+    def test_a_signal_to_one_of_two_ranks_before_the_motion(self):
+        process = self.start("fracture", QUICK, "--output-dir", self.out, launcher=["mpirun", "--oversubscribe", "-n", "2"])
+        self.started(process)
+        os.kill(max(children(process.pid)), signal.SIGTERM)
+        self.ends(process)
+        self.assertEqual(self.info()["exit_code"], INTERRUPTED)
+
+    def test_ignored_hangup_stays_ignored(self):
+        process = self.start(*self.motion("--no-report", length="4 cm", end="0.2 ms"),
+                             launcher=["nohup"])
+        self.assertTrue(wait_for((self.out / "lattice.pvd").exists, process))
+        process.send_signal(signal.SIGHUP)
+        process.communicate(timeout=120)
+        self.assertEqual(process.returncode, 0)
+
+    def test_a_reader_that_leaves_ends_nothing(self):
+        command = [LATCON, *map(str, self.motion("--no-report", length="4 cm", end="0.02 ms"))]
+        process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+        process.stdout.close()
+        process.stderr.read()
+        self.assertEqual(process.wait(60), 0)
+        process.stderr.close()
+        self.assertEqual(self.info()["exit_code"], 0)
+
+    def test_the_limit_of_the_size_of_files_is_5(self):
+        process = self.start(*self.motion(), preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_FSIZE, (10000, 10000)))
+        _, errors = process.communicate(timeout=HANGS)
+        self.assertEqual(process.returncode, 5, errors)
+        self.assertIn("File too large", errors)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,45 @@
+/// Signals that end a run: of the keyboard, of `kill`, of terminals that close, and of batch systems.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace verification
+{
+
+/// From here on SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGALRM and SIGXCPU end the process with
+/// ExitCode::interrupted, at once or after the deferral that is under way. Signals that are ignored when the program
+/// starts (`nohup`) stay ignored. SIGPIPE and SIGXFSZ are ignored, so that writing fails instead. Starts a thread that
+/// waits for signals. To be called once.
+void install_signal_handlers();
+
+/// While one exists, a signal does not end the process: the phase polls any_rank_interrupted() and ends by itself, with
+/// its state saved. A signal that no poll has found ends the process when the last deferral does. May be nested.
+class SignalDeferral
+{
+public:
+  SignalDeferral();
+  ~SignalDeferral();
+  SignalDeferral(const SignalDeferral &) = delete;
+  SignalDeferral &operator=(const SignalDeferral &) = delete;
+};
+
+/// Returns whether a signal has come to any rank. If so, the caller saves its state and ends the program, on all ranks:
+/// from then on signals have no effect. Collective.
+bool any_rank_interrupted();
+
+/// Returns whether any_rank_interrupted() has been true: the run ends early. The same on all ranks.
+bool interrupted();
+
+/// Sets what the thread that waits for signals does before it ends the process: saves what is known, without MPI, while
+/// the other threads continue. Exceptions of it are ignored.
+void on_interruption(std::function<void()> action);
+
+/// From here on signals have no effect: the exit code is decided. Does not return if one is ending the process.
+void disregard_signals();
+
+/// Time steps of a lattice between two calls of any_rank_interrupted(): less than some milliseconds, or a few steps of
+/// a large sheet.
+inline constexpr std::size_t steps_between_signals = 16;
+
+} // namespace verification
