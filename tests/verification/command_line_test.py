@@ -453,52 +453,6 @@ class ExitCodes(TemporaryFolder):
         self.assertEqual(run.returncode, 3, run.stderr + run.stdout)
         self.assertFalse((self.out / "crack.csv").exists())
 
-    def test_state_that_blows_up_is_4(self):
-        # The step is stable for the undeformed lattice, which is all the input check can tell, but bonds squeezed to 0.4
-        # are 28 times as stiff.
-        run = latcon("lattice", CASES / "quick.prm", "--output-dir", self.out, "--set", "Lattice/solution=motion",
-                     "--set", "Time/end=10 ms", "--set", "Time/step=1e-5", "--set", "Loading/strain x=-0.6", "--set",
-                     "Loading/strain y=-0.6", "--set", "Nearest neighbours/viscosity=0", "--set",
-                     "Next-nearest neighbours/viscosity=0")
-        self.assertEqual(run.returncode, 4, run.stderr)
-        self.assertIn("blew up", run.stderr)
-
-    def test_files_of_the_run_before_are_moved_aside(self):
-        def run(*words):
-            done = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, *BARE, "--skip-verification", *words)
-            self.assertEqual(done.returncode, 0, done.stderr)
-            return done.stdout
-
-        def lattice_frames(folder):
-            return sorted(path.name for path in folder.glob("lattice-*.vtp"))
-
-        self.assertNotIn("earlier-run", run("--set", "Output/frame interval=0.1 ms"))
-        (self.out / "notes.txt").write_text("mine")
-        before = lattice_frames(self.out)
-        first = (self.out / "crack.csv").read_bytes()
-        self.assertIn(f"now in {self.out}/earlier-run\n", run("--set", "Output/frame interval=1 ms"))
-        named = sorted(path.name for _, path in frames(self.out / "lattice.pvd"))
-        self.assertEqual(lattice_frames(self.out), named)
-        self.assertLess(len(named), len(before))
-        self.assertEqual(lattice_frames(self.out / "earlier-run"), before)
-        self.assertEqual((self.out / "earlier-run" / "crack.csv").read_bytes(), first)
-        self.assertTrue((self.out / "notes.txt").exists())
-        # A crack that is refused leaves nothing of the one before beside its own files, and the report shows one run.
-        refused = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, *TINY, "--set", "Loading/strain x=-0.3")
-        self.assertEqual(refused.returncode, 3)
-        self.assertFalse(any((self.out / name).exists() for name in ("crack.json", "crack.csv", "crack_path.png")))
-        self.assertNotIn("earlier-run", latcon("report", self.out).stdout)
-        # A case that lies there stays, one's own is not overwritten.
-        again = latcon("lattice", self.out / "case.prm", "--output-dir", self.out, "--set", "Loading/strain x=0.1",
-                       "--set", "Fracture/breaking stretch=auto")
-        self.assertEqual(again.returncode, 0, again.stderr)
-        (self.folder / "own").mkdir()
-        (self.folder / "own" / "case.prm").write_text((CASES / "quick.prm").read_text())
-        refused = latcon("lattice", self.folder / "own" / "case.prm", "--output-dir", self.folder / "own")
-        self.assertEqual(refused.returncode, 2)
-        self.assertIn("overwrite its own case", refused.stderr)
-        self.assertEqual((self.folder / "own" / "case.prm").read_text(), (CASES / "quick.prm").read_text())
-
     def test_unwritable_place_is_5(self):
         blocked = self.folder / "file"
         blocked.write_text("in the way")

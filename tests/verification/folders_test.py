@@ -13,7 +13,7 @@ import time
 import unittest
 
 sys.dont_write_bytecode = True
-from program import CASES, LATCON, TemporaryFolder, latcon, latcon_on_ranks
+from program import CASES, LATCON, TemporaryFolder, frames, latcon, latcon_on_ranks
 
 QUICK = str(CASES / "quick.prm")
 TINY = [QUICK, "--set", "Sheet/length=10 mm", "--set", "Sheet/height=6 mm", "--set", "Time/end=0.01 ms"]
@@ -22,6 +22,8 @@ LONG = ["fracture", QUICK, "--skip-verification", "--no-report", "--quiet", "--t
         "--set", "Output/frame interval=0.02 ms", "--set", "Checkpoints/steps=64"]
 ENDLESS = [*LONG, "--set", "Sheet/length=30 cm"]
 LOCK = ".latcon.lock"
+# A crack runs through it in a second.
+STRIP = ["--set", "Sheet/length=2.5 cm", "--set", "Sheet/height=1.5 cm", "--set", "Time/end=1.5 ms"]
 
 
 def wait_for(path, process, seconds=60):
@@ -187,6 +189,44 @@ class Planted(Running):
         self.assertEqual(latcon("lattice", *TINY, "--output-dir", self.out).returncode, 0)
         self.assertFalse([path for path in stale if path.exists()])
         self.assertEqual(own.read_text(), "half")
+
+
+class EarlierRuns(TemporaryFolder):
+    def test_files_of_the_run_before_are_moved_aside(self):
+        def run(*words):
+            done = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, *STRIP, "--no-report", "--skip-verification", *words)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            return done.stdout
+
+        def lattice_frames(folder):
+            return sorted(path.name for path in folder.glob("lattice-*.vtp"))
+
+        self.assertNotIn("earlier-run", run("--set", "Output/frame interval=0.1 ms"))
+        (self.out / "notes.txt").write_text("mine")
+        before = lattice_frames(self.out)
+        first = (self.out / "crack.csv").read_bytes()
+        self.assertIn(f"now in {self.out}/earlier-run\n", run("--set", "Output/frame interval=1 ms"))
+        named = sorted(path.name for _, path in frames(self.out / "lattice.pvd"))
+        self.assertEqual(lattice_frames(self.out), named)
+        self.assertLess(len(named), len(before))
+        self.assertEqual(lattice_frames(self.out / "earlier-run"), before)
+        self.assertEqual((self.out / "earlier-run" / "crack.csv").read_bytes(), first)
+        self.assertTrue((self.out / "notes.txt").exists())
+        # A crack that is refused leaves nothing of the one before beside its own files, and the report shows one run.
+        refused = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, *STRIP, "--set", "Loading/strain x=-0.3")
+        self.assertEqual(refused.returncode, 3)
+        self.assertFalse(any((self.out / name).exists() for name in ("crack.json", "crack.csv", "crack_path.png")))
+        self.assertNotIn("earlier-run", latcon("report", self.out).stdout)
+        # A case that lies there stays, one's own is not overwritten.
+        again = latcon("lattice", self.out / "case.prm", "--output-dir", self.out, "--set", "Loading/strain x=0.1",
+                       "--set", "Fracture/breaking stretch=auto")
+        self.assertEqual(again.returncode, 0, again.stderr)
+        (self.folder / "own").mkdir()
+        (self.folder / "own" / "case.prm").write_text((CASES / "quick.prm").read_text())
+        refused = latcon("lattice", self.folder / "own" / "case.prm", "--output-dir", self.folder / "own")
+        self.assertEqual(refused.returncode, 2)
+        self.assertIn("overwrite its own case", refused.stderr)
+        self.assertEqual((self.folder / "own" / "case.prm").read_text(), (CASES / "quick.prm").read_text())
 
 
 if __name__ == "__main__":

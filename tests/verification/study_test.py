@@ -128,10 +128,21 @@ class Study(TemporaryFolder):
         self.assertIn("Incomplete: 1 row holds", self.text("study.html"))
 
     def test_child_that_fails_is_4_and_stops_no_other(self):
-        def change(document):  # a step that squeezed bonds, which are stiffer, do not bear
-            document["runs"]["low"]["set"].update({"Time/step": 1e-5, "Nearest neighbours/viscosity": 0,
-                                                   "Loading/strain x": -0.6, "Loading/strain y": -0.6})
-        printed = self.study(change=change, expect=4)
+        """A run that the system kills, as it does where memory ends."""
+        path = self.folder / "tiny.json"
+        path.write_text(json.dumps(TINY))
+        process = subprocess.Popen([LATCON, "study", path, "--output-dir", self.out, "--skip-verification", "--threads", "1"],
+                                   stdout=subprocess.PIPE, text=True)
+        killed = None
+        while killed is None and process.poll() is None:
+            for child in children(process.pid):
+                if any("low-1" in word for word in words_of(child)):
+                    os.kill(int(child), signal.SIGKILL)
+                    killed = child
+            time.sleep(0.01)
+        printed = process.communicate(timeout=300)[0]
+        self.assertIsNotNone(killed)
+        self.assertEqual(process.returncode, 4, printed)
         self.assertIn("failed", printed)
         states = {line["run"]: line["state"] for line in read_csv(self.out / "study.csv")}
         self.assertEqual(states, {"base": "measured", "low": "failed", "thin": "measured"})
