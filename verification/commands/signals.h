@@ -8,8 +8,8 @@ namespace verification
 {
 
 /// From here on SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGALRM and SIGXCPU end the process with
-/// ExitCode::interrupted, at once or after the deferral that is under way. Signals that are ignored when the program
-/// starts (`nohup`) stay ignored. SIGPIPE and SIGXFSZ are ignored, so that writing fails instead. Starts a thread that
+/// ExitCode::interrupted, at once or after the deferral that is under way. A SIGHUP that is ignored when the program
+/// starts (`nohup`) stays ignored. SIGPIPE and SIGXFSZ are ignored, so that writing fails instead. Starts a thread that
 /// waits for signals. To be called once.
 void install_signal_handlers();
 
