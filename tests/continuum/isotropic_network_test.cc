@@ -40,8 +40,8 @@ CauchyBorn in_directions(const std::vector<FibreFamily> &families, const unsigne
   return CauchyBorn(turned);
 }
 
-// Paper's lattice with the area factors of its Fig. 1, rows along x.
-CauchyBorn fig1_network()
+// Paper's lattice with the area factors of quick.prm, rows along x.
+CauchyBorn quick_network()
 {
   std::vector<FibreFamily> families;
   for (int k = 0; k < 6; ++k)
@@ -221,7 +221,7 @@ TEST(IsotropicNetwork, HasHandWorkedValues)
 // stretches, and elsewhere what an independent script found, in two digits.
 TEST(IsotropicNetwork, MissesTheLatticeByItsAnisotropyAlone)
 {
-  const CauchyBorn lattice = fig1_network();
+  const CauchyBorn lattice = quick_network();
   const IsotropicNetwork law(lattice.families());
   const auto expect_two_digits = [](const double value, const double digits)
   { EXPECT_NEAR(value / digits, 1., 0.05) << value; };

@@ -24,8 +24,8 @@ RotationMean over_rotations(const Values &values)
   return rotation_mean(columns);
 }
 
-// The paper's Fig. 1: s = 0.72, 0.81, and rows along x.
-continuum::CauchyBorn fig1_law()
+// Rubber of quick.prm: s = 0.72, 0.81, and rows along x.
+continuum::CauchyBorn quick_law()
 {
   Case input = subjects::paper_case();
   input.nearest.area_factor = 0.72;
@@ -53,7 +53,7 @@ TEST(RotationMean, SumsTheAmplitudesOfHarmonics)
 // one bond of each shell by an independent script. The energy attains its bound.
 TEST(RotationMean, BoundsWhatTheNetworkLeavesOut)
 {
-  const continuum::CauchyBorn lattice = fig1_law();
+  const continuum::CauchyBorn lattice = quick_law();
   const continuum::IsotropicNetwork network(lattice.families());
   struct Known
   {
@@ -100,7 +100,7 @@ TEST(RotationMean, BoundsWhatTheNetworkLeavesOut)
 // theory-comparison.md, eq. (H.16): what it leaves out of the energy is smaller by rho^2.
 TEST(RotationMean, LeavesOutTheThirdPowerOfTheDifferenceOfStretches)
 {
-  const continuum::CauchyBorn lattice = fig1_law();
+  const continuum::CauchyBorn lattice = quick_law();
   const continuum::IsotropicNetwork network(lattice.families());
   const double c1 = 0.72, c2 = std::sqrt(3.) * 0.81, a = 1e5, b = 1.5e5;
   for (const double L : {1.2, 1.8})

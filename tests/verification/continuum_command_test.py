@@ -139,13 +139,13 @@ def mean_rod(F, a, b):
 
 
 class NetworkLaw(TemporaryFolder):
-    """The homogeneous sheet of Fig. 1 in the Mooney-Rivlin law of the network, with its gradient energy."""
+    """The homogeneous sheet of quick.prm in the Mooney-Rivlin law of the network, with its gradient energy."""
 
     def test_is_the_mean_of_the_bonds_and_close_to_the_lattice(self):
         found = {}
         for law, gradient in (("mooney-rivlin-network", "network"), ("cauchy-born", "lattice")):
             out = self.folder / law
-            run = latcon("continuum", CASES / "fig1.prm", "--output-dir", out, "--quiet",
+            run = latcon("continuum", CASES / "quick.prm", "--output-dir", out, "--quiet",
                          *settings("Sheet/length=2 cm", "Sheet/height=1.5 cm", f"Continuum/law={law}",
                                    f"Continuum/gradient={gradient}", "Continuum/cells x=3", "Continuum/cells y=2"))
             self.assertEqual(run.returncode, 0, run.stderr)

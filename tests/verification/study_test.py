@@ -326,7 +326,7 @@ class Study(TemporaryFolder):
             self.assertIn(name, printed)
         self.assertIn("4 runs", printed)
         self.assertFalse(self.out.exists())
-        self.assertIn("fig1-5", latcon("study", "paper", "--dry-run").stdout)
+        self.assertIn("fig1-15", latcon("study", "paper", "--dry-run").stdout)
 
 
 if __name__ == "__main__":
