@@ -50,7 +50,8 @@ public:
   void write_measurement(const std::filesystem::path &directory, const lattice::CrackMeasurement &measurement,
                          double seed_tip_X, double breaking_stretch, bool skip_verification);
 
-  /// Saves or loads what was noted; see lattice::Simulation.
+  /// Saves or loads what was noted; see lattice::Simulation. The state now, which is loaded before, counts as sound:
+  /// checkpoints are made of sound states alone.
   template <class Archive>
   void archive(Archive &archive)
   {
@@ -60,6 +61,7 @@ public:
     archive("broken_at_tip", broken_at_tip_);
     archive.records("broken_bonds", broken_);
     archive.records("energies", energies_);
+    last_sound_ = {simulation_.state(), simulation_.band()};
   }
 
 private:
