@@ -33,59 +33,7 @@ HWY_INLINE std::size_t width()
   return hn::Lanes(D());
 }
 
-// Numbers to the formulas that are written for any. The constructors are written out: a compiler generates its own at
-// the end of the file, for another instruction set.
-struct Lanes
-{
-  HWY_INLINE Lanes() {}
-  HWY_INLINE Lanes(Vector vector) : v(vector) {}
-
-  Vector v;
-};
-HWY_INLINE Lanes operator+(Lanes a, Lanes b)
-{
-  return {hn::Add(a.v, b.v)};
-}
-HWY_INLINE Lanes operator-(Lanes a, Lanes b)
-{
-  return {hn::Sub(a.v, b.v)};
-}
-HWY_INLINE Lanes operator*(Lanes a, Lanes b)
-{
-  return {hn::Mul(a.v, b.v)};
-}
-HWY_INLINE Lanes lanes(double a)
-{
-  return {hn::Set(D(), a)};
-}
-HWY_INLINE Lanes operator*(double a, Lanes b)
-{
-  return lanes(a) * b;
-}
-HWY_INLINE Lanes operator-(double a, Lanes b)
-{
-  return lanes(a) - b;
-}
-HWY_INLINE Lanes operator-(Lanes a, double b)
-{
-  return a - lanes(b);
-}
-HWY_INLINE Lanes load(const double *from)
-{
-  return {hn::LoadU(D(), from)};
-}
-HWY_INLINE void store(Lanes a, double *to)
-{
-  hn::StoreU(a.v, D(), to);
-}
-HWY_INLINE Lanes square_root(Lanes a)
-{
-  return {hn::Sqrt(a.v)};
-}
-HWY_INLINE Lanes reciprocal(Lanes a)
-{
-  return {hn::Div(hn::Set(D(), 1.), a.v)};
-}
+#include "lattice/lanes.inc"
 
 #include "lattice/bond_force.inc"
 

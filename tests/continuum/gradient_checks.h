@@ -118,7 +118,7 @@ FadFad differentiated(const Energy &energy, const Tensor<2, 2> &F, const Gradien
   return energy(v);
 }
 
-// A sum of some hundred terms, each good to a few roundings; scale is what they are made of.
+// A sum of a few hundred terms, each good to a few roundings; scale is what they are made of.
 constexpr double roundings = 300.;
 
 // At principal stretches from `low` to `high`; `condition` is how much faster than F the energy varies.
