@@ -156,7 +156,6 @@ class Study(TemporaryFolder):
         self.assertIn("refused: verification", self.text("study.csv"))
         (seed,) = json.loads(self.text("study.json"))["seeds"]
         self.assertIn("no crack was run", seed["problem"])
-        self.assertIn("it buckles", seed["problem"])
 
     def test_resume_repeats_nothing_and_gives_the_same_files(self):
         self.study()
@@ -266,7 +265,7 @@ class Study(TemporaryFolder):
             for child in runs:
                 times.setdefault(child, {}).update(seconds_of_threads(child))
             time.sleep(0.02)
-        self.assertEqual(process.returncode, 0)
+        self.assertEqual(process.returncode, 3)  # not measured: a millisecond is too short for a speed
         self.assertEqual(most_at_once, 2)
         self.assertEqual(len(times), 2)
         for of_run in times.values():
@@ -277,7 +276,9 @@ class Study(TemporaryFolder):
             self.assertGreater(busiest, 3 * idle)
 
     def test_quick_study_verifies_the_base_case_once(self):
-        printed = self.study("--quick", skip=False, change=lambda document: document.update(checks=["steady-crack"]))
+        # Its row is not measured: no crack of the quick version runs far enough to have a speed.
+        printed = self.study("--quick", skip=False, expect=3,
+                             change=lambda document: document.update(checks=["steady-crack"]))
         self.assertIn("claims: checked now", printed)
         document = json.loads(self.text("study.json"))
         self.assertTrue(document["quick"])
