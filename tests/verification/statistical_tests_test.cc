@@ -213,7 +213,7 @@ TEST(IsotonicTest, FindsWhatIsNotThereAsOftenAsItSays)
     const Shares flat = shares_of(std::vector<double>(n.size(), 0.), n);
     EXPECT_LE(flat.rise, above_nominal(n_draws)); // a rise where there is none
     EXPECT_LE(flat.fall, above_nominal(n_draws)); // a fall where there is none
-    EXPECT_GE(flat.rise, 0.04);                   // and not for want of trying
+    EXPECT_GE(flat.rise, 0.04);                   // and the test does decide
     EXPECT_GE(flat.fall, 0.04);
   }
   // Rising until it saturates is never falling: the rule fails such a sequence less often than a flat one.
