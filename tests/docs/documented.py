@@ -30,8 +30,10 @@ class Reference:
         self.rows = rows_of_tables(self.text)
 
     def about(self, name):
-        """What is said of a file: rows and tables that begin with its name, numbers in it written as N or STEP."""
-        patterns = {name, re.sub(r"\d{4}", "NNNN", name), re.sub(r"-\d+\.h5$", "-STEP.h5", name)}
+        """What is said of a file: rows and tables that begin with its name, numbers in it and runs of a
+        study by their place holders."""
+        patterns = {name, re.sub(r"^.+-\d+\.prm$", "cases/NAME-SEED.prm", name), re.sub(r"\d{4}", "NNNN", name),
+                    re.sub(r"-\d+\.h5$", "-STEP.h5", name)}
         return "\n".join(said for first, said in self.rows if patterns & set(re.findall(r"`([^`]+)`", first)))
 
     def field(self, name):

@@ -41,7 +41,8 @@ MATERIALS = {
 WAVES = ("energy", "wave-speeds", "intrinsic-length")
 # Pure shear, as in the rubber test strip; uniaxial; far stretched; pushed together; at the border of stability.
 SOME = [("rubber", 0.0, 0.3), ("rubber", 0.0, 1.8), ("rubber", 2.0, 0.5), ("rubber", 3.0, 3.0), ("rubber", -0.3, 0.03),
-        ("rubber", -0.3, 1.0), ("rubber", -0.15, 0.1), ("linear", -0.15, 0.6), ("10 MPa", 0.3, 0.03), ("undamped", 3.0, 0.03)]
+        ("rubber", -0.3, 1.0), ("rubber", -0.15, 0.1), ("a = 0", 0.0, 3.0), ("linear", -0.15, 0.6), ("10 MPa", 0.3, 0.03),
+        ("10 kPa", 1.3, 1.8), ("undamped", 3.0, 0.03)]
 # The row by which a state may be refused.
 REASON = "stability of the loaded lattice"
 
