@@ -30,7 +30,7 @@ class Field:
 
 FIELDS = {
     "stretch": Field("stretch", "CELLS", None, "Viridis (matplotlib)",
-                     "stretch of a bond [1]; red: beyond the breaking stretch"),
+                     "stretch of a bond [1]; orange: beyond the breaking stretch"),
     "speed": Field("velocity", "POINTS", None, "Inferno (matplotlib)", "speed of the material [m/s]"),
     "opening-stress": Field("cauchy_stress", "POINTS", TENSOR["yy"], "Viridis (matplotlib)",
                             "Cauchy stress yy, across the crack [Pa]"),

@@ -116,7 +116,7 @@ def show_sheet(view, sheet, bounds, chosen):
     set_scale(lut, (low, breaking or high), "Viridis (matplotlib)")
     if breaking:
         lut.UseAboveRangeColor, lut.AboveRangeColor = 1, BEYOND
-    view.show_bar(display, lut, "stretch of a bond [1]" + ("; red: beyond the breaking stretch" if breaking else ""))
+    view.show_bar(display, lut, "stretch of a bond [1]" + ("; orange: beyond the breaking stretch" if breaking else ""))
 
 
 def draw(chosen):

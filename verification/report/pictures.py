@@ -108,7 +108,7 @@ def draw_sheet(frame, breaking_stretch, path):
 
     bar = page.figure.colorbar(bonds, cax=page.axes(0.7, height + 1.0, width, 0.16), orientation="horizontal",
                                extend="both" if values[-1] > top else "min")
-    beyond = f"; red: beyond the breaking stretch {breaking_stretch:.4g} (toughened)" if top == breaking_stretch else ""
+    beyond = f"; orange: beyond the breaking stretch {breaking_stretch:.4g} (toughened)" if top == breaking_stretch else ""
     bar.set_label(f"stretch of a bond, current over undeformed length [1]{beyond}")
     bar.outline.set_visible(False)
     save(page.figure, path)
