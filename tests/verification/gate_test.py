@@ -23,18 +23,19 @@ TINY = ["--set", "Sheet/length=2.5 cm", "--set", "Sheet/height=1.5 cm", "--set",
 FAILING = ["--set", "Loading/strain x=-0.3"]
 
 
-class Gate(TemporaryFolder):
+class WithStore(TemporaryFolder):
     """Every test finds the verdicts of one run that was checked before, in a store of its own."""
+    MORE, EXPECT = [], 0  # entries of that run, its exit code
 
     @classmethod
     def setUpClass(cls):
         cls.shared = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.shared.cleanup)
-        before = cls("fracture")
+        before = cls("stored")
         before.folder = pathlib.Path(cls.shared.name)
         before.out, before.cache = before.folder / "out", before.folder / "cache"
         before.environment = dict(os.environ, XDG_CACHE_HOME=str(before.cache))
-        cls.first_text, cls.first = before.fracture()
+        cls.first_text, cls.first = before.fracture(*cls.MORE, expect=cls.EXPECT)
         cls.first_rows, cls.first_cache = before.claims(), before.cache
 
     def setUp(self):
@@ -60,6 +61,8 @@ class Gate(TemporaryFolder):
         rows = json.loads((self.out / "results.json").read_text())["claims"]
         return [row for row in rows if row["claim"] != "fracture"]
 
+
+class Gate(WithStore):
     def test_second_run_reuses_and_says_so(self):
         first, rows = self.first, self.first_rows
         self.assertIn("claims: checked now", self.first_text)
@@ -149,36 +152,6 @@ class Gate(TemporaryFolder):
         path.symlink_to(self.folder / "elsewhere.json")
         self.assertFalse(self.fracture()[1]["verification"]["reused"])
 
-    def test_failure_is_refused_also_from_the_store(self):
-        shutil.rmtree(self.cache)
-        text, run = self.fracture(*FAILING, expect=3)
-        self.assertFalse(run["verification"]["reused"])
-        text, run = self.fracture(*FAILING, expect=3)
-        self.assertTrue(run["verification"]["reused"])
-        self.assertIn("no crack was run", text)
-        self.assertIn(f"delete {self.stored()[0]}", text)
-        self.assertTrue(any(row["verdict"] == "fails" for row in self.claims()))
-        self.assertFalse([path.name for path in self.out.iterdir() if re.match(r"crack|broken|lattice", path.name)])
-
-    def test_last_lines_name_the_rows_that_fail(self):
-        text, run = self.fracture(*FAILING, expect=3)
-        failing = [row for row in self.claims() if row["verdict"] == "fails"]
-        self.assertEqual(run["exit_code"], 3)
-        lines = text.splitlines()
-        self.assertIn(f"{len(failing)} of ", lines[-len(failing) - 1])
-        for row, line in zip(failing, lines[-len(failing):]):
-            self.assertIn(f"{row['claim']}: {row['quantity']}: error {row['error']:.3g}, tolerance", line)
-        self.assertTrue(any("it buckles in waves of kd = " in line for line in lines[-len(failing):]), text)
-        self.assertLess(len(lines), 16)
-
-    def test_refused_crack_leaves_its_report(self):
-        words = ["fracture", CASES / "quick.prm", "--output-dir", self.out, *TINY, *FAILING]
-        run = latcon(*words, env=self.environment)
-        self.assertEqual(run.returncode, 3)
-        self.assertIn(f"{self.out}/report.html\n", run.stdout)
-        page = (self.out / "report.html").read_text()
-        self.assertIn("it buckles", page)
-
     def test_laws_that_no_crack_uses_do_not_refuse_it(self):
         # The fitted law has its best ratio at the end of the interval, or a given one loses ellipticity on the way.
         for settings, word in ((["Loading/strain x=0", "Fracture/breaking stretch=3.2"], "at the end of the search interval"),
@@ -213,6 +186,39 @@ class Gate(TemporaryFolder):
         _, run = self.fracture("--skip-verification", "--set", "Material/density=951")
         self.assertNotIn("verification", run)
         self.assertEqual(self.stored(), before)
+
+
+class Refused(WithStore):
+    """A crack whose claims fail."""
+    MORE, EXPECT = FAILING, 3
+
+    def test_failure_is_refused_also_from_the_store(self):
+        self.assertFalse(self.first["verification"]["reused"])
+        text, run = self.fracture(*FAILING, expect=3)
+        self.assertTrue(run["verification"]["reused"])
+        self.assertIn("no crack was run", text)
+        self.assertIn(f"delete {self.stored()[0]}", text)
+        self.assertTrue(any(row["verdict"] == "fails" for row in self.claims()))
+        self.assertFalse([path.name for path in self.out.iterdir() if re.match(r"crack|broken|lattice", path.name)])
+
+    def test_last_lines_name_the_rows_that_fail(self):
+        text, run = self.fracture(*FAILING, expect=3)
+        failing = [row for row in self.claims() if row["verdict"] == "fails"]
+        self.assertEqual(run["exit_code"], 3)
+        lines = text.splitlines()
+        self.assertIn(f"{len(failing)} of ", lines[-len(failing) - 1])
+        for row, line in zip(failing, lines[-len(failing):]):
+            self.assertIn(f"{row['claim']}: {row['quantity']}: error {row['error']:.3g}, tolerance", line)
+        self.assertTrue(any("it buckles in waves of kd = " in line for line in lines[-len(failing):]), text)
+        self.assertLess(len(lines), 16)
+
+    def test_refused_crack_leaves_its_report(self):
+        words = ["fracture", CASES / "quick.prm", "--output-dir", self.out, *TINY, *FAILING]
+        run = latcon(*words, env=self.environment)
+        self.assertEqual(run.returncode, 3)
+        self.assertIn(f"{self.out}/report.html\n", run.stdout)
+        page = (self.out / "report.html").read_text()
+        self.assertIn("it buckles", page)
 
 
 if __name__ == "__main__":

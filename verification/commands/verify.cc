@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <functional>
 #include <iostream>
+#include <optional>
 #include <utility>
 
 #include "verification/claim_inputs.h"
@@ -8,6 +9,7 @@
 #include "verification/energy/energy_claim.h"
 #include "verification/energy/wave_energy.h"
 #include "verification/intrinsic_length/intrinsic_length_claim.h"
+#include "verification/one_thread.h"
 #include "verification/prestretch/cut_study.h"
 #include "verification/prestretch/prestretch_claim.h"
 #include "verification/stability_row.h"
@@ -120,6 +122,9 @@ const std::vector<std::string> &claim_names()
 ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names, bool quick, Shells shells,
                         const Laws &laws)
 {
+  std::optional<OneThread> one_thread;
+  if (quick)
+    one_thread.emplace();
   const Case read = claim_inputs(input);
   std::vector<Subject> subjects{subject(read, read.material(), laws)};
   if (read.has_next_nearest && shells == Shells::own_and_nearest)

@@ -211,8 +211,8 @@ void travelling(const Subject &subject, const Eigen::Matrix2d &F, double wanted_
   const double d = subject.spacing, rho = material.density;
   const WaveCell cell = wave_cell(d, subject.orientation, {1, 0}, wanted_kd);
   // The second harmonic that grows on the way has an amplitude of the strain times the ratio of third to second moduli,
-  // a hundred for slow waves of a stretched sheet; kinetic energy in it has sixteen times the micro-inertia. Round-off of
-  // the energy of the stretched sheet, 1e10 times that of the wave, bounds the strain from below.
+  // a hundred for slow waves of a stretched sheet; kinetic energy in it has sixteen times the micro-inertia. Round-off
+  // of the energy of the stretched sheet, 1e10 times that of the wave, bounds the strain from below.
   constexpr double travelling_strain = 3e-5;
   const double kd = cell.K.norm() * d, amplitude = travelling_strain / cell.K.norm();
   const double inertia = 1. + std::pow(subject.lengths.lattice / d * kd, 2);

@@ -3,9 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include <omp.h>
-
 #include "verification/crack_oracle/steady_crack_study.h"
+#include "verification/one_thread.h"
 
 namespace verification
 {
@@ -28,11 +27,8 @@ CheckResult run_check(const std::string &name, const bool quick, const std::stri
                                   [&name](const StudyCheck &known) { return known.name == name; });
   if (check == study_checks().end())
     throw std::logic_error("study: '" + name + "' is no check");
-  // The lattices are so small that threads wait for each other more than they share.
-  const int threads = omp_get_max_threads();
-  omp_set_num_threads(1);
+  const OneThread one_thread;
   const ClaimOutcome outcome = check->run(quick);
-  omp_set_num_threads(threads);
   outcome.write_tables(folder);
   return {check->name, check->about, outcome.results};
 }

@@ -73,7 +73,8 @@ std::array<Oscillation, 2> measure(const WaveCell &cell, const lattice::Material
   // period tells them apart, in as many steps as dashpots leave time for.
   constexpr double most_periods = 2., most_steps = 5e6;
   const double slowest = smallest_of({waves[0].frequency, waves[1].frequency});
-  const auto max_steps = static_cast<std::size_t>(smallest_of({most_steps, most_periods * 2. * M_PI / (slowest * time_step)}));
+  const auto max_steps =
+    static_cast<std::size_t>(smallest_of({most_steps, most_periods * 2. * M_PI / (slowest * time_step)}));
   for (std::size_t step = 1; std::min<unsigned int>(sign_changes[0], sign_changes[1]) < 2; ++step)
   {
     if (step > max_steps)
