@@ -211,9 +211,9 @@ void travelling(const Subject &subject, const Eigen::Matrix2d &F, double wanted_
   const double d = subject.spacing, rho = material.density;
   const WaveCell cell = wave_cell(d, subject.orientation, {1, 0}, wanted_kd);
   // The second harmonic that grows on the way has an amplitude of the strain times the ratio of third to second moduli,
-  // a hundred for slow waves of a stretched sheet; kinetic energy in it has sixteen times the micro-inertia. Round-off
-  // of the energy of the stretched sheet, 1e10 times that of the wave, bounds the strain from below.
-  constexpr double travelling_strain = 3e-5;
+  // a few tens for slow waves of a stretched sheet; kinetic energy in it has sixteen times the micro-inertia. Round-off
+  // of the energy of the stretched sheet, up to 1e11 times that of the wave, bounds the strain from below.
+  constexpr double travelling_strain = 1e-4;
   const double kd = cell.K.norm() * d, amplitude = travelling_strain / cell.K.norm();
   const double inertia = 1. + std::pow(subject.lengths.lattice / d * kd, 2);
   const auto bloch = bloch_waves(cell.sheet, material, F, cell.K),
@@ -279,7 +279,7 @@ ClaimOutcome wave_energy_claim(const Subject &subject, const WaveEnergyOptions &
     {
       std::ostringstream part;
       part << "travelling waves about " << state_name(F) << ", kd = " << kd;
-      attempt(part.str(), [&] { travelling(subject, F, kd, options.mesh, outcome); });
+      attempt(part.str(), [&] { travelling(subject, F, kd, options.travelling_mesh, outcome); });
     }
   return outcome;
 }
