@@ -263,6 +263,13 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time)
   has_started_ = true;
 }
 
+void DynamicSolver::check_loaded() const
+{
+  if (!(std::abs(time_ - (start_time_ + n_steps_ * settings_.time_step)) <=
+        4. * std::numeric_limits<double>::epsilon() * std::max(std::abs(start_time_), std::abs(time_))))
+    throw InvalidInput("the stored time is not that of the steps stored with it");
+}
+
 void DynamicSolver::step()
 {
   if (!has_started_)

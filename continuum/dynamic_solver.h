@@ -128,7 +128,8 @@ public:
 
   /// Stores all that the steps to come depend on, or takes it from there in place of a start, in a solver made with the
   /// same arguments on a like mesh: on as many ranks the motion then goes on with the same bits as if it had never been
-  /// stopped, on another number with the same fields. Throws InvalidInput for fields of another number of unknowns.
+  /// stopped, on another number with the same fields. Throws InvalidInput for fields of another number of unknowns, and
+  /// for a time that is not that of the steps.
   template <class Archive>
   void archive(Archive &archive);
 
@@ -159,6 +160,7 @@ private:
   struct Step;
 
   void check_input() const;
+  void check_loaded() const;
   void set_up();
   double load_factor_at(double time) const;
   Vector interpolate(const VectorField &field) const;
@@ -230,6 +232,8 @@ void DynamicSolver::archive(Archive &archive)
   archive("time", time_);
   archive("load_factor", load_factor_);
   archive("ledger", ledger_);
+  if constexpr (Archive::loads)
+    check_loaded();
   const NodalOrder order(sheet_);
   order.archive(archive, "displacement", displacement_);
   order.archive(archive, "velocity", velocity_);

@@ -67,10 +67,14 @@ class Program:
         return subprocess.Popen([*launcher, self.latcon, *arguments, "--output-dir", str(out)], env=environment,
                                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 
-    def run(self, arguments, out, **how):
-        """@return exit status, what it said on standard error"""
+    def run(self, arguments, out, timeout=600, **how):
+        """@return exit status, "hangs" past the timeout [s]; what it said on standard error"""
         process = self.start(arguments, out, **how)
-        _, said = process.communicate(timeout=600)
+        try:
+            _, said = process.communicate(timeout=timeout)
+        except subprocess.TimeoutExpired:
+            kill(process)
+            return "hangs", ""
         return process.returncode, said
 
 

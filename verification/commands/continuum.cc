@@ -222,6 +222,7 @@ Results motion(const Case &input, ContinuumModel &model, Checkpoints &checkpoint
   continuum::FieldWriter fields(MPI_COMM_WORLD, run.directory());
   double next_frame = input.frame_interval;
   std::size_t step = 0; // done
+  const auto n_steps = static_cast<std::size_t>(std::ceil(input.end_time / settings.time_step * (1. - 1e-12)));
   const auto parts = [&](auto &archive)
   {
     archive("solver", solver);
@@ -229,6 +230,20 @@ Results motion(const Case &input, ContinuumModel &model, Checkpoints &checkpoint
     archive("frames", fields);
     archive("next_frame", next_frame);
     archive("step", step);
+    if constexpr (std::decay_t<decltype(archive)>::loads)
+    {
+      const double done = static_cast<double>(step), frames_so_far = static_cast<double>(fields.n_frames());
+      constexpr double epsilon = std::numeric_limits<double>::epsilon();
+      require_course(*checkpoints.found(), step, solver.time(), done * settings.time_step,
+                     4. * epsilon * solver.time());
+      const bool has_series = input.frame_interval > 0.;
+      if (step > n_steps || !(record.last_time() <= solver.time() && fields.last_time() <= solver.time()))
+        throw InputError("what was recorded is of later times");
+      if (has_series &&
+          !(frames_so_far >= 1. && frames_so_far <= done + 1. &&
+            std::abs(next_frame - frames_so_far * input.frame_interval) <= frames_so_far * epsilon * next_frame))
+        throw InputError("`next_frame` does not follow the frames that there are");
+    }
   };
   const auto write_frame = [&]
   {
@@ -267,7 +282,6 @@ Results motion(const Case &input, ContinuumModel &model, Checkpoints &checkpoint
   try
   {
     const auto phase = run.info().stopwatch().phase("motion");
-    const auto n_steps = static_cast<std::size_t>(std::ceil(input.end_time / settings.time_step * (1. - 1e-12)));
     while (step < n_steps)
     {
       // A step takes far longer than to agree on this.
@@ -361,6 +375,10 @@ ExitCode run_continuum(const Options &options)
     const Results results =
       moves ? motion(input, model, checkpoints, run) : equilibrium(input, model, checkpoints, run);
     return interrupted() ? run.interrupted(results) : run.finish(results);
+  }
+  catch (const UnusableCheckpoint &)
+  {
+    throw;
   }
   // The input was good as far as it could be tried, so it is the computed state that is not.
   catch (const continuum::NonPhysicalState &failure)
