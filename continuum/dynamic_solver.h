@@ -118,6 +118,13 @@ public:
   /// same degree and conditions, for one.
   void start(const Vector &displacement, const Vector &velocity, double time = 0.);
 
+  /// Throws InvalidInput for nodal vectors that start() refuses: not finite, or not what is prescribed on a held
+  /// boundary at that time. Collective.
+  void check_start(const Vector &displacement, const Vector &velocity, double time = 0.) const;
+
+  /// Displacement that is prescribed on held boundaries at `time` [s], zero elsewhere [m]. Collective.
+  Vector prescribed_displacement(double time = 0.) const;
+
   /// One time step. One that cannot be solved is repeated from its start in two halves, and these likewise; throws
   /// SolverFailed with the history if that does not help either, and the state is then the one before. Throws
   /// InvalidInput before start().
@@ -164,6 +171,7 @@ private:
   void set_up();
   double load_factor_at(double time) const;
   Vector interpolate(const VectorField &field) const;
+  bool is_prescribed(dealii::types::global_dof_index i) const;
   void begin(Vector &u, Vector &v, double time);
   Vector ghosted(const Vector &owned) const;
   void multiply_by_mass(const Sheet::Matrix &M, const Vector &x, Vector &product) const;

@@ -134,7 +134,7 @@ NUMBERS = {
     "simulation/bonds": [value(0xffff)], "simulation/lost_bonds": [value(255)], "simulation/n_broken": [LARGE],
     "simulation/initial_energy": [value(1e300)], "simulation/x": [value(1e300)],
     "fracture/tip": [LARGE, value(0)], "fracture/tip_x": [value(1e308)],
-    "record/last_tip": [LARGE, value(0)], "record/tip/n": [LARGE, value(0)], "record/tip/t": [value(1e308), value(-1.)],
+    "record/last_tip": [LARGE, value(0)], "record/tip/n": [LARGE], "record/tip/t": [value(1e308), value(-1.)],
     "record/broken_bonds/n": [LARGE, value(0)], "record/broken_bonds/near": [LARGE, value(0)],
     "record/broken_bonds/far": [LARGE], "record/broken_bonds/kind": [LARGE, value(6)],
     "record/broken_bonds/time": [value(1e308)], "record/energies/n": [LARGE, value(0)],
