@@ -86,6 +86,8 @@ public:
   EnergyBalance energies() const;
   const Contact *contact() const { return contact_ ? &*contact_ : nullptr; } ///< nullptr: sites do not touch
 
+  static constexpr int most_parts = 1 << 20; ///< into which a step is divided
+
 private:
   /// Powers per sheet thickness [W/m], and what they have added up to [J/m]; one a row of the sheet.
   struct Ledger
@@ -104,7 +106,6 @@ private:
   /// Refuses a loaded state that cannot have followed from the one set up, of which `bonds` and `energy` were those.
   /// @throws std::invalid_argument
   void check_loaded(const BondStates::Words &bonds, double energy) const;
-  static constexpr int most_parts = 1 << 20; // of a step
 
   RowBand band_;
   const TriangularLattice &lattice_;

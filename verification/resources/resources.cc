@@ -287,6 +287,28 @@ double expected_steps(const Case &input, const lattice::TimeStepping &stepping)
   return std::ceil(std::min(input.end_time, passage) / stepping.step);
 }
 
+double parts_of_first_step(const Case &input, const lattice::TimeStepping &stepping, const LatticeRun run)
+{
+  const lattice::TriangularLattice sheet = input.lattice();
+  const lattice::Material material = input.material();
+  const Eigen::Matrix2d F = input.deformation();
+  std::optional<lattice::ContactLaw> contact;
+  if (run == LatticeRun::broken && input.has_contact)
+    contact = input.contact_law();
+  double parts = 1.;
+  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+  {
+    const lattice::Shell *const shell = material.shell(kind);
+    const double stretch = (F * sheet.bond_vector(kind)).norm() / sheet.rest_length(kind);
+    if (shell == nullptr || std::holds_alternative<lattice::LinearBond>(shell->law) || stretch >= lattice::short_stretch)
+      continue;
+    const double longest =
+      lattice::recoil_step(stepping, sheet, material, kind, stretch, contact ? &*contact : nullptr);
+    parts = std::max(parts, std::exp2(std::ceil(std::log2(stepping.step / longest))));
+  }
+  return std::min(parts, static_cast<double>(lattice::Simulation::most_parts));
+}
+
 double continuum_seconds(const Case &input, const ContinuumSize &size, const double steps, const double frames)
 {
   const ContinuumCase &c = input.continuum;
