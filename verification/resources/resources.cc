@@ -300,7 +300,8 @@ double parts_of_first_step(const Case &input, const lattice::TimeStepping &stepp
   {
     const lattice::Shell *const shell = material.shell(kind);
     const double stretch = (F * sheet.bond_vector(kind)).norm() / sheet.rest_length(kind);
-    if (shell == nullptr || std::holds_alternative<lattice::LinearBond>(shell->law) || stretch >= lattice::short_stretch)
+    if (shell == nullptr || std::holds_alternative<lattice::LinearBond>(shell->law) ||
+        stretch >= lattice::short_stretch)
       continue;
     const double longest =
       lattice::recoil_step(stepping, sheet, material, kind, stretch, contact ? &*contact : nullptr);
