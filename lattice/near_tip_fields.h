@@ -225,8 +225,14 @@ public:
                        "`taken` samples are not as many as there can be");
       require_archived(!last_tip_ || (*last_tip_ < lattice_.n_places() && lattice_.is_site(*last_tip_)),
                        "`last_tip` is no site of the sheet");
+      std::size_t folded = 0;
+      for (const NearTipSums &sums : folded_)
+        folded += sums.samples();
+      require_archived(plain_.samples() == taken_ && folded == taken_ - n_pending,
+                       "`samples` are not as many as were taken");
       for (const NearTipSample &sample : pending_)
-        require_archived(sample.block < n_blocks, "`block` of a sample is none of those that there are");
+        require_archived(sample.block < n_blocks && sample.sums.samples() == 1,
+                         "a pending sample is none of those that there can be");
     }
   }
 

@@ -49,7 +49,6 @@ void Simulation::restart()
 // every short bond at its extrapolated stretch at the end of the part.
 int Simulation::needed_parts() const
 {
-  constexpr double shortest = 1e-6; // to which bonds are followed
   const double h = time_stepping_.step;
   const ContactLaw *const contact = contact_law_ ? &*contact_law_ : nullptr;
   const Field &vx = integrator_->evaluated_vx(state_), &vy = integrator_->evaluated_vy(state_);

@@ -87,6 +87,7 @@ public:
   const Contact *contact() const { return contact_ ? &*contact_ : nullptr; } ///< nullptr: sites do not touch
 
   static constexpr int most_parts = 1 << 20; ///< into which a step is divided
+  static constexpr double shortest = 1e-6;   ///< stretch to which the parts follow a bond [-]
 
 private:
   /// Powers per sheet thickness [W/m], and what they have added up to [J/m]; one a row of the sheet.

@@ -141,7 +141,7 @@ NUMBERS = {
     "record/energies/time": [value(1e308)], "record/motion/n": [LARGE, value(0)], "record/motion/time": [value(1e308)],
     "sampler/n_pending": [LARGE, value(1000)], "sampler/last_tip": [LARGE, value(0)], "sampler/taken": [LARGE],
     "/block": [LARGE, value(4)], "pending/n": [LARGE], "folded/n": [LARGE, value(0)], "blocks/n": [LARGE],
-    "vortices/sizes": [LARGE], "backward_speeds/sizes": [LARGE], "following_speeds/sizes": [LARGE],
+    "samples": [LARGE], "vortices/sizes": [LARGE], "backward_speeds/sizes": [LARGE], "following_speeds/sizes": [LARGE],
     "film/next_frame": [value(-1e308), value(1e308)], "film/frames/times": [value(-1.), value(0.)],
     "frames/times": [value(-1.)], "next_frame": [value(-1e308), value(1e308), value(1e-300)], "step": [LARGE, value(0)],
     "solver/steps": [LARGE, value(0)], "solver/time": [value(-1e308), value(1e308)], "solver/start_time": [value(1e308)],
@@ -169,7 +169,7 @@ def variants(path):
 
 def prepared(program, name, folder):
     """Runs a victim, and stops it where it has much to keep. @return its folder, the path of its only checkpoint"""
-    out = folder / "left"
+    out = folder / name.replace(" ", "-")
     status, said = program.run([*victims.VICTIMS[name], "--threads", "1"], out)
     if status not in victims.DONE:
         raise RuntimeError(f"{name}: exit {status}: {said}")

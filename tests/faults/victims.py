@@ -19,7 +19,7 @@ def settings(**entries):
 
 STRIP = ["fracture", str(CASES / "quick.prm"), "--skip-verification", "--no-report", "--quiet",
          *settings(Sheet__length="2.5 cm", Sheet__height="1.5 cm", Output__frame_interval="0.1 ms",
-                   Output__energy_interval=40, Checkpoints__steps=48, Time__end="1 ms", Near_tip__interval=20,
+                   Output__energy_interval=40, Checkpoints__steps=48, Time__end="1 ms", Near_tip__interval="7e-6",
                    Near_tip__ahead="4 mm", Near_tip__behind="4 mm", Near_tip__half_height="4 mm")]
 VICTIMS = {
     "crack": [*STRIP, *settings(Fracture__right_end="absorbing", Contact__present="true")],

@@ -54,6 +54,12 @@ def read_page(path):
         raise Broken(f"{path}: it has no end")
 
 
+def read_animation(path):
+    content = path.read_bytes()
+    if content[:4] != b"GIF8" or content[-1:] != b";":
+        raise Broken(f"{path}: it is no whole GIF")
+
+
 def read_list(path):
     names = path.read_text().splitlines()
     if names != sorted(set(names)):
@@ -72,6 +78,7 @@ READERS = {
     ".prm": lambda path: path.read_text(),
     ".html": read_page,
     ".png": lambda path: read_vtk(vtk.vtkPNGReader(), path),
+    ".gif": read_animation,
     ".svg": lambda path: xml.etree.ElementTree.parse(path),
     ".latcon-files": read_list,  # which has no ending
 }

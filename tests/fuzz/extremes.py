@@ -173,6 +173,10 @@ class Runner:
             if float(chosen["Time/end"]) > 0.:
                 chosen["Output/frame interval"] = repr(0.4 * float(chosen["Time/end"]))
             dry, said, printed = self.run([*self.arguments(command, chosen), "--dry-run"])
+        seconds = re.search(r"^# time: about (\S+) s", printed, re.M)
+        if dry == "exit 0" and seconds and float(seconds[1]) > mutate.SHORT:
+            self.counts["too long to run, as the dry run says"] += 1
+            return
         arguments = [*self.arguments(command, chosen), "--output-dir", "out", "--threads", "1", "--quiet"]
         outcome, said, _ = self.run(arguments)
         folder = self.work / "run"

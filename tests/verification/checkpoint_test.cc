@@ -267,15 +267,8 @@ TEST_F(HostileArchive, RecordsAreAsManyAsTheirColumnsAreLong)
 
 TEST_F(HostileArchive, TextEndsWhereItSays)
 {
-  for (const std::string &text : {std::string("one\0two", 7), std::string("one\0", 4)})
-  {
-    Hdf5Image image;
-    image.write_text("a", text);
-    const std::string path = folder_ / "text.h5";
-    std::ofstream(path, std::ios::binary) << image.take_bytes();
-    const Hdf5File file(path);
-    EXPECT_THROW((void)file.read_text("a"), Hdf5Error);
-  }
+  image_.write_text("a", std::string("one\0two", 7));
+  expect_refused(std::string());
 }
 
 TEST_F(Archive, RefusesAFileThatIsNotHdf5)
