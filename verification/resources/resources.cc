@@ -267,7 +267,11 @@ std::string memory_text(const MemoryNeed &need)
 double lattice_seconds(const Case &input, const lattice::TimeStepping &stepping, const LatticeRun run,
                        const double steps, const double frames)
 {
-  const double per_site_step = measured_seconds_per_site_step(input, stepping, run == LatticeRun::broken);
+  // One part of a step is measured: a whole one may take longer than anybody waits for an estimate.
+  const double parts = parts_of_first_step(input, stepping, run);
+  lattice::TimeStepping part = stepping;
+  part.step /= parts;
+  const double per_site_step = measured_seconds_per_site_step(input, part, run == LatticeRun::broken);
   const lattice::TriangularLattice sheet = input.lattice();
   const double sites = static_cast<double>(sheet.n_sites());
   const double written = seconds_of_start + frames * sites * seconds_of_site_in_frame;
@@ -276,7 +280,7 @@ double lattice_seconds(const Case &input, const lattice::TimeStepping &stepping,
                        std::max(evaluations_relaxed, evaluations_relaxed_per_column *
                                                        static_cast<double>(std::max(sheet.columns(), sheet.rows())));
   const double ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
-  return written + (run == LatticeRun::broken ? beside_kernel : 1.) * per_site_step * sites * steps / ranks;
+  return written + (run == LatticeRun::broken ? beside_kernel : 1.) * per_site_step * sites * steps * parts / ranks;
 }
 
 double expected_steps(const Case &input, const lattice::TimeStepping &stepping)
