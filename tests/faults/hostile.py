@@ -13,7 +13,7 @@ import whole
 
 TIME_LIMIT = 60  # [s]; what is refused is refused as soon as it is read
 # Lists of any length: nothing else in the file or the case tells how many there are.
-OF_ANY_LENGTH = ("near_tip/sampler/path", "/sites")
+OF_ANY_LENGTH = ("near_tip/sampler/path", "/sites", "film/frames/times")
 
 
 class Accepted(Exception):
@@ -132,7 +132,7 @@ NUMBERS = {
     "run/step": [LARGE], "run/time": [value(-1e308), value(1e308)], "run/schema": [LARGE],
     "simulation/time": [value(-1e308), value(1e308), value(0.)], "simulation/parts": [value(0), value(3), value(1 << 30)],
     "simulation/bonds": [value(0xffff)], "simulation/lost_bonds": [value(255)], "simulation/n_broken": [LARGE],
-    "simulation/initial_energy": [value(1e300)], "simulation/x": [value(1e300)],
+    "simulation/initial_energy": [value(1e300)],
     "fracture/tip": [LARGE, value(0)], "fracture/tip_x": [value(1e308)],
     "record/last_tip": [LARGE, value(0)], "record/tip/n": [LARGE], "record/tip/t": [value(1e308), value(-1.)],
     "record/broken_bonds/n": [LARGE, value(0)], "record/broken_bonds/near": [LARGE, value(0)],

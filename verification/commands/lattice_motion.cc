@@ -28,8 +28,7 @@ void LatticeMotion::write_tables() const
     record_.write_tables(run_.directory());
 }
 
-// Refuses what a checkpoint says of the course of the motion, and a sheet that is not sound, before any of it is used.
-// @throws std::invalid_argument, SolverError
+// Refuses what a checkpoint says of the course of the motion before any of it is used. @throws std::invalid_argument
 void LatticeMotion::check_loaded()
 {
   const double time = simulation_.state().time, step = simulation_.time_step(), done = static_cast<double>(step_);
@@ -45,7 +44,6 @@ void LatticeMotion::check_loaded()
                                   frames * std::numeric_limits<double>::epsilon() * next_frame_,
                               "`next_frame` does not follow the frames that there are");
   }
-  record_.check();
 }
 
 void LatticeMotion::go(const Course &course, bool resumed, const std::function<void()> &write_checkpoint)
