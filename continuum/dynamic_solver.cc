@@ -181,37 +181,60 @@ void DynamicSolver::start(const Vector &displacement, const Vector &velocity, co
   begin(u, v, time);
 }
 
-void DynamicSolver::begin(Vector &u, Vector &v, const double time)
+bool DynamicSolver::is_prescribed(const types::global_dof_index i) const
+{
+  return homogeneous_.is_constrained(i) && !sheet_.continuity().is_constrained(i);
+}
+
+DynamicSolver::Vector DynamicSolver::prescribed_displacement(const double time) const
+{
+  Vector u = sheet_.make_owned();
+  const double factor = load_factor_at(time);
+  for (const types::global_dof_index i : sheet_.owned())
+    if (is_prescribed(i))
+      u(i) = factor * full_lift_(i);
+  u.compress(VectorOperation::insert);
+  return u;
+}
+
+void DynamicSolver::check_start(const Vector &u, const Vector &v, const double time) const
 {
   if (!std::isfinite(time) || !std::isfinite(u.l2_norm()) || !std::isfinite(v.l2_norm()))
     throw InvalidInput("the initial time, displacement and velocity must be finite");
-  const double dt = settings_.time_step;
-  double factors[4]; // at the start and after one, two, three steps
-  for (unsigned int k = 0; k < 4; ++k)
-    factors[k] = load_factor_at(time + k * dt);
-
   double extent = 0.;
   for (const auto &cell : sheet_.mesh().active_cell_iterators())
     if (cell->is_locally_owned())
       for (const unsigned int vertex : cell->vertex_indices())
         extent = std::max(extent, cell->vertex(vertex).norm());
   extent = Utilities::MPI::max(extent, sheet_.communicator());
+  const Vector prescribed = prescribed_displacement(time);
+  double off = 0.;
+  for (const types::global_dof_index i : sheet_.owned())
+    if (is_prescribed(i))
+      off = std::max(off, std::abs(u(i) - prescribed(i)));
+  if (!(Utilities::MPI::max(off, sheet_.communicator()) <= 1e-8 * extent))
+    throw InvalidInput("the initial displacement of a held boundary is not the prescribed one");
+}
+
+void DynamicSolver::begin(Vector &u, Vector &v, const double time)
+{
+  check_start(u, v, time);
+  const double dt = settings_.time_step;
+  double factors[4]; // at the start and after one, two, three steps
+  for (unsigned int k = 0; k < 4; ++k)
+    factors[k] = load_factor_at(time + k * dt);
 
   // Held unknowns follow the load factor; one-sided differences of second order, like the time rule.
   const double rate = (-3. * factors[0] + 4. * factors[1] - factors[2]) / (2. * dt);
   const double second_rate = (2. * factors[0] - 5. * factors[1] + 4. * factors[2] - factors[3]) / (dt * dt);
   Vector a = sheet_.make_owned();
-  double off = 0.;
   for (const types::global_dof_index i : sheet_.owned())
-    if (homogeneous_.is_constrained(i) && !sheet_.continuity().is_constrained(i))
+    if (is_prescribed(i))
     {
-      off = std::max(off, std::abs(u(i) - factors[0] * full_lift_(i)));
       u(i) = factors[0] * full_lift_(i);
       v(i) = rate * full_lift_(i);
       a(i) = second_rate * full_lift_(i);
     }
-  if (Utilities::MPI::max(off, sheet_.communicator()) > 1e-8 * extent)
-    throw InvalidInput("the initial displacement of a held boundary is not the prescribed one");
   u.compress(VectorOperation::insert);
   v.compress(VectorOperation::insert);
   a.compress(VectorOperation::insert);
@@ -261,6 +284,13 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time)
   take_stock(ledger_, u, v, load_factor_);
   initial_energy_ = ledger_.stored + ledger_.kinetic;
   has_started_ = true;
+}
+
+void DynamicSolver::check_loaded() const
+{
+  if (!(std::abs(time_ - (start_time_ + n_steps_ * settings_.time_step)) <=
+        4. * std::numeric_limits<double>::epsilon() * std::max(std::abs(start_time_), std::abs(time_))))
+    throw InvalidInput("the stored time is not that of the steps stored with it");
 }
 
 void DynamicSolver::step()

@@ -118,6 +118,13 @@ public:
   /// same degree and conditions, for one.
   void start(const Vector &displacement, const Vector &velocity, double time = 0.);
 
+  /// Throws InvalidInput for nodal vectors that start() refuses: not finite, or not what is prescribed on a held
+  /// boundary at that time. Collective.
+  void check_start(const Vector &displacement, const Vector &velocity, double time = 0.) const;
+
+  /// Displacement that is prescribed on held boundaries at `time` [s], zero elsewhere [m]. Collective.
+  Vector prescribed_displacement(double time = 0.) const;
+
   /// One time step. One that cannot be solved is repeated from its start in two halves, and these likewise; throws
   /// SolverFailed with the history if that does not help either, and the state is then the one before. Throws
   /// InvalidInput before start().
@@ -128,7 +135,8 @@ public:
 
   /// Stores all that the steps to come depend on, or takes it from there in place of a start, in a solver made with the
   /// same arguments on a like mesh: on as many ranks the motion then goes on with the same bits as if it had never been
-  /// stopped, on another number with the same fields. Throws InvalidInput for fields of another number of unknowns.
+  /// stopped, on another number with the same fields. Throws InvalidInput for fields of another number of unknowns, and
+  /// for a time that is not that of the steps.
   template <class Archive>
   void archive(Archive &archive);
 
@@ -159,9 +167,11 @@ private:
   struct Step;
 
   void check_input() const;
+  void check_loaded() const;
   void set_up();
   double load_factor_at(double time) const;
   Vector interpolate(const VectorField &field) const;
+  bool is_prescribed(dealii::types::global_dof_index i) const;
   void begin(Vector &u, Vector &v, double time);
   Vector ghosted(const Vector &owned) const;
   void multiply_by_mass(const Sheet::Matrix &M, const Vector &x, Vector &product) const;
@@ -230,6 +240,8 @@ void DynamicSolver::archive(Archive &archive)
   archive("time", time_);
   archive("load_factor", load_factor_);
   archive("ledger", ledger_);
+  if constexpr (Archive::loads)
+    check_loaded();
   const NodalOrder order(sheet_);
   order.archive(archive, "displacement", displacement_);
   order.archive(archive, "velocity", velocity_);

@@ -197,6 +197,13 @@ void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::
   write_collection();
 }
 
+void FieldWriter::check_loaded() const
+{
+  for (std::size_t frame = 0; frame < frames_.size(); ++frame)
+    if (frames_[frame].n_pieces == 0 || (frame > 0 && !(frames_[frame].time > frames_[frame - 1].time)))
+      throw InvalidInput("the stored times of frames do not grow, or a frame has no pieces");
+}
+
 std::string FieldWriter::file_of(const std::size_t frame) const
 {
   return frame_name(name_, frame) + (frames_[frame].n_pieces == 1 ? ".vtu" : ".pvtu");

@@ -29,16 +29,21 @@ public:
   /// OutputFailed on every rank, and NonPhysicalState if the law does; InvalidInput if the time does not grow.
   void add_frame(double time, const Sheet &sheet, const Sheet::Vector &u, const Sheet::Vector *v = nullptr);
 
-  /// Stores which frames there are, or takes that from there: those added later follow them.
+  /// Stores which frames there are, or takes that from there: those added later follow them. Throws InvalidInput if
+  /// their times do not grow.
   template <class Archive>
   void archive(Archive &archive)
   {
     archive.records("frames", frames_);
+    if constexpr (Archive::loads)
+      check_loaded();
   }
 
   /// Writes the .pvd anew with the frames known, for one that names later frames as well. Collective. Throws
   /// OutputFailed on every rank.
   void write_collection() const;
+
+  std::size_t n_frames() const { return frames_.size(); }
 
   /// Time of the last frame [s] or load factor [-]; minus infinity before the first.
   double last_time() const;
@@ -60,6 +65,7 @@ private:
     }
   };
 
+  void check_loaded() const;
   std::string file_of(std::size_t frame) const;
 
   MPI_Comm communicator_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -8,6 +9,13 @@
 
 namespace lattice
 {
+
+/// Refuses what an archive holds, before it is used. @throws std::invalid_argument unless it `holds`
+inline void require_archived(bool holds, const std::string &problem)
+{
+  if (!holds)
+    throw std::invalid_argument(problem);
+}
 
 /// Saves a field over the sites of a lattice, or loads it: row by row, so that the list is the same for any number of
 /// ranks. Collective. `archive` is what classes that have a member function archive() are given; see Simulation.
@@ -32,8 +40,7 @@ void archive_rows(Archive &archive, const std::string &name, Vector &field, cons
     std::vector<std::size_t> first{0}; // value of each row
     for (std::size_t row = 0; row < lattice.rows(); ++row)
       first.push_back(first.back() + lattice.sites_in_row(row));
-    if (values.size() != first.back())
-      throw std::invalid_argument("`" + name + "` is of a sheet of another size");
+    require_archived(values.size() == first.back(), "`" + name + "` is of a sheet of another size");
     for (const std::size_t row : rows)
       std::copy(&values[first[row]], &values[first[row]] + lattice.sites_in_row(row), &field[lattice.index(row, 0)]);
   }
@@ -50,8 +57,7 @@ void archive_rows(Archive &archive, const std::string &name, std::vector<double>
   archive(name, values);
   if constexpr (Archive::loads)
   {
-    if (values.size() != of_rows.size())
-      throw std::invalid_argument("`" + name + "` is of a sheet of another size");
+    require_archived(values.size() == of_rows.size(), "`" + name + "` is of a sheet of another size");
     of_rows = values;
   }
 }

@@ -27,6 +27,8 @@ public:
   /// latcon::support::WriteError if a file cannot be written
   void add_frame(const State &state);
 
+  std::size_t n_frames() const { return series_.n_frames(); }
+
   /// Saves or loads which frames there are; see Simulation.
   template <class Archive>
   void archive(Archive &archive)

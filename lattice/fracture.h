@@ -4,6 +4,7 @@
 #include <variant>
 #include <vector>
 
+#include "lattice/archive_rows.h"
 #include "lattice/forces.h"
 
 namespace lattice
@@ -110,12 +111,17 @@ public:
   std::optional<std::size_t> tip() const { return tip_; }
 
   /// Saves or loads what changes while a crack runs, besides the state; see Simulation.
+  /// @throws std::invalid_argument for a tip that is none of the sheet
   template <class Archive>
   void archive(Archive &archive)
   {
     archive("tip", tip_);
     archive("tip_x", tip_x_);
     archive("tip_y", tip_y_);
+    if constexpr (Archive::loads)
+      require_archived(
+        !tip_ || (*tip_ < lattice_.n_places() && lattice_.is_site(*tip_) && tip_x_ == lattice_.reference(*tip_).x()),
+        "`tip` is no site of the sheet, or `tip_x` not where it is");
   }
 
 private:

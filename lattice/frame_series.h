@@ -1,9 +1,13 @@
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
+
+#include "lattice/archive_rows.h"
 
 class vtkPolyData;
 
@@ -24,11 +28,17 @@ public:
   /// Writes `NAME.pvd`, so that it names the frames there are. @throws latcon::support::WriteError
   void write_collection() const;
 
-  /// Saves or loads which frames there are; see Simulation.
+  std::size_t n_frames() const { return times_.size(); }
+
+  /// Saves or loads which frames there are; see Simulation. @throws std::invalid_argument if their times do not grow
   template <class Archive>
   void archive(Archive &archive)
   {
     archive("times", times_);
+    if constexpr (Archive::loads)
+      require_archived(std::adjacent_find(times_.begin(), times_.end(), std::greater_equal<>()) == times_.end() &&
+                         (times_.empty() || times_.front() >= 0.),
+                       "`times` of frames do not grow from 0 on");
   }
 
 private:

@@ -4,6 +4,7 @@
 #include <optional>
 #include <vector>
 
+#include "lattice/archive_rows.h"
 #include "lattice/site_fields.h"
 #include "lattice/strain_gradient.h"
 
@@ -79,7 +80,7 @@ public:
   std::size_t samples() const { return samples_; }
   NearTipField mean() const;
 
-  /// Saves or loads the sums, over the same grid; see Simulation.
+  /// Saves or loads the sums, over the same grid; see Simulation. @throws std::invalid_argument if it is another
   template <class Archive>
   void archive(Archive &archive)
   {
@@ -87,6 +88,9 @@ public:
     archive("motion", motion_);
     archive("gradients", gradients_);
     archive("tensors", tensors_);
+    if constexpr (Archive::loads)
+      require_archived(motion_.fits(grid_) && gradients_.fits(grid_) && tensors_.fits(grid_),
+                       "sums near the tip are over another grid");
   }
 
 private:
@@ -103,6 +107,12 @@ private:
     /// @param signs of the components in a mirror image in Y; null: `other` is added as it is
     void add(const Sum &other, const NearTipGrid &grid, const Values *signs);
     std::optional<Values> mean(std::size_t point) const;
+    /// Whether it has values at all points, or at none.
+    bool fits(const NearTipGrid &grid) const
+    {
+      return weights.size() == values.cols() &&
+             (weights.size() == 0 || static_cast<std::size_t>(weights.size()) == grid.size());
+    }
 
     template <class Archive>
     void archive(Archive &archive)
@@ -111,6 +121,7 @@ private:
       std::vector<double> of_points(weights.data(), weights.data() + weights.size());
       archive("values", all);
       archive("weights", of_points);
+      require_archived(all.size() == n * of_points.size(), "`values` near the tip are not as many as `weights`");
       values = Eigen::Map<const decltype(values)>(all.data(), n, static_cast<Eigen::Index>(all.size()) / n);
       weights = Eigen::Map<const Eigen::ArrayXd>(of_points.data(), static_cast<Eigen::Index>(of_points.size()));
     }
@@ -188,7 +199,8 @@ public:
   /// Folded sums of one block.
   const NearTipSums &folded_block(std::size_t block) const { return folded_[block]; }
 
-  /// Saves or loads the samples and what is pending; see Simulation.
+  /// Saves or loads the samples and what is pending; see Simulation. @throws std::invalid_argument for what cannot be
+  /// of this sheet
   template <class Archive>
   void archive(Archive &archive)
   {
@@ -198,11 +210,30 @@ public:
     std::size_t n_pending = pending_.size();
     archive("n_pending", n_pending);
     if constexpr (Archive::loads)
+    {
+      require_archived(folded_.size() == n_blocks && n_pending <= path_.size(),
+                       "`n_pending` samples are more than were taken");
       pending_.assign(n_pending, {0., 0., 0, NearTipSums(grid_), {}});
+    }
     archive("pending", pending_);
     archive("last_tip", last_tip_);
     archive("calls_at_rest", calls_at_rest_);
     archive("taken", taken_);
+    if constexpr (Archive::loads)
+    {
+      require_archived(taken_ <= path_.size() && n_pending <= taken_,
+                       "`taken` samples are not as many as there can be");
+      require_archived(!last_tip_ || (*last_tip_ < lattice_.n_places() && lattice_.is_site(*last_tip_)),
+                       "`last_tip` is no site of the sheet");
+      std::size_t folded = 0;
+      for (const NearTipSums &sums : folded_)
+        folded += sums.samples();
+      require_archived(plain_.samples() == taken_ && folded == taken_ - n_pending,
+                       "`samples` are not as many as were taken");
+      for (const NearTipSample &sample : pending_)
+        require_archived(sample.block < n_blocks && sample.sums.samples() == 1,
+                         "a pending sample is none of those that there can be");
+    }
   }
 
 private:

@@ -1,7 +1,9 @@
 #include "lattice/simulation.h"
 
 #include <algorithm>
+#include <cmath>
 #include <stdexcept>
+#include <string>
 
 #include "lattice/runge_kutta_chebyshev.h"
 #include "lattice/velocity_verlet.h"
@@ -47,8 +49,6 @@ void Simulation::restart()
 // every short bond at its extrapolated stretch at the end of the part.
 int Simulation::needed_parts() const
 {
-  constexpr int most = 1 << 20;
-  constexpr double shortest = 1e-6; // to which bonds are followed
   const double h = time_stepping_.step;
   const ContactLaw *const contact = contact_law_ ? &*contact_law_ : nullptr;
   const Field &vx = integrator_->evaluated_vx(state_), &vy = integrator_->evaluated_vy(state_);
@@ -61,7 +61,7 @@ int Simulation::needed_parts() const
     const double now = stretch(state_, lattice_, near, kind);
     const double rate =
       bond.dot(Eigen::Vector2d(vx[far] - vx[near], vy[far] - vy[near])) / (bond.norm() * lattice_.rest_length(kind));
-    for (; parts < most; parts *= 2)
+    for (; parts < most_parts; parts *= 2)
     {
       const double then = now + std::min(rate, 0.) * h / parts;
       if (!(then < short_stretch) ||
@@ -252,6 +252,31 @@ const State &Simulation::gather(Rows rows)
   if (band_.is_first())
     update_images(state_, lattice_);
   return state_;
+}
+
+void Simulation::check_loaded(const BondStates::Words &bonds, double energy) const
+{
+  require_archived(state_.time >= 0., "`time` is negative");
+  require_archived(parts_ >= 1 && parts_ <= most_parts && (parts_ & (parts_ - 1)) == 0,
+                   "`parts` of a step are no power of two up to " + std::to_string(most_parts));
+  // It was computed from the same input: only another compiler may have rounded otherwise.
+  require_archived(std::abs(initial_energy_ - energy) <= 1e-9 * std::abs(energy),
+                   "`initial_energy` is not that of the case");
+  for (const std::size_t row : band_.known_rows())
+    for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
+    {
+      const std::size_t place = lattice_.index(row, column);
+      for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+      {
+        const unsigned int either = BondStates::bit(kind) | BondStates::toughened_bit(kind);
+        require_archived((bonds[place] & BondStates::bit(kind)) != 0 || (state_.bonds.words()[place] & either) == 0,
+                         "`bonds` has some that the sheet never had");
+      }
+    }
+  for (std::size_t row = 0; row < lattice_.rows(); ++row)
+    for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
+      require_archived(state_.lost_bonds[lattice_.index(row, column)] <= 2 * n_bond_kinds,
+                       "`lost_bonds` are more than a site has");
 }
 
 EnergyBalance Simulation::energies() const

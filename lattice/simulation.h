@@ -65,7 +65,8 @@ public:
   /// before its first step; that goes on with the same bits, on any number of ranks. Collective.
   /// @param archive called as archive(name, value) with numbers, vectors, matrices, and objects that have a function
   /// like this one; `Archive::loads` tells which way. To save, the first rank's values are the whole; to load, all
-  /// ranks get the whole. @throws std::invalid_argument if fields are of a sheet of another size
+  /// ranks get the whole. @throws std::invalid_argument if fields are of a sheet of another size, or bonds, counts or
+  /// energy are none that the simulation can have come to
   template <class Archive>
   void archive(Archive &archive);
 
@@ -85,6 +86,9 @@ public:
   EnergyBalance energies() const;
   const Contact *contact() const { return contact_ ? &*contact_ : nullptr; } ///< nullptr: sites do not touch
 
+  static constexpr int most_parts = 1 << 20; ///< into which a step is divided
+  static constexpr double shortest = 1e-6;   ///< stretch to which the parts follow a bond [-]
+
 private:
   /// Powers per sheet thickness [W/m], and what they have added up to [J/m]; one a row of the sheet.
   struct Ledger
@@ -100,6 +104,9 @@ private:
   void add_work(const Ledger &before, double duration);
   const std::vector<BrokenBond> &advance(double duration);
   int needed_parts() const;
+  /// Refuses a loaded state that cannot have followed from the one set up, of which `bonds` and `energy` were those.
+  /// @throws std::invalid_argument
+  void check_loaded(const BondStates::Words &bonds, double energy) const;
 
   RowBand band_;
   const TriangularLattice &lattice_;
@@ -130,6 +137,10 @@ void Simulation::archive(Archive &archive)
   const std::vector<std::size_t> known = band_.known_rows();
   std::vector<std::size_t> all(lattice_.rows());
   std::iota(all.begin(), all.end(), std::size_t{0});
+  BondStates::Words bonds_before;
+  const double energy_before = initial_energy_;
+  if constexpr (Archive::loads)
+    bonds_before = state_.bonds.storage();
   archive("time", state_.time);
   for (const auto &[name, field] :
        {std::pair("x", &state_.x), std::pair("y", &state_.y), std::pair("vx", &state_.vx), std::pair("vy", &state_.vy),
@@ -152,6 +163,7 @@ void Simulation::archive(Archive &archive)
     archive("fracture", *fracture_);
   if constexpr (Archive::loads)
   {
+    check_loaded(bonds_before, energy_before);
     update_images(state_, band_);
     // Which pairs may touch follows from the state.
     if (contact_)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Every answer in docs/reliability.md names tests that there are.
+"""Every answer in docs/reliability.md, and every test in docs/security.md, is one that there is.
 
 Usage: reliability_page_test.py SOURCE_FOLDER
 """
@@ -45,6 +45,13 @@ class ReliabilityPage(unittest.TestCase):
                 named = re.findall(r"`([^`]+)`", tests)
                 self.assertTrue(named)
                 self.assertEqual([name for name in named if name not in known and not (SOURCE / name).is_file()], [])
+
+    def test_page_of_security_names_tests_that_there_are(self):
+        known = known_tests()
+        suites = {name.partition(".")[0] + ".*" for name in known}
+        named = re.findall(r"`(\w+\.py::\w+|[A-Z]\w*[a-z]\w*\.(?:[A-Z]\w+|\*))`", (SOURCE / "docs" / "security.md").read_text())
+        self.assertGreater(len(named), 20)
+        self.assertEqual([name for name in named if name not in known and name not in suites], [])
 
 
 if __name__ == "__main__":

@@ -272,7 +272,7 @@ void Case::declare(Parameters &p)
   p.add("Contact", "present", has_contact,
         "whether sites of a breaking sheet that are not bonded repel each other when they come close");
   // Next-nearest neighbours of a lattice without bonds between them stand at 1.73 d.
-  p.add("Contact", "distance", contact_distance, Range({0., false}, {1.7, false}), "1",
+  p.add("Contact", "distance", contact_distance, Range({1e-20, true}, {1.7, false}), "1",
         "distance below which sites touch, over d");
   p.add("Contact", "stiffness", contact_stiffness, Magnitude{}, "1",
         "stiffness of a contact over that of a nearest-neighbour bond at rest");

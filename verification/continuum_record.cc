@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 #include <ostream>
+#include <stdexcept>
 
 #include "verification/atomic_file.h"
 #include "verification/largest_error.h"
@@ -67,6 +68,20 @@ void ContinuumRecord::motion(const continuum::DynamicSolver &solver)
 {
   if (motion_.empty() || motion_.back().time < solver.time())
     motion_.push_back({solver.time(), solver.ledger()});
+}
+
+double ContinuumRecord::last_time() const
+{
+  return motion_.empty() ? -std::numeric_limits<double>::infinity() : motion_.back().time;
+}
+
+void ContinuumRecord::check_loaded() const
+{
+  if (motion_.empty())
+    throw std::invalid_argument("`motion` has no states");
+  for (std::size_t row = 1; row < motion_.size(); ++row)
+    if (!(motion_[row].time > motion_[row - 1].time))
+      throw std::invalid_argument("times of `motion` do not grow");
 }
 
 double ContinuumRecord::largest_reaction() const

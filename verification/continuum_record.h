@@ -31,11 +31,17 @@ public:
   double largest_reaction() const;
   double reaction_change() const;
 
-  /// Stores the states of a motion that were noted, or takes them from there.
+  /// Time of the state of a motion noted last [s]; minus infinity before the first.
+  double last_time() const;
+
+  /// Stores the states of a motion that were noted, or takes them from there. @throws std::invalid_argument if there
+  /// are none, or their times do not grow
   template <class Archive>
   void archive(Archive &archive)
   {
     archive.records("motion", motion_);
+    if constexpr (Archive::loads)
+      check_loaded();
   }
 
   /// Writes energy.csv and, for equilibria, reactions.csv, newton.csv and, with two meshes or more, meshes.csv.
@@ -43,6 +49,7 @@ public:
   void write(const std::string &directory) const;
 
 private:
+  void check_loaded() const;
   using Reactions = std::map<dealii::types::boundary_id, dealii::Tensor<1, 2>>;
 
   struct Equilibrium

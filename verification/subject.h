@@ -16,6 +16,12 @@
 namespace verification
 {
 
+/// What rows call a lattice with one shell or two: "NN" or "NN+NNN".
+inline std::string shells_name(const lattice::Material &material)
+{
+  return material.next_nearest ? "NN+NNN" : "NN";
+}
+
 /// What a claim is about: a lattice on one side, the laws meant to agree with it on the other. The claims compare the
 /// two and take nothing for granted about how they came together, so a test can put a wrong law beside a right lattice.
 struct Subject
@@ -77,7 +83,7 @@ inline Subject subject(const Case &input, const lattice::Material &material, con
   }
   const SmallStrain theory = small_strain(sheet, material);
   const GradientLengths lengths = gradient_lengths(sheet, material);
-  return {material.next_nearest ? "NN+NNN" : "NN",
+  return {shells_name(material),
           input.spacing,
           input.orientation,
           material,

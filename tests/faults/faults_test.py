@@ -42,6 +42,10 @@ class Faults(Folder):
                 self.assertGreaterEqual(told["kills"], 3)
                 self.assertGreater(told["runs"], 0)
 
+    def test_run_without_checkpoints_starts_again(self):
+        told = kills.kill_at_random(PROGRAM, "relaxation", self.folder, random.Random(SEED), 1)
+        self.assertEqual(told["kills"], told["without_checkpoint"])
+
     def test_runs_survive_kills_and_full_disks_at_calls_that_change_files(self):
         rng = random.Random(SEED)
         for name in victims.VICTIMS:

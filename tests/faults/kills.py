@@ -12,10 +12,10 @@ class Failure(Exception):
 
 def kill_at_random(program, name, folder, rng, kills, ranks=(1,)):
     """@return statistics: kills, files read, runs finished, and kills that came before the first checkpoint"""
-    arguments = victims.VICTIMS[name]
-    expected, duration = victims.undisturbed(program, arguments, folder / "undisturbed")
+    arguments = {**victims.VICTIMS, **victims.WITHOUT_CHECKPOINTS}[name]
+    expected, duration = victims.undisturbed(program, arguments, folder / "killed", name)  # pages name their folder
     out = folder / "killed"
-    shutil.rmtree(out, ignore_errors=True)
+    victims.renew(program, name, out)
     told = {"kills": 0, "files_read": 0, "runs": 0, "without_checkpoint": 0, "asked_to_stop": 0}
     while told["kills"] < kills:
         finished = advance(program, arguments, out, rng, duration, ranks, told)
@@ -23,10 +23,10 @@ def kill_at_random(program, name, folder, rng, kills, ranks=(1,)):
         if finished:
             compare(name, out, expected)
             told["runs"] += 1
-            shutil.rmtree(out)
+            victims.renew(program, name, out)
         elif not list(out.glob("checkpoints/*.h5")):
             told["without_checkpoint"] += 1
-    status, said = program.run([*arguments, "--resume"], out)
+    status, said = program.run(victims.resumed(arguments), out)
     if status not in victims.DONE:
         raise Failure(f"{name}: exit {status} after the last kill: {said}")
     compare(name, out, expected)
@@ -38,9 +38,9 @@ def advance(program, arguments, out, rng, duration, ranks, told):
     """Starts the run again and kills it, or now and then asks it to stop. @return whether it had ended before"""
     on = rng.choice(ranks)
     before = victims.time_of_change(out / "run.json")
-    process = program.start([*arguments, "--resume", "--threads", str(rng.choice((1, 2)))], out, ranks=on)
+    process = program.start(victims.on_threads(victims.resumed(arguments), rng.choice((1, 2))), out, ranks=on)
     # Most of what there is to lose is lost after the start, and some starts are hit as well.
-    if rng.random() < 0.9:
+    if arguments[0] != "report" and rng.random() < 0.9:
         victims.wait_until_it_runs(process, out, before)
     end = time.monotonic() + rng.uniform(0., duration)
     while time.monotonic() < end and process.poll() is None:

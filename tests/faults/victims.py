@@ -19,7 +19,7 @@ def settings(**entries):
 
 STRIP = ["fracture", str(CASES / "quick.prm"), "--skip-verification", "--no-report", "--quiet",
          *settings(Sheet__length="2.5 cm", Sheet__height="1.5 cm", Output__frame_interval="0.1 ms",
-                   Output__energy_interval=40, Checkpoints__steps=48, Time__end="1 ms", Near_tip__interval=20,
+                   Output__energy_interval=40, Checkpoints__steps=48, Time__end="1 ms", Near_tip__interval="7e-6",
                    Near_tip__ahead="4 mm", Near_tip__behind="4 mm", Near_tip__half_height="4 mm")]
 VICTIMS = {
     "crack": [*STRIP, *settings(Fracture__right_end="absorbing", Contact__present="true")],
@@ -38,7 +38,21 @@ VICTIMS["sheet in motion"] = [
               Left_edge__condition="held", Right_edge__condition="held", Continuum__direct_limit=0,
               Loading__shear=0.1, Initial_state__velocity_x="6*sin(pi*y/0.02)^2*sin(pi*x/0.01)^2",
               Time__end="0.1 ms", Output__frame_interval="0.02 ms", Output__energy_interval=2, Checkpoints__steps=3)]
+# Those that leave no checkpoints: after a kill they start again, and a study with the runs that it has not finished.
+WITHOUT_CHECKPOINTS = {
+    "relaxation": ["lattice", str(CASES / "quick.prm"), "--quiet",
+                   *settings(Lattice__solution="relaxed", Sheet__length="5 cm", Sheet__height="3 cm")],
+    "study": ["study", str(pathlib.Path(__file__).with_name("study.json")), "--quiet", "--skip-verification"],
+    "verify": ["verify", "intrinsic-length", "--quick", "--quiet"],
+    "report": ["report"],  # of a crack that has run before
+}
+# They tell how a run went, and when.
+NOT_RESULTS = ("run.json", "log.txt", ".latcon.lock", "study.json", "study.html")
 DONE = (0, 3)  # 3: strips this small need not be in balance to the last digit that a crack is held to
+
+
+def on_threads(arguments, threads):
+    return arguments if arguments[0] == "report" else [*arguments, "--threads", str(threads)]
 
 
 def descendants(process):
@@ -64,14 +78,38 @@ class Program:
         if fault is not None:
             environment.update(LD_PRELOAD=str(self.preloaded), LATCON_FAULT_IN=str(out), **fault)
         launcher = [] if ranks == 1 else ["mpirun", "--oversubscribe", "-n", str(ranks)]
-        return subprocess.Popen([*launcher, self.latcon, *arguments, "--output-dir", str(out)], env=environment,
+        to = [str(out)] if arguments[0] == "report" else ["--output-dir", str(out)]
+        return subprocess.Popen([*launcher, self.latcon, *arguments, *to], env=environment,
                                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 
-    def run(self, arguments, out, **how):
-        """@return exit status, what it said on standard error"""
+    def run(self, arguments, out, timeout=600, **how):
+        """@return exit status, "hangs" past the timeout [s]; what it said on standard error"""
         process = self.start(arguments, out, **how)
-        _, said = process.communicate(timeout=600)
+        try:
+            _, said = process.communicate(timeout=timeout)
+        except subprocess.TimeoutExpired:
+            kill(process)
+            return "hangs", ""
         return process.returncode, said
+
+
+def renew(program, name, out):
+    """Makes the folder as it is before a run starts."""
+    shutil.rmtree(out, ignore_errors=True)
+    if name != "report":
+        return
+    kept = out.parent / "crack"
+    if not kept.exists():
+        status, said = program.run(VICTIMS["crack"], kept)
+        if status not in DONE:
+            raise RuntimeError(f"exit {status}: {said}")
+        shutil.rmtree(kept / "checkpoints")
+    shutil.copytree(kept, out)
+
+
+def resumed(arguments):
+    """The arguments with which a run goes on."""
+    return arguments if arguments[0] in ("verify", "report") else [*arguments, "--resume"]
 
 
 def kill(process):
@@ -86,8 +124,8 @@ def kill(process):
 def contents(folder):
     """What a run found, by the names of files; what tells how it went left out."""
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*"))
-            if path.is_file() and path.suffix != ".part" and path.name not in ("run.json", "log.txt", ".latcon.lock")
-            and "checkpoints" not in path.parts}
+            if path.is_file() and path.suffix != ".part" and path.name not in NOT_RESULTS
+            and not {"checkpoints", "earlier-run"} & set(path.parts)}
 
 
 def differences(found, expected):
@@ -109,11 +147,12 @@ def time_of_change(path):
     return path.stat().st_mtime_ns if path.exists() else 0
 
 
-def undisturbed(program, arguments, out):
+def undisturbed(program, arguments, out, name=None):
     """@return the contents of the folder, the wall time of what comes after the start of the program [s]"""
-    shutil.rmtree(out, ignore_errors=True)
-    process = program.start([*arguments, "--threads", "1"], out)
-    wait_until_it_runs(process, out, 0)
+    renew(program, name, out)
+    process = program.start(on_threads(arguments, 1), out)
+    if name != "report":
+        wait_until_it_runs(process, out, 0)
     start = time.monotonic()
     _, said = process.communicate(timeout=600)
     if process.returncode not in DONE:

@@ -49,6 +49,17 @@ def read_checkpoint(path):
             raise Broken(f"{path}: no step")
 
 
+def read_page(path):
+    if not path.read_text().rstrip().endswith("</html>"):
+        raise Broken(f"{path}: it has no end")
+
+
+def read_animation(path):
+    content = path.read_bytes()
+    if content[:4] != b"GIF8" or content[-1:] != b";":
+        raise Broken(f"{path}: it is no whole GIF")
+
+
 def read_list(path):
     names = path.read_text().splitlines()
     if names != sorted(set(names)):
@@ -65,6 +76,10 @@ READERS = {
     ".vti": lambda path: read_vtk(vtk.vtkXMLImageDataReader(), path),
     ".h5": read_checkpoint,
     ".prm": lambda path: path.read_text(),
+    ".html": read_page,
+    ".png": lambda path: read_vtk(vtk.vtkPNGReader(), path),
+    ".gif": read_animation,
+    ".svg": lambda path: xml.etree.ElementTree.parse(path),
     ".latcon-files": read_list,  # which has no ending
 }
 

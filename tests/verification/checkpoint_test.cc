@@ -83,7 +83,7 @@ Everything example()
   all.number = std::nextafter(0.1, 1.);
   all.text = "a line\nand \xc3\xa9";
   all.matrix << 1., 2., 3., 4.;
-  all.reals = {-0., std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::infinity()};
+  all.reals = {-0., std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()};
   all.bytes = {0, 255};
   all.words = {65535, 1};
   all.points = {{1., 2.}, {3., 4.}, {5., 6.}};
@@ -183,6 +183,92 @@ TEST_F(Archive, RefusesWhatDoesNotFit)
   EXPECT_THROW(archive("all/number", text), Hdf5Error);
   std::array<Inner, 3> three;
   EXPECT_THROW(archive("all", three), Hdf5Error);
+}
+
+// What a file holds that was made by hand, under the names that objects have.
+class HostileArchive : public testing::Test
+{
+protected:
+  template <class T>
+  void put(const std::string &name, const std::vector<T> &values)
+  {
+    image_.write(name, element_type<T>(), values.data(), values.size());
+  }
+  template <class T>
+  void expect_refused(T object, bool as_records = false)
+  {
+    const std::string path = folder_ / "file.h5";
+    std::ofstream(path, std::ios::binary) << image_.take_bytes();
+    const Hdf5File file(path);
+    CheckpointReader archive(file);
+    if constexpr (std::is_same_v<T, std::vector<lattice::BrokenBond>>)
+      EXPECT_THROW(as_records ? archive.records("a", object) : void(), Hdf5Error);
+    else
+      EXPECT_THROW(archive("a", object), Hdf5Error);
+  }
+
+  Hdf5Image image_;
+  TemporaryFolder folder_;
+};
+
+TEST_F(HostileArchive, NumberThatIsNotFiniteIsRefused)
+{
+  put<double>("a", {1., std::numeric_limits<double>::quiet_NaN()});
+  expect_refused(std::vector<double>());
+}
+
+TEST_F(HostileArchive, TruthValueIsFalseOrTrue)
+{
+  put<std::uint8_t>("a", {2});
+  expect_refused(false);
+}
+
+TEST_F(HostileArchive, OptionalNumberIsOneAtMost)
+{
+  put<std::uint64_t>("a", {1, 2});
+  expect_refused(std::optional<std::size_t>());
+}
+
+TEST_F(HostileArchive, PartOfAPointIsRefused)
+{
+  put<double>("a", {1., 2., 3.});
+  expect_refused(std::vector<Eigen::Vector2d>());
+}
+
+TEST_F(HostileArchive, ListsAreNotLongerThanTheirValues)
+{
+  put<double>("a/values", {1., 2.});
+  put<std::uint64_t>("a/sizes", {1, std::numeric_limits<std::uint64_t>::max()});
+  expect_refused(std::vector<std::vector<double>>());
+}
+
+TEST_F(HostileArchive, ListsAreNotShorterThanTheirValues)
+{
+  put<double>("a/values", {1., 2.});
+  put<std::uint64_t>("a/sizes", {1});
+  expect_refused(std::vector<std::vector<double>>());
+}
+
+TEST_F(HostileArchive, NumberOfObjectsIsNotTakenFromTheFile)
+{
+  put<std::uint64_t>("a/n", {std::uint64_t{1} << 60U});
+  expect_refused(std::deque<Inner>(3));
+}
+
+TEST_F(HostileArchive, RecordsAreAsManyAsTheirColumnsAreLong)
+{
+  put<std::uint64_t>("a/n", {std::uint64_t{1} << 60U});
+  for (const char *column : {"time", "midpoint_0", "midpoint_1", "stretch", "energy"})
+    put<double>(std::string("a/") + column, {1.});
+  for (const char *column : {"near", "far", "kind"})
+    put<std::uint64_t>(std::string("a/") + column, {1});
+  expect_refused(std::vector<lattice::BrokenBond>(), true);
+}
+
+TEST_F(HostileArchive, TextEndsWhereItSays)
+{
+  image_.write_text("a", std::string("one\0two", 7));
+  expect_refused(std::string());
 }
 
 TEST_F(Archive, RefusesAFileThatIsNotHdf5)

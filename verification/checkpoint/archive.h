@@ -14,6 +14,8 @@
 /// every rank gets the whole and takes its share.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <deque>
 #include <map>
 #include <optional>
@@ -117,7 +119,7 @@ class Base
 {
 public:
   /// A number, a text, a matrix of fixed size, a vector of numbers or of such matrices, an optional number, a vector of
-  /// vectors of numbers; or an object that has archive(), or several of those in a row.
+  /// vectors of numbers; or an object that has archive(), or a range of those, whose number is the same both ways.
   template <class T>
   void operator()(const std::string &name, T &value)
   {
@@ -127,6 +129,7 @@ public:
     {
       std::uint8_t byte = value ? 1 : 0;
       self().elements(name, &byte, 1);
+      require(byte <= 1, name, "is neither true nor false");
       value = byte != 0;
     }
     else if constexpr (std::is_arithmetic_v<T>)
@@ -153,24 +156,28 @@ public:
     std::size_t n = all.size();
     (*this)(name + "/n", n);
     if constexpr (Archive::loads)
-      all.resize(n);
+      all.clear();
     if (n == 0)
       return;
     Columns columns;
     if constexpr (Archive::loads)
     {
       // One record tells which columns there are.
-      Record record = all.front();
+      Record record{};
       Columns names;
       RecordArchive<false> list(names, 0);
       record.archive(list);
       const auto read = [&](auto &to, const auto &of)
       {
         for (const auto &[column, unused] : of)
+        {
           (*this)(name + "/" + column, to[column]);
+          require(to[column].size() == n, name + "/" + column, "has another length than `n` says");
+        }
       };
       read(columns.reals, names.reals);
       read(columns.wholes, names.wholes);
+      all.resize(n); // which the columns have shown to be no more than the file holds
     }
     for (std::size_t row = 0; row < n; ++row)
     {
@@ -187,6 +194,12 @@ public:
   }
 
 protected:
+  void require(bool holds, const std::string &name, const std::string &problem) const
+  {
+    if (!holds)
+      throw Hdf5Error("`" + prefix_ + name + "` " + problem);
+  }
+
   std::string prefix_; // of the object that is being taken apart
 
 private:
@@ -199,6 +212,7 @@ private:
     if (value)
       values.push_back(*value);
     (*this)(name, values);
+    require(values.size() <= 1, name, "is more than one value");
     value = values.empty() ? std::nullopt : std::optional<T>(values.front());
   }
 
@@ -219,9 +233,12 @@ private:
     auto next = values.begin();
     for (const std::uint64_t size : sizes)
     {
+      require(size <= static_cast<std::uint64_t>(values.end() - next), name + "/sizes",
+              "are of more values than there are");
       all.emplace_back(next, next + static_cast<std::ptrdiff_t>(size));
       next += static_cast<std::ptrdiff_t>(size);
     }
+    require(next == values.end(), name + "/sizes", "are of fewer values than there are");
   }
 
   template <class Range>
@@ -239,7 +256,11 @@ private:
       constexpr auto per_element = static_cast<std::size_t>(T::SizeAtCompileTime);
       static_assert(sizeof(T) == per_element * sizeof(double));
       if constexpr (Archive::loads)
-        range.resize(self().size(name) / per_element);
+      {
+        const std::size_t n = self().size(name);
+        require(n % per_element == 0, name, "has a part of an element");
+        range.resize(n / per_element);
+      }
       self().elements(name, range.empty() ? nullptr : range.front().data(), per_element * range.size());
     }
     else if constexpr (IsVector<Range>::value && IsVector<T>::value)
@@ -248,10 +269,7 @@ private:
     {
       std::size_t n = range.size();
       (*this)(name + "/n", n);
-      if constexpr (Archive::loads && IsVector<Range>::value && std::is_default_constructible_v<T>)
-        range.resize(n);
-      if (range.size() != n)
-        throw Hdf5Error("`" + prefix_ + name + "` holds another number of objects");
+      require(range.size() == n, name, "holds another number of objects");
       std::size_t i = 0;
       for (T &element : range)
         (*this)(name + "/" + std::to_string(i++), element);
@@ -286,7 +304,9 @@ private:
   Hdf5Image *image_;
 };
 
-/// Loads from a file. @throws Hdf5Error if something is not there, or of another type or size
+/// Loads from a file. Sizes are those of what is there, never those that a number in the file says; an object that
+/// expects a size or looks something up by a number compares it in its archive().
+/// @throws Hdf5Error if something is not there, of another type or size, or a real number is not finite
 class CheckpointReader : public archive_detail::Base<CheckpointReader>
 {
 public:
@@ -297,6 +317,9 @@ public:
   void elements(const std::string &name, T *values, std::size_t n)
   {
     file_.read(prefix_ + name, element_type<T>(), values, n);
+    if constexpr (std::is_same_v<T, double>)
+      require(std::all_of(values, values + n, [](double value) { return std::isfinite(value); }), name,
+              "is not finite");
   }
   std::size_t size(const std::string &name) const { return file_.size(prefix_ + name); }
   void text(const std::string &name, std::string &text) { text = file_.read_text(prefix_ + name); }

@@ -1,6 +1,7 @@
 #include "verification/checkpoint/checkpoints.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <fstream>
 #include <map>
@@ -76,6 +77,14 @@ std::string name_of(std::size_t step)
 }
 
 } // namespace
+
+void require_course(const CheckpointPlace &place, std::size_t step, double time, double expected, double rounding)
+{
+  if (step != place.step || time != place.time)
+    throw std::invalid_argument("`step` or `time` is not that of `run`");
+  if (!(std::abs(time - expected) <= rounding))
+    throw std::invalid_argument("`time` is not that of its steps");
+}
 
 Checkpoints::Checkpoints(const Options &options, const Parameters &parameters, const Case &input, std::string command)
   : folder_(fs::path(options.output_dir) / "checkpoints"), command_(std::move(command)),
@@ -165,7 +174,7 @@ std::string Checkpoints::problem_of(const fs::path &path, CheckpointPlace &place
     place.file = path;
     return "";
   }
-  catch (const Hdf5Error &error)
+  catch (const std::exception &error) // HDF5's, or no memory for what it says it holds
   {
     return error.what();
   }
@@ -179,9 +188,11 @@ void Checkpoints::load(const std::function<void(CheckpointReader &)> &parts) con
     CheckpointReader archive(file);
     parts(archive);
   }
-  catch (const Hdf5Error &error)
+  // Whatever the parts object to, it is the file that is wrong: the run was set up without it.
+  catch (const std::exception &error)
   {
-    throw InputError(found_->file.string() + ": " + error.what());
+    throw UnusableCheckpoint(found_->file.string() + ": it was not left by this run: " + error.what() +
+                             "; to start from the beginning leave out --resume");
   }
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "verification/checkpoint/archive.h"
+#include "verification/errors.h"
 
 namespace verification
 {
@@ -25,6 +26,17 @@ struct CheckpointPlace
   std::string commit;       ///< of the program that wrote it, see git_commit()
   std::string program_hash; ///< of the program that wrote it, see program_hash()
 };
+
+/// A checkpoint whose bytes are those that were written, but whose contents are none that this run can have left.
+class UnusableCheckpoint : public InputError
+{
+public:
+  using InputError::InputError;
+};
+
+/// Refuses steps done and a time [s] that are not those of the checkpoint, or do not belong together: the time is to be
+/// `expected` within `rounding`. @throws std::invalid_argument
+void require_course(const CheckpointPlace &place, std::size_t step, double time, double expected, double rounding);
 
 /// The checkpoints of a run, in the folder `checkpoints` of its output directory: HDF5 files checkpoint-STEP.h5, of
 /// which the last two are kept.
@@ -47,7 +59,7 @@ public:
   /// Loads the parts of a run, set up as for its first step, from the checkpoint that was found; where there is none,
   /// does nothing but move checkpoints of an earlier run out of the way, to `checkpoints.old`. Collective.
   /// @param parts called with an archive
-  /// @return whether there was one. @throws InputError if parts do not fit it, OutputError
+  /// @return whether there was one. @throws UnusableCheckpoint if parts do not fit it, OutputError
   template <class Parts>
   bool resume(const Parts &parts)
   {

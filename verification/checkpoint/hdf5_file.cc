@@ -1,5 +1,7 @@
 #include "verification/checkpoint/hdf5_file.h"
 
+#include <algorithm>
+
 #include <hdf5.h>
 
 namespace verification
@@ -82,17 +84,38 @@ hid_t type_in_memory(ElementType type)
   }
 }
 
-Handle open_array(hid_t file, const std::string &path)
+// Arrays lie in the file itself: links that lead to other files are not followed.
+herr_t refuse_other_file(const char *, const char *, const char *, const char *, unsigned *, hid_t, void *)
 {
-  return {H5Dopen2(file, path.c_str(), H5P_DEFAULT), H5Dclose, "there is no `" + path + "` in it"};
+  return -1;
 }
 
-std::size_t size_of(hid_t array, const std::string &path)
+Handle open_array(hid_t file, const std::string &path)
 {
-  const Handle space(H5Dget_space(array), H5Sclose, "`" + path + "` has no size");
+  const std::string what = "there is no `" + path + "` in it";
+  const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose, what);
+  require(H5Pset_elink_cb(access, refuse_other_file, nullptr), what);
+  return {H5Dopen2(file, path.c_str(), access), H5Dclose, what};
+}
+
+// Number of elements of an array as checkpoints have them: one after the other, within the file. What a file says of
+// its size is not believed, since memory is taken for it.
+std::size_t size_of(hid_t file, hid_t array, const std::string &path)
+{
+  const std::string none = "`" + path + "` has no size";
+  const Handle space(H5Dget_space(array), H5Sclose, none);
+  const Handle type(H5Dget_type(array), H5Tclose, none);
+  const Handle creation(H5Dget_create_plist(array), H5Pclose, none);
+  if (H5Sget_simple_extent_type(space) != H5S_SIMPLE || H5Sget_simple_extent_ndims(space) != 1)
+    throw Hdf5Error("`" + path + "` is no list");
+  if (H5Pget_layout(creation) != H5D_CONTIGUOUS || H5Pget_external_count(creation) != 0)
+    throw Hdf5Error("`" + path + "` does not lie in the file as it is");
   const hssize_t n = H5Sget_simple_extent_npoints(space);
-  if (n < 0)
-    throw Hdf5Error("`" + path + "` has no size");
+  hsize_t bytes = 0;
+  if (n < 0 || H5Fget_filesize(file, &bytes) < 0)
+    throw Hdf5Error(none);
+  if (static_cast<hsize_t>(n) > bytes / std::max<std::size_t>(1, H5Tget_size(type)))
+    throw Hdf5Error("`" + path + "` is larger than the file");
   return static_cast<std::size_t>(n);
 }
 
@@ -175,7 +198,7 @@ Hdf5File::~Hdf5File()
 
 std::size_t Hdf5File::size(const std::string &path) const
 {
-  return size_of(open_array(file_, path), path);
+  return size_of(file_, open_array(file_, path), path);
 }
 
 void Hdf5File::read(const std::string &path, ElementType type, void *elements, std::size_t n) const
@@ -184,7 +207,7 @@ void Hdf5File::read(const std::string &path, ElementType type, void *elements, s
   const Handle stored(H5Dget_type(array), H5Tclose, "`" + path + "` has no type");
   if (H5Tequal(stored, type_in_file(type)) <= 0)
     throw Hdf5Error("`" + path + "` is of another type");
-  if (size_of(array, path) != n)
+  if (size_of(file_, array, path) != n)
     throw Hdf5Error("`" + path + "` is of another size");
   if (n > 0)
     require(H5Dread(array, type_in_memory(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, elements),
@@ -197,9 +220,13 @@ std::string Hdf5File::read_text(const std::string &path) const
   const Handle type(H5Dget_type(array), H5Tclose, "`" + path + "` has no type");
   if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0)
     throw Hdf5Error("`" + path + "` is no text");
+  if (size_of(file_, array, path) != 1)
+    throw Hdf5Error("`" + path + "` is not one text");
   std::string text(H5Tget_size(type), '\0');
   require(H5Dread(array, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()), "cannot read `" + path + "`");
-  text.resize(text.find('\0'));
+  if (text.find('\0') != text.size() - 1) // where it was written
+    throw Hdf5Error("`" + path + "` does not end where it says");
+  text.pop_back();
   return text;
 }
 

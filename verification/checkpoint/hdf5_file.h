@@ -82,11 +82,12 @@ public:
   Hdf5File(const Hdf5File &) = delete;
   Hdf5File &operator=(const Hdf5File &) = delete;
 
-  /// Number of elements of an array. @throws Hdf5Error
+  /// Number of elements of an array. @throws Hdf5Error also if the file is too small for it, or it lies in another
   std::size_t size(const std::string &path) const;
 
   /// Reads a whole array. @throws Hdf5Error unless it has this type and size
   void read(const std::string &path, ElementType type, void *elements, std::size_t n) const;
+  /// @throws Hdf5Error unless it is one text that ends with its only zero byte
   std::string read_text(const std::string &path) const;
 
 private:

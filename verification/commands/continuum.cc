@@ -137,20 +137,15 @@ Results equilibrium(const Case &input, ContinuumModel &model, Checkpoints &check
   return results;
 }
 
-// The nodal state to which the initial fields are added.
-continuum::Sheet::Vector base_state(const Case &input, const ContinuumModel &model, const continuum::Sheet &sheet,
-                                    Run &run)
+// Nodal displacement of the equilibrium under the conditions of the case.
+continuum::Sheet::Vector equilibrium_displacement(const Case &input, const ContinuumModel &model,
+                                                  const continuum::Sheet &sheet, Run &run)
 {
+  const auto phase = run.info().stopwatch().phase("equilibrium");
+  continuum::StaticSolver solver(sheet.mesh(), model.constitution(), model.conditions(), static_settings(input));
+  note(run, solver.solve());
   continuum::Sheet::Vector u = sheet.make_owned();
-  if (input.continuum.initial_base == ContinuumCase::Base::loading)
-    dealii::VectorTools::interpolate(sheet.mapping(), sheet.dof_handler(), AffineDisplacement(input.deformation()), u);
-  if (input.continuum.initial_base == ContinuumCase::Base::equilibrium)
-  {
-    const auto phase = run.info().stopwatch().phase("equilibrium");
-    continuum::StaticSolver solver(sheet.mesh(), model.constitution(), model.conditions(), static_settings(input));
-    note(run, solver.solve());
-    u = solver.displacement();
-  }
+  u = solver.displacement();
   return u;
 }
 
@@ -179,19 +174,58 @@ continuum::DynamicSettings dynamic_settings(const Case &input, ContinuumModel &m
   return settings;
 }
 
-void start(continuum::DynamicSolver &solver, const Case &input, const ContinuumModel &model, Run &run)
+// A motion before its first step: everything that the case says of it is known to be good.
+struct Motion
 {
-  const ContinuumCase &c = input.continuum;
-  const continuum::Sheet &sheet = solver.sheet();
-  continuum::Sheet::Vector u = base_state(input, model, sheet, run);
-  continuum::Sheet::Vector added = sheet.make_owned();
-  continuum::Sheet::Vector v = sheet.make_owned();
-  dealii::VectorTools::interpolate(sheet.mapping(), sheet.dof_handler(), *c.initial_displacement.field(model.extent()),
-                                   added);
-  dealii::VectorTools::interpolate(sheet.mapping(), sheet.dof_handler(), *c.initial_velocity.field(model.extent()), v);
-  u += added;
-  solver.start(u, v);
-}
+  continuum::DynamicSettings settings;
+  std::unique_ptr<continuum::Viscosity> viscosity;
+  continuum::DynamicSolver solver;
+  continuum::Sheet::Vector added, velocity; // nodal fields that are added to the base state
+
+  // @throws InputError, continuum::InvalidInput for what start() would refuse
+  Motion(const Case &input, ContinuumModel &model)
+    : settings(dynamic_settings(input, model)),
+      viscosity(homogenised_viscosity(input.lattice(), model.subject().material)),
+      solver(model.mesh(), model.constitution(), model.conditions(), {input.density, model.inertia_length()}, settings,
+             viscosity.get()),
+      added(interpolated(*input.continuum.initial_displacement.field(model.extent()))),
+      velocity(interpolated(*input.continuum.initial_velocity.field(model.extent())))
+  {
+    continuum::Sheet::Vector u = solver.sheet().make_owned();
+    if (input.continuum.initial_base == ContinuumCase::Base::equilibrium)
+      u = solver.prescribed_displacement(); // which an equilibrium has
+    else
+      add_loading(input, u);
+    u += added;
+    solver.check_start(u, velocity);
+  }
+
+  void start(const Case &input, const ContinuumModel &model, Run &run)
+  {
+    continuum::Sheet::Vector u = solver.sheet().make_owned();
+    if (input.continuum.initial_base == ContinuumCase::Base::equilibrium)
+      u = equilibrium_displacement(input, model, solver.sheet(), run);
+    else
+      add_loading(input, u);
+    u += added;
+    solver.start(u, velocity);
+  }
+
+private:
+  continuum::Sheet::Vector interpolated(const dealii::Function<2> &field) const
+  {
+    const continuum::Sheet &sheet = solver.sheet();
+    continuum::Sheet::Vector values = sheet.make_owned();
+    dealii::VectorTools::interpolate(sheet.mapping(), sheet.dof_handler(), field, values);
+    return values;
+  }
+
+  void add_loading(const Case &input, continuum::Sheet::Vector &u) const
+  {
+    if (input.continuum.initial_base == ContinuumCase::Base::loading)
+      u += interpolated(AffineDisplacement(input.deformation()));
+  }
+};
 
 // What a motion that has come to its end, or as far as it came, is known by.
 Results motion_results(const continuum::DynamicSolver &solver, double time_step)
@@ -212,16 +246,15 @@ Results motion_results(const continuum::DynamicSolver &solver, double time_step)
   return results;
 }
 
-Results motion(const Case &input, ContinuumModel &model, Checkpoints &checkpoints, Run &run)
+Results move(const Case &input, const ContinuumModel &model, Motion &motion, Checkpoints &checkpoints, Run &run)
 {
-  const continuum::DynamicSettings settings = dynamic_settings(input, model);
-  const auto viscosity = homogenised_viscosity(input.lattice(), model.subject().material);
-  continuum::DynamicSolver solver(model.mesh(), model.constitution(), model.conditions(),
-                                  {input.density, model.inertia_length()}, settings, viscosity.get());
+  const continuum::DynamicSettings &settings = motion.settings;
+  continuum::DynamicSolver &solver = motion.solver;
   ContinuumRecord record;
   continuum::FieldWriter fields(MPI_COMM_WORLD, run.directory());
   double next_frame = input.frame_interval;
   std::size_t step = 0; // done
+  const auto n_steps = static_cast<std::size_t>(std::ceil(input.end_time / settings.time_step * (1. - 1e-12)));
   const auto parts = [&](auto &archive)
   {
     archive("solver", solver);
@@ -229,6 +262,20 @@ Results motion(const Case &input, ContinuumModel &model, Checkpoints &checkpoint
     archive("frames", fields);
     archive("next_frame", next_frame);
     archive("step", step);
+    if constexpr (std::decay_t<decltype(archive)>::loads)
+    {
+      const double done = static_cast<double>(step), frames_so_far = static_cast<double>(fields.n_frames());
+      constexpr double epsilon = std::numeric_limits<double>::epsilon();
+      require_course(*checkpoints.found(), step, solver.time(), done * settings.time_step,
+                     4. * epsilon * solver.time());
+      const bool has_series = input.frame_interval > 0.;
+      if (step > n_steps || !(record.last_time() <= solver.time() && fields.last_time() <= solver.time()))
+        throw InputError("what was recorded is of later times");
+      if (has_series &&
+          !(frames_so_far >= 1. && frames_so_far <= done + 1. &&
+            std::abs(next_frame - frames_so_far * input.frame_interval) <= frames_so_far * epsilon * next_frame))
+        throw InputError("`next_frame` does not follow the frames that there are");
+    }
   };
   const auto write_frame = [&]
   {
@@ -242,7 +289,7 @@ Results motion(const Case &input, ContinuumModel &model, Checkpoints &checkpoint
   };
   const bool resumed = checkpoints.resume(parts);
   if (!resumed)
-    start(solver, input, model, run);
+    motion.start(input, model, run);
   const SignalDeferral deferral;
   if (resumed)
   {
@@ -267,7 +314,6 @@ Results motion(const Case &input, ContinuumModel &model, Checkpoints &checkpoint
   try
   {
     const auto phase = run.info().stopwatch().phase("motion");
-    const auto n_steps = static_cast<std::size_t>(std::ceil(input.end_time / settings.time_step * (1. - 1e-12)));
     while (step < n_steps)
     {
       // A step takes far longer than to agree on this.
@@ -333,6 +379,9 @@ ExitCode run_continuum(const Options &options)
     check_steps(input, motion_time_step(input, model), parameters);
     parameters.finish();
   }
+  std::optional<Motion> motion;
+  if (moves)
+    motion.emplace(input, model);
   if (options.dry_run)
   {
     const continuum::Sheet sheet(model.mesh(), model.constitution(), input.continuum.degree, model.conditions());
@@ -359,8 +408,12 @@ ExitCode run_continuum(const Options &options)
   try
   {
     const Results results =
-      moves ? motion(input, model, checkpoints, run) : equilibrium(input, model, checkpoints, run);
+      moves ? move(input, model, *motion, checkpoints, run) : equilibrium(input, model, checkpoints, run);
     return interrupted() ? run.interrupted(results) : run.finish(results);
+  }
+  catch (const UnusableCheckpoint &)
+  {
+    throw;
   }
   // The input was good as far as it could be tried, so it is the computed state that is not.
   catch (const continuum::NonPhysicalState &failure)

@@ -56,6 +56,9 @@ std::string lattice_text(const Case &input, const lattice::TimeStepping &steppin
     }
     out << "\n";
     frames = frames_of(input, steps * stepping.step);
+    if (const double parts = parts_of_first_step(input, stepping, run); parts > 1.)
+      out << "# bonds of the loaded sheet are so short that the first step is made in " << parts
+          << " parts; the time below is that of all steps likewise\n";
     if (run == LatticeRun::broken)
       frames += cost_of_motion_frame * input.motion_frames;
   }

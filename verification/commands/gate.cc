@@ -5,6 +5,8 @@
 #include <deal.II/base/mpi.h>
 
 #include "verification/commands/command.h"
+#include "verification/gate_rows.h"
+#include "verification/subject.h"
 #include "verification/verdict_store.h"
 
 namespace verification
@@ -82,6 +84,13 @@ Results passed_claims(const Case &input, Run &run)
     try
     {
       verdicts = read_verdicts(key, stored.text);
+      // What refuses a crack needs no rows but its own.
+      if (const std::string problem = row_problem(verdicts->results, shells_name(input.material()));
+          verdicts->results.all_hold() && !problem.empty())
+      {
+        verdicts.reset();
+        throw UnusableVerdicts("its rows are not those of the claims: " + problem);
+      }
     }
     catch (const UnusableVerdicts &error)
     {

@@ -1,5 +1,8 @@
 #include "verification/commands/lattice_motion.h"
 
+#include <cmath>
+#include <limits>
+
 #include "verification/commands/signals.h"
 #include "verification/progress.h"
 
@@ -23,6 +26,24 @@ void LatticeMotion::write_tables() const
 {
   if (run_.writes())
     record_.write_tables(run_.directory());
+}
+
+// Refuses what a checkpoint says of the course of the motion before any of it is used. @throws std::invalid_argument
+void LatticeMotion::check_loaded()
+{
+  const double time = simulation_.state().time, step = simulation_.time_step(), done = static_cast<double>(step_);
+  // Steps were added up one by one.
+  require_course(*checkpoints_.found(), step_, time, done * step, done * std::numeric_limits<double>::epsilon() * time);
+  lattice::require_archived(time <= input_.end_time + step, "`time` is after the end");
+  // A frame at the start, and one an interval, but no more than one a step.
+  if (run_.writes() && input_.frame_interval > 0.)
+  {
+    const double frames = static_cast<double>(frames_.n_frames());
+    lattice::require_archived(frames >= 1. && frames <= done + 1. &&
+                                std::abs(next_frame_ - frames * input_.frame_interval) <=
+                                  frames * std::numeric_limits<double>::epsilon() * next_frame_,
+                              "`next_frame` does not follow the frames that there are");
+  }
 }
 
 void LatticeMotion::go(const Course &course, bool resumed, const std::function<void()> &write_checkpoint)

@@ -2,6 +2,7 @@
 
 #include <functional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -47,6 +48,8 @@ public:
       archive("frames", frames_);
       archive("next_frame", next_frame_);
       archive("step", step_);
+      if constexpr (std::decay_t<decltype(archive)>::loads)
+        check_loaded();
     };
     const bool resumed = checkpoints_.resume(parts);
     go(course, resumed,
@@ -61,6 +64,7 @@ public:
   std::size_t step() const { return step_; } ///< steps done
 
 private:
+  void check_loaded();
   void go(const Course &course, bool resumed, const std::function<void()> &write_checkpoint);
   void add_frame();
   void write_tables() const;

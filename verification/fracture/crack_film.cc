@@ -1,6 +1,7 @@
 #include "verification/fracture/crack_film.h"
 
 #include <algorithm>
+#include <cmath>
 
 namespace verification
 {
@@ -28,6 +29,17 @@ void CrackFilm::step(double tip_X)
   add_frame();
   while (tip_X >= next_frame_)
     next_frame_ += pitch_;
+}
+
+// The next frame is the first that the tip has yet to reach. @param first of all [m]
+void CrackFilm::check_loaded(double first) const
+{
+  const std::optional<std::size_t> tip = simulation_.tip();
+  const double tip_X = tip ? simulation_.lattice().reference(*tip).x() : 0.;
+  const double rounding = 1e-9 * std::abs(pitch_);
+  lattice::require_archived(next_frame_ == first ||
+                              (next_frame_ > std::max(tip_X, first) && next_frame_ <= tip_X + pitch_ + rounding),
+                            "`next_frame` is not the first that is due");
 }
 
 void CrackFilm::add_frame()

@@ -27,15 +27,20 @@ public:
   /// Adds the last frame. Collective.
   void end() { add_frame(); }
 
-  /// Saves or loads which frames there are; see lattice::Simulation.
+  /// Saves or loads which frames there are; see lattice::Simulation. @throws std::invalid_argument if the next one is
+  /// due where none can be
   template <class Archive>
   void archive(Archive &archive)
   {
+    const double first = next_frame_;
     archive("frames", frames_);
     archive("next_frame", next_frame_);
+    if constexpr (Archive::loads)
+      check_loaded(first);
   }
 
 private:
+  void check_loaded(double first) const;
   void add_frame();
 
   lattice::Simulation &simulation_;

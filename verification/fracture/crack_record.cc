@@ -9,6 +9,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "lattice/archive_rows.h"
 #include "lattice/fragments.h"
 #include "verification/atomic_file.h"
 #include "verification/errors.h"
@@ -126,6 +127,38 @@ lattice::EnergyBalance CrackRecord::sound_energies()
           << " s, when it was sound; a smaller Time/safety factor may help";
   simulation_.look_back(last_sound_);
   throw SolverError(message.str());
+}
+
+void CrackRecord::check_loaded() const
+{
+  using lattice::require_archived;
+  const lattice::TriangularLattice &sheet = simulation_.lattice();
+  const auto is_site = [&](std::size_t place) { return place < sheet.n_places() && sheet.is_site(place); };
+  const double now = simulation_.state().time;
+  require_archived(speeds_.size() == tip_.size() && broken_at_tip_.size() == tip_.size(),
+                   "`speeds` or `broken_at_tip` are not as many as the records of the tip");
+  require_archived(last_tip_.has_value() == !tip_.empty() && (!last_tip_ || is_site(*last_tip_)),
+                   "`last_tip` is no site of the sheet");
+  require_archived(broken_.size() == simulation_.n_broken(), "`broken_bonds` are not as many as broke");
+  require_archived(!energies_.empty(), "`energies` were never recorded");
+  double before = 0.;
+  const auto require_order = [&](double time, const std::string &what)
+  {
+    require_archived(time >= before && time <= now, "times of `" + what + "` do not grow up to now");
+    before = time;
+  };
+  for (const lattice::TipRecord &tip : tip_)
+    require_order(tip.t, "tip");
+  before = 0.;
+  for (const EnergyRow &row : energies_)
+    require_order(row.time, "energies");
+  before = 0.;
+  for (const lattice::BrokenBond &bond : broken_)
+  {
+    require_order(bond.time, "broken_bonds");
+    require_archived(is_site(bond.near) && is_site(bond.far) && bond.kind < lattice::n_bond_kinds,
+                     "`broken_bonds` has some that the sheet never had");
+  }
 }
 
 double CrackRecord::largest_imbalance() const

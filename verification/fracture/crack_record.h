@@ -51,7 +51,7 @@ public:
                          double seed_tip_X, double breaking_stretch, bool skip_verification);
 
   /// Saves or loads what was noted; see lattice::Simulation. The state now, which is loaded before, counts as sound:
-  /// checkpoints are made of sound states alone.
+  /// checkpoints are made of sound states alone. @throws std::invalid_argument for records that cannot be of this sheet
   template <class Archive>
   void archive(Archive &archive)
   {
@@ -61,10 +61,13 @@ public:
     archive("broken_at_tip", broken_at_tip_);
     archive.records("broken_bonds", broken_);
     archive.records("energies", energies_);
+    if constexpr (Archive::loads)
+      check_loaded();
     last_sound_ = {simulation_.state(), simulation_.band()};
   }
 
 private:
+  void check_loaded() const;
   void note_tip();
   lattice::EnergyBalance sound_energies();
 

@@ -179,6 +179,21 @@ NearTipRecord::NearTipRecord(const Case &input, lattice::Simulation &simulation,
 {
 }
 
+void NearTipRecord::check_loaded() const
+{
+  std::size_t samples = 0;
+  for (const Block &block : blocks_)
+  {
+    const std::size_t n = block.negative_zone_depth.samples;
+    samples += n;
+    lattice::require_archived(block.vortices.size() == n && block.backward_speeds.size() == n &&
+                                block.following_speeds.size() == n && block.asymmetry.samples <= n &&
+                                block.wedge_angle.samples <= n,
+                              "`blocks` are of different numbers of samples");
+  }
+  lattice::require_archived(samples == sampler_.samples(), "`blocks` are not of the samples that were taken");
+}
+
 void NearTipRecord::step()
 {
   if (interval_ == 0.)

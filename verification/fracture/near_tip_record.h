@@ -49,12 +49,15 @@ public:
   void write(const std::filesystem::path &directory, const lattice::CrackMeasurement &crack);
 
   /// Saves or loads what the samples said; see lattice::Simulation. The first rank's is the whole.
+  /// @throws std::invalid_argument if it is not of as many samples as were taken
   template <class Archive>
   void archive(Archive &archive)
   {
     archive("intervals", intervals_);
     archive("sampler", sampler_);
     archive("blocks", blocks_);
+    if constexpr (Archive::loads)
+      check_loaded();
   }
 
 private:
@@ -94,6 +97,7 @@ private:
       archive("following_speeds", following_speeds);
     }
   };
+  void check_loaded() const;
   std::string measurements(const lattice::CrackMeasurement &crack) const;
 
   lattice::Simulation &simulation_;

@@ -267,7 +267,11 @@ std::string memory_text(const MemoryNeed &need)
 double lattice_seconds(const Case &input, const lattice::TimeStepping &stepping, const LatticeRun run,
                        const double steps, const double frames)
 {
-  const double per_site_step = measured_seconds_per_site_step(input, stepping, run == LatticeRun::broken);
+  // One part of a step is measured: a whole one may take longer than anybody waits for an estimate.
+  const double parts = parts_of_first_step(input, stepping, run);
+  lattice::TimeStepping part = stepping;
+  part.step /= parts;
+  const double per_site_step = measured_seconds_per_site_step(input, part, run == LatticeRun::broken);
   const lattice::TriangularLattice sheet = input.lattice();
   const double sites = static_cast<double>(sheet.n_sites());
   const double written = seconds_of_start + frames * sites * seconds_of_site_in_frame;
@@ -276,7 +280,7 @@ double lattice_seconds(const Case &input, const lattice::TimeStepping &stepping,
                        std::max(evaluations_relaxed, evaluations_relaxed_per_column *
                                                        static_cast<double>(std::max(sheet.columns(), sheet.rows())));
   const double ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
-  return written + (run == LatticeRun::broken ? beside_kernel : 1.) * per_site_step * sites * steps / ranks;
+  return written + (run == LatticeRun::broken ? beside_kernel : 1.) * per_site_step * sites * steps * parts / ranks;
 }
 
 double expected_steps(const Case &input, const lattice::TimeStepping &stepping)
@@ -285,6 +289,29 @@ double expected_steps(const Case &input, const lattice::TimeStepping &stepping)
   const double way = (input.stop_position - input.seed_position) * sheet.length();
   const double passage = way / small_strain(sheet, input.material()).shear_speed;
   return std::ceil(std::min(input.end_time, passage) / stepping.step);
+}
+
+double parts_of_first_step(const Case &input, const lattice::TimeStepping &stepping, const LatticeRun run)
+{
+  const lattice::TriangularLattice sheet = input.lattice();
+  const lattice::Material material = input.material();
+  const Eigen::Matrix2d F = input.deformation();
+  std::optional<lattice::ContactLaw> contact;
+  if (run == LatticeRun::broken && input.has_contact)
+    contact = input.contact_law();
+  double parts = 1.;
+  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+  {
+    const lattice::Shell *const shell = material.shell(kind);
+    const double stretch = (F * sheet.bond_vector(kind)).norm() / sheet.rest_length(kind);
+    if (shell == nullptr || std::holds_alternative<lattice::LinearBond>(shell->law) ||
+        stretch >= lattice::short_stretch)
+      continue;
+    const double longest = lattice::recoil_step(
+      stepping, sheet, material, kind, std::max(stretch, lattice::Simulation::shortest), contact ? &*contact : nullptr);
+    parts = std::max(parts, std::exp2(std::ceil(std::log2(stepping.step / longest))));
+  }
+  return std::min(parts, static_cast<double>(lattice::Simulation::most_parts));
 }
 
 double continuum_seconds(const Case &input, const ContinuumSize &size, const double steps, const double frames)

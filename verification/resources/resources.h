@@ -66,6 +66,10 @@ inline constexpr double seconds_of_claims = 8., seconds_of_report = 9.; ///< see
 /// Steps that a crack as fast as the shear waves of the unloaded sheet takes to the stop position, at most all.
 [[nodiscard]] double expected_steps(const Case &input, const lattice::TimeStepping &stepping);
 
+/// Parts into which the first step is divided because bonds of the loaded sheet are short (theory.md, eq. (L.24)); 1:
+/// none.
+[[nodiscard]] double parts_of_first_step(const Case &input, const lattice::TimeStepping &stepping, LatticeRun run);
+
 /// Time that a finite element run takes [s], from costs per unknown and iteration that were measured on one core.
 /// @param steps of a motion; 0 for an equilibrium
 /// @param frames number of frames written

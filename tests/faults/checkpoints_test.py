@@ -1,0 +1,79 @@
+#!/usr/bin/python3
+"""Checkpoints that are damaged, or whose contents somebody made up: a short version of what tests/faults/run tries.
+
+Usage: checkpoints_test.py PATH_OF_THE_FUZZ_SERVER
+"""
+import pathlib
+import random
+import sys
+import tempfile
+import unittest
+
+sys.dont_write_bytecode = True
+import damage
+import hostile
+from forked import Forked
+
+PROGRAM = Forked(sys.argv.pop(1))
+# One for each number or list of a checkpoint that has a size, or that says where, when, or how many.
+CRACK = {
+    "run/command": [hostile.many], "run/case": [hostile.unterminated], "run/commit": [hostile.elsewhere],
+    "run/step": [hostile.LARGE], "run/time": [hostile.value(1e308)],
+    "simulation/x": [hostile.longer], "simulation/vx": [hostile.endless], "simulation/bonds": [hostile.value(0xffff)],
+    "simulation/lost_bonds": [hostile.value(255)], "simulation/work_viscous": [hostile.shorter],
+    "simulation/ay": [hostile.no_number], "simulation/time": [hostile.value(-1e308)],
+    "simulation/parts": [hostile.value(1 << 30)], "simulation/n_broken": [hostile.LARGE],
+    "simulation/initial_energy": [hostile.value(1e300)], "simulation/fracture/tip": [hostile.LARGE],
+    "record/last_tip": [hostile.LARGE], "record/tip/n": [hostile.LARGE], "record/tip/t": [hostile.shorter],
+    "record/speeds": [hostile.longer], "record/broken_at_tip": [hostile.shorter],
+    "record/broken_bonds/near": [hostile.LARGE], "record/broken_bonds/kind": [hostile.value(6)],
+    "record/energies/n": [hostile.value(0)],
+    "near_tip/sampler/plain/motion/weights": [hostile.many], "near_tip/sampler/folded/n": [hostile.LARGE],
+    "near_tip/sampler/folded/0/tensors/values": [hostile.longer],
+    "near_tip/sampler/n_pending": [hostile.LARGE], "near_tip/sampler/pending/n": [hostile.LARGE],
+    "near_tip/sampler/pending/0/block": [hostile.value(4)], "near_tip/sampler/last_tip": [hostile.LARGE],
+    "near_tip/sampler/taken": [hostile.LARGE], "near_tip/blocks/n": [hostile.LARGE],
+    "near_tip/blocks/0/vortices/sizes": [hostile.LARGE], "near_tip/blocks/1/wedge_angle/samples": [hostile.LARGE], "film/frames/times": [hostile.value(-1.)],
+    "film/next_frame": [hostile.value(-1e308)], "frames/times": [hostile.many],
+    "next_frame": [hostile.value(-1e308)], "step": [hostile.LARGE],
+}
+SHEET = {
+    "solver/steps": [hostile.LARGE], "solver/time": [hostile.value(-1e308)], "solver/displacement": [hostile.longer],
+    "solver/velocity": [hostile.no_number], "solver/linear_solver/is_worn": [hostile.value(2)],
+    "solver/elastic_diagonal": [hostile.shorter], "record/motion/n": [hostile.LARGE],
+    "record/motion/time": [hostile.value(1e308)], "frames/frames/n": [hostile.LARGE],
+    "frames/frames/pieces": [hostile.value(0)], "next_frame": [hostile.value(1e-300)], "step": [hostile.LARGE],
+}
+
+
+class Checkpoints(unittest.TestCase):
+    def setUp(self):
+        folder = tempfile.TemporaryDirectory()
+        self.addCleanup(folder.cleanup)
+        self.folder = pathlib.Path(folder.name)
+
+    def check_refused(self, name, changes):
+        left, checkpoint = hostile.prepared(PROGRAM, name, self.folder)
+        flat = [(array, change) for array, all_changes in changes.items() for change in all_changes]
+        hostile.require_refused(PROGRAM, name, left, checkpoint, flat)
+
+    def test_contents_of_a_crack_that_nobody_left(self):
+        self.check_refused("crack", CRACK)
+
+    def test_contents_of_a_motion_in_finite_elements_that_nobody_left(self):
+        self.check_refused("sheet in motion", SHEET)
+
+    def test_damage_is_refused_or_fallen_back_from(self):
+        told = damage.damage_at_random(PROGRAM, "lattice in motion", self.folder, random.Random(1), 8)
+        self.assertGreater(told["refused"], 0)
+        self.assertGreater(told["fell back"], 0)
+
+    def test_harness_sees_what_is_accepted(self):
+        with self.assertRaises(hostile.Accepted):
+            self.check_refused("lattice in motion", {"run/program": [hostile.another_type]})  # which nobody reads
+
+
+if __name__ == "__main__":
+    result = unittest.main(verbosity=2, exit=False).result
+    PROGRAM.close()
+    sys.exit(not result.wasSuccessful())

@@ -1,0 +1,88 @@
+"""Checkpoints that a disk, a copy or a hand has damaged: refused, or passed over for the one before, with a word of it.
+
+Never may a run that resumes end with anything but what the undisturbed one found.
+"""
+import shutil
+
+import victims
+from kills import Failure
+
+
+def flip(content, rng):
+    """One bit."""
+    content[rng.randrange(len(content))] ^= 1 << rng.randrange(8)
+
+
+def cut(content, rng):
+    del content[rng.randrange(len(content)):]
+
+
+def blank(content, rng):
+    """Zeros in the place of up to a sector."""
+    at = rng.randrange(len(content))
+    n = min(rng.choice((1, 8, 512, 4096)), len(content) - at)
+    content[at:at + n] = bytes(n)
+
+
+def lengthen(content, rng):
+    content += bytes(rng.randrange(256) for _ in range(rng.choice((1, 8, 512))))
+
+
+def swap(content, rng):
+    """Two pieces in each other's places."""
+    n = min(512, len(content) // 4)
+    one, two = rng.randrange(len(content) // 2 - n), len(content) // 2 + rng.randrange(len(content) // 2 - n)
+    content[one:one + n], content[two:two + n] = content[two:two + n], content[one:one + n]
+
+
+def empty(content, rng):
+    content.clear()
+
+
+DAMAGES = (flip, cut, blank, lengthen, swap, empty)
+
+
+def damage_at_random(program, name, folder, rng, variants):
+    """@return statistics"""
+    arguments = [*victims.VICTIMS[name], "--threads", "1"]
+    status, said = program.run(arguments, folder / "undisturbed")
+    if status not in victims.DONE:
+        raise RuntimeError(f"exit {status}: {said}")
+    expected = victims.contents(folder / "undisturbed")
+    whole = sorted((folder / "undisturbed" / "checkpoints").glob("*.h5"))
+    out = folder / "damaged"
+    told = {"variants": variants, "refused": 0, "fell back": 0, "same bits without a word": 0}
+    for _ in range(variants):
+        damage, left = rng.choice(DAMAGES), rng.choice((1, 2))
+        shutil.rmtree(out, ignore_errors=True)
+        (out / "checkpoints").mkdir(parents=True)
+        for path in whole[-left:]:
+            shutil.copy(path, out / "checkpoints")
+        victim = out / "checkpoints" / rng.choice(whole[-left:]).name
+        before = victim.read_bytes()
+        content = bytearray(before)
+        damage(content, rng)
+        victim.write_bytes(content)
+        status, said = program.run([*arguments, "--resume"], out)
+        what = f"{name}: {damage.__name__}, {left} left: exit {status}: {said}"
+        if status == 2:
+            # Nothing but the damaged one was left.
+            if left != 1 or str(victim) not in said:
+                raise Failure(what)
+            told["refused"] += 1
+            continue
+        if status not in victims.DONE:
+            raise Failure(what)
+        # Frames of before the checkpoint are not there: what the run writes itself is compared.
+        found = {key: value for key, value in expected.items() if (out / key).exists()}
+        different = [key for key, value in found.items() if (out / key).read_bytes() != value]
+        if different or not found:
+            raise Failure(f"{what}: not what the undisturbed run wrote: {', '.join(different)}")
+        # The file begins with a line that holds the hash, and bytes that nobody reads.
+        if str(victim) in said:
+            told["fell back"] += 1
+        elif bytes(content[512:]) == before[512:] and content[:content.find(b"\n")] == before[:before.find(b"\n")]:
+            told["same bits without a word"] += 1
+        else:
+            raise Failure(what + ": not a word of the damage")
+    return told

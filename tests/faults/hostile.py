@@ -1,0 +1,200 @@
+"""Checkpoints with the hash that their bytes have, and contents that no run left: what somebody may put into a folder.
+
+Each is to be refused with exit code 2 and a message that names the file, whatever it says of sizes and places.
+"""
+import hashlib
+import shutil
+
+import h5py
+import numpy
+
+import victims
+import whole
+
+TIME_LIMIT = 60  # [s]; what is refused is refused as soon as it is read
+# Lists of any length: nothing else in the file or the case tells how many there are.
+OF_ANY_LENGTH = ("near_tip/sampler/path", "/sites", "film/frames/times")
+
+
+class Accepted(Exception):
+    """A checkpoint that was not refused as it should be."""
+
+
+def make_right(path):
+    """Gives a checkpoint the hash of its bytes."""
+    content = path.read_bytes()
+    line = content[:content.index(b"\n")]
+    told = line[:line.rindex(b" ") + 1] + hashlib.sha256(content[whole.USER_BLOCK:]).hexdigest().encode() + b"\n"
+    path.write_bytes(told + content[len(told):])
+
+
+def replace(file, name, values):
+    """Puts an array in the place of another, of the type that `values` have."""
+    del file[name]
+    file.create_dataset(name, data=values)
+
+
+def is_text(values):
+    return values.dtype.kind in "SO"
+
+
+def remove(file, name):
+    del file[name]
+
+
+def another_type(file, name):
+    values = file[name][:]
+    replace(file, name, numpy.zeros(len(values), dtype="f4") if not is_text(values) else numpy.zeros(1))
+
+
+def longer(file, name):
+    replace(file, name, numpy.concatenate([file[name][:], file[name][:1] if len(file[name]) else [0]]).astype(file[name].dtype))
+
+
+def shorter(file, name):
+    replace(file, name, file[name][:-1])
+
+
+def many(file, name):
+    """Ten thousand texts in the place of one; of numbers the list, very long."""
+    values = file[name][:]
+    replace(file, name, numpy.resize(values if len(values) else numpy.zeros(1, values.dtype), 10000 + 7 * len(values)))
+
+
+def endless(file, name):
+    """More than any memory holds, of which nothing is in the file."""
+    kind = file[name].dtype
+    del file[name]
+    file.create_dataset(name, shape=(1 << 40,), dtype=kind, chunks=(1 << 16,))
+
+
+def elsewhere(file, name):
+    """In another file."""
+    kind, n = file[name].dtype, len(file[name])
+    del file[name]
+    file.create_dataset(name, shape=(n,), dtype=kind, external=[("/dev/zero", 0, h5py.h5f.UNLIMITED)])
+
+
+def linked(file, name):
+    del file[name]
+    file[name] = h5py.ExternalLink("other.h5", "/values")
+
+
+def grid(file, name):
+    replace(file, name, numpy.resize(file[name][:], (max(1, len(file[name])), 1)))
+
+
+def no_number(file, name):
+    values = file[name][:]
+    values[len(values) // 2] = numpy.nan
+    replace(file, name, values)
+
+
+def value(number):
+    def change(file, name):
+        kind = file[name].dtype
+        replace(file, name, numpy.full(max(1, len(file[name])), number).astype(kind))
+    change.__name__ = f"value {number:g}"
+    return change
+
+
+def unterminated(file, name):
+    """A text that fills its room, so that no zero ends it."""
+    text = bytes(file[name][0])
+    del file[name]
+    kind = h5py.h5t.C_S1.copy()
+    kind.set_size(len(text) + 1)
+    space = h5py.h5s.create_simple((1,))
+    data = h5py.h5d.create(file.id, name.encode(), kind, space)
+    data.write(h5py.h5s.ALL, h5py.h5s.ALL, numpy.array([text + b"x"], dtype=f"S{len(text) + 1}"), kind)
+
+
+LARGE = value(float(1 << 62))
+EVERYWHERE = (remove, another_type, longer, many, endless, elsewhere, linked, grid)
+
+
+def of_array(name, values):
+    """What can be wrong with an array, by what it is."""
+    if is_text(values):
+        # What program wrote it is not compared.
+        return [*EVERYWHERE, unterminated]
+    changes = [change for change in EVERYWHERE
+               if not (name.endswith(OF_ANY_LENGTH) and change in (longer, many))]
+    if values.dtype.kind == "f" and len(values):
+        changes.append(no_number)
+    if len(values) > 1 and not name.endswith(OF_ANY_LENGTH):
+        changes.append(shorter)
+    return changes
+
+
+# Numbers that count, point to something or end a loop, by the end of their names, and values that they cannot have.
+NUMBERS = {
+    "run/step": [LARGE], "run/time": [value(-1e308), value(1e308)], "run/schema": [LARGE],
+    "simulation/time": [value(-1e308), value(1e308), value(0.)], "simulation/parts": [value(0), value(3), value(1 << 30)],
+    "simulation/bonds": [value(0xffff)], "simulation/lost_bonds": [value(255)], "simulation/n_broken": [LARGE],
+    "simulation/initial_energy": [value(1e300)],
+    "fracture/tip": [LARGE, value(0)], "fracture/tip_x": [value(1e308)],
+    "record/last_tip": [LARGE, value(0)], "record/tip/n": [LARGE], "record/tip/t": [value(1e308), value(-1.)],
+    "record/broken_bonds/n": [LARGE, value(0)], "record/broken_bonds/near": [LARGE, value(0)],
+    "record/broken_bonds/far": [LARGE], "record/broken_bonds/kind": [LARGE, value(6)],
+    "record/broken_bonds/time": [value(1e308)], "record/energies/n": [LARGE, value(0)],
+    "record/energies/time": [value(1e308)], "record/motion/n": [LARGE, value(0)], "record/motion/time": [value(1e308)],
+    "sampler/n_pending": [LARGE, value(1000)], "sampler/last_tip": [LARGE, value(0)], "sampler/taken": [LARGE],
+    "/block": [LARGE, value(4)], "pending/n": [LARGE], "folded/n": [LARGE, value(0)], "blocks/n": [LARGE],
+    "samples": [LARGE], "vortices/sizes": [LARGE], "backward_speeds/sizes": [LARGE], "following_speeds/sizes": [LARGE],
+    "film/next_frame": [value(-1e308), value(1e308)], "film/frames/times": [value(-1.), value(0.)],
+    "frames/times": [value(-1.)], "next_frame": [value(-1e308), value(1e308), value(1e-300)], "step": [LARGE, value(0)],
+    "solver/steps": [LARGE, value(0)], "solver/time": [value(-1e308), value(1e308)], "solver/start_time": [value(1e308)],
+    "frames/frames/n": [LARGE], "frames/frames/time": [value(1e308)], "frames/frames/pieces": [value(0)],
+    "linear_solver/is_worn": [value(2)],
+}
+
+
+def variants(path):
+    """(name of the array, change) of all that can be wrong with a checkpoint."""
+    found = []
+    with h5py.File(path, "r") as file:
+        names = []
+        file.visititems(lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None)
+        for name in names:
+            if name in ("run/program", "run/case_hash"):
+                continue  # for people: the program does not read them
+            values = file[name][:]
+            found += [(name, change) for change in of_array(name, values)]
+            ends = [end for end in NUMBERS if name == end or name.endswith("/" + end.lstrip("/"))]
+            if ends and len(values):
+                found += [(name, change) for change in NUMBERS[max(ends, key=len)]]
+    return found
+
+
+def prepared(program, name, folder):
+    """Runs a victim, and stops it where it has much to keep. @return its folder, the path of its only checkpoint"""
+    out = folder / name.replace(" ", "-")
+    status, said = program.run([*victims.VICTIMS[name], "--threads", "1"], out)
+    if status not in victims.DONE:
+        raise RuntimeError(f"{name}: exit {status}: {said}")
+    *older, last = sorted((out / "checkpoints").glob("*.h5"))
+    for path in older:
+        path.unlink()
+    return out, last
+
+
+def require_refused(program, name, left, checkpoint, changes):
+    """Resumes from a checkpoint to which the changes were made, in copies of a folder. @return how many were refused"""
+    good = checkpoint.read_bytes()
+    out = left.with_name("resumed")
+    wrong = []
+    for array, change in changes:
+        shutil.rmtree(out, ignore_errors=True)
+        (out / "checkpoints").mkdir(parents=True)
+        path = out / "checkpoints" / checkpoint.name
+        path.write_bytes(good)
+        with h5py.File(path, "r+") as file:
+            change(file, array)
+        make_right(path)
+        status, said = program.run([*victims.VICTIMS[name], "--resume", "--threads", "1"], out, timeout=TIME_LIMIT)
+        if status != 2 or str(path) not in said:
+            wrong.append(f"{name}: {array}, {change.__name__}: exit {status}: {said.strip()[:300]}")
+    if wrong:
+        raise Accepted("\n".join(wrong))
+    return len(changes)

@@ -1,0 +1,240 @@
+#!/usr/bin/python3
+"""Runs tiny sheets for real, with entries anywhere in the ranges that latcon documents for them.
+
+Usage: extremes.py FUZZ_SERVER [--runs N] [--seed S] [--only NUMBER] [--failures DIR]
+
+Allowed ends are the exit codes 0, 2 (the dry run ends likewise, and nothing is written), 3, 4, 5. Others, signals, time beyond
+the limit, and numbers that are not finite in a file of a run that ended with 0 are findings. A run follows from seed and number
+alone. What fails is left in DIR, with the command that repeats it.
+"""
+import argparse
+import collections
+import math
+import pathlib
+import random
+import re
+import shutil
+import sys
+import tempfile
+import time
+
+sys.dont_write_bytecode = True
+import vtk
+from vtk.util.numpy_support import vtk_to_numpy
+import numpy
+
+import mutate
+
+sys.path.append(str(mutate.ROOT / "tests" / "docs"))
+import entries_page
+
+BASE = mutate.ROOT / "verification" / "cases" / "quick.prm"
+# About 180 sites, or some finite elements; a crack is seeded in them.
+TINY = {"Sheet/spacing": "0.4 mm", "Sheet/length": "6 mm", "Sheet/height": "4 mm", "Time/end": "0.004 ms", "Continuum/cells x": "3",
+        "Continuum/cells y": "2", "Continuum/refinements": "0", "Continuum/degree": "2", "Fracture/seed sites": "2",
+        "Fracture/seed position": "0.2", "Output/frame interval": "0.002 ms", "Near tip/behind": "2 mm", "Near tip/ahead": "2 mm",
+        "Near tip/half height": "1.5 mm"}
+COMMANDS = (["lattice"], ["lattice"], ["continuum"], ["continuum"], ["fracture", "--skip-verification", "--no-report"],
+            ["fracture", "--skip-verification", "--no-report"])
+MOVES = {"lattice": "Lattice/solution", "continuum": "Continuum/solution"}
+EXPRESSIONS = ["0", "loading", "1e-5*x", "1e-3*y", "0.2*x+0.1*y", "1e-5*sin(1000*x)", "1e3", "-1e3*y", "1e-12", "if(x>0.003,1e-5,0)"]
+MOST_STEPS = 60  # of a run whose automatic step is known; others are left to their time limit
+LARGE = re.compile(r"^(length|height|spacing|cells [xy]|refinements|mesh file|adaptive cycles)$")  # of the cost of a run
+RANGE = re.compile(r"(>=|>|<=|<) (\S+)")
+# By definition not finite where no site ever was.
+MAY_HAVE_GAPS = {"near_tip.vti", "near_tip_folded.vti"}
+# Likewise, where too few bonds are left.
+MAY_BE_UNKNOWN = {"strain_gradient_x", "strain_gradient_y"}
+ENDS = {"exit 0", "exit 2", "exit 3", "exit 4", "exit 5"}
+
+
+def bounds(rule):
+    """The least and the largest number that a range allows, and whether each may be taken itself."""
+    low, high = (-math.inf, True), (math.inf, True)
+    for sign, number in RANGE.findall(rule):
+        if sign[0] == ">":
+            low = (float(number.rstrip(",")), sign == ">=")
+        else:
+            high = (float(number.rstrip(",")), sign == "<=")
+    return low, high
+
+
+def number_in(rule, default, pick):
+    """Anywhere in a range, as often at its ends as within, on a logarithmic scale."""
+    (low, with_low), (high, with_high) = bounds(rule)
+    is_whole = "whole number" in rule
+    kind = pick.random()
+    if kind < 0.25:
+        value = low if pick.random() < 0.5 else high
+        if not math.isfinite(value):
+            value = pick.choice([0., 1., 4294967295., 1e6])
+        elif value == low and not with_low:
+            value = math.nextafter(low, math.inf)
+        elif value == high and not with_high:
+            value = math.nextafter(high, -math.inf)
+    else:
+        try:
+            middle = abs(float(default)) or 1.
+        except ValueError:
+            middle = 1.
+        decades = 2. if kind < 0.75 else 20.
+        value = middle * 10.**pick.uniform(-decades, decades)
+        if low < 0. and pick.random() < 0.5:
+            value = -value if low < -value else low * pick.random()
+        value = min(max(value, low if with_low else math.nextafter(low, math.inf)), high if with_high else math.nextafter(high, -math.inf))
+    return str(int(value)) if is_whole else repr(value)
+
+
+def value_of(entry, pick):
+    _, _, _, rule, default, _ = entry
+    if rule.startswith("one of "):
+        return pick.choice(rule[len("one of "):].split(", "))
+    if rule.endswith(", or auto") and pick.random() < 0.2:
+        return "auto"
+    if RANGE.search(rule) or "number" in rule:
+        return number_in(rule, default, pick)
+    return pick.choice(EXPRESSIONS)
+
+
+def make(entries, seed, number):
+    """A command, and the entries that it sets."""
+    pick = random.Random(f"{seed}/{number}")
+    command = pick.choice(COMMANDS)
+    chosen = dict(TINY)
+    if command[0] in MOVES and pick.random() < 0.7:
+        chosen[MOVES[command[0]]] = "motion"
+    may_change = [entry for entry in entries if not LARGE.match(entry[1]) and entry[0] not in ("Output", "Checkpoints", "Reference")]
+    for entry in pick.sample(may_change, pick.choice([1, 1, 2, 2, 3, 5])):
+        chosen[f"{entry[0]}/{entry[1]}"] = value_of(entry, pick)
+    return command, chosen
+
+
+def read(reader, path):
+    reader.SetFileName(str(path))
+    reader.Update()
+    return reader.GetOutput()
+
+
+READERS = {".vtp": vtk.vtkXMLPolyDataReader, ".vtu": vtk.vtkXMLUnstructuredGridReader}
+
+
+def not_finite(folder):
+    """Files that hold a number that is not finite."""
+    found = []
+    for path in sorted(folder.rglob("*")):
+        if path.suffix in (".csv", ".json", ".pvd", ".prm"):
+            if re.search(r"(?i)(?<![a-z_])[+-]?(nan|inf|infinity)(?![a-z_])", path.read_text(errors="replace")):
+                found.append(path.name)
+        elif path.suffix in READERS:
+            data = read(READERS[path.suffix](), path)
+            arrays = [data.GetPoints().GetData()] + [part.GetArray(i) for part in (data.GetPointData(), data.GetCellData(), data.GetFieldData())
+                                                     for i in range(part.GetNumberOfArrays())]
+            for array in arrays:
+                values = vtk_to_numpy(array)
+                bad = numpy.isinf(values) if array.GetName() in MAY_BE_UNKNOWN and path.suffix == ".vtp" else ~numpy.isfinite(values)
+                if bad.any():
+                    found.append(f"{path.name} ({array.GetName()})")
+        elif path.suffix == ".vti" and path.name not in MAY_HAVE_GAPS:
+            found.append(path.name + " (not looked at)")
+    return found
+
+
+class Runner:
+    def __init__(self, options):
+        self.options = options
+        self.work = pathlib.Path(tempfile.mkdtemp(prefix="latcon-extremes-"))
+        self.server = mutate.Server(options.server, self.work)
+        self.counts = collections.Counter()
+        self.findings = 0
+        outcome, _, printed = self.run(["verify", "--case", str(BASE), "--dry-run"])
+        self.entries = entries_page.entries(printed)
+        if outcome != "exit 0" or len(self.entries) < 50:
+            raise SystemExit(f"no list of entries: {outcome}")
+
+    def run(self, arguments):
+        """@return outcome, standard error, standard output"""
+        folder = self.work / "run"
+        shutil.rmtree(folder, ignore_errors=True)
+        folder.mkdir()
+        outcome = self.server.run(arguments, folder, self.options.limit)
+        return outcome, (folder / "stderr").read_text(errors="replace"), (folder / "stdout").read_text(errors="replace")
+
+    def arguments(self, command, chosen):
+        return [command[0], str(BASE), *command[1:], *(word for key, value in chosen.items() for word in ("--set", f"{key}={value}"))]
+
+    def check(self, number):
+        command, chosen = make(self.entries, self.options.seed, number)
+        dry, said, printed = self.run([*self.arguments(command, chosen), "--dry-run"])
+        # As many steps as make sense, whatever their length.
+        step = re.search(r"time step:? (\S+) s", printed)
+        if dry == "exit 0" and step and "Time/end" in chosen:
+            chosen["Time/end"] = repr(min(float(chosen["Time/end"].split()[0]) * (1e-3 if chosen["Time/end"].endswith("ms") else 1.),
+                                          MOST_STEPS * float(step[1])))
+            if float(chosen["Time/end"]) > 0.:
+                chosen["Output/frame interval"] = repr(0.4 * float(chosen["Time/end"]))
+            dry, said, printed = self.run([*self.arguments(command, chosen), "--dry-run"])
+        seconds = re.search(r"^# time: about (\S+) s", printed, re.M)
+        if dry == "exit 0" and seconds and float(seconds[1]) > mutate.SHORT:
+            self.counts["too long to run, as the dry run says"] += 1
+            return
+        arguments = [*self.arguments(command, chosen), "--output-dir", "out", "--threads", "1", "--quiet"]
+        outcome, said, _ = self.run(arguments)
+        folder = self.work / "run"
+        left = sorted(path.name for path in folder.iterdir() if path.name not in ("stdout", "stderr"))
+        finding = ""
+        if outcome not in ENDS or any(alarm in said for alarm in mutate.ALARMS):
+            finding = outcome
+        elif (outcome == "exit 2") != (dry == "exit 2"):
+            finding = f"{outcome} after a dry run with {dry}"
+        elif outcome == "exit 2" and left:
+            finding = "exit 2 with files: " + " ".join(left)
+        elif outcome in ("exit 2", "exit 4", "exit 5") and not said.strip():
+            finding = f"{outcome} without a word"
+        elif outcome == "exit 0" and (found := not_finite(folder)):
+            finding = "exit 0, not finite: " + " ".join(found)
+        self.counts[outcome] += 1
+        if finding:
+            self.findings += 1
+            place = pathlib.Path(self.options.failures) / f"extreme-{self.options.seed}-{number}"
+            shutil.rmtree(place, ignore_errors=True)
+            place.mkdir(parents=True)
+            words = " ".join("'" + word + "'" for word in arguments)
+            (place / "command.txt").write_text(f"{finding}\nlatcon {words}\n{said}")
+            own = {key: value for key, value in chosen.items() if TINY.get(key) != value}
+            print(f"run {number}: {finding}: {command[0]} {own}: {said.strip()[:200]}; see {place}", flush=True)
+
+    def close(self):
+        self.server.close()
+        shutil.rmtree(self.work, ignore_errors=True)
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("server")
+    parser.add_argument("--runs", type=int, default=3000)
+    parser.add_argument("--first", type=int, default=0, help="number of the first run")
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", type=int, help="number of a single run")
+    parser.add_argument("--limit", type=float, default=20., help="seconds a run may take")
+    parser.add_argument("--failures", default=str(mutate.ROOT / "output" / "fuzz"))
+    options = parser.parse_args()
+    start = time.time()
+    done = 0
+    runner = Runner(options)
+    try:
+        for number in [options.only] if options.only is not None else range(options.first, options.first + options.runs):
+            runner.check(number)
+            done += 1
+            if done % 500 == 0:
+                print(f"{done} runs, {time.time() - start:.0f} s, {runner.findings} findings", flush=True)
+    except KeyboardInterrupt:
+        print("interrupted")
+    finally:
+        runner.close()
+    print(", ".join(f"{count} {outcome}" for outcome, count in sorted(runner.counts.items())), f"in {time.time() - start:.0f} s")
+    print(f"{runner.findings} findings of {done} runs, seed {options.seed}")
+    return 1 if runner.findings else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,73 @@
+#!/usr/bin/python3
+"""A dry run refuses what the run would refuse, with the same exit code and reason, and neither leaves a file.
+
+Usage: dry_run_test.py PATH_OF_THE_FUZZ_SERVER
+"""
+import pathlib
+import sys
+import unittest
+
+sys.dont_write_bytecode = True
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "faults"))
+from forked import Forked
+from program import CASES, LATCON, TemporaryFolder
+
+PROGRAM = Forked(LATCON)
+MOTION = ["Continuum/solution=motion", "Time/end=0.01 ms", "Continuum/cells x=3", "Continuum/cells y=2", "Continuum/degree=2"]
+# Command, entries, a part of the message.
+REFUSED = [
+    ("continuum", [*MOTION, "Top edge/displacement x=1e-4*x"], "the initial displacement of a held boundary"),
+    ("continuum", [*MOTION, "Initial state/displacement x=1e-4*y"], "the initial displacement of a held boundary"),
+    ("continuum", [*MOTION, "Initial state/base=equilibrium", "Initial state/displacement x=1e-4*y"],
+     "the initial displacement of a held boundary"),
+    ("continuum", [*MOTION, "Initial state/base=undeformed"], "the initial displacement of a held boundary"),
+    ("continuum", [*MOTION, "Initial state/displacement x=1/x"], "is no finite number"),
+    ("continuum", [*MOTION, "Initial state/velocity y=1/y"], "is no finite number"),
+    ("continuum", [*MOTION, "Continuum/time step=1e-20"], "more than the"),
+    ("continuum", ["Continuum/mesh file=none.msh"], "none.msh"),
+    ("lattice", ["Lattice/solution=motion", "Time/end=0"], "needs an end time"),
+    ("lattice", ["Lattice/solution=motion", "Time/end=1", "Time/step=1e-20"], "more than the"),
+    ("lattice", ["Sheet/spacing=1e-9"], ""),
+    ("fracture", ["Fracture/right end=absorbing", "Loading/strain x=-0.9", "Loading/strain y=0"], ""),
+    ("fracture", ["Contact/distance=5e-324"], "Contact/distance"),
+    ("fracture", ["Time/step=1"], "Time/step"),
+    ("fracture", ["Near tip/ahead=1e-9"], "Near tip/ahead"),
+    ("fracture", ["Fracture/seed position=0.9", "Fracture/stop position=0.1"], "Fracture/"),
+]
+GOOD = [("continuum", [*MOTION]), ("continuum", [*MOTION, "Initial state/base=equilibrium"]),
+        ("continuum", [*MOTION, "Initial state/displacement x=1e-6*sin(pi*x/0.04)*(y-0.01)*(y+0.01)",
+                       "Left edge/condition=free", "Right edge/condition=free"])]
+
+
+class DryRun(TemporaryFolder):
+    def both(self, command, entries):
+        """@return exit code and standard error of the dry run, and of the run"""
+        self.out = self.folder / str(len(list(self.folder.iterdir())))
+        words = [command, str(CASES / "quick.prm"), "--quiet", "--threads", "1",
+                 *(["--skip-verification", "--no-report"] if command == "fracture" else []),
+                 *(word for entry in entries for word in ("--set", entry))]
+        dry = PROGRAM.run([*words, "--dry-run"], self.out, 60)
+        self.assertFalse(self.out.exists(), entries)
+        return dry, PROGRAM.run(words, self.out, 60)
+
+    def test_refuses_what_the_run_refuses(self):
+        for command, entries, reason in REFUSED:
+            with self.subTest(f"{command}: {entries}"):
+                dry, run = self.both(command, entries)
+                self.assertEqual((dry[0], run[0]), (2, 2), dry[1] + run[1])
+                self.assertEqual(dry[1], run[1])
+                self.assertIn(reason, run[1])
+                self.assertFalse(self.out.exists())
+
+    def test_refuses_nothing_else(self):
+        for command, entries in GOOD:
+            with self.subTest(f"{command}: {entries}"):
+                dry, run = self.both(command, entries)
+                self.assertEqual((dry[0], run[0]), (0, 0), dry[1] + run[1])
+                self.assertTrue((self.out / "results.json").exists())
+
+
+if __name__ == "__main__":
+    result = unittest.main(verbosity=2, exit=False).result
+    PROGRAM.close()
+    sys.exit(not result.wasSuccessful())
