@@ -7,8 +7,8 @@ namespace verification
 {
 
 /// Network law and lattice in one homogeneous deformation. The law leaves out the lattice's dependence on direction and
-/// nothing else: it is the mean over rotations of the lattice, and no farther from the lattice than that dependence goes
-/// (theory-comparison.md, eqs. (H.14), (H.15)). Stresses are components 11, 21, 12, 22.
+/// nothing else: it is the mean over rotations of the lattice, and no farther from the lattice than that dependence
+/// goes (theory-comparison.md, eqs. (H.14), (H.15)). Stresses are components 11, 21, 12, 22.
 class NetworkComparison
 {
 public:

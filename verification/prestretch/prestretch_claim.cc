@@ -141,8 +141,8 @@ std::vector<Row> compare(const Subject &subject, const lattice::TriangularLattic
     {"first Piola stress, largest difference / largest", "1", {}, {}, stress_error.error() / stress_scale.largest()}};
 }
 
-// The same with the network, whose energy and stress are off the lattice's by what the lattice depends on direction, within
-// its bound (theory-comparison.md, eq. (H.15)); whose fields are as homogeneous as the lattice's.
+// The same with the network, whose energy and stress are off the lattice's by what the lattice depends on direction,
+// within its bound (theory-comparison.md, eq. (H.15)); whose fields are as homogeneous as the lattice's.
 Results network_rows(const Subject &subject, const lattice::TriangularLattice &sheet, const LatticeSide &side,
                      const PrestretchOptions &options)
 {

@@ -73,12 +73,14 @@ void network_waves(const Subject &subject, const Eigen::Matrix2d &F, const WaveM
 
   const std::string prefix = subject.name + ", " + state_name(F) + ": ";
   const auto add = [&](const std::string &quantity, std::optional<double> found, std::optional<double> theory,
-                       double error, std::optional<double> tolerance)
-  { outcome.results.add({"wave-speeds", prefix + quantity, "1", {}, found, theory, error, tolerance}); };
+                       double error, std::optional<double> tolerance) {
+    outcome.results.add({"wave-speeds", prefix + quantity, "1", {}, found, theory, error, tolerance});
+  };
   const auto judged = [&](double tolerance) { return subject.network_gradient_tolerance(F, tolerance); };
-  add("matrix of waves at kd = 0.25, network with gradient energy against the lattice's mean over rotations, worst of 4 "
-      "directions",
-      {}, {}, from_mean.error(), judged(matrix_tolerance));
+  add(
+    "matrix of waves at kd = 0.25, network with gradient energy against the lattice's mean over rotations, worst of 4 "
+    "directions",
+    {}, {}, from_mean.error(), judged(matrix_tolerance));
   add("matrix of waves at kd = 0.25, network with gradient energy, largest error over the bound of anisotropy", {}, {},
       share.error(), judged(1.));
   add("order in kd of the local network's error against that mean", local_order.order(), 2.,
@@ -86,8 +88,7 @@ void network_waves(const Subject &subject, const Eigen::Matrix2d &F, const WaveM
   add("order in kd of the network's error with gradient energy against that mean", gradient_order.order(), 4.,
       std::abs(gradient_order.order() - 4.), judged(order_tolerance));
   add("frequency, finite elements of the network with gradient energy against their continuum, worst of all waves", {},
-      {}, elements_error.error(),
-      subject.tolerance(Law::mooney_rivlin_network, discretisation_bound(mesh)));
+      {}, elements_error.error(), subject.tolerance(Law::mooney_rivlin_network, discretisation_bound(mesh)));
 }
 
 } // namespace verification
