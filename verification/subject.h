@@ -5,9 +5,12 @@
 #include <optional>
 #include <string>
 
+#include <Eigen/SVD>
+
 #include "continuum/errors.h"
 #include "continuum/isotropic_gradient.h"
 #include "continuum/lattice_gradient.h"
+#include "continuum/network_gradient.h"
 #include "verification/case.h"
 #include "verification/homogenisation.h"
 #include "verification/laws.h"
@@ -40,6 +43,7 @@ struct Subject
   GradientLengths lengths;
   std::shared_ptr<const continuum::GradientLaw> lattice_gradient;   ///< with lengths.lattice
   std::shared_ptr<const continuum::GradientLaw> isotropic_gradient; ///< with lengths.isotropic_static
+  std::shared_ptr<const continuum::GradientLaw> network_gradient;   ///< mean of lattice_gradient over all rotations
   Laws laws; ///< those that are judged; what is found about others is reported
 
   /// Whether the loaded lattice stays homogeneous. If not there are no waves about it, and no sheet to compare.
@@ -63,6 +67,14 @@ struct Subject
         return {};
     }
     return tolerance(Law::lattice_gradient, value);
+  }
+
+  /// The same of the network, which has fibres in every direction.
+  std::optional<double> network_gradient_tolerance(const Eigen::Matrix2d &F, double value) const
+  {
+    if (!F.isIdentity(1e-12) && F.jacobiSvd().singularValues()(1) < continuum::LatticeGradient::full_stretch)
+      return {};
+    return tolerance(Law::mooney_rivlin_network, value);
   }
 };
 
@@ -97,6 +109,7 @@ inline Subject subject(const Case &input, const lattice::Material &material, con
           lengths,
           std::make_shared<continuum::LatticeGradient>(bond_families(sheet, material), lengths.lattice),
           std::make_shared<continuum::IsotropicGradient>(theory.shear_modulus, lengths.isotropic_static),
+          std::make_shared<continuum::NetworkGradient>(bond_families(sheet, material), lengths.lattice),
           laws};
 }
 

@@ -6,10 +6,9 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
-#include "lattice/forces.h"
-#include "lattice/site_fields.h"
-#include "verification/anisotropy.h"
+#include "verification/homogeneous_response.h"
 #include "verification/largest_error.h"
+#include "verification/network_comparison.h"
 
 namespace verification
 {
@@ -18,7 +17,7 @@ namespace
 
 // Sums over some ten bonds of terms that the subtraction of constants in psi makes larger than the sum: a few hundred
 // round-offs of the largest term. The smallest W here is some 1e-2 of the moduli.
-constexpr double equal_formulas = 1e-10;
+constexpr double equal_formulas = NetworkComparison::equal_formulas;
 
 // Fourth-order differences of the stress at +-h and +-2h, exact but for h^4 times higher moduli and round-off over h.
 constexpr double strain_step = 1e-3;
@@ -57,78 +56,6 @@ Eigen::Matrix2d stress_derivative(const Stress &stress, int k, int L)
   const double h = strain_step;
   return (8. * (at(h) - at(-h)) - (at(2. * h) - at(-2. * h))) / (12. * h);
 }
-
-// Network law and lattice in one deformation. Means and bounds are those over all rotations of the lattice, whose
-// stresses are components 11, 21, 12, 22.
-struct NetworkComparison
-{
-  NetworkComparison(const Subject &subject, const lattice::TriangularLattice &sheet, const Eigen::Matrix2d &F)
-    : network_energy(subject.network.energy(to_continuum(F))),
-      network_stress(to_lattice(subject.network.first_piola_stress(to_continuum(F))))
-  {
-    Eigen::MatrixXd energies(1, n_lattice_rotations), stresses(4, n_lattice_rotations);
-    for (int k = 0; k < n_lattice_rotations; ++k)
-    {
-      const Eigen::Matrix2d R = lattice_rotation(k);
-      const LatticeResponse response = homogeneous_response(sheet, subject.material, F * R);
-      const Eigen::Matrix2d rotated_stress = response.first_piola_stress * R.transpose();
-      energies(0, k) = response.energy_density;
-      stresses.col(k) = rotated_stress.reshaped();
-      if (k == 0)
-      {
-        lattice_energy = response.energy_density;
-        lattice_stress = rotated_stress;
-      }
-    }
-    energy = rotation_mean(energies);
-    stress = rotation_mean(stresses);
-  }
-
-  double energy_from_mean() const { return std::abs(network_energy / energy.mean(0) - 1.); }
-  double stress_from_mean() const { return (network_stress.reshaped() - stress.mean).norm() / stress.mean.norm(); }
-
-  // Errors [-] of the network law for the lattice as it is, and their bounds.
-  double energy_error() const { return std::abs(network_energy / lattice_energy - 1.); }
-  double energy_bound() const { return energy.bound / std::abs(lattice_energy) + equal_formulas; }
-  double stress_error() const { return (network_stress - lattice_stress).norm() / lattice_stress.norm(); }
-  double stress_bound() const { return stress.bound / lattice_stress.norm() + equal_formulas; }
-
-  double network_energy, lattice_energy;          // [J/m^3]
-  Eigen::Matrix2d network_stress, lattice_stress; // [Pa]
-  RotationMean energy, stress;
-};
-
-} // namespace
-
-LatticeResponse homogeneous_response(const lattice::TriangularLattice &sheet, const lattice::Material &material,
-                                     const Eigen::Matrix2d &F)
-{
-  const lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::free);
-  lattice::Forces forces(sheet, material);
-  forces.evaluate(state, state.vx, state.vy);
-  const auto force = [&](std::size_t row, std::size_t column)
-  {
-    const std::size_t place = sheet.index(row, column);
-    return Eigen::Vector2d(forces.fx()[place], forces.fy()[place]);
-  };
-
-  // The two uppermost rows hold the rest of the sheet: P times their normal, over the length d of one column; likewise
-  // the left end, whose sites with missing neighbours repeat every two rows.
-  const std::size_t top = sheet.rows() - 1, column = sheet.columns() / 2, row = 2 * (sheet.rows() / 4);
-  const double d = sheet.spacing();
-  const Eigen::Vector2d across = -(force(top, column) + force(top - 1, column)) / d;
-  const Eigen::Vector2d along = (force(row, 0) + force(row, 1) + force(row + 1, 0)) / (std::sqrt(3.) * d);
-
-  const bool rows_along_x = sheet.orientation() == lattice::Orientation::rows_along_crack;
-  Eigen::Matrix2d P;
-  P.col(rows_along_x ? 0 : 1) = along;
-  P.col(rows_along_x ? 1 : 0) = across;
-  const lattice::SiteFields fields = lattice::site_fields(state, sheet, material);
-  return {fields.strain_energy_density[sheet.index(row, column)], P};
-}
-
-namespace
-{
 
 // Rows of the claim, in their order.
 class Rows

@@ -16,15 +16,4 @@ namespace verification
 /// @param samples number of random F, rotations times stretches between 0.7 and 3.5
 Results energy_claim(const Subject &subject, unsigned int samples);
 
-/// Energy density [J/m^3] and first Piola stress [Pa] of a lattice in homogeneous deformation, by its simulator.
-struct LatticeResponse
-{
-  double energy_density;
-  Eigen::Matrix2d first_piola_stress;
-};
-
-/// @throws std::invalid_argument if F leaves no bond its length
-LatticeResponse homogeneous_response(const lattice::TriangularLattice &sheet, const lattice::Material &material,
-                                     const Eigen::Matrix2d &F);
-
 } // namespace verification

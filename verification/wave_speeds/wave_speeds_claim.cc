@@ -10,6 +10,7 @@
 #include "verification/order_fit.h"
 #include "verification/state_name.h"
 #include "verification/wave_speeds/lattice_waves.h"
+#include "verification/wave_speeds/network_waves.h"
 
 namespace verification
 {
@@ -277,7 +278,10 @@ ClaimOutcome wave_speeds_claim(const Subject &subject, const WaveSpeedsOptions &
   const auto attempt = [&](const Eigen::Matrix2d &F, const std::string &part, const std::function<void()> &compute)
   { outcome.results.attempt("wave-speeds", subject.name + ", " + state_name(F) + ": " + part, compute); };
   for (const Eigen::Matrix2d &F : options.states)
+  {
     attempt(F, "waves", [&] { speeds_at(subject, F, options, outcome); });
+    attempt(F, "waves in the network", [&] { network_waves(subject, F, options.mesh, outcome); });
+  }
   // Not `> 0.`: a viscosity that is no number is not left out.
   const auto has_dashpot = [](const lattice::Shell &shell) { return shell.viscosity != 0.; };
   if (has_dashpot(subject.material.nearest) ||

@@ -93,10 +93,18 @@ TEST_P(OnePercent, FailsThePrestretchClaim)
   GetParam().plant(wrong);
   const Results results = prestretch_claim(wrong, small_sheet());
   EXPECT_EQ(results.verdict(), Verdict::fails);
-  std::size_t failing = 0;
-  for (const Result &row : results.rows())
-    failing += row.verdict() == Verdict::fails;
-  EXPECT_EQ(failing, 4u); // energy density, two tractions, stress; displacements are those of the edges all the same
+  // Energy density, two tractions, stress; displacements are those of the edges all the same.
+  for (const char *law : {", Cauchy-Born", ", network"})
+    EXPECT_EQ(faults::failing(results, law), 4u) << law;
+}
+
+TEST(Prestretch, FailsForAWrongNetwork)
+{
+  Subject wrong = subject(subjects::paper_case());
+  faults::heavier_network(wrong);
+  const Results results = prestretch_claim(wrong, small_sheet());
+  EXPECT_EQ(faults::failing(results, ", network"), 4u);
+  EXPECT_EQ(faults::failing(results), 4u);
 }
 
 // The network law is judged by itself: every one of its rows, for weights that are wrong by 1 %.

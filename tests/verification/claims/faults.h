@@ -99,6 +99,21 @@ inline void square_voronoi_cell(verification::Subject &subject)
   subject.cauchy_born = continuum::CauchyBorn(std::move(families));
 }
 
+/// The network with weights of its fibres that are 1 % too large.
+inline void heavier_network(verification::Subject &subject)
+{
+  std::vector<continuum::FibreFamily> families = subject.cauchy_born.families();
+  for (continuum::FibreFamily &family : families)
+    family.weight *= 1.01;
+  subject.network = continuum::IsotropicNetwork(std::move(families));
+}
+
+/// A gradient energy of the network of the wrong sign.
+inline void turn_sign_of_network_gradient(verification::Subject &subject)
+{
+  subject.network_gradient = std::make_shared<Combination>(-1., subject.network_gradient, 0., subject.network_gradient);
+}
+
 /// Rows of an outcome that fail and whose name contains a text; any text: "".
 inline std::size_t failing(const verification::Results &results, const std::string &text = "")
 {

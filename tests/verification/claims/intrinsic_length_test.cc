@@ -146,12 +146,13 @@ TEST(IntrinsicLength, HoldsForBothShellSetsAndOrientations)
 class IntrinsicLengthFault : public testing::TestWithParam<faults::Fault>
 {
 };
-INSTANTIATE_TEST_SUITE_P(Claims, IntrinsicLengthFault,
-                         testing::Values(faults::Fault{"next-nearest stiffness", faults::stiffer_next_nearest},
-                                         faults::Fault{"length of nearest", faults::length_of_nearest_neighbours},
-                                         faults::Fault{"sign of k^4", faults::turn_sign_of_fourth_order},
-                                         faults::Fault{"isotropic length",
-                                                       [](Subject &s) { s.lengths.isotropic_inertia *= 1.01; }}));
+INSTANTIATE_TEST_SUITE_P(
+  Claims, IntrinsicLengthFault,
+  testing::Values(faults::Fault{"next-nearest stiffness", faults::stiffer_next_nearest},
+                  faults::Fault{"length of nearest", faults::length_of_nearest_neighbours},
+                  faults::Fault{"sign of k^4", faults::turn_sign_of_fourth_order},
+                  faults::Fault{"isotropic length", [](Subject &s) { s.lengths.isotropic_inertia *= 1.01; }},
+                  faults::Fault{"sign of the network's gradient energy", faults::turn_sign_of_network_gradient}));
 
 TEST_P(IntrinsicLengthFault, FailsTheClaim)
 {

@@ -124,6 +124,11 @@ std::function<void(Subject &)> isotropic_gradient(Kind kind)
   { s.isotropic_gradient = std::make_shared<GradientWithoutValues>(s.isotropic_gradient, kind); };
 }
 
+std::function<void(Subject &)> network_gradient(Kind kind)
+{
+  return [kind](Subject &s) { s.network_gradient = std::make_shared<GradientWithoutValues>(s.network_gradient, kind); };
+}
+
 // A fibre network whose energy is beyond all numbers: infinite, and its stresses not numbers.
 std::vector<continuum::FibreFamily> overflowing(const Subject &subject)
 {
@@ -278,8 +283,15 @@ std::vector<Plant> every_claim_and_side()
     plants.push_back({claim, "theory, shear speed", shear_speed});
     plants.push_back({claim, "theory, longitudinal speed", longitudinal_speed});
   }
-  // The network and the plane-stress law are judged by the claim on energy alone.
-  plants.push_back({energy, "network", overflow_network, "network"});
+  for (const ClaimPart &claim : {energy, wave_speeds, intrinsic_length, prestretch})
+    plants.push_back({claim, "network", overflow_network, "network"});
+  for (const ClaimPart &claim : {wave_speeds, intrinsic_length})
+  {
+    plants.push_back({claim, "network gradient", network_gradient(Kind::all), "network"});
+    plants.push_back({claim, "network gradient, second evaluation", network_gradient(Kind::second), "network"});
+    plants.push_back({claim, "network gradient throws", network_gradient(Kind::throws), planted});
+  }
+  // The plane-stress law is judged by the claim on energy alone.
   plants.push_back({energy, "Mooney-Rivlin throws", [](Subject &s) { s.mooney_rivlin->law.c1 = not_a_number; },
                     "not computed: Mooney-Rivlin constants must be finite"});
   plants.push_back({energy, "Mooney-Rivlin", [](Subject &s) { s.mooney_rivlin->law.c1 = 1e308; }});

@@ -225,12 +225,14 @@ TEST(WaveSpeeds, HoldsForDampedWaves)
 class WaveSpeedsFault : public testing::TestWithParam<faults::Fault>
 {
 };
-INSTANTIATE_TEST_SUITE_P(Claims, WaveSpeedsFault,
-                         testing::Values(faults::Fault{"next-nearest stiffness", faults::stiffer_next_nearest},
-                                         faults::Fault{"length of nearest", faults::length_of_nearest_neighbours},
-                                         faults::Fault{"sign of k^4", faults::turn_sign_of_fourth_order},
-                                         faults::Fault{"density", faults::heavier},
-                                         faults::Fault{"Voronoi cell", faults::square_voronoi_cell}));
+INSTANTIATE_TEST_SUITE_P(
+  Claims, WaveSpeedsFault,
+  testing::Values(faults::Fault{"next-nearest stiffness", faults::stiffer_next_nearest},
+                  faults::Fault{"length of nearest", faults::length_of_nearest_neighbours},
+                  faults::Fault{"sign of k^4", faults::turn_sign_of_fourth_order},
+                  faults::Fault{"density", faults::heavier}, faults::Fault{"Voronoi cell", faults::square_voronoi_cell},
+                  faults::Fault{"network moduli", faults::heavier_network},
+                  faults::Fault{"sign of the network's gradient energy", faults::turn_sign_of_network_gradient}));
 
 TEST_P(WaveSpeedsFault, FailsTheClaim)
 {
