@@ -1,8 +1,18 @@
 #pragma once
 
 #include <memory>
+#include <ostream>
 
 #include "lattice/simulation.h"
+
+namespace lattice
+{
+/// How an orientation reads in the name of a test.
+inline void PrintTo(const Orientation orientation, std::ostream *out)
+{
+  *out << (orientation == Orientation::rows_along_crack ? "rows along crack" : "rows across crack");
+}
+} // namespace lattice
 
 /// Sheets that several tests share.
 namespace sheets

@@ -26,7 +26,7 @@ LOCK = ".latcon.lock"
 STRIP = ["--set", "Sheet/length=2.5 cm", "--set", "Sheet/height=1.5 cm", "--set", "Time/end=1.5 ms"]
 
 
-def wait_for(path, process, seconds=60):
+def wait_for(path, process, seconds=600):
     deadline = time.monotonic() + seconds
     while not path.exists() and process.poll() is None and time.monotonic() < deadline:
         time.sleep(0.01)
@@ -127,7 +127,7 @@ class Vanishing(Running):
             with self.subTest(name):
                 process = self.start(*arguments, "--output-dir", self.out)
                 self.remove(process)
-                _, said = process.communicate(timeout=60)
+                _, said = process.communicate(timeout=600)
                 self.assertEqual(process.returncode, 5, said)
                 self.assertIn(str(self.out), said)
                 self.assertFalse(self.out.exists())
@@ -142,7 +142,7 @@ class Vanishing(Running):
                 self.out.mkdir()
                 (self.out / LOCK).write_text("of another run")
                 process.send_signal(signal.SIGCONT)
-                _, said = process.communicate(timeout=60)
+                _, said = process.communicate(timeout=600)
                 self.assertEqual(process.returncode, 5, said)
                 self.assertIn(str(self.out), said)
                 self.assertEqual(os.listdir(self.out), [LOCK])

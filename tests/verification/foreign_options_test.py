@@ -63,7 +63,7 @@ class Planted(TemporaryFolder):
 
     def test_closed_standard_output_is_no_matter_of_libraries(self):
         run = subprocess.run(["/bin/sh", "-c", 'exec "$@" >&-', "sh", LATCON, "lattice", *TINY, "--quiet", "--output-dir",
-                              str(self.folder / "out")], stderr=subprocess.PIPE, text=True, timeout=120)
+                              str(self.folder / "out")], stderr=subprocess.PIPE, text=True, timeout=600)
         self.assertEqual(run.stderr, "")
 
 

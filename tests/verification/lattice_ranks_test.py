@@ -81,7 +81,7 @@ class LatticeRanks(TemporaryFolder):
                     self.assertIsNone(run.poll(), "it ended too soon")
                     time.sleep(0.05)
                 os.kill(max(children(run.pid)), signal.SIGTERM)
-                self.assertEqual(run.wait(timeout=120), 130)
+                self.assertEqual(run.wait(timeout=600), 130)
             finally:
                 run.kill()
         self.assertEqual(json.loads((self.out / "run.json").read_text())["exit_code"], 130)

@@ -55,7 +55,7 @@ class Start(TemporaryFolder):
         before = names_in(self.tmp)
         for command in self.commands():
             with self.subTest(command[:2]):
-                run = subprocess.run(command, capture_output=True, text=True, timeout=120,
+                run = subprocess.run(command, capture_output=True, text=True, timeout=600,
                                      env=environment(TMPDIR=str(self.tmp)))
                 self.assertEqual(run.returncode, 0, run.stderr)
                 self.assertNotIn("mkdir", run.stderr)
@@ -64,7 +64,7 @@ class Start(TemporaryFolder):
     def test_the_files_in_the_way_are_in_the_way(self):
         """Of mpirun, which makes the folder. If this fails, the test above shows nothing."""
         self.block_session_folder()
-        run = subprocess.run(["mpirun", "-n", "1", "true"], capture_output=True, text=True, timeout=120,
+        run = subprocess.run(["mpirun", "-n", "1", "true"], capture_output=True, text=True, timeout=600,
                              env=environment(TMPDIR=str(self.tmp), OMPI_ALLOW_RUN_AS_ROOT="1",
                                              OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1"))
         self.assertNotEqual(run.returncode, 0)
@@ -73,7 +73,7 @@ class Start(TemporaryFolder):
         starts = [subprocess.Popen([LATCON, "--version"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
                                    env=environment(TMPDIR=str(self.tmp))) for _ in range(24)]
         for start in starts:
-            said, _ = start.communicate(timeout=120)
+            said, _ = start.communicate(timeout=600)
             self.assertEqual(start.returncode, 0, said)
         self.assertEqual(names_in(self.tmp), [])
 
@@ -91,10 +91,10 @@ class Cores(TemporaryFolder):
     def test_default_of_threads_and_of_processes_is_what_may_be_used(self):
         one = str(min(os.sched_getaffinity(0)))
         bound = ["taskset", "-c", one, LATCON]
-        study = subprocess.run([*bound, "study", "patterns", "--dry-run"], capture_output=True, text=True, timeout=120)
+        study = subprocess.run([*bound, "study", "patterns", "--dry-run"], capture_output=True, text=True, timeout=600)
         self.assertIn("on 1 cores", study.stdout)
         case = subprocess.run([*bound, "lattice", CASES / "quick.prm", "--dry-run", "--set", "Lattice/solution=motion"],
-                              capture_output=True, text=True, timeout=120)
+                              capture_output=True, text=True, timeout=600)
         self.assertIn("1 threads of each rank", case.stdout)
 
 

@@ -75,7 +75,7 @@ class Resume(TemporaryFolder):
                 [target] = [int(pid) for pid in children if f"OMPI_COMM_WORLD_RANK={victim}\0".encode()
                             in pathlib.Path(f"/proc/{pid}/environ").read_bytes()]
             os.kill(target, which)
-            run.communicate(timeout=120)
+            run.communicate(timeout=600)
             return run.returncode
 
     def goes_on_to_the_same_files(self, which, case=WAVES, ranks=1, victim=None):

@@ -78,7 +78,7 @@ class Resume(TemporaryFolder):
                 self.assertIsNone(run.poll(), "it ended too soon")
                 time.sleep(0.01)
             run.send_signal(signal.SIGTERM)
-            self.assertEqual(run.wait(timeout=60), 130)
+            self.assertEqual(run.wait(timeout=600), 130)
         stopped = json.loads((self.out / "run.json").read_text())
         self.assertEqual(stopped["exit_code"], 130)
         # The instant of the signal is in a frame and in a checkpoint.

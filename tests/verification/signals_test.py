@@ -21,14 +21,23 @@ TINY = [QUICK, "--set", "Sheet/length=10 mm", "--set", "Sheet/height=6 mm"]
 INTERRUPTED = 130
 # A command that does not end by itself in this time [s] was not ended by a signal either.
 HANGS = 20
+# What has not begun after this time [s], on a machine however busy, never will.
+BEGINS = 600
 ALL = ("SIGINT", "SIGTERM", "SIGHUP", "SIGUSR1", "SIGUSR2", "SIGALRM", "SIGXCPU")
 
 
-def wait_for(condition, process, seconds=60):
+def wait_for(condition, process, seconds=BEGINS):
     deadline = time.monotonic() + seconds
     while not condition() and process.poll() is None and time.monotonic() < deadline:
         time.sleep(0.01)
     return condition()
+
+
+def catches(process, number):
+    """Whether the program has got as far as to answer the signal itself."""
+    with open(f"/proc/{process.pid}/status") as file:
+        caught = next(line.split()[1] for line in file if line.startswith("SigCgt:"))
+    return bool(int(caught, 16) >> (number - 1) & 1)
 
 
 def children(process):
@@ -109,7 +118,7 @@ class WithoutSteps(Started):
         study.write_text(json.dumps({"title": "t", "base": QUICK, "runs": {"a": {"seeds": seeds}}, "claims": [
             {"claim": "c", "paper": "s", "rows": [{"run": "a", "quantity": "pattern"}]}]}))
         process = self.start("study", study, "--dry-run")
-        time.sleep(1)
+        self.assertTrue(wait_for(lambda: catches(process, signal.SIGINT), process))
         process.send_signal(signal.SIGINT)
         self.ends(process)
 
@@ -172,7 +181,7 @@ class Motions(Started):
                              launcher=["nohup"])
         self.assertTrue(wait_for((self.out / "lattice.pvd").exists, process))
         process.send_signal(signal.SIGHUP)
-        process.communicate(timeout=120)
+        process.communicate(timeout=600)
         self.assertEqual(process.returncode, 0)
 
     def test_a_reader_that_leaves_ends_nothing(self):
@@ -180,7 +189,7 @@ class Motions(Started):
         process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         process.stdout.close()
         process.stderr.read()
-        self.assertEqual(process.wait(60), 0)
+        self.assertEqual(process.wait(600), 0)
         process.stderr.close()
         self.assertEqual(self.info()["exit_code"], 0)
 

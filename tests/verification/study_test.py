@@ -198,7 +198,7 @@ class Study(TemporaryFolder):
         process = subprocess.Popen([LATCON, "study", self.folder / "tiny.json", "--output-dir", self.out, "--quiet",
                                     "--skip-verification", "--threads", "1"])
         runs = self.out / "runs"
-        deadline = time.time() + 60
+        deadline = time.time() + 600
         while not (runs.exists() and list(runs.iterdir())) and time.time() < deadline:
             time.sleep(0.01)
         base.write_text(base.read_text().replace("strain y = 1.8", "strain y = 1.4"))
@@ -226,14 +226,14 @@ class Study(TemporaryFolder):
             process = subprocess.Popen([LATCON, "study", self.folder / "tiny.json", "--output-dir", self.out, "--quiet",
                                         "--skip-verification", "--threads", "1"])
             runs = self.out / "runs"
-            deadline = time.time() + 60
+            deadline = time.time() + 600
             while not (runs.exists() and any(p.suffix != ".part" for p in runs.iterdir())) and time.time() < deadline:
                 time.sleep(0.01)
             # In the middle of the next crack.
             while not list(runs.glob("*.part/lattice-0000.vtp")) and time.time() < deadline:
                 time.sleep(0.01)
             process.send_signal(number)
-            self.assertEqual(process.wait(60), expected)
+            self.assertEqual(process.wait(600), expected)
             time.sleep(0.5 if number == signal.SIGKILL else 0)
             begun = [path for path in runs.iterdir() if path.suffix == ".part"]
             self.assertTrue(begun)

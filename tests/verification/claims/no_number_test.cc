@@ -164,6 +164,7 @@ struct ClaimPart
 {
   const char *name;
   std::function<Results(const Subject &)> check;
+  friend std::ostream &operator<<(std::ostream &out, const ClaimPart &part) { return out << part.name; }
 };
 
 const ClaimPart energy{"energy", [](const Subject &s) { return energy_claim(s, 50); }};
