@@ -5,6 +5,7 @@ Usage: signals_test.py PATH_OF_LATCON
 """
 import json
 import os
+import re
 import resource
 import shutil
 import signal
@@ -14,7 +15,7 @@ import time
 import unittest
 
 sys.dont_write_bytecode = True
-from program import CASES, LATCON, TemporaryFolder, latcon
+from program import CASES, LATCON, Started, catches, children, latcon, wait_for
 
 QUICK = str(CASES / "quick.prm")
 TINY = [QUICK, "--set", "Sheet/length=10 mm", "--set", "Sheet/height=6 mm"]
@@ -24,33 +25,7 @@ HANGS = 20
 ALL = ("SIGINT", "SIGTERM", "SIGHUP", "SIGUSR1", "SIGUSR2", "SIGALRM", "SIGXCPU")
 
 
-def wait_for(condition, process, seconds=60):
-    deadline = time.monotonic() + seconds
-    while not condition() and process.poll() is None and time.monotonic() < deadline:
-        time.sleep(0.01)
-    return condition()
-
-
-def children(process):
-    text = (f"/proc/{process}/task/{process}/children")
-    with open(text) as file:
-        return [int(child) for child in file.read().split()]
-
-
-class Started(TemporaryFolder):
-    def start(self, *arguments, launcher=(), **keywords):
-        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-        process = subprocess.Popen([*launcher, LATCON, *map(str, arguments)], stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.PIPE, text=True, env=environment, **keywords)
-        self.addCleanup(self.end, process)
-        return process
-
-    @staticmethod
-    def end(process):
-        if process.poll() is None:
-            process.kill()
-        process.communicate()
-
+class Interrupted(Started):
     def info(self):
         return json.loads((self.out / "run.json").read_text())
 
@@ -64,7 +39,7 @@ class Started(TemporaryFolder):
         self.assertNotIn("Traceback", errors)
 
 
-class WithoutSteps(Started):
+class WithoutSteps(Interrupted):
     """Commands and phases that save nothing on the way end at once."""
 
     def is_ended(self, *arguments, begun=None, number=signal.SIGINT):
@@ -109,7 +84,7 @@ class WithoutSteps(Started):
         study.write_text(json.dumps({"title": "t", "base": QUICK, "runs": {"a": {"seeds": seeds}}, "claims": [
             {"claim": "c", "paper": "s", "rows": [{"run": "a", "quantity": "pattern"}]}]}))
         process = self.start("study", study, "--dry-run")
-        time.sleep(1)
+        self.assertTrue(wait_for(lambda: catches(process, signal.SIGINT), process))
         process.send_signal(signal.SIGINT)
         self.ends(process)
 
@@ -125,7 +100,60 @@ class WithoutSteps(Started):
         self.assertTrue(wait_for(lambda: not os.path.exists(f"/proc/{script}/exe"), process, 5))
 
 
-class Motions(Started):
+class EveryCommand(Interrupted):
+    """As the keyboard does it: the signal goes to the command and to the scripts that it has started."""
+
+    def is_ended(self, process):
+        os.killpg(process.pid, signal.SIGINT)
+        self.ends(process)
+
+    def is_ended_as_it_reads(self, pipe, *arguments):
+        """Whether it ends while it waits for a file that nobody writes."""
+        process = self.start(*arguments, start_new_session=True)
+        writers = []
+
+        def is_read():
+            try:
+                writers.append(os.open(pipe, os.O_WRONLY | os.O_NONBLOCK))
+            except OSError:
+                return False  # nobody has opened it
+            return True
+
+        self.assertTrue(wait_for(is_read, process))
+        self.addCleanup(os.close, writers[0])
+        self.is_ended(process)
+
+    def is_ended_as_it_begins(self, *arguments):
+        process = self.start(*arguments, start_new_session=True)
+        self.assertTrue(wait_for(lambda: catches(process, signal.SIGINT), process))
+        self.is_ended(process)
+
+    def test_ends_while_it_reads(self):
+        self.assertEqual(latcon("fracture", *TINY, "--set", "Time/end=0.01 ms", "--skip-verification", "--no-report",
+                                "--output-dir", self.out).returncode, 0)
+        film = self.out / "motion-0001.vtp"
+        film.unlink()
+        case, study = self.folder / "case.prm", self.folder / "study.json"
+        for pipe in (case, study, film):
+            os.mkfifo(pipe)
+        commands = {"verify": (case, "energy", "--quick", "--case", case), "lattice": (case, case),
+                    "continuum": (case, case), "fracture": (case, case), "study": (study, study),
+                    "report": (film, self.out)}
+        listed = latcon("--help").stdout.partition("Subcommands:")[2].partition("Exit codes")[0]
+        self.assertEqual(set(re.findall(r"^  (\w+) ", listed, re.MULTILINE)), {*commands, "compare"})
+        for name, (pipe, *arguments) in commands.items():
+            with self.subTest(name):
+                self.is_ended_as_it_reads(pipe, name, *arguments)
+
+    def test_comparison(self):
+        """Frames are no pipes: the signal comes before they are read."""
+        sheets = {"lattice": self.folder / "lattice", "continuum": self.folder / "continuum"}
+        for side, folder in sheets.items():
+            self.assertEqual(latcon(side, *TINY, "--output-dir", folder).returncode, 0)
+        self.is_ended_as_it_begins("compare", *sheets.values(), "--output-dir", self.out)
+
+
+class Motions(Interrupted):
     """Motions write a checkpoint, their last frame and tables."""
 
     def motion(self, *more, length="30 cm", end="1"):
@@ -172,7 +200,7 @@ class Motions(Started):
                              launcher=["nohup"])
         self.assertTrue(wait_for((self.out / "lattice.pvd").exists, process))
         process.send_signal(signal.SIGHUP)
-        process.communicate(timeout=120)
+        process.communicate(timeout=600)
         self.assertEqual(process.returncode, 0)
 
     def test_a_reader_that_leaves_ends_nothing(self):
@@ -180,7 +208,7 @@ class Motions(Started):
         process = subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
         process.stdout.close()
         process.stderr.read()
-        self.assertEqual(process.wait(60), 0)
+        self.assertEqual(process.wait(600), 0)
         process.stderr.close()
         self.assertEqual(self.info()["exit_code"], 0)
 
