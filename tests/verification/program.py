@@ -93,4 +93,5 @@ class Started(TemporaryFolder):
     def end(process):
         if process.poll() is None:
             process.kill()
-        process.communicate()
+        process.wait()
+        process.stderr.close()
