@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <string>
 #include <vector>
 
 using namespace dealii;
@@ -66,6 +67,10 @@ void read_serial(Triangulation<2> &mesh, const std::filesystem::path &file)
   require(mesh.all_reference_cells_are_hyper_cube(),
           "the mesh file " + file.string() +
             " holds cells other than quadrilaterals; Gmsh's `Recombine Surface` makes them");
+  for (const types::boundary_id id : mesh.get_boundary_ids())
+    require(id <= edge::inner, "the mesh file " + file.string() + " has edges on the physical curve " +
+                                 std::to_string(static_cast<int>(id)) +
+                                 "; known are 0 left, 1 right, 2 bottom, 3 top, 4 inner");
 }
 
 class CoarseMesh

@@ -30,6 +30,9 @@ public:
 
   std::size_t n_frames() const { return times_.size(); }
 
+  /// Of the frames, in their order [s].
+  const std::vector<double> &times() const { return times_; }
+
   /// Saves or loads which frames there are; see Simulation. @throws std::invalid_argument if their times do not grow
   template <class Archive>
   void archive(Archive &archive)

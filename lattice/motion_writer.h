@@ -24,6 +24,9 @@ public:
   /// Writes `motion.pvd`, so that it names the frames there are. @throws latcon::support::WriteError
   void write_collection() const { series_.write_collection(); }
 
+  /// Of the frames, in their order [s].
+  const std::vector<double> &times() const { return series_.times(); }
+
   /// Saves or loads which frames there are; see Simulation.
   template <class Archive>
   void archive(Archive &archive)

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include <algorithm>
+#include <cctype>
 #include <cstddef>
 
 namespace verification
@@ -61,6 +62,9 @@ std::vector<Line> logical_lines(const std::string &text, const std::string &name
     const std::size_t comment = piece.find('#');
     if (comment != std::string::npos)
     {
+      // 1.#QNAN, as some programs write what is no number, would be 1.
+      if (comment > 0 && std::isspace(static_cast<unsigned char>(piece[comment - 1])) == 0)
+        result.push_back(SyntaxProblem{place_of(name, number), "'#' begins a comment and needs a blank before it"});
       // deal.II would take the next line for a comment too, and lose what it sets without a word.
       if (continued)
         result.push_back(
@@ -311,18 +315,20 @@ std::string printable(const std::string &text, const std::size_t longest)
   return result;
 }
 
+std::optional<SyntaxProblem> zero_byte(const std::string &text, const std::string &name)
+{
+  const std::size_t zero = text.find('\0');
+  if (zero == std::string::npos)
+    return {};
+  const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n');
+  return SyntaxProblem{place_of(name, static_cast<std::size_t>(line)), "not a text file: it holds zero bytes"};
+}
+
 CaseText read_prm(const std::string &text, const std::string &name)
 {
+  if (const auto problem = zero_byte(text, name))
+    return {*problem};
   CaseText result;
-  const std::size_t zero = text.find('\0');
-  if (zero != std::string::npos)
-  {
-    const auto line = 1 + std::count(text.begin(), text.begin() + static_cast<std::ptrdiff_t>(zero), '\n');
-    result.push_back(
-      SyntaxProblem{place_of(name, static_cast<std::size_t>(line)), "not a text file: it holds zero bytes"});
-    return result;
-  }
-
   const std::vector<Line> lines = logical_lines(text, name, result);
   // With as many ends as beginnings, a section in a section is meant; otherwise an `end` was forgotten before it.
   std::ptrdiff_t surplus = 0;
@@ -393,6 +399,8 @@ CaseText read_prm(const std::string &text, const std::string &name)
 
 CaseText read_json(const std::string &text, const std::string &name)
 {
+  if (const auto problem = zero_byte(text, name))
+    return {*problem};
   CaseText result;
   CaseReader reader(name, result);
   // Comments are no JSON, but a case wants them, and the parser knows them.

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -35,15 +36,19 @@ struct SyntaxProblem
 /// A case as it was written down, in the order of its lines (what is found missing at the end of the file comes last).
 using CaseText = std::vector<std::variant<SectionStart, Assignment, SyntaxProblem>>;
 
+/// What is wrong with a text that holds a zero byte, with the line of the first; nothing if it holds none.
+/// @param name what the place calls the file
+[[nodiscard]] std::optional<SyntaxProblem> zero_byte(const std::string &text, const std::string &name);
+
 /// Takes deal.II's parameter format apart: `subsection X`, `set name = value`, `end` (or all of these words in
-/// capitals), `#` comments, `\` at the end of a line to continue it. Line ends may be those of any system. What follows
-/// a problem is still read.
+/// capitals), `#` comments, of a line of their own or after a blank, `\` at the end of a line to continue it. Line ends
+/// may be those of any system. What follows a problem is still read.
 /// @param text content of the file; text that is not (it holds zero bytes) gives one problem
 /// @param name what the places call the file
 [[nodiscard]] CaseText read_prm(const std::string &text, const std::string &name);
 
 /// Takes JSON apart: an object of objects (the sections) of numbers, strings, booleans, and arrays of those. Repeated
-/// keys are kept. The digits of numbers are kept as they are.
+/// keys are kept. The digits of numbers are kept as they are. Text that is not (it holds zero bytes) gives one problem.
 [[nodiscard]] CaseText read_json(const std::string &text, const std::string &name);
 
 /// A text without the blanks and line ends around it.

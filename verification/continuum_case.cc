@@ -257,7 +257,8 @@ void EdgeCase::check(Parameters &p) const
   if (condition == Condition::periodic && normal_gradient != NormalGradient::free)
     p.error(name + "/normal gradient", "that of a periodic edge follows from the opposite one", {name + "/condition"});
   if (!double_traction.is_zero() && (condition == Condition::periodic || normal_gradient != NormalGradient::free))
-    p.error(name + "/double traction x", "a double traction needs an edge whose normal gradient is free",
+    p.error(name + "/double traction " + double_traction.given(),
+            "a double traction needs an edge whose normal gradient is free",
             {name + "/condition", name + "/normal gradient"});
 }
 
@@ -354,7 +355,8 @@ void ContinuumCase::check(Parameters &p, const bool has_inner_edge) const
     if (!has_gradient && edge.normal_gradient != EdgeCase::NormalGradient::free)
       p.error(edge.name + "/normal gradient", "without a gradient energy it cannot be held", {"Continuum/gradient"});
     if (!has_gradient && !edge.double_traction.is_zero())
-      p.error(edge.name + "/double traction x", "without a gradient energy there is none", {"Continuum/gradient"});
+      p.error(edge.name + "/double traction " + edge.double_traction.given(), "without a gradient energy there is none",
+              {"Continuum/gradient"});
   }
   for (const std::size_t id : {0, 2})
     if ((edges[id].condition == EdgeCase::Condition::periodic) !=

@@ -39,6 +39,8 @@ struct FieldCase
                const std::string &documentation);
   void check(Parameters &parameters, const std::string &section, const std::string &name) const;
   bool is_zero() const { return x == "0" && y == "0"; }
+  /// "x" or "y": the first component that is not zero.
+  const char *given() const { return x != "0" ? "x" : "y"; }
   /// The field; its values are finite, or @throws InputError with the place of one that is not.
   /// @param extent a length of the sheet [m], the scale on which the field varies
   std::shared_ptr<dealii::FunctionParser<2>> field(double extent) const;

@@ -18,10 +18,9 @@ void check_edge(const EdgeCase &edge, Parameters &p, const std::string &command)
                       "components, or condition = free",
             {edge.name + "/condition"});
   if (!edge.traction.is_zero())
-    p.error(edge.name + (edge.traction.x != "0" ? "/traction x" : "/traction y"),
-            command + " has no tractions; give 0");
+    p.error(edge.name + "/traction " + edge.traction.given(), command + " has no tractions; give 0");
   if (!edge.double_traction.is_zero())
-    p.error(edge.name + (edge.double_traction.x != "0" ? "/double traction x" : "/double traction y"),
+    p.error(edge.name + "/double traction " + edge.double_traction.given(),
             command + " has no double tractions; give 0");
   // Sites held at the loading in a layer have its normal gradient, whatever the edge of a gradient continuum is told.
   if (edge.normal_gradient == EdgeCase::NormalGradient::clamped)

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <stdexcept>
 #include <system_error>
+#include <type_traits>
 
 namespace verification
 {
@@ -164,7 +165,10 @@ template <typename Integer>
 void Parameters::add_integer(const std::string &section, const std::string &name, Integer &member, const Range &range,
                              const std::string &documentation, const Presence presence)
 {
-  const std::string rule = allowed_numbers("a whole number", range, "1");
+  std::string rule = allowed_numbers("a whole number", range, "1");
+  constexpr Integer largest = std::numeric_limits<Integer>::max();
+  if (std::is_unsigned_v<Integer> && range.contains(2. * static_cast<double>(largest)))
+    rule += (range.text().empty() ? " <= " : " and <= ") + std::to_string(largest);
   Entry entry{section, name, documentation, "", rule, rule, presence};
   entry.read = [&member, range](const std::string &text) -> std::string
   {

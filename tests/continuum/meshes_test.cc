@@ -57,7 +57,7 @@ std::filesystem::path write_file(const std::string &name, const std::string &tex
   return path;
 }
 
-// Two squares side by side, 2 m x 1 m, with physical curves 2 (bottom of both) and 5 (the right edge).
+// Two squares side by side, 2 m x 1 m, with physical curves 2 (bottom of both) and 4 (the right edge).
 const char *const two_squares = R"($MeshFormat
 2.2 0 8
 $EndMeshFormat
@@ -74,7 +74,7 @@ $Elements
 5
 1 1 2 2 1 1 2
 2 1 2 2 1 2 3
-3 1 2 5 2 3 6
+3 1 2 4 2 3 6
 4 3 2 7 1 1 2 5 4
 5 3 2 7 1 2 3 6 5
 $EndElements
@@ -133,7 +133,7 @@ TEST(Meshes, ReadsGmsh)
   const Measures m = measures(continuum::Sheet(mesh, law, 2));
   EXPECT_NEAR(m.area, 2., 1e-12);
   EXPECT_NEAR(m.edges.at(2), 2., 1e-12);
-  EXPECT_NEAR(m.edges.at(5), 1., 1e-12);
+  EXPECT_NEAR(m.edges.at(4), 1., 1e-12);
   EXPECT_NEAR(m.edges.at(0), 3., 1e-12);
 }
 
@@ -173,6 +173,12 @@ TEST(Meshes, RefusesWhatCannotBeMeshed)
     EXPECT_NE(std::string(failure.what()).find("no/such.msh"), std::string::npos);
   }
   EXPECT_THROW(continuum::read_gmsh(mesh, write_file("text.msh", "not a mesh")), continuum::InvalidInput);
+  for (const std::string id : {"5", "300"})
+  {
+    std::string other = two_squares;
+    other.replace(other.find("3 1 2 4"), 7, "3 1 2 " + id);
+    EXPECT_THROW((void)continuum::n_coarse_cells(write_file("other.msh", other)), continuum::InvalidInput) << id;
+  }
 }
 
 // A smaller error of the energy with a third of the unknowns of a uniform mesh.

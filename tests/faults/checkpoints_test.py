@@ -33,7 +33,7 @@ CRACK = {
     "near_tip/sampler/n_pending": [hostile.LARGE], "near_tip/sampler/pending/n": [hostile.LARGE],
     "near_tip/sampler/pending/0/block": [hostile.value(4)], "near_tip/sampler/last_tip": [hostile.LARGE],
     "near_tip/sampler/taken": [hostile.LARGE], "near_tip/blocks/n": [hostile.LARGE],
-    "near_tip/blocks/0/vortices/sizes": [hostile.LARGE], "near_tip/blocks/1/wedge_angle/samples": [hostile.LARGE], "film/frames/times": [hostile.value(-1.)],
+    "near_tip/blocks/0/vortices/sizes": [hostile.LARGE], "near_tip/blocks/1/wedge_angle/samples": [hostile.LARGE], "film/frames/times": [hostile.value(-1.), hostile.shorter],
     "film/next_frame": [hostile.value(-1e308)], "frames/times": [hostile.many],
     "next_frame": [hostile.value(-1e308)], "step": [hostile.LARGE],
 }

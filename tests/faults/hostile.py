@@ -13,7 +13,7 @@ import whole
 
 TIME_LIMIT = 60  # [s]; what is refused is refused as soon as it is read
 # Lists of any length: nothing else in the file or the case tells how many there are.
-OF_ANY_LENGTH = ("near_tip/sampler/path", "/sites", "film/frames/times")
+OF_ANY_LENGTH = ("near_tip/sampler/path", "/sites")
 
 
 class Accepted(Exception):

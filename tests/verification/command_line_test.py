@@ -244,6 +244,17 @@ class DryRun(TemporaryFolder):
                 for line in ["# time: about", "# memory: about"]:
                     self.assertEqual(run.stdout.count(line), 0 if command == "verify" else 1)
 
+    def test_dry_run_says_the_time_at_most(self):
+        """A crack that does not run takes all steps, a thousand times those of one that does."""
+        run = latcon("fracture", CASES / "quick.prm", "--dry-run", "--threads", 1, "--set", "Time/end=10 s")
+        steps = re.search(r"s, (\S+) steps at most, (\S+) if the crack is as fast", run.stdout)
+        seconds = re.search(r"^# time: about (\S+) s on 1 threads of each rank, at most (\S+) s if", run.stdout, re.M)
+        ratio = float(steps[1]) / float(steps[2])
+        self.assertGreater(ratio, 1000.)
+        # Both times are rounded up to whole seconds.
+        self.assertGreaterEqual(float(seconds[1]) * ratio * (1. + 1e-4), float(seconds[2]) - 1.)
+        self.assertGreater(float(seconds[2]), (float(seconds[1]) - 1.) * ratio)
+
     def test_sizes_steps_and_time_are_there(self):
         run = latcon("fracture", CASES / "quick.prm", "--dry-run", "--threads", 1)
         for wanted in [r"^# lattice: 3032 sites, 17572 bonds, 6064 unknowns", r"^# time step: .* s, \d+ steps at most",

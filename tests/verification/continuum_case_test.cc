@@ -107,7 +107,7 @@ TEST(ContinuumCase, GradientsAreHeldByGradientLawsAlone)
 {
   const std::string law = "Continuum/gradient=isotropic";
   expect_refused("Top edge/normal gradient", {"Top edge/normal gradient=clamped"});
-  expect_refused("Right edge/double traction x", {"Right edge/double traction y=1"});
+  expect_refused("Right edge/double traction y", {"Right edge/double traction y=1"});
   expect_refused("Continuum/degree", {law, "Continuum/degree=1"});
   expect_refused("Inner edge/normal gradient", {law, "Inner edge/normal gradient=loading"}, true);
   expect_accepted({law, "Top edge/normal gradient=clamped", "Continuum/degree=2", "Left edge/double traction y=1"});
@@ -148,7 +148,7 @@ TEST(ContinuumCase, PeriodicAndClampedEdgesTakeNoLoads)
   };
   expect_refused("Left edge/traction y", with(both, "Left edge/traction y=1"));
   expect_refused("Left edge/normal gradient", with(both, "Left edge/normal gradient=clamped"));
-  expect_refused("Right edge/double traction x", with(both, "Right edge/double traction y=1"));
+  expect_refused("Right edge/double traction y", with(both, "Right edge/double traction y=1"));
   expect_refused("Top edge/double traction x",
                  {law, "Top edge/double traction x=1", "Top edge/normal gradient=clamped"});
 }

@@ -7,13 +7,12 @@ import json
 import os
 import shutil
 import signal
-import subprocess
 import sys
 import time
 import unittest
 
 sys.dont_write_bytecode = True
-from program import CASES, LATCON, TemporaryFolder, frames, latcon, latcon_on_ranks
+from program import CASES, Started, TemporaryFolder, frames, latcon, latcon_on_ranks, wait_for
 
 QUICK = str(CASES / "quick.prm")
 TINY = [QUICK, "--set", "Sheet/length=10 mm", "--set", "Sheet/height=6 mm", "--set", "Time/end=0.01 ms"]
@@ -26,33 +25,11 @@ LOCK = ".latcon.lock"
 STRIP = ["--set", "Sheet/length=2.5 cm", "--set", "Sheet/height=1.5 cm", "--set", "Time/end=1.5 ms"]
 
 
-def wait_for(path, process, seconds=600):
-    deadline = time.monotonic() + seconds
-    while not path.exists() and process.poll() is None and time.monotonic() < deadline:
-        time.sleep(0.01)
-    return path.exists()
-
-
 def contents(folder):
     return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
 
 
-class Running(TemporaryFolder):
-    def start(self, *arguments, launcher=()):
-        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-        process = subprocess.Popen([*launcher, LATCON, *map(str, arguments)], stderr=subprocess.PIPE, text=True,
-                                   env=environment)
-        self.addCleanup(self.end, process)
-        return process
-
-    @staticmethod
-    def end(process):
-        if process.poll() is None:
-            process.kill()
-            process.communicate()
-
-
-class Lock(Running):
+class Lock(Started):
     def setUp(self):
         super().setUp()
         self.study = self.folder / "study.json"
@@ -69,7 +46,7 @@ class Lock(Running):
 
     def test_second_command_is_refused_and_writes_nothing(self):
         owner = self.start(*ENDLESS, "--output-dir", self.out)
-        self.assertTrue(wait_for(self.out / "lattice-0000.vtp", owner))
+        self.assertTrue(wait_for((self.out / "lattice-0000.vtp").exists, owner))
         owner.send_signal(signal.SIGSTOP)
         before = contents(self.out)
         for command in self.commands(self.out):
@@ -87,7 +64,7 @@ class Lock(Running):
 
     def test_ranks_hold_it_and_respect_it(self):
         ranks = self.start(*ENDLESS, "--output-dir", self.out, launcher=("mpirun", "--oversubscribe", "-n", "2"))
-        self.assertTrue(wait_for(self.out / "lattice-0000.vtp", ranks))
+        self.assertTrue(wait_for((self.out / "lattice-0000.vtp").exists, ranks))
         run = latcon_on_ranks(2, "lattice", *TINY, "--set", "Lattice/solution=motion", "--output-dir", self.out)
         self.assertEqual(run.returncode, 2, run.stderr)
         self.assertIn("is in use by process", run.stderr)
@@ -98,7 +75,7 @@ class Lock(Running):
         part = self.out / "runs" / "a-1.part"
         part.mkdir(parents=True)
         owner = self.start(*ENDLESS, "--output-dir", part)
-        self.assertTrue(wait_for(part / "lattice-0000.vtp", owner))
+        self.assertTrue(wait_for((part / "lattice-0000.vtp").exists, owner))
         owner.send_signal(signal.SIGSTOP)
         before = contents(part)
         run = latcon("study", self.study, "--skip-verification", "--output-dir", self.out)
@@ -107,7 +84,7 @@ class Lock(Running):
         self.assertEqual(contents(part), before)
 
 
-class Vanishing(Running):
+class Vanishing(Started):
     VICTIMS = {
         "crack": LONG,
         "lattice": ["lattice", QUICK, "--quiet", "--set", "Lattice/solution=motion", "--set", "Time/end=10 ms",
@@ -117,7 +94,7 @@ class Vanishing(Running):
                       "--set", "Output/frame interval=0.02 ms"]}
 
     def remove(self, process):
-        self.assertTrue(wait_for(self.out / "run.json", process))
+        self.assertTrue(wait_for((self.out / "run.json").exists, process))
         time.sleep(0.2)
         while self.out.exists():  # the run writes meanwhile
             shutil.rmtree(self.out, ignore_errors=True)
@@ -136,7 +113,7 @@ class Vanishing(Running):
         for name, arguments in self.VICTIMS.items():
             with self.subTest(name):
                 process = self.start(*arguments, "--output-dir", self.out)
-                self.assertTrue(wait_for(self.out / "run.json", process))
+                self.assertTrue(wait_for((self.out / "run.json").exists, process))
                 process.send_signal(signal.SIGSTOP)
                 shutil.rmtree(self.out)
                 self.out.mkdir()
@@ -149,7 +126,7 @@ class Vanishing(Running):
                 shutil.rmtree(self.out)
 
 
-class Planted(Running):
+class Planted(Started):
     def test_links_are_not_followed(self):
         crack = ["fracture", *TINY, "--skip-verification", "--quiet", "--set", "Checkpoints/steps=16"]
         self.assertEqual(latcon(*crack, "--output-dir", self.out).returncode, 0)

@@ -22,6 +22,10 @@ TEST(Parameters, JsonProblemsAreToldWithTheirPath)
             "a.json:/Rum: unknown subsection 'Rum'; nearest: Run; known: Lattice, Fracture, Run");
   EXPECT_EQ(json(R"("Run": {"steps": 1, "steps": 2})"),
             "a.json:/Run/steps: Run/steps = 2: set twice, first at a.json:/Run/steps to 1");
+  const std::vector<std::string> zero =
+    problems(R"({"Lattice": {"spacing": 1}})" + std::string("\0{}", 3), {}, "a.json");
+  ASSERT_EQ(zero.size(), 2u); // and nothing is read, so the required entry is missing
+  EXPECT_EQ(zero[0], "a.json:1: not a text file: it holds zero bytes");
   EXPECT_EQ(json(R"("Run": {"steps": null})"),
             "a.json:/Run/steps: null is not understood here; allowed: a number, a string, a "
             "boolean, or a list of those");

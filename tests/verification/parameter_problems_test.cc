@@ -82,7 +82,7 @@ TEST(Parameters, RangesHoldAtTheirEnds)
 
 TEST(Parameters, WrongWholeNumbersAreTold)
 {
-  const std::string allowed = "; allowed: a whole number >= 2";
+  const std::string allowed = "; allowed: a whole number >= 2 and <= 4294967295";
   EXPECT_EQ(lattice_problem("set rows = 2.5"), "a.prm:3: Lattice/rows = 2.5: not a whole number" + allowed);
   EXPECT_EQ(lattice_problem("set rows = 1e3"), "a.prm:3: Lattice/rows = 1e3: not a whole number" + allowed);
   EXPECT_EQ(lattice_problem("set rows = 3 m"), "a.prm:3: Lattice/rows = 3 m: not a whole number" + allowed);
@@ -153,7 +153,7 @@ TEST(Parameters, LinesAreCountedWithAnyLineEnds)
 {
   for (const std::string end : {"\n", "\r\n", "\r"})
     EXPECT_EQ(problem("subsection Lattice" + end + end + "set spacing = 1" + end + "set rows = 1" + end + "end" + end),
-              "a.prm:4: Lattice/rows = 1: out of range; allowed: a whole number >= 2");
+              "a.prm:4: Lattice/rows = 1: out of range; allowed: a whole number >= 2 and <= 4294967295");
 }
 
 TEST(Parameters, WhatIsNoTextIsOneProblem)
@@ -161,6 +161,24 @@ TEST(Parameters, WhatIsNoTextIsOneProblem)
   const std::vector<std::string> all = problems(good + std::string("x\0\ny\nz\n", 7));
   ASSERT_EQ(all.size(), 2u); // and nothing is read, so the required entry is missing
   EXPECT_EQ(all[0], "a.prm:4: not a text file: it holds zero bytes");
+}
+
+TEST(Parameters, CommentsBeginAfterABlank)
+{
+  EXPECT_EQ(problem("subsection Lattice\n  set spacing = 1.#QNAN\nend\n"),
+            "a.prm:2: '#' begins a comment and needs a blank before it");
+  EXPECT_EQ(lattice_problem("set rows = 3# of them"), "a.prm:3: '#' begins a comment and needs a blank before it");
+}
+
+TEST(Parameters, WholeNumbersWithoutASignEndWhereTheProgramStops)
+{
+  unsigned int steps = 0;
+  Parameters p;
+  p.add("A", "steps", steps, AtLeast(0.), "steps");
+  p.read_overrides({"A/steps=4294967296"});
+  const std::vector<std::string> all = problems_of(p);
+  ASSERT_EQ(all.size(), 1u);
+  EXPECT_NE(all[0].find("allowed: a whole number >= 0 and <= 4294967295"), std::string::npos) << all[0];
 }
 
 TEST(Parameters, NothingIsReadFromNestedSections)

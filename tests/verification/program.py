@@ -5,6 +5,7 @@ import pathlib
 import subprocess
 import sys
 import tempfile
+import time
 import unittest
 import xml.etree.ElementTree
 
@@ -43,9 +44,54 @@ def read(reader, path):
     return reader.GetOutput()
 
 
+# What has not begun after this time [s], on a machine however busy, never will.
+BEGINS = 600
+
+
+def wait_for(condition, process, seconds=BEGINS):
+    """Until the condition holds or the process ends. @return whether it holds"""
+    deadline = time.monotonic() + seconds
+    while not condition() and process.poll() is None and time.monotonic() < deadline:
+        time.sleep(0.01)
+    return condition()
+
+
+def catches(process, number):
+    """Whether the program has got as far as to answer the signal itself."""
+    with open(f"/proc/{process.pid}/status") as file:
+        caught = next(line.split()[1] for line in file if line.startswith("SigCgt:"))
+    return bool(int(caught, 16) >> (number - 1) & 1)
+
+
+def children(process):
+    """Processes that a process has started and that have not ended; none of one that has ended itself."""
+    try:
+        return [int(child) for child in pathlib.Path(f"/proc/{process}/task/{process}/children").read_text().split()]
+    except OSError:
+        return []
+
+
 class TemporaryFolder(unittest.TestCase):
     def setUp(self):
         folder = tempfile.TemporaryDirectory()
         self.addCleanup(folder.cleanup)
         self.folder = pathlib.Path(folder.name)
         self.out = self.folder / "out"
+
+
+class Started(TemporaryFolder):
+    """Processes of latcon that run beside the test, and end with it."""
+
+    def start(self, *arguments, launcher=(), **keywords):
+        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+        process = subprocess.Popen([*launcher, LATCON, *map(str, arguments)], stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE, text=True, env=environment, **keywords)
+        self.addCleanup(self.end, process)
+        return process
+
+    @staticmethod
+    def end(process):
+        if process.poll() is None:
+            process.kill()
+        process.wait()
+        process.stderr.close()

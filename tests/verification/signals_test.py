@@ -5,6 +5,7 @@ Usage: signals_test.py PATH_OF_LATCON
 """
 import json
 import os
+import re
 import resource
 import shutil
 import signal
@@ -14,52 +15,17 @@ import time
 import unittest
 
 sys.dont_write_bytecode = True
-from program import CASES, LATCON, TemporaryFolder, latcon
+from program import CASES, LATCON, Started, catches, children, latcon, wait_for
 
 QUICK = str(CASES / "quick.prm")
 TINY = [QUICK, "--set", "Sheet/length=10 mm", "--set", "Sheet/height=6 mm"]
 INTERRUPTED = 130
 # A command that does not end by itself in this time [s] was not ended by a signal either.
 HANGS = 20
-# What has not begun after this time [s], on a machine however busy, never will.
-BEGINS = 600
 ALL = ("SIGINT", "SIGTERM", "SIGHUP", "SIGUSR1", "SIGUSR2", "SIGALRM", "SIGXCPU")
 
 
-def wait_for(condition, process, seconds=BEGINS):
-    deadline = time.monotonic() + seconds
-    while not condition() and process.poll() is None and time.monotonic() < deadline:
-        time.sleep(0.01)
-    return condition()
-
-
-def catches(process, number):
-    """Whether the program has got as far as to answer the signal itself."""
-    with open(f"/proc/{process.pid}/status") as file:
-        caught = next(line.split()[1] for line in file if line.startswith("SigCgt:"))
-    return bool(int(caught, 16) >> (number - 1) & 1)
-
-
-def children(process):
-    text = (f"/proc/{process}/task/{process}/children")
-    with open(text) as file:
-        return [int(child) for child in file.read().split()]
-
-
-class Started(TemporaryFolder):
-    def start(self, *arguments, launcher=(), **keywords):
-        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
-        process = subprocess.Popen([*launcher, LATCON, *map(str, arguments)], stdout=subprocess.DEVNULL,
-                                   stderr=subprocess.PIPE, text=True, env=environment, **keywords)
-        self.addCleanup(self.end, process)
-        return process
-
-    @staticmethod
-    def end(process):
-        if process.poll() is None:
-            process.kill()
-        process.communicate()
-
+class Interrupted(Started):
     def info(self):
         return json.loads((self.out / "run.json").read_text())
 
@@ -73,7 +39,7 @@ class Started(TemporaryFolder):
         self.assertNotIn("Traceback", errors)
 
 
-class WithoutSteps(Started):
+class WithoutSteps(Interrupted):
     """Commands and phases that save nothing on the way end at once."""
 
     def is_ended(self, *arguments, begun=None, number=signal.SIGINT):
@@ -134,7 +100,60 @@ class WithoutSteps(Started):
         self.assertTrue(wait_for(lambda: not os.path.exists(f"/proc/{script}/exe"), process, 5))
 
 
-class Motions(Started):
+class EveryCommand(Interrupted):
+    """As the keyboard does it: the signal goes to the command and to the scripts that it has started."""
+
+    def is_ended(self, process):
+        os.killpg(process.pid, signal.SIGINT)
+        self.ends(process)
+
+    def is_ended_as_it_reads(self, pipe, *arguments):
+        """Whether it ends while it waits for a file that nobody writes."""
+        process = self.start(*arguments, start_new_session=True)
+        writers = []
+
+        def is_read():
+            try:
+                writers.append(os.open(pipe, os.O_WRONLY | os.O_NONBLOCK))
+            except OSError:
+                return False  # nobody has opened it
+            return True
+
+        self.assertTrue(wait_for(is_read, process))
+        self.addCleanup(os.close, writers[0])
+        self.is_ended(process)
+
+    def is_ended_as_it_begins(self, *arguments):
+        process = self.start(*arguments, start_new_session=True)
+        self.assertTrue(wait_for(lambda: catches(process, signal.SIGINT), process))
+        self.is_ended(process)
+
+    def test_ends_while_it_reads(self):
+        self.assertEqual(latcon("fracture", *TINY, "--set", "Time/end=0.01 ms", "--skip-verification", "--no-report",
+                                "--output-dir", self.out).returncode, 0)
+        film = self.out / "motion-0001.vtp"
+        film.unlink()
+        case, study = self.folder / "case.prm", self.folder / "study.json"
+        for pipe in (case, study, film):
+            os.mkfifo(pipe)
+        commands = {"verify": (case, "energy", "--quick", "--case", case), "lattice": (case, case),
+                    "continuum": (case, case), "fracture": (case, case), "study": (study, study),
+                    "report": (film, self.out)}
+        listed = latcon("--help").stdout.partition("Subcommands:")[2].partition("Exit codes")[0]
+        self.assertEqual(set(re.findall(r"^  (\w+) ", listed, re.MULTILINE)), {*commands, "compare"})
+        for name, (pipe, *arguments) in commands.items():
+            with self.subTest(name):
+                self.is_ended_as_it_reads(pipe, name, *arguments)
+
+    def test_comparison(self):
+        """Frames are no pipes: the signal comes before they are read."""
+        sheets = {"lattice": self.folder / "lattice", "continuum": self.folder / "continuum"}
+        for side, folder in sheets.items():
+            self.assertEqual(latcon(side, *TINY, "--output-dir", folder).returncode, 0)
+        self.is_ended_as_it_begins("compare", *sheets.values(), "--output-dir", self.out)
+
+
+class Motions(Interrupted):
     """Motions write a checkpoint, their last frame and tables."""
 
     def motion(self, *more, length="30 cm", end="1"):

@@ -46,6 +46,25 @@ Study read(const nlohmann::ordered_json &document, bool quick = false)
   return read_study(document.dump(), "folder/x.json", quick);
 }
 
+// What a text is refused for as a study.
+std::string refusal(const std::string &text)
+{
+  try
+  {
+    (void)read_study(text, "x.json", false);
+  }
+  catch (const InputError &error)
+  {
+    return error.what();
+  }
+  return "nothing";
+}
+
+std::vector<PlannedRun> plan_of(const Study &study, const std::vector<std::string> &settings = {})
+{
+  return plan_runs(study, read_input_file(study.base), settings);
+}
+
 // The problem that the example has once it is changed by `change`; there must be one alone.
 template <typename Change>
 std::string problem_after(const Change &change)
@@ -55,7 +74,7 @@ std::string problem_after(const Change &change)
   try
   {
     const Study study = read(document);
-    (void)plan_runs(study, {});
+    (void)plan_of(study);
   }
   catch (const InputError &error)
   {
@@ -123,7 +142,7 @@ TEST(StudyFile, ChecksAreThoseOfBothSizes)
 
 TEST(StudyFile, PlanResolvesEveryCase)
 {
-  const std::vector<PlannedRun> plan = plan_runs(read(example()), {"Fracture/seed sites=3"});
+  const std::vector<PlannedRun> plan = plan_of(read(example()), {"Fracture/seed sites=3"});
   ASSERT_EQ(plan.size(), 4u);
   EXPECT_EQ(plan[0].folder(), "one-3");
   EXPECT_EQ(plan[2].folder(), "a-2-1");
@@ -142,7 +161,7 @@ TEST(StudyFile, LinearBondsHaveNoZeta)
 {
   nlohmann::ordered_json document = example();
   document["runs"]["one"]["set"]["Nearest neighbours/law"] = "linear";
-  EXPECT_FALSE(plan_runs(read(document), {})[0].zeta.has_value());
+  EXPECT_FALSE(plan_of(read(document))[0].zeta.has_value());
 }
 
 TEST(StudyFile, TheMostExpensiveRunComesFirst)
@@ -170,8 +189,26 @@ TEST(StudyFile, UnknownWordsAreNamedWithTheirPlaceAndTheNearestKnownOne)
   EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][4]["is"] = "wavy"; }), "'wavy' is no pattern");
   EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][1]["against"] = "zetta"; }), "nearest: zeta");
   EXPECT_HAS(problem_after([](Json &d) { d["pictures"][0] = "nothing"; }), "pictures/1: 'nothing' is no run");
+  EXPECT_HAS(problem_after(
+               [](Json &d) {
+                 d["claims"][0]["rows"][1]["runs"] = {"one", "a-2", "one"};
+               }),
+             "claims/1/rows/2/runs/3: 'one' is there twice");
   EXPECT_HAS(problem_after([](Json &d) { d["checks"] = {"stady-crack"}; }),
              "checks/1: 'stady-crack' is no check; nearest: steady-crack");
+}
+
+TEST(StudyFile, NoMessageListsThousandsOfRuns)
+{
+  const std::string problem = problem_after(
+    [](nlohmann::ordered_json &d)
+    {
+      for (int run = 0; run < 3000; ++run)
+        d["runs"]["r" + std::to_string(run)] = nlohmann::ordered_json::object();
+      d["pictures"][0] = "nothing";
+    });
+  EXPECT_HAS(problem, "... (3003 in all)");
+  EXPECT_LT(problem.size(), 1000u);
 }
 
 TEST(StudyFile, WordsOfAStudyOfOnesOwnMayBeLeftOut)
@@ -250,6 +287,7 @@ TEST(StudyFile, TextThatIsNoStudyIsRefused)
 {
   EXPECT_THROW((void)read_study("[1]", "x.json", false), InputError);
   EXPECT_THROW((void)read_study("{", "x.json", false), InputError);
+  EXPECT_HAS(refusal(example().dump() + std::string("\0anything", 9)), "it holds zero bytes");
   EXPECT_THROW((void)read_study_file("/no/such/file.json", false), InputError);
   try
   {
@@ -267,7 +305,7 @@ TEST(StudyFile, TheShippedStudyIsWhole)
   for (const bool quick : {false, true})
   {
     const Study study = read_study_file(study_path("paper"), quick);
-    EXPECT_FALSE(plan_runs(study, {}).empty());
+    EXPECT_FALSE(plan_of(study).empty());
     EXPECT_GT(study.claims.size(), 10u);
   }
 }

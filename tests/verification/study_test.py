@@ -15,7 +15,7 @@ import time
 import unittest
 
 sys.dont_write_bytecode = True
-from program import CASES, LATCON, TemporaryFolder, latcon, read_csv
+from program import CASES, LATCON, TemporaryFolder, children, latcon, read_csv
 
 # Strips so small that a crack is through in a moment, of nearest neighbours alone, which are checked sooner.
 TINY = {
@@ -37,14 +37,6 @@ TINY = {
     ],
 }
 FOLDERS = ["base-1", "base-2", "low-1", "thin-1"]
-
-
-def children(process):
-    """Processes that a process has started and that have not ended."""
-    try:
-        return pathlib.Path(f"/proc/{process}/task/{process}/children").read_text().split()
-    except OSError:
-        return []
 
 
 def words_of(process):
@@ -137,7 +129,7 @@ class Study(TemporaryFolder):
         while killed is None and process.poll() is None:
             for child in children(process.pid):
                 if any("low-1" in word for word in words_of(child)):
-                    os.kill(int(child), signal.SIGKILL)
+                    os.kill(child, signal.SIGKILL)
                     killed = child
             time.sleep(0.01)
         printed = process.communicate(timeout=300)[0]

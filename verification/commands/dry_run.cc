@@ -43,7 +43,7 @@ std::string lattice_text(const Case &input, const lattice::TimeStepping &steppin
   std::ostringstream out;
   out << "# lattice: " << sites << " sites, " << bonds << " bonds, " << 2 * sites << " unknowns, " << sheet.length()
       << " m x " << sheet.height() << " m\n";
-  double steps = 0., frames = 2.;
+  double steps = 0., frames = 2., at_most = 1.; // the last: all steps, over those that are expected
   if (run != LatticeRun::relaxed)
   {
     steps = std::ceil(input.end_time / stepping.step);
@@ -51,7 +51,9 @@ std::string lattice_text(const Case &input, const lattice::TimeStepping &steppin
         << (stepping.stages > 0 ? " of " + std::to_string(stepping.stages) + " stages each" : "");
     if (run == LatticeRun::broken)
     {
+      at_most = steps;
       steps = expected_steps(input, stepping);
+      at_most /= steps;
       out << ", " << steps << " if the crack is as fast as shear waves of the unloaded sheet";
     }
     out << "\n";
@@ -62,8 +64,10 @@ std::string lattice_text(const Case &input, const lattice::TimeStepping &steppin
     if (run == LatticeRun::broken)
       frames += cost_of_motion_frame * input.motion_frames;
   }
-  out << "# time: about " << seconds_text(lattice_seconds(input, stepping, run, steps, frames)) << " on "
-      << omp_get_max_threads() << " threads of each rank";
+  const double seconds = lattice_seconds(input, stepping, run, steps, frames);
+  out << "# time: about " << seconds_text(seconds) << " on " << omp_get_max_threads() << " threads of each rank";
+  if (at_most > 1.)
+    out << ", at most " << seconds_text(at_most * seconds) << " if the crack is slower or does not run";
   if (claims)
     out << ", and " << seconds_text(seconds_of_claims) << " for the claims, unless their verdicts are stored";
   if (report)

@@ -106,13 +106,13 @@ Crack break_sheet(const Case &input, const lattice::TriangularLattice &sheet, co
   const double stop = input.stop_position * sheet.length();
   const double seed_tip = sheet.reference(seed.back()).x();
   NearTipRecord near_tip(input, simulation, seed_tip);
-  CrackFilm film(input, simulation, seed_tip, run.directory());
+  CrackFilm film(input, simulation, record, seed_tip, run.directory());
   motion.go({"fracture", [&] { return simulation.state().time < input.end_time && record.tip_X() < stop; },
              [&](const std::vector<lattice::BrokenBond> &broken)
              {
                record.step(broken);
                near_tip.step();
-               film.step(record.tip_X());
+               film.step();
              },
              [&]
              {

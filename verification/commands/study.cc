@@ -12,6 +12,7 @@
 #include "verification/atomic_file.h"
 #include "verification/commands/command.h"
 #include "verification/commands/signals.h"
+#include "verification/input_file.h"
 #include "verification/progress.h"
 #include "verification/resources/machine_memory.h"
 #include "verification/resources/resources.h"
@@ -182,18 +183,20 @@ void run_checks(StudyResults &results, bool quick, Run &run)
 }
 
 // Checks the claims on the base case, small version, in the place of the runs. @throws ClaimFailed
-void verify_base(const Study &study, const std::vector<std::string> &settings, Run &run)
+void verify_base(const Study &study, const InputFile &base, const std::vector<std::string> &settings, Run &run)
 {
-  Options base;
-  base.case_file = study.base;
   Settings all = study.settings;
   for (const std::string &setting : settings)
     override_settings(all, {{setting.substr(0, setting.find('=')), setting.substr(setting.find('=') + 1)}});
+  std::vector<std::string> changes;
   for (const auto &[key, value] : all)
-    base.overrides.push_back(key + "=" + value);
+    changes.push_back(key + "=" + value);
   Case input;
   Parameters parameters;
-  read_case(base, input, parameters);
+  input.declare(parameters);
+  parameters.read_text(base.text, study.base);
+  parameters.read_overrides(changes);
+  input.check(parameters);
   parameters.finish();
   (void)passed_claims(input, run);
 }
@@ -229,7 +232,8 @@ ExitCode run_study(const Options &options, const std::string &name)
     throw InputError("`latcon study` starts its own processes, one a core; run it without mpirun");
   StudyResults results;
   results.study = read_study_file(study_path(name), options.quick);
-  results.plan = plan_runs(results.study, options.overrides);
+  const InputFile base = read_input_file(results.study.base);
+  results.plan = plan_runs(results.study, base, options.overrides);
   results.outcomes.resize(results.plan.size());
   results.quick = options.quick;
   const std::size_t n_cores = options.threads > 0 ? options.threads : latcon::support::available_cores();
@@ -255,7 +259,7 @@ ExitCode run_study(const Options &options, const std::string &name)
                                                    : "material and pre-stretch of every run";
   results.is_verified = !skip_verification;
   if (options.quick && !options.skip_verification)
-    verify_base(results.study, options.overrides, run);
+    verify_base(results.study, base, options.overrides, run);
   const auto write_tables = [&]
   {
     write_file(run.directory() + "/study.json", study_json(results));

@@ -5,6 +5,7 @@
 #include "lattice/motion_writer.h"
 #include "lattice/simulation.h"
 #include "verification/case.h"
+#include "verification/fracture/crack_record.h"
 
 namespace verification
 {
@@ -14,21 +15,23 @@ namespace verification
 class CrackFilm
 {
 public:
+  /// The simulation and the record of its crack must outlive this object.
   /// @param seed_tip_X where the crack starts [m]; its way ends at the stop position
-  CrackFilm(const Case &input, lattice::Simulation &simulation, double seed_tip_X, std::filesystem::path directory);
+  CrackFilm(const Case &input, lattice::Simulation &simulation, const CrackRecord &record, double seed_tip_X,
+            std::filesystem::path directory);
 
   /// Writes the first frame, or, of a run that goes on from a checkpoint, takes back what was written after that.
   /// Collective. @throws latcon::support::WriteError if a file cannot be written, as the others do
   void begin(bool resumed);
 
-  /// Adds a frame if the tip, at tip_X [m], has come to where the next one is due. Collective.
-  void step(double tip_X);
+  /// Adds a frame if the tip has come to where the next one is due. Collective.
+  void step();
 
   /// Adds the last frame. Collective.
   void end() { add_frame(); }
 
-  /// Saves or loads which frames there are; see lattice::Simulation. @throws std::invalid_argument if the next one is
-  /// due where none can be
+  /// Saves or loads which frames there are; see lattice::Simulation. The record of the crack is loaded before.
+  /// @throws std::invalid_argument unless they are those for which the way of the tip calls
   template <class Archive>
   void archive(Archive &archive)
   {
@@ -41,9 +44,11 @@ public:
 
 private:
   void check_loaded(double first) const;
+  double due_beyond(double tip_X, double due) const;
   void add_frame();
 
   lattice::Simulation &simulation_;
+  const CrackRecord &record_;
   lattice::MotionWriter frames_;
   bool wanted_;
   double pitch_;      // of the tip between frames [m]

@@ -148,7 +148,10 @@ void CrackRecord::check_loaded() const
     before = time;
   };
   for (const lattice::TipRecord &tip : tip_)
+  {
     require_order(tip.t, "tip");
+    require_archived(std::abs(tip.X) <= sheet.length() + sheet.spacing(), "`tip` is beyond the sheet");
+  }
   before = 0.;
   for (const EnergyRow &row : energies_)
     require_order(row.time, "energies");

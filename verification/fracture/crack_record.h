@@ -30,6 +30,8 @@ public:
   /// apart; the simulation then shows the last sound state (see lattice::Simulation::look_back)
   void check() { (void)sound_energies(); }
 
+  /// Each site at which the tip was, and when.
+  const std::vector<lattice::TipRecord> &tip() const { return tip_; }
   /// Reference X of the tip [m]; 0 without one.
   double tip_X() const { return tip_.empty() ? 0. : tip_.back().X; }
   /// Lagrangian speed over the last few spacings [m/s]; 0 while there is none.

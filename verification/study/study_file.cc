@@ -226,7 +226,11 @@ private:
       row.runs = {known_run(place.at("run"))};
     else
       for (const JsonPlace &run : place.at("runs").list())
+      {
         row.runs.push_back(known_run(run));
+        if (std::count(row.runs.begin(), row.runs.end(), row.runs.back()) > 1 && !row.runs.back().empty())
+          run.problem("'" + row.runs.back() + "' is there twice");
+      }
     if (const auto quantity = place.required("quantity"))
       row.quantity = quantity->word(quantity_names(), "quantity");
     if (place.has("against"))

@@ -16,11 +16,22 @@ namespace
 // Deeper than any study goes, and than the stack allows those that look at it all.
 constexpr int deepest = 64;
 
+// Some names, and how many there are where they would fill pages.
+std::string listed(const std::vector<std::string> &names)
+{
+  constexpr std::ptrdiff_t most = 60;
+  if (names.size() <= most)
+    return comma_separated(names);
+  return comma_separated({names.begin(), names.begin() + most}) + ", ... (" + std::to_string(names.size()) + " in all)";
+}
+
 } // namespace
 
 nlohmann::ordered_json parse_json(const std::string &text, const std::string &file)
 {
   using Json = nlohmann::ordered_json;
+  if (const auto problem = zero_byte(text, file)) // where the parser would end
+    throw InputError(problem->place + ": " + problem->text);
   std::vector<std::set<std::string>> open; // keys of the objects around the place being parsed
   std::vector<std::string> problems;
   const auto check = [&](int depth, Json::parse_event_t event, Json &value)
@@ -138,8 +149,7 @@ std::string JsonPlace::word(const std::vector<std::string> &known, const std::st
   const std::string given = text();
   if (given.empty() || std::find(known.begin(), known.end(), given) != known.end())
     return given;
-  problem("'" + printable(given) + "' is no " + what + nearest_hint(given, known) +
-          "; known: " + comma_separated(known));
+  problem("'" + printable(given) + "' is no " + what + nearest_hint(given, known) + "; known: " + listed(known));
   return {};
 }
 

@@ -9,7 +9,6 @@
 #include "verification/case_text.h"
 #include "verification/errors.h"
 #include "verification/homogenisation.h"
-#include "verification/input_file.h"
 #include "verification/lattice_sheet.h"
 #include "verification/resources/resources.h"
 
@@ -127,10 +126,9 @@ std::optional<double> PlannedRun::value(const std::string &against) const
   return found == entries.end() ? std::nullopt : std::optional<double>(found->second);
 }
 
-std::vector<PlannedRun> plan_runs(const Study &study, const std::vector<std::string> &settings)
+std::vector<PlannedRun> plan_runs(const Study &study, const InputFile &base, const std::vector<std::string> &settings)
 {
   const Settings overrides = parsed(settings);
-  const InputFile base = read_input_file(study.base); // once: all runs are of the same case
   std::vector<PlannedRun> runs;
   std::vector<std::string> problems;
   for (const StudyRun &run : study.runs)

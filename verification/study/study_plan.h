@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "verification/input_file.h"
 #include "verification/study/quantities.h"
 #include "verification/study/study_file.h"
 
@@ -41,9 +42,11 @@ struct Case;
 
 /// All runs of a study with all their seeds, in the order of the file. The noise seed is set here, and that there are
 /// no frames but the first and the last.
+/// @param base the file of the base case, read once: all runs are of the same
 /// @param settings `Section/Name=value` for all runs, over those of the study
 /// @throws InputError with the problems of every case, and of rows whose `against` has no number in any of their runs
-[[nodiscard]] std::vector<PlannedRun> plan_runs(const Study &study, const std::vector<std::string> &settings);
+[[nodiscard]] std::vector<PlannedRun> plan_runs(const Study &study, const InputFile &base,
+                                                const std::vector<std::string> &settings);
 
 /// Indices of the runs, the most expensive first; equal ones in their order.
 [[nodiscard]] std::vector<std::size_t> longest_first(const std::vector<PlannedRun> &runs);
