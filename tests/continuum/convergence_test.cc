@@ -106,7 +106,6 @@ struct Series
            (meshes == Meshes::uniform ? "_uniform" : "_hanging") + (edges == Edges::clamped ? "" : "_loaded") + "_p" +
            std::to_string(degree);
   }
-  friend std::ostream &operator<<(std::ostream &out, const Series &series) { return out << series.name(); }
 };
 
 // The unit square in cells of side 2^-level, with a disc in the middle refined once more if there are to be hanging
