@@ -220,10 +220,6 @@ struct Plant
   std::string side;
   std::function<void(Subject &)> plant;
   std::string reason = ""; ///< words of a row that fails; none: any row
-  friend std::ostream &operator<<(std::ostream &out, const Plant &plant)
-  {
-    return out << plant.claim.name << " with " << plant.side;
-  }
 };
 
 std::ostream &operator<<(std::ostream &out, const Plant &plant)
