@@ -1,15 +1,18 @@
 #!/usr/bin/env bash
 # Installs the Debian packages that are missing, then configures and builds.
-# Usage: cmake/set-up.sh [--with LIST] [PRESET [TARGET...]]   (run from anywhere; ./run, ./test and tests/*/run call it)
-# --with LIST: also the packages of cmake/packages-LIST.txt. Without PRESET nothing is built.
+# Usage: cmake/set-up.sh [--with LIST]... [PRESET [TARGET...]]   (run from anywhere; ./run, ./test and tests/*/run call it)
+# --with LIST: also the packages of cmake/packages-LIST.txt; with `tests` the build has tests, benchmarks, documentation and
+# Debian packages. Without PRESET nothing is built.
 # With every package in place nothing is installed and no privilege is needed.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 lists=("$root/cmake/packages.txt")
-if [ "${1-}" = --with ]; then
+tests=OFF
+while [ "${1-}" = --with ]; do
   lists+=("$root/cmake/packages-$2.txt")
+  [ "$2" != tests ] || tests=ON
   shift 2
-fi
+done
 
 mapfile -t wanted < <(sed -e 's/#.*//' -e '/^[[:space:]]*$/d' "${lists[@]}")
 missing=()
@@ -36,7 +39,7 @@ fi
 # ParaView's own VTK for Python cannot be installed beside the one that libvtk9-dev asks for, so it is unpacked in the build
 # folder. Only the test and the use of verification/paraview/ need it: nothing fails where it cannot be had.
 modules="$root/build/paraview"
-if [ ! -d "$modules" ]; then
+if [ $tests = ON ] && [ ! -d "$modules" ]; then
   part=$(mktemp -d)
   wanted="python3-paraview=$(dpkg-query -W -f='${Version}' paraview)"
   if (cd "$part" && { apt-get download -q "$wanted" || { apt-get update -q && apt-get download -q "$wanted"; }; } \
@@ -56,10 +59,18 @@ shift
 build="$root/build/$preset"
 cd "$root"
 # A build folder that came along when the clone was copied or moved still names the old place, and would build there.
-configured=$(sed -n 's/^CMAKE_HOME_DIRECTORY:INTERNAL=//p' "$build/CMakeCache.txt" 2>/dev/null || true)
-if [ ! -f "$build/build.ninja" ] || [ ! "$configured" -ef "$root" ]; then
+cached() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt" 2>/dev/null || true; }
+configure=()
+if [ ! -f "$build/build.ninja" ] || [ ! "$(cached CMAKE_HOME_DIRECTORY)" -ef "$root" ]; then
+  configure=(--fresh)
+  # The presets are those of developers.
+  [ $tests = ON ] || configure+=(-D BUILD_TESTING=OFF -D LATCON_BENCHMARKS=OFF -D LATCON_DOCS=OFF -D LATCON_PACKAGE=OFF)
+elif [ $tests = ON ] && [ "$(cached BUILD_TESTING)" = OFF ]; then
+  configure=(-D BUILD_TESTING=ON)
+fi
+if [ ${#configure[@]} -gt 0 ]; then
   echo "Configuring ($preset)" >&2
-  cmake --fresh --preset "$preset" >"$root/configure.log" 2>&1 || { cat "$root/configure.log" >&2; exit 1; }
+  cmake "${configure[@]}" --preset "$preset" >"$root/configure.log" 2>&1 || { cat "$root/configure.log" >&2; exit 1; }
   rm -f "$root/configure.log"
 fi
 # Two compilers at once: a deal.II translation unit takes up to 2 GB. The steps of every build, which look for new files and

@@ -36,7 +36,7 @@ class Part:
 
 def build(part):
     """Has cmake/set-up.sh install packages and build. @return its words; raises Failed with their end"""
-    command = [ROOT / "cmake" / "set-up.sh", "--with", "clean"]
+    command = [ROOT / "cmake" / "set-up.sh", "--with", "tests", "--with", "clean"]
     if part.preset:
         command += [part.preset, *part.targets]
     # Programs list their tests when they are linked, and what MPI never gives back is no mistake of theirs.

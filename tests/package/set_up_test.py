@@ -17,6 +17,7 @@ from folders import SOURCE
 PROJECT = """\
 cmake_minimum_required(VERSION 3.25)
 project(small C)
+option(BUILD_TESTING "" OFF)
 file(GLOB sources CONFIGURE_DEPENDS *.c)
 add_executable(latcon ${sources})
 add_custom_target(commit
@@ -32,7 +33,8 @@ PROGRAM = """\
 int main(void) { puts("%s"); return LATCON_GIT_COMMIT[0] == 0; }
 """
 PRESETS = {"version": 6, "configurePresets": [
-    {"name": "release", "generator": "Ninja", "binaryDir": "${sourceDir}/build/release"}]}
+    {"name": "release", "generator": "Ninja", "binaryDir": "${sourceDir}/build/release",
+     "cacheVariables": {"BUILD_TESTING": "ON"}}]}
 
 
 class Clone(unittest.TestCase):
@@ -45,7 +47,8 @@ class Clone(unittest.TestCase):
         (self.clone / "build" / "paraview").mkdir(parents=True)  # is not fetched
         for name in ("set-up.sh", "git_commit.cmake"):
             shutil.copy(SOURCE / "cmake" / name, self.clone / "cmake")
-        (self.clone / "cmake" / "packages.txt").write_text("# none\n")
+        for name in ("packages.txt", "packages-tests.txt"):
+            (self.clone / "cmake" / name).write_text("# none\n")
 
     def run_in(self, folder, *words):
         environment = {name: value for name, value in os.environ.items() if not name.startswith("CMAKE_")}
@@ -79,6 +82,20 @@ class SetUp(Clone):
         (self.clone / "main.c").write_text(PROGRAM % "second")
         self.assertIn("Building", self.set_up(self.clone))
         self.assertEqual(self.says(self.clone), "second\n")
+
+    def builds_tests(self):
+        return "BUILD_TESTING:BOOL=ON" in (self.clone / "build" / "release" / "CMakeCache.txt").read_text()
+
+    def test_builds_tests_once_they_are_asked_for(self):
+        self.set_up(self.clone)
+        self.assertFalse(self.builds_tests())
+        for expected in ("Configuring (release)\n", ""):
+            result = self.run_in(self.folder, self.clone / "cmake" / "set-up.sh", "--with", "tests", "release", "latcon")
+            self.assertEqual(result.returncode, 0, result.stderr)
+            self.assertEqual(result.stderr, expected)
+            self.assertTrue(self.builds_tests())
+        self.assertEqual(self.set_up(self.clone), "")
+        self.assertTrue(self.builds_tests())
 
     def test_says_why_it_failed(self):
         (self.clone / "main.c").write_text("no program\n")
