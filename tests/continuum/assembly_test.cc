@@ -44,7 +44,7 @@ TEST(Assembly, WritesWhatConstraintsDistribute)
     const Sheet sheet(mesh, continuum::Constitution(law, gradient), degree);
     const Sheet::Vector u = wavy_state(sheet);
     const auto held = continuum::homogeneous_constraints(sheet, all_held());
-    for (const AffineConstraints<double> *constraints : {&sheet.continuity(), &held})
+    for (const AffineConstraints<double> *constraints : {&sheet.conformity_constraints(), &held})
     {
       Sheet::Matrix K, expected;
       sheet.make_matrix(*constraints, K);
@@ -63,7 +63,7 @@ TEST(Assembly, WritesWhatConstraintsDistribute)
     const double energy = sheet.residual(u, r, magnitude);
     continuum::integrate(sheet, u, 1., continuum::Order::first,
                          [&](const continuum::Contribution &c)
-                         { sheet.continuity().distribute_local_to_global(c.residual, c.dofs, expected); });
+                         { sheet.conformity_constraints().distribute_local_to_global(c.residual, c.dofs, expected); });
     expected.compress(dealii::VectorOperation::add);
     r -= expected;
     EXPECT_LE(r.l2_norm(), 1e-14 * magnitude.l2_norm()) << "degree " << degree;
@@ -100,10 +100,10 @@ TEST(Assembly, SharesTheTablesOfEqualCells)
         {
           const Tensor<1, 2> &first = exact.shape_grad(a, q);
           const Tensor<2, 2> &second = exact.shape_hessian(a, q);
-          const double jet[] = {first[0], first[1], second[0][0], second[1][1], second[0][1]};
+          const double derivative[] = {first[0], first[1], second[0][0], second[1][1], second[0][1]};
           // Edges are equal to 1e-11 of their length.
           for (unsigned int c = 0; c < 5; ++c)
-            EXPECT_NEAR(table.row(q, c)[a], jet[c], 1e-9 * (c < 2 ? first.norm() + 1. : second.norm() + 1e3));
+            EXPECT_NEAR(table.row(q, c)[a], derivative[c], 1e-9 * (c < 2 ? first.norm() + 1. : second.norm() + 1e3));
         }
       }
     };

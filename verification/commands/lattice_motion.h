@@ -23,8 +23,8 @@ public:
   /// @param simulation at its first step; must outlive the motion
   LatticeMotion(const Case &input, lattice::Simulation &simulation, Checkpoints &checkpoints, Run &run);
 
-  /// How one motion differs from another.
-  struct Course
+  /// What a motion calls, and asks, at each step.
+  struct StepCallbacks
   {
     std::string phase;             ///< under which its time is noted in run.json
     std::function<bool()> goes_on; ///< whether there is a further step
@@ -35,16 +35,16 @@ public:
 
   /// Moves the sheet from its first step, or the checkpoint found, until it does not go on or a signal comes. Then, and
   /// if it blows up, the last frame shows where it got to, and the tables tell what was noted.
-  /// @param further archives what else belongs to the motion, given an archive
+  /// @param extra_state archives what else belongs to the motion, given an archive
   /// @throws SolverError if the sheet blows up, OutputError
-  template <class Further>
-  void go(const Course &course, const Further &further)
+  template <class ExtraState>
+  void go(const StepCallbacks &callbacks, const ExtraState &extra_state)
   {
     const auto parts = [&](auto &archive)
     {
       archive("simulation", simulation_);
       archive("record", record_);
-      further(archive);
+      extra_state(archive);
       archive("frames", frames_);
       archive("next_frame", next_frame_);
       archive("step", step_);
@@ -52,7 +52,7 @@ public:
         check_loaded();
     };
     const bool resumed = checkpoints_.resume(parts);
-    go(course, resumed,
+    go(callbacks, resumed,
        [&]
        {
          record_.check();
@@ -65,7 +65,7 @@ public:
 
 private:
   void check_loaded();
-  void go(const Course &course, bool resumed, const std::function<void()> &write_checkpoint);
+  void go(const StepCallbacks &callbacks, bool resumed, const std::function<void()> &write_checkpoint);
   void add_frame();
   void write_tables() const;
 
