@@ -37,7 +37,7 @@ enum FailureKind : int
 }
 } // namespace
 
-GuardedWork::GuardedWork(const std::function<void()> &work)
+DeferredException::DeferredException(const std::function<void()> &work)
 {
   const auto keep = [this](const int kind, const std::exception &failure)
   {
@@ -71,7 +71,7 @@ GuardedWork::GuardedWork(const std::function<void()> &work)
   }
 }
 
-void GuardedWork::agree(const MPI_Comm communicator) const
+void DeferredException::rethrow_collectively(const MPI_Comm communicator) const
 {
   int gravest = none;
   MPI_Allreduce(&kind_, &gravest, 1, MPI_INT, MPI_MAX, communicator);
@@ -96,6 +96,6 @@ void GuardedWork::agree(const MPI_Comm communicator) const
 
 void collectively(const MPI_Comm communicator, const std::function<void()> &work)
 {
-  GuardedWork(work).agree(communicator);
+  DeferredException(work).rethrow_collectively(communicator);
 }
 } // namespace continuum

@@ -64,11 +64,11 @@ struct PeriodicPair
 
 /// Everything that acts on a sheet from outside. An edge without any condition is free of traction and of double
 /// traction.
-struct Conditions
+struct BoundaryConditions
 {
-  Conditions() = default;
-  Conditions(std::vector<PrescribedDisplacement> held) : displacements(std::move(held)) {}
-  Conditions(std::initializer_list<PrescribedDisplacement> held) : displacements(held) {}
+  BoundaryConditions() = default;
+  BoundaryConditions(std::vector<PrescribedDisplacement> held) : displacements(std::move(held)) {}
+  BoundaryConditions(std::initializer_list<PrescribedDisplacement> held) : displacements(held) {}
 
   std::vector<PrescribedDisplacement> displacements;
   std::vector<PrescribedNormalGradient> normal_gradients;

@@ -56,7 +56,7 @@ MatrixRows own_rows(const Epetra_CrsMatrix &matrix)
 }
 
 template <class T>
-std::vector<T> joined(std::vector<std::vector<T>> &&parts)
+std::vector<T> concatenated(std::vector<std::vector<T>> &&parts)
 {
   std::vector<T> all;
   if (!parts.empty())
@@ -72,9 +72,9 @@ MatrixRows gathered_rows(const Epetra_CrsMatrix &matrix, const MPI_Comm communic
   MatrixRows own = own_rows(matrix);
   if (Utilities::MPI::n_mpi_processes(communicator) == 1)
     return own;
-  return {joined(Utilities::MPI::gather(communicator, own.lengths)),
-          joined(Utilities::MPI::gather(communicator, own.columns)),
-          joined(Utilities::MPI::gather(communicator, own.values))};
+  return {concatenated(Utilities::MPI::gather(communicator, own.lengths)),
+          concatenated(Utilities::MPI::gather(communicator, own.columns)),
+          concatenated(Utilities::MPI::gather(communicator, own.values))};
 }
 } // namespace
 

@@ -8,7 +8,8 @@ using namespace dealii;
 
 namespace continuum
 {
-void DynamicSolver::take_stock(EnergyLedger &ledger, const Vector &u, const Vector &v, const double load_factor) const
+void DynamicSolver::update_energies(EnergyLedger &ledger, const Vector &u, const Vector &v,
+                                    const double load_factor) const
 {
   ledger.stored = sheet_.energy(ghosted(u), load_factor);
   Vector momenta = sheet_.make_owned();
@@ -23,10 +24,10 @@ void DynamicSolver::take_stock(EnergyLedger &ledger, const Vector &u, const Vect
 }
 
 // The ledger after a step that ends with u and v.
-EnergyLedger DynamicSolver::settled(const Step &step, const Vector &u, const Vector &v) const
+EnergyLedger DynamicSolver::ledger_after(const Step &step, const Vector &u, const Vector &v) const
 {
   EnergyLedger ledger = ledger_;
-  take_stock(ledger, u, v, step.last_load_factor);
+  update_energies(ledger, u, v, step.last_load_factor);
 
   Vector rise = u;
   rise -= step.u;
@@ -56,7 +57,7 @@ EnergyLedger DynamicSolver::settled(const Step &step, const Vector &u, const Vec
       multiply_by_mass(full_mass_, change, inertial);
       double own = 0.;
       for (const types::global_dof_index i : sheet_.owned())
-        if (homogeneous_.is_constrained(i) && !sheet_.continuity().is_constrained(i))
+        if (homogeneous_.is_constrained(i) && !sheet_.conformity_constraints().is_constrained(i))
           own += (forces(i) + inertial(i) - factor * loads_(i)) * rise(i);
       ledger.work += Utilities::MPI::sum(own, sheet_.communicator());
     }

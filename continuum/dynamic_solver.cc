@@ -20,7 +20,7 @@ using namespace dealii;
 
 namespace continuum
 {
-TimeRule TimeRule::generalised_alpha(const double rho_inf)
+NewmarkParameters NewmarkParameters::generalised_alpha(const double rho_inf)
 {
   if (!(rho_inf >= 0. && rho_inf <= 1.))
     throw InvalidInput("the amplification rho_inf of high frequencies must lie between 0 and 1");
@@ -30,7 +30,7 @@ TimeRule TimeRule::generalised_alpha(const double rho_inf)
   return {alpha_m, alpha_f, 0.25 * (0.5 + gamma) * (0.5 + gamma), gamma};
 }
 
-DynamicSolver::DynamicSolver(const Sheet::Mesh &mesh, const Constitution &constitution, Conditions conditions,
+DynamicSolver::DynamicSolver(const Sheet::Mesh &mesh, const Constitution &constitution, BoundaryConditions conditions,
                              const Inertia &inertia, const DynamicSettings &settings, const Viscosity *viscosity,
                              LoadFactor load_factor)
   : sheet_(mesh, constitution, settings.degree, std::move(conditions)), inertia_(inertia), settings_(settings),
@@ -54,7 +54,7 @@ void DynamicSolver::check_input() const
   require(settings_.time_step > 0. && std::isfinite(settings_.time_step), "the time step must be positive and finite");
   require(settings_.relative_tolerance > 0. && settings_.relative_tolerance < 1.,
           "the relative tolerance of the residual must lie between 0 and 1");
-  const TimeRule &rule = settings_.rule;
+  const NewmarkParameters &rule = settings_.rule;
   constexpr double rounding = 1e-12;
   require(rule.alpha_m <= rule.alpha_f + rounding && rule.alpha_f <= 0.5 + rounding && rule.alpha_f >= 0. &&
             rule.beta >= 0.25 + 0.5 * (rule.alpha_f - rule.alpha_m) - rounding && std::isfinite(rule.beta),
@@ -67,19 +67,19 @@ void DynamicSolver::check_input() const
 void DynamicSolver::set_up()
 {
   full_lift_ = sheet_.lift();
-  const HeldBoundaries held = held_boundaries(sheet_.conditions());
+  const DirichletBoundaries held = dirichlet_boundaries(sheet_.conditions());
   homogeneous_.copy_from(homogeneous_constraints(sheet_, held));
 
   loads_ = sheet_.loads();
   sheet_.make_matrix(homogeneous_, matrix_);
   sheet_.make_matrix(homogeneous_, mass_);
   sheet_.mass(inertia_.density, inertia_.length, homogeneous_, mass_);
-  sheet_.make_matrix(sheet_.continuity(), full_mass_);
-  sheet_.mass(inertia_.density, inertia_.length, sheet_.continuity(), full_mass_);
+  sheet_.make_matrix(sheet_.conformity_constraints(), full_mass_);
+  sheet_.mass(inertia_.density, inertia_.length, sheet_.conformity_constraints(), full_mass_);
   if (inertia_.length > 0.)
   {
-    sheet_.make_matrix(sheet_.continuity(), plain_mass_);
-    sheet_.mass(inertia_.density, 0., sheet_.continuity(), plain_mass_);
+    sheet_.make_matrix(sheet_.conformity_constraints(), plain_mass_);
+    sheet_.mass(inertia_.density, 0., sheet_.conformity_constraints(), plain_mass_);
   }
   // Viscosity at finite strain makes the matrix unsymmetric.
   linear_solver_ = std::make_unique<LinearSolver>(sheet_, held, settings_.linear,
@@ -126,16 +126,16 @@ DynamicSolver::Vector DynamicSolver::interpolate(const VectorField &field) const
   Vector x = sheet_.make_owned();
   if (field)
   {
-    const GuardedWork guarded(
+    const DeferredException guarded(
       [&]
       {
         if (field->n_components != 2)
           throw InvalidInput("an initial field needs a function of two components");
-        sheet_.visit_unknowns([&](const auto dof, const unsigned int component, const Point<2> &X)
-                              { x(dof) = field->value(X, component); });
+        sheet_.for_each_owned_dof([&](const auto dof, const unsigned int component, const Point<2> &X)
+                                  { x(dof) = field->value(X, component); });
       });
     x.compress(VectorOperation::insert);
-    guarded.agree(sheet_.communicator());
+    guarded.rethrow_collectively(sheet_.communicator());
   }
   AffineConstraints<double> hanging(sheet_.relevant());
   DoFTools::make_hanging_node_constraints(sheet_.dof_handler(), hanging);
@@ -149,7 +149,7 @@ void DynamicSolver::multiply_by_mass(const Sheet::Matrix &M, const Vector &x, Ve
 {
   M.vmult(product, x);
   for (const types::global_dof_index i : sheet_.owned())
-    if (sheet_.continuity().is_constrained(i))
+    if (sheet_.conformity_constraints().is_constrained(i))
       product(i) = 0.;
   product.compress(VectorOperation::insert);
 }
@@ -183,7 +183,7 @@ void DynamicSolver::start(const Vector &displacement, const Vector &velocity, co
 
 bool DynamicSolver::is_prescribed(const types::global_dof_index i) const
 {
-  return homogeneous_.is_constrained(i) && !sheet_.continuity().is_constrained(i);
+  return homogeneous_.is_constrained(i) && !sheet_.conformity_constraints().is_constrained(i);
 }
 
 DynamicSolver::Vector DynamicSolver::prescribed_displacement(const double time) const
@@ -238,8 +238,8 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time)
   u.compress(VectorOperation::insert);
   v.compress(VectorOperation::insert);
   a.compress(VectorOperation::insert);
-  sheet_.continuity().distribute(v);
-  sheet_.continuity().distribute(a);
+  sheet_.conformity_constraints().distribute(v);
+  sheet_.conformity_constraints().distribute(a);
 
   // M a = lambda L - internal and viscous forces, with a given where held.
   const Vector u_ghosted = ghosted(u);
@@ -258,12 +258,12 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time)
       rhs(i) = 0.;
   rhs.compress(VectorOperation::insert);
   Vector free_acceleration = sheet_.make_owned();
-  linear_solver_->forget();
+  linear_solver_->invalidate();
   linear_solver_->update(u_ghosted, mass_,
                          [this](const Sheet &level, const Vector &, const AffineConstraints<double> &constraints,
                                 Sheet::Matrix &M) { level.mass(inertia_.density, inertia_.length, constraints, M); });
   linear_solver_->solve(mass_, free_acceleration, rhs);
-  linear_solver_->forget();
+  linear_solver_->invalidate();
   homogeneous_.distribute(free_acceleration);
   a += free_acceleration;
 
@@ -281,7 +281,7 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time)
   load_factor_ = factors[0];
   ledger_ = EnergyLedger();
   report_ = SolverReport();
-  take_stock(ledger_, u, v, load_factor_);
+  update_energies(ledger_, u, v, load_factor_);
   initial_energy_ = ledger_.stored + ledger_.kinetic;
   has_started_ = true;
 }
@@ -307,7 +307,7 @@ void DynamicSolver::step()
     velocity_ = v;
     acceleration_ = a;
     ledger_ = ledger;
-    linear_solver_->forget(); // a multigrid that may be of a state far off
+    linear_solver_->invalidate(); // a multigrid that may be of a state far off
   };
   report_ = SolverReport();
   std::string failure;
@@ -328,7 +328,7 @@ void DynamicSolver::step()
   if (duration_ != settings_.time_step)
   {
     duration_ = settings_.time_step;
-    linear_solver_->forget(); // a multigrid of a shorter step
+    linear_solver_->invalidate(); // a multigrid of a shorter step
     n_divided_steps_ += failure.empty() ? 1 : 0;
   }
   report_.load_factor = load_factor_;
@@ -356,7 +356,7 @@ std::string DynamicSolver::advance_in_parts(const double duration, const double 
 std::string DynamicSolver::advance(const double duration, const double end)
 {
   if (duration != duration_)
-    linear_solver_->forget();
+    linear_solver_->invalidate();
   duration_ = duration;
   Step step{settings_.rule,      duration,     sheet_.make_owned(), sheet_.make_owned(),
             sheet_.make_owned(), load_factor_, load_factor_at(end)};
@@ -373,7 +373,7 @@ std::string DynamicSolver::advance(const double duration, const double end)
     {
       a = step.last_acceleration(u);
       v = step.last_velocity(a);
-      ledger = settled(step, u, v);
+      ledger = ledger_after(step, u, v);
       if (!std::isfinite(ledger.imbalance) || !std::isfinite(a.l2_norm()))
         failure = "its energy or acceleration is not finite";
     }

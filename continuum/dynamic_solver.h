@@ -23,7 +23,7 @@ struct Inertia
 /// A one-step rule for the second-order equation in time: Newmark's formulas with beta, gamma, and the equation of
 /// motion asked for with the acceleration at t_(n+1-alpha_m) and all else at t_(n+1-alpha_f) (theory-continuum.md,
 /// eqs. (C.43), (C.44)). The numbers are [-].
-struct TimeRule
+struct NewmarkParameters
 {
   double alpha_m;
   double alpha_f;
@@ -33,10 +33,10 @@ struct TimeRule
   /// Generalised-alpha after Chung and Hulbert: second order, unconditionally stable when linear, with the least
   /// damping of low frequencies for an amplification rho_inf in [0, 1] of the highest in each step. Throws
   /// InvalidInput for another rho_inf.
-  static TimeRule generalised_alpha(double rho_inf);
+  static NewmarkParameters generalised_alpha(double rho_inf);
 
   /// Newmark's average acceleration, the trapezoidal rule: no damping.
-  static TimeRule average_acceleration() { return {0., 0., 0.25, 0.5}; }
+  static NewmarkParameters average_acceleration() { return {0., 0., 0.25, 0.5}; }
 };
 
 /// How motion is followed. Viscosity at finite strain makes the matrix of a Newton step unsymmetric.
@@ -44,7 +44,7 @@ struct DynamicSettings
 {
   double time_step;        ///< [s] > 0
   unsigned int degree = 3; ///< of the elements, p >= 1; p >= 2 with a gradient law
-  TimeRule rule = TimeRule::average_acceleration();
+  NewmarkParameters rule = NewmarkParameters::average_acceleration();
   double relative_tolerance = 1e-10;       ///< residual over the forces at work [-], in (0, 1)
   unsigned int max_newton_iterations = 20; ///< per time step
   unsigned int max_halvings = 10;          ///< of a Newton step that leaves det F <= 0
@@ -79,9 +79,9 @@ struct EnergyLedger
 /// Motion of a sheet at finite strain, total Lagrangian:
 ///   M a + C(u, v) + dE/du(u) = lambda(t) L
 /// (theory-continuum.md, eq. (C.40)), with M the consistent mass with micro-inertia, C the viscous forces and L the
-/// dead loads. Everything that Conditions prescribe is multiplied by the load factor lambda(t): displacements of held
-/// boundaries, which move as u(X, t) = lambda(t) u(X), weak normal gradients and loads. No condition is needed: a
-/// sheet may be free.
+/// dead loads. Everything that BoundaryConditions prescribe is multiplied by the load factor lambda(t): displacements
+/// of held boundaries, which move as u(X, t) = lambda(t) u(X), weak normal gradients and loads. No condition is needed:
+/// a sheet may be free.
 ///
 /// Internal and viscous forces are those of the mid-state u_(n+1-alpha_f), v_(n+1-alpha_f), the load factor the
 /// same mean of its values at both ends; the state of the mean, not the mean of the forces, so that one evaluation
@@ -103,7 +103,7 @@ public:
 
   /// `mesh`, the laws and `viscosity` (none: nullptr) must outlive the solver; `load_factor` empty stands for 1 at all
   /// times. Throws InvalidInput for numbers out of range, or what Sheet refuses.
-  DynamicSolver(const Sheet::Mesh &mesh, const Constitution &constitution, Conditions conditions,
+  DynamicSolver(const Sheet::Mesh &mesh, const Constitution &constitution, BoundaryConditions conditions,
                 const Inertia &inertia, const DynamicSettings &settings, const Viscosity *viscosity = nullptr,
                 LoadFactor load_factor = LoadFactor());
 
@@ -163,7 +163,7 @@ public:
   const SolverReport &last_report() const { return report_; }
 
 private:
-  struct Balance;
+  struct Residual;
   struct Step;
 
   void check_input() const;
@@ -175,8 +175,8 @@ private:
   void begin(Vector &u, Vector &v, double time);
   Vector ghosted(const Vector &owned) const;
   void multiply_by_mass(const Sheet::Matrix &M, const Vector &x, Vector &product) const;
-  Balance look_at(const Step &step, const Vector &u) const;
-  Balance best_balance(const Step &step, const Vector &first, const Vector &second, Vector &u) const;
+  Residual evaluate(const Step &step, const Vector &u) const;
+  Residual best_residual(const Step &step, const Vector &first, const Vector &second, Vector &u) const;
   const Sheet::Matrix &level_mass(const Sheet &level, const dealii::AffineConstraints<double> &constraints);
   Multigrid::Assembler level_assembler(double load_factor);
   void assemble_matrix(const Vector &u, const Vector &v, double load_factor);
@@ -185,12 +185,12 @@ private:
   void restore_multigrid();
   std::string place_of_largest(const Vector &residual) const;
   double norm_over_free(const Vector &x) const;
-  double round_off(const Balance &state, const Vector &u) const;
+  double round_off(const Residual &state, const Vector &u) const;
   std::string attempt(Step &step, Vector &u);
   std::string advance(double duration, double end);
   std::string advance_in_parts(double duration, double end, unsigned int halvings);
-  EnergyLedger settled(const Step &step, const Vector &u, const Vector &v) const;
-  void take_stock(EnergyLedger &ledger, const Vector &u, const Vector &v, double load_factor) const;
+  EnergyLedger ledger_after(const Step &step, const Vector &u, const Vector &v) const;
+  void update_energies(EnergyLedger &ledger, const Vector &u, const Vector &v, double load_factor) const;
 
   Sheet sheet_;
   Inertia inertia_;
@@ -205,7 +205,7 @@ private:
   Vector loads_;                                        // nodal dead loads at load factor 1
   double smallest_cell_ = 0.;                           // extent [m]
   Sheet::Matrix mass_;                                  // condensed by homogeneous_: for solving
-  Sheet::Matrix full_mass_;                             // condensed by continuity alone: for forces
+  Sheet::Matrix full_mass_;                             // condensed by the conformity constraints alone: for forces
   Sheet::Matrix plain_mass_;                            // the same without micro-inertia
   Sheet::Matrix matrix_;                                // of the Newton step
   std::map<const Sheet *, Sheet::Matrix> level_masses_; // of coarser meshes of multigrid, once they are needed

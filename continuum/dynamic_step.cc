@@ -15,17 +15,17 @@ using namespace dealii;
 
 namespace continuum
 {
-DynamicSolver::Balance DynamicSolver::look_at(const Step &step, const Vector &u) const
+DynamicSolver::Residual DynamicSolver::evaluate(const Step &step, const Vector &u) const
 {
   const Vector a_1 = step.last_acceleration(u);
   const double factor = step.mean_load_factor();
-  Balance state{ghosted(Step::mean(step.rule.alpha_f, step.u, u)),
-                ghosted(Step::mean(step.rule.alpha_f, step.v, step.last_velocity(a_1))),
-                sheet_.make_owned(),
-                sheet_.make_owned(),
-                0.,
-                0.,
-                0.};
+  Residual state{ghosted(Step::mean(step.rule.alpha_f, step.u, u)),
+                 ghosted(Step::mean(step.rule.alpha_f, step.v, step.last_velocity(a_1))),
+                 sheet_.make_owned(),
+                 sheet_.make_owned(),
+                 0.,
+                 0.,
+                 0.};
   Vector inertial = sheet_.make_owned();
   Vector forces = sheet_.make_owned();
   multiply_by_mass(full_mass_, Step::mean(step.rule.alpha_m, step.a, a_1), inertial);
@@ -49,7 +49,7 @@ std::string DynamicSolver::place_of_largest(const Vector &residual) const
 {
   using Candidate = std::array<double, 3>; // absolute value [N/m], place [m]
   Candidate own{-1., 0., 0.};
-  sheet_.visit_unknowns(
+  sheet_.for_each_owned_dof(
     [&](const auto dof, unsigned int, const Point<2> &X)
     {
       if (homogeneous_.is_constrained(dof))
@@ -68,13 +68,13 @@ std::string DynamicSolver::place_of_largest(const Vector &residual) const
 
 // The better of two predictors, which `u` becomes. Constant acceleration is close to third order when the step resolves
 // the motion and far off when it is long; the second is looked at only where the first does not reduce the forces.
-DynamicSolver::Balance DynamicSolver::best_balance(const Step &step, const Vector &first, const Vector &second,
-                                                   Vector &u) const
+DynamicSolver::Residual DynamicSolver::best_residual(const Step &step, const Vector &first, const Vector &second,
+                                                     Vector &u) const
 {
-  std::unique_ptr<Balance> state;
+  std::unique_ptr<Residual> state;
   try
   {
-    state = std::make_unique<Balance>(look_at(step, first));
+    state = std::make_unique<Residual>(evaluate(step, first));
     u = first;
     if (state->free <= 0.1 * state->reference)
       return *state;
@@ -82,11 +82,11 @@ DynamicSolver::Balance DynamicSolver::best_balance(const Step &step, const Vecto
   catch (const NonPhysicalState &)
   {
     u = second;
-    return look_at(step, second);
+    return evaluate(step, second);
   }
   try
   {
-    Balance other = look_at(step, second);
+    Residual other = evaluate(step, second);
     if (other.free < state->free)
     {
       u = second;
@@ -117,7 +117,7 @@ const Sheet::Matrix &DynamicSolver::level_mass(const Sheet &level, const AffineC
 // rest: without the part of viscosity that is not symmetric, which vanishes with the velocity.
 Multigrid::Assembler DynamicSolver::level_assembler(const double load_factor)
 {
-  const TimeRule &rule = settings_.rule;
+  const NewmarkParameters &rule = settings_.rule;
   const double dt = duration_;
   return [=](const Sheet &level, const Vector &u, const AffineConstraints<double> &constraints, Sheet::Matrix &K)
   {
@@ -138,7 +138,7 @@ void DynamicSolver::assemble_matrix(const Vector &u, const Vector &v, const doub
       diagonal(i) = matrix_.diag_element(i);
     diagonal.compress(VectorOperation::insert);
   };
-  const TimeRule &rule = settings_.rule;
+  const NewmarkParameters &rule = settings_.rule;
   const double dt = duration_;
   sheet_.tangent(u, homogeneous_, matrix_, load_factor);
   take_diagonal(elastic_diagonal_);
@@ -170,7 +170,7 @@ void DynamicSolver::restore_multigrid()
 }
 
 // The floor of eq. (C.45).
-double DynamicSolver::round_off(const Balance &state, const Vector &u) const
+double DynamicSolver::round_off(const Residual &state, const Vector &u) const
 {
   double sum = 0.;
   for (const types::global_dof_index i : sheet_.owned())
@@ -198,14 +198,14 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
       Vector rise = sheet_.make_owned();
       rise.add(share * step.dt, step.v, share * 0.5 * step.dt * step.dt, step.a);
       for (const types::global_dof_index i : sheet_.owned())
-        if (homogeneous_.is_constrained(i) && !sheet_.continuity().is_constrained(i))
+        if (homogeneous_.is_constrained(i) && !sheet_.conformity_constraints().is_constrained(i))
           rise(i) = step.last_load_factor * full_lift_(i) - step.u(i);
       rise.compress(VectorOperation::insert);
-      sheet_.continuity().distribute(rise);
+      sheet_.conformity_constraints().distribute(rise);
       rise += step.u;
       return rise;
     };
-    Balance state = best_balance(step, predicted(1.), predicted(0.), u);
+    Residual state = best_residual(step, predicted(1.), predicted(0.), u);
     double length = 1.;
     unsigned int linear_iterations = 0;
     Vector change = sheet_.make_owned();
@@ -239,7 +239,7 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
         {
           Vector trial = u;
           trial.add(length, change);
-          state = look_at(step, trial);
+          state = evaluate(step, trial);
           u = trial;
           break;
         }

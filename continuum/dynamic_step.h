@@ -9,7 +9,7 @@ namespace continuum
 /// What is known when a step begins, all without ghost entries, and Newmark's formulas from there.
 struct DynamicSolver::Step
 {
-  TimeRule rule;
+  NewmarkParameters rule;
   double dt;
   Vector u;
   Vector v;
@@ -44,7 +44,7 @@ struct DynamicSolver::Step
 };
 
 /// The equation of motion at a displacement of the end of a step.
-struct DynamicSolver::Balance
+struct DynamicSolver::Residual
 {
   Vector u_mean;    // with ghost entries [m]
   Vector v_mean;    // with ghost entries [m/s]

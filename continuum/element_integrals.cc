@@ -61,12 +61,12 @@ public:
     begin(contributions);
     take_nodes(cell, 0);
     start(1);
-    const Rows rows = {1, sheet_.has_gradient() ? n_jet : n_first};
+    const Rows rows = {1, sheet_.has_gradient() ? n_derivatives : n_first};
     for (unsigned int q = 0; q < table.n_points; ++q)
     {
       const double *basis = table.row(q, 0);
-      take_jets(basis, rows);
-      cell_density(sheet_.constitution(), sheet_.has_gradient(), jets_[0], order_, density_);
+      take_derivatives(basis, rows);
+      cell_density(sheet_.constitution(), sheet_.has_gradient(), derivatives_[0], order_, density_);
       add_point(basis, rows, table.JxW[q], contributions.back());
     }
     end(contributions.back());
@@ -155,30 +155,30 @@ private:
     }
     if (order_ == Order::second)
     {
-      work_.resize(2 * n_jet * stride_);
+      work_.resize(2 * n_derivatives * stride_);
       for (std::vector<double> &block : second_)
         block.assign(n * stride_, 0.);
     }
-    basis_.assign(n_sides * n_jet * stride_, 0.);
+    basis_.assign(n_sides * n_derivatives * stride_, 0.);
   }
 
   void integrate_face(const std::array<const ShapeTable *, 2> &tables, const unsigned int n_sides, const double penalty,
                       const std::vector<Tensor<1, 2>> *prescribed, Contribution &contribution)
   {
     start(n_sides);
-    const Rows rows = {n_sides, n_jet};
+    const Rows rows = {n_sides, n_derivatives};
     for (unsigned int q = 0; q < tables[0]->n_points; ++q)
     {
       for (unsigned int s = 0; s < n_sides; ++s)
-        for (unsigned int c = 0; c < n_jet; ++c)
+        for (unsigned int c = 0; c < n_derivatives; ++c)
         {
           const double *from = tables[s]->row(q, c);
-          double *to = &basis_[(s * n_jet + c) * stride_];
+          double *to = &basis_[(s * n_derivatives + c) * stride_];
           for (std::size_t n = 0; n < node_of_[s].size(); ++n)
             to[node_of_[s][n]] = from[n];
         }
-      take_jets(basis_.data(), rows);
-      face_density(*sheet_.constitution().gradient, jets_, n_sides, tables[0]->normals[q],
+      take_derivatives(basis_.data(), rows);
+      face_density(*sheet_.constitution().gradient, derivatives_, n_sides, tables[0]->normals[q],
                    prescribed ? (*prescribed)[q] : Tensor<1, 2>(), penalty, order_, density_);
       add_point(basis_.data(), rows, tables[0]->JxW[q], contribution);
     }
@@ -186,14 +186,14 @@ private:
   }
 
   // Jets of u from the basis, and a blank density.
-  void take_jets(const double *basis, const Rows &rows)
+  void take_derivatives(const double *basis, const Rows &rows)
   {
     clear(density_, order_);
-    double jets[2][2][n_jet] = {};
-    evaluate_jets(basis, stride_, rows, nodal_.data(), jets[0][0]);
+    double derivatives[2][2][n_derivatives] = {};
+    evaluate_derivatives(basis, stride_, rows, nodal_.data(), derivatives[0][0]);
     for (unsigned int s = 0; s < rows.n_sides; ++s)
       for (unsigned int i = 0; i < 2; ++i)
-        std::copy(jets[i][s], jets[i][s] + n_jet, jets_[s][i].begin());
+        std::copy(derivatives[i][s], derivatives[i][s] + n_derivatives, derivatives_[s][i].begin());
   }
 
   void add_point(const double *basis, const Rows &rows, const double JxW, Contribution &contribution)
@@ -261,8 +261,8 @@ private:
   std::vector<double> magnitude_;
   std::array<std::vector<double>, 3> second_; // [node][node]
   std::vector<double> work_;
-  std::array<FieldJet, 2> jets_; // of u on each side
-  Density density_{};
+  std::array<FieldDerivatives, 2> derivatives_; // of u on each side
+  PointIntegrand density_{};
 };
 
 // Hands over what a cell and its faces contribute, in the order in which they are visited.

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "continuum/point_density.h"
+#include "continuum/point_integrand.h"
 #include "continuum/sheet.h"
 
 #include <deal.II/lac/full_matrix.h>

@@ -6,16 +6,16 @@ namespace continuum
 {
 namespace
 {
-constexpr unsigned int n_rows = 2 * n_jet;
+constexpr unsigned int n_rows = 2 * n_derivatives;
 }
 
-LATCON_CLONES void evaluate_jets(const double *basis, const unsigned int stride, const Rows &rows, const double *u,
-                                 double *jets)
+LATCON_CLONES void evaluate_derivatives(const double *basis, const unsigned int stride, const Rows &rows,
+                                        const double *u, double *derivatives)
 {
   for (unsigned int s = 0; s < rows.n_sides; ++s)
     for (unsigned int c = 0; c < rows.n_derivatives; ++c)
     {
-      const unsigned int row = s * n_jet + c;
+      const unsigned int row = s * n_derivatives + c;
       Lanes sums[2] = {};
       for (unsigned int a = 0; a < stride; a += n_lanes)
       {
@@ -29,7 +29,7 @@ LATCON_CLONES void evaluate_jets(const double *basis, const unsigned int stride,
         }
       }
       for (unsigned int i = 0; i < 2; ++i)
-        jets[i * n_rows + row] = (sums[i][0] + sums[i][1]) + (sums[i][2] + sums[i][3]);
+        derivatives[i * n_rows + row] = (sums[i][0] + sums[i][1]) + (sums[i][2] + sums[i][3]);
     }
 }
 
@@ -46,8 +46,8 @@ LATCON_CLONES void add_first(const double *basis, const unsigned int stride, con
       for (unsigned int c = 0; c < rows.n_derivatives; ++c)
       {
         Lanes shape;
-        std::memcpy(&shape, basis + (s * n_jet + c) * stride + a, sizeof(shape));
-        const Lanes term = weight * first[s * n_jet + c] * shape;
+        std::memcpy(&shape, basis + (s * n_derivatives + c) * stride + a, sizeof(shape));
+        const Lanes term = weight * first[s * n_derivatives + c] * shape;
         sum += term;
         absolute += term < 0. ? -term : term;
       }
@@ -66,16 +66,16 @@ LATCON_CLONES void add_second(const double *basis, const unsigned int stride, co
   for (unsigned int s = 0; s < rows.n_sides; ++s)
     for (unsigned int c = 0; c < rows.n_derivatives; ++c)
     {
-      const unsigned int row = s * n_jet + c;
+      const unsigned int row = s * n_derivatives + c;
       unsigned int n_factors = 0;
       double factors[n_rows];
       unsigned int columns[n_rows];
       for (unsigned int t = 0; t < rows.n_sides; ++t)
         for (unsigned int e = 0; e < rows.n_derivatives; ++e)
-          if (const double entry = second[row * n_rows + t * n_jet + e]; entry != 0.)
+          if (const double entry = second[row * n_rows + t * n_derivatives + e]; entry != 0.)
           {
             factors[n_factors] = weight * entry;
-            columns[n_factors++] = t * n_jet + e;
+            columns[n_factors++] = t * n_derivatives + e;
           }
       if (n_factors == 0)
         continue;

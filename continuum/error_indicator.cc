@@ -117,14 +117,14 @@ Vector<float> error_indicators(const Sheet &sheet, const Sheet::Vector &u)
 {
   // Faces are looked at once, also those between ranks, and tell both their cells.
   LinearAlgebra::distributed::Vector<double> eta_squared(sheet.mesh().global_active_cell_index_partitioner().lock());
-  const GuardedWork guarded(
+  const DeferredException guarded(
     [&]
     {
       IndicatorVisitor visitor{{sheet, u}, eta_squared};
       for_each_cell_and_face(sheet.dof_handler(), visitor);
     });
   eta_squared.compress(VectorOperation::add);
-  guarded.agree(sheet.communicator());
+  guarded.rethrow_collectively(sheet.communicator());
 
   Vector<float> eta(sheet.mesh().n_active_cells());
   for (const auto &cell : sheet.mesh().active_cell_iterators())

@@ -17,9 +17,9 @@ using namespace dealii;
 
 namespace continuum
 {
-HeldBoundaries held_boundaries(const Conditions &conditions)
+DirichletBoundaries dirichlet_boundaries(const BoundaryConditions &conditions)
 {
-  HeldBoundaries held;
+  DirichletBoundaries held;
   for (const PrescribedDisplacement &condition : conditions.displacements)
   {
     ComponentMask mask(2, false);
@@ -32,10 +32,10 @@ HeldBoundaries held_boundaries(const Conditions &conditions)
   return held;
 }
 
-AffineConstraints<double> homogeneous_constraints(const Sheet &sheet, const HeldBoundaries &held)
+AffineConstraints<double> homogeneous_constraints(const Sheet &sheet, const DirichletBoundaries &held)
 {
   AffineConstraints<double> known(sheet.relevant());
-  known.merge(sheet.continuity(), AffineConstraints<double>::no_conflicts_allowed, true);
+  known.merge(sheet.conformity_constraints(), AffineConstraints<double>::no_conflicts_allowed, true);
   for (const auto &[boundary, components] : held)
     DoFTools::make_zero_boundary_constraints(sheet.dof_handler(), boundary, known, components);
   known.close(); // before they travel: the receiver may know nothing of the degrees of freedom in between

@@ -14,10 +14,10 @@ namespace continuum
 class Sheet;
 
 /// Which components are held at which boundary.
-using HeldBoundaries = std::map<dealii::types::boundary_id, dealii::ComponentMask>;
+using DirichletBoundaries = std::map<dealii::types::boundary_id, dealii::ComponentMask>;
 
 /// What prescribed displacements hold.
-HeldBoundaries held_boundaries(const Conditions &conditions);
+DirichletBoundaries dirichlet_boundaries(const BoundaryConditions &conditions);
 
 /// The closed constraints of every relevant degree of freedom as its owner knows them. `known` is what this rank found
 /// out by itself, which is short of constraints on the far side of its ghost cells; operators with face terms couple to
@@ -27,7 +27,7 @@ dealii::AffineConstraints<double> shared_constraints(const dealii::AffineConstra
                                                      const dealii::IndexSet &owned, const dealii::IndexSet &relevant,
                                                      MPI_Comm communicator);
 
-/// What makes the displacement one field (Sheet::continuity), and the components that are `held` at its boundaries at
-/// zero, chains resolved and closed. Shared as above. Collective.
-dealii::AffineConstraints<double> homogeneous_constraints(const Sheet &sheet, const HeldBoundaries &held);
+/// What makes the displacement one field (Sheet::conformity_constraints), and the components that are `held` at its
+/// boundaries at zero, chains resolved and closed. Shared as above. Collective.
+dealii::AffineConstraints<double> homogeneous_constraints(const Sheet &sheet, const DirichletBoundaries &held);
 } // namespace continuum

@@ -12,7 +12,7 @@ using namespace dealii;
 
 namespace continuum
 {
-LinearSolver::LinearSolver(const Sheet &sheet, HeldBoundaries held, const LinearSettings &settings,
+LinearSolver::LinearSolver(const Sheet &sheet, DirichletBoundaries held, const LinearSettings &settings,
                            const Symmetry symmetry)
   : sheet_(sheet), held_(std::move(held)), settings_(settings),
     is_direct_(sheet.dof_handler().n_dofs() <= settings.direct_limit || !sheet.conditions().periodic.empty()),
@@ -20,7 +20,7 @@ LinearSolver::LinearSolver(const Sheet &sheet, HeldBoundaries held, const Linear
 {
   if (!(settings.relative_tolerance > 0. && settings.relative_tolerance < 1.))
     throw InvalidInput("the relative tolerance of the linear solver must lie between 0 and 1");
-  if (!(settings.wear_limit >= 0. && std::isfinite(settings.wear_limit)))
+  if (!(settings.rebuild_ratio >= 0. && std::isfinite(settings.rebuild_ratio)))
     throw InvalidInput("the wear limit of multigrid must be finite and not negative");
 }
 
@@ -32,7 +32,7 @@ void LinearSolver::update(const Sheet::Vector &u, const Sheet::Matrix &K, const 
   state_ = u;
   assemble_ = assemble;
   is_fresh_ = false;
-  if (is_worn_)
+  if (is_stale_)
     set_up(K);
 }
 
@@ -44,7 +44,7 @@ void LinearSolver::set_up(const Sheet::Matrix &K)
       [](const Sheet &sheet, const AffineConstraints<double> &constraints, Sheet::Matrix &matrix)
       { sheet.make_matrix(constraints, matrix); },
       held_, settings_.multigrid);
-  is_worn_ = true; // until it is set up
+  is_stale_ = true; // until it is set up
   if (symmetry_ == Symmetry::symmetric)
     multigrid_->update(state_, K, assemble_);
   else
@@ -54,19 +54,19 @@ void LinearSolver::set_up(const Sheet::Matrix &K)
     assemble_(sheet_, state_, multigrid_->constraints(), symmetric);
     multigrid_->update(state_, symmetric, assemble_);
   }
-  is_worn_ = false;
+  is_stale_ = false;
   is_fresh_ = true;
-  fresh_effort_ = 0.;
+  baseline_iterations_ = 0.;
   ++n_set_ups_;
 }
 
 void LinearSolver::restore(const Sheet::Vector &u, const Sheet::Matrix &K, const Multigrid::Assembler &assemble)
 {
-  const double fresh_effort = fresh_effort_;
+  const double baseline_iterations = baseline_iterations_;
   const unsigned int n_set_ups = n_set_ups_;
-  forget();
+  invalidate();
   update(u, K, assemble);
-  fresh_effort_ = fresh_effort;
+  baseline_iterations_ = baseline_iterations;
   n_set_ups_ = n_set_ups;
 }
 
@@ -135,8 +135,8 @@ unsigned int LinearSolver::iterate(const Sheet::Matrix &K, Sheet::Vector &x, con
   constexpr double digits_at_first = 3.;
   const double effort = control.last_step() / (digits_at_first - std::log10(relative_tolerance));
   if (is_fresh_)
-    fresh_effort_ = std::max(fresh_effort_, effort);
-  is_worn_ = effort > settings_.wear_limit * fresh_effort_;
+    baseline_iterations_ = std::max(baseline_iterations_, effort);
+  is_stale_ = effort > settings_.rebuild_ratio * baseline_iterations_;
   return control.last_step();
 }
 } // namespace continuum

@@ -18,7 +18,7 @@ struct LinearSettings
   double relative_tolerance = 1e-8;
   /// Iterations for the digits of the residual, over those with a multigrid that is up to date [-], >= 0, beyond which
   /// multigrid is set up anew; 0: for every tangent.
-  double wear_limit = 1.5;
+  double rebuild_ratio = 1.5;
   /// Krylov iterations before giving up.
   unsigned int max_iterations = 200;
   MultigridSettings multigrid;
@@ -34,13 +34,13 @@ enum class Symmetry
 /// Solves K x = b for the condensed tangent of a sheet. Directly: by DirectSolver.
 /// Iteratively: conjugate gradients for symmetric K, GMRES for others, preconditioned by Multigrid of the symmetric
 /// matrix. A multigrid is kept for the tangents that follow (of further Newton, load and time steps) until it is worn:
-/// until the iterations have grown beyond LinearSettings::wear_limit, or fail. That changes the work and not what is
+/// until the iterations have grown beyond LinearSettings::rebuild_ratio, or fail. That changes the work and not what is
 /// solved.
 class LinearSolver
 {
 public:
   /// `sheet` must outlive the solver, `held` says what is held besides. Throws InvalidInput for settings out of range.
-  LinearSolver(const Sheet &sheet, HeldBoundaries held, const LinearSettings &settings,
+  LinearSolver(const Sheet &sheet, DirichletBoundaries held, const LinearSettings &settings,
                Symmetry symmetry = Symmetry::symmetric);
 
   /// To be called when K has changed, before the next solve: takes note of the state `u` [m] (with ghost entries) and
@@ -55,19 +55,19 @@ public:
   unsigned int solve(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b, double relative_tolerance = 0.);
 
   /// Has multigrid set up anew at the next update: the matrices that follow are of another kind.
-  void forget() { is_worn_ = true; }
+  void invalidate() { is_stale_ = true; }
 
   /// Stores what is known of the multigrid that is kept, or takes it from there.
   template <class Archive>
   void archive(Archive &archive)
   {
-    archive("is_worn", is_worn_);
-    archive("fresh_effort", fresh_effort_);
+    archive("is_stale", is_stale_);
+    archive("baseline_iterations", baseline_iterations_);
     archive("set_ups", n_set_ups_);
   }
 
   /// Whether the next update leaves multigrid as it is.
-  bool keeps_multigrid() const { return !is_direct_ && !is_worn_; }
+  bool keeps_multigrid() const { return !is_direct_ && !is_stale_; }
 
   /// Makes the multigrid that another solver kept when it was archived: set up at the state `u` [m] and its matrix `K`,
   /// and as worn as it was. Collective. Throws as update.
@@ -82,7 +82,7 @@ private:
   unsigned int iterate(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b, double relative_tolerance);
 
   const Sheet &sheet_;
-  HeldBoundaries held_;
+  DirichletBoundaries held_;
   LinearSettings settings_;
   bool is_direct_;
   Symmetry symmetry_;
@@ -91,8 +91,8 @@ private:
   unsigned int n_set_ups_ = 0;
   Sheet::Vector state_;
   Multigrid::Assembler assemble_;
-  bool is_fresh_ = false;    // whether multigrid is that of the last update
-  bool is_worn_ = true;      // whether it has to be set up anew
-  double fresh_effort_ = 0.; // iterations for each digit with a fresh multigrid
+  bool is_fresh_ = false;           // whether multigrid is that of the last update
+  bool is_stale_ = true;            // whether it has to be set up anew
+  double baseline_iterations_ = 0.; // iterations for each digit with a fresh multigrid
 };
 } // namespace continuum

@@ -53,7 +53,7 @@ void fill_start(const Sheet &sheet, const AffineConstraints<double> &constraints
       own_size = std::min(own_size, cell->diameter());
   const double size = Utilities::MPI::min(own_size, sheet.communicator());
 
-  sheet.visit_unknowns(
+  sheet.for_each_owned_dof(
     [&](const auto dof, const unsigned int i, const Point<2> &place)
     {
       if (constraints.is_constrained(dof))
@@ -116,7 +116,7 @@ double largest_eigenvalue(const SinglePrecisionMatrix &A, const VertexPatches &B
 } // namespace
 
 Multigrid::Multigrid(const Sheet &fine, const SheetFactory &make_sheet, const MatrixFactory &make_matrix,
-                     const HeldBoundaries &held, const MultigridSettings &settings)
+                     const DirichletBoundaries &held, const MultigridSettings &settings)
   : settings_(settings)
 {
   if (settings.smoothing_degree == 0)
@@ -196,7 +196,7 @@ void Multigrid::update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix,
       levels_[l + 1]->to_coarser.interpolate(coarse_state, state);
       Sheet::Vector owned = level.sheet->make_owned();
       copy(coarse_state, owned);
-      level.sheet->continuity().distribute(owned);
+      level.sheet->conformity_constraints().distribute(owned);
       state.reinit(level.layout);
       copy(owned, state);
 

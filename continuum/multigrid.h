@@ -52,7 +52,7 @@ public:
   /// Builds all that depends on the mesh alone: levels, transfers, sparsity, patches. `fine` must outlive the
   /// multigrid, and its mesh must not change. Throws InvalidInput for settings out of range.
   Multigrid(const Sheet &fine, const SheetFactory &make_sheet, const MatrixFactory &make_matrix,
-            const HeldBoundaries &held, const MultigridSettings &settings = MultigridSettings());
+            const DirichletBoundaries &held, const MultigridSettings &settings = MultigridSettings());
   ~Multigrid();
   Multigrid(const Multigrid &) = delete;
   Multigrid &operator=(const Multigrid &) = delete;

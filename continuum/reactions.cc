@@ -23,7 +23,7 @@ struct HeldBoundary
 
 void integrate_tractions(const Sheet &sheet, const Sheet::Vector &u, std::vector<HeldBoundary> &boundaries)
 {
-  const GuardedWork guarded(
+  const DeferredException guarded(
     [&]
     {
       const auto &element = sheet.element();
@@ -51,7 +51,7 @@ void integrate_tractions(const Sheet &sheet, const Sheet::Vector &u, std::vector
             forces[a] += traction[element.system_to_component_index(a).first] * values.shape_value(a, q);
         }
         cell->get_dof_indices(dofs);
-        sheet.continuity().distribute_local_to_global(forces, dofs, boundary.tractions);
+        sheet.conformity_constraints().distribute_local_to_global(forces, dofs, boundary.tractions);
       };
       for (const auto &cell : sheet.dof_handler().active_cell_iterators())
         if (cell->is_locally_owned())
@@ -63,7 +63,7 @@ void integrate_tractions(const Sheet &sheet, const Sheet::Vector &u, std::vector
     });
   for (HeldBoundary &boundary : boundaries)
     boundary.tractions.compress(VectorOperation::add);
-  guarded.agree(sheet.communicator());
+  guarded.rethrow_collectively(sheet.communicator());
 }
 } // namespace
 

@@ -58,14 +58,14 @@ void ShapeTables::fill(const FEValuesBase<2> &values, const bool is_face, ShapeT
   const unsigned int n = element_.n_dofs_per_cell();
   table.n_points = values.n_quadrature_points;
   table.stride = padded(n);
-  table.jets.assign(table.n_points * n_jet * table.stride, 0.);
+  table.derivatives.assign(table.n_points * n_derivatives * table.stride, 0.);
   table.JxW = values.get_JxW_values();
   if (is_face)
     table.normals = values.get_normal_vectors();
   for (unsigned int q = 0; q < table.n_points; ++q)
     for (unsigned int a = 0; a < n; ++a)
     {
-      double *jet = &table.jets[q * n_jet * table.stride + a];
+      double *jet = &table.derivatives[q * n_derivatives * table.stride + a];
       const Tensor<1, 2> &gradient = values.shape_grad(a, q);
       jet[0] = gradient[0];
       jet[table.stride] = gradient[1];

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "continuum/point_density.h"
+#include "continuum/point_integrand.h"
 #include "continuum/sheet.h"
 
 #include <deal.II/fe/fe_q.h>
@@ -20,12 +20,12 @@ struct ShapeTable
 {
   unsigned int n_points = 0;
   unsigned int stride = 0;                   ///< from row to row: the number of shape functions, padded with zeros
-  std::vector<double> jets;                  ///< [point][derivative of a jet][shape function]
+  std::vector<double> derivatives;           ///< [point][derivative of a jet][shape function]
   std::vector<double> JxW;                   ///< weight [m^2] or [m] of each point
   std::vector<dealii::Tensor<1, 2>> normals; ///< of each point of a face, outward
   const double *row(const unsigned int q, const unsigned int derivative) const
   {
-    return &jets[(q * n_jet + derivative) * stride];
+    return &derivatives[(q * n_derivatives + derivative) * stride];
   }
 };
 

@@ -39,7 +39,8 @@ unsigned int mapping_degree(const Sheet::Mesh &mesh, const unsigned int degree)
 }
 } // namespace
 
-Sheet::Sheet(const Mesh &mesh, const Constitution &constitution, const unsigned int degree, Conditions conditions)
+Sheet::Sheet(const Mesh &mesh, const Constitution &constitution, const unsigned int degree,
+             BoundaryConditions conditions)
   : mesh_(mesh), constitution_(constitution), conditions_(std::move(conditions)), degree_(checked_degree(degree)),
     normal_stiffness_(constitution.has_gradient() ? constitution.gradient->normal_stiffness() : 0.),
     element_(FE_Q<2>(degree), 2), mapping_(mapping_degree(mesh, degree)), dof_handler_(mesh)
@@ -122,7 +123,7 @@ void Sheet::distribute()
   for (const PeriodicPair &pair : conditions_.periodic)
     DoFTools::make_periodicity_constraints(dof_handler_, pair.first, pair.second, pair.direction, known);
   known.close();
-  continuity_.copy_from(shared_constraints(known, owned_, relevant_, communicator()));
+  conformity_constraints_.copy_from(shared_constraints(known, owned_, relevant_, communicator()));
 }
 
 double Sheet::penalty(const double extent) const
@@ -132,8 +133,8 @@ double Sheet::penalty(const double extent) const
 
 Sheet::Vector Sheet::lift() const
 {
-  AffineConstraints<double> given(continuity_.get_local_lines());
-  given.merge(continuity_);
+  AffineConstraints<double> given(conformity_constraints_.get_local_lines());
+  given.merge(conformity_constraints_);
   collectively(communicator(),
                [&]
                {
@@ -143,10 +144,10 @@ Sheet::Vector Sheet::lift() const
                });
   Vector nodal = make_owned();
   for (const types::global_dof_index i : owned_)
-    if (given.is_constrained(i) && !continuity_.is_constrained(i))
+    if (given.is_constrained(i) && !conformity_constraints_.is_constrained(i))
       nodal(i) = given.get_inhomogeneity(i);
   nodal.compress(VectorOperation::insert);
-  continuity_.distribute(nodal);
+  conformity_constraints_.distribute(nodal);
   return nodal;
 }
 
@@ -259,7 +260,7 @@ std::map<Sheet::Cell, Sheet::PointsInCell> Sheet::locate(const std::vector<Point
   return located;
 }
 
-void Sheet::visit_unknowns(
+void Sheet::for_each_owned_dof(
   const std::function<void(types::global_dof_index, unsigned int, const Point<2> &)> &visit) const
 {
   std::vector<types::global_dof_index> dofs(element_.n_dofs_per_cell());

@@ -57,7 +57,8 @@ public:
   /// `mesh` and the laws must outlive the sheet; `degree` p >= 1 is that of the elements, p >= 2 with a gradient law.
   /// Throws InvalidInput for what cannot be: a boundary that the mesh does not have, a field of other than two
   /// components, a condition that needs a gradient law and finds none.
-  Sheet(const Mesh &mesh, const Constitution &constitution, unsigned int degree, Conditions conditions = Conditions());
+  Sheet(const Mesh &mesh, const Constitution &constitution, unsigned int degree,
+        BoundaryConditions conditions = BoundaryConditions());
 
   /// The same sheet on another mesh of the same domain.
   std::unique_ptr<Sheet> on(const Mesh &mesh) const;
@@ -103,7 +104,7 @@ public:
 
   /// Calls `visit` with each displacement unknown that this rank owns, its component i (0 or 1), and the place X of its
   /// node [m, reference]: cell by cell, so with a node that several own cells share several times.
-  void visit_unknowns(
+  void for_each_owned_dof(
     const std::function<void(dealii::types::global_dof_index, unsigned int, const dealii::Point<2> &)> &visit) const;
 
   Vector make_owned() const;   ///< a zero vector without ghost entries, to write to
@@ -111,12 +112,12 @@ public:
 
   const Mesh &mesh() const { return mesh_; }
   const Constitution &constitution() const { return constitution_; }
-  const Conditions &conditions() const { return conditions_; }
+  const BoundaryConditions &conditions() const { return conditions_; }
   const dealii::FESystem<2> &element() const { return element_; }
   const dealii::DoFHandler<2> &dof_handler() const { return dof_handler_; }
   const dealii::MappingQ<2> &mapping() const { return mapping_; }
   /// What makes the displacement one field: hanging nodes and periodic edges (see shared_constraints).
-  const dealii::AffineConstraints<double> &continuity() const { return continuity_; }
+  const dealii::AffineConstraints<double> &conformity_constraints() const { return conformity_constraints_; }
   /// Whether there is a gradient energy, and with it face terms.
   bool has_gradient() const { return constitution_.has_gradient(); }
   /// Penalty [Pa m] on faces that are `extent` [m] of a cell away from the next: gamma p (p + 1) / h * stiffness.
@@ -141,7 +142,7 @@ private:
 
   const Mesh &mesh_;
   Constitution constitution_;
-  Conditions conditions_;
+  BoundaryConditions conditions_;
   unsigned int degree_;
   double normal_stiffness_; // of the gradient law [Pa m^2]; 0 for none
   dealii::FESystem<2> element_;
@@ -149,6 +150,6 @@ private:
   dealii::DoFHandler<2> dof_handler_;
   dealii::IndexSet owned_;
   dealii::IndexSet relevant_;
-  dealii::AffineConstraints<double> continuity_;
+  dealii::AffineConstraints<double> conformity_constraints_;
 };
 } // namespace continuum

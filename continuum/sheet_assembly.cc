@@ -34,9 +34,9 @@ double Sheet::residual(const Vector &u, Vector &r, Vector &magnitude, const doub
   double own = 0.;
   r = 0.;
   magnitude = 0.;
-  VectorAssembly to_r(continuity_, r);
-  VectorAssembly to_magnitude(continuity_, magnitude);
-  const GuardedWork guarded(
+  VectorAssembly to_r(conformity_constraints_, r);
+  VectorAssembly to_magnitude(conformity_constraints_, magnitude);
+  const DeferredException guarded(
     [&]
     {
       integrate(*this, u, load_factor, Order::first,
@@ -49,7 +49,7 @@ double Sheet::residual(const Vector &u, Vector &r, Vector &magnitude, const doub
     });
   r.compress(VectorOperation::add);
   magnitude.compress(VectorOperation::add);
-  guarded.agree(communicator());
+  guarded.rethrow_collectively(communicator());
   return Utilities::MPI::sum(own, communicator());
 }
 
@@ -60,7 +60,7 @@ void Sheet::tangent(const Vector &u, const AffineConstraints<double> &constraint
   if (lift != nullptr)
     *stiffness_times_lift = 0.;
   MatrixAssembly to_K(constraints, K);
-  const GuardedWork guarded(
+  const DeferredException guarded(
     [&]
     {
       dealii::Vector<double> local_lift;
@@ -76,13 +76,13 @@ void Sheet::tangent(const Vector &u, const AffineConstraints<double> &constraint
                   for (unsigned int a = 0; a < local_lift.size(); ++a)
                     local_lift[a] = (*lift)(contribution.dofs[a]);
                   contribution.tangent.vmult(product, local_lift);
-                  continuity_.distribute_local_to_global(product, contribution.dofs, *stiffness_times_lift);
+                  conformity_constraints_.distribute_local_to_global(product, contribution.dofs, *stiffness_times_lift);
                 });
     });
   K.compress(VectorOperation::add);
   if (lift != nullptr)
     stiffness_times_lift->compress(VectorOperation::add);
-  guarded.agree(communicator());
+  guarded.rethrow_collectively(communicator());
 }
 
 void Sheet::make_matrix(const AffineConstraints<double> &constraints, Matrix &matrix) const

@@ -14,7 +14,7 @@ namespace continuum
 Sheet::Vector Sheet::loads() const
 {
   Vector forces = make_owned();
-  const GuardedWork guarded(
+  const DeferredException guarded(
     [&]
     {
       const UpdateFlags needed = update_values | update_gradients | update_quadrature_points | update_JxW_values;
@@ -78,11 +78,11 @@ Sheet::Vector Sheet::loads() const
           }
         }
         cell->get_dof_indices(dofs);
-        continuity_.distribute_local_to_global(local, dofs, forces);
+        conformity_constraints_.distribute_local_to_global(local, dofs, forces);
       }
     });
   forces.compress(VectorOperation::add);
-  guarded.agree(communicator());
+  guarded.rethrow_collectively(communicator());
   return forces;
 }
 

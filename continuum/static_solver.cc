@@ -60,7 +60,7 @@ struct StaticSolver::Evaluation
   Vector magnitude; // sums of absolute values behind the residual [N/m]
 };
 
-StaticSolver::StaticSolver(const Sheet::Mesh &mesh, const Constitution &constitution, Conditions conditions,
+StaticSolver::StaticSolver(const Sheet::Mesh &mesh, const Constitution &constitution, BoundaryConditions conditions,
                            const StaticSettings &settings)
   : sheet_(mesh, constitution, settings.degree, std::move(conditions)), settings_(settings)
 {
@@ -91,15 +91,15 @@ void StaticSolver::set_up()
   full_lift_ = sheet_.make_ghosted();
   full_lift_ = sheet_.lift();
 
-  homogeneous_.copy_from(homogeneous_constraints(sheet_, held_boundaries(sheet_.conditions())));
+  homogeneous_.copy_from(homogeneous_constraints(sheet_, dirichlet_boundaries(sheet_.conditions())));
 
   loads_ = sheet_.loads();
   displacement_ = sheet_.make_ghosted();
   sheet_.make_matrix(homogeneous_, matrix_);
-  linear_solver_ = std::make_unique<LinearSolver>(sheet_, held_boundaries(sheet_.conditions()), settings_.linear);
+  linear_solver_ = std::make_unique<LinearSolver>(sheet_, dirichlet_boundaries(sheet_.conditions()), settings_.linear);
 }
 
-StaticSolver::Evaluation StaticSolver::look_at(const Vector &u, const double load_factor) const
+StaticSolver::Evaluation StaticSolver::evaluate(const Vector &u, const double load_factor) const
 {
   Evaluation state{0., 0., 0., sheet_.make_owned(), sheet_.make_owned()};
   Vector owned = sheet_.make_owned();
@@ -172,7 +172,7 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
   const auto look = [&](const Vector &at)
   {
     const Clock clock(report.times.assembly);
-    return look_at(at, target);
+    return evaluate(at, target);
   };
 
   try
@@ -308,10 +308,10 @@ void StaticSolver::refine(Sheet::Mesh &mesh, const double fraction)
   transfer.interpolate(u);
   // Boundary values are those of the function, which the coarser edge may have missed.
   for (const types::global_dof_index i : sheet_.owned())
-    if (homogeneous_.is_constrained(i) && !sheet_.continuity().is_constrained(i))
+    if (homogeneous_.is_constrained(i) && !sheet_.conformity_constraints().is_constrained(i))
       u(i) = load_factor_ * full_lift_(i);
   u.compress(VectorOperation::insert);
-  sheet_.continuity().distribute(u);
+  sheet_.conformity_constraints().distribute(u);
   displacement_ = u;
 }
 
@@ -338,7 +338,7 @@ double StaticSolver::total_energy() const
 
 std::map<types::boundary_id, Tensor<1, 2>> StaticSolver::reactions() const
 {
-  return boundary_reactions(sheet_, displacement_, load_factor_, held_boundaries(sheet_.conditions()));
+  return boundary_reactions(sheet_, displacement_, load_factor_, dirichlet_boundaries(sheet_.conditions()));
 }
 
 DeterminantRange StaticSolver::determinant_range() const

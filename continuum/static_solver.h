@@ -51,7 +51,7 @@ public:
   /// `mesh` and the laws must outlive the solver. Throws InvalidInput for settings out of range, no prescribed
   /// displacement, or what Sheet refuses. Where boundaries meet and disagree, the first in the list holds the
   /// common node.
-  StaticSolver(const Sheet::Mesh &mesh, const Constitution &constitution, Conditions conditions,
+  StaticSolver(const Sheet::Mesh &mesh, const Constitution &constitution, BoundaryConditions conditions,
                const StaticSettings &settings = StaticSettings());
 
   /// Loads from zero to the full displacement. Throws SolverFailed with the history if that cannot be done; the state
@@ -91,7 +91,7 @@ private:
 
   void check_input() const;
   void set_up();
-  Evaluation look_at(const Vector &u, double load_factor) const;
+  Evaluation evaluate(const Vector &u, double load_factor) const;
   double round_off(const Evaluation &state, const Vector &u) const;
   std::string attempt(double target, SolverReport &report);
 

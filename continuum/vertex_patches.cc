@@ -191,7 +191,7 @@ std::vector<Dofs> list_patches(const Sheet &sheet, const AffineConstraints<doubl
       continue;
     dofs.reinit(cell);
     for (unsigned int v = 0; v < n_vertices; ++v)
-      if (owner[cell->vertex_index(v)] == own_rank && !sheet.continuity().is_constrained(dofs.name(v)))
+      if (owner[cell->vertex_index(v)] == own_rank && !sheet.conformity_constraints().is_constrained(dofs.name(v)))
       {
         Dofs &patch = patch_of[cell->vertex_index(v)];
         dofs.add_vertex(v, patch);
@@ -225,7 +225,7 @@ std::vector<Dofs> list_patches(const Sheet &sheet, const AffineConstraints<doubl
         for (unsigned int end = 0; end < 2; ++end)
         {
           const unsigned int v = GeometryInfo<2>::face_to_cell_vertices(line, end);
-          if (sheet.continuity().is_constrained(dofs.name(v)))
+          if (sheet.conformity_constraints().is_constrained(dofs.name(v)))
             continue;
           Dofs &message = messages[owner[cell->vertex_index(v)]];
           message.push_back(dofs.name(v));

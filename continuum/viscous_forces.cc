@@ -44,7 +44,7 @@ void ViscousForces::add_forces(const Vector &u, const Vector &v, Vector &forces,
 {
   if (viscosity_ == nullptr)
     return;
-  const GuardedWork guarded(
+  const DeferredException guarded(
     [&]
     {
       const auto &element = sheet_.element();
@@ -67,15 +67,15 @@ void ViscousForces::add_forces(const Vector &u, const Vector &v, Vector &forces,
                             local_magnitude[a] += std::abs(term);
                           }
                       }
-                      sheet_.continuity().distribute_local_to_global(local, dofs, forces);
+                      sheet_.conformity_constraints().distribute_local_to_global(local, dofs, forces);
                       if (magnitude != nullptr)
-                        sheet_.continuity().distribute_local_to_global(local_magnitude, dofs, *magnitude);
+                        sheet_.conformity_constraints().distribute_local_to_global(local_magnitude, dofs, *magnitude);
                     });
     });
   forces.compress(VectorOperation::add);
   if (magnitude != nullptr)
     magnitude->compress(VectorOperation::add);
-  guarded.agree(sheet_.communicator());
+  guarded.rethrow_collectively(sheet_.communicator());
 }
 
 void ViscousForces::add_tangent(const Vector &u, const Vector &v, const double rate_by_displacement,
@@ -83,7 +83,7 @@ void ViscousForces::add_tangent(const Vector &u, const Vector &v, const double r
 {
   if (viscosity_ == nullptr)
     return;
-  const GuardedWork guarded(
+  const DeferredException guarded(
     [&]
     {
       const auto &element = sheet_.element();
@@ -112,7 +112,7 @@ void ViscousForces::add_tangent(const Vector &u, const Vector &v, const double r
                     });
     });
   matrix.compress(VectorOperation::add);
-  guarded.agree(sheet_.communicator());
+  guarded.rethrow_collectively(sheet_.communicator());
 }
 
 double ViscousForces::dissipation(const Vector &u, const Vector &v) const

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include "lattice/row_band.h"
+#include "lattice/row_partition.h"
 
 namespace lattice
 {
@@ -21,7 +21,7 @@ inline void require_archived(bool holds, const std::string &problem)
 /// ranks. Collective. `archive` is what classes that have a member function archive() are given; see Simulation.
 /// @param rows that a rank takes when it loads
 template <class Archive, class Vector>
-void archive_rows(Archive &archive, const std::string &name, Vector &field, const RowBand &band,
+void archive_rows(Archive &archive, const std::string &name, Vector &field, const RowPartition &band,
                   const std::vector<std::size_t> &rows)
 {
   const TriangularLattice &lattice = band.lattice();
@@ -48,12 +48,12 @@ void archive_rows(Archive &archive, const std::string &name, Vector &field, cons
 
 /// The same for a value of each row of the sheet, of which every rank knows those of its band.
 template <class Archive>
-void archive_rows(Archive &archive, const std::string &name, std::vector<double> &of_rows, const RowBand &band)
+void archive_rows(Archive &archive, const std::string &name, std::vector<double> &of_rows, const RowPartition &band)
 {
   std::vector<double> values;
   if constexpr (!Archive::loads)
-    values = band.joined(std::vector<double>(of_rows.begin() + static_cast<std::ptrdiff_t>(band.rows().begin),
-                                             of_rows.begin() + static_cast<std::ptrdiff_t>(band.rows().end)));
+    values = band.all_gather(std::vector<double>(of_rows.begin() + static_cast<std::ptrdiff_t>(band.rows().begin),
+                                                 of_rows.begin() + static_cast<std::ptrdiff_t>(band.rows().end)));
   archive(name, values);
   if constexpr (Archive::loads)
   {

@@ -22,7 +22,7 @@ ContactLaw contact_like_nearest_bond(const TriangularLattice &lattice, const Mat
           viscosity * per_length * material.nearest.viscosity};
 }
 
-Contact::Contact(const RowBand &band, const ContactLaw &law)
+Contact::Contact(const RowPartition &band, const ContactLaw &law)
   : band_(band), lattice_(band.lattice()), law_(law), skin_(skin_over_distance * law.distance),
     cells_(law.distance + skin_), is_candidate_(lattice_.n_places())
 {
@@ -38,7 +38,7 @@ void Contact::find_candidates(const State &state)
   found_.clear();
   pairs_.clear();
   cells_.clear(0);
-  is_candidate_ = Marks(lattice_.n_places());
+  is_candidate_ = SiteFlags(lattice_.n_places());
   for (std::size_t place = 0; place < lattice_.n_places(); ++place)
     if (state.lost_bonds[place] > 0 && state.removed[place] == 0)
     {
@@ -145,7 +145,7 @@ const std::vector<SiteForce> &Contact::evaluate(const State &state, const Field 
   else if (has_moved(state))
   {
     rebuild(state);
-    ++n_rebuilt_;
+    ++n_list_builds_;
   }
   forces_.clear();
   n_touching_ = 0;

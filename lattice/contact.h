@@ -41,7 +41,7 @@ class Contact : public SiteForces
 public:
   /// @param band rows on whose sites to act @throws std::invalid_argument for a law out of its range or a periodic
   /// sheet
-  Contact(const RowBand &band, const ContactLaw &law);
+  Contact(const RowPartition &band, const ContactLaw &law);
 
   /// Finds the candidates among all sites; for a state that was cut or loaded from outside.
   void find_candidates(const State &state);
@@ -53,7 +53,7 @@ public:
   const std::vector<SiteForce> &evaluate(const State &state, const Field &vx, const Field &vy) override;
 
   /// The candidates.
-  const std::vector<std::size_t> &sites_to_know() const override { return places_; }
+  const std::vector<std::size_t> &required_sites() const override { return places_; }
 
   /// Energy stored in the springs of the pairs whose first site is in the band, per sheet thickness [J/m].
   double elastic_energy(const State &state) const;
@@ -62,7 +62,7 @@ public:
   /// Pairs that overlapped at the last evaluation, those whose first site is in the band.
   std::size_t n_touching() const { return n_touching_; }
   /// How often the list was made anew because candidates had moved.
-  std::size_t n_rebuilt() const { return n_rebuilt_; }
+  std::size_t n_list_builds() const { return n_list_builds_; }
 
 private:
   struct Pair
@@ -80,17 +80,17 @@ private:
   bool may_touch(const State &state, std::size_t first, std::size_t second) const;
   void insert_pair(std::size_t a, std::size_t b);
 
-  RowBand band_;
+  RowPartition band_;
   const TriangularLattice &lattice_;
   ContactLaw law_;
   double skin_;
   LinkCells cells_;                    // of candidates, by their index
   std::vector<std::size_t> places_;    // of candidates
   std::vector<Eigen::Vector2d> found_; // where each was when its pairs were found; empty: no list was made of them yet
-  Marks is_candidate_;                 // by place
+  SiteFlags is_candidate_;             // by place
   std::vector<Pair> pairs_;
   std::size_t n_touching_ = 0;
-  std::size_t n_rebuilt_ = 0;
+  std::size_t n_list_builds_ = 0;
 };
 
 } // namespace lattice

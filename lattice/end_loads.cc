@@ -71,7 +71,7 @@ bool waves_run_along_x(const TriangularLattice &lattice, const Material &materia
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(tangent).eigenvalues().minCoeff() > 0.;
 }
 
-EndLoads::EndLoads(const RowBand &band, const Material &material, const State &state, const Eigen::Matrix2d &F,
+EndLoads::EndLoads(const RowPartition &band, const Material &material, const State &state, const Eigen::Matrix2d &F,
                    End left, End right)
   : impedance_(Eigen::Matrix2d::Zero())
 {

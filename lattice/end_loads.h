@@ -33,7 +33,7 @@ public:
   /// @param band rows on whose sites to act
   /// @param state the unbroken sheet, which tells held sites; see homogeneous_state()
   /// @throws std::invalid_argument if an absorbing end has a tangent that is not positive definite
-  EndLoads(const RowBand &band, const Material &material, const State &state, const Eigen::Matrix2d &F, End left,
+  EndLoads(const RowPartition &band, const Material &material, const State &state, const Eigen::Matrix2d &F, End left,
            End right);
 
   const std::vector<SiteForce> &evaluate(const State &state, const Field &vx, const Field &vy) override;

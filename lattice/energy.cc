@@ -3,7 +3,7 @@
 namespace lattice
 {
 
-double elastic_energy(const State &state, const RowBand &band, const Material &material)
+double elastic_energy(const State &state, const RowPartition &band, const Material &material)
 {
   const TriangularLattice &lattice = band.lattice();
   std::array<double, n_bond_kinds> volume{};
@@ -20,7 +20,7 @@ double elastic_energy(const State &state, const RowBand &band, const Material &m
   return band.sum(of_rows);
 }
 
-double kinetic_energy(const State &state, const RowBand &band)
+double kinetic_energy(const State &state, const RowPartition &band)
 {
   const TriangularLattice &lattice = band.lattice();
   std::vector<double> of_rows(lattice.rows(), 0.);

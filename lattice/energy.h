@@ -9,10 +9,10 @@ namespace lattice
 // which row.
 
 /// Elastic energy of all bonds, per sheet thickness [J/m]. Collective.
-double elastic_energy(const State &state, const RowBand &band, const Material &material);
+double elastic_energy(const State &state, const RowPartition &band, const Material &material);
 
 /// Kinetic energy of all free sites, per sheet thickness [J/m]. Collective.
-double kinetic_energy(const State &state, const RowBand &band);
+double kinetic_energy(const State &state, const RowPartition &band);
 
 /// Power the held sites of a row put into the sheet, -sum f . v over them, f being the force of the bonds on a site
 /// [W/m].

@@ -17,7 +17,7 @@ namespace lattice
 inline void set_unit(vtkDataArray &field)
 {
   static constexpr std::pair<const char *, const char *> units[] = {{"displacement", "m"},
-                                                                    {"loading_displacement", "m"},
+                                                                    {"excess_displacement", "m"},
                                                                     {"velocity", "m/s"},
                                                                     {"deformation_gradient", "1"},
                                                                     {"first_piola_stress", "Pa"},

@@ -13,7 +13,7 @@ constexpr std::ptrdiff_t reach = 2; // of bonds, in rows
 
 } // namespace
 
-Forces::Forces(const RowBand &band, const Material &material)
+Forces::Forces(const RowPartition &band, const Material &material)
   : band_(band),
     lattice_(band.lattice()), laws_{{material.nearest.law, material.shell(n_nearest_kinds) ? material.next_nearest->law
                                                                                            : material.nearest.law}},
@@ -29,9 +29,9 @@ Forces::Forces(const RowBand &band, const Material &material)
     }
 }
 
-void Forces::evaluate(const State &state, const Field &vx, const Field &vy, const RowWork &work)
+void Forces::evaluate(const State &state, const Field &vx, const Field &vy, const RowCallbacks &work)
 {
-  const bool threads = lattice_.n_places() >= worth_threads;
+  const bool threads = lattice_.n_places() >= min_places_for_threads;
   const std::size_t n_scratch = threads ? static_cast<std::size_t>(omp_get_max_threads()) : 1;
   if (scratch_.size() != n_scratch)
     scratch_.resize(n_scratch, Scratch(lattice_.stride()));
@@ -42,10 +42,10 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy, cons
     const std::ptrdiff_t n = omp_get_num_threads(), i = omp_get_thread_num();
     const std::ptrdiff_t begin = first + rows * i / n, end = first + rows * (i + 1) / n;
     // The rows that the threads next to this one look at, before anyone does.
-    if (work.before)
+    if (work.pre_force)
       for (std::ptrdiff_t row = begin; row < end; ++row)
         if (row < begin + reach || row >= end - reach)
-          work.before(static_cast<std::size_t>(row));
+          work.pre_force(static_cast<std::size_t>(row));
 #pragma omp barrier
     evaluate_rows({state, vx, vy}, begin, end, scratch_[static_cast<std::size_t>(i)], work);
   }
@@ -61,7 +61,7 @@ double Forces::viscous_power() const
 }
 
 void Forces::evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
-                           const RowWork &work)
+                           const RowCallbacks &work)
 {
   if (begin == end)
     return;
@@ -72,8 +72,8 @@ void Forces::evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrd
   {
     const auto index = static_cast<std::size_t>(row);
     // As far up as bonds of this row reach, and where this has not been done for the thread next to it.
-    if (work.before && row + 2 * reach < end)
-      work.before(index + reach);
+    if (work.pre_force && row + 2 * reach < end)
+      work.pre_force(index + reach);
     ahead.clear();
     if (row + 2 * reach + 1 < end)
       for (const Field *field : work.fields)
@@ -83,7 +83,7 @@ void Forces::evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrd
     row_events_[index] = sums.has_events ? 1 : 0;
     row_short_bonds_[index] = sums.has_short_bonds ? 1 : 0;
     gather_row(row, scratch);
-    work.after(index, scratch.fx.data(), scratch.fy.data());
+    work.post_force(index, scratch.fx.data(), scratch.fy.data());
   }
 }
 

@@ -22,11 +22,14 @@ class Forces
 {
 public:
   /// @param band rows whose sites are to get their forces, of the whole sheet or of the share of a rank
-  Forces(const RowBand &band, const Material &material);
+  Forces(const RowPartition &band, const Material &material);
 
   /// Bonds below this stretch that are not toughened count as events too, per kind: all positive, or all 0 (no such
   /// event), which is the default. For toughening on retraction.
-  void watch_retraction(const std::array<double, n_bond_kinds> &stretch) { constants_.retraction_stretch = stretch; }
+  void set_retraction_threshold(const std::array<double, n_bond_kinds> &stretch)
+  {
+    constants_.retraction_stretch = stretch;
+  }
 
   /// Enables row_has_short_bonds() for bonds whose stretch is below `stretch` [-], but for linear ones; 0: for none,
   /// the default.
@@ -34,20 +37,20 @@ public:
 
   /// What an integrator does with each row of the band during an evaluation, while it is in cache: once, in any order
   /// of rows, by several threads.
-  struct RowWork
+  struct RowCallbacks
   {
     /// Before any bond of the row is looked at; may give the row its positions and velocities to be evaluated. Not for
     /// sheets that are periodic, whose images must be there too. May be empty.
-    std::function<void(std::size_t row)> before;
-    /// Fields that `before` works on; they are fetched from memory while the row before is computed.
+    std::function<void(std::size_t row)> pre_force;
+    /// Fields that `pre_force` works on; they are fetched from memory while the row before is computed.
     std::vector<const Field *> fields;
     /// Takes the forces on the sites of the row [N/m]; may change all but those positions and velocities.
-    std::function<void(std::size_t row, const double *fx, const double *fy)> after;
+    std::function<void(std::size_t row, const double *fx, const double *fy)> post_force;
   };
 
   /// Computes the force on every site of the band at positions state.x, y and the given velocities [m/s], those of
   /// images included. Forces at held sites are those the bonds exert on them.
-  void evaluate(const State &state, const Field &vx, const Field &vy, const RowWork &work);
+  void evaluate(const State &state, const Field &vx, const Field &vy, const RowCallbacks &work);
   /// The same, into fx() and fy().
   void evaluate(const State &state, const Field &vx, const Field &vy);
 
@@ -117,7 +120,7 @@ private:
   };
 
   void evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
-                     const RowWork &work);
+                     const RowCallbacks &work);
   kernels::RowOfBonds row_of_bonds(const Motion &motion, std::size_t row) const;
   void bonds_from_below(const Motion &motion, std::ptrdiff_t row, BondRows &bonds) const;
   kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, BondRows &bonds,
@@ -125,7 +128,7 @@ private:
   void gather_row(std::ptrdiff_t row, Scratch &scratch) const;
   kernels::BondForce single_bond(const Motion &motion, std::size_t place, std::size_t kind) const;
 
-  RowBand band_;
+  RowPartition band_;
   const TriangularLattice &lattice_;
   kernels::BondLaws laws_;
   kernels::SheetConstants constants_;

@@ -29,7 +29,7 @@ double factor(const Rule &rule)
 
 } // namespace
 
-Fracture::Fracture(const RowBand &band, const Material &material, double breaking_stretch, Toughening toughening,
+Fracture::Fracture(const RowPartition &band, const Material &material, double breaking_stretch, Toughening toughening,
                    const Eigen::Matrix2d &deformation)
   : band_(band), lattice_(band.lattice()), material_(material), breaking_stretch_(breaking_stretch),
     toughened_stretch_(breaking_stretch * std::visit([](const auto &rule) { return factor(rule); }, toughening)),
@@ -56,10 +56,10 @@ void Fracture::configure(State &state, Forces &forces) const
 {
   state.breaking_stretch = breaking_stretch_;
   state.toughened_stretch = toughened_stretch_;
-  forces.watch_retraction(retraction_stretch_);
+  forces.set_retraction_threshold(retraction_stretch_);
 }
 
-void Fracture::look_ahead(double duration)
+void Fracture::set_lookahead(double duration)
 {
   require(duration >= 0., "breaking looks ahead in time, not back");
   look_ahead_ = duration;
@@ -117,7 +117,7 @@ Fracture::Loss Fracture::loss(const State &state, std::size_t place, std::size_t
 std::vector<BrokenBond> Fracture::lose_bonds(State &state, const std::vector<Loss> &own, int *number) const
 {
   std::vector<BrokenBond> lost;
-  for (const Loss &bond : band_.joined(own, number))
+  for (const Loss &bond : band_.all_gather(own, number))
   {
     const std::size_t far =
       bond.place + static_cast<std::size_t>(lattice_.shift(bond.kind, lattice_.row_of(bond.place)));

@@ -78,7 +78,7 @@ public:
   /// @param breaking_stretch lam_f [-], > 0, of a bond that has not toughened
   /// @param deformation F of the loaded, unbroken sheet: the stretch that retraction is measured against
   /// @throws std::invalid_argument for a rule out of its range
-  Fracture(const RowBand &band, const Material &material, double breaking_stretch, Toughening toughening,
+  Fracture(const RowPartition &band, const Material &material, double breaking_stretch, Toughening toughening,
            const Eigen::Matrix2d &deformation);
 
   /// Sets the breaking stretches of virgin and of toughened bonds in `state`, and enables retraction events in
@@ -89,7 +89,7 @@ public:
   /// at the velocities of its ends; 0 by default: once it is past it. Half a time step makes it the end of a step that
   /// is nearest to the moment of coming there, so that breaking is neither late nor early in the mean. @throws
   /// std::invalid_argument for a negative duration
-  void look_ahead(double duration);
+  void set_lookahead(double duration);
 
   /// Cuts sites and their bonds out of the sheet. Collective.
   /// @return elastic energy of the bonds removed, per sheet thickness [J/m]
@@ -98,7 +98,7 @@ public:
   /// Breaks every bond beyond its limit at the last evaluation of `forces`, or soon to be beyond it, and takes it out
   /// of `forces`, toughens what is to be toughened, and moves the tip. Velocities of the state must be known in the
   /// halo if this looks ahead. Collective.
-  /// @param number in: of this rank, out: the largest over all ranks; see RowBand::joined
+  /// @param number in: of this rank, out: the largest over all ranks; see RowPartition::all_gather
   /// @return the bonds of the whole sheet that broke now, in the order of storage
   /// @throws std::logic_error for a state that configure() has not set
   const std::vector<BrokenBond> &apply(State &state, Forces &forces, const Field &evaluated_vx,
@@ -140,7 +140,7 @@ private:
   void toughen_behind_tip(State &state);
   double bond_energy(const State &state, std::size_t place, std::size_t kind) const;
 
-  RowBand band_;
+  RowPartition band_;
   const TriangularLattice &lattice_;
   Material material_;
   double breaking_stretch_;

@@ -20,14 +20,14 @@ void for_each_acceleration(const State &state, const std::vector<SiteForces *> &
 
 } // namespace
 
-Integrator::Integrator(const RowBand &band, Forces &forces, double time_step)
+Integrator::Integrator(const RowPartition &band, Forces &forces, double time_step)
   : band_(band), lattice_(band.lattice()), halo_(band), forces_(forces), time_step_(time_step)
 {
   if (!(time_step > 0.))
     throw std::invalid_argument("time stepping needs a positive time step");
 }
 
-void Integrator::update_surroundings(State &state)
+void Integrator::exchange_ghosts(State &state)
 {
   halo_.start(evaluated_fields(state));
   halo_.finish();
@@ -39,7 +39,7 @@ void Integrator::update_all_images(State &state)
   update_images(state, band_);
   const std::vector<Field *> fields = evaluated_fields(state);
   for (const TriangularLattice::Image &image : lattice_.images())
-    if (band_.knows(image.site))
+    if (band_.is_relevant(image.site))
       for (Field *velocity : {fields[2], fields[3]})
         (*velocity)[image.place] = (*velocity)[image.site];
 }
@@ -65,7 +65,7 @@ void Integrator::evaluate_site_forces(State &state)
 {
   for (SiteForces *forces : site_forces_)
   {
-    band_.share(forces->sites_to_know(), evaluated_fields(state));
+    band_.broadcast_from_owners(forces->required_sites(), evaluated_fields(state));
     forces->evaluate(state, evaluated_vx(state), evaluated_vy(state));
   }
 }

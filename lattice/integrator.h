@@ -14,7 +14,7 @@ public:
   /// @param band that of `forces`
   /// @param time_step h [s], > 0
   /// @throws std::invalid_argument for any other
-  Integrator(const RowBand &band, Forces &forces, double time_step);
+  Integrator(const RowPartition &band, Forces &forces, double time_step);
   Integrator(const Integrator &) = delete; // refers to parts of a simulation
   Integrator &operator=(const Integrator &) = delete;
   virtual ~Integrator() = default;
@@ -48,7 +48,7 @@ protected:
   /// Positions and velocities that forces are evaluated at: x, y, vx, vy.
   virtual std::vector<Field *> evaluated_fields(State &state) = 0;
   /// Brings these up to date in the halo and at images. Collective.
-  void update_surroundings(State &state);
+  void exchange_ghosts(State &state);
   void update_all_images(State &state);
   /// Accelerations and velocities of a row after forces on its sites have acted for `duration` [s].
   void kick(State &state, std::size_t row, const double *fx, const double *fy, double duration) const;
@@ -59,7 +59,7 @@ protected:
   /// Adds to the velocities what site forces change of them in `duration` [s].
   void kick_sites(State &state, double duration) const;
 
-  RowBand band_;
+  RowPartition band_;
   const TriangularLattice &lattice_;
   HaloExchange halo_;
   Forces &forces_;
@@ -75,7 +75,7 @@ template <class RowOperation>
 void for_each_row(const TriangularLattice &lattice, Rows rows, const RowOperation &operation)
 {
   const auto end = static_cast<std::ptrdiff_t>(rows.end);
-#pragma omp parallel for schedule(static) if ((rows.end - rows.begin) * lattice.stride() >= worth_threads)
+#pragma omp parallel for schedule(static) if ((rows.end - rows.begin) * lattice.stride() >= min_places_for_threads)
   for (auto row = static_cast<std::ptrdiff_t>(rows.begin); row < end; ++row)
     operation(static_cast<std::size_t>(row));
 }

@@ -85,7 +85,7 @@ NearTipGrid make_grid(const TriangularLattice &lattice, const NearTipOptions &op
 NearTipField::NearTipField(const NearTipGrid &grid_of_points) : grid(grid_of_points), occupancy(grid.size(), 0.)
 {
   const double none = std::numeric_limits<double>::quiet_NaN();
-  for (auto *vectors : {&velocity, &displacement, &loading_displacement})
+  for (auto *vectors : {&velocity, &displacement, &excess_displacement})
     vectors->assign(grid.size(), Eigen::Vector2d::Constant(none));
   for (TensorField *tensors :
        {&deformation_gradient, &first_piola_stress, &cauchy_stress, &strain_gradient_x, &strain_gradient_y})
@@ -187,7 +187,7 @@ NearTipField NearTipSums::mean() const
       field.occupancy[point] = motion_.weights[static_cast<Eigen::Index>(point)] / static_cast<double>(samples_);
       field.velocity[point] = vector_in(*mean, 0);
       field.displacement[point] = vector_in(*mean, 2);
-      field.loading_displacement[point] = vector_in(*mean, 4);
+      field.excess_displacement[point] = vector_in(*mean, 4);
     }
     if (const std::optional<Tensors> mean = tensors_.mean(point))
     {

@@ -47,7 +47,7 @@ struct NearTipField
   std::vector<Eigen::Vector2d> velocity; ///< of the laboratory [m/s]
   /// (x - x_tip) - (X - X_tip) [m]: what moves the grid into the current configuration, the tip at the origin.
   std::vector<Eigen::Vector2d> displacement;
-  std::vector<Eigen::Vector2d> loading_displacement; ///< x - F X [m], F that of the loaded sheet
+  std::vector<Eigen::Vector2d> excess_displacement; ///< x - F X [m], F that of the loaded sheet
   // Over every fourth sample, from the first on: they cost more than the rest and change as slowly.
   TensorField deformation_gradient;                 ///< see SiteValues
   TensorField first_piola_stress;                   ///< [Pa], likewise

@@ -227,10 +227,10 @@ std::vector<Vortex> vortices(const NearTipField &field, double slowest, double w
   return found;
 }
 
-ProcessZone process_zone(const NearTipField &field, double speed)
+FollowingZone following_zone(const NearTipField &field, double speed)
 {
   const NearTipGrid &grid = field.grid;
-  ProcessZone zone{0., -std::numeric_limits<double>::infinity(), Eigen::Vector2d::Zero()};
+  FollowingZone zone{0., -std::numeric_limits<double>::infinity(), Eigen::Vector2d::Zero()};
   std::vector<std::array<int, 2>> front;
   std::vector<bool> seen(grid.size(), false);
   const auto visit = [&](int i, int j)

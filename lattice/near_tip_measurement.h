@@ -54,7 +54,7 @@ std::vector<Vortex> vortices(const NearTipField &field, double slowest,
                              double within = std::numeric_limits<double>::infinity());
 
 /// Material behind the tip that follows the crack.
-struct ProcessZone
+struct FollowingZone
 {
   double length;         ///< extent along X, reference [m]; 0 if there is none
   double fastest;        ///< largest v_x behind the tip [m/s], in the zone or not
@@ -63,7 +63,7 @@ struct ProcessZone
 
 /// Points behind the tip with v_x > `speed`, connected to each other and to some that are at most 8 pitches from the
 /// tip: the tip is the foremost damaged site, and the sheet comes apart within a few spacings of it.
-ProcessZone process_zone(const NearTipField &field, double speed);
+FollowingZone following_zone(const NearTipField &field, double speed);
 
 /// v_x [m/s] of the material just behind the tip, in the order of the grid: of the points that hold material at
 /// -14 d <= X <= -3 d, |Y| <= 3 d, reference, relative to the tip. Empty if none does. Nearer to the tip bonds still
@@ -72,7 +72,7 @@ ProcessZone process_zone(const NearTipField &field, double speed);
 /// The paper: "a small zone behind the crack tip in which the mass points move rapidly along the crack direction. Such
 /// a zone can be regarded as a process zone and exists only in the case of oscillation. It fades for a straight crack."
 /// The share of these points above a given speed measures that zone also where it is a crescent across the path, which
-/// process_zone() sees as short.
+/// following_zone() sees as short.
 std::vector<double> speeds_behind_tip(const NearTipField &field);
 
 /// v_x [m/s] of the points ahead of the tip that move against the crack, v_x < 0, in the order of the grid.

@@ -58,7 +58,7 @@ void write_near_tip_field(const NearTipField &field, const std::filesystem::path
   image->SetSpacing(grid.pitch_X, grid.pitch_Y, 1.);
   image->SetOrigin(-grid.behind * grid.pitch_X, -grid.half_height * grid.pitch_Y, 0.);
   add(*image, "displacement", field.displacement);
-  add(*image, "loading_displacement", field.loading_displacement);
+  add(*image, "excess_displacement", field.excess_displacement);
   add(*image, "velocity", field.velocity);
   add(*image, "deformation_gradient", field.deformation_gradient);
   add(*image, "first_piola_stress", field.first_piola_stress);

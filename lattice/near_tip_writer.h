@@ -10,7 +10,7 @@ namespace lattice
 /// Writes the means around a tip as an image for ParaView (.vti), beside `path` and renamed.
 ///
 /// Points are those of the grid, in the reference configuration relative to the tip [m]; warp by `displacement` for the
-/// current one. Arrays, units and index order are those of FieldWriter, and: loading_displacement [m],
+/// current one. Arrays, units and index order are those of FieldWriter, and: excess_displacement [m],
 /// strain_gradient_x, strain_gradient_y [1/m], occupancy [-]; not-a-number where there was no site. The field data
 /// array Samples holds the number of samples.
 /// @throws latcon::support::WriteError if the file cannot be written

@@ -35,7 +35,7 @@ Sums over_free_sites(const State &state, const TriangularLattice &lattice, const
 {
   std::vector<Sums> rows(lattice.rows());
   const auto n_rows = static_cast<std::ptrdiff_t>(lattice.rows());
-#pragma omp parallel for schedule(static) if (lattice.n_places() >= worth_threads)
+#pragma omp parallel for schedule(static) if (lattice.n_places() >= min_places_for_threads)
   for (std::ptrdiff_t r = 0; r < n_rows; ++r)
   {
     const auto row = static_cast<std::size_t>(r);

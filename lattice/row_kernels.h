@@ -34,7 +34,7 @@ struct BondConstants
 struct SheetConstants
 {
   std::array<BondConstants, 2> shells;                   ///< nearest and next-nearest neighbours
-  std::array<double, n_bond_kinds> retraction_stretch{}; ///< see Forces::watch_retraction; 0: not watched
+  std::array<double, n_bond_kinds> retraction_stretch{}; ///< see Forces::set_retraction_threshold; 0: not watched
   /// Inverse of the stretch below which bonds are short [-]; see Forces::watch_short_bonds.
   double shortness_limit = std::numeric_limits<double>::infinity();
 

@@ -5,7 +5,8 @@
 namespace lattice
 {
 
-RungeKuttaChebyshev::RungeKuttaChebyshev(const RowBand &band, Forces &forces, double time_step, unsigned int stages)
+RungeKuttaChebyshev::RungeKuttaChebyshev(const RowPartition &band, Forces &forces, double time_step,
+                                         unsigned int stages)
   : Integrator(band, forces, time_step), stages_(stages)
 {
   for (Motion *motion : {&start_, &previous_})
@@ -20,7 +21,7 @@ std::vector<Field *> RungeKuttaChebyshev::evaluated_fields(State &state)
 
 void RungeKuttaChebyshev::initialise(State &state)
 {
-  update_surroundings(state);
+  exchange_ghosts(state);
   accelerate(state);
 }
 
@@ -37,7 +38,7 @@ void RungeKuttaChebyshev::step(State &state)
                  kernels::first_stage(duration, n, &state.ay[i], &state.y[i], &state.vy[i], &start_.y[i], &start_.vy[i],
                                       &previous_.y[i], &previous_.vy[i]);
                });
-  update_surroundings(state);
+  exchange_ghosts(state);
   for (const ChebyshevStages::Stage &stage : stages_.stages())
   {
     const auto next = [&](std::size_t row, const double *fx, const double *fy)
@@ -56,7 +57,7 @@ void RungeKuttaChebyshev::step(State &state)
     state.vx.swap(previous_.vx);
     state.vy.swap(previous_.vy);
     kick_sites(state, h * stage.now);
-    update_surroundings(state);
+    exchange_ghosts(state);
   }
   accelerate(state);
   state.time += h;

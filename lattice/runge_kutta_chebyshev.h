@@ -16,7 +16,7 @@ class RungeKuttaChebyshev : public Integrator
 public:
   /// @param time_step h [s], > 0
   /// @param stages s, >= 2
-  RungeKuttaChebyshev(const RowBand &band, Forces &forces, double time_step, unsigned int stages);
+  RungeKuttaChebyshev(const RowPartition &band, Forces &forces, double time_step, unsigned int stages);
 
   void initialise(State &state) override;
   void step(State &state) override;

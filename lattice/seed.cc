@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include "lattice/row_band.h"
+#include "lattice/row_partition.h"
 
 namespace lattice
 {

@@ -13,7 +13,7 @@ namespace lattice
 namespace
 {
 
-std::unique_ptr<Integrator> integrator(const RowBand &band, Forces &forces, const TimeStepping &how)
+std::unique_ptr<Integrator> integrator(const RowPartition &band, Forces &forces, const TimeStepping &how)
 {
   if (how.stages == 0)
     return std::make_unique<VelocityVerlet>(band, forces, how.step);
@@ -22,7 +22,7 @@ std::unique_ptr<Integrator> integrator(const RowBand &band, Forces &forces, cons
 
 } // namespace
 
-Simulation::Simulation(const RowBand &band, const Material &material, State initial, TimeStepping time_stepping,
+Simulation::Simulation(const RowPartition &band, const Material &material, State initial, TimeStepping time_stepping,
                        std::optional<Fracture> fracture)
   : band_(band), lattice_(band.lattice()), material_(material), state_(std::move(initial)),
     time_stepping_(time_stepping), forces_(band, material), integrator_(integrator(band, forces_, time_stepping)),
@@ -31,18 +31,18 @@ Simulation::Simulation(const RowBand &band, const Material &material, State init
   if (fracture_)
     fracture_->configure(state_, forces_);
   forces_.watch_short_bonds(watched_stretch(time_stepping, lattice_, material_, state_.toughened_stretch));
-  restart();
+  reinitialize_forces();
   initial_energy_ = elastic_energy(state_, band_, material_) + kinetic_energy(state_, band_);
 }
 
-void Simulation::restart()
+void Simulation::reinitialize_forces()
 {
   if (contact_)
     contact_->find_candidates(state_);
   integrator_->initialise(state_);
   note_powers();
   parts_ = needed_parts();
-  band_.joined(std::vector<char>(), &parts_);
+  band_.all_gather(std::vector<char>(), &parts_);
 }
 
 // Number of parts, a power of two, of which the next step must consist for each part to be stable in own rows: with
@@ -112,14 +112,14 @@ void Simulation::add_work(const Ledger &before, double duration)
   }
 }
 
-void Simulation::let_touch(const ContactLaw &law)
+void Simulation::enable_contact(const ContactLaw &law)
 {
   if (contact_)
     throw std::logic_error("contact has been added to this simulation already");
   contact_.emplace(band_, law);
   contact_law_ = law;
   integrator_->add(*contact_);
-  restart();
+  reinitialize_forces();
 }
 
 void Simulation::load_ends(const Eigen::Matrix2d &F, EndLoads::End left, EndLoads::End right)
@@ -130,7 +130,7 @@ void Simulation::load_ends(const Eigen::Matrix2d &F, EndLoads::End left, EndLoad
     throw std::logic_error("the ends of a sheet must be loaded before any of its bonds is cut or broken");
   end_loads_.emplace(band_, material_, state_, F, left, right);
   integrator_->add(*end_loads_);
-  restart();
+  reinitialize_forces();
 }
 
 void Simulation::cut(const std::vector<std::size_t> &places)
@@ -139,7 +139,7 @@ void Simulation::cut(const std::vector<std::size_t> &places)
     throw std::logic_error("a sheet without fracture rules cannot be cut");
   broken_ += fracture_->remove_sites(state_, places);
   fracture_->locate_tip(state_);
-  restart();
+  reinitialize_forces();
 }
 
 void Simulation::move_edges(const Eigen::Matrix2d &velocity_gradient)
@@ -152,7 +152,7 @@ void Simulation::move_edges(const Eigen::Matrix2d &velocity_gradient)
       state_.vy[place] = velocity.y();
     }
   edges_move_ = true;
-  restart();
+  reinitialize_forces();
 }
 
 void Simulation::set_velocities(const Field &vx, const Field &vy)
@@ -165,7 +165,7 @@ void Simulation::set_velocities(const Field &vx, const Field &vy)
       state_.vy[place] = vy[place];
     }
   initial_energy_ += kinetic_energy(state_, band_) - before;
-  restart();
+  reinitialize_forces();
 }
 
 const std::vector<BrokenBond> &Simulation::step()
@@ -199,13 +199,13 @@ const std::vector<BrokenBond> &Simulation::advance(double duration)
   parts_ = needed_parts();
   if (!fracture_)
   {
-    band_.joined(std::vector<char>(), &parts_);
+    band_.all_gather(std::vector<char>(), &parts_);
     return no_bonds_;
   }
 
   // Long steps would break bonds late; those of velocity Verlet are so short that they need not look ahead.
   if (time_stepping_.stages > 0)
-    fracture_->look_ahead(0.5 * duration);
+    fracture_->set_lookahead(0.5 * duration);
   const std::vector<BrokenBond> &broken =
     fracture_->apply(state_, forces_, integrator_->evaluated_vx(state_), integrator_->evaluated_vy(state_), &parts_);
   if (!broken.empty())
@@ -219,7 +219,7 @@ const std::vector<BrokenBond> &Simulation::advance(double duration)
     if (contact_)
     {
       // From this instant on, as the bonds are gone from it.
-      band_.share(ends, {&state_.x, &state_.y});
+      band_.broadcast_from_owners(ends, {&state_.x, &state_.y});
       contact_->note(state_, broken);
       integrator_->evaluate_site_forces(state_);
     }
@@ -247,7 +247,7 @@ const State &Simulation::gather(Rows rows)
   for (Field *field : {&state_.x, &state_.y, &state_.vx, &state_.vy})
     band_.gather(*field, rows);
   band_.gather(state_.bonds.storage(), rows);
-  for (Marks *marks : {&state_.held, &state_.removed, &state_.lost_bonds})
+  for (SiteFlags *marks : {&state_.held, &state_.removed, &state_.lost_bonds})
     band_.gather(*marks, rows);
   if (band_.is_first())
     update_images(state_, lattice_);

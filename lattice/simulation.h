@@ -30,13 +30,13 @@ public:
   /// @param band rows that this process moves: a whole lattice, or its share
   /// @param initial loaded state in the rows that the band knows; its accelerations are computed here
   /// @param fracture breaking rules for the same band; none for a sheet whose bonds never break
-  Simulation(const RowBand &band, const Material &material, State initial, TimeStepping time_stepping,
+  Simulation(const RowPartition &band, const Material &material, State initial, TimeStepping time_stepping,
              std::optional<Fracture> fracture = std::nullopt);
   Simulation(const Simulation &) = delete; // parts refer to each other
   Simulation &operator=(const Simulation &) = delete;
 
   /// Adds contact between unbonded sites. @throws std::logic_error if there is contact already
-  void let_touch(const ContactLaw &law);
+  void enable_contact(const ContactLaw &law);
 
   /// Loads the short ends of the unbroken sheet as if it continued at x = F X. @throws std::logic_error if they are
   /// loaded already, or after a bond broke or was cut
@@ -71,9 +71,9 @@ public:
   void archive(Archive &archive);
 
   /// Shows an earlier state instead of the present one. There is no going on from it. @param earlier of this simulation
-  void look_back(const Snapshot &earlier) { earlier.put_into(state_, band_); }
+  void show_snapshot(const Snapshot &earlier) { earlier.put_into(state_, band_); }
 
-  const RowBand &band() const { return band_; }
+  const RowPartition &band() const { return band_; }
   const TriangularLattice &lattice() const { return lattice_; }
   const Material &material() const { return material_; }
   const State &state() const { return state_; }      ///< in the rows that the band knows
@@ -99,7 +99,7 @@ private:
     explicit Ledger(std::size_t rows) : viscous(rows, 0.), contact(rows, 0.), boundary(rows, 0.) {}
   };
 
-  void restart();
+  void reinitialize_forces();
   void note_powers();
   void add_work(const Ledger &before, double duration);
   const std::vector<BrokenBond> &advance(double duration);
@@ -108,7 +108,7 @@ private:
   /// @throws std::invalid_argument
   void check_loaded(const BondStates::Words &bonds, double energy) const;
 
-  RowBand band_;
+  RowPartition band_;
   const TriangularLattice &lattice_;
   Material material_;
   State state_;

@@ -27,7 +27,7 @@ public:
 
   /// Sites whose positions and velocities the forces depend on, wherever in the sheet they are: the same list on all
   /// ranks. Whoever calls evaluate() sees to it that they are known.
-  virtual const std::vector<std::size_t> &sites_to_know() const
+  virtual const std::vector<std::size_t> &required_sites() const
   {
     static const std::vector<std::size_t> none;
     return none;

@@ -8,7 +8,7 @@ namespace
 {
 
 // The places of the rows of a band follow each other.
-Rows places(const RowBand &band)
+Rows places(const RowPartition &band)
 {
   const TriangularLattice &lattice = band.lattice();
   const Rows rows = band.rows();
@@ -19,7 +19,7 @@ Rows places(const RowBand &band)
 
 } // namespace
 
-Snapshot::Snapshot(const State &state, const RowBand &band) : time_(state.time)
+Snapshot::Snapshot(const State &state, const RowPartition &band) : time_(state.time)
 {
   const Rows range = places(band);
   const auto copy = [&](const auto *from, auto &to) { to.assign(from + range.begin, from + range.end); };
@@ -31,7 +31,7 @@ Snapshot::Snapshot(const State &state, const RowBand &band) : time_(state.time)
   copy(state.lost_bonds.data(), lost_bonds_);
 }
 
-void Snapshot::put_into(State &state, const RowBand &band) const
+void Snapshot::put_into(State &state, const RowPartition &band) const
 {
   const auto begin = static_cast<std::ptrdiff_t>(places(band).begin);
   const auto copy = [&](const auto &from, auto &to) { std::copy(from.begin(), from.end(), to.begin() + begin); };

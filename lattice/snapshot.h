@@ -12,10 +12,10 @@ class Snapshot
 {
 public:
   Snapshot() = default;
-  Snapshot(const State &state, const RowBand &band);
+  Snapshot(const State &state, const RowPartition &band);
 
   /// Puts the rows back into a state, for who looks at it: what else is needed to go on from there is not kept.
-  void put_into(State &state, const RowBand &band) const;
+  void put_into(State &state, const RowPartition &band) const;
 
   double time() const { return time_; } ///< [s]
 

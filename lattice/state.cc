@@ -65,11 +65,11 @@ unsigned int add_bonds(State &state, const TriangularLattice &lattice, const Mat
 
 } // namespace
 
-void update_images(State &state, const RowBand &band)
+void update_images(State &state, const RowPartition &band)
 {
   for (const TriangularLattice::Image &image : band.lattice().images())
   {
-    if (!band.knows(image.site))
+    if (!band.is_relevant(image.site))
       continue;
     const Eigen::Vector2d period = state.periods * image.period;
     state.x[image.place] = state.x[image.site] + period.x();
@@ -79,22 +79,22 @@ void update_images(State &state, const RowBand &band)
   }
 }
 
-State homogeneous_state(const RowBand &band, const Material &material, const Eigen::Matrix2d &F, Edges edges)
+State homogeneous_state(const RowPartition &band, const Material &material, const Eigen::Matrix2d &F, Edges edges)
 {
   const TriangularLattice &lattice = band.lattice();
   const std::size_t n = lattice.n_places();
   State state;
   for (Field *field : {&state.x, &state.y, &state.vx, &state.vy, &state.ax, &state.ay, &state.inverse_mass})
     *field = Field(n);
-  for (Marks *marks : {&state.held, &state.removed, &state.lost_bonds})
-    *marks = Marks(n);
+  for (SiteFlags *marks : {&state.held, &state.removed, &state.lost_bonds})
+    *marks = SiteFlags(n);
   state.bonds.clear(n);
 
   state.periods = F;
   for (std::size_t place = 0; place < n; ++place)
   {
     const bool in_margin = lattice.row_of(place) >= lattice.rows(); // unsigned, so below the first row as well
-    if (!band.knows(place) && !in_margin)
+    if (!band.is_relevant(place) && !in_margin)
       continue;
     const Eigen::Vector2d position = F * lattice.reference(place);
     state.x[place] = position.x();
@@ -115,7 +115,7 @@ State homogeneous_state(const RowBand &band, const Material &material, const Eig
   return state;
 }
 
-void add_noise(State &state, const RowBand &band, double amplitude, std::uint64_t seed)
+void add_noise(State &state, const RowPartition &band, double amplitude, std::uint64_t seed)
 {
   const TriangularLattice &lattice = band.lattice();
   const std::uint64_t stream = splitmix64(seed);

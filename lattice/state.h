@@ -9,14 +9,14 @@
 
 #include "lattice/bond_states.h"
 #include "lattice/material.h"
-#include "lattice/row_band.h"
+#include "lattice/row_partition.h"
 
 namespace lattice
 {
 
 /// Sheets of fewer places are computed by one thread: starting the others would take longer than they save. Results are
 /// the same bits either way.
-inline constexpr std::size_t worth_threads = 4096;
+inline constexpr std::size_t min_places_for_threads = 4096;
 
 /// A breaking stretch that no bond reaches.
 inline constexpr double unbreakable = std::numeric_limits<double>::infinity();
@@ -24,9 +24,9 @@ inline constexpr double unbreakable = std::numeric_limits<double>::infinity();
 /// Everything that changes while a sheet moves and breaks, as a structure of arrays over the places of the lattice.
 /// Positions and velocities are current ones.
 ///
-/// On a rank that shares the sheet with others values are those of the rows it knows (see RowBand), and of these some
-/// of its own rows alone: velocities, accelerations, which bonds are toughened. Removed sites, lost bonds and which
-/// bonds have broken are known everywhere.
+/// On a rank that shares the sheet with others values are those of the rows it knows (see RowPartition), and of these
+/// some of its own rows alone: velocities, accelerations, which bonds are toughened. Removed sites, lost bonds and
+/// which bonds have broken are known everywhere.
 struct State
 {
   double time = 0.;                       ///< [s]
@@ -37,15 +37,15 @@ struct State
   double breaking_stretch = unbreakable;  ///< lam_f [-], beyond which a bond breaks; set by Fracture::configure()
   double toughened_stretch = unbreakable; ///< that of toughened bonds [-]; set likewise
   Field inverse_mass;                     ///< h / m [m/kg]; 0 at held and removed sites and in the margin
-  Marks held;                             ///< 1 at sites whose motion is prescribed, 0 at removed ones
-  Marks removed;                          ///< 1 at sites cut out as seed crack
-  Marks lost_bonds;                       ///< bonds a site has lost, to breaking or to removed neighbours
+  SiteFlags held;                         ///< 1 at sites whose motion is prescribed, 0 at removed ones
+  SiteFlags removed;                      ///< 1 at sites cut out as seed crack
+  SiteFlags lost_bonds;                   ///< bonds a site has lost, to breaking or to removed neighbours
   Eigen::Matrix2d periods = Eigen::Matrix2d::Identity(); ///< F that takes reference periods to current ones [-]
 };
 
 /// Gives the images of a periodic sheet the positions and velocities of their sites, those in known rows. To be called
 /// after a change of either from outside; what moves a sheet calls it itself.
-void update_images(State &state, const RowBand &band);
+void update_images(State &state, const RowPartition &band);
 
 /// Which edges of the sheet are held: there, sites that lack a neighbour beyond the edge have their motion prescribed.
 /// With all held, homogeneous states are in equilibrium (theory.md, eq. (L.6)).
@@ -61,7 +61,7 @@ inline constexpr Edges Edges::free{false, false, false, false};
 /// The unbroken sheet at the homogeneous deformation x = F X, at rest, in the rows that `band` knows. Edges across
 /// which the sheet is periodic do not exist, whatever `edges` says of them. Bonds are unbreakable; a Fracture sets at
 /// which stretch they break.
-State homogeneous_state(const RowBand &band, const Material &material, const Eigen::Matrix2d &F, Edges edges);
+State homogeneous_state(const RowPartition &band, const Material &material, const Eigen::Matrix2d &F, Edges edges);
 
 /// Stretch beyond which a bond that is present breaks [-].
 inline double limit(const State &state, std::size_t place, std::size_t kind)
@@ -73,7 +73,7 @@ inline double limit(const State &state, std::size_t place, std::size_t kind)
 /// along x and y. The displacement of a site depends on (seed, place) alone, so it is the same on every machine and in
 /// any order.
 /// @param amplitude [m], >= 0
-void add_noise(State &state, const RowBand &band, double amplitude, std::uint64_t seed);
+void add_noise(State &state, const RowPartition &band, double amplitude, std::uint64_t seed);
 
 /// Current stretch |x_j - x_i| / l of a bond [-].
 double stretch(const State &state, const TriangularLattice &lattice, std::size_t place, std::size_t kind);

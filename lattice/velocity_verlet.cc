@@ -7,7 +7,7 @@
 namespace lattice
 {
 
-VelocityVerlet::VelocityVerlet(const RowBand &band, Forces &forces, double time_step)
+VelocityVerlet::VelocityVerlet(const RowPartition &band, Forces &forces, double time_step)
   : Integrator(band, forces, time_step), predicted_vx_(lattice_.n_places()), predicted_vy_(lattice_.n_places())
 {
 }
@@ -26,7 +26,7 @@ void VelocityVerlet::initialise(State &state)
                  std::copy_n(&state.vx[first], n, &predicted_vx_[first]);
                  std::copy_n(&state.vy[first], n, &predicted_vy_[first]);
                });
-  update_surroundings(state);
+  exchange_ghosts(state);
   accelerate(state);
 }
 

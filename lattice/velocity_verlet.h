@@ -17,7 +17,7 @@ class VelocityVerlet : public Integrator
 {
 public:
   /// @param time_step h [s], > 0; see TimeStepLimits
-  VelocityVerlet(const RowBand &band, Forces &forces, double time_step);
+  VelocityVerlet(const RowPartition &band, Forces &forces, double time_step);
 
   void initialise(State &state) override;
   void step(State &state) override;

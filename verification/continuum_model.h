@@ -22,7 +22,7 @@ public:
 
   continuum::Sheet::Mesh &mesh() { return mesh_; }
   continuum::Constitution constitution() const;
-  const continuum::Conditions &conditions() const { return conditions_; }
+  const continuum::BoundaryConditions &conditions() const { return conditions_; }
   const Subject &subject() const { return subject_; }
 
   double extent() const { return extent_; }                 ///< smaller of length and height [m]
@@ -42,7 +42,7 @@ private:
   double inertia_length_ = 0.;
   std::unique_ptr<continuum::GradientLaw> gradient_;
   continuum::Sheet::Mesh mesh_;
-  continuum::Conditions conditions_;
+  continuum::BoundaryConditions conditions_;
 };
 
 } // namespace verification

@@ -105,7 +105,7 @@ void require_fracture_case(const Case &input, Parameters &p)
             {"Loading/strain x", "Loading/strain y"});
 }
 
-lattice::State lattice_state(const Case &input, const lattice::RowBand &band)
+lattice::State lattice_state(const Case &input, const lattice::RowPartition &band)
 {
   const auto held = [&](std::size_t id) { return input.continuum.edges[id].condition == Condition::held; };
   lattice::State state =

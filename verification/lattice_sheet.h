@@ -23,6 +23,6 @@ void require_fracture_case(const Case &input, Parameters &parameters);
 /// The sheet at the homogeneous deformation of the case, at rest and without noise, in the rows that `band` knows; hole
 /// or notch cut out, its edges held or free as the case says.
 /// @param band all rows of input.lattice(), or a share of them
-lattice::State lattice_state(const Case &input, const lattice::RowBand &band);
+lattice::State lattice_state(const Case &input, const lattice::RowPartition &band);
 
 } // namespace verification

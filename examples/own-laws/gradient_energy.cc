@@ -107,8 +107,8 @@ struct Layer
     const double length = height / 2.;
     continuum::Sheet::Mesh mesh(MPI_COMM_SELF);
     continuum::make_rectangle(mesh, {length, height, 2, cells, true});
-    continuum::Conditions conditions{{continuum::edge::bottom, constant(-0.5 * shear * height)},
-                                     {continuum::edge::top, constant(0.5 * shear * height)}};
+    continuum::BoundaryConditions conditions{{continuum::edge::bottom, constant(-0.5 * shear * height)},
+                                             {continuum::edge::top, constant(0.5 * shear * height)}};
     conditions.normal_gradients = {{continuum::edge::bottom, constant(0.)}, {continuum::edge::top, constant(0.)}};
     conditions.periodic = {{continuum::edge::left, continuum::edge::right, 0}};
     continuum::StaticSolver solver(mesh, continuum::Constitution(rubber, fibres), conditions);

@@ -40,7 +40,7 @@ void print_crack(const char *name, lattice::Orientation orientation, const latti
   lattice::Simulation simulation(
     sheet, material, std::move(state), time_stepping,
     lattice::Fracture(sheet, material, breaking_stretch, lattice::BehindTipToughening{8. * sheets::spacing, 1000.}, F));
-  simulation.let_touch(lattice::contact_like_nearest_bond(sheet, material, sheets::spacing, 1., 1.));
+  simulation.enable_contact(lattice::contact_like_nearest_bond(sheet, material, sheets::spacing, 1., 1.));
   simulation.cut(sheets::middle_row(sheet, 6, 8));
   for (int part = 1; part <= 4; ++part)
   {

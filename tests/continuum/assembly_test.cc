@@ -44,7 +44,7 @@ TEST(Assembly, WritesWhatConstraintsDistribute)
     const Sheet sheet(mesh, continuum::Constitution(law, gradient), degree);
     const Sheet::Vector u = wavy_state(sheet);
     const auto held = continuum::homogeneous_constraints(sheet, all_held());
-    for (const AffineConstraints<double> *constraints : {&sheet.continuity(), &held})
+    for (const AffineConstraints<double> *constraints : {&sheet.conformity_constraints(), &held})
     {
       Sheet::Matrix K, expected;
       sheet.make_matrix(*constraints, K);
@@ -63,7 +63,7 @@ TEST(Assembly, WritesWhatConstraintsDistribute)
     const double energy = sheet.residual(u, r, magnitude);
     continuum::integrate(sheet, u, 1., continuum::Order::first,
                          [&](const continuum::Contribution &c)
-                         { sheet.continuity().distribute_local_to_global(c.residual, c.dofs, expected); });
+                         { sheet.conformity_constraints().distribute_local_to_global(c.residual, c.dofs, expected); });
     expected.compress(dealii::VectorOperation::add);
     r -= expected;
     EXPECT_LE(r.l2_norm(), 1e-14 * magnitude.l2_norm()) << "degree " << degree;

@@ -14,7 +14,7 @@
 #include <iomanip>
 
 using namespace sheets;
-using continuum::Conditions;
+using continuum::BoundaryConditions;
 using continuum::Constitution;
 using continuum::StaticSettings;
 using continuum::StaticSolver;
@@ -160,7 +160,7 @@ std::vector<Errors> run(const Series &series)
     });
   const Solution &exact = forces->solution();
 
-  Conditions conditions;
+  BoundaryConditions conditions;
   conditions.body_force =
     continuum::BodyForce{std::make_shared<Field>([forces](const Point<2> &X) { return forces->body(X); }), 0.};
   const auto displacement = std::make_shared<Field>(

@@ -21,7 +21,7 @@ struct Tangents
     constraints.copy_from(continuum::homogeneous_constraints(
       *sheet, {{continuum::edge::left, dealii::ComponentMask()}, {continuum::edge::right, dealii::ComponentMask()}}));
     b = sheet->make_owned();
-    sheet->visit_unknowns(
+    sheet->for_each_owned_dof(
       [&](const auto dof, const unsigned int i, const Point<2> &X)
       {
         if (!constraints.is_constrained(dof))

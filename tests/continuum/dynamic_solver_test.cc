@@ -12,14 +12,14 @@
 #include <limits>
 
 using namespace moving_sheets;
-using continuum::Conditions;
+using continuum::BoundaryConditions;
 using continuum::Constitution;
 using continuum::DynamicSettings;
 using continuum::DynamicSolver;
 using continuum::FibreViscosity;
+using continuum::NewmarkParameters;
 using continuum::StaticSettings;
 using continuum::StaticSolver;
-using continuum::TimeRule;
 using Vector = continuum::Sheet::Vector;
 namespace edge = continuum::edge;
 
@@ -32,9 +32,9 @@ struct Problem
   continuum::IsotropicGradient gradient{5e5, 0.02};
   FibreViscosity viscosity = network_viscosity(20.);
 
-  Conditions conditions() const
+  BoundaryConditions conditions() const
   {
-    Conditions all({{edge::left, affine(matrix(1., 0., 0.3, 1.2))}});
+    BoundaryConditions all({{edge::left, affine(matrix(1., 0., 0.3, 1.2))}});
     all.tractions = {{edge::top, constant(0., 1e5)}};
     all.normal_gradients = {{edge::right, constant(0.2, 0.1)}};
     return all;
@@ -45,7 +45,7 @@ struct Problem
 
 constexpr double final_time = 8e-3;
 
-std::unique_ptr<DynamicSolver> moved(const Mesh &mesh, const Problem &problem, const TimeRule &rule,
+std::unique_ptr<DynamicSolver> moved(const Mesh &mesh, const Problem &problem, const NewmarkParameters &rule,
                                      const unsigned int n_steps, const bool is_viscous = true)
 {
   DynamicSettings settings{final_time / n_steps};
@@ -66,9 +66,9 @@ TEST(DynamicSolver, IsOfSecondOrderInTime)
   Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, rectangle(2, 2));
   const Problem problem;
-  const auto reference = moved(mesh, problem, TimeRule::average_acceleration(), 640);
+  const auto reference = moved(mesh, problem, NewmarkParameters::average_acceleration(), 640);
   EXPECT_GT(reference->displacement().linfty_norm(), 0.1 * length); // large
-  const auto error = [&](const TimeRule &rule, const unsigned int n_steps)
+  const auto error = [&](const NewmarkParameters &rule, const unsigned int n_steps)
   {
     const auto solver = moved(mesh, problem, rule, n_steps);
     Vector difference = solver->sheet().make_owned();
@@ -78,7 +78,8 @@ TEST(DynamicSolver, IsOfSecondOrderInTime)
     difference -= exact;
     return difference.l2_norm() / exact.l2_norm();
   };
-  for (const TimeRule &rule : {TimeRule::average_acceleration(), TimeRule::generalised_alpha(0.6)})
+  for (const NewmarkParameters &rule :
+       {NewmarkParameters::average_acceleration(), NewmarkParameters::generalised_alpha(0.6)})
   {
     const double coarse = error(rule, 40);
     const double fine = error(rule, 80);
@@ -95,7 +96,8 @@ TEST(DynamicSolver, LedgerClosesToSecondOrder)
   continuum::make_rectangle(mesh, rectangle(2, 2));
   const Problem problem;
   for (const bool is_viscous : {true, false})
-    for (const TimeRule &rule : {TimeRule::average_acceleration(), TimeRule::generalised_alpha(0.6)})
+    for (const NewmarkParameters &rule :
+         {NewmarkParameters::average_acceleration(), NewmarkParameters::generalised_alpha(0.6)})
     {
       const auto coarse = moved(mesh, problem, rule, 40, is_viscous)->ledger();
       const auto fine = moved(mesh, problem, rule, 80, is_viscous)->ledger();
@@ -179,14 +181,15 @@ TEST(DynamicSolver, MovesHeldBoundariesWithTheLoadFactor)
   const continuum::CauchyBorn law = rubber_network();
   const double w = 400.;
   const Tensor<2, 2> H = matrix(0.4, 0.2, -0.1, 0.3);
-  Conditions conditions(on_all_edges(affine(identity + H)));
+  BoundaryConditions conditions(on_all_edges(affine(identity + H)));
   conditions.body_force = continuum::BodyForce{
     std::make_shared<Field>([=](const Point<2> &X) { return -density * w * w * (H * Tensor<1, 2>(X)); })};
   Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, rectangle(2, 2));
   mesh.begin_active()->set_refine_flag(); // for the sake of hanging nodes
   mesh.execute_coarsening_and_refinement();
-  for (const TimeRule &rule : {TimeRule::average_acceleration(), TimeRule::generalised_alpha(0.8)})
+  for (const NewmarkParameters &rule :
+       {NewmarkParameters::average_acceleration(), NewmarkParameters::generalised_alpha(0.8)})
   {
     double before = 0.;
     for (const unsigned int n_steps : {50, 100})
@@ -234,7 +237,8 @@ TEST(DynamicSolver, KeepsTheMomentumOfAFreeSheet)
   const FibreViscosity viscosity = network_viscosity(20.);
   Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, rectangle(2, 2));
-  for (const TimeRule &rule : {TimeRule::average_acceleration(), TimeRule::generalised_alpha(0.5)})
+  for (const NewmarkParameters &rule :
+       {NewmarkParameters::average_acceleration(), NewmarkParameters::generalised_alpha(0.5)})
   {
     DynamicSettings settings{1e-4};
     settings.degree = 2;
@@ -346,11 +350,11 @@ TEST(DynamicSolver, DividesAStepThatCannotBeSolved)
     DynamicSettings settings{dt};
     settings.degree = 2;
     settings.max_step_halvings = halvings;
-    DynamicSolver solver(
-      mesh, law,
-      Conditions({{edge::left, affine(matrix(1., 0., 0., 1.))}, {edge::right, affine(matrix(0.7, 0., 0., 1.))}}),
-      {density, 0.}, settings, nullptr,
-      [&](const double t) { return std::pow(std::sin(0.25 * pi * std::min(t / dt, 2.)), 2); });
+    DynamicSolver solver(mesh, law,
+                         BoundaryConditions({{edge::left, affine(matrix(1., 0., 0., 1.))},
+                                             {edge::right, affine(matrix(0.7, 0., 0., 1.))}}),
+                         {density, 0.}, settings, nullptr,
+                         [&](const double t) { return std::pow(std::sin(0.25 * pi * std::min(t / dt, 2.)), 2); });
     solver.start();
     solver.run_until(5. * dt);
     EXPECT_NEAR(solver.time(), 5. * dt, 1e-12 * dt);
@@ -372,7 +376,7 @@ TEST(DynamicSolver, NewtonIsQuadraticWithViscosityAtFiniteStrain)
   const Problem problem;
   DynamicSettings settings{2e-3}; // long, so that the predictor is far off
   settings.degree = 2;
-  settings.rule = TimeRule::generalised_alpha(0.7);
+  settings.rule = NewmarkParameters::generalised_alpha(0.7);
   const FibreViscosity viscosity = network_viscosity(200.);
   DynamicSolver solver(mesh, Constitution(problem.law, problem.gradient), problem.conditions(), {density, 0.01},
                        settings, &viscosity, Problem::load_factor);
@@ -462,8 +466,8 @@ TEST(DynamicSolver, RefusesImpossibleInput)
   settings = {1e-3};
   settings.rule.beta = 1. / 6.; // linear acceleration: not stable for every step
   refuses({density, 0.}, settings);
-  EXPECT_THROW(TimeRule::generalised_alpha(-0.1), continuum::InvalidInput);
-  EXPECT_THROW(TimeRule::generalised_alpha(1.1), continuum::InvalidInput);
+  EXPECT_THROW(NewmarkParameters::generalised_alpha(-0.1), continuum::InvalidInput);
+  EXPECT_THROW(NewmarkParameters::generalised_alpha(1.1), continuum::InvalidInput);
 
   // A held edge that is not where the load factor puts it, fields of one component, a load factor that is none.
   DynamicSolver held(mesh, law, {{edge::left, constant(0.01, 0.)}}, {density, 0.}, {1e-3});

@@ -10,14 +10,14 @@
 #include <cmath>
 
 using namespace moving_sheets;
-using continuum::Conditions;
+using continuum::BoundaryConditions;
 using continuum::Constitution;
 using continuum::DynamicSettings;
 using continuum::DynamicSolver;
 using continuum::FibreViscosity;
+using continuum::NewmarkParameters;
 using continuum::StaticSettings;
 using continuum::StaticSolver;
-using continuum::TimeRule;
 using Vector = continuum::Sheet::Vector;
 namespace edge = continuum::edge;
 
@@ -30,7 +30,7 @@ double form(const continuum::Sheet &sheet, const continuum::Sheet::Matrix &A, co
   A.vmult(product, y);
   double sum = 0.;
   for (const auto i : sheet.owned())
-    if (!sheet.continuity().is_constrained(i))
+    if (!sheet.conformity_constraints().is_constrained(i))
       sum += x(i) * product(i);
   return sum;
 }
@@ -50,9 +50,9 @@ double discrete_frequency(const Constitution &laws, const double inertia_length,
   u = owned;
   continuum::Sheet::Matrix K, M, A;
   for (auto *matrix : {&K, &M, &A})
-    sheet.make_matrix(sheet.continuity(), *matrix);
-  sheet.tangent(u, sheet.continuity(), K);
-  sheet.mass(density, inertia_length, sheet.continuity(), M);
+    sheet.make_matrix(sheet.conformity_constraints(), *matrix);
+  sheet.tangent(u, sheet.conformity_constraints(), K);
+  sheet.mass(density, inertia_length, sheet.conformity_constraints(), M);
   A.add(1., K);
   A.add(-0.9 * expected, M); // not at the eigenvalue, where A is singular
   continuum::LinearSolver solver(sheet, {}, {});
@@ -65,12 +65,12 @@ double discrete_frequency(const Constitution &laws, const double inertia_length,
   {
     M.vmult(b, x);
     for (const auto i : sheet.owned())
-      if (sheet.continuity().is_constrained(i))
+      if (sheet.conformity_constraints().is_constrained(i))
         b(i) = 0.;
     b.compress(dealii::VectorOperation::insert);
     solver.solve(A, x, b);
     x *= 1. / x.linfty_norm();
-    sheet.continuity().distribute(x);
+    sheet.conformity_constraints().distribute(x);
   }
   return form(sheet, K, x, x) / form(sheet, M, x, x);
 }
@@ -209,7 +209,7 @@ TEST(DynamicSolver, DampsHighFrequenciesOnly)
   continuum::make_rectangle(mesh, strip(8));
   // q^2 + (dq/dt)^2/w^2 of the wave's amplitude q, over that at the start. The energy itself would drown in the
   // round-off of W at strains of 1e-5.
-  const auto energy_left = [&](const TimeRule &rule, const double dt, const unsigned int n_steps)
+  const auto energy_left = [&](const NewmarkParameters &rule, const double dt, const unsigned int n_steps)
   {
     DynamicSettings settings{dt};
     settings.rule = rule;
@@ -227,10 +227,10 @@ TEST(DynamicSolver, DampsHighFrequenciesOnly)
     return q * q + rate * rate / (w * w);
   };
   // A period in 60 steps, w dt = 0.1. Eight cells of degree 3 have w to 1e-5.
-  EXPECT_NEAR(energy_left(TimeRule::generalised_alpha(0.5), 2. * pi / 60. / w, 60), 1., 5e-3);
-  EXPECT_NEAR(energy_left(TimeRule::average_acceleration(), 2. * pi / 60. / w, 60), 1., 1e-4);
+  EXPECT_NEAR(energy_left(NewmarkParameters::generalised_alpha(0.5), 2. * pi / 60. / w, 60), 1., 5e-3);
+  EXPECT_NEAR(energy_left(NewmarkParameters::average_acceleration(), 2. * pi / 60. / w, 60), 1., 1e-4);
   // As w dt grows the three eigenvalues of a step all tend to rho_inf: what is left of q after n steps is of the order
   // of n^2 rho_inf^n, 1600 * 2^-40 here, and its square 2e-18 within constants.
-  EXPECT_LT(energy_left(TimeRule::generalised_alpha(0.5), 1000. / w, 40), 1e-14);
-  EXPECT_NEAR(energy_left(TimeRule::average_acceleration(), 1000. / w, 20), 1., 1e-4);
+  EXPECT_LT(energy_left(NewmarkParameters::generalised_alpha(0.5), 1000. / w, 40), 1e-14);
+  EXPECT_NEAR(energy_left(NewmarkParameters::average_acceleration(), 1000. / w, 20), 1., 1e-4);
 }

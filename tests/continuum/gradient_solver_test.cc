@@ -8,7 +8,7 @@
 #include <gtest/gtest.h>
 
 using namespace sheets;
-using continuum::Conditions;
+using continuum::BoundaryConditions;
 using continuum::Constitution;
 using continuum::StaticSettings;
 using continuum::StaticSolver;
@@ -18,9 +18,9 @@ namespace
 constexpr double internal_length = 0.005;
 
 // All edges held, the normal gradient too: of the homogeneous stretch on three sides, zero above, where the bump is.
-Conditions clamped_bump(const double stretch_x, const double stretch_y, const double bump)
+BoundaryConditions clamped_bump(const double stretch_x, const double stretch_y, const double bump)
 {
-  Conditions conditions(bump_problem(stretch_x, stretch_y, bump));
+  BoundaryConditions conditions(bump_problem(stretch_x, stretch_y, bump));
   conditions.normal_gradients.push_back(
     {continuum::edge::top, std::make_shared<Field>([](const Point<2> &) { return Tensor<1, 2>(); })});
   return conditions;
@@ -52,7 +52,7 @@ TEST(GradientEquilibrium, ResidualAndTangentAreDerivativesOfOneFunctional)
         Vector v = sheet.make_owned();
         for (const auto i : sheet.owned())
           v(i) = entry(generator);
-        sheet.continuity().distribute(v);
+        sheet.conformity_constraints().distribute(v);
         return v;
       };
       const auto ghosted = [&](const Vector &v)
@@ -64,27 +64,27 @@ TEST(GradientEquilibrium, ResidualAndTangentAreDerivativesOfOneFunctional)
       // Over cells of 2.5 to 7.5 cm; bonds stay stretched beyond the switch of (C.27), which differences would not
       // resolve.
       Vector u = random(2e-3);
-      sheet.visit_unknowns(
+      sheet.for_each_owned_dof(
         [&](const auto dof, const unsigned int i, const auto &X)
         {
-          if (!sheet.continuity().is_constrained(dof))
+          if (!sheet.conformity_constraints().is_constrained(dof))
             u(dof) = 0.4 * X[i] + 1e-4 * std::sin(900. * (X[0] + 2. * X[1]) + i);
         });
-      sheet.continuity().distribute(u);
+      sheet.conformity_constraints().distribute(u);
       const Vector v = random(1e-3);
       const Vector w = random(1e-3);
 
       Vector r = sheet.make_owned(), magnitude = sheet.make_owned(), Kv = sheet.make_owned(), Kw = sheet.make_owned();
       sheet.residual(ghosted(u), r, magnitude);
       continuum::Sheet::Matrix K;
-      sheet.make_matrix(sheet.continuity(), K);
-      sheet.tangent(ghosted(u), sheet.continuity(), K);
+      sheet.make_matrix(sheet.conformity_constraints(), K);
+      sheet.tangent(ghosted(u), sheet.conformity_constraints(), K);
       // The rows of dependent unknowns hold a diagonal that is none of the functional's.
       const auto product = [&](const Vector &x, Vector &Kx)
       {
         K.vmult(Kx, x);
         for (const auto i : sheet.owned())
-          if (sheet.continuity().is_constrained(i))
+          if (sheet.conformity_constraints().is_constrained(i))
             Kx(i) = 0.;
       };
       product(v, Kv);
@@ -96,7 +96,7 @@ TEST(GradientEquilibrium, ResidualAndTangentAreDerivativesOfOneFunctional)
       {
         Vector moved = u;
         moved.add(h, v);
-        sheet.continuity().distribute(moved);
+        sheet.conformity_constraints().distribute(moved);
         Vector there = sheet.make_owned();
         sheet.residual(ghosted(moved), there, magnitude);
         const double of_energy = std::abs(sheet.energy(ghosted(moved)) - E - h * (r * v));
@@ -177,7 +177,7 @@ TEST(GradientEquilibrium, LinearIterationsDependLittleOnTheMesh)
     settings.linear.direct_limit = 0;
     settings.linear.multigrid.coarsest_size = 150;
     settings.largest_forcing = 0.;
-    settings.linear.wear_limit = 0.;
+    settings.linear.rebuild_ratio = 0.;
     const auto largest = [](const continuum::SolverReport &report)
     {
       unsigned int result = 0;
@@ -258,19 +258,19 @@ TEST(GradientEquilibrium, IsLocalWithoutLengthAndInHomogeneousStates)
   const continuum::CauchyBorn law = rubber_network();
   Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, rectangle(6, 4));
-  const auto energy = [&](const Constitution &constitution, const Conditions &conditions)
+  const auto energy = [&](const Constitution &constitution, const BoundaryConditions &conditions)
   {
     StaticSolver solver(mesh, constitution, conditions);
     solver.solve();
     return solver.total_energy();
   };
   const continuum::IsotropicGradient none(5e5, 0.), tiny(5e5, 1e-7), large(5e5, 0.05);
-  const Conditions bump(bump_problem(2., 2.2, 0.03));
+  const BoundaryConditions bump(bump_problem(2., 2.2, 0.03));
   const double local = energy(law, bump);
   EXPECT_EQ(energy(Constitution(law, none), bump), local);
   EXPECT_NEAR(energy(Constitution(law, tiny), bump), local, 1e-6 * local);
   EXPECT_GT(energy(Constitution(law, large), bump), 1.01 * local);
-  const Conditions homogeneous(on_all_edges(affine(matrix(2.3, 0.1, -0.2, 2.8))));
+  const BoundaryConditions homogeneous(on_all_edges(affine(matrix(2.3, 0.1, -0.2, 2.8))));
   const double flat = energy(law, homogeneous);
   EXPECT_NEAR(energy(Constitution(law, large), homogeneous), flat, 1e-12 * flat);
   EXPECT_NEAR(energy(Constitution(law, rubber_gradient(0.01)), homogeneous), flat, 1e-12 * flat);
@@ -320,7 +320,7 @@ TEST(GradientEquilibrium, CorrectsTheBodyForceOfMicroInertia)
   force->initialize("x,y", std::vector<std::string>{"1e5*sin(40*(0.6*x+0.8*y)+0.3)", "2e5*cos(40*(0.8*x-0.6*y))"}, {});
   const auto loads = [&](const double with_length)
   {
-    Conditions conditions(on_all_edges(affine(matrix(1., 0., 0., 1.))));
+    BoundaryConditions conditions(on_all_edges(affine(matrix(1., 0., 0., 1.))));
     conditions.body_force = continuum::BodyForce{force, with_length};
     return continuum::Sheet(mesh, law, 3, conditions).loads();
   };
@@ -339,16 +339,16 @@ TEST(GradientEquilibrium, RefusesImpossibleInput)
   Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, rectangle(2, 2));
   const auto field = affine(matrix(1., 0., 0., 1.));
-  Conditions conditions(on_all_edges(field));
+  BoundaryConditions conditions(on_all_edges(field));
   StaticSettings linear;
   linear.degree = 1;
   EXPECT_THROW(StaticSolver(mesh, Constitution(law, gradient), conditions, linear), continuum::InvalidInput);
   // Without a gradient energy there is nothing that could hold a normal gradient or do work against it.
   const continuum::IsotropicGradient zero(5e5, 0.);
-  Conditions held = conditions, loaded = conditions;
+  BoundaryConditions held = conditions, loaded = conditions;
   held.normal_gradients.push_back({0, field});
   loaded.double_tractions.push_back({0, field});
-  for (const Conditions &impossible : {held, loaded})
+  for (const BoundaryConditions &impossible : {held, loaded})
   {
     EXPECT_THROW(StaticSolver(mesh, law, impossible), continuum::InvalidInput);
     EXPECT_THROW(StaticSolver(mesh, Constitution(law, zero), impossible), continuum::InvalidInput);

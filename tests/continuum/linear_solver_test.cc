@@ -62,8 +62,8 @@ struct Problem
   void scale_columns()
   {
     Sheet::Vector scale = sheet->make_owned();
-    sheet->visit_unknowns([&](const auto dof, unsigned int, const Point<2> &X)
-                          { scale(dof) = 1. + 0.3 * std::sin(4. * X[0] / length + 3. * X[1] / height); });
+    sheet->for_each_owned_dof([&](const auto dof, unsigned int, const Point<2> &X)
+                              { scale(dof) = 1. + 0.3 * std::sin(4. * X[0] / length + 3. * X[1] / height); });
     for (auto entry = K.begin(); entry != K.end(); ++entry)
       entry->value() = entry->value() * scale(entry->column());
   }
@@ -88,7 +88,7 @@ TEST(LinearSolver, KeepsAMultigridThatServes)
   EXPECT_LE(problem.solve(0.052 * length), fresh + 2);
   problem.solve(0.049 * length);
   EXPECT_EQ(problem.solver->n_set_ups(), 1u);
-  problem.solver->forget();
+  problem.solver->invalidate();
   problem.solve(0.049 * length);
   EXPECT_EQ(problem.solver->n_set_ups(), 2u);
 }
@@ -154,7 +154,7 @@ TEST(LinearSolver, RefusesSettingsOutOfRange)
   for (const double limit : {-1., std::nan("")})
   {
     LinearSettings settings;
-    settings.wear_limit = limit;
+    settings.rebuild_ratio = limit;
     EXPECT_THROW(Problem{settings}, continuum::InvalidInput);
   }
 }

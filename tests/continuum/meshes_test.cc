@@ -181,7 +181,7 @@ TEST(ErrorIndicator, RefinesAtTheTipOfANotch)
   const continuum::CauchyBorn law = rubber_network();
   const continuum::IsotropicGradient gradient(5e5, 0.005);
   const auto field = affine(matrix(1., 0., 0., 1.3));
-  const continuum::Conditions conditions{{continuum::edge::bottom, field}, {continuum::edge::top, field}};
+  const continuum::BoundaryConditions conditions{{continuum::edge::bottom, field}, {continuum::edge::top, field}};
   const auto start = [&](Mesh &mesh, const unsigned int refinements)
   {
     continuum::make_notched_rectangle(mesh, {length, height, 0.06, refinements});

@@ -43,7 +43,7 @@ public:
 protected:
   explicit Motion(const MPI_Comm communicator) : mesh_(communicator) {}
 
-  void make_solver(const continuum::Conditions &conditions, const continuum::DynamicSettings &settings,
+  void make_solver(const continuum::BoundaryConditions &conditions, const continuum::DynamicSettings &settings,
                    const continuum::Viscosity *viscosity)
   {
     solver_ = std::make_unique<DynamicSolver>(mesh_, continuum::Constitution(law_, gradient_), conditions,
@@ -65,13 +65,13 @@ public:
   explicit DirectMotion(const MPI_Comm communicator) : Motion(communicator)
   {
     continuum::make_rectangle(mesh_, {length, height, 6, 5, false, true});
-    continuum::Conditions conditions;
+    continuum::BoundaryConditions conditions;
     conditions.displacements = {{edge::left, constant(0., 0.)}};
     conditions.tractions = {{edge::right, constant(1e5, 0.)}};
     conditions.periodic = {{edge::bottom, edge::top, 1}};
     continuum::DynamicSettings settings{4e-4};
     settings.degree = 2;
-    settings.rule = continuum::TimeRule::generalised_alpha(0.8);
+    settings.rule = continuum::NewmarkParameters::generalised_alpha(0.8);
     make_solver(conditions, settings, &viscosity_);
   }
 };
@@ -85,7 +85,7 @@ public:
   {
     continuum::make_rectangle(mesh_, rectangle(6, 4));
     multigrid_cases::refine_towards(mesh_, Point<2>(0.4 * length, 0.003), 2, length / 3.);
-    continuum::Conditions conditions;
+    continuum::BoundaryConditions conditions;
     conditions.displacements = {{edge::left, constant(0., 0.)}};
     conditions.tractions = {{edge::right, constant(1e5, 3e4)}};
     conditions.normal_gradients = {{edge::top, constant(0.3, 0.2)}};
@@ -93,7 +93,7 @@ public:
     settings.degree = 2;
     settings.linear.direct_limit = 0;
     settings.linear.multigrid.coarsest_size = 100;
-    settings.linear.wear_limit = 1.1; // so that some of the steps, and not all, set it up
+    settings.linear.rebuild_ratio = 1.1; // so that some of the steps, and not all, set it up
     make_solver(conditions, settings, has_dashpots ? &viscosity_ : nullptr);
   }
 };
@@ -268,8 +268,8 @@ TEST(MotionArchive, PutsNodalValuesInTheirPlacesOnAnyNumberOfRanks)
   { return std::sin(40. * X[0] + 3. * component) + 7. * X[1]; };
   const SheetWithHole whole(MPI_COMM_SELF);
   continuum::Sheet::Vector u = whole.sheet->make_owned();
-  whole.sheet->visit_unknowns([&](const auto dof, const unsigned int component, const Point<2> &X)
-                              { u(dof) = field(X, component); });
+  whole.sheet->for_each_owned_dof([&](const auto dof, const unsigned int component, const Point<2> &X)
+                                  { u(dof) = field(X, component); });
   const std::vector<double> values = NodalOrder(*whole.sheet).gathered(u);
 
   const SheetWithHole shared(MPI_COMM_WORLD);

@@ -17,9 +17,9 @@ inline std::shared_ptr<Field> constant(const double x, const double y)
   return std::make_shared<Field>([=](const Point<2> &) { return Tensor<1, 2>({x, y}); });
 }
 
-inline continuum::Conditions periodic()
+inline continuum::BoundaryConditions periodic()
 {
-  continuum::Conditions conditions;
+  continuum::BoundaryConditions conditions;
   conditions.periodic = {{continuum::edge::left, continuum::edge::right, 0},
                          {continuum::edge::bottom, continuum::edge::top, 1}};
   return conditions;

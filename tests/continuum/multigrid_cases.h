@@ -169,7 +169,7 @@ inline Multigrid::SheetFactory same_sheets(const continuum::Material &law, const
   return [&law, degree](const Mesh &mesh) { return std::make_unique<Sheet>(mesh, law, degree); };
 }
 
-inline continuum::HeldBoundaries all_held()
+inline continuum::DirichletBoundaries all_held()
 {
   return {{continuum::edge::left, {}},
           {continuum::edge::right, {}},

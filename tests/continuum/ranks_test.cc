@@ -75,7 +75,7 @@ Answer adaptive_answer(const MPI_Comm communicator, const dealii::types::global_
   Mesh mesh(communicator);
   continuum::make_notched_rectangle(mesh, {length, height, 0.06, 1});
   const auto field = affine(matrix(1., 0.1, 0., 1.3));
-  continuum::Conditions conditions{{continuum::edge::bottom, field}, {continuum::edge::top, field}};
+  continuum::BoundaryConditions conditions{{continuum::edge::bottom, field}, {continuum::edge::top, field}};
   conditions.normal_gradients.push_back(
     {continuum::edge::top, std::make_shared<Field>([](const Point<2> &) { return Tensor<1, 2>(); })});
   conditions.body_force = continuum::BodyForce{std::make_shared<Field>(
@@ -278,7 +278,7 @@ Motion motion(const MPI_Comm communicator, const bool is_periodic)
   const continuum::FibreViscosity viscosity(dashpots);
   Mesh mesh(communicator);
   continuum::make_rectangle(mesh, {length, height, 8, 6, false, is_periodic});
-  continuum::Conditions conditions;
+  continuum::BoundaryConditions conditions;
   conditions.displacements = {{edge::left, std::make_shared<Field>(
                                              [](const Point<2> &) {
                                                return Tensor<1, 2>({0.01, 0.02});
@@ -291,7 +291,7 @@ Motion motion(const MPI_Comm communicator, const bool is_periodic)
     conditions.periodic = {{edge::bottom, edge::top, 1}};
   continuum::DynamicSettings settings{2e-4};
   settings.degree = 2;
-  settings.rule = continuum::TimeRule::generalised_alpha(0.8);
+  settings.rule = continuum::NewmarkParameters::generalised_alpha(0.8);
   settings.relative_tolerance = 1e-12;
   settings.linear.direct_limit = 0;
   settings.linear.multigrid.coarsest_size = 100;

@@ -44,10 +44,10 @@ inline continuum::Sheet::Vector nodal(const continuum::Sheet &sheet,
                                       const std::function<Tensor<1, 2>(const Point<2> &)> &field)
 {
   continuum::Sheet::Vector owned = sheet.make_owned();
-  sheet.visit_unknowns([&](const auto dof, const unsigned int component, const Point<2> &X)
-                       { owned(dof) = field(X)[component]; });
+  sheet.for_each_owned_dof([&](const auto dof, const unsigned int component, const Point<2> &X)
+                           { owned(dof) = field(X)[component]; });
   owned.compress(dealii::VectorOperation::insert);
-  sheet.continuity().distribute(owned);
+  sheet.conformity_constraints().distribute(owned);
   continuum::Sheet::Vector u = sheet.make_ghosted();
   u = owned;
   return u;

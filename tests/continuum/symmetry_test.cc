@@ -217,13 +217,13 @@ struct MovingSheet
       viscosity(network_viscosity(units.stress * units.time() * 20.)), mesh(MPI_COMM_SELF)
   {
     continuum::make_rectangle(mesh, {units.length * length, units.length * height, 2, 2});
-    continuum::Conditions conditions({{continuum::edge::left, affine(matrix(1., 0., 0.3, 1.2))}});
+    continuum::BoundaryConditions conditions({{continuum::edge::left, affine(matrix(1., 0., 0.3, 1.2))}});
     conditions.tractions = {{continuum::edge::top, constant(0., units.stress * 1e5)}};
     conditions.normal_gradients = {{continuum::edge::right, constant(0.2, 0.1)}};
     const double t = units.time();
     continuum::DynamicSettings settings{t * 2e-4};
     settings.degree = 2;
-    settings.rule = continuum::TimeRule::generalised_alpha(0.6);
+    settings.rule = continuum::NewmarkParameters::generalised_alpha(0.6);
     solver = std::make_unique<continuum::DynamicSolver>(
       mesh, continuum::Constitution(network, gradient), conditions,
       continuum::Inertia{units.density * density, l_d(units)}, settings, &viscosity,

@@ -146,7 +146,7 @@ NUMBERS = {
     "frames/times": [value(-1.)], "next_frame": [value(-1e308), value(1e308), value(1e-300)], "step": [LARGE, value(0)],
     "solver/steps": [LARGE, value(0)], "solver/time": [value(-1e308), value(1e308)], "solver/start_time": [value(1e308)],
     "frames/frames/n": [LARGE], "frames/frames/time": [value(1e308)], "frames/frames/pieces": [value(0)],
-    "linear_solver/is_worn": [value(2)],
+    "linear_solver/is_stale": [value(2)],
 }
 
 

@@ -282,7 +282,7 @@ TEST(Forces, AreThoseOfTheReference)
     for (const bool watch : {false, true})
     {
       if (watch)
-        forces.watch_retraction(retraction);
+        forces.set_retraction_threshold(retraction);
       forces.evaluate(state, state.vx, state.vy);
       const ReferenceForces expected = watch ? reference_forces(state, sheet, subject.material, retraction)
                                              : reference_forces(state, sheet, subject.material);
@@ -358,7 +358,7 @@ TEST(Forces, BitsDoNotDependOnThreads)
            {std::pair(20., sheets::rubber()), {90., sheets::rubber()}, {20., sheets::rubber_from_outside()}})
       {
         const TriangularLattice sheet = sheet_of({material, orientation, periodic, 5000. / rows}, rows);
-        ASSERT_GE(sheet.n_places(), worth_threads);
+        ASSERT_GE(sheet.n_places(), min_places_for_threads);
         const State state = random_state(sheet, material, 2);
         Forces one(sheet, material), many(sheet, material);
         omp_set_num_threads(1);
@@ -390,7 +390,7 @@ TEST(Forces, BitsDoNotDependOnTheInstructionSet)
     const State state = random_state(sheet, subject.material, 5);
     Forces best(sheet, subject.material), other(sheet, subject.material);
     for (Forces *forces : {&best, &other})
-      forces->watch_retraction(retraction);
+      forces->set_retraction_threshold(retraction);
     kernels::use_instruction_set(sets.front());
     best.evaluate(state, state.vx, state.vy);
     for (const std::string &set : sets)

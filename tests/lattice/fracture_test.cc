@@ -106,14 +106,14 @@ TEST(Fracture, LooksAheadToTheMomentOfBreaking)
   sheet.state.x[corner] -= 0.4;
   sheet.state.vx[corner] = -1.;
   EXPECT_TRUE(sheet.apply().empty());
-  sheet.fracture.look_ahead(0.09);
+  sheet.fracture.set_lookahead(0.09);
   EXPECT_TRUE(sheet.apply().empty());
-  sheet.fracture.look_ahead(0.11);
+  sheet.fracture.set_lookahead(0.11);
   const std::vector<BrokenBond> broken = sheet.apply();
   ASSERT_EQ(broken.size(), 1u);
   EXPECT_EQ(broken[0].near, corner);
   EXPECT_NEAR(broken[0].stretch, 1.4, 1e-12); // where it is, as its energy
-  EXPECT_THROW(sheet.fracture.look_ahead(-1.), std::invalid_argument);
+  EXPECT_THROW(sheet.fracture.set_lookahead(-1.), std::invalid_argument);
 }
 
 // A bond at its length that shortens by 1 m/s is to toughen below 0.8.
@@ -121,10 +121,10 @@ TEST(Fracture, LooksAheadToTheMomentOfRetraction)
 {
   TenSites sheet{RetractionToughening{0.8, 3.}};
   sheet.state.vx[sheet.sheet.index(0, 0)] = 1.;
-  sheet.fracture.look_ahead(0.19);
+  sheet.fracture.set_lookahead(0.19);
   sheet.apply();
   EXPECT_EQ(sheet.limit(0, 0, 0), 1.5);
-  sheet.fracture.look_ahead(0.21);
+  sheet.fracture.set_lookahead(0.21);
   sheet.apply();
   EXPECT_EQ(sheet.limit(0, 0, 0), 4.5);
 }
@@ -163,7 +163,7 @@ TEST(Fracture, FlagsARowIfAndOnlyIfOneOfItsBondsHasAnEvent)
             Forces forces(sheet, material);
             Fracture fracture(sheet, material, 1.5, RetractionToughening{0.8, 2.}, F);
             fracture.configure(trial, forces);
-            fracture.look_ahead(ahead);
+            fracture.set_lookahead(ahead);
             forces.evaluate(trial, trial.vx, trial.vy);
             const bool flagged =
               ahead > 0. ? forces.row_has_events_ahead(trial, row, ahead) : forces.row_has_events(row);

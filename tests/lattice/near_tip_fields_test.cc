@@ -224,7 +224,7 @@ TEST(NearTipSums, MirrorComponents)
     const Eigen::Matrix2d mirror = sheets::stretched(1., -1.);
     EXPECT_EQ(m.velocity[q], mirror * f.velocity[p]);
     EXPECT_EQ(m.displacement[q], mirror * f.displacement[p]);
-    EXPECT_EQ(m.loading_displacement[q], mirror * f.loading_displacement[p]);
+    EXPECT_EQ(m.excess_displacement[q], mirror * f.excess_displacement[p]);
     EXPECT_EQ(m.deformation_gradient[q], mirror * f.deformation_gradient[p] * mirror);
     EXPECT_EQ(m.first_piola_stress[q], mirror * f.first_piola_stress[p] * mirror);
     EXPECT_EQ(m.cauchy_stress[q], mirror * f.cauchy_stress[p] * mirror);

@@ -253,7 +253,7 @@ TEST(Vortices, OfASampleAreThoseOfTheMotionNotOfTheNoise)
   EXPECT_NEAR(found[0].speed, 0.35, 0.06 * 0.35); // as above
 }
 
-TEST(ProcessZone, IsWhatHangsTogetherNearTheTip)
+TEST(FollowingZone, IsWhatHangsTogetherNearTheTip)
 {
   const auto velocity = [](const Eigen::Vector2d &X) -> Eigen::Vector2d
   {
@@ -261,15 +261,15 @@ TEST(ProcessZone, IsWhatHangsTogetherNearTheTip)
     const bool apart = X.x() > -25. * d && X.x() < -15. * d;
     return {zone ? 20. - X.x() / d : apart ? 40. : X.x() > 0.5 * d ? 90. : 5., 0.};
   };
-  const ProcessZone zone = process_zone(field_of(velocity), 10.);
+  const FollowingZone zone = following_zone(field_of(velocity), 10.);
   EXPECT_NEAR(zone.length, 11 * d, 1e-9 * d); // points -2 to -12 d
   EXPECT_EQ(zone.fastest, 40.);               // of all that is behind
   EXPECT_NEAR(zone.place.x(), -24 * d, 1e-9 * d);
-  EXPECT_NEAR(process_zone(field_of(velocity), 25.).length, 7 * d, 1e-9 * d); // points -6 to -12 d
-  EXPECT_EQ(process_zone(field_of(velocity), 50.).length, 0.);
+  EXPECT_NEAR(following_zone(field_of(velocity), 25.).length, 7 * d, 1e-9 * d); // points -6 to -12 d
+  EXPECT_EQ(following_zone(field_of(velocity), 50.).length, 0.);
   NearTipField cracked = field_of(velocity);
   open_crack(cracked, 1.2 * d);
-  EXPECT_NEAR(process_zone(cracked, 10.).length, 11 * d, 1e-9 * d); // along the flanks
+  EXPECT_NEAR(following_zone(cracked, 10.).length, 11 * d, 1e-9 * d); // along the flanks
 }
 
 // The box -14 d <= X <= -3 d, |Y| <= 3 d has twelve points by seven; a crescent across it and what lies about it.

@@ -14,7 +14,7 @@ struct ReferenceForces
   std::vector<bool> row_has_events;
 };
 
-/// @param retraction_stretch as in Forces::watch_retraction
+/// @param retraction_stretch as in Forces::set_retraction_threshold
 inline ReferenceForces reference_forces(const lattice::State &state, const lattice::TriangularLattice &sheet,
                                         const lattice::Material &material,
                                         const std::array<double, lattice::n_bond_kinds> &retraction_stretch = {})

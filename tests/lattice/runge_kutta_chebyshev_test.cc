@@ -191,14 +191,14 @@ TEST(RungeKuttaChebyshev, BitsDoNotDependOnThreads)
   {
     omp_set_num_threads(threads);
     const TriangularLattice sheet = sheets::square(70); // more places than are left to one thread
-    EXPECT_GE(sheet.n_places(), worth_threads);
+    EXPECT_GE(sheet.n_places(), min_places_for_threads);
     const Material material = sheets::rubber();
     const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
     State state = homogeneous_state(sheet, material, F, Edges::held);
     add_noise(state, sheet, 0.01 * sheets::spacing, 1);
     Simulation simulation(sheet, material, std::move(state), {4e-6, 7},
                           Fracture(sheet, material, 3.05, BehindTipToughening{4. * sheets::spacing, 2.}, F));
-    simulation.let_touch(contact_like_nearest_bond(sheet, material, sheets::spacing, 1., 1.));
+    simulation.enable_contact(contact_like_nearest_bond(sheet, material, sheets::spacing, 1., 1.));
     simulation.cut(sheets::middle_row(sheet, 5, 8));
     for (int step = 0; step < 250; ++step)
       simulation.step();

@@ -53,8 +53,8 @@ TEST(Simulation, RefusesASecondContactAndSecondEndLoads)
                         Fracture(sheet, material, 3., NoToughening{}, loading));
   simulation.load_ends(loading, end, end);
   EXPECT_THROW(simulation.load_ends(loading, end, end), std::logic_error);
-  simulation.let_touch(law);
-  EXPECT_THROW(simulation.let_touch(law), std::logic_error);
+  simulation.enable_contact(law);
+  EXPECT_THROW(simulation.enable_contact(law), std::logic_error);
   EXPECT_NO_THROW(simulation.step());
 }
 
@@ -89,7 +89,7 @@ struct Recoil
     simulation = std::make_unique<Simulation>(sheet, material, homogeneous_state(sheet, material, F, Edges::held),
                                               0.9 * time_step_limits(sheet, material, 0.3, contact).combined,
                                               Fracture(sheet, material, 3.05, BehindTipToughening{4.5e-3, 3.}, F));
-    simulation->let_touch(contact);
+    simulation->enable_contact(contact);
     simulation->cut(sheets::middle_row(sheet, 3, 2));
   }
   // Until waves have crossed some thirty to fifty spacings.

@@ -103,7 +103,7 @@ struct Crack
     simulation = std::make_unique<Simulation>(sheet, material, std::move(initial), stepping,
                                               Fracture(sheet, material, breaking_stretch, toughening, deformation));
     if (choice.touches)
-      simulation->let_touch(contact_like_nearest_bond(sheet, material, d, 1., 1.));
+      simulation->enable_contact(contact_like_nearest_bond(sheet, material, d, 1., 1.));
     if (choice.absorbs)
       simulation->load_ends(deformation, EndLoads::End::absorbing, EndLoads::End::free);
     std::vector<std::size_t> seed;

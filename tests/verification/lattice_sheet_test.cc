@@ -60,7 +60,7 @@ void expect_refused(const std::string &entry, const Lines &overrides)
   EXPECT_NE(found[0].find("`it`"), std::string::npos) << found[0];
 }
 
-std::size_t count(const lattice::Marks &flags, const lattice::TriangularLattice &lattice, double y)
+std::size_t count(const lattice::SiteFlags &flags, const lattice::TriangularLattice &lattice, double y)
 {
   std::size_t n = 0;
   for (std::size_t place = 0; place < lattice.n_places(); ++place)

@@ -18,7 +18,7 @@ STRIP = ["--set", f"Nearest neighbours/area factor={S}", "--set", f"Next-nearest
          "--skip-verification", "--quiet", "--threads", "1", "--set", "Sheet/length=4 cm", "--set",
          "Sheet/height=2.5 cm", "--set", "Output/frame interval=0", "--set", "Near tip/ahead=8 mm", "--set",
          "Near tip/behind=10 mm", "--set", "Near tip/half height=9 mm"]
-COMPONENTS = {"displacement": 3, "loading_displacement": 3, "velocity": 3, "deformation_gradient": 9,
+COMPONENTS = {"displacement": 3, "excess_displacement": 3, "velocity": 3, "deformation_gradient": 9,
               "first_piola_stress": 9, "cauchy_stress": 9, "strain_gradient_x": 9, "strain_gradient_y": 9,
               "occupancy": 1}
 

@@ -25,7 +25,7 @@ TEST(Resources, MemoryOfALatticeGrowsAsItsSites)
 {
   const auto total = [](double length)
   {
-    const MemoryNeed need = lattice_memory(square(length, 1e-3), LatticeRun::moved);
+    const MemoryNeed need = lattice_memory(square(length, 1e-3), RunKind::dynamics);
     return need.shared + need.first_rank;
   };
   EXPECT_NEAR(total(1.) / total(0.5), 4., 0.1);
@@ -35,7 +35,7 @@ TEST(Resources, MemoryOfALatticeGrowsAsItsSites)
 
 TEST(Resources, TheLargestSheetHasAnEstimate)
 {
-  const MemoryNeed need = lattice_memory(square(1e3, 1e-3), LatticeRun::broken, true);
+  const MemoryNeed need = lattice_memory(square(1e3, 1e-3), RunKind::fracture, true);
   EXPECT_GT(need.shared + need.first_rank, 1e12 * 500.);
   EXPECT_LT(need.shared + need.first_rank, 1e16);
 }

@@ -28,7 +28,7 @@ namespace fs = std::filesystem;
 
 constexpr int schema = 4; // of what is in a file; another one cannot be read
 constexpr std::size_t n_kept = 2;
-constexpr std::size_t n_differences_told = 3;
+constexpr std::size_t max_reported_differences = 3;
 const std::string first_words = "latcon checkpoint, SHA-256 of the bytes from 512 on: ";
 
 std::map<std::string, std::string> entries_of(const std::string &lines)
@@ -53,10 +53,10 @@ std::string differences(const std::string &there, const std::string &here)
       found.push_back(key + " = " + (other == theirs.end() ? "(none)" : other->second) + " there, " + value + " here");
   }
   std::string text;
-  for (std::size_t i = 0; i < std::min(found.size(), n_differences_told); ++i)
+  for (std::size_t i = 0; i < std::min(found.size(), max_reported_differences); ++i)
     text += (i > 0 ? "; " : "") + found[i];
-  if (found.size() > n_differences_told)
-    text += "; and " + std::to_string(found.size() - n_differences_told) + " more";
+  if (found.size() > max_reported_differences)
+    text += "; and " + std::to_string(found.size() - max_reported_differences) + " more";
   return text.empty() ? "entries that are not known here" : text;
 }
 
@@ -248,7 +248,7 @@ void Checkpoints::save(std::size_t step, double time, const std::function<void(C
   last_written_ = std::chrono::steady_clock::now();
 }
 
-void Checkpoints::set_old_ones_aside() const
+void Checkpoints::archive_stale_checkpoints() const
 {
   if (!first_rank_ || files().empty())
     return;

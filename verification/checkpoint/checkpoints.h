@@ -65,7 +65,7 @@ public:
   {
     if (!found_)
     {
-      set_old_ones_aside();
+      archive_stale_checkpoints();
       return false;
     }
     load([&](CheckpointReader &archive) { parts(archive); });
@@ -89,7 +89,7 @@ private:
   std::string problem_of(const std::filesystem::path &path, CheckpointPlace &place) const;
   void load(const std::function<void(CheckpointReader &)> &parts) const;
   void save(std::size_t step, double time, const std::function<void(CheckpointWriter &)> &parts);
-  void set_old_ones_aside() const;
+  void archive_stale_checkpoints() const;
   std::vector<std::filesystem::path> files() const;
 
   std::filesystem::path folder_;

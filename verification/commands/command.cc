@@ -74,12 +74,12 @@ void record_exit_code(ExitCode exit_code)
 Run::Run(const Options &options, const Parameters &parameters) : Run(options, &parameters) {}
 
 Run::Run(const Options &options, const Parameters *parameters)
-  : record_(std::make_shared<Record>(options)), directory_(options.output_dir), writes_(first_rank()),
-    talks_(writes_ && !options.quiet), resumes_(options.resume)
+  : record_(std::make_shared<Record>(options)), directory_(options.output_dir), is_root_(first_rank()),
+    is_verbose_(is_root_ && !options.quiet), resumes_(options.resume)
 {
   if (parameters != nullptr)
     info().add("case_hash", sha256(case_lines(*parameters)));
-  if (writes_)
+  if (is_root_)
   {
     std::error_code error;
     std::filesystem::create_directories(directory_, error);
@@ -108,7 +108,7 @@ void Run::clear(const Options &options, bool has_case) const
   if (!resumes_)
   {
     const std::filesystem::path aside = set_earlier_output_aside(directory_, options.case_file);
-    if (talks_ && !aside.empty())
+    if (is_verbose_ && !aside.empty())
       std::cout << "The files of the run before in " << directory_ << " are now in " << aside.string() << std::endl;
   }
   begin_output_list(directory_);
@@ -123,7 +123,7 @@ void Run::note(const Checkpoints &checkpoints)
                                                {"time", found->time},
                                                {"git_commit", found->commit},
                                                {"program_hash", found->program_hash}});
-  if (!talks_ || !resumes_)
+  if (!is_verbose_ || !resumes_)
     return;
   if (!found)
   {
@@ -138,7 +138,7 @@ void Run::note(const Checkpoints &checkpoints)
 
 ExitCode Run::end(const Results &results, ExitCode exit_code)
 {
-  if (writes_)
+  if (is_root_)
   {
     const SignalDeferral deferral;
     results.write(directory_);
@@ -156,7 +156,7 @@ ExitCode exit_code_of(const Results &results)
 
 void Run::print(const Results &results) const
 {
-  if (!talks_)
+  if (!is_verbose_)
     return;
   results.print(std::cout);
   // What fails is said last as well, where a reader looks first.

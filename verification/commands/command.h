@@ -82,9 +82,9 @@ public:
 
   const std::string &directory() const { return directory_; }
   RunInfo &info() { return record_->info; }
-  bool writes() const { return writes_; } ///< true on rank 0
+  bool is_root() const { return is_root_; } ///< true on rank 0
   /// Whether to print: on rank 0, unless --quiet.
-  bool talks() const { return talks_; }
+  bool is_verbose() const { return is_verbose_; }
 
   /// Writes results.json, results.csv, the final run.json, prints the table and then the rows that fail, and says how
   /// the run ended.
@@ -118,7 +118,7 @@ private:
 
   std::shared_ptr<Record> record_;
   std::string directory_;
-  bool writes_, talks_, resumes_;
+  bool is_root_, is_verbose_, resumes_;
 };
 
 /// Writes what the program ends with into the run.json of the run that began, if any, and forgets the run. To be called
@@ -145,6 +145,6 @@ ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names
 /// and writes the tables. Collective; all ranks return the same.
 /// @return the rows, at least one of them checked and none failing
 /// @throws ClaimFailed that names the rows which fail, if any; results.json and run.json are then written
-Results passed_claims(const Case &input, Run &run);
+Results require_verified(const Case &input, Run &run);
 
 } // namespace verification

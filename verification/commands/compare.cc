@@ -110,7 +110,7 @@ ExitCode compare_frames(const Options &options, const CompareOptions &chosen)
     run.info().stopwatch().add(phase, seconds);
   run.info().add("lattice_frame", lattice.file.path.string());
   run.info().add("continuum_frame", continuum.file.path.string());
-  if (run.writes())
+  if (run.is_root())
   {
     const auto phase = run.info().stopwatch().phase("output");
     write_difference(run.directory(), lattice, continuum, comparison);

@@ -41,7 +41,7 @@ void note(Run &run, const continuum::SolverReport &report)
   stopwatch.add("assembly", report.times.assembly);
   stopwatch.add("preconditioner", report.times.preconditioner);
   stopwatch.add("linear solve", report.times.linear_solve);
-  if (run.talks())
+  if (run.is_verbose())
     std::cout << report.text();
 }
 
@@ -62,7 +62,7 @@ Results equilibrium(const Case &input, ContinuumModel &model, Checkpoints &check
   write_frame(0.);
   const auto write_tables = [&]
   {
-    if (run.writes())
+    if (run.is_root())
       record.write(run.directory());
   };
   const std::size_t n_cycles = input.continuum.adaptive_cycles;
@@ -104,7 +104,7 @@ Results equilibrium(const Case &input, ContinuumModel &model, Checkpoints &check
     record.equilibrium(solver);
     record.mesh(solver);
     write_tables();
-    if (run.talks())
+    if (run.is_verbose())
       std::cout << "cycle " << cycle << ": " << solver.sheet().mesh().n_global_active_cells() << " cells, "
                 << solver.sheet().dof_handler().n_dofs() << " unknowns, largest reaction " << record.largest_reaction()
                 << " N/m, changed by " << record.reaction_change() << "\n";
@@ -132,7 +132,7 @@ Results equilibrium(const Case &input, ContinuumModel &model, Checkpoints &check
                  {},
                  record.reaction_change(),
                  input.continuum.reaction_tolerance});
-  if (run.writes())
+  if (run.is_root())
     record.write(run.directory());
   return results;
 }
@@ -170,7 +170,7 @@ continuum::DynamicSettings dynamic_settings(const Case &input, ContinuumModel &m
   settings.relative_tolerance = c.relative_tolerance;
   settings.linear.direct_limit = c.direct_limit;
   if (c.rule == ContinuumCase::Rule::generalised_alpha)
-    settings.rule = continuum::TimeRule::generalised_alpha(c.spectral_radius);
+    settings.rule = continuum::NewmarkParameters::generalised_alpha(c.spectral_radius);
   return settings;
 }
 
@@ -284,7 +284,7 @@ Results move(const Case &input, const ContinuumModel &model, Motion &motion, Che
   };
   const auto write_tables = [&]
   {
-    if (run.writes())
+    if (run.is_root())
       record.write(run.directory());
   };
   const bool resumed = checkpoints.resume(parts);
@@ -310,7 +310,7 @@ Results move(const Case &input, const ContinuumModel &model, Motion &motion, Che
     if (solver.time() > fields.last_time())
       write_frame();
   };
-  Progress progress(run.talks());
+  Progress progress(run.is_verbose());
   try
   {
     const auto phase = run.info().stopwatch().phase("motion");

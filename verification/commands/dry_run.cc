@@ -30,8 +30,8 @@ std::string seconds_text(double seconds)
 
 } // namespace
 
-std::string lattice_text(const Case &input, const lattice::TimeStepping &stepping, const LatticeRun run,
-                         const bool claims, const bool report)
+std::string lattice_text(const Case &input, const lattice::TimeStepping &stepping, const RunKind run, const bool claims,
+                         const bool report)
 {
   const lattice::TriangularLattice sheet = input.lattice();
   const lattice::State state = lattice_state(input, sheet);
@@ -44,12 +44,12 @@ std::string lattice_text(const Case &input, const lattice::TimeStepping &steppin
   out << "# lattice: " << sites << " sites, " << bonds << " bonds, " << 2 * sites << " unknowns, " << sheet.length()
       << " m x " << sheet.height() << " m\n";
   double steps = 0., frames = 2.;
-  if (run != LatticeRun::relaxed)
+  if (run != RunKind::equilibrium)
   {
     steps = std::ceil(input.end_time / stepping.step);
     out << "# time step: " << stepping.step << " s, " << steps << " steps at most"
         << (stepping.stages > 0 ? " of " + std::to_string(stepping.stages) + " stages each" : "");
-    if (run == LatticeRun::broken)
+    if (run == RunKind::fracture)
     {
       steps = expected_steps(input, stepping);
       out << ", " << steps << " if the crack is as fast as shear waves of the unloaded sheet";
@@ -59,7 +59,7 @@ std::string lattice_text(const Case &input, const lattice::TimeStepping &steppin
     if (const double parts = parts_of_first_step(input, stepping, run); parts > 1.)
       out << "# bonds of the loaded sheet are so short that the first step is made in " << parts
           << " parts; the time below is that of all steps likewise\n";
-    if (run == LatticeRun::broken)
+    if (run == RunKind::fracture)
       frames += cost_of_motion_frame * input.motion_frames;
   }
   out << "# time: about " << seconds_text(lattice_seconds(input, stepping, run, steps, frames)) << " on "

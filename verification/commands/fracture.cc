@@ -84,11 +84,11 @@ struct Crack
 };
 
 // Moves the sheet until the crack is through or the time is up. On every rank, with the same results.
-Crack break_sheet(const Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
-                  bool skip_verification, Checkpoints &checkpoints, Run &run)
+Crack run_crack(const Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
+                bool skip_verification, Checkpoints &checkpoints, Run &run)
 {
   const lattice::Edges edges{input.left_end == Case::End::held, input.right_end == Case::End::held, true, true};
-  const lattice::RowBand band(sheet, MPI_COMM_WORLD);
+  const lattice::RowPartition band(sheet, MPI_COMM_WORLD);
   lattice::State state = lattice::homogeneous_state(band, material, input.deformation(), edges);
   lattice::add_noise(state, band, input.noise_amplitude * input.spacing, input.noise_seed);
   lattice::Simulation simulation(
@@ -97,7 +97,7 @@ Crack break_sheet(const Case &input, const lattice::TriangularLattice &sheet, co
   if (!edges.left || !edges.right)
     simulation.load_ends(input.deformation(), end_load(input.left_end), end_load(input.right_end));
   if (input.has_contact)
-    simulation.let_touch(input.contact_law());
+    simulation.enable_contact(input.contact_law());
   const std::vector<std::size_t> seed = input.seed(sheet);
   simulation.cut(seed);
 
@@ -129,7 +129,7 @@ Crack break_sheet(const Case &input, const lattice::TriangularLattice &sheet, co
   film.end();
   const lattice::CrackMeasurement crack = record.measure(seed_tip);
   record.write_measurement(run.directory(), crack, seed_tip, *input.breaking_stretch, skip_verification);
-  if (run.writes())
+  if (run.is_root())
     near_tip.write(run.directory(), crack);
   return {crack, measured_results(input, record, crack)};
 }
@@ -139,12 +139,12 @@ Crack break_sheet(const Case &input, const lattice::TriangularLattice &sheet, co
 ExitCode draw_page(const Run &run)
 {
   ExitCode exit_code = ExitCode::done;
-  if (run.writes())
+  if (run.is_root())
   {
     const ExitCode drawn = draw_report(run.directory(), true);
     if (drawn != ExitCode::claim_failed)
       exit_code = drawn;
-    if (run.talks() && exit_code == ExitCode::done)
+    if (run.is_verbose() && exit_code == ExitCode::done)
       std::cout << run.directory() << "/report.html" << std::endl;
   }
   MPI_Barrier(MPI_COMM_WORLD);
@@ -156,7 +156,7 @@ Results passed_or_reported(const Case &input, const Options &options, Run &run)
 {
   try
   {
-    return passed_claims(input, run);
+    return require_verified(input, run);
   }
   catch (const ClaimFailed &)
   {
@@ -188,14 +188,14 @@ ExitCode run_fracture(const Options &options)
   const lattice::TriangularLattice sheet = input.lattice();
   const lattice::Material material = input.material();
   const bool claims = !options.skip_verification;
-  const MemoryNeed memory = lattice_memory(input, LatticeRun::broken, claims);
+  const MemoryNeed memory = lattice_memory(input, RunKind::fracture, claims);
   if (options.dry_run)
   {
     print_dry_run(options, parameters.resolved_text() + memory_text(memory));
     require_memory(memory);
     if (!options.quiet)
-      print_dry_run(
-        options, lattice_text(input, input.fracture_time_stepping(), LatticeRun::broken, claims, !options.no_report));
+      print_dry_run(options,
+                    lattice_text(input, input.fracture_time_stepping(), RunKind::fracture, claims, !options.no_report));
     return ExitCode::done;
   }
   require_memory(memory);
@@ -207,10 +207,10 @@ ExitCode run_fracture(const Options &options)
   Results results;
   if (claims)
     results = passed_or_reported(input, options, run);
-  const Crack crack = break_sheet(input, sheet, material, options.skip_verification, checkpoints, run);
+  const Crack crack = run_crack(input, sheet, material, options.skip_verification, checkpoints, run);
   results.add(crack.results);
   const ExitCode exit_code = run.end(results, interrupted() ? ExitCode::interrupted : exit_code_of(results));
-  if (run.talks())
+  if (run.is_verbose())
   {
     if (options.verbose)
       results.print(std::cout);

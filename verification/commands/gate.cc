@@ -59,7 +59,7 @@ Stored look_up(const Case &input, const std::optional<std::string> &folder)
 // The same on all ranks.
 Stored look_up_on_first_rank(const Case &input, const Run &run, const std::optional<std::string> &folder)
 {
-  const Stored stored = run.writes() ? look_up(input, folder) : Stored();
+  const Stored stored = run.is_root() ? look_up(input, folder) : Stored();
   const auto shared = [](const std::string &text) { return dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, text); };
   return {shared(stored.key), shared(stored.text), shared(stored.note)};
 }
@@ -71,7 +71,7 @@ void append(std::string &note, const std::string &more)
 
 } // namespace
 
-Results passed_claims(const Case &input, Run &run)
+Results require_verified(const Case &input, Run &run)
 {
   const auto phase = run.info().stopwatch().phase("claims");
   const std::optional<std::string> folder = VerdictStore::folder_of_user();
@@ -101,7 +101,7 @@ Results passed_claims(const Case &input, Run &run)
   if (!reused)
   {
     verdicts.emplace(run_claims(input, {}, quick, Shells::own, laws_of_lattice())); // bonds break, no finite elements
-    if (run.writes() && folder && !key.text.empty())
+    if (run.is_root() && folder && !key.text.empty())
       try
       {
         VerdictStore(*folder).write(key, verdicts_text(key, *verdicts));
@@ -120,13 +120,13 @@ Results passed_claims(const Case &input, Run &run)
   run.info().add("verification", record);
   const std::string origin = reused ? "verdicts of " + verdicts->checked_at + ", hash " + key.hash + ", reused"
                                     : "checked now" + (kept ? ", hash " + key.hash + ", kept" : std::string());
-  if (run.talks())
+  if (run.is_verbose())
   {
     if (!stored.note.empty())
       std::cout << "claims: " << stored.note << "\n";
     std::cout << "claims: " << origin << std::endl;
   }
-  if (run.writes())
+  if (run.is_root())
     verdicts->write_tables(run.directory());
   if (!verdicts->results.all_hold())
   {

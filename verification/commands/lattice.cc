@@ -48,8 +48,8 @@ Results relaxed(const Case &input, const lattice::TriangularLattice &sheet, cons
 }
 
 // On every rank, with the same results.
-Results moved(const Case &input, const lattice::RowBand &band, const lattice::Material &material, lattice::State state,
-              Checkpoints &checkpoints, Run &run)
+Results moved(const Case &input, const lattice::RowPartition &band, const lattice::Material &material,
+              lattice::State state, Checkpoints &checkpoints, Run &run)
 {
   lattice::TimeStepping stepping = input.lattice_time_stepping();
   if (!input.time_step)
@@ -92,7 +92,7 @@ ExitCode run_lattice(const Options &options)
 
   const lattice::TriangularLattice sheet = input.lattice();
   const lattice::Material material = input.material();
-  const LatticeRun kind = moves ? LatticeRun::moved : LatticeRun::relaxed;
+  const RunKind kind = moves ? RunKind::dynamics : RunKind::equilibrium;
   const MemoryNeed memory = lattice_memory(input, kind);
   if (options.dry_run)
   {
@@ -107,7 +107,7 @@ ExitCode run_lattice(const Options &options)
   Run run(options, parameters);
   run.note(checkpoints);
   Results results;
-  const auto state_of = [&](const lattice::RowBand &band)
+  const auto state_of = [&](const lattice::RowPartition &band)
   {
     lattice::State state = lattice_state(input, band);
     lattice::add_noise(state, band, input.noise_amplitude * input.spacing, input.noise_seed);
@@ -115,10 +115,10 @@ ExitCode run_lattice(const Options &options)
   };
   if (moves)
   {
-    const lattice::RowBand band(sheet, MPI_COMM_WORLD);
+    const lattice::RowPartition band(sheet, MPI_COMM_WORLD);
     results = moved(input, band, material, state_of(band), checkpoints, run);
   }
-  else if (run.writes()) // equilibrium is a matter of the first rank
+  else if (run.is_root()) // equilibrium is a matter of the first rank
     results = relaxed(input, sheet, material, state_of(sheet), run);
   return interrupted() ? run.interrupted(results) : run.finish(results);
 }

@@ -18,17 +18,17 @@ LatticeMotion::LatticeMotion(const Case &input, lattice::Simulation &simulation,
 void LatticeMotion::add_frame()
 {
   const lattice::State &whole = simulation_.gather();
-  if (run_.writes())
+  if (run_.is_root())
     frames_.add_frame(whole);
 }
 
 void LatticeMotion::write_tables() const
 {
-  if (run_.writes())
+  if (run_.is_root())
     record_.write_tables(run_.directory());
 }
 
-// Refuses what a checkpoint says of the course of the motion before any of it is used. @throws std::invalid_argument
+// Refuses what a checkpoint says of the callbacks of the motion before any of it is used. @throws std::invalid_argument
 void LatticeMotion::check_loaded()
 {
   const double time = simulation_.state().time, step = simulation_.time_step(), done = static_cast<double>(step_);
@@ -36,7 +36,7 @@ void LatticeMotion::check_loaded()
   require_course(*checkpoints_.found(), step_, time, done * step, done * std::numeric_limits<double>::epsilon() * time);
   lattice::require_archived(time <= input_.end_time + step, "`time` is after the end");
   // A frame at the start, and one an interval, but no more than one a step.
-  if (run_.writes() && input_.frame_interval > 0.)
+  if (run_.is_root() && input_.frame_interval > 0.)
   {
     const double frames = static_cast<double>(frames_.n_frames());
     lattice::require_archived(frames >= 1. && frames <= done + 1. &&
@@ -46,14 +46,14 @@ void LatticeMotion::check_loaded()
   }
 }
 
-void LatticeMotion::go(const Course &course, bool resumed, const std::function<void()> &write_checkpoint)
+void LatticeMotion::go(const StepCallbacks &callbacks, bool resumed, const std::function<void()> &write_checkpoint)
 {
   const SignalDeferral deferral;
   if (resumed)
   {
     // What was written after the checkpoint goes.
     write_tables();
-    if (run_.writes())
+    if (run_.is_root())
       frames_.write_collection();
   }
   else
@@ -61,13 +61,13 @@ void LatticeMotion::go(const Course &course, bool resumed, const std::function<v
     record_.start();
     add_frame();
   }
-  if (course.begin)
-    course.begin(resumed);
-  Progress progress(run_.talks());
+  if (callbacks.begin)
+    callbacks.begin(resumed);
+  Progress progress(run_.is_verbose());
   try
   {
-    const auto phase = run_.info().stopwatch().phase(course.phase);
-    while (course.goes_on())
+    const auto phase = run_.info().stopwatch().phase(callbacks.phase);
+    while (callbacks.goes_on())
     {
       if (step_ % steps_between_signals == 0)
       {
@@ -80,7 +80,7 @@ void LatticeMotion::go(const Course &course, bool resumed, const std::function<v
           write_checkpoint();
       }
       ++step_;
-      course.after_step(simulation_.step());
+      callbacks.after_step(simulation_.step());
       if (step_ % input_.energy_interval == 0)
         record_.energies();
       if (input_.frame_interval > 0. && simulation_.state().time >= next_frame_)
@@ -92,7 +92,7 @@ void LatticeMotion::go(const Course &course, bool resumed, const std::function<v
       }
       if (progress.due())
       {
-        const auto [text, done] = course.progress();
+        const auto [text, done] = callbacks.progress();
         progress.show("step " + std::to_string(step_) + text, done);
       }
     }

@@ -24,7 +24,7 @@ public:
   LatticeMotion(const Case &input, lattice::Simulation &simulation, Checkpoints &checkpoints, Run &run);
 
   /// How one motion differs from another.
-  struct Course
+  struct StepCallbacks
   {
     std::string phase;             ///< under which its time is noted in run.json
     std::function<bool()> goes_on; ///< whether there is a further step
@@ -37,8 +37,8 @@ public:
   /// if it blows up, the last frame shows where it got to, and the tables tell what was noted.
   /// @param further archives what else belongs to the motion, given an archive
   /// @throws SolverError if the sheet blows up, OutputError
-  template <class Further>
-  void go(const Course &course, const Further &further)
+  template <class ExtraState>
+  void go(const StepCallbacks &callbacks, const ExtraState &further)
   {
     const auto parts = [&](auto &archive)
     {
@@ -52,7 +52,7 @@ public:
         check_loaded();
     };
     const bool resumed = checkpoints_.resume(parts);
-    go(course, resumed,
+    go(callbacks, resumed,
        [&]
        {
          record_.check();
@@ -65,7 +65,7 @@ public:
 
 private:
   void check_loaded();
-  void go(const Course &course, bool resumed, const std::function<void()> &write_checkpoint);
+  void go(const StepCallbacks &callbacks, bool resumed, const std::function<void()> &write_checkpoint);
   void add_frame();
   void write_tables() const;
 

@@ -77,7 +77,7 @@ class PoolProgress
 {
 public:
   PoolProgress(const std::vector<PlannedRun> &plan, const std::vector<std::size_t> &jobs, bool wanted)
-    : plan_(plan), jobs_(jobs), line_(wanted), talks_(wanted), start_(std::chrono::steady_clock::now())
+    : plan_(plan), jobs_(jobs), line_(wanted), is_verbose_(wanted), start_(std::chrono::steady_clock::now())
   {
     for (const std::size_t run : jobs)
       total_ += plan[run].cost();
@@ -87,7 +87,7 @@ public:
   {
     ++n_ended_;
     done_ += plan_[run].cost();
-    if (talks_)
+    if (is_verbose_)
       std::cout << "[" << n_ended_ << "/" << jobs_.size() << "] " << plan_[run].folder() << ": " << result_line(outcome)
                 << ", " << std::lround(outcome.wall_time) << " s" << std::endl;
   }
@@ -109,7 +109,7 @@ private:
   const std::vector<PlannedRun> &plan_;
   const std::vector<std::size_t> &jobs_;
   Progress line_;
-  bool talks_;
+  bool is_verbose_;
   std::chrono::steady_clock::time_point start_;
   std::size_t n_ended_ = 0;
   double done_ = 0., total_ = 0.;
@@ -131,14 +131,14 @@ bool run_children(StudyResults &results, const Options &options, bool skip_verif
     else
       jobs.push_back(i);
   }
-  if (run.talks())
+  if (run.is_verbose())
     std::cout << jobs.size() << " runs, " << results.plan.size() - jobs.size() << " are there already" << std::endl;
 
   for (const char *folder : {"/cases", "/runs"})
     fs::create_directory(run.directory() + folder);
   for (const PlannedRun &planned : results.plan)
     write_file(case_file_of(run, planned), planned.case_text);
-  PoolProgress progress(results.plan, jobs, run.talks());
+  PoolProgress progress(results.plan, jobs, run.is_verbose());
   ProcessPool pool;
   pool.n_jobs = jobs.size();
   pool.limit = n_cores;
@@ -175,7 +175,7 @@ void run_checks(StudyResults &results, bool quick, Run &run)
   const auto phase = run.info().stopwatch().phase("checks");
   for (const std::string &name : results.study.checks)
   {
-    if (run.talks())
+    if (run.is_verbose())
       std::cout << "check " << name << std::endl;
     results.checks.push_back(run_check(name, quick, run.directory()));
   }
@@ -195,7 +195,7 @@ void verify_base(const Study &study, const std::vector<std::string> &settings, R
   Parameters parameters;
   read_case(base, input, parameters);
   parameters.finish();
-  (void)passed_claims(input, run);
+  (void)require_verified(input, run);
 }
 
 // Of as many of the largest runs as go at once, each a program of its own.
@@ -270,13 +270,13 @@ ExitCode run_study(const Options &options, const std::string &name)
     write_tables();
   }
   const Results rows = study_rows(results);
-  if (run.talks())
+  if (run.is_verbose())
     print_table(std::cout, results);
   const ExitCode exit_code = run.end(rows, complete ? exit_code_of(results, rows) : ExitCode::interrupted);
   if (complete)
   {
     study_page(run.directory());
-    if (run.talks())
+    if (run.is_verbose())
       std::cout << run.directory() << "/study.html" << std::endl;
   }
   return exit_code;

@@ -165,7 +165,7 @@ ExitCode verify(const Options &options)
       outcome.add(run_claims(input, {name}, options.quick, Shells::own_and_nearest,
                              options.case_is_given ? laws_of(input) : all_laws()));
       // What is known if a signal ends the claims that follow.
-      if (run.writes())
+      if (run.is_root())
       {
         outcome.write_tables(run.directory());
         outcome.results.write(run.directory());

@@ -34,17 +34,17 @@ void write_row(std::ostream &out, std::initializer_list<double> values)
 }
 
 // The site that moves fastest, one that is not at a finite place or speed before all others.
-struct Wildest
+struct FastestSite
 {
   std::size_t place = 0;
   double speed = -1.; // [m/s]
 };
 
-Wildest wildest_site(const lattice::Simulation &simulation)
+FastestSite fastest_site(const lattice::Simulation &simulation)
 {
   const lattice::TriangularLattice &sheet = simulation.lattice();
   const lattice::State &state = simulation.state();
-  Wildest wildest;
+  FastestSite fastest;
   const lattice::Rows rows = simulation.band().rows();
   for (std::size_t row = rows.begin; row < rows.end; ++row)
     for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
@@ -53,13 +53,13 @@ Wildest wildest_site(const lattice::Simulation &simulation)
       double speed = std::hypot(state.vx[place], state.vy[place]);
       if (!std::isfinite(speed) || !std::isfinite(state.x[place]) || !std::isfinite(state.y[place]))
         speed = std::numeric_limits<double>::infinity();
-      if (speed > wildest.speed)
-        wildest = {place, speed};
+      if (speed > fastest.speed)
+        fastest = {place, speed};
     }
-  for (const Wildest &other : simulation.band().joined(std::vector<Wildest>{wildest}))
-    if (other.speed > wildest.speed || (other.speed == wildest.speed && other.place < wildest.place))
-      wildest = other;
-  return wildest;
+  for (const FastestSite &other : simulation.band().all_gather(std::vector<FastestSite>{fastest}))
+    if (other.speed > fastest.speed || (other.speed == fastest.speed && other.place < fastest.place))
+      fastest = other;
+  return fastest;
 }
 
 } // namespace
@@ -116,16 +116,16 @@ lattice::EnergyBalance CrackRecord::sound_energies()
     last_sound_ = {simulation_.state(), simulation_.band()};
     return balance;
   }
-  const Wildest wildest = wildest_site(simulation_);
-  const Eigen::Vector2d X = simulation_.lattice().reference(wildest.place);
+  const FastestSite fastest = fastest_site(simulation_);
+  const Eigen::Vector2d X = simulation_.lattice().reference(fastest.place);
   std::ostringstream message;
   message << "the lattice blew up: at " << simulation_.state().time << " s it holds " << balance.elastic
           << " J/m elastic and " << balance.kinetic << " J/m kinetic energy, of " << available
-          << " J/m it was given; the wildest is site " << simulation_.lattice().site_number(wildest.place)
-          << " at X = " << X.x() << " m, Y = " << X.y() << " m, with " << wildest.speed
+          << " J/m it was given; the fastest is site " << simulation_.lattice().site_number(fastest.place)
+          << " at X = " << X.x() << " m, Y = " << X.y() << " m, with " << fastest.speed
           << " m/s; the last frame shows the sheet at " << last_sound_.time()
           << " s, when it was sound; a smaller Time/safety factor may help";
-  simulation_.look_back(last_sound_);
+  simulation_.show_snapshot(last_sound_);
   throw SolverError(message.str());
 }
 

@@ -27,7 +27,7 @@ public:
 
   /// Looks whether the sheet is still sound, and keeps it in mind as it is. Collective.
   /// @throws SolverError if its energies are not finite or more than there can be, saying when and where it comes
-  /// apart; the simulation then shows the last sound state (see lattice::Simulation::look_back)
+  /// apart; the simulation then shows the last sound state (see lattice::Simulation::show_snapshot)
   void check() { (void)sound_energies(); }
 
   /// Reference X of the tip [m]; 0 without one.

@@ -95,9 +95,9 @@ std::vector<Number> field_numbers(const lattice::NearTipField &field, std::optio
   add("vortex_distance", any ? std::optional<double>(vortices->front().position.norm()) : std::nullopt);
   add("vortex_circulation", any ? std::optional<double>(vortices->front().circulation) : std::nullopt);
   add("tip_circulation", lattice::circulation(field, Eigen::Vector2d::Zero(), tip_loop * spacing, true));
-  std::optional<lattice::ProcessZone> process;
+  std::optional<lattice::FollowingZone> process;
   if (process_zone_speed)
-    process = lattice::process_zone(field, *process_zone_speed);
+    process = lattice::following_zone(field, *process_zone_speed);
   add("process_zone_length", process ? std::optional<double>(process->length) : std::nullopt);
   add("process_zone_fastest", process ? std::optional<double>(process->fastest) : std::nullopt);
   add("process_zone_share",
@@ -122,7 +122,7 @@ Eigen::Matrix2d stress_of_loaded_sheet(const Case &input)
   const double side = 12. * input.spacing;
   const lattice::TriangularLattice sheet(input.spacing, side, side, input.orientation);
   const lattice::Material material = input.material();
-  const lattice::RowBand whole(sheet);
+  const lattice::RowPartition whole(sheet);
   const lattice::State state =
     lattice::homogeneous_state(whole, material, input.deformation(), {true, true, true, true});
   const std::size_t row = sheet.rows() / 2;

@@ -36,7 +36,7 @@ void make_mesh(Mesh &mesh, const CutSheet &sheet, const EquivalentSheet &domain,
   }
 }
 
-continuum::Conditions conditions(const CutSheet &sheet)
+continuum::BoundaryConditions conditions(const CutSheet &sheet)
 {
   const auto displacement = std::make_shared<AffineDisplacement>(sheet.F);
   const bool held[] = {sheet.held.left, sheet.held.right, sheet.held.bottom, sheet.held.top};
@@ -44,7 +44,7 @@ continuum::Conditions conditions(const CutSheet &sheet)
   for (dealii::types::boundary_id id = 0; id < 4; ++id)
     if (held[id])
       list.push_back({id, displacement});
-  return continuum::Conditions(list);
+  return continuum::BoundaryConditions(list);
 }
 
 // Where the continuum is asked, in its own coordinates, and from where it is continued linearly to the site: sites

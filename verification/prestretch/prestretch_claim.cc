@@ -102,7 +102,8 @@ std::vector<Row> compare(const Subject &subject, const lattice::TriangularLattic
   continuum::StaticSettings settings;
   settings.degree = options.degree;
   settings.relative_tolerance = 1e-12;
-  continuum::StaticSolver solver(mesh, law, continuum::Conditions(affine_boundary(subject.deformation)), settings);
+  continuum::StaticSolver solver(mesh, law, continuum::BoundaryConditions(affine_boundary(subject.deformation)),
+                                 settings);
   solver.solve();
 
   std::vector<dealii::Point<2>> points;

@@ -128,7 +128,7 @@ double measured_seconds_per_site_step(const Case &input, const lattice::TimeStep
     fracture.emplace(sheet, material, *input.breaking_stretch, input.toughening_rule(), input.deformation());
   lattice::Simulation simulation(sheet, material, std::move(state), stepping, std::move(fracture));
   if (breaks && input.has_contact)
-    simulation.let_touch(input.contact_law());
+    simulation.enable_contact(input.contact_law());
   simulation.step();
   const Clock::time_point start = Clock::now();
   double elapsed = 0., steps = 0.;
@@ -143,20 +143,20 @@ double measured_seconds_per_site_step(const Case &input, const lattice::TimeStep
 
 } // namespace
 
-MemoryNeed lattice_memory(const Case &input, const LatticeRun run, const bool claims)
+MemoryNeed lattice_memory(const Case &input, const RunKind run, const bool claims)
 {
   const lattice::TriangularLattice sheet = input.lattice();
   const double places = static_cast<double>(sheet.n_places()), sites = static_cast<double>(sheet.n_sites());
-  const bool is_chebyshev = run != LatticeRun::relaxed && input.integrator == Case::Integrator::runge_kutta_chebyshev;
+  const bool is_chebyshev = run != RunKind::equilibrium && input.integrator == Case::Integrator::runge_kutta_chebyshev;
   const double bonds = input.has_next_nearest ? 6. : 3.;
   const double frame = sites * (bytes_of_site_in_frame + bonds * bytes_of_bond_in_frame);
-  const double checkpoint = run != LatticeRun::relaxed ? sites * bytes_of_site_in_checkpoint : 0.;
+  const double checkpoint = run != RunKind::equilibrium ? sites * bytes_of_site_in_checkpoint : 0.;
   const double fields = places * (bytes_of_place + (is_chebyshev ? bytes_of_chebyshev_place : 0.));
   MemoryNeed need;
   // Equilibrium is a matter of the first rank.
-  (run == LatticeRun::relaxed ? need.first_rank : need.shared) = fields;
+  (run == RunKind::equilibrium ? need.first_rank : need.shared) = fields;
   need.first_rank += std::max(frame, checkpoint);
-  if (run == LatticeRun::broken && near_tip_interval(input) > 0.)
+  if (run == RunKind::fracture && near_tip_interval(input) > 0.)
     need.first_rank += near_tip_window(input) / sheet.site_area() * bytes_of_site_near_tip;
   if (claims && need.shared + need.first_rank < bytes_of_claims)
     need.shared = bytes_of_claims - need.first_rank;
@@ -264,23 +264,23 @@ std::string memory_text(const MemoryNeed &need)
   return text.str();
 }
 
-double lattice_seconds(const Case &input, const lattice::TimeStepping &stepping, const LatticeRun run,
-                       const double steps, const double frames)
+double lattice_seconds(const Case &input, const lattice::TimeStepping &stepping, const RunKind run, const double steps,
+                       const double frames)
 {
   // One part of a step is measured: a whole one may take longer than anybody waits for an estimate.
   const double parts = parts_of_first_step(input, stepping, run);
   lattice::TimeStepping part = stepping;
   part.step /= parts;
-  const double per_site_step = measured_seconds_per_site_step(input, part, run == LatticeRun::broken);
+  const double per_site_step = measured_seconds_per_site_step(input, part, run == RunKind::fracture);
   const lattice::TriangularLattice sheet = input.lattice();
   const double sites = static_cast<double>(sheet.n_sites());
   const double written = seconds_of_start + frames * sites * seconds_of_site_in_frame;
-  if (run == LatticeRun::relaxed)
+  if (run == RunKind::equilibrium)
     return written + per_site_step * sites *
                        std::max(evaluations_relaxed, evaluations_relaxed_per_column *
                                                        static_cast<double>(std::max(sheet.columns(), sheet.rows())));
   const double ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
-  return written + (run == LatticeRun::broken ? beside_kernel : 1.) * per_site_step * sites * steps * parts / ranks;
+  return written + (run == RunKind::fracture ? beside_kernel : 1.) * per_site_step * sites * steps * parts / ranks;
 }
 
 double expected_steps(const Case &input, const lattice::TimeStepping &stepping)
@@ -291,13 +291,13 @@ double expected_steps(const Case &input, const lattice::TimeStepping &stepping)
   return std::ceil(std::min(input.end_time, passage) / stepping.step);
 }
 
-double parts_of_first_step(const Case &input, const lattice::TimeStepping &stepping, const LatticeRun run)
+double parts_of_first_step(const Case &input, const lattice::TimeStepping &stepping, const RunKind run)
 {
   const lattice::TriangularLattice sheet = input.lattice();
   const lattice::Material material = input.material();
   const Eigen::Matrix2d F = input.deformation();
   std::optional<lattice::ContactLaw> contact;
-  if (run == LatticeRun::broken && input.has_contact)
+  if (run == RunKind::fracture && input.has_contact)
     contact = input.contact_law();
   double parts = 1.;
   for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)

@@ -11,11 +11,11 @@ namespace verification
 {
 
 /// What is computed with a lattice.
-enum class LatticeRun
+enum class RunKind
 {
-  relaxed, ///< `latcon lattice`, equilibrium
-  moved,   ///< `latcon lattice`, motion
-  broken   ///< `latcon fracture`
+  equilibrium, ///< `latcon lattice`, equilibrium
+  dynamics,    ///< `latcon lattice`, motion
+  fracture     ///< `latcon fracture`
 };
 
 /// Memory of a run, beyond what its processes hold before it starts [bytes].
@@ -27,7 +27,7 @@ struct MemoryNeed
 
 /// Of a lattice: fields of all places, and a frame of all sites, or the image of a checkpoint, on the first rank.
 /// @param claims whether the claims are checked before the crack
-[[nodiscard]] MemoryNeed lattice_memory(const Case &input, LatticeRun run, bool claims = false);
+[[nodiscard]] MemoryNeed lattice_memory(const Case &input, RunKind run, bool claims = false);
 
 /// A finite element problem, as far as its cost depends on it.
 struct ContinuumSize
@@ -57,7 +57,7 @@ void require_memory(const MemoryNeed &need);
 /// some tenths of a second. Collective.
 /// @param steps expected number of time steps
 /// @param frames number of frames written
-[[nodiscard]] double lattice_seconds(const Case &input, const lattice::TimeStepping &stepping, LatticeRun run,
+[[nodiscard]] double lattice_seconds(const Case &input, const lattice::TimeStepping &stepping, RunKind run,
                                      double steps, double frames);
 
 /// The claims in their small versions, and the pictures and the page of a crack, on one core [s].
@@ -68,7 +68,7 @@ inline constexpr double seconds_of_claims = 8., seconds_of_report = 9.; ///< see
 
 /// Parts into which the first step is divided because bonds of the loaded sheet are short (theory.md, eq. (L.24)); 1:
 /// none.
-[[nodiscard]] double parts_of_first_step(const Case &input, const lattice::TimeStepping &stepping, LatticeRun run);
+[[nodiscard]] double parts_of_first_step(const Case &input, const lattice::TimeStepping &stepping, RunKind run);
 
 /// Time that a finite element run takes [s], from costs per unknown and iteration that were measured on one core.
 /// @param steps of a motion; 0 for an equilibrium

@@ -64,7 +64,7 @@ PlannedRun plan_run(const Study &study, const InputFile &base, const StudyRun &r
   planned.zeta = zeta(input);
   planned.entries = numbers_in(planned.case_text);
   planned.sites = sheet.n_sites();
-  const MemoryNeed memory = lattice_memory(input, LatticeRun::broken, true);
+  const MemoryNeed memory = lattice_memory(input, RunKind::fracture, true);
   planned.memory = memory.shared + memory.first_rank;
   const lattice::TimeStepping stepping = input.fracture_time_stepping();
   planned.steps = expected_steps(input, stepping) * stepping.evaluations();

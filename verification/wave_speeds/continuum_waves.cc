@@ -64,9 +64,9 @@ continuum::Rectangle one_wavelength(const Eigen::Vector2d &K, unsigned int cells
   return rectangle;
 }
 
-continuum::Conditions periodic_edges()
+continuum::BoundaryConditions periodic_edges()
 {
-  continuum::Conditions conditions;
+  continuum::BoundaryConditions conditions;
   conditions.periodic = {{continuum::edge::left, continuum::edge::right, 0},
                          {continuum::edge::bottom, continuum::edge::top, 1}};
   return conditions;
@@ -80,8 +80,8 @@ public:
             const Eigen::Vector2d &K)
     : sheet_(sheet), waves_(plane_waves(elastic(continuum_matrices(medium, F, K)), wave_normal(F, K)))
   {
-    sheet.make_matrix(sheet.continuity(), mass_);
-    sheet.mass(medium.inertia.density, medium.inertia.length, sheet.continuity(), mass_);
+    sheet.make_matrix(sheet.conformity_constraints(), mass_);
+    sheet.mass(medium.inertia.density, medium.inertia.length, sheet.conformity_constraints(), mass_);
     base_ = interpolated(sheet, AffineDisplacement(F));
     for (std::size_t w = 0; w < 2; ++w)
       shapes_[w] = interpolated(sheet, CosineWave(K, waves_[w].polarisation));
@@ -99,7 +99,7 @@ public:
     A.vmult(product, y);
     double sum = 0.;
     for (const auto i : sheet_.owned())
-      if (!sheet_.continuity().is_constrained(i))
+      if (!sheet_.conformity_constraints().is_constrained(i))
         sum += x(i) * product(i);
     return sum;
   }
@@ -108,7 +108,7 @@ public:
   void clear_dependent(Vector &b) const
   {
     for (const auto i : sheet_.owned())
-      if (sheet_.continuity().is_constrained(i))
+      if (sheet_.conformity_constraints().is_constrained(i))
         b(i) = 0.;
     b.compress(dealii::VectorOperation::insert);
   }
@@ -225,8 +225,8 @@ std::array<double, 2> discrete_frequencies(const WaveContinuum &medium, const Ei
   Vector u = sheet.make_ghosted();
   u = wave_sheet.base();
   continuum::Sheet::Matrix stiffness;
-  sheet.make_matrix(sheet.continuity(), stiffness);
-  sheet.tangent(u, sheet.continuity(), stiffness);
+  sheet.make_matrix(sheet.conformity_constraints(), stiffness);
+  sheet.tangent(u, sheet.conformity_constraints(), stiffness);
   continuum::LinearSolver solver(sheet, {}, {});
 
   // Both waves at once, by inverse iteration with a shift below them. Translations by whole cells keep waves of other
@@ -235,7 +235,7 @@ std::array<double, 2> discrete_frequencies(const WaveContinuum &medium, const Ei
   const auto quotient = [&](std::size_t w)
   { return wave_sheet.form(stiffness, x[w], x[w]) / wave_sheet.form(wave_sheet.mass(), x[w], x[w]); };
   continuum::Sheet::Matrix shifted;
-  sheet.make_matrix(sheet.continuity(), shifted);
+  sheet.make_matrix(sheet.conformity_constraints(), shifted);
   shifted.add(1., stiffness);
   shifted.add(0.1 * smallest_of({quotient(0), quotient(1)}), wave_sheet.mass());
   Vector b = sheet.make_owned();
@@ -247,7 +247,7 @@ std::array<double, 2> discrete_frequencies(const WaveContinuum &medium, const Ei
     wave_sheet.clear_dependent(b);
     solver.solve(shifted, y, b);
     y *= 1. / y.linfty_norm();
-    sheet.continuity().distribute(y);
+    sheet.conformity_constraints().distribute(y);
   }
   // The errors of the eigenvalues in the space of the two vectors are the squares of those of the vectors.
   Eigen::Matrix2d K2, M2;

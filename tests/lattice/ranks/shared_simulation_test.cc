@@ -32,7 +32,7 @@ void expect_same_energies(const EnergyBalance &shared, const EnergyBalance &alon
 void expect_same_state(Simulation &shared, const State &alone)
 {
   const TriangularLattice &sheet = shared.lattice();
-  const RowBand &band = shared.band();
+  const RowPartition &band = shared.band();
   const State &state = shared.gather();
   for (std::size_t row = 0; row < sheet.rows(); ++row)
     for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
@@ -68,7 +68,7 @@ struct Variant
 
 struct Crack
 {
-  Crack(const Variant &variant, const RowBand &band, const Material &material)
+  Crack(const Variant &variant, const RowPartition &band, const Material &material)
   {
     const TriangularLattice &sheet = band.lattice();
     const Eigen::Matrix2d F = sheets::stretched(2.3, 2.9);
@@ -80,7 +80,8 @@ struct Crack
     if (variant.right != EndLoads::End::held)
       simulation->load_ends(F, EndLoads::End::held, variant.right);
     if (variant.contact > 0.)
-      simulation->let_touch(contact_like_nearest_bond(sheet, material, variant.contact * sheets::spacing, 0.1, 0.1));
+      simulation->enable_contact(
+        contact_like_nearest_bond(sheet, material, variant.contact * sheets::spacing, 0.1, 0.1));
     // A line of sites at Y = 0 along X, in one row or one in every second row.
     std::vector<std::size_t> seed;
     for (std::size_t n = 4; n < 12; ++n)
@@ -114,7 +115,7 @@ TEST_P(SharedCrack, HasTheBitsOfOneRank)
   const TriangularLattice sheet(sheets::spacing, 40. * sheets::spacing, variant.height * sheets::spacing,
                                 variant.orientation);
   const Material &material = variant.material;
-  Crack shared(variant, RowBand(sheet, MPI_COMM_WORLD), material), alone(variant, sheet, material);
+  Crack shared(variant, RowPartition(sheet, MPI_COMM_WORLD), material), alone(variant, sheet, material);
   Simulation &ours = *shared.simulation, &theirs = *alone.simulation;
   std::size_t touching = 0;
   for (int step = 0; step < 3000; ++step)
@@ -160,7 +161,7 @@ TEST(SharedDivision, HasTheBitsOfOneRank)
                         EndLoads::End::held,           material};
   const TriangularLattice sheet(sheets::spacing, 24. * sheets::spacing, variant.height * sheets::spacing,
                                 variant.orientation);
-  Crack shared(variant, RowBand(sheet, MPI_COMM_WORLD), material), alone(variant, sheet, material);
+  Crack shared(variant, RowPartition(sheet, MPI_COMM_WORLD), material), alone(variant, sheet, material);
   Simulation &ours = *shared.simulation, &theirs = *alone.simulation;
   for (int step = 0; step < 110; ++step)
   {
@@ -187,13 +188,13 @@ TEST_P(SharedMotion, HasTheBitsOfOneRank)
     {
       const TriangularLattice sheet(sheets::spacing, n * sheets::spacing, n * sheets::spacing, orientation, GetParam());
       const Material material = sheets::rubber();
-      const auto start = [&](const RowBand &band)
+      const auto start = [&](const RowPartition &band)
       {
         State state = homogeneous_state(band, material, sheets::stretched(1.3, 1.6), Edges::held);
         add_noise(state, band, 0.05 * sheets::spacing, 3);
         return std::make_unique<Simulation>(band, material, std::move(state), 1e-7);
       };
-      const auto ours = start(RowBand(sheet, MPI_COMM_WORLD)), theirs = start(sheet);
+      const auto ours = start(RowPartition(sheet, MPI_COMM_WORLD)), theirs = start(sheet);
       for (int step = 0; step < 100; ++step)
       {
         ours->step();

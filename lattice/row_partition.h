@@ -16,7 +16,7 @@ namespace lattice
 /// A field over the places of a lattice, one value each, margin included. Make one of zeros as Field(n): see ZeroPages.
 using Field = std::vector<double, ZeroPages<double>>;
 /// The same for small whole numbers.
-using Marks = std::vector<std::uint8_t, ZeroPages<std::uint8_t>>;
+using SiteFlags = std::vector<std::uint8_t, ZeroPages<std::uint8_t>>;
 
 /// The rows begin, begin + 1, ... end - 1.
 struct Rows
@@ -33,19 +33,19 @@ struct Rows
 ///
 /// A lattice converts to the band of all its rows, for which nothing is communicated and MPI need not be running. Where
 /// a function is said to be collective, all ranks must call it.
-class RowBand
+class RowPartition
 {
 public:
   /// All rows. The lattice must outlive this object.
-  RowBand(const TriangularLattice &lattice); // NOLINT(google-explicit-constructor)
+  RowPartition(const TriangularLattice &lattice); // NOLINT(google-explicit-constructor)
 
   /// The share of the calling process in `communicator`. Bands differ by one row at most.
-  RowBand(const TriangularLattice &lattice, MPI_Comm communicator);
+  RowPartition(const TriangularLattice &lattice, MPI_Comm communicator);
 
   const TriangularLattice &lattice() const { return *lattice_; }
   Rows rows() const { return {first_rows_[rank_], first_rows_[rank_ + 1]}; } ///< that this rank moves
   bool owns(std::size_t place) const; ///< whether a place, margin included, is in one of its rows
-  bool knows(std::size_t place) const { return knows_[padded_row(place)] != 0; } ///< or in its halo
+  bool is_relevant(std::size_t place) const { return is_relevant_[padded_row(place)] != 0; } ///< or in its halo
   /// The rows of other ranks that it needs, by increasing number.
   std::vector<std::size_t> halo() const { return halo_of(rank_); }
   std::vector<std::size_t> known_rows() const; ///< own ones and halo, by increasing number
@@ -65,10 +65,10 @@ public:
   /// The lists of all ranks one after the other. Collective; costs one short message where all lists are empty.
   /// @param number in: of this rank, out: the largest over all ranks, sent with the same message; nullptr: none
   template <class T>
-  std::vector<T> joined(const std::vector<T> &own, int *number = nullptr) const;
+  std::vector<T> all_gather(const std::vector<T> &own, int *number = nullptr) const;
 
   /// Gives every rank the values of `fields` at some places. Collective. @param places the same on all ranks
-  void share(const std::vector<std::size_t> &places, const std::vector<Field *> &fields) const;
+  void broadcast_from_owners(const std::vector<std::size_t> &places, const std::vector<Field *> &fields) const;
 
   /// Gives the first rank the values in `rows`, margin of columns included. Collective.
   template <class Vector>
@@ -82,12 +82,12 @@ private:
   const TriangularLattice *lattice_;
   MPI_Comm communicator_;
   std::size_t rank_;
-  std::vector<std::size_t> first_rows_; // of each rank, and the number of rows
-  std::vector<std::uint8_t> knows_;     // by row with margin
+  std::vector<std::size_t> first_rows_;   // of each rank, and the number of rows
+  std::vector<std::uint8_t> is_relevant_; // by row with margin
 };
 
 template <class T>
-std::vector<T> RowBand::joined(const std::vector<T> &own, int *number) const
+std::vector<T> RowPartition::all_gather(const std::vector<T> &own, int *number) const
 {
   static_assert(std::is_trivially_copyable_v<T>);
   if (!is_shared())
@@ -101,7 +101,7 @@ std::vector<T> RowBand::joined(const std::vector<T> &own, int *number) const
 }
 
 template <class Vector>
-void RowBand::gather(Vector &field, Rows rows) const
+void RowPartition::gather(Vector &field, Rows rows) const
 {
   if (is_shared())
     gather_bytes(field.data(), sizeof(typename Vector::value_type), rows);
@@ -117,7 +117,7 @@ void RowBand::gather(Vector &field, Rows rows) const
 class HaloExchange
 {
 public:
-  explicit HaloExchange(const RowBand &band);
+  explicit HaloExchange(const RowPartition &band);
   HaloExchange(const HaloExchange &) = delete; // messages arrive in its buffers
   HaloExchange &operator=(const HaloExchange &) = delete;
 

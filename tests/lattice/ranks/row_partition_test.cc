@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "lattice/row_band.h"
+#include "lattice/row_partition.h"
 
 namespace
 {
@@ -36,42 +36,42 @@ TEST(Ranks, AreAsManyAsTheTestWants)
 }
 
 // Three rows are fewer than five ranks, five rows give them one each.
-TEST(RowBand, SharesOutAllRows)
+TEST(RowPartition, SharesOutAllRows)
 {
   for (const std::size_t rows : {3u, 5u, 7u, 31u})
   {
     const TriangularLattice sheet = sheet_of(rows);
     ASSERT_EQ(sheet.rows(), rows);
-    const RowBand band(sheet, MPI_COMM_WORLD);
+    const RowPartition band(sheet, MPI_COMM_WORLD);
     std::vector<std::size_t> own;
     for (std::size_t row = band.rows().begin; row < band.rows().end; ++row)
     {
       own.push_back(row);
       EXPECT_EQ(band.owner(row), band.rank());
       EXPECT_TRUE(band.owns(sheet.index(row, 0)));
-      EXPECT_TRUE(band.knows(sheet.index(row, 3)));
+      EXPECT_TRUE(band.is_relevant(sheet.index(row, 3)));
     }
     EXPECT_LE(own.size(), rows / band.n_ranks() + 1);
     EXPECT_GE(own.size(), rows / band.n_ranks());
     for (const std::size_t row : band.halo())
     {
       EXPECT_FALSE(band.owns(sheet.index(row, 0)));
-      EXPECT_TRUE(band.knows(sheet.index(row, 0)));
+      EXPECT_TRUE(band.is_relevant(sheet.index(row, 0)));
     }
     std::vector<std::size_t> all(rows);
     std::iota(all.begin(), all.end(), 0);
-    EXPECT_EQ(band.joined(own), all);
+    EXPECT_EQ(band.all_gather(own), all);
     EXPECT_FALSE(band.owns(0)) << "the margin is nobody's";
   }
 }
 
-TEST(RowBand, KeepsTwoRowsOnEitherSide)
+TEST(RowPartition, KeepsTwoRowsOnEitherSide)
 {
   for (const bool periodic : {false, true})
     for (const std::size_t rows : {4u, 6u, 12u, 30u})
     {
       const TriangularLattice sheet = sheet_of(periodic ? rows : rows + 1, periodic);
-      const RowBand band(sheet, MPI_COMM_WORLD);
+      const RowPartition band(sheet, MPI_COMM_WORLD);
       const auto n = static_cast<std::ptrdiff_t>(sheet.rows());
       for (std::ptrdiff_t row = 0; row < n; ++row)
       {
@@ -80,7 +80,7 @@ TEST(RowBand, KeepsTwoRowsOnEitherSide)
              own < static_cast<std::ptrdiff_t>(band.rows().end); ++own)
           for (const std::ptrdiff_t image : {row - n, row, row + n})
             near = near || (std::abs(own - image) <= 2 && (image == row || periodic));
-        EXPECT_EQ(band.knows(sheet.index(static_cast<std::size_t>(row), 0)), near) << row << " of " << n;
+        EXPECT_EQ(band.is_relevant(sheet.index(static_cast<std::size_t>(row), 0)), near) << row << " of " << n;
       }
     }
 }
@@ -92,7 +92,7 @@ TEST(HaloExchange, BringsTheHaloUpToDate)
     for (const std::size_t rows : {4u, 6u, 10u, 40u})
     {
       const TriangularLattice sheet = sheet_of(periodic ? rows : rows + 1, periodic);
-      const RowBand band(sheet, MPI_COMM_WORLD);
+      const RowPartition band(sheet, MPI_COMM_WORLD);
       HaloExchange halo(band);
       Field one(sheet.n_places()), two(sheet.n_places());
       const auto set = [&](std::size_t begin, std::size_t end)
@@ -118,33 +118,33 @@ TEST(HaloExchange, BringsTheHaloUpToDate)
         for (std::size_t column = 0; column < sheet.columns(); ++column)
         {
           const std::size_t place = sheet.index(row, column);
-          ASSERT_EQ(one[place], band.knows(place) ? value_at(place) : 0.);
-          ASSERT_EQ(two[place], band.knows(place) ? -value_at(place) : 0.);
+          ASSERT_EQ(one[place], band.is_relevant(place) ? value_at(place) : 0.);
+          ASSERT_EQ(two[place], band.is_relevant(place) ? -value_at(place) : 0.);
         }
     }
 }
 
-TEST(RowBand, AddsUpRowsInTheirOrder)
+TEST(RowPartition, AddsUpRowsInTheirOrder)
 {
   const TriangularLattice sheet = sheet_of(31);
   std::vector<double> values(31);
   for (std::size_t row = 0; row < 31; ++row)
     values[row] = std::exp(value_at(row) * 20.); // many magnitudes: another order gives other bits
-  const double expected = RowBand(sheet).sum(values);
+  const double expected = RowPartition(sheet).sum(values);
   EXPECT_EQ(expected, std::accumulate(values.begin(), values.end(), 0.));
-  const RowBand band(sheet, MPI_COMM_WORLD);
+  const RowPartition band(sheet, MPI_COMM_WORLD);
   for (std::size_t row = 0; row < 31; ++row)
     if (row < band.rows().begin || row >= band.rows().end)
       values[row] = 1e30;
   EXPECT_EQ(band.sum(values), expected);
 }
 
-TEST(RowBand, SharesSitesAndGathersRows)
+TEST(RowPartition, SharesSitesAndGathersRows)
 {
   const TriangularLattice sheet = sheet_of(31);
-  const RowBand band(sheet, MPI_COMM_WORLD);
+  const RowPartition band(sheet, MPI_COMM_WORLD);
   Field field(sheet.n_places());
-  Marks marks(sheet.n_places());
+  SiteFlags marks(sheet.n_places());
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
     if (band.owns(place))
     {
@@ -152,7 +152,7 @@ TEST(RowBand, SharesSitesAndGathersRows)
       marks[place] = static_cast<std::uint8_t>(place % 7);
     }
   const std::vector<std::size_t> places{sheet.index(30, 1), sheet.index(2, 5), sheet.index(17, 0), sheet.index(2, 3)};
-  band.share(places, {&field});
+  band.broadcast_from_owners(places, {&field});
   for (const std::size_t place : places)
     EXPECT_EQ(field[place], value_at(place));
   const Rows rows{4, 29};

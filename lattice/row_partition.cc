@@ -1,4 +1,4 @@
-#include "lattice/row_band.h"
+#include "lattice/row_partition.h"
 
 #include <algorithm>
 #include <array>
@@ -14,14 +14,14 @@ constexpr std::ptrdiff_t reach = 2;
 
 } // namespace
 
-RowBand::RowBand(const TriangularLattice &lattice)
+RowPartition::RowPartition(const TriangularLattice &lattice)
   : lattice_(&lattice), communicator_(MPI_COMM_NULL), rank_(0), first_rows_{0, lattice.rows()},
-    knows_(lattice.n_places() / lattice.stride(), 1)
+    is_relevant_(lattice.n_places() / lattice.stride(), 1)
 {
 }
 
-RowBand::RowBand(const TriangularLattice &lattice, MPI_Comm communicator)
-  : lattice_(&lattice), communicator_(communicator), rank_(0), knows_(lattice.n_places() / lattice.stride(), 0)
+RowPartition::RowPartition(const TriangularLattice &lattice, MPI_Comm communicator)
+  : lattice_(&lattice), communicator_(communicator), rank_(0), is_relevant_(lattice.n_places() / lattice.stride(), 0)
 {
   int rank = 0, n_ranks = 1;
   MPI_Comm_rank(communicator, &rank);
@@ -31,10 +31,10 @@ RowBand::RowBand(const TriangularLattice &lattice, MPI_Comm communicator)
   for (std::size_t i = 0; i <= n; ++i)
     first_rows_.push_back(lattice.rows() * i / n);
   for (const std::size_t row : known_rows())
-    knows_[padded_row(lattice.index(row, 0))] = 1;
+    is_relevant_[padded_row(lattice.index(row, 0))] = 1;
 }
 
-std::vector<std::size_t> RowBand::known_rows() const
+std::vector<std::size_t> RowPartition::known_rows() const
 {
   std::vector<std::size_t> known = halo();
   for (std::size_t row = rows().begin; row < rows().end; ++row)
@@ -43,20 +43,20 @@ std::vector<std::size_t> RowBand::known_rows() const
   return known;
 }
 
-bool RowBand::owns(std::size_t place) const
+bool RowPartition::owns(std::size_t place) const
 {
   const Rows own = rows();
   const std::size_t row = lattice_->row_of(place); // beyond all rows where the margin is below them
   return row >= own.begin && row < own.end;
 }
 
-std::size_t RowBand::owner(std::size_t row) const
+std::size_t RowPartition::owner(std::size_t row) const
 {
   return static_cast<std::size_t>(std::upper_bound(first_rows_.begin(), first_rows_.end(), row) - first_rows_.begin()) -
          1;
 }
 
-std::vector<std::size_t> RowBand::halo_of(std::size_t rank) const
+std::vector<std::size_t> RowPartition::halo_of(std::size_t rank) const
 {
   const auto begin = static_cast<std::ptrdiff_t>(first_rows_[rank]);
   const auto end = static_cast<std::ptrdiff_t>(first_rows_[rank + 1]);
@@ -82,7 +82,7 @@ std::vector<std::size_t> RowBand::halo_of(std::size_t rank) const
   return halo;
 }
 
-double RowBand::sum(std::vector<double> values) const
+double RowPartition::sum(std::vector<double> values) const
 {
   if (is_shared())
   {
@@ -98,7 +98,7 @@ double RowBand::sum(std::vector<double> values) const
   return std::accumulate(values.begin(), values.end(), 0.);
 }
 
-std::vector<char> RowBand::joined_bytes(const char *own, std::size_t size, int *number) const
+std::vector<char> RowPartition::joined_bytes(const char *own, std::size_t size, int *number) const
 {
   const int own_size = static_cast<int>(size);
   const std::array<int, 2> given{own_size, number != nullptr ? *number : 0};
@@ -118,7 +118,8 @@ std::vector<char> RowBand::joined_bytes(const char *own, std::size_t size, int *
   return all;
 }
 
-void RowBand::share(const std::vector<std::size_t> &places, const std::vector<Field *> &fields) const
+void RowPartition::broadcast_from_owners(const std::vector<std::size_t> &places,
+                                         const std::vector<Field *> &fields) const
 {
   if (!is_shared() || places.empty())
     return;
@@ -139,7 +140,7 @@ void RowBand::share(const std::vector<std::size_t> &places, const std::vector<Fi
       (*field)[place] = all[static_cast<std::size_t>(next[owner(lattice_->row_of(place))]++)];
 }
 
-void RowBand::gather_bytes(void *field, std::size_t bytes_of_place, Rows rows) const
+void RowPartition::gather_bytes(void *field, std::size_t bytes_of_place, Rows rows) const
 {
   // In units of a row: so the numbers fit into MPI's integers.
   const std::size_t bytes = bytes_of_place * lattice_->stride();
@@ -161,7 +162,7 @@ void RowBand::gather_bytes(void *field, std::size_t bytes_of_place, Rows rows) c
   MPI_Type_free(&row_type);
 }
 
-HaloExchange::HaloExchange(const RowBand &band)
+HaloExchange::HaloExchange(const RowPartition &band)
   : lattice_(band.lattice()), communicator_(band.communicator()), interior_(band.rows())
 {
   if (!band.is_shared())

@@ -1,4 +1,4 @@
-#include "continuum/point_density.h"
+#include "continuum/point_integrand.h"
 
 #include <cstring>
 
@@ -8,7 +8,7 @@ namespace continuum
 {
 namespace
 {
-Tensor<2, 2> deformation_gradient(const FieldJet &u)
+Tensor<2, 2> deformation_gradient(const FieldDerivatives &u)
 {
   Tensor<2, 2> F;
   for (unsigned int i = 0; i < 2; ++i)
@@ -17,7 +17,7 @@ Tensor<2, 2> deformation_gradient(const FieldJet &u)
   return F;
 }
 
-Tensor<3, 2> second_gradient(const FieldJet &u)
+Tensor<3, 2> second_gradient(const FieldDerivatives &u)
 {
   Tensor<3, 2> G;
   for (unsigned int i = 0; i < 2; ++i)
@@ -30,12 +30,12 @@ Tensor<3, 2> second_gradient(const FieldJet &u)
 }
 
 // Component c of a jet among the second derivatives stands for the entries (J, K) and (K, J).
-constexpr unsigned int first_index[n_jet] = {0, 1, 0, 1, 0};
-constexpr unsigned int second_index[n_jet] = {0, 0, 0, 1, 1};
-constexpr double multiplicity[n_jet] = {1., 1., 1., 1., 2.};
+constexpr unsigned int first_index[n_derivatives] = {0, 1, 0, 1, 0};
+constexpr unsigned int second_index[n_derivatives] = {0, 0, 0, 1, 1};
+constexpr double multiplicity[n_derivatives] = {1., 1., 1., 1., 2.};
 
 // Second derivatives += factor * tensor of a law, on side s.
-void add_F_F(Density &d, const unsigned int s, const Tensor<4, 2> &T, const double factor)
+void add_F_F(PointIntegrand &d, const unsigned int s, const Tensor<4, 2> &T, const double factor)
 {
   for (unsigned int i = 0; i < 2; ++i)
     for (unsigned int J = 0; J < 2; ++J)
@@ -44,10 +44,10 @@ void add_F_F(Density &d, const unsigned int s, const Tensor<4, 2> &T, const doub
           d.second[i][k][s][J][s][L] += factor * T[i][J][k][L];
 }
 
-void add_G_F(Density &d, const unsigned int s, const Tensor<5, 2> &T, const double factor)
+void add_G_F(PointIntegrand &d, const unsigned int s, const Tensor<5, 2> &T, const double factor)
 {
   for (unsigned int i = 0; i < 2; ++i)
-    for (unsigned int c = n_first; c < n_jet; ++c)
+    for (unsigned int c = n_first; c < n_derivatives; ++c)
       for (unsigned int l = 0; l < 2; ++l)
         for (unsigned int M = 0; M < 2; ++M)
         {
@@ -57,18 +57,18 @@ void add_G_F(Density &d, const unsigned int s, const Tensor<5, 2> &T, const doub
         }
 }
 
-void add_G_G(Density &d, const unsigned int s, const Tensor<6, 2> &T, const double factor)
+void add_G_G(PointIntegrand &d, const unsigned int s, const Tensor<6, 2> &T, const double factor)
 {
   for (unsigned int i = 0; i < 2; ++i)
-    for (unsigned int c = n_first; c < n_jet; ++c)
+    for (unsigned int c = n_first; c < n_derivatives; ++c)
       for (unsigned int l = 0; l < 2; ++l)
-        for (unsigned int e = n_first; e < n_jet; ++e)
+        for (unsigned int e = n_first; e < n_derivatives; ++e)
           d.second[i][l][s][c][s][e] += factor * multiplicity[c] * multiplicity[e] *
                                         T[i][first_index[c]][second_index[c]][l][first_index[e]][second_index[e]];
 }
 } // namespace
 
-void clear(Density &density, const Order order)
+void clear(PointIntegrand &density, const Order order)
 {
   density.value = 0.;
   std::memset(density.first, 0, sizeof(density.first));
@@ -76,7 +76,8 @@ void clear(Density &density, const Order order)
     std::memset(density.second, 0, sizeof(density.second));
 }
 
-void cell_density(const Constitution &laws, const bool has_gradient, const FieldJet &u, const Order order, Density &d)
+void cell_density(const Constitution &laws, const bool has_gradient, const FieldDerivatives &u, const Order order,
+                  PointIntegrand &d)
 {
   const Tensor<2, 2> F = deformation_gradient(u);
   d.value = laws.local->energy(F);
@@ -92,7 +93,7 @@ void cell_density(const Constitution &laws, const bool has_gradient, const Field
     P += laws.gradient->first_piola_stress(F, G);
     const Tensor<3, 2> Q = laws.gradient->double_stress(F, G);
     for (unsigned int i = 0; i < 2; ++i)
-      for (unsigned int c = n_first; c < n_jet; ++c)
+      for (unsigned int c = n_first; c < n_derivatives; ++c)
         d.first[i][0][c] = multiplicity[c] * Q[i][first_index[c]][second_index[c]];
   }
   for (unsigned int i = 0; i < 2; ++i)
@@ -110,9 +111,9 @@ void cell_density(const Constitution &laws, const bool has_gradient, const Field
   }
 }
 
-void face_density(const GradientLaw &law, const std::array<FieldJet, 2> &u, const unsigned int n_sides,
+void face_density(const GradientLaw &law, const std::array<FieldDerivatives, 2> &u, const unsigned int n_sides,
                   const Tensor<1, 2> &N, const Tensor<1, 2> &prescribed, const double penalty, const Order order,
-                  Density &d)
+                  PointIntegrand &d)
 {
   const double sign[2] = {1., -1.};
   const double share = 1. / n_sides;
@@ -140,7 +141,7 @@ void face_density(const GradientLaw &law, const std::array<FieldJet, 2> &u, cons
     const Tensor<2, 2> by_F = law.form_by_F(F, G, Z);
     const Tensor<3, 2> by_G = law.double_stress(F, Z);
     for (unsigned int i = 0; i < 2; ++i)
-      for (unsigned int c = 0; c < n_jet; ++c)
+      for (unsigned int c = 0; c < n_derivatives; ++c)
         d.first[i][s][c] -=
           share * (c < n_first ? by_F[i][c] : multiplicity[c] * by_G[i][first_index[c]][second_index[c]]);
     if (order == Order::first)
@@ -148,12 +149,12 @@ void face_density(const GradientLaw &law, const std::array<FieldJet, 2> &u, cons
 
     add_F_F(d, s, law.form_by_FF(F, G, Z), -share);
     add_G_F(d, s, law.double_stress_by_F(F, Z), -share);
-    // Derivative of by_z by the jets of this side; z itself depends on both sides.
+    // Derivative of by_z by the derivatives of this side; z itself depends on both sides.
     const Tensor<5, 2> Q_by_F = law.double_stress_by_F(F, G);
     const Tensor<6, 2> Q_by_G = law.double_stress_by_G(F);
     for (unsigned int i = 0; i < 2; ++i)
       for (unsigned int l = 0; l < 2; ++l)
-        for (unsigned int c = 0; c < n_jet; ++c)
+        for (unsigned int c = 0; c < n_derivatives; ++c)
         {
           double value = 0.;
           for (unsigned int J = 0; J < 2; ++J)

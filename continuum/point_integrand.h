@@ -1,0 +1,47 @@
+#pragma once
+
+#include "continuum/constitution.h"
+
+#include <array>
+
+namespace continuum
+{
+/// Derivatives of a scalar field at a point, by reference position: f_,1 f_,2 f_,11 f_,22 f_,12. Both components of the
+/// displacement have the same scalar shape functions, so all kernels work on these five numbers.
+constexpr unsigned int n_derivatives = 5;
+constexpr unsigned int n_first = 2;            ///< of them first derivatives
+using Jet = std::array<double, n_derivatives>; ///< of a component
+using FieldDerivatives = std::array<Jet, 2>;   ///< one for each component
+
+/// A density at a point by the derivatives of u on one side (cells, boundary faces) or two sides (faces between cells),
+/// with its first and second derivatives by them.
+struct PointIntegrand
+{
+  double value = 0.;
+  double first[2][2][n_derivatives]; // [component][side][derivative]
+  double second[2][2][2][n_derivatives][2]
+               [n_derivatives]; // [component][component'][side][derivative][side'][derivative']
+};
+
+/// How many derivatives are wanted.
+enum class Order
+{
+  value = 0,
+  first = 1,
+  second = 2
+};
+
+/// Zero, up to the derivatives of that order.
+void clear(PointIntegrand &density, Order order);
+
+/// W(F) + W_g(F, G) in a cell, on side 0, eq. (C.28). `density` must be clear.
+void cell_density(const Constitution &laws, bool has_gradient, const FieldDerivatives &u, Order order,
+                  PointIntegrand &density);
+
+/// Mean over the sides of -B(F; G, z N N) plus (penalty/2) |z|^2 on a face with normal N, eq. (C.28), with z the jump
+/// of the normal gradient: that of the first side, less that of the second, or less the `prescribed` one on the
+/// boundary, where `n_sides` is 1. `density` must be clear.
+void face_density(const GradientLaw &law, const std::array<FieldDerivatives, 2> &u, unsigned int n_sides,
+                  const dealii::Tensor<1, 2> &N, const dealii::Tensor<1, 2> &prescribed, double penalty, Order order,
+                  PointIntegrand &density);
+} // namespace continuum
