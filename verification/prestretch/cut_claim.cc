@@ -1,3 +1,4 @@
+#include <array>
 #include <cmath>
 #include <limits>
 #include <sstream>
@@ -20,38 +21,56 @@ double students_t(std::size_t freedom)
   return boost::math::quantile(boost::math::students_t(static_cast<double>(freedom)), 0.975);
 }
 
-// Least squares of log(error) = log(factor) - order log(size), and how uncertain it is: the staircase that a lattice
-// makes of a round rim is another for every radius, and scatters the errors.
-struct PowerLaw
+// Least squares of log(error) = log(factor) - order log(size). The staircase that a lattice makes of a round rim is
+// another for every radius and scatters the errors.
+class PowerLaw
 {
-  double order;
-  double order_deviation; // standard deviation of the order
-  double expected;        // error at the size asked for
-  double deviation;       // standard deviation of the logarithm of an error there
+public:
+  PowerLaw(const std::vector<double> &sizes, const std::vector<double> &errors) : n_(static_cast<double>(sizes.size()))
+  {
+    for (std::size_t i = 0; i < sizes.size(); ++i)
+    {
+      x_ += std::log(sizes[i]) / n_;
+      y_ += std::log(errors[i]) / n_;
+    }
+    double xy = 0.;
+    for (std::size_t i = 0; i < sizes.size(); ++i)
+    {
+      xx_ += std::pow(std::log(sizes[i]) - x_, 2);
+      xy += (std::log(sizes[i]) - x_) * (std::log(errors[i]) - y_);
+    }
+    slope_ = xy / xx_;
+    double residual = 0.;
+    for (std::size_t i = 0; i < sizes.size(); ++i)
+      residual += std::pow(std::log(errors[i]) - y_ - slope_ * (std::log(sizes[i]) - x_), 2);
+    scatter_ = std::sqrt(residual / (n_ - 2.));
+  }
+
+  double order() const { return -slope_; }
+  // By which the order may be off, in 39 cases out of 40.
+  double order_uncertainty() const { return students_t(freedom()) * scatter_ / std::sqrt(xx_); }
+  double expected(double size) const { return std::exp(y_ + slope_ * (std::log(size) - x_)); }
+  // Largest geometric mean of n errors about a size, in 39 cases out of 40.
+  double allowed(double size, std::size_t n) const
+  {
+    const double away = std::log(size) - x_;
+    const double deviation = scatter_ * std::sqrt(1. / static_cast<double>(n) + 1. / n_ + away * away / xx_);
+    return expected(size) * std::exp(students_t(freedom()) * deviation);
+  }
+
+private:
+  std::size_t freedom() const { return static_cast<std::size_t>(n_) - 2; }
+
+  double n_, x_ = 0., y_ = 0., xx_ = 0.;
+  double slope_, scatter_; // slope, and standard deviation of the logarithm of an error
 };
 
-PowerLaw fit(const std::vector<double> &sizes, const std::vector<double> &errors, double asked)
+double geometric_mean(const std::vector<double> &values)
 {
-  const auto n = static_cast<double>(errors.size());
-  double x = 0., y = 0.;
-  for (std::size_t i = 0; i < errors.size(); ++i)
-  {
-    x += std::log(sizes[i]) / n;
-    y += std::log(errors[i]) / n;
-  }
-  double xx = 0., xy = 0.;
-  for (std::size_t i = 0; i < errors.size(); ++i)
-  {
-    xx += std::pow(std::log(sizes[i]) - x, 2);
-    xy += (std::log(sizes[i]) - x) * (std::log(errors[i]) - y);
-  }
-  const double slope = xy / xx, away = std::log(asked) - x;
-  double residual = 0.;
-  for (std::size_t i = 0; i < errors.size(); ++i)
-    residual += std::pow(std::log(errors[i]) - y - slope * (std::log(sizes[i]) - x), 2);
-  const double scatter = std::sqrt(residual / (n - 2.));
-  return {-slope, scatter / std::sqrt(xx), std::exp(y + slope * away),
-          scatter * std::sqrt(1. + 1. / n + away * away / xx)};
+  double sum = 0.;
+  for (const double value : values)
+    sum += std::log(value);
+  return std::exp(sum / static_cast<double>(values.size()));
 }
 
 std::string in_words(const Eigen::Matrix2d &F)
@@ -77,39 +96,30 @@ public:
     Results rows;
     // Without an equilibrium of the local law there is no number, and the rows fail.
     for (const CutResult &result : results_)
-      if (!result.errors && (result.law == "local" || result.law == "local-moved"))
+      if (!result.errors && result.law.rfind("local", 0) == 0 && result.law != "local-nominal")
         rows.add(not_computed("prestretch", where_ + "local law at " + size_text(result.size), result.failure));
     const std::vector<double> displacement = series("local", &CutErrors::displacement);
-    const PowerLaw all = fit(study_.sizes, displacement, study_.sizes.back());
+    const PowerLaw all(study_.sizes, displacement);
     // At a rim the lattice differs from the continuum by O(d), which is the least order there. About the tip of a
     // notch, where the local law has no bounded stretch, no order is known beforehand.
     Result order{"prestretch", where_ + "order of the displacement's error in " + (is_hole_ ? "d/R" : "d/length"),
-                 "1",          all.order,
+                 "1",          all.order(),
                  {},           {},
                  {},           {}};
     if (is_hole_)
     {
       order.theory = 1.;
-      order.error = one_sided(1. - all.order);
-      order.tolerance = students_t(displacement.size() - 2) * all.order_deviation;
+      order.error = one_sided(1. - all.order());
+      order.tolerance = all.order_uncertainty();
     }
     rows.add(order);
-    const double allowed = add_expected(rows, "displacement, rms at " + largest_, displacement);
+    const double allowed = add_expected(rows, "displacement, rms at " + judged_sizes(), displacement);
     // About a tip stresses and the reactions that they leave fall too slowly for a fit to foretell them.
-    add_expected(rows, "stress, rms", series("local", &CutErrors::stress), is_hole_);
+    const double allowed_stress = add_expected(rows, "stress, rms", series("local", &CutErrors::stress), is_hole_);
 
-    // What the place of rim and tip is not known better than: half the recession, half a spacing.
-    const std::optional<CutErrors> here = errors_of("local", study_.sizes.back());
-    const std::optional<CutErrors> moved = errors_of("local-moved", study_.sizes.back());
-    for (const auto &[quantity, error] :
-         {std::pair("stress, all in one", &CutErrors::stress_scale), std::pair("energy", &CutErrors::energy),
-          std::pair("reactions", &CutErrors::reaction), std::pair("shape of the cut", &CutErrors::shape)})
-      add(rows, quantity, here ? std::abs((*here).*error) : unknown,
-          error == &CutErrors::reaction && !is_hole_
-            ? std::nullopt
-            // cppcheck-suppress knownConditionTrueFalse ; a notch is asked about too, of all but its reactions
-            : std::optional<double>(here && moved ? (is_hole_ ? 0.5 : 1.) * std::abs((*moved).*error - (*here).*error)
-                                                  : unknown));
+    for (const Scalar &scalar : scalars)
+      add(rows, scalar.name, scalar_error("local", scalar), place_allowance(scalar));
+    add_network(rows, allowed, allowed_stress);
 
     for (const auto &[law, kind] : {std::pair(std::string("lattice"), Law::lattice_gradient),
                                     std::pair(std::string("isotropic"), Law::isotropic_gradient),
@@ -142,6 +152,79 @@ public:
   }
 
 private:
+  // Numbers of the whole sheet, and by what two continua differ in them.
+  struct Scalar
+  {
+    const char *name;
+    double CutErrors::*error;
+    double CutDistance::*distance;
+  };
+  static constexpr std::array<Scalar, 4> scalars{
+    {{"stress, all in one", &CutErrors::stress_scale, &CutDistance::stress_scale},
+     {"energy", &CutErrors::energy, &CutDistance::energy},
+     {"reactions", &CutErrors::reaction, &CutDistance::reaction},
+     {"shape of the cut", &CutErrors::shape, &CutDistance::shape}}};
+
+  double scalar_error(const std::string &law, const Scalar &scalar) const
+  {
+    const std::optional<CutErrors> found = errors_of(law, study_.sizes.back());
+    return found ? std::abs((*found).*scalar.error) : unknown;
+  }
+
+  double distance_from_local(const std::string &law, double CutDistance::*part) const
+  {
+    const CutResult *found = find(law, study_.sizes.back());
+    return found != nullptr && found->from_local ? (*found->from_local).*part : unknown;
+  }
+
+  // By what the local law changes if rim or tip move by what their place is not known better than: half the recession,
+  // half a spacing.
+  double place_allowance(const Scalar &scalar) const
+  {
+    return (is_hole_ ? 0.5 : 1.) * distance_from_local("local-moved", scalar.distance);
+  }
+
+  // The network beside the lattice: what the local law is allowed, and what the lattice's dependence on direction may
+  // leave (theory-comparison.md, eqs. (H.17) and (H.18)).
+  void add_network(Results &rows, double allowed, double allowed_stress) const
+  {
+    const auto judged = [&](double CutDistance::*part, double of_local)
+    { return subject_.tolerance(Law::mooney_rivlin_network, of_local + distance_from_local("local-turned", part)); };
+    const CutResult *network = find("network", study_.sizes.back());
+    if (network != nullptr && network->errors)
+    {
+      const double displacement = network->errors->displacement, stress = network->errors->stress;
+      add(rows, "network: displacement", displacement, judged(&CutDistance::displacement, allowed));
+      add(rows, "network: stress, rms", stress, is_hole_ ? judged(&CutDistance::stress, allowed_stress) : std::nullopt);
+      const double square = 0.25 * std::pow(distance_from_local("local-turned", &CutDistance::stress), 2);
+      for (const Scalar &scalar : scalars)
+        add(rows, std::string("network: ") + scalar.name, scalar_error("network", scalar),
+            scalar.error == &CutErrors::energy
+              ? subject_.tolerance(Law::mooney_rivlin_network, place_allowance(scalar) + network->network_bound)
+              : judged(scalar.distance, place_allowance(scalar) + square));
+    }
+    else
+      add_missing(rows, "network", network);
+
+    // The gradient energy spreads the stretch about a tip over l_d, which is no longer than half a spacing.
+    const CutResult *gradient = find("network-gradient", study_.sizes.back());
+    const std::string name = "network with its gradient energy: displacement";
+    const double of_tip = is_hole_ ? 0. : distance_from_local("local-moved", &CutDistance::displacement);
+    if (gradient != nullptr && gradient->errors)
+      add(rows, name, gradient->errors->displacement, judged(&CutDistance::displacement, allowed + of_tip));
+    else
+      add_missing(rows, name, gradient);
+  }
+
+  void add_missing(Results &rows, const std::string &name, const CutResult *result) const
+  {
+    const std::string failure = result != nullptr ? result->failure : "not computed";
+    if (subject_.tolerance(Law::mooney_rivlin_network, 0.))
+      rows.add(not_computed("prestretch", where_ + name, failure));
+    else
+      add(rows, name + ": no equilibrium: " + failure, {}, {});
+  }
+
   std::string size_text(double size) const
   {
     std::ostringstream text;
@@ -155,23 +238,33 @@ private:
     rows.add({"prestretch", where_ + quantity, "1", {}, {}, {}, error, tolerance});
   }
 
-  // The error at the largest size beside what the others let one expect there, as far as their scatter makes it
+  std::string judged_sizes() const
+  {
+    if (study_.n_judged == 1)
+      return largest_;
+    std::ostringstream text;
+    text << size_text(study_.sizes[study_.sizes.size() - study_.n_judged]) << " to " << study_.sizes.back();
+    return text.str();
+  }
+
+  // The errors at the largest sizes beside what the others let one expect there, as far as their scatter makes it
   // uncertain.
-  // @return what is allowed
+  // @return what is allowed at the largest size alone
   double add_expected(Results &rows, const std::string &quantity, const std::vector<double> &errors,
                       bool checked = true) const
   {
-    const PowerLaw coarser = fit(study_.sizes, {errors.begin(), errors.end() - 1}, study_.sizes.back());
-    const double allowed = coarser.expected * std::exp(students_t(errors.size() - 3) * coarser.deviation);
+    const auto n = static_cast<std::ptrdiff_t>(errors.size() - study_.n_judged);
+    const PowerLaw smaller({study_.sizes.begin(), study_.sizes.begin() + n}, {errors.begin(), errors.begin() + n});
+    const double size = geometric_mean({study_.sizes.begin() + n, study_.sizes.end()});
     rows.add({"prestretch",
               where_ + quantity,
               "1",
               {},
               {},
-              coarser.expected,
-              errors.back(),
-              checked ? std::optional<double>(allowed) : std::nullopt});
-    return allowed;
+              smaller.expected(size),
+              geometric_mean({errors.begin() + n, errors.end()}),
+              checked ? std::optional<double>(smaller.allowed(size, study_.n_judged)) : std::nullopt});
+    return smaller.allowed(study_.sizes.back(), 1);
   }
 
   const CutResult *find(const std::string &law, double size) const
@@ -221,7 +314,7 @@ ClaimOutcome cut_claim(const Subject &subject, const CutStudy &study)
     const std::vector<CutResult> results = compare_sizes(subject, study, F);
     for (const CutResult &r : results)
     {
-      if (r.law == "local-moved" || r.law == no_lattice)
+      if (r.law == "local-moved" || r.law == "local-turned" || r.law == no_lattice)
         continue;
       CutErrors e{unknown, unknown, unknown, unknown, unknown, unknown,
                   unknown, unknown, unknown, unknown, unknown, unknown};

@@ -132,14 +132,25 @@ double relative(const Eigen::Vector2d &a, const Eigen::Vector2d &b)
   return (a - b).norm() / b.norm();
 }
 
-CutErrors errors(const CutLattice &cut, const CutSheet &sheet, const EquivalentSheet &domain,
-                 const continuum::StaticSolver &solver, const std::vector<continuum::PointState> &states,
-                 const std::vector<Eigen::Vector2d> &of_continuum)
+// What displacements are compared with [m].
+double displacement_scale(const CutSheet &sheet)
 {
-  CutErrors e{};
+  return sheet.size * (sheet.F - Eigen::Matrix2d::Identity()).norm();
+}
+
+CutSolution solution(const CutLattice &cut, const CutSheet &sheet, const EquivalentSheet &domain,
+                     const continuum::StaticSolver &solver, const std::vector<continuum::PointState> &states,
+                     const std::vector<Eigen::Vector2d> &of_continuum)
+{
+  CutSolution found{{}, of_continuum, {}, {}, opening(cut, sheet, of_continuum)};
+  CutErrors &e = found.errors;
+  for (const continuum::PointState &state : states)
+  {
+    found.F.push_back(to_lattice(state.F));
+    found.P.push_back(to_lattice(state.P));
+  }
   LargestError displacement_max;
-  const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
-  const double scale = sheet.size * (sheet.F - I).norm();
+  const double scale = displacement_scale(sheet);
   std::vector<Eigen::Vector2d> of_lattice;
   double stress = 0., stress_norm = 0., cauchy = 0., cauchy_norm = 0., product = 0., inside = 0., n_inside = 0.;
   for (std::size_t i = 0; i < cut.sites.size(); ++i)
@@ -152,7 +163,7 @@ CutErrors errors(const CutLattice &cut, const CutSheet &sheet, const EquivalentS
       continue;
     inside += (of_lattice.back() - of_continuum[i]).squaredNorm();
     ++n_inside;
-    const Eigen::Matrix2d P = to_lattice(states[i].P), F = to_lattice(states[i].F);
+    const Eigen::Matrix2d &P = found.P[i], &F = found.F[i];
     const Eigen::Matrix2d sigma = P * F.transpose() / F.determinant();
     stress += (cut.fields.first_piola_stress[place] - P).squaredNorm();
     product += cut.fields.first_piola_stress[place].cwiseProduct(P).sum();
@@ -178,15 +189,35 @@ CutErrors errors(const CutLattice &cut, const CutSheet &sheet, const EquivalentS
   const Eigen::Vector2d on_continuum(forces.at(continuum::edge::right)[0], forces.at(continuum::edge::top)[1]);
   e.reaction = (on_lattice - on_continuum).dot(on_continuum) / on_continuum.squaredNorm();
   e.reaction_vector = relative(on_lattice, on_continuum);
-  e.shape = relative(opening(cut, sheet, of_lattice), opening(cut, sheet, of_continuum));
+  e.shape = relative(opening(cut, sheet, of_lattice), found.opening);
   e.unknowns = static_cast<double>(solver.sheet().dof_handler().n_dofs());
-  return e;
+  return found;
 }
 
 } // namespace
 
-std::optional<CutErrors> compare(const CutLattice &cut, const CutSheet &sheet, const EquivalentSheet &domain,
-                                 const continuum::Constitution &law, const CutMesh &mesh_settings, std::string &failure)
+CutDistance distance(const CutLattice &lattice, const CutSheet &sheet, const CutSolution &a, const CutSolution &b)
+{
+  double u = 0., P = 0., norm = 0., n = 0.;
+  for (std::size_t i = 0; i < lattice.sites.size(); ++i)
+    if (lattice.sites[i].has_all_bonds)
+    {
+      u += (a.u[i] - b.u[i]).squaredNorm();
+      P += (a.P[i] - b.P[i]).squaredNorm();
+      norm += b.P[i].squaredNorm();
+      ++n;
+    }
+  return {std::sqrt(u / n) / displacement_scale(sheet),
+          std::sqrt(P / norm),
+          std::abs(a.errors.stress_scale - b.errors.stress_scale),
+          std::abs(a.errors.energy - b.errors.energy),
+          std::abs(a.errors.reaction - b.errors.reaction),
+          relative(a.opening, b.opening)};
+}
+
+std::optional<CutSolution> compare(const CutLattice &cut, const CutSheet &sheet, const EquivalentSheet &domain,
+                                   const continuum::Constitution &law, const CutMesh &mesh_settings,
+                                   std::string &failure)
 {
   Mesh mesh(MPI_COMM_WORLD);
   make_mesh(mesh, sheet, domain, mesh_settings);
@@ -211,9 +242,9 @@ std::optional<CutErrors> compare(const CutLattice &cut, const CutSheet &sheet, c
       states = solver.evaluate(points.points());
       u = points.displacements(states, sheet.F);
     }
-    CutErrors e = errors(cut, sheet, domain, solver, states, u);
-    e.fem = rms_difference(u, coarser) / (sheet.size * (sheet.F - Eigen::Matrix2d::Identity()).norm());
-    return e;
+    CutSolution found = solution(cut, sheet, domain, solver, states, u);
+    found.errors.fem = rms_difference(u, coarser) / displacement_scale(sheet);
+    return found;
   }
   catch (const continuum::SolverFailed &error)
   {

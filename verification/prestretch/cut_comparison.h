@@ -3,6 +3,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "continuum/constitution.h"
 #include "verification/prestretch/cut_lattice.h"
@@ -46,9 +47,28 @@ struct CutErrors
   double unknowns;
 };
 
+/// Equilibrium of the continuum at the sites of a lattice, in their order.
+struct CutSolution
+{
+  CutErrors errors;               ///< against the lattice
+  std::vector<Eigen::Vector2d> u; ///< displacement [m]
+  std::vector<Eigen::Matrix2d> F; ///< deformation gradient [-]
+  std::vector<Eigen::Matrix2d> P; ///< first Piola stress [Pa]
+  Eigen::Vector2d opening;        ///< of the cut [m], as in CutErrors::shape
+};
+
+/// Differences between two continua beside the same lattice, relative [-], >= 0, normalised as in CutErrors.
+struct CutDistance
+{
+  double displacement, stress, stress_scale, energy, reaction, shape;
+};
+
+/// @param a, b whose errors are against `lattice`
+CutDistance distance(const CutLattice &lattice, const CutSheet &sheet, const CutSolution &a, const CutSolution &b);
+
 /// The finite element sheet of a law beside a lattice; empty if it finds no equilibrium, with the reason in `failure`.
 /// Collective.
-std::optional<CutErrors> compare(const CutLattice &lattice, const CutSheet &sheet, const EquivalentSheet &domain,
-                                 const continuum::Constitution &law, const CutMesh &mesh, std::string &failure);
+std::optional<CutSolution> compare(const CutLattice &lattice, const CutSheet &sheet, const EquivalentSheet &domain,
+                                   const continuum::Constitution &law, const CutMesh &mesh, std::string &failure);
 
 } // namespace verification

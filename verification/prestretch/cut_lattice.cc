@@ -15,11 +15,12 @@ namespace verification
 namespace
 {
 
-// Force on the held sites of the right edge along x, and of the top edge along y. The site where both meet belongs to
-// the nearer one.
+// Force on the held sites of the right edge along x, and of the top edge along y. A site in a corner belongs to the
+// nearer one of the held edges that meet there.
 Eigen::Vector2d reactions(const lattice::TriangularLattice &sheet, const lattice::State &state,
-                          const lattice::Material &material)
+                          const lattice::Material &material, const lattice::Edges &held)
 {
+  const auto distance = [](bool is_held, double value) { return is_held ? value : std::numeric_limits<double>::max(); };
   lattice::Forces forces(sheet, material);
   forces.evaluate(state, state.vx, state.vy);
   Eigen::Vector2d reaction = Eigen::Vector2d::Zero();
@@ -27,8 +28,10 @@ Eigen::Vector2d reactions(const lattice::TriangularLattice &sheet, const lattice
     if (sheet.is_site(place) && state.held[place] != 0)
     {
       const Eigen::Vector2d X = sheet.reference(place);
-      const double right = sheet.length() - X.x(), top = 0.5 * sheet.height() - X.y();
-      const double others = smallest_of({X.x(), 0.5 * sheet.height() + X.y()});
+      const double right = distance(held.right, sheet.length() - X.x());
+      const double top = distance(held.top, 0.5 * sheet.height() - X.y());
+      const double others =
+        smallest_of({distance(held.left, X.x()), distance(held.bottom, 0.5 * sheet.height() + X.y())});
       if (right < top && right < others)
         reaction.x() -= forces.fx()[place];
       if (top <= right && top < others)
@@ -123,7 +126,8 @@ CutLattice relaxed_lattice(const Subject &subject, const CutSheet &sheet)
   cut.homogeneous_P = fields.first_piola_stress[inside];
   cut.energy_change = lattice::elastic_energy(cut.state, lattice, subject.material) -
                       lattice::elastic_energy(whole, lattice, subject.material);
-  cut.reaction_change = reactions(lattice, cut.state, subject.material) - reactions(lattice, whole, subject.material);
+  cut.reaction_change = reactions(lattice, cut.state, subject.material, sheet.held) -
+                        reactions(lattice, whole, subject.material, sheet.held);
 
   double energy = 0., force = 0., energy_missing = 0., force_missing = 0.;
   for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)

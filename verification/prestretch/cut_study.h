@@ -21,6 +21,8 @@ struct CutStudy
   std::vector<double> sizes;           ///< R/d or length/d of the local law, ascending, at least four
   std::vector<double> other_sizes;     ///< those of them at which the other laws are solved
   CutMesh mesh;
+  /// Largest sizes whose errors are judged together, in the geometric mean, by what the smaller ones let one expect.
+  std::size_t n_judged = 1;
   /// Only say what is found, since not every law need have an equilibrium.
   bool is_reported = false;
   /// What a test does to a lattice before it is compared; none otherwise.
@@ -29,9 +31,10 @@ struct CutStudy
 
 /// Sheets with a round hole, the small version for a quick look.
 CutStudy hole_study(bool quick);
-/// The same for a lattice of nearest neighbours, whose rim is simpler: one state.
+/// The same for a lattice of nearest neighbours, in one state and with more radii: its rim scatters more from one to
+/// the next.
 CutStudy nearest_hole_study(bool quick);
-/// Sheets with a notch from a free edge.
+/// Sheets with a notch from a free edge, for both sets of shells.
 CutStudy notch_study(bool quick);
 /// A hole in the loaded sheet of the subject, to say which laws have an equilibrium there.
 CutStudy loaded_hole_study(const Eigen::Matrix2d &F);
@@ -44,14 +47,18 @@ struct CutResult
 {
   double size; ///< over d [-]
   std::string law;
-  std::optional<CutErrors> errors; ///< none: no equilibrium was found
-  std::string failure;             ///< why
-  double residual;                 ///< of the lattice, over mu d [-]
+  std::optional<CutErrors> errors;       ///< none: no equilibrium was found
+  std::string failure;                   ///< why
+  double residual;                       ///< of the lattice, over mu d [-]
+  std::optional<CutDistance> from_local; ///< from the local law at the same size
+  double network_bound;                  ///< relative, that (H.18) sets to the energy of the network [-]
 };
 
 /// Everything that is compared in one state, laws in the order in which tables have them: "local", "local-nominal" (the
 /// same in the sheet as a case describes it), "local-moved" (the same at the largest size, the rim or tip moved by what
-/// its place is known to, twice), "lattice", "isotropic", "mooney-rivlin". Collective.
+/// its place is known to, twice), "local-turned" (likewise, the lattice turned by 30 degrees, theory-comparison.md, eq.
+/// (H.17)), "network" and "network-gradient" (at the largest size and those of `other_sizes`), "lattice", "isotropic",
+/// "mooney-rivlin". Collective.
 /// @throws std::runtime_error if a lattice does not come to rest, unless the study is only reported
 std::vector<CutResult> compare_sizes(const Subject &subject, const CutStudy &study, const Eigen::Matrix2d &F);
 

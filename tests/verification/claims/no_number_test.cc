@@ -201,6 +201,7 @@ CutStudy small_hole()
 {
   CutStudy study = hole_study(true);
   study.sizes = {4., 5., 6., 8.};
+  study.n_judged = 1;
   study.other_sizes = {8.};
   return study;
 }
@@ -210,6 +211,7 @@ const ClaimPart notch{"prestretch, notch", [](const Subject &s)
                       {
                         CutStudy study = notch_study(true);
                         study.sizes = {4., 5., 6., 8.};
+                        study.other_sizes.clear();
                         study.mesh.cycles = 1;
                         return cut_claim(s, study).results;
                       }};
@@ -282,8 +284,10 @@ std::vector<Plant> every_claim_and_side()
     plants.push_back({claim, "theory, shear speed", shear_speed});
     plants.push_back({claim, "theory, longitudinal speed", longitudinal_speed});
   }
-  for (const ClaimPart &claim : {energy, wave_speeds, intrinsic_length, prestretch})
+  for (const ClaimPart &claim : {energy, wave_speeds, intrinsic_length, prestretch, hole, notch})
     plants.push_back({claim, "network", overflow_network, "network"});
+  for (const ClaimPart &claim : {hole, notch})
+    plants.push_back({claim, "network gradient where it is strained", network_gradient(Kind::strained), "network"});
   for (const ClaimPart &claim : {wave_speeds, intrinsic_length})
   {
     plants.push_back({claim, "network gradient", network_gradient(Kind::all), "network"});
