@@ -84,7 +84,8 @@ ClaimOutcome prestretch(const Subject &subject, bool quick)
   if (!subject.material.next_nearest)
   {
     outcome.add(cut_claim(subject, nearest_hole_study(quick)));
-    outcome.add(cut_claim(subject, notch_study(quick)));
+    if (!quick)
+      outcome.add(cut_claim(subject, notch_study(false)));
     return outcome;
   }
   outcome.add(cut_claim(subject, hole_study(quick)));

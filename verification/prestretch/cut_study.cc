@@ -76,9 +76,9 @@ CutStudy hole_study(bool quick)
   if (quick)
   {
     study.states = {stretched(1.3, 1.1)};
-    study.sizes = {6., 7., 8., 9., 10., 11., 12., 13., 14., 16., 18., 20., 22., 24.};
-    study.other_sizes = {24.};
-    study.n_judged = 4;
+    study.sizes = {6., 7., 8., 9., 10., 11., 12., 13., 14., 16.};
+    study.other_sizes = {16.};
+    study.n_judged = 3;
   }
   else
   {
