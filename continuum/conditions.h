@@ -23,11 +23,13 @@ struct PrescribedDisplacement
 };
 
 /// Normal gradient of displacement given on one part of the boundary, weakly: N_J du_i/dX_J = load factor *
-/// gradient_i(X) [-], N the outward reference normal. Only a sheet with a gradient law can be held so.
+/// gradient_i(X) [-], N the outward reference normal. Only a sheet with a gradient law can be held so. On a plane of
+/// symmetry it is the component along the plane that is held, at zero.
 struct PrescribedNormalGradient
 {
   dealii::types::boundary_id boundary;
-  VectorField gradient; ///< [-]
+  VectorField gradient;                                       ///< [-]
+  dealii::ComponentMask components = dealii::ComponentMask(); ///< which of the two are held; default both
 };
 
 /// Dead load on one part of the boundary: load factor * traction_i(X) [Pa], force per reference length and thickness.

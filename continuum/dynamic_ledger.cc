@@ -38,7 +38,9 @@ EnergyLedger DynamicSolver::ledger_after(const Step &step, const Vector &u, cons
   ledger.dissipated += step.dt * viscous_forces_.dissipation(middle, middle_velocity);
 
   const double factor = 0.5 * (step.first_load_factor + step.last_load_factor);
-  ledger.work += factor * (loads_ * rise);
+  const double released = -0.5 * (step.first_release_share + step.last_release_share) * (release_forces_ * rise);
+  ledger.released += released;
+  ledger.work += factor * (loads_ * rise) - released;
   if (step.first_load_factor != step.last_load_factor)
   {
     if (!sheet_.conditions().normal_gradients.empty())

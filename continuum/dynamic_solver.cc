@@ -66,14 +66,7 @@ void DynamicSolver::check_input() const
 // Everything that depends on the mesh.
 void DynamicSolver::set_up()
 {
-  full_lift_ = sheet_.lift();
-  const DirichletBoundaries held = dirichlet_boundaries(sheet_.conditions());
-  homogeneous_.copy_from(homogeneous_constraints(sheet_, held));
-
-  loads_ = sheet_.loads();
-  sheet_.make_matrix(homogeneous_, matrix_);
-  sheet_.make_matrix(homogeneous_, mass_);
-  sheet_.mass(inertia_.density, inertia_.length, homogeneous_, mass_);
+  apply_conditions();
   sheet_.make_matrix(sheet_.conformity_constraints(), full_mass_);
   sheet_.mass(inertia_.density, inertia_.length, sheet_.conformity_constraints(), full_mass_);
   if (inertia_.length > 0.)
@@ -81,9 +74,6 @@ void DynamicSolver::set_up()
     sheet_.make_matrix(sheet_.conformity_constraints(), plain_mass_);
     sheet_.mass(inertia_.density, 0., sheet_.conformity_constraints(), plain_mass_);
   }
-  // Viscosity at finite strain makes the matrix unsymmetric.
-  linear_solver_ = std::make_unique<LinearSolver>(sheet_, held, settings_.linear,
-                                                  viscosity_ == nullptr ? Symmetry::symmetric : Symmetry::unsymmetric);
 
   double smallest = std::numeric_limits<double>::infinity();
   for (const auto &cell : sheet_.mesh().active_cell_iterators())
@@ -97,6 +87,77 @@ void DynamicSolver::set_up()
   multigrid_displacement_ = sheet_.make_ghosted();
   elastic_diagonal_ = sheet_.make_owned();
   effective_diagonal_ = sheet_.make_owned();
+  release_forces_ = sheet_.make_owned();
+}
+
+// Everything that depends on which boundaries are held.
+void DynamicSolver::apply_conditions()
+{
+  full_lift_ = sheet_.lift();
+  const DirichletBoundaries held = dirichlet_boundaries(sheet_.conditions());
+  homogeneous_.copy_from(homogeneous_constraints(sheet_, held));
+
+  loads_ = sheet_.loads();
+  sheet_.make_matrix(homogeneous_, matrix_);
+  sheet_.make_matrix(homogeneous_, mass_);
+  sheet_.mass(inertia_.density, inertia_.length, homogeneous_, mass_);
+  // Viscosity at finite strain makes the matrix unsymmetric.
+  linear_solver_ = std::make_unique<LinearSolver>(sheet_, held, settings_.linear,
+                                                  viscosity_ == nullptr ? Symmetry::symmetric : Symmetry::unsymmetric);
+}
+
+// Share of the release forces that still acts.
+double DynamicSolver::release_share(const double time) const
+{
+  const double passed = time - release_time_;
+  return has_released_ && passed < release_duration_ ? 1. - std::max(passed, 0.) / release_duration_ : 0.;
+}
+
+// Forces that hold the held nodes, and what is left of the equation of motion at the others.
+DynamicSolver::Vector DynamicSolver::reactions() const
+{
+  Vector forces = sheet_.make_owned();
+  Vector inertial = sheet_.make_owned();
+  Vector magnitude = sheet_.make_owned();
+  Vector a = sheet_.make_owned();
+  a = acceleration_;
+  multiply_by_mass(full_mass_, a, inertial);
+  sheet_.residual(displacement_, forces, magnitude, load_factor_);
+  viscous_forces_.add_forces(displacement_, velocity_, forces, nullptr);
+  forces += inertial;
+  forces.add(-load_factor_, loads_, -release_share(time_), release_forces_);
+  return forces;
+}
+
+void DynamicSolver::release(const double duration)
+{
+  if (!has_started_)
+    throw InvalidInput("a motion needs a start before nodes are let go");
+  if (!(duration >= 0.) || !std::isfinite(duration))
+    throw InvalidInput("the duration in which forces on nodes let go fall to zero must be finite and not negative");
+  if (release_share(time_) > 1e-9)
+    throw InvalidInput("nodes can be let go only when those before them are free of force");
+  if (!linear_solver_->is_direct())
+    throw InvalidInput("nodes can be let go only in a sheet that the direct solver solves");
+  const Vector forces = reactions();
+  AffineConstraints<double> before;
+  before.copy_from(homogeneous_);
+  apply_conditions();
+  bool holds_more = false;
+  release_forces_ = 0.;
+  for (const types::global_dof_index i : sheet_.owned())
+    if (!sheet_.conformity_constraints().is_constrained(i))
+    {
+      holds_more = holds_more || (homogeneous_.is_constrained(i) && !before.is_constrained(i));
+      if (before.is_constrained(i) && !homogeneous_.is_constrained(i))
+        release_forces_(i) = forces(i);
+    }
+  release_forces_.compress(VectorOperation::insert);
+  if (Utilities::MPI::max(holds_more ? 1 : 0, sheet_.communicator()) == 1)
+    throw InvalidInput("a node that is free cannot be held in the course of a motion");
+  has_released_ = true;
+  release_time_ = time_;
+  release_duration_ = duration;
 }
 
 double DynamicSolver::load_factor_at(const double time) const
@@ -284,6 +345,7 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time)
   update_energies(ledger_, u, v, load_factor_);
   initial_energy_ = ledger_.stored + ledger_.kinetic;
   has_started_ = true;
+  has_released_ = false;
 }
 
 void DynamicSolver::check_loaded() const
@@ -359,7 +421,8 @@ std::string DynamicSolver::advance(const double duration, const double end)
     linear_solver_->invalidate();
   duration_ = duration;
   Step step{settings_.rule,      duration,     sheet_.make_owned(), sheet_.make_owned(),
-            sheet_.make_owned(), load_factor_, load_factor_at(end)};
+            sheet_.make_owned(), load_factor_, load_factor_at(end), release_share(time_),
+            release_share(end)};
   step.u = displacement_;
   step.v = velocity_;
   step.a = acceleration_;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "continuum/errors.h"
 #include "continuum/linear_solver.h"
 #include "continuum/nodal_order.h"
 #include "continuum/sheet.h"
@@ -60,7 +61,8 @@ struct EnergyLedger
   double kinetic = 0.;       ///< (1/2) v.M v, micro-inertia included
   double micro_kinetic = 0.; ///< the share of micro-inertia in `kinetic`
   double dissipated = 0.;    ///< by viscosity
-  double work = 0.;          ///< done on the sheet by held boundaries and dead loads
+  double work = 0.;          ///< done on the sheet by held boundaries, dead loads and nodes that are let go
+  double released = 0.;      ///< taken from the sheet by nodes that are let go, in -`work`; see DynamicSolver::release
   double imbalance = 0.;     ///< stored + kinetic + dissipated - work, less stored + kinetic at the start
 
   /// Stores the numbers in an archive, or takes them from there.
@@ -133,10 +135,19 @@ public:
   /// Steps until the time is `end` [s] or, for want of a whole step, up to one step later. Throws as step().
   void run_until(double end, const Observer &observer = Observer());
 
+  /// Lets nodes go: applies the conditions to the mesh as it is now, after the caller has moved faces of its mesh to
+  /// another boundary id, on which fewer components are held. The force that held a component until now acts on, and
+  /// falls linearly to zero within `duration` [s] >= 0; what it takes from the sheet is EnergyLedger::released. So a
+  /// crack runs along an edge, face by face. Weak normal gradients and loads change at once. Collective.
+  ///
+  /// Throws InvalidInput before start(), while nodes let go before are still pulled, if a component would be held that
+  /// was free, or if there are more unknowns than the direct solver takes.
+  void release(double duration);
+
   /// Stores all that the steps to come depend on, or takes it from there in place of a start, in a solver made with the
   /// same arguments on a like mesh: on as many ranks the motion then goes on with the same bits as if it had never been
-  /// stopped, on another number with the same fields. Throws InvalidInput for fields of another number of unknowns, and
-  /// for a time that is not that of the steps.
+  /// stopped, on another number with the same fields. Not supported after release(). Throws InvalidInput then, for
+  /// fields of another number of unknowns, and for a time that is not that of the steps.
   template <class Archive>
   void archive(Archive &archive);
 
@@ -169,6 +180,9 @@ private:
   void check_input() const;
   void check_loaded() const;
   void set_up();
+  void apply_conditions();
+  double release_share(double time) const;
+  Vector reactions() const;
   double load_factor_at(double time) const;
   Vector interpolate(const VectorField &field) const;
   bool is_prescribed(dealii::types::global_dof_index i) const;
@@ -216,6 +230,12 @@ private:
   Vector multigrid_displacement_;
   double multigrid_load_factor_ = 0.;
 
+  // Forces on the nodes let go last, when they were [N/m].
+  Vector release_forces_;
+  bool has_released_ = false;
+  double release_time_ = 0.;     // [s]
+  double release_duration_ = 0.; // [s]
+
   bool has_started_ = false;
   double start_time_ = 0.;
   double initial_energy_ = 0.;
@@ -233,6 +253,8 @@ private:
 template <class Archive>
 void DynamicSolver::archive(Archive &archive)
 {
+  if (has_released_)
+    throw InvalidInput("a motion in which nodes were let go cannot be archived");
   archive("start_time", start_time_);
   archive("initial_energy", initial_energy_);
   archive("steps", n_steps_);

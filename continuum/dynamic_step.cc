@@ -33,7 +33,7 @@ DynamicSolver::Residual DynamicSolver::evaluate(const Step &step, const Vector &
   viscous_forces_.add_forces(state.u_mean, state.v_mean, forces, &state.magnitude);
   state.residual = inertial;
   state.residual += forces;
-  state.residual.add(-factor, loads_);
+  state.residual.add(-factor, loads_, -step.mean_release_share(), release_forces_);
   state.free = norm_over_free(state.residual);
   state.reference = std::sqrt(inertial.norm_sqr() + forces.norm_sqr() + factor * factor * loads_.norm_sqr());
   Vector u_owned = sheet_.make_owned();

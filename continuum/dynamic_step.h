@@ -16,8 +16,14 @@ struct DynamicSolver::Step
   Vector a;
   double first_load_factor;
   double last_load_factor;
+  double first_release_share;
+  double last_release_share;
 
   double mean_load_factor() const { return rule.alpha_f * first_load_factor + (1. - rule.alpha_f) * last_load_factor; }
+  double mean_release_share() const
+  {
+    return rule.alpha_f * first_release_share + (1. - rule.alpha_f) * last_release_share;
+  }
 
   Vector last_acceleration(const Vector &last_u) const
   {

@@ -86,7 +86,8 @@ public:
             prescribed[q][i] = load_factor_ * condition.gradient->value(points[q], i);
         begin(contributions);
         take_nodes(cell, 0);
-        integrate_face(tables, 1, sheet_.penalty(extent(cell, face)), &prescribed, contributions.back());
+        integrate_face(tables, 1, sheet_.penalty(extent(cell, face)), &prescribed,
+                       {condition.components[0], condition.components[1]}, contributions.back());
         return; // the first in the list holds, as for displacements
       }
   }
@@ -101,7 +102,7 @@ public:
     take_nodes(cell, 0);
     take_nodes(neighbor, 1);
     const double penalty = sheet_.penalty(std::min(extent(cell, face), extent(neighbor, neighbor_face)));
-    integrate_face(tables, 2, penalty, nullptr, contributions.back());
+    integrate_face(tables, 2, penalty, nullptr, {true, true}, contributions.back());
   }
 
 private:
@@ -163,7 +164,8 @@ private:
   }
 
   void integrate_face(const std::array<const ShapeTable *, 2> &tables, const unsigned int n_sides, const double penalty,
-                      const std::vector<Tensor<1, 2>> *prescribed, Contribution &contribution)
+                      const std::vector<Tensor<1, 2>> *prescribed, const std::array<bool, 2> &held,
+                      Contribution &contribution)
   {
     start(n_sides);
     const Rows rows = {n_sides, n_derivatives};
@@ -179,7 +181,7 @@ private:
         }
       take_derivatives(basis_.data(), rows);
       face_density(*sheet_.constitution().gradient, derivatives_, n_sides, tables[0]->normals[q],
-                   prescribed ? (*prescribed)[q] : Tensor<1, 2>(), penalty, order_, density_);
+                   prescribed ? (*prescribed)[q] : Tensor<1, 2>(), held, penalty, order_, density_);
       add_point(basis_.data(), rows, tables[0]->JxW[q], contribution);
     }
     end(contribution);

@@ -112,8 +112,8 @@ void cell_density(const Constitution &laws, const bool has_gradient, const Field
 }
 
 void face_density(const GradientLaw &law, const std::array<FieldDerivatives, 2> &u, const unsigned int n_sides,
-                  const Tensor<1, 2> &N, const Tensor<1, 2> &prescribed, const double penalty, const Order order,
-                  PointIntegrand &d)
+                  const Tensor<1, 2> &N, const Tensor<1, 2> &prescribed, const std::array<bool, 2> &held,
+                  const double penalty, const Order order, PointIntegrand &d)
 {
   const double sign[2] = {1., -1.};
   const double share = 1. / n_sides;
@@ -122,6 +122,9 @@ void face_density(const GradientLaw &law, const std::array<FieldDerivatives, 2> 
     for (unsigned int i = 0; i < 2; ++i)
       for (unsigned int J = 0; J < 2; ++J)
         z[i] += sign[s] * u[s][i][J] * N[J];
+  for (unsigned int i = 0; i < 2; ++i)
+    if (!held[i])
+      z[i] = 0.;
   const Tensor<2, 2> NN = outer_product(N, N);
   const Tensor<3, 2> Z = outer_product(z, NN);
 
@@ -153,7 +156,7 @@ void face_density(const GradientLaw &law, const std::array<FieldDerivatives, 2> 
     const Tensor<5, 2> Q_by_F = law.double_stress_by_F(F, G);
     const Tensor<6, 2> Q_by_G = law.double_stress_by_G(F);
     for (unsigned int i = 0; i < 2; ++i)
-      for (unsigned int l = 0; l < 2; ++l)
+      for (unsigned int l = 0; l < 2 && held[i]; ++l)
         for (unsigned int c = 0; c < n_derivatives; ++c)
         {
           double value = 0.;
@@ -174,14 +177,14 @@ void face_density(const GradientLaw &law, const std::array<FieldDerivatives, 2> 
     return;
   for (unsigned int s = 0; s < n_sides; ++s)
     for (unsigned int i = 0; i < 2; ++i)
-      for (unsigned int J = 0; J < 2; ++J)
+      for (unsigned int J = 0; J < 2 && held[i]; ++J)
         d.first[i][s][J] += sign[s] * by_z[i] * N[J];
   if (order == Order::first)
     return;
   for (unsigned int s = 0; s < n_sides; ++s)
     for (unsigned int t = 0; t < n_sides; ++t)
       for (unsigned int i = 0; i < 2; ++i)
-        for (unsigned int J = 0; J < 2; ++J)
+        for (unsigned int J = 0; J < 2 && held[i]; ++J)
           for (unsigned int L = 0; L < 2; ++L)
             d.second[i][i][s][J][t][L] += sign[s] * sign[t] * penalty * N[J] * N[L];
 }

@@ -41,8 +41,8 @@ void cell_density(const Constitution &laws, bool has_gradient, const FieldDeriva
 
 /// Mean over the sides of -B(F; G, z N N) plus (penalty/2) |z|^2 on a face with normal N, eq. (C.28), with z the jump
 /// of the normal gradient: that of the first side, less that of the second, or less the `prescribed` one on the
-/// boundary, where `n_sides` is 1. `density` must be clear.
+/// boundary, where `n_sides` is 1. Components of z that are not `held` are zero. `density` must be clear.
 void face_density(const GradientLaw &law, const std::array<FieldDerivatives, 2> &u, unsigned int n_sides,
-                  const dealii::Tensor<1, 2> &N, const dealii::Tensor<1, 2> &prescribed, double penalty, Order order,
-                  PointIntegrand &density);
+                  const dealii::Tensor<1, 2> &N, const dealii::Tensor<1, 2> &prescribed,
+                  const std::array<bool, 2> &held, double penalty, Order order, PointIntegrand &density);
 } // namespace continuum

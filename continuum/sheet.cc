@@ -86,6 +86,8 @@ void Sheet::check_input() const
   {
     require_edge(condition.boundary);
     require_field(condition.gradient, "a prescribed normal gradient");
+    require(condition.components.represents_n_components(2) && condition.components.n_selected_components(2) > 0,
+            "a prescribed normal gradient needs a mask of two components, one of them selected");
     require(has_gradient(), "a prescribed normal gradient needs a gradient law that is not zero");
   }
   for (const auto &condition : conditions_.tractions)

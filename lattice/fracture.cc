@@ -132,6 +132,21 @@ std::vector<BrokenBond> Fracture::lose_bonds(State &state, const std::vector<Los
   return lost;
 }
 
+double Fracture::remove_bonds(State &state, std::vector<std::pair<std::size_t, std::size_t>> bonds)
+{
+  // Two removed sites may have a bond in common.
+  std::sort(bonds.begin(), bonds.end());
+  bonds.erase(std::unique(bonds.begin(), bonds.end()), bonds.end());
+  std::vector<Loss> own;
+  for (const auto &[place, kind] : bonds)
+    if (band_.owns(place) && state.bonds.present(place, kind))
+      own.push_back(loss(state, place, kind));
+  double removed_energy = 0.;
+  for (const BrokenBond &bond : lose_bonds(state, own, nullptr))
+    removed_energy += bond.energy;
+  return removed_energy;
+}
+
 double Fracture::remove_sites(State &state, const std::vector<std::size_t> &places)
 {
   std::vector<std::pair<std::size_t, std::size_t>> bonds; // place, kind
@@ -139,22 +154,9 @@ double Fracture::remove_sites(State &state, const std::vector<std::size_t> &plac
   {
     require(lattice_.is_site(place), "only a site can be removed");
     for_each_bond_of_site(state, lattice_, place,
-                          [&](std::size_t near, std::size_t kind)
-                          {
-                            if (band_.owns(near))
-                              bonds.emplace_back(near, kind);
-                          });
+                          [&](std::size_t near, std::size_t kind) { bonds.emplace_back(near, kind); });
   }
-  // Two removed sites may have a bond in common.
-  std::sort(bonds.begin(), bonds.end());
-  bonds.erase(std::unique(bonds.begin(), bonds.end()), bonds.end());
-  std::vector<Loss> own;
-  own.reserve(bonds.size());
-  for (const auto &[place, kind] : bonds)
-    own.push_back(loss(state, place, kind));
-  double removed_energy = 0.;
-  for (const BrokenBond &bond : lose_bonds(state, own, nullptr))
-    removed_energy += bond.energy;
+  const double removed_energy = remove_bonds(state, std::move(bonds));
   for (const std::size_t place : places)
   {
     state.removed[place] = 1;

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -94,6 +95,11 @@ public:
   /// Cuts sites and their bonds out of the sheet. Collective.
   /// @return elastic energy of the bonds removed, per sheet thickness [J/m]
   double remove_sites(State &state, const std::vector<std::size_t> &places);
+
+  /// Takes bonds out of the sheet, whatever their stretch. Those that are absent are left out. Collective, with the
+  /// same list on all ranks.
+  /// @param bonds place where each starts and its kind @return elastic energy that they held, per sheet thickness [J/m]
+  double remove_bonds(State &state, std::vector<std::pair<std::size_t, std::size_t>> bonds);
 
   /// Breaks every bond beyond its limit at the last evaluation of `forces`, or soon to be beyond it, and takes it out
   /// of `forces`, toughens what is to be toughened, and moves the tip. Velocities of the state must be known in the

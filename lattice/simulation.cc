@@ -142,6 +142,18 @@ void Simulation::cut(const std::vector<std::size_t> &places)
   reinitialize_forces();
 }
 
+void Simulation::cut_bonds(const std::vector<std::pair<std::size_t, std::size_t>> &bonds)
+{
+  if (!fracture_)
+    throw std::logic_error("a sheet without fracture rules cannot be cut");
+  for (const auto &[place, kind] : bonds)
+    if (!lattice_.is_site(place) || kind >= n_bond_kinds)
+      throw std::invalid_argument("only a bond that starts at a site can be cut");
+  broken_ += fracture_->remove_bonds(state_, bonds);
+  fracture_->locate_tip(state_);
+  reinitialize_forces();
+}
+
 void Simulation::move_edges(const Eigen::Matrix2d &velocity_gradient)
 {
   for (std::size_t place = 0; place < lattice_.n_places(); ++place)

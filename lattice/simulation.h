@@ -45,6 +45,11 @@ public:
   /// Cuts sites out of the sheet before it moves. @throws std::logic_error without fracture rules
   void cut(const std::vector<std::size_t> &places);
 
+  /// Cuts bonds out of the sheet now, whatever their stretch, as a crack on a schedule does. Bonds that are absent
+  /// already are left out. @param bonds place where each starts and its kind, the same on all ranks
+  /// @throws std::logic_error without fracture rules; std::invalid_argument for what is no bond of a site
+  void cut_bonds(const std::vector<std::pair<std::size_t, std::size_t>> &bonds);
+
   /// Lets the held sites move with v = L X from now on, L [1/s] in the reference frame.
   void move_edges(const Eigen::Matrix2d &velocity_gradient);
 

@@ -324,6 +324,31 @@ TEST(Fracture, CutsHeldSitesOutForGood)
   EXPECT_NE(simulation.state().vy[next], 0.);
 }
 
+// Bonds cut on a schedule leave the sheet whatever their stretch, once; what they held is in the ledger.
+TEST(Fracture, CutsGivenBonds)
+{
+  const TriangularLattice sheet = sheets::square(8);
+  const Material material = sheets::rubber();
+  const Eigen::Matrix2d F = sheets::stretched(1.2, 1.3);
+  Simulation simulation(sheet, material, homogeneous_state(sheet, material, F, Edges::held), 1e-9,
+                        Fracture(sheet, material, unbreakable, NoToughening{}, F));
+  const double before = simulation.energies().elastic;
+  const std::size_t place = sheet.index(4, 3);
+  simulation.cut_bonds({{place, 0}, {place, 4}, {place, 0}});
+  simulation.cut_bonds({{place, 4}});
+  EXPECT_FALSE(simulation.state().bonds.present(place, 0));
+  EXPECT_FALSE(simulation.state().bonds.present(place, 4));
+  EXPECT_TRUE(simulation.state().bonds.present(place, 1));
+  EXPECT_EQ(simulation.state().lost_bonds[place], 2);
+  const EnergyBalance energies = simulation.energies();
+  EXPECT_GT(energies.broken, 0.);
+  EXPECT_NEAR(energies.elastic + energies.broken, before, 1e-12 * before);
+  // The forces are those without the bonds: the site is no longer in equilibrium.
+  EXPECT_NE(simulation.state().ax[place], 0.);
+  EXPECT_THROW(simulation.cut_bonds({{place, n_bond_kinds}}), std::invalid_argument);
+  EXPECT_THROW(simulation.cut_bonds({{sheet.index(0, 0) - 1, 0}}), std::invalid_argument);
+}
+
 // Bond (2, 0)-(2, 1) squeezed to 0.7 of its loaded stretch, which is 1 here, toughens at fraction 0.8; the others do
 // not.
 TEST(Fracture, ToughensOnRetraction)

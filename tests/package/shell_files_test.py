@@ -53,7 +53,7 @@ class Shell(unittest.TestCase):
         self.assertEqual(complete("--out"), ["--output-dir"])
 
     def test_completes_claims_studies_and_files(self):
-        self.assertEqual(complete("verify", ""), ["energy", "wave-speeds", "intrinsic-length", "prestretch"])
+        self.assertEqual(complete("verify", ""), ["energy", "wave-speeds", "intrinsic-length", "prestretch", "running-crack"])
         self.assertEqual(set(complete("study", "")) - {"cache"},
                          {path.stem for path in (SOURCE / "verification/studies").glob("*.json")})
         (FOLDER / "my case.prm").touch()

@@ -66,6 +66,7 @@ def write_claims(folder):
     write(folder, "edge_layer", ["shells", "row", "deviation", "theory"],
           [["NN+NNN", j, FIRST_ROW * DECAY**j * (1 + 1e-3), FIRST_ROW * DECAY**j] for j in rows]
           + [["NN", j, 3e-16 * (-1) ** j, 0.0] for j in rows])
+    write_running_crack(folder)
     for name, size in (("hole", "R/d"), ("notch", "length/d")):
         write_cut(folder, name, size)
 
@@ -82,6 +83,18 @@ def write_dispersion(folder):
     write(folder, "dispersion_runs", ["shells", "angle [deg]", "alpha_L", "alpha_S"],
           [[shells, angle, *(1.01 * alpha(shells, angle, wave) for wave in "LS")]
            for shells in ("NN+NNN", "NN") for angle in ANGLES])
+
+
+def write_running_crack(folder):
+    """Fields whose most negative velocity ahead of the tip is -1 on the lattice, half of that in the continua."""
+    rows = []
+    for shells, (side, scale) in itertools.product(("NN+NNN", "NN"), (("lattice", 1.0), ("local", 0.5), ("gradient", 0.5))):
+        for X, Y in itertools.product(np.arange(-12.0, 12.5, 0.5), np.arange(0.25, 12.5, 0.5)):
+            if np.hypot(X, Y) <= 12:
+                rows.append([shells, side, X, Y, -scale * np.exp(-((X - 2) ** 2) - (Y - 0.25) ** 2), 0.0,
+                             1e6 * (1 + X / 12), 0.0])
+    write(folder, "running_crack", ["shells", "side", "X/d", "Y/d", "v_x [m/s]", "v_y [m/s]", "opening_stress [Pa]",
+                                    "excess_y [m]"], rows)
 
 
 def write_cut(folder, name, size):

@@ -30,6 +30,9 @@ struct CompareOptions
 /// Names of the claims, in the order in which they are checked.
 const std::vector<std::string> &claim_names();
 
+/// Claims on material and pre-stretch that a crack of the lattice needs: all but those about cracks.
+const std::vector<std::string> &claims_before_fracture();
+
 // The commands. Each runs on every MPI rank and returns what the program should exit with, or throws.
 ExitCode verify(const Options &options);                                       ///< `latcon verify`
 ExitCode run_lattice(const Options &options);                                  ///< `latcon lattice`

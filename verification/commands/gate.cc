@@ -35,7 +35,7 @@ Stored look_up(const Case &input, const std::optional<std::string> &folder)
   try
   {
     const VerdictKey key =
-      verdict_key(input, claim_names(), quick, dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD));
+      verdict_key(input, claims_before_fracture(), quick, dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD));
     stored.key = key.text;
     if (!folder)
       stored.note = "neither XDG_CACHE_HOME nor HOME is set: no verdicts are kept";
@@ -100,7 +100,8 @@ Results require_verified(const Case &input, Run &run)
   bool kept = false;
   if (!reused)
   {
-    verdicts.emplace(run_claims(input, {}, quick, Shells::own, laws_of_lattice())); // bonds break, no finite elements
+    verdicts.emplace(run_claims(input, claims_before_fracture(), quick, Shells::own,
+                                laws_of_lattice())); // bonds break, no finite elements
     if (run.is_root() && folder && !key.text.empty())
       try
       {

@@ -12,6 +12,7 @@
 #include "verification/one_thread.h"
 #include "verification/prestretch/cut_study.h"
 #include "verification/prestretch/prestretch_claim.h"
+#include "verification/running_crack/running_crack_claim.h"
 #include "verification/stability_row.h"
 #include "verification/wave_speeds/wave_speeds_claim.h"
 
@@ -95,6 +96,11 @@ ClaimOutcome prestretch(const Subject &subject, bool quick)
   return outcome;
 }
 
+ClaimOutcome running_crack(const Subject &subject, bool quick)
+{
+  return running_crack_claim(subject, quick ? RunningCrackOptions() : full_running_crack());
+}
+
 using Claim = std::function<ClaimOutcome(const Subject &, bool)>;
 
 // A further claim is a further line here.
@@ -103,7 +109,8 @@ const std::vector<std::pair<std::string, Claim>> &claims()
   static const std::vector<std::pair<std::string, Claim>> all{{"energy", energy},
                                                               {"wave-speeds", wave_speeds},
                                                               {"intrinsic-length", intrinsic_length},
-                                                              {"prestretch", prestretch}};
+                                                              {"prestretch", prestretch},
+                                                              {"running-crack", running_crack}};
   return all;
 }
 
@@ -118,6 +125,12 @@ const std::vector<std::string> &claim_names()
       list.push_back(name);
     return list;
   }();
+  return names;
+}
+
+const std::vector<std::string> &claims_before_fracture()
+{
+  static const std::vector<std::string> names{"energy", "wave-speeds", "intrinsic-length", "prestretch"};
   return names;
 }
 
@@ -160,8 +173,8 @@ ExitCode verify(const Options &options)
     const auto phase = run.info().stopwatch().phase("claims");
     for (const std::string &name : claim_names())
     {
-      if (!options.claims.empty() &&
-          std::find(options.claims.begin(), options.claims.end(), name) == options.claims.end())
+      const std::vector<std::string> &asked = options.claims.empty() ? claims_before_fracture() : options.claims;
+      if (std::find(asked.begin(), asked.end(), name) == asked.end())
         continue;
       outcome.add(run_claims(input, {name}, options.quick, Shells::own_and_nearest,
                              options.case_is_given ? laws_of(input) : all_laws()));

@@ -25,6 +25,8 @@ FORMATS = {
     "edge_layer": ({"shells": None}, ("row", "deviation", "theory")),
     "hole": ({"shells": None, "law": None}, CUT + ("R/d",)),
     "notch": ({"shells": None, "law": None}, CUT + ("length/d",)),
+    "running_crack": ({"shells": None, "side": ("lattice", "local", "gradient")},
+                      ("X/d", "Y/d", "v_x [m/s]", "v_y [m/s]", "opening_stress [Pa]", "excess_y [m]")),
     "sinusoidal_energy": ({"shells": None, "wave": ("L", "S")},
                           WAVE + ("lattice", "local", "gradient", "filtered", "fem")),
     "travelling_waves": ({"shells": None, "wave": ("L", "S")},

@@ -1,0 +1,186 @@
+// Edges that open in the course of a motion, and planes of symmetry of sheets with a gradient energy.
+#include "continuum/errors.h"
+#include "moving_sheets.h"
+
+#include <deal.II/grid/grid_generator.h>
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+using namespace moving_sheets;
+using continuum::BoundaryConditions;
+using continuum::Constitution;
+using continuum::DynamicSettings;
+using continuum::DynamicSolver;
+using continuum::StaticSettings;
+using continuum::StaticSolver;
+namespace edge = continuum::edge;
+
+namespace
+{
+constexpr dealii::types::boundary_id opened = 10;
+
+// Moves the faces of the lower edge left of X to the boundary `opened`.
+void open(Mesh &mesh, const double X)
+{
+  for (const auto &cell : mesh.active_cell_iterators())
+    for (const unsigned int face : cell->face_indices())
+      if (cell->face(face)->at_boundary() && cell->face(face)->boundary_id() == edge::bottom &&
+          cell->face(face)->center()[0] < X)
+        cell->face(face)->set_boundary_id(opened);
+}
+
+// A sheet held at the top and, across it, at the bottom.
+struct Pulled
+{
+  continuum::CauchyBorn law = rubber_network();
+  continuum::IsotropicGradient gradient{5e5, 0.05};
+  continuum::FibreViscosity viscosity = network_viscosity(200.);
+  Tensor<2, 2> F = matrix(1.3, 0., 0., 1.5);
+
+  BoundaryConditions conditions() const
+  {
+    BoundaryConditions all;
+    for (const auto side : {edge::left, edge::right, edge::top})
+      all.displacements.push_back({side, affine(F)});
+    all.displacements.push_back({edge::bottom, affine(F), dealii::ComponentMask(std::vector<bool>{false, true})});
+    return all;
+  }
+
+  std::unique_ptr<DynamicSolver> started(const Mesh &mesh, const double time_step) const
+  {
+    DynamicSettings settings{time_step};
+    settings.degree = 2;
+    auto solver = std::make_unique<DynamicSolver>(mesh, Constitution(law), conditions(), continuum::Inertia{density},
+                                                  settings, &viscosity);
+    solver->start(affine(F));
+    return solver;
+  }
+};
+} // namespace
+
+// The force that held a node acts at full strength when it is let go, and is gone after the given time.
+TEST(Release, LetsNodesGoSmoothly)
+{
+  const Pulled problem;
+  constexpr double duration = 1e-3;
+  const auto moved = [&](const unsigned int n, double &work)
+  {
+    Mesh mesh(MPI_COMM_SELF);
+    continuum::make_rectangle(mesh, rectangle(4, 4));
+    const auto solver = problem.started(mesh, duration / n);
+    open(mesh, 0.5 * length);
+    solver->release(duration);
+    solver->step();
+    const double first = solver->displacement().linfty_norm();
+    solver->run_until(2. * duration);
+    work = solver->ledger().released;
+    EXPECT_NEAR(solver->ledger().imbalance, 0., 2e-2 * work);
+    EXPECT_NEAR(solver->ledger().work, -work, 1e-12 * std::abs(work)); // what is held does not move
+    return first;
+  };
+  double coarse = 0., middle = 0., fine = 0.;
+  moved(10, coarse);
+  moved(20, middle);
+  moved(40, fine);
+  EXPECT_GT(fine, 0.); // the edge was pulled shut
+  // Second order in the time step: the forces do not jump.
+  EXPECT_NEAR((coarse - middle) / (middle - fine), 4., 1.2);
+}
+
+// A long time after it was let go an edge is where it is in equilibrium when it was never held.
+TEST(Release, EndsWithAFreeEdge)
+{
+  const Pulled problem;
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::make_rectangle(mesh, rectangle(4, 4));
+  const auto solver = problem.started(mesh, 2e-3);
+  open(mesh, 0.5 * length);
+  solver->release(4e-3);
+  solver->run_until(0.6);
+  StaticSettings settings;
+  settings.degree = 2;
+  StaticSolver at_rest(mesh, Constitution(problem.law), problem.conditions(), settings);
+  at_rest.solve();
+  auto difference = solver->sheet().make_owned();
+  auto exact = solver->sheet().make_owned();
+  difference = solver->displacement();
+  exact = at_rest.displacement();
+  difference -= exact;
+  EXPECT_LT(difference.linfty_norm(), 1e-4 * exact.linfty_norm());
+}
+
+TEST(Release, RefusesWhatItCannotDo)
+{
+  const Pulled problem;
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::make_rectangle(mesh, rectangle(4, 4));
+  DynamicSettings settings{1e-3};
+  settings.degree = 2;
+  DynamicSolver not_started(mesh, Constitution(problem.law), problem.conditions(), continuum::Inertia{density},
+                            settings);
+  EXPECT_THROW(not_started.release(1e-3), continuum::InvalidInput);
+  const auto solver = problem.started(mesh, 1e-3);
+  EXPECT_THROW(solver->release(-1.), continuum::InvalidInput);
+  EXPECT_THROW(solver->release(std::nan("")), continuum::InvalidInput);
+  open(mesh, 0.25 * length);
+  solver->release(2e-3);
+  solver->step();
+  open(mesh, 0.5 * length);
+  EXPECT_THROW(solver->release(2e-3), continuum::InvalidInput); // the first ones are still pulled
+  solver->step();
+  EXPECT_NO_THROW(solver->release(2e-3));
+  for (const auto &cell : mesh.active_cell_iterators())
+    for (const unsigned int face : cell->face_indices())
+      if (cell->face(face)->at_boundary() && cell->face(face)->boundary_id() == opened)
+        cell->face(face)->set_boundary_id(edge::bottom);
+  solver->run_until(solver->time() + 2e-3);
+  EXPECT_THROW(solver->release(2e-3), continuum::InvalidInput); // a free node would be held
+}
+
+// Half of a sheet with a gradient energy is the half of the whole sheet: on the plane of symmetry the displacement
+// along it has no normal gradient, the one across it is zero, and the normal gradient of that is free.
+TEST(SymmetryPlane, HalvesASheet)
+{
+  const Pulled problem;
+  const Constitution constitution(problem.law, problem.gradient);
+  const auto pulled = std::make_shared<Field>(
+    [](const Point<2> &X) {
+      return Tensor<1, 2>({0.3 * X[0] + 0.1 * X[0] * X[0], 0.5 * X[1] * (1. + X[0])});
+    });
+  BoundaryConditions whole_conditions, half_conditions;
+  for (const auto side : {edge::left, edge::top, edge::bottom})
+    whole_conditions.displacements.push_back({side, pulled});
+  for (const auto side : {edge::left, edge::top})
+    half_conditions.displacements.push_back({side, pulled});
+  half_conditions.displacements.push_back(
+    {edge::bottom, pulled, dealii::ComponentMask(std::vector<bool>{false, true})});
+  Mesh whole(MPI_COMM_SELF), half(MPI_COMM_SELF);
+  continuum::make_rectangle(whole, {1., 1., 8, 8});
+  dealii::GridGenerator::subdivided_hyper_rectangle(half, std::vector<unsigned int>{8, 4}, Point<2>(0., 0.),
+                                                    Point<2>(1., 0.5), true);
+  StaticSettings settings;
+  settings.degree = 3;
+  StaticSolver exact(whole, constitution, whole_conditions, settings);
+  exact.solve();
+  const std::vector<Point<2>> points{{0.3, 0.06}, {0.9, 0.01}, {0.55, 0.3}};
+  const auto expected = exact.evaluate(points);
+  const auto error = [&](const dealii::ComponentMask &mask)
+  {
+    half_conditions.normal_gradients = {{edge::bottom, constant(0., 0.), mask}};
+    StaticSolver solver(half, constitution, half_conditions, settings);
+    solver.solve();
+    const auto found = solver.evaluate(points);
+    double largest = 0.;
+    for (std::size_t n = 0; n < points.size(); ++n)
+      largest = std::max(largest, (found[n].F - expected[n].F).norm());
+    return largest;
+  };
+  // The whole sheet has faces on the plane, on which its own jumps are penalised: equal to the discretisation error.
+  EXPECT_LT(error(dealii::ComponentMask(std::vector<bool>{true, false})), 2e-4);
+  EXPECT_GT(error(dealii::ComponentMask(std::vector<bool>{true, true})), 1e-2);
+  half_conditions.normal_gradients = {
+    {edge::bottom, constant(0., 0.), dealii::ComponentMask(std::vector<bool>{false, false})}};
+  EXPECT_THROW(StaticSolver(half, constitution, half_conditions, settings), continuum::InvalidInput);
+}

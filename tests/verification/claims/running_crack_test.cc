@@ -1,0 +1,150 @@
+// The claim on a running crack fails when either side is wrong.
+#include "verification/running_crack/running_crack_claim.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/verification/claims/faults.h"
+
+using namespace verification;
+
+namespace
+{
+
+// The rubber of Fig. 1 in a sheet just large enough for a far field.
+RunningCrackOptions small()
+{
+  RunningCrackOptions options;
+  options.length = 40.;
+  options.height = 26.;
+  options.start = 10.;
+  options.advance = 18.;
+  options.far = 8.;
+  options.finest = 2.;
+  return options;
+}
+
+const Subject &rubber()
+{
+  static const Subject subject = verification::subject(subjects::paper_case());
+  return subject;
+}
+
+using Plant = std::function<void(CrackSides &)>;
+
+// Rows that fail, of the local or the gradient continuum, with something changed.
+Results with(const Plant &plant)
+{
+  CrackSides sides = crack_sides(rubber(), small());
+  plant(sides);
+  return running_crack_claim(rubber(), sides, small()).results;
+}
+
+} // namespace
+
+// The gradient continuum need not hold, and does not where its mesh is fine; see docs/running-crack.md.
+TEST(RunningCrack, HoldsInTheFarFieldOfTheLocalContinuum)
+{
+  const Results results = with([](CrackSides &) {});
+  EXPECT_EQ(faults::failing(results, "local"), 0u) << results.verdict_text(10);
+  EXPECT_GE(results.count(Verdict::holds), 4u);
+}
+
+TEST(RunningCrack, FailsForATipThatIsOffByASpacing)
+{
+  const Results results = with([](CrackSides &sides) { sides.half.tip = rubber().spacing; });
+  EXPECT_GE(faults::failing(results, "effective tip"), 2u) << results.verdict_text(10);
+  EXPECT_GE(faults::failing(results, "velocity"), 1u);
+}
+
+TEST(RunningCrack, FailsForWrongModuli)
+{
+  std::vector<continuum::FibreFamily> families = rubber().cauchy_born.families();
+  for (continuum::FibreFamily &family : families)
+    family.weight *= 1.3;
+  const continuum::IsotropicNetwork stiffer(families);
+  const Results results = with(
+    [&](CrackSides &sides)
+    {
+      sides.local.constitution.local = &stiffer;
+      sides.gradient.constitution.local = &stiffer;
+    });
+  EXPECT_GE(faults::failing(results, "opening stress"), 2u) << results.verdict_text(10);
+}
+
+TEST(RunningCrack, FailsForWrongViscosity)
+{
+  lattice::Material material = rubber().material;
+  material.nearest.viscosity *= 3.;
+  material.next_nearest->viscosity *= 3.;
+  const lattice::TriangularLattice sheet(rubber().spacing, 0.01, 0.01, rubber().orientation);
+  const auto viscosity = homogenised_viscosity(sheet, material);
+  const Results results = with(
+    [&](CrackSides &sides)
+    {
+      sides.local.viscosity = viscosity.get();
+      sides.gradient.viscosity = viscosity.get();
+    });
+  EXPECT_GE(faults::failing(results, "continuum against lattice"), 2u) << results.verdict_text(10);
+}
+
+TEST(RunningCrack, FailsForAGradientEnergyOfTheWrongSign)
+{
+  const faults::Combination wrong(-1., rubber().network_gradient, 0., rubber().network_gradient);
+  const Results results = with([&](CrackSides &sides) { sides.gradient.constitution.gradient = &wrong; });
+  EXPECT_GE(faults::failing(results, "gradient"), 1u);
+  EXPECT_EQ(faults::failing(results, "gradient continuum: not computed"), 1u) << results.verdict_text(10);
+}
+
+// A side that is no number fails, whatever it is compared with.
+TEST(RunningCrack, FailsForWhatIsNoNumber)
+{
+  const Results results = with([](CrackSides &sides) { sides.local.inertia.density = std::nan(""); });
+  EXPECT_EQ(faults::failing(results, "local continuum: not computed"), 1u) << results.verdict_text(10);
+}
+
+// Sheets in which there is no such crack are not compared.
+TEST(RunningCrack, LeavesOutSheetsThatDoNotOpen)
+{
+  Case input = subjects::paper_case();
+  input.strain_x = input.strain_y = 0.;
+  const Results results = running_crack_claim(subject(input), small()).results;
+  ASSERT_EQ(results.rows().size(), 1u);
+  EXPECT_EQ(results.rows()[0].verdict(), Verdict::reported);
+}
+
+// Means over four samples meet each point twice; what lies between points is interpolated, and mirrored below the
+// crack.
+TEST(TipField, AveragesAndInterpolates)
+{
+  CrackDrive drive{1., lattice::Orientation::rows_along_crack, 40., 30., 0., 1., 4};
+  drive.start_near(20.);
+  const lattice::TriangularLattice sheet(1., 40., 30., drive.orientation);
+  TipField field(drive, 6.);
+  std::size_t n = 0;
+  for (unsigned int stride = 1; stride <= CrackDrive::n_samples; ++stride)
+    for (const TipSite &site : tip_sites(drive, sheet, drive.tip(stride), 6.))
+    {
+      TipValues values;
+      values.velocity = {2. * site.xi + 3. * site.eta, -site.eta};
+      values.opening_stress = 1. + site.xi;
+      field.add(site, values);
+      ++n;
+    }
+  const double full_area =
+    0.5 * static_cast<double>(n) * field.point_area(); // a point has four sites, two of each half
+  EXPECT_NEAR(full_area, M_PI * 36., 0.05 * M_PI * 36.);
+  for (const TipField::Point &point : field.points())
+  {
+    EXPECT_NEAR(point.values.velocity.x(), 2. * point.xi + 3. * point.eta, 1e-12);
+    EXPECT_NEAR(point.values.opening_stress, 1. + point.xi, 1e-12);
+  }
+  const TipValues between = field.at(1.3, 2.1);
+  EXPECT_NEAR(between.velocity.x(), 2. * 1.3 + 3. * 2.1, 1e-12);
+  EXPECT_NEAR(field.at(-0.7, 0.).velocity.y(), 0., 1e-12);
+  EXPECT_FALSE(std::isfinite(field.at(7., 0.).velocity.x()));
+  EXPECT_NEAR(stress_lobes(field, 3.).ratio, 1., 1e-12);
+  const BackwardZone zone = backward_zone(field, 1., 5.);
+  EXPECT_EQ(zone.area, 0.);
+}
