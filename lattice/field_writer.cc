@@ -47,8 +47,9 @@ void set_tensor(vtkDoubleArray &values, vtkIdType id, const Eigen::Matrix2d &t)
 
 } // namespace
 
-FieldWriter::FieldWriter(const TriangularLattice &lattice, const Material &material, std::filesystem::path directory)
-  : lattice_(lattice), material_(material), series_(std::move(directory), "lattice")
+FieldWriter::FieldWriter(const TriangularLattice &lattice, const Material &material, std::filesystem::path directory,
+                         std::string name)
+  : lattice_(lattice), material_(material), series_(std::move(directory), std::move(name))
 {
 }
 

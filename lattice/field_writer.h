@@ -6,7 +6,7 @@
 namespace lattice
 {
 
-/// Writes frames of a lattice for ParaView: `lattice.pvd` and a file `lattice-NNNN.vtp` a frame, in one directory.
+/// Writes frames of a lattice for ParaView: `NAME.pvd` and a file `NAME-NNNN.vtp` per frame, in one directory.
 ///
 /// Points are the sites at their reference positions [m]; warp by `displacement` for the current ones. Cells are the
 /// sites themselves (vertices) and the bonds (lines). Point data: displacement [m], velocity [m/s],
@@ -21,7 +21,8 @@ class FieldWriter
 {
 public:
   /// The lattice must outlive this object.
-  FieldWriter(const TriangularLattice &lattice, const Material &material, std::filesystem::path directory);
+  FieldWriter(const TriangularLattice &lattice, const Material &material, std::filesystem::path directory,
+              std::string name = "lattice");
 
   /// Adds the state as the next frame, in the place of the last one if that is of the same time. @throws
   /// latcon::support::WriteError if a file cannot be written
@@ -36,7 +37,7 @@ public:
     series_.archive(archive);
   }
 
-  /// Writes `lattice.pvd`, so that it names the frames there are. @throws latcon::support::WriteError
+  /// Writes `NAME.pvd`, so that it names the frames there are. @throws latcon::support::WriteError
   void write_collection() const { series_.write_collection(); }
 
 private:

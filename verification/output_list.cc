@@ -19,8 +19,13 @@ namespace fs = std::filesystem;
 using Names = std::set<std::string>;
 
 // What the libraries of either side write by themselves.
-const Names frames{"lattice.pvd",     "lattice-*.vtp",    "motion.pvd",   "motion-*.vtp",       "continuum.pvd",
-                   "continuum_*.vtu", "continuum_*.pvtu", "near_tip.vti", "near_tip_folded.vti"};
+const Names frames{"lattice.pvd", "lattice-*.vtp", "motion.pvd", "motion-*.vtp", "continuum.pvd", "continuum_*.vtu",
+                   "continuum_*.pvtu", "near_tip.vti", "near_tip_folded.vti",
+                   // of the claim running-crack
+                   "crack-nn-nnn-lattice.pvd", "crack-nn-nnn-lattice-*.vtp", "crack-nn-nnn-local.pvd",
+                   "crack-nn-nnn-local_*.vtu", "crack-nn-nnn-gradient.pvd", "crack-nn-nnn-gradient_*.vtu",
+                   "crack-nn-lattice.pvd", "crack-nn-lattice-*.vtp", "crack-nn-local.pvd", "crack-nn-local_*.vtu",
+                   "crack-nn-gradient.pvd", "crack-nn-gradient_*.vtu"};
 
 Names names_in(const fs::path &folder)
 {

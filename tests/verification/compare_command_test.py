@@ -139,6 +139,37 @@ class Compare(TemporaryFolder):
         copy = read(vtk.vtkXMLUnstructuredGridReader(), self.out / "difference_continuum.vtu")
         np.testing.assert_array_equal(values(copy, "displacement"), values(cells, "displacement"))
 
+    def test_sites_in_excluded_circles_are_not_compared(self):
+        run = self.compare(self.lattice, self.runs / "free", "--exclude", "1 cm,2 mm,3 mm", "--exclude", "0.002,-0.004,0.0015")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        out = sites_of(self.out)
+        X = vtk_to_numpy(out.GetPoints().GetData()).astype(float)
+        circles = (np.hypot(X[:, 0] - 0.01, X[:, 1] - 0.002) < 0.003) | (np.hypot(X[:, 0] - 0.002, X[:, 1] + 0.004) < 0.0015)
+        np.testing.assert_array_equal(values(out, "excluded") == 1, circles)
+        rows = found(self.out)
+        self.assertEqual(int(rows["sites in excluded circles"]["lattice"]), circles.sum())
+        chosen = (values(out, "held") == 0) & ~circles
+        self.assertEqual(int(rows["free sites inside"]["lattice"]), chosen.sum())
+        difference = values(out, "displacement_difference")[chosen]
+        row = rows["displacement, rms difference"]
+        scale = max(float(row["lattice"]), float(row["continuum"]))
+        self.assertAlmostEqual(float(row["error"]), np.sqrt((difference**2).sum(axis=1).mean()) / scale, delta=1e-12)
+        self.refused(["cannot be compared"], self.lattice, self.continuum, "--exclude", "0,0,1 m")
+
+    # The same homogeneous deformation in the left half of the sheet.
+    def test_a_part_of_the_sheet_is_compared_where_both_are(self):
+        half = self.folder / "half"
+        run = latcon("continuum", CASES / "quick.prm", "--quiet", "--output-dir", half, *SMALL, "--set", "Sheet/length=1 cm")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.refused(["not the same sheet"], self.lattice, half)
+        run = self.compare(self.lattice, half, "--overlap", "--tolerance", "displacement=1e-6", "--tolerance",
+                           "first_piola_stress=1e-6")
+        self.assertEqual(run.returncode, 0, run.stderr + run.stdout)
+        out = sites_of(self.out)
+        X = vtk_to_numpy(out.GetPoints().GetData()).astype(float)
+        np.testing.assert_array_equal(values(out, "outside") == 1, X[:, 0] > 0.01 + 1e-8)
+        self.assertTrue(np.isnan(values(out, "displacement_difference")[X[:, 0] > 0.011]).all())
+
     def test_ranks_leave_no_trace(self):
         self.assertEqual(self.compare(self.lattice, self.continuum).returncode, 0)
         names = ["difference.pvd", "difference_sites.vtp", "difference_continuum.vtu", "results.json", "results.csv"]
@@ -186,6 +217,9 @@ class Compare(TemporaryFolder):
         self.refused(["--tolerance speed=1", "displacement"], self.lattice, self.continuum, "--tolerance", "speed=1")
         self.refused(["larger than 0"], self.lattice, self.continuum, "--tolerance", "displacement=0")
         self.refused(["velocity"], self.lattice, self.continuum, "--tolerance", "velocity=1")
+        self.refused(["--exclude 1,2: X,Y,R is wanted"], self.lattice, self.continuum, "--exclude", "1,2")
+        self.refused(["--exclude 0,0,0: the radius"], self.lattice, self.continuum, "--exclude", "0,0,0")
+        self.refused(["furlong"], self.lattice, self.continuum, "--exclude", "0,1 furlong,1")
         self.refused(["furlong"], self.lattice, self.continuum, "--time", "1 furlong")
         self.refused(["--time is for both"], self.lattice, self.continuum, "--time", "1", "--lattice-time", "1")
         self.refused(["--set"], self.lattice, self.continuum, "--set", "Sheet/length=1")

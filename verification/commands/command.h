@@ -25,6 +25,8 @@ struct CompareOptions
   std::string time;               ///< of both frames
   std::string lattice_time, continuum_time;
   std::vector<std::string> tolerances; ///< `FIELD=VALUE`
+  bool overlap = false;                ///< whether the sheets may cover each other in part
+  std::vector<std::string> excluded;   ///< `X,Y,R` of circles
 };
 
 /// Names of the claims, in the order in which they are checked.
@@ -140,8 +142,9 @@ enum class Shells
 
 /// Runs the claims named, or all of them, on the subject of a case, small versions if `quick`. Collective.
 /// @param laws those that are judged; what is found about others is reported
+/// @param frames folder for frames of sheets in motion, on one rank; empty: none are written
 ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names, bool quick, Shells shells,
-                        const Laws &laws);
+                        const Laws &laws, const std::string &frames = {});
 
 /// Checks the claims, in their small versions, on the case's own material, shells and pre-stretch, or takes the
 /// verdicts that are stored for exactly these inputs and this program. Says which of the two, in words and in run.json,

@@ -201,6 +201,14 @@ ExitCode run_program(int argc, char **argv)
                  "FIELD=VALUE, largest relative root-mean-square difference that holds; repeatable")
     ->allow_extra_args(false)
     ->type_name("FIELD=VALUE");
+  compare_command->add_flag("--overlap", chosen.overlap,
+                            "compare where both sheets are; one may be a part of the other, as beside a crack");
+  compare_command
+    ->add_option("--exclude", chosen.excluded,
+                 "X,Y,R, centre and radius of a circle in the undeformed sheet whose sites are not compared, as at a "
+                 "crack tip; repeatable")
+    ->allow_extra_args(false)
+    ->type_name("X,Y,R");
   compare_command->callback([&] { command = [&] { return compare_frames(options, chosen); }; });
 
   std::string report_directory;

@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <iostream>
 #include <map>
+#include <sstream>
 
 #include <deal.II/base/mpi.h>
 
@@ -56,6 +57,34 @@ std::map<std::string, double> read_tolerances(const std::vector<std::string> &te
   return tolerances;
 }
 
+std::vector<Circle> read_circles(const std::vector<std::string> &texts)
+{
+  std::vector<Circle> circles;
+  std::vector<std::string> problems;
+  for (const std::string &text : texts)
+  {
+    const auto wrong = [&](const std::string &why) { problems.push_back("--exclude " + text + ": " + why); };
+    std::vector<double> numbers;
+    std::istringstream parts(text + ",");
+    for (std::string part; std::getline(parts, part, ',');)
+    {
+      const ParsedNumber quantity = read_quantity(part, "m");
+      if (!quantity.wrong.empty())
+        wrong(quantity.wrong);
+      numbers.push_back(quantity.value);
+    }
+    if (numbers.size() != 3)
+      wrong("X,Y,R is wanted, three lengths");
+    else if (!(numbers[2] > 0.))
+      wrong("the radius must be larger than 0");
+    else
+      circles.push_back({{{numbers[0], numbers[1]}}, numbers[2]});
+  }
+  if (!problems.empty())
+    throw InputError(problems);
+  return circles;
+}
+
 // A run's results.json and run.json would be replaced by those of the comparison.
 void require_own_directory(const std::string &directory, const Frame &frame)
 {
@@ -75,6 +104,7 @@ ExitCode compare_frames(const Options &options, const CompareOptions &chosen)
   if (!chosen.time.empty() && !(chosen.lattice_time.empty() && chosen.continuum_time.empty()))
     throw InputError("--time is for both sides: give it, or --lattice-time and --continuum-time");
   const std::map<std::string, double> tolerances = read_tolerances(chosen.tolerances);
+  const Scope scope{chosen.overlap, read_circles(chosen.excluded)};
   const auto lattice_time = time_option(chosen.time.empty() ? "--lattice-time" : "--time",
                                         chosen.time.empty() ? chosen.lattice_time : chosen.time);
   const auto continuum_time = time_option(chosen.time.empty() ? "--continuum-time" : "--time",
@@ -90,11 +120,12 @@ ExitCode compare_frames(const Options &options, const CompareOptions &chosen)
   const ContinuumFrame continuum = read_continuum_frame(continuum_file, continuum_time);
   reading.reset();
   require_same_time(lattice, continuum);
-  require_same_bounds(lattice, continuum);
+  if (!scope.is_overlap)
+    require_same_bounds(lattice, continuum);
   require_own_directory(options.output_dir, lattice);
   require_own_directory(options.output_dir, continuum);
   auto comparing = std::make_unique<Stopwatch::Phase>(stopwatch, "comparing");
-  const Comparison comparison = compare(lattice, continuum, MPI_COMM_WORLD);
+  const Comparison comparison = compare(lattice, continuum, scope, MPI_COMM_WORLD);
   const Results results = norms(lattice, continuum, comparison, tolerances);
   comparing.reset();
   if (options.dry_run)

@@ -217,16 +217,26 @@ std::vector<std::size_t> Comparison::compared(const LatticeFrame &lattice, const
 {
   std::vector<std::size_t> sites;
   for (std::size_t i = 0; i < lattice.points.size(); ++i)
-    if (continuum.outside[i] == 0 && lattice.held[i] == 0 && (!field.from_bonds || complete[i] != 0))
+    if (continuum.outside[i] == 0 && excluded[i] == 0 && lattice.held[i] == 0 &&
+        (!field.from_bonds || complete[i] != 0))
       sites.push_back(i);
   return sites;
 }
 
-Comparison compare(const LatticeFrame &lattice, const ContinuumFrame &continuum, MPI_Comm communicator)
+Comparison compare(const LatticeFrame &lattice, const ContinuumFrame &continuum, const Scope &scope,
+                   MPI_Comm communicator)
 {
   Comparison comparison;
   comparison.continuum = probe(continuum, lattice.points, position_tolerance(continuum), communicator);
-  require_no_missing_part(lattice, continuum, comparison.continuum);
+  if (!scope.is_overlap)
+    require_no_missing_part(lattice, continuum, comparison.continuum);
+  for (const Position &point : lattice.points)
+    comparison.excluded.push_back(
+      std::any_of(scope.excluded.begin(), scope.excluded.end(),
+                  [&](const Circle &circle)
+                  { return std::hypot(point[0] - circle.centre[0], point[1] - circle.centre[1]) <= circle.radius; })
+        ? 1
+        : 0);
   unsigned int most = 0;
   for (const unsigned int n : lattice.n_bonds)
     most = std::max<unsigned int>(most, n);
@@ -241,7 +251,8 @@ Comparison compare(const LatticeFrame &lattice, const ContinuumFrame &continuum,
     comparison.differences.push_back(std::move(difference));
     if (comparison.compared(lattice, *there.field).empty())
       throw InputError(both_files(lattice, continuum) + ": '" + there.field->name +
-                       "' cannot be compared: no free site inside the continuum has all its bonds");
+                       "' cannot be compared: no free site inside the continuum, and in no excluded circle, has all "
+                       "its bonds");
   }
   require_same_units(lattice, continuum, comparison);
   return comparison;
@@ -262,6 +273,9 @@ Results norms(const LatticeFrame &lattice, const ContinuumFrame &continuum, cons
   count("sites", lattice.points.size());
   count("sites outside the finite element sheet",
         static_cast<std::size_t>(std::count(outside.begin(), outside.end(), std::uint8_t(1))));
+  const std::vector<std::uint8_t> &excluded = comparison.excluded;
+  count("sites in excluded circles",
+        static_cast<std::size_t>(std::count(excluded.begin(), excluded.end(), std::uint8_t(1))));
   count("free sites inside", comparison.compared(lattice, common_fields.front()).size());
   count("free sites inside with all their bonds", comparison.compared(lattice, common_fields.back()).size());
   const bool motion = lattice.kind == TimeKind::motion || continuum.kind == TimeKind::motion;

@@ -27,21 +27,39 @@ void require_same_time(const LatticeFrame &lattice, const ContinuumFrame &contin
 /// one seems to be in other units, or if x and y seem to be exchanged
 void require_same_bounds(const LatticeFrame &lattice, const ContinuumFrame &continuum);
 
+/// A circle in the undeformed sheet.
+struct Circle
+{
+  Position centre; ///< [m]
+  double radius;   ///< [m] > 0
+};
+
+/// Which sites are compared.
+struct Scope
+{
+  /// Sheets that cover each other in part, such as half a continuum beside a whole lattice: bounds may differ, and a
+  /// part of either sheet may be missing in the other.
+  bool is_overlap = false;
+  std::vector<Circle> excluded; ///< no site within them is compared, such as those around the tip of a crack
+};
+
 /// What differs, at the sites.
 struct Comparison
 {
   SiteValues continuum;                 ///< the finite element fields at the sites
   std::vector<std::uint8_t> complete;   ///< 1 at sites that have all their bonds: as many as the site that has most
+  std::vector<std::uint8_t> excluded;   ///< 1 at sites within an excluded circle
   std::vector<FieldValues> differences; ///< lattice less continuum; not-a-number at sites outside
 
-  /// Sites whose values of a field are compared: free, inside, and for fields from bonds complete.
+  /// Sites whose values of a field are compared: free, inside, not excluded, and for fields from bonds complete.
   std::vector<std::size_t> compared(const LatticeFrame &lattice, const CommonField &field) const;
 };
 
 /// Evaluates the continuum at the sites and subtracts. Collective; the same bits on any number of ranks.
-/// @throws InputError if a part of one sheet is missing in the other (a hole), if no site can be compared, or if a
-/// field seems to be in other units: 100, 1000, 1e6 ... times that of the other to 5 %
-Comparison compare(const LatticeFrame &lattice, const ContinuumFrame &continuum, MPI_Comm communicator);
+/// @throws InputError if a part of one sheet is missing in the other (a hole) and the scope is no overlap, if no site
+/// can be compared, or if a field seems to be in other units: 100, 1000, 1e6 ... times that of the other to 5 %
+Comparison compare(const LatticeFrame &lattice, const ContinuumFrame &continuum, const Scope &scope,
+                   MPI_Comm communicator);
 
 /// A row for the largest and one for the root-mean-square difference of each field, both relative: to the larger of the
 /// same norm of the two sides, which the columns `lattice` and `continuum` show. Tensors and vectors are measured by

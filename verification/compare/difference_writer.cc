@@ -75,6 +75,7 @@ void write_difference(const std::string &directory, const LatticeFrame &lattice,
     add_field(data, field, "_difference");
   add_mark(data, comparison.continuum.outside, "outside");
   add_mark(data, comparison.complete, "complete");
+  add_mark(data, comparison.excluded, "excluded");
   write_data<vtkXMLPolyDataWriter>(directory + "/" + sites_file, sites.Get());
   write_data<vtkXMLUnstructuredGridWriter>(directory + "/" + continuum_file, continuum.data.Get());
 

@@ -5,6 +5,7 @@
 
 #include <deal.II/grid/grid_generator.h>
 
+#include "continuum/field_writer.h"
 #include "verification/affine_displacement.h"
 #include "verification/anisotropy.h"
 #include "verification/homogenisation.h"
@@ -40,8 +41,8 @@ void make_mesh(Mesh &mesh, const CrackDrive &drive, const HalfSheet &half, const
   const auto n_y = static_cast<std::size_t>(std::max(1L, std::lround(half.height / coarsest)));
   const std::vector<double> y(n_y, half.height / static_cast<double>(n_y));
   dealii::GridGenerator::subdivided_hyper_rectangle(mesh, std::vector<std::vector<double>>{x, y},
-                                                    dealii::Point<2>(half.left, 0.),
-                                                    dealii::Point<2>(half.right, half.height), true);
+                                                    dealii::Point<2>(half.left, drive.axis()),
+                                                    dealii::Point<2>(half.right, drive.axis() + half.height), true);
   double size = coarsest;
   for (unsigned int level = 0; level < levels; ++level)
   {
@@ -51,7 +52,7 @@ void make_mesh(Mesh &mesh, const CrackDrive &drive, const HalfSheet &half, const
     {
       const auto box = cell->bounding_box().get_boundary_points();
       const double slack = 1e-6 * size;
-      if (box.first[1] < distance - slack && box.second[0] > start - distance + slack &&
+      if (box.first[1] - drive.axis() < distance - slack && box.second[0] > start - distance + slack &&
           box.first[0] < drive.end() + half.tip + distance - slack)
         cell->set_refine_flag();
     }
@@ -104,7 +105,7 @@ double add_sample(const CrackDrive &drive, const lattice::TriangularLattice &she
   const std::vector<TipSite> sites = tip_sites(drive, sheet, X_tip, reach);
   std::vector<dealii::Point<2>> points;
   for (const TipSite &site : sites)
-    points.emplace_back(site.X, site.eta);
+    points.emplace_back(site.X, drive.axis() + site.eta);
   const std::vector<continuum::PointState> states = solver.evaluate(points);
   // A velocity, as a displacement so small that it is one of the sheet.
   const double scale = 1e-3 * drive.spacing / drive.speed;
@@ -147,7 +148,8 @@ double add_sample(const CrackDrive &drive, const lattice::TriangularLattice &she
 } // namespace
 
 TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, const CrackContinuum &medium,
-                             const Eigen::Matrix2d &F, const CrackMesh &resolution, double reach)
+                             const Eigen::Matrix2d &F, const CrackMesh &resolution, double reach,
+                             const std::optional<CrackFrame> &frame)
 {
   const lattice::TriangularLattice sheet(drive.spacing, drive.length, drive.height, drive.orientation);
   Mesh mesh(MPI_COMM_SELF);
@@ -184,6 +186,11 @@ TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, con
     }
     if (stride + CrackDrive::n_samples > drive.n_strides)
       near += add_sample(drive, sheet, medium, F, solver, drive.tip(stride), reach, run.field) / CrackDrive::n_samples;
+  }
+  if (frame)
+  {
+    continuum::FieldWriter writer(MPI_COMM_SELF, frame->folder, frame->name);
+    writer.add_frame(solver.time(), solver.sheet(), solver.displacement(), &solver.velocity());
   }
   const continuum::EnergyLedger &end = solver.ledger();
   const double advance = 0.5 * (drive.n_strides - n_half) * drive.stride(); // of both halves

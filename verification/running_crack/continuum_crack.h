@@ -26,7 +26,8 @@ struct CrackMesh
   unsigned int steps_per_stride = 1; ///< time steps between samples
 };
 
-/// The upper half of the sheet in the coordinates of the lattice, its lower edge on the line of the crack.
+/// The upper half of the sheet in the coordinates of the lattice, its lower edge on the line of the crack,
+/// Y = CrackDrive::axis().
 struct HalfSheet
 {
   double left, right; ///< X of the held ends [m]
@@ -39,8 +40,10 @@ struct HalfSheet
 /// the tip it is free. The edge is opened cell by cell: while the tip passes a cell, the forces that held that cell's
 /// nodes fall linearly to zero.
 /// @param sheet,reach as for the lattice, at whose sites the fields are evaluated
-/// @throws continuum::SolverFailed, continuum::InvalidInput
+/// @param frame none is written if empty
+/// @throws continuum::SolverFailed, continuum::InvalidInput, continuum::OutputFailed
 TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, const CrackContinuum &medium,
-                             const Eigen::Matrix2d &F, const CrackMesh &resolution, double reach);
+                             const Eigen::Matrix2d &F, const CrackMesh &resolution, double reach,
+                             const std::optional<CrackFrame> &frame = {});
 
 } // namespace verification

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "lattice/field_writer.h"
 #include "lattice/simulation.h"
 #include "lattice/site_fields.h"
 #include "lattice/time_step.h"
@@ -73,7 +74,7 @@ double dissipation(const lattice::State &state, const lattice::TriangularLattice
 } // namespace
 
 TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &material, const Eigen::Matrix2d &F,
-                           double reach)
+                           double reach, const std::optional<CrackFrame> &frame)
 {
   const lattice::TriangularLattice sheet(drive.spacing, drive.length, drive.height, drive.orientation);
   lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::held);
@@ -123,6 +124,12 @@ TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &mat
       run.field.add(site, values);
     }
     near += power / CrackDrive::n_samples;
+  }
+  if (frame)
+  {
+    lattice::FieldWriter writer(sheet, material, frame->folder, frame->name);
+    writer.add_frame(simulation.state());
+    writer.write_collection();
   }
   const lattice::EnergyBalance end = simulation.energies();
   const double advance = (drive.n_strides - n_half) * drive.stride();

@@ -1,5 +1,8 @@
 #pragma once
 
+#include <optional>
+#include <string>
+
 #include "lattice/material.h"
 #include "verification/running_crack/tip_field.h"
 
@@ -25,9 +28,16 @@ struct TipRun
 /// Distance from the tip within which dissipation counts as near it [d].
 inline constexpr double near_tip = 5.;
 
+/// A series of frames, of one frame at the end of the drive: NAME.pvd in a folder.
+struct CrackFrame
+{
+  std::string folder, name;
+};
+
 /// Drives the crack through a lattice, whose bonds break in no other way.
 /// @param reach of the field around the tip [m]
+/// @param frame none is written if empty @throws latcon::support::WriteError
 TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &material, const Eigen::Matrix2d &F,
-                           double reach);
+                           double reach, const std::optional<CrackFrame> &frame = {});
 
 } // namespace verification

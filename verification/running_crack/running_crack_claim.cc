@@ -1,5 +1,6 @@
 #include "verification/running_crack/running_crack_claim.h"
 
+#include <cctype>
 #include <functional>
 #include <sstream>
 
@@ -118,19 +119,21 @@ public:
   Comparison(const Subject &subject, const CrackSides &sides, const RunningCrackOptions &options)
     : subject_(subject), sides_(sides), options_(options), far_(sides.drive, far_from, options.far),
       near_(sides.drive, near_from, near_to), reach_((options.far + 3.) * subject.spacing),
-      lattice_(drive_lattice_crack(sides.drive, subject.material, subject.deformation, reach_))
+      lattice_(drive_lattice_crack(sides.drive, subject.material, subject.deformation, reach_, frame("lattice")))
   {
+    add_frame("lattice");
     add_fields("lattice", lattice_);
   }
 
   void compare(const std::string &name, const CrackContinuum &medium)
   {
-    const auto drive = [&](double size)
+    const auto drive = [&](double size, const std::optional<CrackFrame> &frame)
     {
       return drive_continuum_crack(sides_.drive, sides_.half, medium, subject_.deformation,
-                                   mesh_of(sides_.drive, size, options_.degree), reach_);
+                                   mesh_of(sides_.drive, size, options_.degree), reach_, frame);
     };
-    const TipRun coarse = drive(2. * options_.finest), fine = drive(options_.finest);
+    const TipRun coarse = drive(2. * options_.finest, {}), fine = drive(options_.finest, frame(name));
+    add_frame(name);
     add_fields(name, fine);
     judge(name, coarse.field, fine.field);
     report(name, coarse, fine);
@@ -221,6 +224,28 @@ private:
          fine.energy.taken);
     pair("energy flux into r <= 5 d: cut and dissipated there, per length of crack", "J/m^2",
          lattice_.energy.taken + lattice_.energy.near, fine.energy.taken + fine.energy.near);
+  }
+
+  std::string frame_name(const std::string &side) const
+  {
+    std::string name = "crack-";
+    for (const char c : subject_.name)
+      name += std::isalnum(static_cast<unsigned char>(c)) != 0
+                ? static_cast<char>(std::tolower(static_cast<unsigned char>(c)))
+                : '-';
+    return name + "-" + side;
+  }
+
+  std::optional<CrackFrame> frame(const std::string &side) const
+  {
+    return options_.frames.empty() ? std::nullopt : std::optional(CrackFrame{options_.frames, frame_name(side)});
+  }
+
+  void add_frame(const std::string &side)
+  {
+    if (!options_.frames.empty())
+      outcome.table("running_crack_frames", {"shells", "side", "file", "X_tip [m]", "Y_tip [m]"})
+        .add({subject_.name, side, frame_name(side) + ".pvd", sides_.drive.end(), sides_.drive.axis()});
   }
 
   void add_fields(const std::string &side, const TipRun &run)

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "verification/claim_outcome.h"
 #include "verification/running_crack/continuum_crack.h"
@@ -19,12 +20,13 @@ struct RunningCrackOptions
   double far = 9.;      ///< outer radius of the far field, whose inner radius is 5
   double finest = 1.;   ///< cells along the path, about; a second mesh has cells of twice that
   unsigned degree = 2;  ///< of the elements
+  std::string frames;   ///< folder for a frame of each side at the end of the drive; empty: none
 };
 
 /// The full version.
 inline RunningCrackOptions full_running_crack()
 {
-  return {66., 48., 18., 30., 12., 0.5, 3};
+  return {66., 48., 18., 30., 12., 0.5, 3, {}};
 }
 
 /// Both sides of the comparison: one lattice and two continua. The subject must outlive it.
@@ -42,7 +44,9 @@ CrackSides crack_sides(const Subject &subject, const RunningCrackOptions &option
 
 /// Compares a straight crack that is driven at the same speed through the lattice and through the network continuum,
 /// without and with its gradient energy and micro-inertia (theory-comparison.md, section "A running crack"). The sheet
-/// must be loaded without shear, and open the crack; of others the claim reports that there is no such crack.
+/// must be loaded without shear, and open the crack. Frames of the sides are NAME-lattice.pvd, NAME-local.pvd and
+/// NAME-gradient.pvd, NAME being that of the subject in lower case ("crack-nn-nnn"); the table `running_crack_frames`
+/// has the position of the tip in them. Of other sheets the claim reports that there is no such crack.
 ClaimOutcome running_crack_claim(const Subject &subject, const RunningCrackOptions &options);
 
 /// The same for sides that a test has changed.
