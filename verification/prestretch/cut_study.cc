@@ -76,9 +76,8 @@ CutStudy hole_study(bool quick)
   if (quick)
   {
     study.states = {stretched(1.3, 1.1)};
-    study.sizes = {6., 7., 8., 9., 10., 11., 12., 13., 14., 16.};
-    study.other_sizes = {16.};
-    study.n_judged = 3;
+    study.sizes = {6., 8., 12., 16., 24.};
+    study.other_sizes = {24.};
   }
   else
   {
@@ -103,14 +102,14 @@ CutStudy notch_study(bool quick)
 {
   CutMesh mesh;
   mesh.refinements = 2;
-  mesh.cycles = quick ? 4 : 6;
+  mesh.cycles = quick ? 3 : 6;
   mesh.fraction = 0.15;
   CutStudy study;
   study.name = "notch";
   study.sheet = sheet_with_notch;
   study.states = {stretched(1., 1.1)};
   study.sizes =
-    quick ? std::vector<double>{4., 5., 6., 8., 10., 12.} : std::vector<double>{8., 10., 12., 16., 20., 24., 32.};
+    quick ? std::vector<double>{4., 6., 8., 10., 12.} : std::vector<double>{8., 10., 12., 16., 20., 24., 32.};
   study.other_sizes = quick ? std::vector<double>{} : std::vector<double>{8., 16., 32.};
   study.mesh = mesh;
   return study;

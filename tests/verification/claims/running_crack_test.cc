@@ -6,8 +6,6 @@
 #include <cmath>
 
 #include "tests/verification/claims/faults.h"
-#include "tests/verification/temporary_folder.h"
-#include "verification/compare/comparison.h"
 
 using namespace verification;
 
@@ -104,37 +102,6 @@ TEST(RunningCrack, FailsForWhatIsNoNumber)
 {
   const Results results = with([](CrackSides &sides) { sides.local.inertia.density = std::nan(""); });
   EXPECT_EQ(faults::failing(results, "local continuum: not computed"), 1u) << results.verdict_text(10);
-}
-
-// The frames of both sides show the same moment in common coordinates.
-TEST(RunningCrack, LeavesFramesThatCanBeCompared)
-{
-  TemporaryFolder folder;
-  RunningCrackOptions options = small();
-  options.frames = folder.path().string();
-  const CrackSides sides = crack_sides(rubber(), options);
-  const ClaimOutcome outcome = running_crack_claim(rubber(), sides, options);
-  const Table &table = outcome.tables.at("running_crack_frames");
-  ASSERT_EQ(table.rows().size(), 3u);
-  const auto path = [&](std::size_t row) { return options.frames + "/" + std::get<std::string>(table.rows()[row][2]); };
-  const Position tip{{std::get<double>(table.rows()[0][3]), std::get<double>(table.rows()[0][4])}};
-  const LatticeFrame lattice = read_lattice_frame(find_frame(path(0), Side::lattice, {}));
-  EXPECT_NEAR(lattice.time, sides.drive.n_strides * sides.drive.stride_time(), 1e-9 * lattice.time);
-  for (const std::size_t side : {1u, 2u})
-  {
-    const ContinuumFrame continuum = read_continuum_frame(find_frame(path(side), Side::continuum, {}));
-    EXPECT_NO_THROW(require_same_time(lattice, continuum));
-    const auto difference = [&](const Position &centre)
-    {
-      const Scope scope{true, {{centre, 5. * rubber().spacing}}};
-      for (const Result &row : norms(lattice, continuum, compare(lattice, continuum, scope, MPI_COMM_WORLD), {}).rows())
-        if (row.quantity == "velocity, largest difference")
-          return row.error.value();
-      return std::nan("");
-    };
-    // What is largest is at the tip.
-    EXPECT_LT(difference(tip), 0.5 * difference({{tip[0] - 8. * rubber().spacing, tip[1]}}));
-  }
 }
 
 // Sheets in which there is no such crack are not compared.
