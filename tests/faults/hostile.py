@@ -91,10 +91,13 @@ def no_number(file, name):
 
 
 def value(number):
+    def made(values):
+        return numpy.full(max(1, len(values)), number).astype(values.dtype)
+
     def change(file, name):
-        kind = file[name].dtype
-        replace(file, name, numpy.full(max(1, len(file[name])), number).astype(kind))
+        replace(file, name, made(file[name][:]))
     change.__name__ = f"value {number:g}"
+    change.alters = lambda values: not numpy.array_equal(made(values), values)
     return change
 
 
@@ -163,7 +166,8 @@ def variants(path):
             found += [(name, change) for change in of_array(name, values)]
             ends = [end for end in NUMBERS if name == end or name.endswith("/" + end.lstrip("/"))]
             if ends and len(values):
-                found += [(name, change) for change in NUMBERS[max(ends, key=len)]]
+                # A count of bonds that never broke is 0 already.
+                found += [(name, change) for change in NUMBERS[max(ends, key=len)] if change.alters(values)]
     return found
 
 
