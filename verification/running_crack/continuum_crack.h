@@ -39,7 +39,7 @@ struct HalfSheet
 /// displacement across it, no shear, and with a gradient energy no normal gradient of the displacement along it. Behind
 /// the tip it is free. The edge is opened cell by cell: while the tip passes a cell, the forces that held that cell's
 /// nodes fall linearly to zero.
-/// @param sheet,reach as for the lattice, at whose sites the fields are evaluated
+/// @param reach as for the lattice, at whose sites the fields are evaluated
 /// @param frame none is written if empty
 /// @throws continuum::SolverFailed, continuum::InvalidInput, continuum::OutputFailed
 TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, const CrackContinuum &medium,

@@ -95,6 +95,7 @@ struct StressLobes
   double ahead; ///< straight ahead [Pa]
 };
 
+/// The lobes on the circle of that radius [m], which must lie within the field.
 StressLobes stress_lobes(const TipField &field, double radius);
 
 } // namespace verification

@@ -129,6 +129,28 @@ TEST(CutStudy, ForcesOnAnEdgeIncludeThoseNextToAFreeEdge)
   EXPECT_LT(errors[2], 0.75 * errors[1]);
 }
 
+// theory-comparison.md, eqs. (H.17) and (H.18): half the way to the law of the turned lattice, and energies within
+// their bound, which the mesh may exceed by its error.
+TEST(CutStudy, NetworkLiesMidwayBetweenTheLatticeAndTheTurnedOne)
+{
+  CutStudy study = hole_study(true);
+  study.sizes = {6., 8., 10., 12.};
+  study.other_sizes.clear();
+  const Subject rubber = paper_subject();
+  const std::vector<CutResult> results = compare_sizes(rubber, study, study.states.front());
+  const auto at_largest = [&](const std::string &law) -> const CutResult &
+  {
+    return *std::find_if(results.begin(), results.end(),
+                         [&](const CutResult &result) { return result.law == law && result.size == 12.; });
+  };
+  const CutResult &network = at_largest("network"), &turned = at_largest("local-turned");
+  ASSERT_TRUE(network.from_local && turned.from_local);
+  const double first_order = 0.5 * turned.from_local->displacement;
+  EXPECT_NEAR(network.from_local->displacement, first_order, 0.2 * first_order);
+  EXPECT_LT(network.from_local->energy, network.network_bound);
+  EXPECT_LT(network.network_bound, 10. * network.from_local->energy) << "the bound says nothing";
+}
+
 // What the report reads by name.
 TEST(CutStudy, TablesHaveTheirColumns)
 {
