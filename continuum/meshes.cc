@@ -3,6 +3,7 @@
 #include "continuum/collective.h"
 #include "continuum/errors.h"
 
+#include <deal.II/base/bounding_box.h>
 #include <deal.II/grid/grid_in.h>
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/manifold_lib.h>
@@ -10,7 +11,12 @@
 #include <algorithm>
 #include <cmath>
 #include <fstream>
+#include <limits>
+#include <map>
+#include <set>
+#include <sstream>
 #include <string>
+#include <utility>
 #include <vector>
 
 using namespace dealii;
@@ -48,29 +54,145 @@ double half_box(const RectangleWithHole &shape)
   return std::min(2. * shape.radius, 0.5 * (shape.radius + 0.5 * std::min(shape.length, shape.height)));
 }
 
-// Reads a mesh of quadrilaterals on this process alone.
-void read_serial(Triangulation<2> &mesh, const std::filesystem::path &file)
+// A mesh as its file has it: deal.II drops z of nodes in the plane, and gives edges without a line the number 0.
+class AsWritten : public Triangulation<2, 3>
+{
+public:
+  using Triangulation<2, 3>::create_triangulation;
+
+  void create_triangulation(const std::vector<Point<3>> &points, const std::vector<CellData<2>> &cells,
+                            const SubCellData &lines) override
+  {
+    for (const CellData<1> &line : lines.boundary_lines)
+      numbers_[std::minmax(line.vertices[0], line.vertices[1])] = line.boundary_id;
+    Triangulation<2, 3>::create_triangulation(points, cells, SubCellData());
+  }
+
+  // What is wrong with nodes or edges; empty if nothing.
+  std::string defect() const
+  {
+    std::ostringstream text;
+    const BoundingBox<3> box(get_vertices());
+    constexpr double round_off = 1e-12; // of coordinates that were rotated or written in decimals
+    if (!(box.side_length(2) <= round_off * (box.side_length(0) + box.side_length(1))))
+    {
+      text << "has nodes at z = " << box.lower_bound(2) << " and " << box.upper_bound(2)
+           << " m; it must lie in a plane z = const";
+      return text.str();
+    }
+    for (const auto &cell : active_cell_iterators())
+      for (const auto &face : cell->face_iterators())
+      {
+        if (!face->at_boundary())
+          continue;
+        const auto found = numbers_.find(std::minmax(face->vertex_index(0), face->vertex_index(1)));
+        if (found != numbers_.end() && found->second <= edge::inner)
+          continue;
+        const Point<3> from = face->vertex(0), to = face->vertex(1);
+        text << "has an edge from (" << from[0] << ", " << from[1] << ") to (" << to[0] << ", " << to[1] << ") m on "
+             << (found == numbers_.end() ? "no physical curve" : "the physical curve ");
+        if (found != numbers_.end())
+          text << static_cast<int>(found->second);
+        text << "; known are 0 left, 1 right, 2 bottom, 3 top, 4 inner";
+        return text.str();
+      }
+    return "";
+  }
+
+private:
+  std::map<std::pair<unsigned int, unsigned int>, types::boundary_id> numbers_;
+};
+
+// Whether a line of the file is on no physical curve, which deal.II takes for the curve 0 as well. Format 2: elements
+// are "number kind tags...", the first tag the physical number. Format 4.1: elements stand in blocks of one entity
+// (Gmsh 4.8 manual, "MSH file format").
+bool has_line_without_number(std::istream &file)
+{
+  constexpr int line = 1; // kind of element, and dimension of an entity
+  const auto seek = [&file](const std::string &section)
+  {
+    for (std::string word; file >> word && word != section;)
+      ;
+    return file.good();
+  };
+  double format = 0.;
+  seek("$MeshFormat");
+  file >> format;
+  if (format < 4.)
+  {
+    std::size_t n = 0, number, n_tags;
+    int kind;
+    seek("$Elements");
+    file >> n;
+    for (std::size_t i = 0; i < n && file >> number >> kind >> n_tags; ++i)
+    {
+      if (kind == line && n_tags == 0)
+        return true;
+      file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+    }
+    return false;
+  }
+  std::set<int> numbered;
+  double skipped;
+  std::size_t n_points, n_curves, n_surfaces, n_volumes, n, first, last;
+  seek("$Entities");
+  file >> n_points >> n_curves >> n_surfaces >> n_volumes;
+  file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  for (std::size_t i = 0; i < n_points && file; ++i)
+    file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  for (std::size_t i = 0; i < n_curves && file; ++i)
+  {
+    int curve;
+    file >> curve;
+    for (int side = 0; side < 6; ++side)
+      file >> skipped;
+    if (file >> n && n > 0)
+      numbered.insert(curve);
+    file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  }
+  seek("$Elements");
+  file >> n >> skipped >> first >> last;
+  int dimension, entity, kind;
+  for (std::size_t block = 0, n_elements; block < n && file >> dimension >> entity >> kind >> n_elements; ++block)
+  {
+    if (dimension == line && numbered.count(entity) == 0)
+      return true;
+    for (std::size_t i = 0; i <= n_elements && file; ++i)
+      file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
+  }
+  return false;
+}
+
+template <int dimension>
+void read_msh(Triangulation<2, dimension> &mesh, const std::filesystem::path &file)
 {
   std::ifstream stream(file);
   require(stream.good(), "cannot read the mesh file " + file.string());
-  GridIn<2> reader(mesh);
   try
   {
-    reader.read_msh(stream);
+    GridIn<2, dimension>(mesh).read_msh(stream);
   }
   catch (const std::exception &failure)
   {
     throw InvalidInput("the mesh file " + file.string() +
                        " is no Gmsh mesh of quadrilaterals in the plane: " + failure.what());
   }
-  require(mesh.n_active_cells() > 0, "the mesh file " + file.string() + " holds no cells");
+}
+
+// Reads a mesh of quadrilaterals on this process alone.
+void read_serial(Triangulation<2> &mesh, const std::filesystem::path &file)
+{
+  const std::string name = "the mesh file " + file.string();
+  read_msh(mesh, file);
+  require(mesh.n_active_cells() > 0, name + " holds no cells");
   require(mesh.all_reference_cells_are_hyper_cube(),
-          "the mesh file " + file.string() +
-            " holds cells other than quadrilaterals; Gmsh's `Recombine Surface` makes them");
-  for (const types::boundary_id id : mesh.get_boundary_ids())
-    require(id <= edge::inner, "the mesh file " + file.string() + " has edges on the physical curve " +
-                                 std::to_string(static_cast<int>(id)) +
-                                 "; known are 0 left, 1 right, 2 bottom, 3 top, 4 inner");
+          name + " holds cells other than quadrilaterals; Gmsh's `Recombine Surface` makes them");
+  AsWritten written;
+  read_msh(written, file);
+  const std::string defect = written.defect();
+  require(defect.empty(), name + " " + defect);
+  std::ifstream stream(file);
+  require(!has_line_without_number(stream), name + " has lines on no physical curve, which would be taken for 0, left");
 }
 
 class CoarseMesh

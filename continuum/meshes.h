@@ -46,9 +46,10 @@ double n_coarse_cells(const NotchedRectangle &shape);
 /// Likewise. Throws as read_gmsh does.
 double n_coarse_cells(const std::filesystem::path &gmsh_file);
 
-/// Reads quadrilaterals in the plane, coordinates in metres, from a Gmsh file (.msh, format 2 or 4.1, ASCII). Boundary
-/// ids are the numbers of the physical curves, one of continuum::edge, 0 where there is none or -1. Straight edges
-/// only. Throws InvalidInput, naming the file, if it cannot be read or is no such mesh.
+/// Reads quadrilaterals in a plane z = const, coordinates in metres, from a Gmsh file (.msh, format 2 or 4.1, ASCII).
+/// Boundary ids are the numbers of the physical curves, one of continuum::edge for every edge; for a curve without a
+/// number Gmsh itself writes 0, edge::left, in format 2. Straight edges only. Throws InvalidInput, naming the file, if
+/// it cannot be read or is no such mesh.
 void read_gmsh(dealii::parallel::distributed::Triangulation<2> &mesh, const std::filesystem::path &file,
                unsigned int refinements = 0);
 } // namespace continuum

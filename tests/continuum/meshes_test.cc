@@ -57,7 +57,7 @@ std::filesystem::path write_file(const std::string &name, const std::string &tex
   return path;
 }
 
-// Two squares side by side, 2 m x 1 m, with physical curves 2 (bottom of both) and 4 (the right edge).
+// Two squares side by side, 2 m x 1 m, with physical curves 2 (bottom of both), 4 (the right edge) and 0 (the rest).
 const char *const two_squares = R"($MeshFormat
 2.2 0 8
 $EndMeshFormat
@@ -71,12 +71,15 @@ $Nodes
 6 2 1 0
 $EndNodes
 $Elements
-5
+8
 1 1 2 2 1 1 2
 2 1 2 2 1 2 3
 3 1 2 4 2 3 6
-4 3 2 7 1 1 2 5 4
-5 3 2 7 1 2 3 6 5
+4 1 2 0 3 6 5
+5 1 2 0 3 5 4
+6 1 2 0 3 4 1
+7 3 2 7 1 1 2 5 4
+8 3 2 7 1 2 3 6 5
 $EndElements
 )";
 } // namespace
@@ -173,12 +176,104 @@ TEST(Meshes, RefusesWhatCannotBeMeshed)
     EXPECT_NE(std::string(failure.what()).find("no/such.msh"), std::string::npos);
   }
   EXPECT_THROW(continuum::read_gmsh(mesh, write_file("text.msh", "not a mesh")), continuum::InvalidInput);
-  for (const std::string id : {"5", "300"})
+}
+
+// What deal.II takes for the curve 0, or leaves out, without a word.
+TEST(Meshes, RefusesEdgesWithoutACurveAndNodesOutOfThePlane)
+{
+  const auto refusal = [](const std::string &from, const std::string &to) -> std::string
   {
     std::string other = two_squares;
-    other.replace(other.find("3 1 2 4"), 7, "3 1 2 " + id);
-    EXPECT_THROW((void)continuum::n_coarse_cells(write_file("other.msh", other)), continuum::InvalidInput) << id;
+    other.replace(other.find(from), from.size(), to);
+    try
+    {
+      (void)continuum::n_coarse_cells(write_file("other.msh", other));
+    }
+    catch (const continuum::InvalidInput &failure)
+    {
+      return failure.what();
+    }
+    return "accepted";
+  };
+  EXPECT_EQ(refusal("$Nodes", "$Nodes"), "accepted");
+  for (const std::string id : {"5", "300", "-1"})
+    EXPECT_NE(refusal("3 1 2 4 2 3 6", "3 1 2 " + id + " 2 3 6").find("physical curve " + id), std::string::npos) << id;
+  // No line along the right edge, or one along the edge between the squares in its place.
+  EXPECT_NE(refusal("8\n1 1 2 2 1 1 2\n2 1 2 2 1 2 3\n3 1 2 4 2 3 6\n", "7\n1 1 2 2 1 1 2\n2 1 2 2 1 2 3\n")
+              .find("from (2, 0) to (2, 1) m on no physical curve"),
+            std::string::npos);
+  // Nodes 3 and 6 in other planes than the rest; a mesh in another plane is one in a plane.
+  EXPECT_NE(refusal("3 2 0 0", "3 2 0 5").find("z = 0 and 5 m"), std::string::npos);
+  EXPECT_NE(refusal("6 2 1 0", "6 2 1 -1e-3").find("z = "), std::string::npos);
+  std::string raised = two_squares;
+  for (std::size_t at = raised.find(" 0\n", raised.find("$Nodes")); at < raised.find("$EndNodes");
+       at = raised.find(" 0\n", at + 1))
+    raised.replace(at, 2, " 5");
+  EXPECT_EQ(continuum::n_coarse_cells(write_file("raised.msh", raised)), 2.);
+  // A line without tags.
+  EXPECT_NE(refusal("6 1 2 0 3 4 1", "6 1 0 4 1").find("lines on no physical curve"), std::string::npos);
+}
+
+// As Gmsh writes it: a square of one cell, numbers of curves among the entities.
+TEST(Meshes, RefusesCurvesWithoutANumberOfFormat4)
+{
+  const auto square = [](const std::string &right)
+  {
+    return R"($MeshFormat
+4.1 0 8
+$EndMeshFormat
+$Entities
+4 4 1 0
+1 0 0 0 0
+2 1 0 0 0
+3 1 1 0 0
+4 0 1 0 0
+1 0 0 0 1 0 0 1 2 2 1 -2
+2 1 0 0 1 1 0 )" +
+           right + R"( 2 2 -3
+3 0 1 0 1 1 0 1 3 2 3 -4
+4 0 0 0 0 1 0 1 0 2 4 -1
+1 0 0 0 1 1 0 1 9 4 1 2 3 4
+$EndEntities
+$Nodes
+1 4 1 4
+2 1 0 4
+1
+2
+3
+4
+0 0 0
+1 0 0
+1 1 0
+0 1 0
+$EndNodes
+$Elements
+5 5 1 5
+1 1 1 1
+1 1 2
+1 2 1 1
+2 2 3
+1 3 1 1
+3 3 4
+1 4 1 1
+4 4 1
+2 1 3 1
+5 1 2 3 4
+$EndElements
+)";
+  };
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::read_gmsh(mesh, write_file("square.msh", square("1 1")));
+  for (const auto &face : mesh.begin_active()->face_iterators())
+  {
+    const dealii::Point<2> X = face->center();
+    EXPECT_EQ(face->boundary_id(), X[0] == 0.   ? continuum::edge::left
+                                   : X[0] == 1. ? continuum::edge::right
+                                   : X[1] == 0. ? continuum::edge::bottom
+                                                : continuum::edge::top);
   }
+  EXPECT_THROW((void)continuum::n_coarse_cells(write_file("square.msh", square("0"))), continuum::InvalidInput);
+  EXPECT_THROW((void)continuum::n_coarse_cells(write_file("square.msh", square("1 7"))), continuum::InvalidInput);
 }
 
 // A smaller error of the energy with a third of the unknowns of a uniform mesh.

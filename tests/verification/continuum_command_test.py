@@ -437,7 +437,7 @@ class Gmsh(TemporaryFolder):
         self.assertAlmostEqual(found["elastic energy per thickness"] / (6e-4 * density), 1., delta=1e-5)
 
     def test_curves_of_other_numbers_are_refused(self):
-        for shift in (5, 300):
+        for shift in (5, 300, -1):
             run = latcon("continuum", HOLE, "--output-dir", self.out, *self.write_mesh(shift=shift))
             self.assertEqual(run.returncode, 2)
             self.assertIn("four.msh", run.stderr)
