@@ -331,13 +331,14 @@ class Motion(TemporaryFolder):
     LENGTH = 0.01  # of the strip and the wave [m]
     STATIC, INERTIA = 0.5e-3, 1e-3  # l_s, l_d [m]
 
-    def arguments(self, folder, cells, step=5e-6):
+    def arguments(self, folder, cells, step=5e-6, across="periodic"):
+        """@param across condition of the bottom and of the top edge"""
         return ["continuum", LAYER, "--quiet", "--output-dir", folder,
                 *settings("Loading/shear=0", "Continuum/law=cauchy-born", "Continuum/ratio=auto",
                           "Bottom edge/normal gradient=free", "Top edge/normal gradient=free",
-                          "Bottom edge/condition=periodic", "Top edge/condition=periodic", "Continuum/solution=motion",
-                          "Initial state/base=undeformed", "Output/energy interval=1", f"Continuum/cells x={cells}",
-                          "Continuum/cells y=2", f"Continuum/static length={self.STATIC}",
+                          f"Bottom edge/condition={across}", f"Top edge/condition={across}",
+                          "Continuum/solution=motion", "Initial state/base=undeformed", "Output/energy interval=1",
+                          f"Continuum/cells x={cells}", "Continuum/cells y=2", f"Continuum/static length={self.STATIC}",
                           f"Continuum/inertia length={self.INERTIA}", f"Continuum/time step={step}", "Time/end=5e-5",
                           f"Initial state/velocity y={self.AMPLITUDE}*sin(2*pi*x/{self.LENGTH})")]
 
@@ -390,6 +391,26 @@ class Motion(TemporaryFolder):
         here = last_mesh(self.out)
         for name in ["displacement", "velocity"]:
             self.assertAlmostEqual(abs(field(whole, name)).max() / abs(field(here, name)).max(), 1., delta=1e-6)
+
+    def test_damped_motion_is_the_same_solved_directly_or_by_iterations(self):
+        ledgers, counts = [], []
+        for limit in (20000, 0):
+            run = latcon(*self.arguments(self.out, 8, across="free"), *settings(
+                "Left edge/condition=held", "Right edge/condition=held", "Nearest neighbours/viscosity=50",
+                f"Continuum/direct limit={limit}"))
+            self.assertEqual(run.returncode, 0, run.stderr)
+            ledgers.append(numbers(self.out / "energy.csv"))
+            record = json.loads((self.out / "run.json").read_text())
+            counts.append((record["newton_iterations"], record["linear_iterations"]))
+        direct, iterated = ledgers
+        self.assertGreater(direct["viscous"][-1], 0.01 * direct["kinetic"][0])
+        # Newton stops at residuals of 1e-10; energies are of the order of the first.
+        for name in ("elastic", "kinetic", "viscous"):
+            np.testing.assert_allclose(iterated[name], direct[name], rtol=0., atol=1e-9 * direct["kinetic"][0])
+        (newton, none), (_, linear) = counts
+        self.assertGreaterEqual(newton, 10)  # steps
+        self.assertEqual(none, 0)
+        self.assertGreaterEqual(linear, newton)
 
     def test_ends_when_it_is_told(self):
         run = latcon(*self.arguments(self.out, 8, step="auto"))

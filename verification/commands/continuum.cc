@@ -254,6 +254,7 @@ Results move(const Case &input, const ContinuumModel &model, Motion &motion, Che
   continuum::FieldWriter fields(MPI_COMM_WORLD, run.directory());
   double next_frame = input.frame_interval;
   std::size_t step = 0; // done
+  std::uint64_t n_newton = 0, n_linear = 0; // iterations of this run, without those before a checkpoint
   const auto n_steps = static_cast<std::size_t>(std::ceil(input.end_time / settings.time_step * (1. - 1e-12)));
   const auto parts = [&](auto &archive)
   {
@@ -324,6 +325,11 @@ Results move(const Case &input, const ContinuumModel &model, Motion &motion, Che
         break;
       solver.step();
       ++step;
+      for (const continuum::NewtonIteration &iteration : solver.last_report().iterations)
+      {
+        n_newton += iteration.iteration > 0 ? 1 : 0;
+        n_linear += iteration.linear_iterations;
+      }
       if (step % input.energy_interval == 0)
         record.motion(solver);
       if (input.frame_interval > 0. && solver.time() >= next_frame && step < n_steps)
@@ -351,6 +357,8 @@ Results move(const Case &input, const ContinuumModel &model, Motion &motion, Che
   }
   write_last_state();
   run.info().add("divided_steps", static_cast<std::uint64_t>(solver.n_divided_steps()));
+  run.info().add("newton_iterations", n_newton);
+  run.info().add("linear_iterations", n_linear);
   return motion_results(solver, settings.time_step);
 }
 
