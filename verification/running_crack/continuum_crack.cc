@@ -159,6 +159,7 @@ TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, con
   settings.degree = resolution.degree;
   settings.relative_tolerance = 1e-6;
   settings.linear.direct_limit = 1000000;
+  settings.max_step_halvings = 9;
   continuum::DynamicSolver solver(mesh, medium.constitution, conditions(F, medium.constitution.has_gradient()),
                                   medium.inertia, settings, medium.viscosity);
   solver.start(std::make_shared<AffineDisplacement>(F));
