@@ -25,7 +25,7 @@ public:
               std::string name = "lattice");
 
   /// Adds the state as the next frame, in the place of the last one if that is of the same time. @throws
-  /// latcon::support::WriteError if a file cannot be written
+  /// latcon::support::OutputError if a file cannot be written
   void add_frame(const State &state);
 
   std::size_t n_frames() const { return series_.n_frames(); }
@@ -37,7 +37,7 @@ public:
     series_.archive(archive);
   }
 
-  /// Writes `NAME.pvd`, so that it names the frames there are. @throws latcon::support::WriteError
+  /// Writes `NAME.pvd`, so that it names the frames there are. @throws latcon::support::OutputError
   void write_collection() const { series_.write_collection(); }
 
 private:

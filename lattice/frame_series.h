@@ -22,10 +22,10 @@ public:
   FrameSeries(std::filesystem::path directory, std::string name);
 
   /// Adds a frame, in the place of the last one if that is of the same time, and notes the time in it (TimeValue).
-  /// @param time [s] @throws latcon::support::WriteError if a file cannot be written
+  /// @param time [s] @throws latcon::support::OutputError if a file cannot be written
   void add(vtkPolyData &frame, double time);
 
-  /// Writes `NAME.pvd`, so that it names the frames there are. @throws latcon::support::WriteError
+  /// Writes `NAME.pvd`, so that it names the frames there are. @throws latcon::support::OutputError
   void write_collection() const;
 
   std::size_t n_frames() const { return times_.size(); }

@@ -18,10 +18,10 @@ public:
   MotionWriter(const TriangularLattice &lattice, std::filesystem::path directory);
 
   /// Adds the state as the next frame, in the place of the last one if that is of the same time. @throws
-  /// latcon::support::WriteError if a file cannot be written
+  /// latcon::support::OutputError if a file cannot be written
   void add_frame(const State &state);
 
-  /// Writes `motion.pvd`, so that it names the frames there are. @throws latcon::support::WriteError
+  /// Writes `motion.pvd`, so that it names the frames there are. @throws latcon::support::OutputError
   void write_collection() const { series_.write_collection(); }
 
   /// Of the frames, in their order [s].

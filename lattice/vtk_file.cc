@@ -32,7 +32,7 @@ void write_vtk_file(vtkXMLWriter &writer, const std::filesystem::path &path)
   writer.EncodeAppendedDataOff();
   writer.SetCompressorTypeToZLib();
   if (writer.Write() != 1 || writer.GetErrorCode() != 0)
-    throw latcon::support::WriteError(path, reason(writer.GetErrorCode()));
+    throw latcon::support::OutputError(path, reason(writer.GetErrorCode()));
   file.commit(latcon::support::Sync::no);
 }
 

@@ -19,11 +19,4 @@ void write_file(const std::string &path, const std::string &text);
 /// @throws OutputError as above, and if `writer` leaves the stream in a failed state.
 void write_file(const std::string &path, const std::function<void(std::ostream &)> &writer);
 
-/// The same without listing the file.
-void replace_file(const std::string &path, const std::string &text);
-
-/// The shortest decimal text that reads back to the same double, bit for bit, in any locale: 0.1 -> "0.1".
-/// Not-a-number gives "nan" (its sign and payload are lost), infinities "inf" and "-inf".
-[[nodiscard]] std::string full_precision(double value);
-
 } // namespace verification

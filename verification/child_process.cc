@@ -9,7 +9,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include "verification/errors.h"
+#include "support/errors.h"
 
 namespace verification
 {
@@ -47,7 +47,7 @@ pid_t start_child(const ChildProgram &program)
   {
     log = open(program.log.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_NOFOLLOW | O_CLOEXEC, 0666);
     if (log < 0)
-      throw OutputError(program.log, std::generic_category().message(errno));
+      throw latcon::support::OutputError(program.log, std::generic_category().message(errno));
   }
   const int nothing = open("/dev/null", O_RDONLY | O_CLOEXEC);
   const pid_t parent = getpid();
@@ -73,8 +73,8 @@ pid_t start_child(const ChildProgram &program)
     close(log);
   close(nothing);
   if (child < 0)
-    throw OutputError(program.log.empty() ? program.command.front() : program.log,
-                      "cannot start a process: " + std::generic_category().message(error));
+    throw latcon::support::OutputError(program.log.empty() ? program.command.front() : program.log,
+                                       "cannot start a process: " + std::generic_category().message(error));
   return child;
 }
 

@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-#include "verification/atomic_file.h"
+#include "support/full_precision.h"
 #include "verification/case_text.h"
 
 namespace verification
@@ -71,7 +71,7 @@ Case claim_inputs(const Case &input)
 {
   std::vector<std::string> lines = assignments(input);
   for (const char *extent : {"length", "height"})
-    lines.push_back(std::string("Sheet/") + extent + "=" + full_precision(sheet_size * input.spacing));
+    lines.push_back(std::string("Sheet/") + extent + "=" + latcon::support::full_precision(sheet_size * input.spacing));
   Case read;
   Parameters parameters;
   read.declare(parameters);

@@ -6,9 +6,9 @@
 #include <iostream>
 #include <sstream>
 
-#include "verification/atomic_file.h"
+#include "support/errors.h"
+#include "support/full_precision.h"
 #include "verification/case_text.h"
-#include "verification/errors.h"
 
 namespace verification
 {
@@ -61,8 +61,9 @@ public:
   {
     const double value = dealii::FunctionParser<2>::value(X, component);
     if (!std::isfinite(value))
-      throw InputError("the expression '" + printable(get_expressions()[component]) + "' is no finite number at x = " +
-                       full_precision(X[0]) + " m, y = " + full_precision(X[1]) + " m");
+      throw latcon::support::InputError("the expression '" + printable(get_expressions()[component]) +
+                                        "' is no finite number at x = " + latcon::support::full_precision(X[0]) +
+                                        " m, y = " + latcon::support::full_precision(X[1]) + " m");
     return value;
   }
 
@@ -124,7 +125,7 @@ void check_values_at(Parameters &parameters, const std::string &key, const std::
     for (const dealii::Point<2> &X : points)
       (void)function->value(X, 0);
   }
-  catch (const InputError &problem)
+  catch (const latcon::support::InputError &problem)
   {
     parameters.error(key, problem.what());
   }
@@ -157,7 +158,7 @@ std::string problem_with(const std::string &expression)
     field.field(1.)->value(dealii::Point<2>(0.0123, 0.0045), 0);
     return "";
   }
-  catch (const InputError &)
+  catch (const latcon::support::InputError &)
   {
     return ""; // it can be parsed; its values are looked at where the sheet is
   }

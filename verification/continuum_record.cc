@@ -6,6 +6,7 @@
 #include <ostream>
 #include <stdexcept>
 
+#include "support/full_precision.h"
 #include "verification/atomic_file.h"
 #include "verification/largest_error.h"
 
@@ -33,7 +34,7 @@ void print_names(std::ostream &out, const std::map<dealii::types::boundary_id, d
 void print(std::ostream &out, const std::map<dealii::types::boundary_id, dealii::Tensor<1, 2>> &reactions)
 {
   for (const auto &[id, force] : reactions)
-    out << "," << full_precision(force[0]) << "," << full_precision(force[1]);
+    out << "," << latcon::support::full_precision(force[0]) << "," << latcon::support::full_precision(force[1]);
   out << "\n";
 }
 
@@ -111,7 +112,7 @@ void ContinuumRecord::write(const std::string &directory) const
                    for (const double value : {time, ledger.stored, ledger.kinetic, ledger.micro_kinetic,
                                               ledger.dissipated, ledger.work, ledger.imbalance})
                    {
-                     out << separator << full_precision(value);
+                     out << separator << latcon::support::full_precision(value);
                      separator = ",";
                    }
                    out << "\n";
@@ -124,7 +125,8 @@ void ContinuumRecord::write(const std::string &directory) const
              {
                out << "load_factor,elastic\n";
                for (const Equilibrium &state : equilibria_)
-                 out << full_precision(state.load_factor) << "," << full_precision(state.energy) << "\n";
+                 out << latcon::support::full_precision(state.load_factor) << ","
+                     << latcon::support::full_precision(state.energy) << "\n";
              });
   if (!equilibria_.empty())
     write_file(directory + "/reactions.csv",
@@ -134,7 +136,7 @@ void ContinuumRecord::write(const std::string &directory) const
                  print_names(out, equilibria_.front().reactions);
                  for (const Equilibrium &state : equilibria_)
                  {
-                   out << full_precision(state.load_factor);
+                   out << latcon::support::full_precision(state.load_factor);
                    print(out, state.reactions);
                  }
                });
@@ -143,10 +145,12 @@ void ContinuumRecord::write(const std::string &directory) const
              {
                out << "mesh,load_step,iteration,load_factor,residual,tolerance,energy,step_length,linear_iterations\n";
                for (const auto &[mesh, row] : iterations_)
-                 out << mesh << "," << row.load_step << "," << row.iteration << "," << full_precision(row.load_factor)
-                     << "," << full_precision(row.residual) << "," << full_precision(row.tolerance) << ","
-                     << full_precision(row.energy) << "," << full_precision(row.step_length) << ","
-                     << row.linear_iterations << "\n";
+                 out << mesh << "," << row.load_step << "," << row.iteration << ","
+                     << latcon::support::full_precision(row.load_factor) << ","
+                     << latcon::support::full_precision(row.residual) << ","
+                     << latcon::support::full_precision(row.tolerance) << ","
+                     << latcon::support::full_precision(row.energy) << ","
+                     << latcon::support::full_precision(row.step_length) << "," << row.linear_iterations << "\n";
              });
   if (meshes_.size() > 1)
     write_file(directory + "/meshes.csv",
@@ -156,7 +160,7 @@ void ContinuumRecord::write(const std::string &directory) const
                  print_names(out, meshes_.front().reactions);
                  for (const MeshRow &row : meshes_)
                  {
-                   out << row.n_cells << "," << row.n_unknowns << "," << full_precision(row.energy);
+                   out << row.n_cells << "," << row.n_unknowns << "," << latcon::support::full_precision(row.energy);
                    print(out, row.reactions);
                  }
                });

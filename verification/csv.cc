@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-#include "verification/atomic_file.h"
+#include "support/full_precision.h"
 
 namespace verification
 {
@@ -42,7 +42,7 @@ std::string Table::csv() const
   for (const std::vector<Cell> &row : rows_)
   {
     for (const Cell &cell : row)
-      text += (std::holds_alternative<double>(cell) ? full_precision(std::get<double>(cell))
+      text += (std::holds_alternative<double>(cell) ? latcon::support::full_precision(std::get<double>(cell))
                                                     : csv_field(std::get<std::string>(cell))) +
               ',';
     end_line();

@@ -7,8 +7,8 @@
 #include <system_error>
 #include <vector>
 
-#include "verification/atomic_file.h"
-#include "verification/errors.h"
+#include "support/atomic_file.h"
+#include "support/errors.h"
 
 namespace verification
 {
@@ -42,7 +42,7 @@ void write_names(const fs::path &folder, const Names &names)
   std::string text;
   for (const std::string &name : names)
     text += name + "\n";
-  replace_file(folder / output_list_name, text);
+  latcon::support::write_atomically(folder / output_list_name, text, latcon::support::Sync::yes);
 }
 
 bool fits(const std::string &file, const std::string &name)
@@ -139,7 +139,8 @@ fs::path set_earlier_output_aside(const fs::path &folder, const fs::path &keep)
   }
   catch (const fs::filesystem_error &error)
   {
-    throw OutputError(folder.string(), std::string("the files of the run before cannot be moved: ") + error.what());
+    throw latcon::support::OutputError(folder.string(),
+                                       std::string("the files of the run before cannot be moved: ") + error.what());
   }
 }
 

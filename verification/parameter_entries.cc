@@ -1,7 +1,7 @@
 // How each kind of entry is declared, read and written; what is done with the entries is in parameters.cc.
 #include "verification/parameters.h"
 
-#include "verification/atomic_file.h"
+#include "support/full_precision.h"
 #include "verification/case_text.h"
 #include "verification/spelling.h"
 #include "verification/units.h"
@@ -51,9 +51,10 @@ std::string Range::text() const
 {
   std::string text;
   if (std::isfinite(lower_.value))
-    text = (lower_.included ? ">= " : "> ") + full_precision(lower_.value);
+    text = (lower_.included ? ">= " : "> ") + latcon::support::full_precision(lower_.value);
   if (std::isfinite(upper_.value))
-    text += (text.empty() ? "" : " and ") + std::string(upper_.included ? "<= " : "< ") + full_precision(upper_.value);
+    text += (text.empty() ? "" : " and ") + std::string(upper_.included ? "<= " : "< ") +
+            latcon::support::full_precision(upper_.value);
   return text;
 }
 
@@ -90,7 +91,7 @@ void Parameters::add(const std::string &section, const std::string &name, double
       member = quantity.value;
     return quantity.wrong;
   };
-  entry.write = [&member] { return full_precision(member); };
+  entry.write = [&member] { return latcon::support::full_precision(member); };
   declare(std::move(entry));
 }
 
@@ -112,7 +113,7 @@ void Parameters::add(const std::string &section, const std::string &name, std::o
       member = quantity.value;
     return quantity.wrong;
   };
-  entry.write = [&member] { return member ? full_precision(*member) : "auto"; };
+  entry.write = [&member] { return member ? latcon::support::full_precision(*member) : "auto"; };
   declare(std::move(entry));
 }
 
@@ -155,7 +156,7 @@ void Parameters::add(const std::string &section, const std::string &name, std::v
     std::vector<std::string> texts;
     texts.reserve(member.size());
     for (const double value : member)
-      texts.push_back(full_precision(value));
+      texts.push_back(latcon::support::full_precision(value));
     return comma_separated(texts);
   };
   declare(std::move(entry));

@@ -1,8 +1,8 @@
 #include "verification/parameters.h"
 
+#include "support/errors.h"
 #include "verification/atomic_file.h"
 #include "verification/case_text.h"
-#include "verification/errors.h"
 #include "verification/input_file.h"
 #include "verification/spelling.h"
 
@@ -211,7 +211,7 @@ void Parameters::finish()
   std::vector<std::string> problems = problems_;
   if (n_problems_ > problems.size())
     problems.push_back("... and " + std::to_string(n_problems_ - problems.size()) + " more problems");
-  throw InputError(std::move(problems));
+  throw latcon::support::InputError(std::move(problems));
 }
 
 bool Parameters::has_section(const std::string &section) const

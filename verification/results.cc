@@ -1,8 +1,9 @@
 #include "verification/results.h"
 
+#include "support/errors.h"
+#include "support/full_precision.h"
 #include "verification/atomic_file.h"
 #include "verification/csv.h"
-#include "verification/errors.h"
 #include "verification/text_wrap.h"
 
 #include <nlohmann/json.hpp>
@@ -31,13 +32,13 @@ nlohmann::ordered_json json_of(const Value &value)
     return nullptr;
   // JSON knows no such numbers, and null would say that there is no value.
   if (!std::isfinite(*value))
-    return full_precision(*value);
+    return latcon::support::full_precision(*value);
   return *value;
 }
 
 std::string csv_of(const Value &value)
 {
-  return value ? full_precision(*value) : "";
+  return value ? latcon::support::full_precision(*value) : "";
 }
 
 std::string table_number(const Value &value, const int digits)
@@ -98,7 +99,7 @@ bool Results::attempt(const std::string &claim, const std::string &quantity, con
     compute();
     return true;
   }
-  catch (const Error &)
+  catch (const latcon::support::Error &)
   {
     throw;
   }

@@ -1,7 +1,7 @@
 /// How a run came about: program, machine, times.
 #pragma once
 
-#include "verification/errors.h"
+#include "support/errors.h"
 
 #include <chrono>
 #include <cstdint>
@@ -97,10 +97,12 @@ public:
   /// @param exit_code what the run ended with; empty while it is under way (null in the file)
   /// @param verdict   verdict on the claims, if any were checked
   /// @return JSON with a line break at its end; wall times [s], memory [byte] of the calling process.
-  [[nodiscard]] std::string json(std::optional<ExitCode> exit_code, const std::string &verdict = "") const;
+  [[nodiscard]] std::string json(std::optional<latcon::support::ExitCode> exit_code,
+                                 const std::string &verdict = "") const;
 
   /// Writes json() to `path`; of several ranks, one should call it. @throws OutputError
-  void write(const std::string &path, std::optional<ExitCode> exit_code, const std::string &verdict = "") const;
+  void write(const std::string &path, std::optional<latcon::support::ExitCode> exit_code,
+             const std::string &verdict = "") const;
 
 private:
   using Value = std::variant<Scalar, Object>;

@@ -20,9 +20,9 @@
 #include <nlohmann/json.hpp>
 
 #include "support/atomic_file.h"
+#include "support/errors.h"
 #include "verification/atomic_file.h"
 #include "verification/claim_inputs.h"
-#include "verification/errors.h"
 #include "verification/run_info.h"
 #include "verification/sha256.h"
 
@@ -254,7 +254,7 @@ void VerdictStore::write(const VerdictKey &key, const std::string &text) const
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   if (error)
-    throw OutputError(folder_, error.message());
+    throw latcon::support::OutputError(folder_, error.message());
   // Other runs may write here now, in milliseconds: what is older was left by killed ones.
   latcon::support::remove_stale_parts(folder_, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
   write_file(path(key), text);

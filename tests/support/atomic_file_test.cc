@@ -28,7 +28,7 @@ std::string complaint(const std::string &path, const std::string &text = "new")
   {
     write_atomically(path, text, Sync::yes);
   }
-  catch (const WriteError &error)
+  catch (const OutputError &error)
   {
     return error.what();
   }

@@ -1,21 +1,15 @@
-// What write_file adds to support/atomic_file.h: writers, the exit code of what fails, numbers as text.
+// What write_file adds to support/atomic_file.h: writers, and the list of outputs.
 #include "temporary_folder.h"
 
+#include "support/errors.h"
 #include "verification/atomic_file.h"
-#include "verification/errors.h"
 
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstdint>
-#include <cstring>
-#include <limits>
 #include <ostream>
-#include <random>
 
-using verification::ExitCode;
-using verification::full_precision;
-using verification::OutputError;
+using latcon::support::ExitCode;
+using latcon::support::OutputError;
 using verification::write_file;
 
 namespace
@@ -34,13 +28,6 @@ std::string complaint(const std::string &path, const std::string &text = "new")
     return error.what();
   }
   return "";
-}
-
-std::uint64_t bits(const double value)
-{
-  std::uint64_t result = 0;
-  std::memcpy(&result, &value, sizeof(value));
-  return result;
 }
 
 } // namespace
@@ -82,24 +69,4 @@ TEST(WriteFile, WriterThatFailsOrThrowsLeavesTheOldFile)
                           }),
                std::runtime_error);
   EXPECT_EQ(content_of(path), "old");
-}
-
-TEST(FullPrecision, IsShortAndReadsBackBitForBit)
-{
-  EXPECT_EQ(full_precision(0.1), "0.1");
-  EXPECT_EQ(full_precision(-0.), "-0");
-  EXPECT_EQ(full_precision(std::numeric_limits<double>::quiet_NaN()), "nan");
-  EXPECT_EQ(full_precision(-std::numeric_limits<double>::quiet_NaN()), "nan");
-  EXPECT_EQ(full_precision(-std::numeric_limits<double>::infinity()), "-inf");
-  std::mt19937_64 random(1);
-  for (int i = 0; i < 10000; ++i)
-  {
-    const std::uint64_t pattern = random();
-    double value = 0.;
-    std::memcpy(&value, &pattern, sizeof(value));
-    if (std::isfinite(value))
-    {
-      EXPECT_EQ(bits(std::strtod(full_precision(value).c_str(), nullptr)), pattern);
-    }
-  }
 }

@@ -1,8 +1,8 @@
 // What the claims may read of a case: every entry there is either changes the text or is said here not to.
 #include "verification/claim_inputs.h"
 
+#include "support/errors.h"
 #include "verification/case_text.h"
-#include "verification/errors.h"
 #include "verification/subject.h"
 
 #include <gtest/gtest.h>
@@ -147,7 +147,7 @@ std::optional<Case> with_another(const std::string &key, const std::string &valu
     {
       parameters.finish();
     }
-    catch (const verification::InputError &)
+    catch (const latcon::support::InputError &)
     {
       continue;
     }

@@ -1,7 +1,7 @@
 // What a case says of the finite element sheet: defaults that are accepted, and combinations that are refused with the
 // entry to change.
+#include "support/errors.h"
 #include "verification/continuum_case.h"
-#include "verification/errors.h"
 
 #include <gtest/gtest.h>
 
@@ -27,7 +27,7 @@ Lines problems(const Lines &overrides, const bool has_inner_edge = false)
   {
     parameters.finish();
   }
-  catch (const InputError &error)
+  catch (const latcon::support::InputError &error)
   {
     return error.problems();
   }
@@ -38,14 +38,15 @@ Lines problems(const Lines &overrides, const bool has_inner_edge = false)
 void expect_refused(const std::string &entry, const Lines &overrides, const bool has_inner_edge = false)
 {
   const Lines found = problems(overrides, has_inner_edge);
-  ASSERT_EQ(found.size(), 1u) << entry << "\n" << (found.empty() ? "no problem" : InputError(found).what());
+  ASSERT_EQ(found.size(), 1u) << entry << "\n"
+                              << (found.empty() ? "no problem" : latcon::support::InputError(found).what());
   EXPECT_NE(found[0].find(entry), std::string::npos) << found[0];
 }
 
 void expect_accepted(const Lines &overrides, const bool has_inner_edge = false)
 {
   const Lines found = problems(overrides, has_inner_edge);
-  EXPECT_TRUE(found.empty()) << InputError(found).what();
+  EXPECT_TRUE(found.empty()) << latcon::support::InputError(found).what();
 }
 
 } // namespace

@@ -6,7 +6,7 @@
 
 #include <gtest/gtest.h>
 
-#include "verification/errors.h"
+#include "support/errors.h"
 
 using namespace verification;
 
@@ -45,7 +45,7 @@ Lines problems(const Lines &overrides, Check check = require_lattice_sheet)
   {
     parameters.finish();
   }
-  catch (const InputError &error)
+  catch (const latcon::support::InputError &error)
   {
     return error.problems();
   }
@@ -55,7 +55,8 @@ Lines problems(const Lines &overrides, Check check = require_lattice_sheet)
 void expect_refused(const std::string &entry, const Lines &overrides)
 {
   const Lines found = problems(overrides);
-  ASSERT_EQ(found.size(), 1u) << entry << "\n" << (found.empty() ? "no problem" : InputError(found).what());
+  ASSERT_EQ(found.size(), 1u) << entry << "\n"
+                              << (found.empty() ? "no problem" : latcon::support::InputError(found).what());
   EXPECT_NE(found[0].find(entry), std::string::npos) << found[0];
   EXPECT_NE(found[0].find("`it`"), std::string::npos) << found[0];
 }

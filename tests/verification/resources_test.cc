@@ -5,7 +5,7 @@
 
 #include <gtest/gtest.h>
 
-#include "verification/errors.h"
+#include "support/errors.h"
 
 using namespace verification;
 
@@ -67,11 +67,11 @@ TEST(Resources, MoreUnknownsThanHaveNumbersAreRefused)
 {
   Case input = square(0.02, 1e-3);
   input.continuum.cells_x = input.continuum.cells_y = 65536;
-  EXPECT_THROW((void)continuum_size(input), InputError);
+  EXPECT_THROW((void)continuum_size(input), latcon::support::InputError);
   input.continuum.cells_x = input.continuum.cells_y = 2;
   input.continuum.adaptive_cycles = 30;
   input.continuum.refined_fraction = 1.;
-  EXPECT_THROW((void)continuum_size(input), InputError);
+  EXPECT_THROW((void)continuum_size(input), latcon::support::InputError);
 }
 
 TEST(Resources, StepsThatCannotBeCountedAreTold)
@@ -87,7 +87,7 @@ TEST(Resources, StepsThatCannotBeCountedAreTold)
     parameters.finish();
     FAIL() << "nothing was told";
   }
-  catch (const InputError &error)
+  catch (const latcon::support::InputError &error)
   {
     const std::string text = error.what();
     EXPECT_EQ(text.find("Time/end"), text.rfind("Time/end")) << text; // of the second alone

@@ -1,7 +1,7 @@
 // A result holds if and only if its error is a finite number within its tolerance; files and table say the same.
 #include "temporary_folder.h"
 
-#include "verification/errors.h"
+#include "support/errors.h"
 #include "verification/results.h"
 
 #include <gtest/gtest.h>
@@ -128,8 +128,8 @@ TEST(Results, APartThatThrowsIsARowThatFailsAndSaysWhy)
   EXPECT_EQ(results.rows()[1].claim, "energy");
   EXPECT_EQ(results.rows()[1].quantity, "NN: waves: not computed: no positive step");
   // These have exit codes of their own.
-  EXPECT_THROW(results.attempt("energy", "", [] { throw verification::InputError("wrong"); }),
-               verification::InputError);
+  EXPECT_THROW(results.attempt("energy", "", [] { throw latcon::support::InputError("wrong"); }),
+               latcon::support::InputError);
   EXPECT_THROW(results.attempt("energy", "", [] { throw std::bad_alloc(); }), std::bad_alloc);
   EXPECT_EQ(results.rows().size(), 2u);
 }
@@ -212,7 +212,7 @@ TEST(Results, WritesBothFilesOrSaysWhyNot)
   results.write(folder.path());
   EXPECT_EQ(content_of(folder / "results.json"), results.json());
   EXPECT_EQ(content_of(folder / "results.csv"), results.csv());
-  EXPECT_THROW(results.write(folder / "missing"), verification::OutputError);
+  EXPECT_THROW(results.write(folder / "missing"), latcon::support::OutputError);
 }
 
 TEST(Results, TextThatIsNotUtf8DoesNotLoseTheFile)

@@ -13,7 +13,7 @@
 #include <thread>
 #include <unistd.h>
 
-using verification::ExitCode;
+using latcon::support::ExitCode;
 using verification::RunInfo;
 using verification::Stopwatch;
 
@@ -136,5 +136,5 @@ TEST(RunInfo, WritesTheFile)
   const TemporaryFolder folder;
   RunInfo({"latcon"}).write(folder / "run.json", ExitCode::done);
   EXPECT_EQ(nlohmann::json::parse(content_of(folder / "run.json"))["program"], "latcon");
-  EXPECT_THROW(RunInfo({"latcon"}).write(folder / "missing/run.json", ExitCode::done), verification::OutputError);
+  EXPECT_THROW(RunInfo({"latcon"}).write(folder / "missing/run.json", ExitCode::done), latcon::support::OutputError);
 }

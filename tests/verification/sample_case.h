@@ -11,7 +11,7 @@
 
 #include <gtest/gtest.h>
 
-#include "verification/errors.h"
+#include "support/errors.h"
 #include "verification/parameters.h"
 
 namespace sample_case
@@ -69,9 +69,9 @@ inline std::vector<std::string> problems_of(Parameters &p)
   {
     p.finish();
   }
-  catch (const InputError &error)
+  catch (const latcon::support::InputError &error)
   {
-    EXPECT_EQ(error.exit_code(), ExitCode::bad_input);
+    EXPECT_EQ(error.exit_code(), latcon::support::ExitCode::bad_input);
     return error.problems();
   }
   return {};
@@ -93,7 +93,7 @@ inline std::string problem(const std::string &text, const std::vector<std::strin
                            const std::string &name = "a.prm")
 {
   const std::vector<std::string> all = problems(text, overrides, name);
-  EXPECT_EQ(all.size(), 1u) << text << "\n" << (all.empty() ? "no problem" : InputError(all).what());
+  EXPECT_EQ(all.size(), 1u) << text << "\n" << (all.empty() ? "no problem" : latcon::support::InputError(all).what());
   return all.size() == 1 ? all[0] : "";
 }
 

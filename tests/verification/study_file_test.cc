@@ -5,7 +5,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "verification/errors.h"
+#include "support/errors.h"
 #include "verification/study/study_file.h"
 #include "verification/study/study_plan.h"
 
@@ -53,7 +53,7 @@ std::string refusal(const std::string &text)
   {
     (void)read_study(text, "x.json", false);
   }
-  catch (const InputError &error)
+  catch (const latcon::support::InputError &error)
   {
     return error.what();
   }
@@ -76,7 +76,7 @@ std::string problem_after(const Change &change)
     const Study study = read(document);
     (void)plan_of(study);
   }
-  catch (const InputError &error)
+  catch (const latcon::support::InputError &error)
   {
     EXPECT_EQ(error.problems().size(), 1u) << error.what();
     EXPECT_EQ(error.problems().front().find("folder/x.json: "), 0u) << error.what();
@@ -241,7 +241,7 @@ TEST(StudyFile, ShippedStudiesAreThoseInTheFolder)
     (void)read_study_file(study_path("nosuch"), false);
     FAIL();
   }
-  catch (const InputError &error)
+  catch (const latcon::support::InputError &error)
   {
     EXPECT_HAS(std::string(error.what()),
                "nosuch: cannot read the study: No such file or directory; give a " + study_choices());
@@ -285,16 +285,16 @@ TEST(StudyFile, CasesThatAreWrongAreNamedOnceWithTheirRun)
 
 TEST(StudyFile, TextThatIsNoStudyIsRefused)
 {
-  EXPECT_THROW((void)read_study("[1]", "x.json", false), InputError);
-  EXPECT_THROW((void)read_study("{", "x.json", false), InputError);
+  EXPECT_THROW((void)read_study("[1]", "x.json", false), latcon::support::InputError);
+  EXPECT_THROW((void)read_study("{", "x.json", false), latcon::support::InputError);
   EXPECT_HAS(refusal(example().dump() + std::string("\0anything", 9)), "it holds zero bytes");
-  EXPECT_THROW((void)read_study_file("/no/such/file.json", false), InputError);
+  EXPECT_THROW((void)read_study_file("/no/such/file.json", false), latcon::support::InputError);
   try
   {
     (void)read_study(R"({"title": "a", "title": "b"})", "x.json", false);
     FAIL();
   }
-  catch (const InputError &error)
+  catch (const latcon::support::InputError &error)
   {
     EXPECT_HAS(std::string(error.what()), "'title' is there twice");
   }
@@ -321,7 +321,7 @@ TEST(StudyFile, RefusesNumbersAndDepthBeyondAllSense)
       (void)read_study(text, "folder/x.json", false);
       FAIL() << text.substr(0, 40);
     }
-    catch (const InputError &error)
+    catch (const latcon::support::InputError &error)
     {
       EXPECT_HAS(std::string(error.what()), "folder/x.json: not");
     }

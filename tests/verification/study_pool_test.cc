@@ -7,8 +7,8 @@
 
 #include <gtest/gtest.h>
 
+#include "support/errors.h"
 #include "temporary_folder.h"
-#include "verification/errors.h"
 #include "verification/study/process_pool.h"
 
 using namespace verification;
@@ -102,8 +102,8 @@ TEST(StudyPool, ExceptionsEndTheChildrenFirst)
   {
     while (scripts.log(0) != "ready\n")
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    throw OutputError("x", "full");
+    throw latcon::support::OutputError("x", "full");
   };
-  EXPECT_THROW(run_processes(scripts.pool), OutputError);
+  EXPECT_THROW(run_processes(scripts.pool), latcon::support::OutputError);
   EXPECT_EQ(scripts.log(0), "ready\ntold\n");
 }

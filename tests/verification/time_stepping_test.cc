@@ -5,8 +5,8 @@
 
 #include "lattice/chebyshev_stages.h"
 #include "lattice/contact.h"
+#include "support/errors.h"
 #include "verification/case.h"
-#include "verification/errors.h"
 
 using namespace verification;
 
@@ -57,7 +57,7 @@ void expect_refused(const std::string &entry, const Lines &overrides)
     stepping(overrides);
     ADD_FAILURE() << entry << " is taken";
   }
-  catch (const InputError &error)
+  catch (const latcon::support::InputError &error)
   {
     ASSERT_EQ(error.problems().size(), 1u) << error.what();
     EXPECT_NE(error.problems()[0].find(entry), std::string::npos) << error.what();

@@ -1,7 +1,7 @@
 // Verdicts come back as they were stored, and only for the inputs for which they were found.
 #include "temporary_folder.h"
 
-#include "verification/errors.h"
+#include "support/errors.h"
 #include "verification/sha256.h"
 #include "verification/verdict_store.h"
 
@@ -144,12 +144,12 @@ TEST(VerdictStore, SaysWhatItCannotReadOrWrite)
   const VerdictStore store(folder.path());
   std::filesystem::create_directory(store.path(key));
   EXPECT_THROW((void)store.read(key), UnusableVerdicts);
-  EXPECT_THROW(store.write(key, "text"), verification::OutputError);
+  EXPECT_THROW(store.write(key, "text"), latcon::support::OutputError);
   const VerdictKey empty("2");
   std::ofstream(store.path(empty)).flush();
   EXPECT_THROW((void)store.read(empty), UnusableVerdicts);
   std::ofstream(folder / "file") << "in the way";
-  EXPECT_THROW(VerdictStore(folder / "file").write(key, "text"), verification::OutputError);
+  EXPECT_THROW(VerdictStore(folder / "file").write(key, "text"), latcon::support::OutputError);
   EXPECT_FALSE(VerdictStore(folder / "file").read(key));
 }
 

@@ -10,10 +10,10 @@
 
 #include <deal.II/base/mpi.h>
 
+#include "support/errors.h"
 #include "support/folder_lock.h"
 #include "verification/atomic_file.h"
 #include "verification/case.h"
-#include "verification/errors.h"
 #include "verification/options.h"
 #include "verification/parameters.h"
 #include "verification/run_info.h"
@@ -127,8 +127,8 @@ Checkpoints::Checkpoints(const Options &options, const Parameters &parameters, c
     last_step_asked_ = best.step;
   }
   else if (!problems.empty())
-    throw InputError("there is no checkpoint to go on from; to start from the beginning leave out --resume\n" +
-                     problems);
+    throw latcon::support::InputError(
+      "there is no checkpoint to go on from; to start from the beginning leave out --resume\n" + problems);
   if (first_rank_ && !problems.empty())
     std::fprintf(stderr, "latcon: %s\n", problems.c_str());
 }
@@ -234,7 +234,7 @@ void Checkpoints::save(std::size_t step, double time, const std::function<void(C
     latcon::support::require_in_place(folder_);
     fs::create_directory(folder_, error); // not the folder above: if that was removed, so was the run
     if (error)
-      throw OutputError(folder_.string(), error.message());
+      throw latcon::support::OutputError(folder_.string(), error.message());
     write_file((folder_ / name_of(step)).string(), bytes);
     // By now the last one is whole, so that the older ones can go; those of later steps were left by a run that this
     // one has gone back behind.
@@ -257,7 +257,7 @@ void Checkpoints::archive_stale_checkpoints() const
   fs::remove_all(aside, error);
   fs::rename(folder_, aside, error);
   if (error)
-    throw OutputError(aside.string(), error.message());
+    throw latcon::support::OutputError(aside.string(), error.message());
 }
 
 } // namespace verification

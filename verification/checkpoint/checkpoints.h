@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
+#include "support/errors.h"
 #include "verification/checkpoint/archive.h"
-#include "verification/errors.h"
 
 namespace verification
 {
@@ -28,10 +28,10 @@ struct CheckpointPlace
 };
 
 /// A checkpoint whose bytes are those that were written, but whose contents are none that this run can have left.
-class UnusableCheckpoint : public InputError
+class UnusableCheckpoint : public latcon::support::InputError
 {
 public:
-  using InputError::InputError;
+  using latcon::support::InputError::InputError;
 };
 
 /// Refuses steps done and a time [s] that are not those of the checkpoint, or do not belong together: the time is to be

@@ -212,7 +212,7 @@ MemoryNeed memory_of(const std::vector<PlannedRun> &plan, std::size_t n_cores)
   return {std::accumulate(needs.begin(), needs.end(), 0.), 0.};
 }
 
-ExitCode exit_code_of(const StudyResults &results, const Results &rows)
+latcon::support::ExitCode exit_code_of(const StudyResults &results, const Results &rows)
 {
   const auto any = [&](RunState state)
   {
@@ -220,16 +220,17 @@ ExitCode exit_code_of(const StudyResults &results, const Results &rows)
                        [state](const RunOutcome &outcome) { return outcome.state == state; });
   };
   if (any(RunState::failed))
-    return ExitCode::solver_failed;
-  return any(RunState::refused) || rows.verdict() == Verdict::fails ? ExitCode::claim_failed : ExitCode::done;
+    return latcon::support::ExitCode::solver_failed;
+  return any(RunState::refused) || rows.verdict() == Verdict::fails ? latcon::support::ExitCode::claim_failed
+                                                                    : latcon::support::ExitCode::done;
 }
 
 } // namespace
 
-ExitCode run_study(const Options &options, const std::string &name)
+latcon::support::ExitCode run_study(const Options &options, const std::string &name)
 {
   if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
-    throw InputError("`latcon study` starts its own processes, one a core; run it without mpirun");
+    throw latcon::support::InputError("`latcon study` starts its own processes, one a core; run it without mpirun");
   StudyResults results;
   results.study = read_study_file(study_path(name), options.quick);
   const InputFile base = read_input_file(results.study.base);
@@ -246,7 +247,7 @@ ExitCode run_study(const Options &options, const std::string &name)
       std::cout << memory_text(memory);
     }
     require_memory(memory);
-    return ExitCode::done;
+    return latcon::support::ExitCode::done;
   }
   require_memory(memory);
 
@@ -276,7 +277,8 @@ ExitCode run_study(const Options &options, const std::string &name)
   const Results rows = study_rows(results);
   if (run.is_verbose())
     print_table(std::cout, results);
-  const ExitCode exit_code = run.end(rows, complete ? exit_code_of(results, rows) : ExitCode::interrupted);
+  const latcon::support::ExitCode exit_code =
+    run.end(rows, complete ? exit_code_of(results, rows) : latcon::support::ExitCode::interrupted);
   if (complete)
   {
     study_page(run.directory());

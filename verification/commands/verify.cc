@@ -169,7 +169,7 @@ ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names
   return outcome;
 }
 
-ExitCode verify(const Options &options)
+latcon::support::ExitCode verify(const Options &options)
 {
   Case input;
   Parameters parameters;
@@ -178,7 +178,7 @@ ExitCode verify(const Options &options)
   if (options.dry_run)
   {
     print_dry_run(options, parameters.resolved_text());
-    return ExitCode::done;
+    return latcon::support::ExitCode::done;
   }
   Run run(options, parameters);
   ClaimOutcome outcome;

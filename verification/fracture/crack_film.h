@@ -21,7 +21,7 @@ public:
             std::filesystem::path directory);
 
   /// Writes the first frame, or, of a run that goes on from a checkpoint, takes back what was written after that.
-  /// Collective. @throws latcon::support::WriteError if a file cannot be written, as the others do
+  /// Collective. @throws latcon::support::OutputError if a file cannot be written, as the others do
   void begin(bool resumed);
 
   /// Adds a frame if the tip has come to where the next one is due. Collective.

@@ -11,8 +11,9 @@
 
 #include "lattice/archive_rows.h"
 #include "lattice/fragments.h"
+#include "support/errors.h"
+#include "support/full_precision.h"
 #include "verification/atomic_file.h"
-#include "verification/errors.h"
 #include "verification/largest_error.h"
 
 namespace verification
@@ -28,7 +29,7 @@ void write_row(std::ostream &out, std::initializer_list<double> values)
   const char *separator = "";
   for (const double value : values)
   {
-    out << separator << full_precision(value);
+    out << separator << latcon::support::full_precision(value);
     separator = ",";
   }
 }
@@ -126,7 +127,7 @@ lattice::EnergyBalance CrackRecord::sound_energies()
           << " m/s; the last frame shows the sheet at " << last_sound_.time()
           << " s, when it was sound; a smaller Time/safety factor may help";
   simulation_.show_snapshot(last_sound_);
-  throw SolverError(message.str());
+  throw latcon::support::SolverError(message.str());
 }
 
 void CrackRecord::check_loaded() const
@@ -208,7 +209,7 @@ void CrackRecord::write_tables(const std::filesystem::path &directory) const
                const lattice::TriangularLattice &sheet = simulation_.lattice();
                for (const lattice::BrokenBond &bond : broken_)
                {
-                 out << full_precision(bond.time) << ',' << sheet.site_number(bond.near) << ','
+                 out << latcon::support::full_precision(bond.time) << ',' << sheet.site_number(bond.near) << ','
                      << sheet.site_number(bond.far) << ',';
                  write_row(out, {bond.midpoint.x(), bond.midpoint.y(), bond.stretch});
                  out << '\n';

@@ -45,7 +45,7 @@ public:
 
   /// Writes near_tip.json and, if there are samples, near_tip.vti and near_tip_folded.vti; nothing if no samples were
   /// asked for. To be called once, at the end, on the first rank. @throws OutputError,
-  /// latcon::support::WriteError
+  /// latcon::support::OutputError
   void write(const std::filesystem::path &directory, const lattice::CrackMeasurement &crack);
 
   /// Saves or loads what the samples said; see lattice::Simulation. The first rank's is the whole.

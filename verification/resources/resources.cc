@@ -12,7 +12,7 @@
 #include "continuum/meshes.h"
 #include "continuum/rectangle.h"
 #include "lattice/simulation.h"
-#include "verification/errors.h"
+#include "support/errors.h"
 #include "verification/fracture/near_tip_record.h"
 #include "verification/homogenisation.h"
 #include "verification/lattice_sheet.h"
@@ -207,7 +207,7 @@ ContinuumSize continuum_size(const Case &input)
     std::ostringstream text;
     text << "the finite element mesh would have about " << size.final_unknowns
          << " unknowns, and no more than 2147483647 can be numbered; give fewer cells, refinements or adaptive cycles";
-    throw InputError(text.str());
+    throw latcon::support::InputError(text.str());
   }
   return size;
 }
@@ -250,7 +250,7 @@ void require_memory(const MemoryNeed &need)
        << readable_bytes(numbers[0]) << ") more than latcon has now, and this machine has " << numbers[1] << " bytes ("
        << readable_bytes(numbers[1])
        << ") available; make the sheet smaller or coarser, or share it among more machines";
-  throw InputError(text.str());
+  throw latcon::support::InputError(text.str());
 }
 
 std::string memory_text(const MemoryNeed &need)

@@ -36,7 +36,7 @@ struct CrackFrame
 
 /// Drives the crack through a lattice, whose bonds break in no other way.
 /// @param reach of the field around the tip [m]
-/// @param frame none is written if empty @throws latcon::support::WriteError
+/// @param frame none is written if empty @throws latcon::support::OutputError
 TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &material, const Eigen::Matrix2d &F,
                            double reach, const std::optional<CrackFrame> &frame = {});
 
