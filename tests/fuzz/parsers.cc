@@ -11,8 +11,8 @@
 #include <vector>
 
 #include "support/errors.h"
-#include "verification/case.h"
-#include "verification/lattice_sheet.h"
+#include "verification/bridge/lattice_sheet.h"
+#include "verification/input/case.h"
 #include "verification/study/study_file.h"
 
 namespace

@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "support/atomic_file.h"
-#include "tests/verification/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace latcon::support;
 namespace fs = std::filesystem;

@@ -13,7 +13,7 @@
 
 #include "support/atomic_file.h"
 #include "support/folder_lock.h"
-#include "tests/verification/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace latcon::support;
 using namespace std::chrono_literals;

@@ -8,10 +8,11 @@
 #include <deal.II/base/mpi.h>
 
 #include "support/atomic_file.h"
-#include "verification/checkpoint/checkpoints.h"
 #include "verification/commands/signals.h"
-#include "verification/output_list.h"
-#include "verification/sha256.h"
+#include "verification/output/checkpoints.h"
+#include "verification/output/output_file.h"
+#include "verification/output/output_list.h"
+#include "verification/output/sha256.h"
 
 namespace verification
 {
@@ -89,7 +90,7 @@ Run::Run(const Options &options, const Parameters *parameters)
     record_->lock = lock_directory(directory_);
     clear(options, parameters != nullptr);
     if (parameters != nullptr)
-      parameters->write(directory_ + "/case.prm");
+      write_file(directory_ + "/case.prm", parameters->resolved_text());
     const SignalDeferral deferral; // a run.json that is there gets the exit code
     record_->write(std::nullopt);
     last = record_;

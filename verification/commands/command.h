@@ -8,12 +8,12 @@
 
 #include "support/errors.h"
 #include "support/folder_lock.h"
-#include "verification/case.h"
-#include "verification/claim_outcome.h"
-#include "verification/laws.h"
-#include "verification/options.h"
-#include "verification/results.h"
-#include "verification/run_info.h"
+#include "verification/bridge/laws.h"
+#include "verification/claims/claim_outcome.h"
+#include "verification/input/case.h"
+#include "verification/input/options.h"
+#include "verification/output/results.h"
+#include "verification/output/run_info.h"
 
 namespace verification
 {

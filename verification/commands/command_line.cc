@@ -22,7 +22,7 @@
 #include "support/available_cores.h"
 #include "verification/commands/command.h"
 #include "verification/commands/signals.h"
-#include "verification/data_folder.h"
+#include "verification/input/data_folder.h"
 #include "verification/study/study_file.h"
 
 namespace verification

@@ -8,7 +8,7 @@
 
 #include "verification/commands/command.h"
 #include "verification/compare/difference_writer.h"
-#include "verification/units.h"
+#include "verification/input/units.h"
 
 namespace verification
 {

@@ -9,13 +9,13 @@
 #include "continuum/dynamic_solver.h"
 #include "continuum/errors.h"
 #include "continuum/field_writer.h"
-#include "verification/affine_displacement.h"
-#include "verification/checkpoint/checkpoints.h"
+#include "verification/bridge/affine_displacement.h"
+#include "verification/bridge/continuum_model.h"
 #include "verification/commands/command.h"
 #include "verification/commands/signals.h"
-#include "verification/continuum_model.h"
-#include "verification/continuum_record.h"
-#include "verification/progress.h"
+#include "verification/output/checkpoints.h"
+#include "verification/output/continuum_record.h"
+#include "verification/output/progress.h"
 #include "verification/resources/resources.h"
 
 namespace verification

@@ -1,15 +1,15 @@
 #include <iostream>
 #include <sstream>
 
+#include "support/largest_error.h"
+#include "verification/bridge/lattice_sheet.h"
 #include "verification/commands/command.h"
 #include "verification/commands/crack_summary.h"
 #include "verification/commands/dry_run.h"
 #include "verification/commands/lattice_motion.h"
 #include "verification/commands/signals.h"
-#include "verification/fracture/crack_film.h"
-#include "verification/fracture/near_tip_record.h"
-#include "verification/largest_error.h"
-#include "verification/lattice_sheet.h"
+#include "verification/output/crack_film.h"
+#include "verification/output/near_tip_record.h"
 
 namespace verification
 {
@@ -49,7 +49,8 @@ Results measured_results(const Case &input, const CrackRecord &record, const lat
     {
       row.tolerance = input.reference_tolerance;
       // A quantity that was published but could not be measured does not agree.
-      row.error = measured ? relative_error(measured->value, *published) : std::numeric_limits<double>::quiet_NaN();
+      row.error = measured ? latcon::support::relative_error(measured->value, *published)
+                           : std::numeric_limits<double>::quiet_NaN();
     }
     results.add(row);
   };

@@ -4,10 +4,10 @@
 
 #include <deal.II/base/mpi.h>
 
+#include "verification/bridge/subject.h"
+#include "verification/claims/gate_rows.h"
+#include "verification/claims/verdict_store.h"
 #include "verification/commands/command.h"
-#include "verification/gate_rows.h"
-#include "verification/subject.h"
-#include "verification/verdict_store.h"
 
 namespace verification
 {

@@ -1,14 +1,14 @@
 #include <cmath>
 #include <iostream>
 
-#include "lattice/field_writer.h"
 #include "lattice/relaxation.h"
+#include "verification/bridge/homogenisation.h"
+#include "verification/bridge/lattice_sheet.h"
 #include "verification/commands/command.h"
 #include "verification/commands/dry_run.h"
 #include "verification/commands/lattice_motion.h"
 #include "verification/commands/signals.h"
-#include "verification/homogenisation.h"
-#include "verification/lattice_sheet.h"
+#include "verification/output/field_writer.h"
 
 namespace verification
 {

@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "verification/commands/signals.h"
-#include "verification/progress.h"
+#include "verification/output/progress.h"
 
 namespace verification
 {

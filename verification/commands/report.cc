@@ -6,9 +6,9 @@
 
 #include <deal.II/base/mpi.h>
 
-#include "verification/child_process.h"
+#include "support/child_process.h"
 #include "verification/commands/command.h"
-#include "verification/data_folder.h"
+#include "verification/input/data_folder.h"
 
 namespace verification
 {
@@ -37,8 +37,9 @@ int run_script(const std::string &script, const std::string &directory, const st
   std::vector<std::string> command{python, "-s", data_folder() + "/report/" + script, directory};
   if (quiet)
     command.emplace_back("--quiet");
-  const int status = wait_for_child(start_child({command, environment_of_scripts(), ""}));
-  if (status == not_started)
+  const int status =
+    latcon::support::wait_for_child(latcon::support::start_child({command, environment_of_scripts(), ""}));
+  if (status == latcon::support::not_started)
     throw latcon::support::OutputError(directory + "/" + page, "cannot start " + python);
   if (status > 128)
     throw latcon::support::OutputError(directory + "/" + page, "the report script was killed");

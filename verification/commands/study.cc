@@ -9,12 +9,12 @@
 
 #include "support/available_cores.h"
 #include "support/folder_lock.h"
-#include "verification/atomic_file.h"
+#include "support/machine_memory.h"
 #include "verification/commands/command.h"
 #include "verification/commands/signals.h"
-#include "verification/input_file.h"
-#include "verification/progress.h"
-#include "verification/resources/machine_memory.h"
+#include "verification/input/input_file.h"
+#include "verification/output/output_file.h"
+#include "verification/output/progress.h"
 #include "verification/resources/resources.h"
 #include "verification/study/process_pool.h"
 #include "verification/study/study_output.h"
@@ -206,7 +206,7 @@ MemoryNeed memory_of(const std::vector<PlannedRun> &plan, std::size_t n_cores)
 {
   std::vector<double> needs;
   for (const PlannedRun &run : plan)
-    needs.push_back(run.memory + held_memory());
+    needs.push_back(run.memory + latcon::support::held_memory());
   std::sort(needs.rbegin(), needs.rend());
   needs.resize(std::min(needs.size(), n_cores));
   return {std::accumulate(needs.begin(), needs.end(), 0.), 0.};

@@ -12,7 +12,7 @@
 
 #include "support/errors.h"
 #include "support/full_precision.h"
-#include "verification/largest_error.h"
+#include "support/largest_error.h"
 
 namespace verification
 {
@@ -40,7 +40,7 @@ struct Bounds
 
 Bounds bounds(const std::vector<Position> &points)
 {
-  std::array<Extremes, 2> extremes;
+  std::array<latcon::support::Extremes, 2> extremes;
   for (const Position &point : points)
     for (std::size_t k = 0; k < 2; ++k)
       extremes[k].add(point[k]);
@@ -83,7 +83,7 @@ struct Norms
 template <typename Value>
 Norms norms_of(const std::vector<std::size_t> &sites, std::size_t n_components, const Value &value)
 {
-  Extremes sizes;
+  latcon::support::Extremes sizes;
   sizes.add(0.);
   double sum = 0.;
   for (const std::size_t site : sites)
@@ -99,7 +99,7 @@ Norms norms_of(const std::vector<std::size_t> &sites, std::size_t n_components, 
 
 double relative(double difference, double lattice, double continuum)
 {
-  return difference == 0. ? 0. : difference / largest_of({lattice, continuum});
+  return difference == 0. ? 0. : difference / latcon::support::largest_of({lattice, continuum});
 }
 
 // A site at the rim of a curved hole may be outside for the rounding of the rim, but then some of its neighbours are
@@ -167,7 +167,7 @@ void require_same_units(const LatticeFrame &lattice, const ContinuumFrame &conti
 double position_tolerance(const ContinuumFrame &frame)
 {
   const Bounds box = bounds(frame.points);
-  return 1e-6 * largest_of({box.side(0), box.side(1)});
+  return 1e-6 * latcon::support::largest_of({box.side(0), box.side(1)});
 }
 
 void require_same_time(const LatticeFrame &lattice, const ContinuumFrame &continuum)
@@ -197,7 +197,7 @@ void require_same_bounds(const LatticeFrame &lattice, const ContinuumFrame &cont
     here = {{{(*given)[0], (*given)[2]}}, {{(*given)[1], (*given)[3]}}};
   const Bounds there = bounds(continuum.points);
   const double tolerance = position_tolerance(continuum);
-  LargestError distance;
+  latcon::support::LargestError distance;
   for (std::size_t k = 0; k < 2; ++k)
   {
     distance.add_difference(here.low[k], there.low[k]);

@@ -9,8 +9,8 @@
 
 #include "support/errors.h"
 #include "support/full_precision.h"
-#include "verification/atomic_file.h"
 #include "verification/compare/quiet_vtk.h"
+#include "verification/output/output_file.h"
 
 namespace verification
 {

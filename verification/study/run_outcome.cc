@@ -7,8 +7,8 @@
 #include <nlohmann/json.hpp>
 
 #include "support/errors.h"
-#include "verification/case_text.h"
-#include "verification/run_info.h"
+#include "verification/input/case_text.h"
+#include "verification/output/run_info.h"
 
 namespace verification
 {

@@ -8,10 +8,10 @@
 #include <stdexcept>
 
 #include "support/errors.h"
-#include "verification/case.h"
-#include "verification/case_text.h"
-#include "verification/data_folder.h"
-#include "verification/input_file.h"
+#include "verification/input/case.h"
+#include "verification/input/case_text.h"
+#include "verification/input/data_folder.h"
+#include "verification/input/input_file.h"
 #include "verification/study/quantities.h"
 #include "verification/study/study_check.h"
 #include "verification/study/study_json.h"

@@ -4,8 +4,8 @@
 #include <set>
 
 #include "support/errors.h"
-#include "verification/case_text.h"
-#include "verification/spelling.h"
+#include "verification/input/case_text.h"
+#include "verification/input/spelling.h"
 
 namespace verification
 {

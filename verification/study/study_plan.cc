@@ -6,10 +6,10 @@
 #include <numeric>
 
 #include "support/errors.h"
-#include "verification/case.h"
-#include "verification/case_text.h"
-#include "verification/homogenisation.h"
-#include "verification/lattice_sheet.h"
+#include "verification/bridge/homogenisation.h"
+#include "verification/bridge/lattice_sheet.h"
+#include "verification/input/case.h"
+#include "verification/input/case_text.h"
 #include "verification/resources/resources.h"
 
 namespace verification

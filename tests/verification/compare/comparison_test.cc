@@ -7,7 +7,7 @@
 
 #include "frames.h"
 #include "support/errors.h"
-#include "tests/verification/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace
 {
