@@ -5,7 +5,7 @@ include(CMakePackageConfigHelpers)
 
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME runtime)
 install(TARGETS latcon)
-# verification/data_folder.h looks for it.
+# verification/input/data_folder.h looks for it.
 foreach(folder cases studies report paraview)
   install(DIRECTORY verification/${folder} DESTINATION share/latcon PATTERN __pycache__ EXCLUDE)
 endforeach()

@@ -24,6 +24,6 @@ set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "The libraries: headers, static librari
 give the lattice a bond law, or the continuum a material or gradient law, of
 their own.")
 # What latconConfig.cmake looks for.
-set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libdeal.ii-dev, libeigen3-dev, libhwy-dev, libopenmpi-dev, libvtk9-dev")
+set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libdeal.ii-dev, libeigen3-dev, libhwy-dev, libopenmpi-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "latcon, cmake")
 include(CPack)

@@ -92,7 +92,7 @@ void write_whole(const std::filesystem::path &path, const std::string &text)
   {
     latcon::support::write_atomically(path, text, latcon::support::Sync::no);
   }
-  catch (const latcon::support::WriteError &error)
+  catch (const latcon::support::OutputError &error)
   {
     throw OutputFailed(error.what());
   }

@@ -25,7 +25,7 @@ constexpr std::size_t n_digits = 16; // hexadecimal, of the random part of a nam
 const std::string suffix = ".part";
 
 // With the system's words for an error number; std::strerror is not safe with threads.
-WriteError error_of(const fs::path &place, int error_number)
+OutputError error_of(const fs::path &place, int error_number)
 {
   return {place, std::generic_category().message(error_number)};
 }
@@ -68,7 +68,7 @@ AtomicFile::AtomicFile(fs::path place) : place_(std::move(place))
   {
   };
   if (::stat(place_.c_str(), &status) == 0 && !S_ISREG(status.st_mode))
-    throw WriteError(place_, S_ISDIR(status.st_mode) ? "it is a folder" : "it is not a regular file");
+    throw OutputError(place_, S_ISDIR(status.st_mode) ? "it is a folder" : "it is not a regular file");
   do
   {
     part_ = random_neighbour(place_);
@@ -81,7 +81,7 @@ AtomicFile::AtomicFile(fs::path place) : place_(std::move(place))
   {
     require_in_place(place_);
   }
-  catch (const WriteError &)
+  catch (const OutputError &)
   {
     discard();
     throw;

@@ -27,7 +27,7 @@ enum class Sync
 class AtomicFile
 {
 public:
-  /// Creates the part. @throws WriteError, also if the place is a folder, a device or a pipe, which renaming would
+  /// Creates the part. @throws OutputError, also if the place is a folder, a device or a pipe, which renaming would
   /// destroy, or in a folder that this process has locked and that was removed or replaced since
   explicit AtomicFile(std::filesystem::path place);
 
@@ -37,7 +37,7 @@ public:
   AtomicFile(const AtomicFile &) = delete;
   AtomicFile &operator=(const AtomicFile &) = delete;
 
-  /// Appends to the part. @throws WriteError
+  /// Appends to the part. @throws OutputError
   void write(std::string_view bytes);
 
   /// Name under which a library that opens files by name can open and truncate the part: that of the descriptor in
@@ -45,7 +45,7 @@ public:
   [[nodiscard]] std::string name() const;
 
   /// Renames the part into its place. To be called once, as the last.
-  /// @throws WriteError; the part is then removed
+  /// @throws OutputError; the part is then removed
   void commit(Sync sync);
 
 private:
@@ -55,7 +55,7 @@ private:
   int descriptor_ = -1; // -1: closed
 };
 
-/// Replaces the file `place` by `text`. @throws WriteError
+/// Replaces the file `place` by `text`. @throws OutputError
 void write_atomically(const std::filesystem::path &place, std::string_view text, Sync sync);
 
 /// Removes the parts in `folder` that were last written before `moment`. Parts of living processes must be younger: in

@@ -43,14 +43,14 @@ int open_lock_file(const std::filesystem::path &path)
   // O_NONBLOCK: a pipe in its place must not hang.
   const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
   if (descriptor < 0)
-    throw WriteError(path, std::generic_category().message(errno));
+    throw OutputError(path, std::generic_category().message(errno));
   struct stat status
   {
   };
   if (::fstat(descriptor, &status) == 0 && S_ISREG(status.st_mode))
     return descriptor;
   ::close(descriptor);
-  throw WriteError(path, "it is not a regular file");
+  throw OutputError(path, "it is not a regular file");
 }
 
 // Those of this process, by the names of their folders.
@@ -151,7 +151,7 @@ void require_in_place(const std::filesystem::path &place)
   {
     const auto lock = held_locks().by_folder.find(folder);
     if (lock != held_locks().by_folder.end() && !lock->second->is_in_place())
-      throw WriteError(place, "the folder " + folder.string() + " was removed or replaced during the run");
+      throw OutputError(place, "the folder " + folder.string() + " was removed or replaced during the run");
   }
 }
 

@@ -19,7 +19,7 @@ class FolderLock
 {
 public:
   /// Locks an existing folder. Waits up to `patience` for a process that is about to end.
-  /// @throws FolderInUse @throws WriteError if the lock file cannot be made, or is no regular file
+  /// @throws FolderInUse @throws OutputError if the lock file cannot be made, or is no regular file
   explicit FolderLock(std::filesystem::path folder, std::chrono::milliseconds patience = std::chrono::seconds(1));
   ~FolderLock();
 
@@ -38,7 +38,7 @@ private:
   bool is_held_ = false;
 };
 
-/// Throws WriteError if `place` is in a folder that this process has locked, or below one, and the folder was removed
+/// Throws OutputError if `place` is in a folder that this process has locked, or below one, and the folder was removed
 /// or replaced since: what has its name now may belong to another process. May be called from any thread.
 void require_in_place(const std::filesystem::path &place);
 

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
-"""Fails if an include goes against docs/architecture.md: support <- lattice, continuum <- verification, no other arrow; if
-folders include each other in a circle; or if docs/pictures/includes.svg is not the graph of the sources.
+"""Fails if an include goes against docs/architecture.md: if a folder includes one that ALLOWED does not give it, or a library
+that LIBRARIES keeps from it; if folders include each other in a circle; or if docs/pictures/includes.svg is not the graph
+of the sources.
 
 Usage: check_includes.py PROJECT_ROOT [--draw]     --draw: make the picture, with Graphviz
 The rules are tried on planted violations first, so that a rule which has stopped biting fails as well.
@@ -13,26 +14,58 @@ import subprocess
 import sys
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
-FORBIDDEN = {
-    "support": ("lattice/", "continuum/", "verification/", "deal.II/"),
-    "lattice": ("continuum/", "verification/", "deal.II/"),
-    "continuum": ("lattice/", "verification/"),
-    "verification": (),
+SIDES = ("support", "lattice", "continuum")
+MODELS = (*SIDES, "verification/input", "verification/bridge", "verification/analysis", "verification/output")
+# The folders that a folder may include besides itself; `claims/*` stands for the folder of any one claim.
+ALLOWED = {
+    "support": (),
+    "lattice": ("support",),
+    "continuum": ("support",),
+    "verification/analysis": ("support", "lattice"),
+    "verification/input": ("support", "lattice"),
+    "verification/bridge": (*SIDES, "verification/input"),
+    "verification/output": (*SIDES, "verification/input", "verification/bridge", "verification/analysis"),
+    "verification/compare": ("support", "verification/output"),
+    "verification/resources": MODELS,
+    "verification/claims": MODELS,
+    "verification/claims/*": (*MODELS, "verification/claims"),
+    "verification/study": (*MODELS, "verification/resources", "verification/claims", "verification/claims/*"),
+    "verification/commands": (*MODELS, "verification/compare", "verification/resources", "verification/claims",
+                              "verification/claims/*", "verification/study"),
+    # main.cc, and the headers that are compiled once.
+    "verification": ("continuum", "support", "verification/commands"),
     # Tests of one side must not lean on the other either.
-    "tests/support": ("lattice/", "continuum/", "verification/", "deal.II/"),
-    "tests/lattice": ("continuum/", "verification/", "deal.II/"),
-    "tests/continuum": ("lattice/", "verification/"),
+    "tests/support": ("support",),
+    "tests/lattice": ("support", "lattice", "tests/support"),
+    "tests/continuum": ("support", "continuum", "tests/support"),
+    "tests/verification/analysis": ("support", "lattice", "verification/analysis", "tests/support", "tests/lattice"),
+}
+# Folders that may not include a library, by the beginning of its headers' names.
+LIBRARIES = {
+    "deal.II/": ("support", "lattice", "verification/analysis", "tests/support", "tests/lattice", "tests/verification/analysis"),
+    "vtk": [folder for folder in ALLOWED if folder not in ("verification/output", "verification/compare")],
 }
 PLANTED = [
     ("support", '#include "lattice/bond_law.h"'),
     ("support", "#include <deal.II/base/mpi.h>"),
     ("lattice", '#include "continuum/material.h"'),
     ("lattice", "#include <deal.II/base/tensor.h>"),
-    ("lattice", '  #  include "../verification/case.h"'),
+    ("lattice", "#include <vtkPolyData.h>"),
+    ("lattice", '  #  include "../verification/input/case.h"'),
+    ("lattice", '#include "verification/analysis/path_fit.h"'),
     ("continuum", '#include "lattice/bond_law.h"'),
-    ("continuum", '#include "verification/case.h"'),
+    ("continuum", '#include "verification/input/case.h"'),
+    ("verification/analysis", '#include "continuum/dynamic_solver.h"'),
+    ("verification/analysis", '#include "verification/output/csv.h"'),
+    ("verification/input", '#include "verification/output/csv.h"'),
+    ("verification/output", '#include "verification/claims/claim_outcome.h"'),
+    ("verification/claims", '#include "verification/claims/energy/energy_claim.h"'),
+    ("verification/claims/energy", '#include "verification/claims/prestretch/cut_study.h"'),
+    ("verification/study", '#include "verification/commands/command.h"'),
     ("tests/lattice", "#include <deal.II/base/tensor.h>"),
+    ("tests/verification/analysis", '#include "tests/verification/claims/subjects.h"'),
 ]
+ROOTS = ("support", "lattice", "continuum", "verification", "tests")
 PICTURE = "docs/pictures/includes.svg"
 # Side of the comparison, by the start of a folder's name, and its colour.
 COLOURS = {"support": "#cfe3c0", "lattice": "#f4c7a1", "continuum": "#a9cbe8", "verification": "#e4e4e4"}
@@ -44,25 +77,38 @@ def included(text):
             for name in INCLUDE.findall(text)]
 
 
+def rule(folder):
+    """Key of ALLOWED for a folder, None if there is none."""
+    return folder if folder in ALLOWED else "verification/claims/*" if folder.startswith("verification/claims/") else None
+
+
 def violations(folder, text):
     """Includes in `text` that a source in `folder` may not have."""
-    return [name for name in included(text) if name.startswith(FORBIDDEN[folder])]
+    own, found = rule(folder), []
+    for name in included(text):
+        other = str(pathlib.PurePosixPath(name).parent)
+        is_ours = other not in (folder, ".") and other.split("/")[0] in ROOTS
+        if is_ours and (rule(other) or other) not in ALLOWED[own]:
+            found.append(name)
+        if any(name.startswith(library) and own in folders for library, folders in LIBRARIES.items()):
+            found.append(name)
+    return found
 
 
-def sources(root, folder):
-    return sorted(path for path in (root / folder).rglob("*") if path.suffix in (".h", ".cc", ".inc"))
+def sources(root):
+    """Pairs (folder, source) of all that has a rule, the folder relative to the root."""
+    files = sorted(path for top in ROOTS for path in (root / top).rglob("*") if path.suffix in (".h", ".cc", ".inc"))
+    return [(folder, path) for path in files if rule(folder := str(path.relative_to(root).parent))]
 
 
 def graph(root):
     """Pairs (folder, folder that it includes), relative to the root. main.cc is above all folders and left out."""
     found = set()
-    for top in COLOURS:
-        for path in sources(root, top):
-            own = str(path.relative_to(root).parent)
+    for folder, path in sources(root):
+        if folder != "verification" and folder.split("/")[0] != "tests":
             others = {str(pathlib.PurePosixPath(name).parent) for name in included(path.read_text())}
-            if path.name != "main.cc":
-                found |= {(own, other) for other in others if (root / other).is_dir() and other.startswith(tuple(COLOURS))}
-    return {(own, other) for own, other in found if own != other}
+            found |= {(folder, other) for other in others if rule(other) and other != folder}
+    return found
 
 
 def circle(pairs):
@@ -84,9 +130,22 @@ def circle(pairs):
     return next((found for folder in list(after) if folder not in without and (found := follow([folder]))), [])
 
 
+def outline(pairs):
+    """The pairs with one folder for all claims, without those that follow from others."""
+    pairs = {(rule(folder), rule(other)) for folder, other in pairs}
+    after = collections.defaultdict(set)
+    for folder, other in pairs:
+        after[folder].add(other)
+
+    def reached(folder):
+        return after[folder].union(*(reached(other) for other in after[folder]))
+
+    return {(folder, other) for folder, other in pairs if not any(other in reached(step) for step in set(after[folder]))}
+
+
 def drawing(pairs):
     """The graph in Graphviz' language."""
-    lines = ["digraph {", 'graph [bgcolor=white, nodesep=0.25, ranksep=0.6]', 'edge [color="#555555", arrowsize=0.7]',
+    lines = ["digraph {", 'graph [bgcolor=white, nodesep=0.25, ranksep=0.4]', 'edge [color="#555555", arrowsize=0.7]',
              'node [shape=box, style="filled,rounded", fontname="DejaVu Sans", fontsize=11, penwidth=0]']
     for folder in sorted({folder for pair in pairs for folder in pair}):
         lines.append(f'"{folder}" [label="{folder}/", fillcolor="{COLOURS[folder.split("/")[0]]}"]')
@@ -106,26 +165,28 @@ def main():
             sys.exit(f"the rule for {folder}/ no longer catches: {line}")
     if circle({("a", "b"), ("b", "c"), ("d", "a"), ("c", "b")}) != ["b", "c"] or circle({("a", "b"), ("d", "b")}):
         sys.exit("circles are no longer found")
+    if found := circle({(folder, other) for folder, others in ALLOWED.items() for other in others}):
+        sys.exit("ALLOWED has a circle: " + " -> ".join([*found, found[0]]))
     root = pathlib.Path(sys.argv[1])
-    checked = 0
-    bad = []
-    for folder in FORBIDDEN:
-        for path in sources(root, folder):
-            checked += 1
-            bad += [f"{path.relative_to(root)} includes {name}" for name in violations(folder, path.read_text())]
-    if checked == 0:
-        sys.exit(f"no sources found under {root}")
+    checked = sources(root)
+    if {rule(folder) for folder, _ in checked} != set(ALLOWED):
+        sys.exit(f"folders of ALLOWED without sources under {root}")
+    if without := sorted({str(path.relative_to(root)) for top in ROOTS[:-1] for path in (root / top).rglob("*.cc")}
+                         - {str(path.relative_to(root)) for _, path in checked}):
+        sys.exit("sources in folders without a rule: " + ", ".join(without))
+    bad = [f"{path.relative_to(root)} includes {name}" for folder, path in checked for name in violations(folder, path.read_text())]
     if bad:
         sys.exit("forbidden includes:\n  " + "\n  ".join(bad))
     pairs = graph(root)
     if found := circle(pairs):
         sys.exit("folders include each other: " + " -> ".join([*found, found[0]]))
+    pairs = outline(pairs)
     if "--draw" in sys.argv[2:]:
         picture = subprocess.run(["dot", "-Tsvg"], input=drawing(pairs), capture_output=True, text=True, check=True).stdout
         (root / PICTURE).write_text(picture)
     if different := drawn((root / PICTURE).read_text()) ^ pairs:
         sys.exit(f"{PICTURE} is not the graph of the sources: {sorted(different)}; `--target include_graph` makes it")
-    print(f"{checked} sources follow the include rules")
+    print(f"{len(checked)} sources follow the include rules")
 
 
 if __name__ == "__main__":

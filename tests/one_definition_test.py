@@ -13,7 +13,7 @@ import sys
 import unittest
 
 ROOT = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else pathlib.Path(__file__).parents[1]
-FOLDERS = ("lattice", "continuum", "verification", "tests")
+FOLDERS = ("support", "lattice", "continuum", "verification", "tests")
 
 NOT_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.DOTALL)
 BLOCK = re.compile(r"\bnamespace\b(?P<namespace>[\w:\s]*)\{|"

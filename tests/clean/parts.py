@@ -50,9 +50,13 @@ def tests_of(preset, environment, *names):
     return [Job(name.split("/")[-1], [program(preset, f"tests/{name}"), "--gtest_brief=1"], environment) for name in names]
 
 
+# Programs of tests that do not start MPI.
+SERIAL = ("lattice/lattice_tests", "verification/analysis_tests")
+
+
 def lto():
-    return [Job("lattice_tests", [program("lto", "tests/lattice/lattice_tests"), "--gtest_brief=1",
-                                  "--gtest_filter=-" + ":".join(SLOW)]),
+    return [*(Job(pathlib.Path(name).name, [program("lto", f"tests/{name}"), "--gtest_brief=1",
+                                            "--gtest_filter=-" + ":".join(SLOW)]) for name in SERIAL),
             *tests_of("lto", {}, "continuum/continuum_tests", "verification/verification_tests",
                       "verification/claims_tests", "verification/compare_tests"),
             Job("study", [program("lto", "verification/latcon"), "study", "patterns", "--dry-run"]),
@@ -63,7 +67,7 @@ def asan():
     leaks = {"ASAN_OPTIONS": "detect_leaks=1"}
     # MPI keeps memory until the process ends, some of it in modules unloaded by then, which no suppression can name.
     no_leaks = {"ASAN_OPTIONS": "detect_leaks=0"}
-    tests = [*tests_of("debug", leaks, "lattice/lattice_tests"),
+    tests = [*tests_of("debug", leaks, *SERIAL),
              *tests_of("debug", no_leaks, "verification/verification_tests", "verification/compare_tests",
                        "continuum/continuum_tests")]
     ranks = [Job(name, ["mpirun", "--oversubscribe", "-np", "2", program("debug", f"tests/{folder}/{name}"),
@@ -84,7 +88,7 @@ def tsan():
                    "TSAN_OPTIONS": "ignore_noninstrumented_modules=1 report_signal_unsafe=0"}
     # Where the system places memory at random over a wide range, ThreadSanitizer cannot start.
     fixed = ["setarch", "--addr-no-randomize"]
-    jobs = [*tests_of("clang", environment, "lattice/lattice_tests"),
+    jobs = [*tests_of("clang", environment, *SERIAL),
             Job("motions", [program("clang", "tests/arm64/motion_bits")], environment),
             crack("clang", **environment)]
     for job in jobs:
@@ -93,10 +97,10 @@ def tsan():
 
 
 def valgrind():
-    return [Job("lattice_tests", ["valgrind", "--quiet", "--error-exitcode=1", "--leak-check=full",
-                                  "--errors-for-leak-kinds=definite", f"--suppressions={HERE / 'valgrind.supp'}",
-                                  program("release", "tests/lattice/lattice_tests"), "--gtest_brief=1",
-                                  "--gtest_filter=-" + ":".join(SLOW)])]
+    return [Job(pathlib.Path(name).name, ["valgrind", "--quiet", "--error-exitcode=1", "--leak-check=full",
+                                          "--errors-for-leak-kinds=definite", f"--suppressions={HERE / 'valgrind.supp'}",
+                                          program("release", f"tests/{name}"), "--gtest_brief=1",
+                                          "--gtest_filter=-" + ":".join(SLOW)]) for name in SERIAL]
 
 
 PARTS = {
@@ -107,6 +111,6 @@ PARTS = {
                                           for folder in ("continuum", "verification")))),
     "asan": Part(asan, r"ERROR: (AddressSanitizer|LeakSanitizer)|runtime error:|^\[  FAILED  \] [^0-9]", "debug"),
     "tsan": Part(tsan, r"WARNING: ThreadSanitizer|^\[  FAILED  \] [^0-9]", "clang",
-                 ("lattice_tests", "motion_bits", "latcon")),
-    "valgrind": Part(valgrind, r"^==\d+== [A-Z]|^\[  FAILED  \] [^0-9]", "release", ("lattice_tests",)),
+                 ("lattice_tests", "analysis_tests", "motion_bits", "latcon")),
+    "valgrind": Part(valgrind, r"^==\d+== [A-Z]|^\[  FAILED  \] [^0-9]", "release", ("lattice_tests", "analysis_tests")),
 }

@@ -10,9 +10,9 @@
 #include <string>
 #include <vector>
 
-#include "verification/case.h"
-#include "verification/errors.h"
-#include "verification/lattice_sheet.h"
+#include "support/errors.h"
+#include "verification/bridge/lattice_sheet.h"
+#include "verification/input/case.h"
 #include "verification/study/study_file.h"
 
 namespace
@@ -72,7 +72,7 @@ void read_case(const std::string &text, const std::string &name, const std::vect
   {
     parameters_again.finish();
   }
-  catch (const InputError &error)
+  catch (const latcon::support::InputError &error)
   {
     fail(std::string("a good case is refused once it is written: ") + error.what());
   }
@@ -114,7 +114,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t *data, const std::size_
       return -1;
     }
   }
-  catch (const InputError &)
+  catch (const latcon::support::InputError &)
   {
   }
   return 0;

@@ -80,8 +80,8 @@ class Faults(unittest.TestCase):
 
     def test_each_source_has_its_programs(self):
         self.assertEqual(programs_for("lattice/forces.cc")[0], "lattice_tests")
-        self.assertEqual(programs_for("verification/units.cc")[0], "verification_tests")
-        self.assertEqual(programs_for("verification/bloch.cc")[0], "claims_tests")
+        self.assertEqual(programs_for("verification/input/units.cc")[0], "verification_tests")
+        self.assertEqual(programs_for("verification/bridge/bloch.cc")[0], "claims_tests")
         self.assertEqual(programs_for("verification/commands/gate.cc"), [])
         # Each beginning of a name is that of a source.
         for place in PLACES:

@@ -13,7 +13,7 @@
 #include <gtest/gtest.h>
 
 #include "support/atomic_file.h"
-#include "tests/verification/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace latcon::support;
 namespace fs = std::filesystem;
@@ -28,7 +28,7 @@ std::string complaint(const std::string &path, const std::string &text = "new")
   {
     write_atomically(path, text, Sync::yes);
   }
-  catch (const WriteError &error)
+  catch (const OutputError &error)
   {
     return error.what();
   }

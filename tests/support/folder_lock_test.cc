@@ -13,7 +13,7 @@
 
 #include "support/atomic_file.h"
 #include "support/folder_lock.h"
-#include "tests/verification/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 using namespace latcon::support;
 using namespace std::chrono_literals;
@@ -155,14 +155,14 @@ TEST(FolderLock, FilesAreNotWrittenToAFolderThatTookThePlace)
     AtomicFile begun(file);
     fs::remove_all(out);
     fs::create_directories(out + "/sub");
-    EXPECT_THROW(begun.commit(Sync::no), WriteError);
+    EXPECT_THROW(begun.commit(Sync::no), OutputError);
     for (const std::string &place : {file, below})
       try
       {
         write_atomically(place, "mine", Sync::no);
         ADD_FAILURE() << place;
       }
-      catch (const WriteError &error)
+      catch (const OutputError &error)
       {
         EXPECT_EQ(error.what(), "cannot write " + place + why);
       }
@@ -178,7 +178,7 @@ TEST(FolderLock, FollowsNoLinksAndWaitsForNoPipes)
   const TemporaryFolder folder;
   std::ofstream(folder / "victim") << "mine";
   fs::create_symlink(folder / "victim", folder / ".latcon.lock");
-  EXPECT_THROW(FolderLock(folder.path()), WriteError);
+  EXPECT_THROW(FolderLock(folder.path()), OutputError);
   EXPECT_EQ(content_of(folder / "victim"), "mine");
   fs::remove(folder / ".latcon.lock");
   fs::create_hard_link(folder / "victim", folder / ".latcon.lock");
@@ -186,6 +186,6 @@ TEST(FolderLock, FollowsNoLinksAndWaitsForNoPipes)
   EXPECT_EQ(content_of(folder / "victim"), "mine");
   fs::remove(folder / ".latcon.lock");
   ASSERT_EQ(mkfifo((folder / ".latcon.lock").c_str(), 0600), 0);
-  EXPECT_THROW(FolderLock(folder.path()), WriteError);
-  EXPECT_THROW(FolderLock(folder / "missing"), WriteError);
+  EXPECT_THROW(FolderLock(folder.path()), OutputError);
+  EXPECT_THROW(FolderLock(folder / "missing"), OutputError);
 }

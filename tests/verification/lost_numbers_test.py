@@ -2,7 +2,7 @@
 """Fails where a source that makes rows of claims takes a maximum or minimum from which a NaN can be lost.
 
 std::max(0., NaN) is 0, and so an error that could not be computed would hold. The sources below take errors and extremes
-from verification/largest_error.h. What has an integer type by name, as std::max<std::size_t>(a, b), is not meant.
+from support/largest_error.h. What has an integer type by name, as std::max<std::size_t>(a, b), is not meant.
 
 Usage: lost_numbers_test.py PROJECT_ROOT
 """
@@ -11,9 +11,14 @@ import re
 import sys
 
 # Everything that ends in a row with a verdict.
-SOURCES = ("energy/*", "wave_speeds/*", "intrinsic_length/*", "prestretch/*", "crack_oracle/*", "study/study_table.*",
-           "study/seed_statistics.*", "study/statistical_tests.*", "fracture/crack_record.*", "continuum_record.*",
-           "compare/comparison.*", "commands/verify.cc", "homogenisation.*", "subject.h", "stability_row.h", "slowest_wave.*", "bloch.*", "plane_waves.*", "anisotropy.*", "order_fit.h", "largest_error.*")
+SOURCES = ("support/largest_error.*",
+           *(f"verification/{path}" for path in (
+             "bridge/anisotropy.*", "bridge/bloch.*", "bridge/equivalent_sheet.*", "bridge/homogenisation.*", "bridge/plane_waves.*",
+             "bridge/slowest_wave.*", "bridge/subject.h", "claims/continuum_waves.*", "claims/lattice_waves.*", "claims/order_fit.h",
+             "claims/oscillation.*", "claims/stability_row.h", "claims/energy/*", "claims/intrinsic_length/*", "claims/prestretch/*",
+             "claims/steady_crack/*", "claims/wave_speeds/*", "commands/verify.cc", "compare/comparison.*",
+             "output/continuum_record.*", "output/crack_record.*", "study/seed_statistics.*", "study/statistical_tests.*",
+             "study/study_table.*")))
 INTEGER = r"<(?:std::size_t|unsigned int|int|long|std::ptrdiff_t)>"
 LOSES = re.compile(
     rf"std::(?:max|min)\b(?!{INTEGER})|\bstd::f(?:max|min)[fl]?\b|\bstd::(?:minmax|(?:max|min|minmax)_element)\b"
@@ -38,17 +43,17 @@ def main(root):
     for line, is_found in PLANTED.items():
         if bool(losses(line)) != is_found:
             return f"the rule itself is wrong about: {line}"
-    folder = pathlib.Path(root) / "verification"
+    folder = pathlib.Path(root)
     problems = []
     for pattern in SOURCES:
         files = sorted(path for path in folder.glob(pattern) if path.suffix in (".h", ".cc"))
         if not files:
-            problems.append(f"verification/{pattern}: no such source; correct the list in {pathlib.Path(__file__).name}")
-        problems += [f"verification/{path.relative_to(folder)}:{number}: {line}" for path in files
+            problems.append(f"{pattern}: no such source; correct the list in {pathlib.Path(__file__).name}")
+        problems += [f"{path.relative_to(folder)}:{number}: {line}" for path in files
                      for number, line in losses(path.read_text(encoding="utf-8"))]
     if problems:
         return ("A NaN is lost here, and the row that asks for it would hold. Take LargestError, Extremes, largest_of, "
-                "smallest_of or one_sided of verification/largest_error.h:\n  " + "\n  ".join(problems))
+                "smallest_of or one_sided of support/largest_error.h:\n  " + "\n  ".join(problems))
     return None
 
 

@@ -8,10 +8,11 @@
 #include <deal.II/base/mpi.h>
 
 #include "support/atomic_file.h"
-#include "verification/checkpoint/checkpoints.h"
 #include "verification/commands/signals.h"
-#include "verification/output_list.h"
-#include "verification/sha256.h"
+#include "verification/output/checkpoints.h"
+#include "verification/output/output_file.h"
+#include "verification/output/output_list.h"
+#include "verification/output/sha256.h"
 
 namespace verification
 {
@@ -53,18 +54,19 @@ std::unique_ptr<latcon::support::FolderLock> lock_directory(const std::string &d
   }
   catch (const support::FolderInUse &error)
   {
-    throw InputError(std::string(error.what()) + "; wait until it has ended, or choose another folder (--output-dir)");
+    throw latcon::support::InputError(std::string(error.what()) +
+                                      "; wait until it has ended, or choose another folder (--output-dir)");
   }
 }
 
 std::shared_ptr<Run::Record> Run::last;
 
-void Run::Record::write(std::optional<ExitCode> with) const
+void Run::Record::write(std::optional<latcon::support::ExitCode> with) const
 {
   info.write(directory + "/run.json", with, verdict);
 }
 
-void record_exit_code(ExitCode exit_code)
+void record_exit_code(latcon::support::ExitCode exit_code)
 {
   const std::shared_ptr<Run::Record> record = std::exchange(Run::last, nullptr);
   if (record && record->exit_code != exit_code)
@@ -84,15 +86,15 @@ Run::Run(const Options &options, const Parameters *parameters)
     std::error_code error;
     std::filesystem::create_directories(directory_, error);
     if (error)
-      throw OutputError(directory_, error.message());
+      throw latcon::support::OutputError(directory_, error.message());
     record_->lock = lock_directory(directory_);
     clear(options, parameters != nullptr);
     if (parameters != nullptr)
-      parameters->write(directory_ + "/case.prm");
+      write_file(directory_ + "/case.prm", parameters->resolved_text());
     const SignalDeferral deferral; // a run.json that is there gets the exit code
     record_->write(std::nullopt);
     last = record_;
-    on_interruption([record = record_] { record->write(ExitCode::interrupted); });
+    on_interruption([record = record_] { record->write(latcon::support::ExitCode::interrupted); });
   }
   // No rank writes beside rank 0 before the directory is there.
   MPI_Barrier(MPI_COMM_WORLD);
@@ -103,8 +105,8 @@ void Run::clear(const Options &options, bool has_case) const
   const std::filesystem::path own = directory_ + "/case.prm";
   std::error_code none;
   if (has_case && std::filesystem::equivalent(own, options.case_file, none) && !is_listed_output(own))
-    throw InputError("the run would overwrite its own case " + options.case_file +
-                     "; give another --output-dir, or move the case out of it");
+    throw latcon::support::InputError("the run would overwrite its own case " + options.case_file +
+                                      "; give another --output-dir, or move the case out of it");
   if (!resumes_)
   {
     const std::filesystem::path aside = set_earlier_output_aside(directory_, options.case_file);
@@ -136,7 +138,7 @@ void Run::note(const Checkpoints &checkpoints)
     std::cout << "Another program wrote it, of commit " << found->commit << "; run.json names both\n";
 }
 
-ExitCode Run::end(const Results &results, ExitCode exit_code)
+latcon::support::ExitCode Run::end(const Results &results, latcon::support::ExitCode exit_code)
 {
   if (is_root_)
   {
@@ -149,9 +151,10 @@ ExitCode Run::end(const Results &results, ExitCode exit_code)
   return exit_code;
 }
 
-ExitCode exit_code_of(const Results &results)
+latcon::support::ExitCode exit_code_of(const Results &results)
 {
-  return results.verdict() == Verdict::fails ? ExitCode::claim_failed : ExitCode::done;
+  return results.verdict() == Verdict::fails ? latcon::support::ExitCode::claim_failed
+                                             : latcon::support::ExitCode::done;
 }
 
 void Run::print(const Results &results) const
@@ -165,18 +168,18 @@ void Run::print(const Results &results) const
     std::cout << "\n" << results.verdict_text(most_failing_rows);
 }
 
-ExitCode Run::finish(const Results &results)
+latcon::support::ExitCode Run::finish(const Results &results)
 {
-  const ExitCode exit_code = end(results, exit_code_of(results));
+  const latcon::support::ExitCode exit_code = end(results, exit_code_of(results));
   print(results);
   return exit_code;
 }
 
-ExitCode Run::interrupted(const Results &results)
+latcon::support::ExitCode Run::interrupted(const Results &results)
 {
-  end(results, ExitCode::interrupted);
+  end(results, latcon::support::ExitCode::interrupted);
   print(results);
-  return ExitCode::interrupted;
+  return latcon::support::ExitCode::interrupted;
 }
 
 } // namespace verification

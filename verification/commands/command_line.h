@@ -1,12 +1,12 @@
 #pragma once
 
-#include "verification/errors.h"
+#include "support/errors.h"
 
 namespace verification
 {
 
 /// The program `latcon`: reads the command line, runs the command on every MPI rank, and reports what went wrong.
 /// MPI must be initialised. @return the status to exit with
-ExitCode run_program(int argc, char **argv);
+latcon::support::ExitCode run_program(int argc, char **argv);
 
 } // namespace verification

@@ -6,10 +6,9 @@
 
 #include <deal.II/base/mpi.h>
 
-#include "verification/atomic_file.h"
 #include "verification/commands/command.h"
 #include "verification/compare/difference_writer.h"
-#include "verification/units.h"
+#include "verification/input/units.h"
 
 namespace verification
 {
@@ -23,7 +22,7 @@ std::optional<double> time_option(const std::string &name, const std::string &te
     return {};
   const ParsedNumber quantity = read_quantity(text, "s");
   if (!quantity.wrong.empty())
-    throw InputError(name + " " + text + ": " + quantity.wrong);
+    throw latcon::support::InputError(name + " " + text + ": " + quantity.wrong);
   return quantity.value;
 }
 
@@ -53,7 +52,7 @@ std::map<std::string, double> read_tolerances(const std::vector<std::string> &te
     tolerances[field] = quantity.value;
   }
   if (!problems.empty())
-    throw InputError(problems);
+    throw latcon::support::InputError(problems);
   return tolerances;
 }
 
@@ -81,7 +80,7 @@ std::vector<Circle> read_circles(const std::vector<std::string> &texts)
       circles.push_back({{{numbers[0], numbers[1]}}, numbers[2]});
   }
   if (!problems.empty())
-    throw InputError(problems);
+    throw latcon::support::InputError(problems);
   return circles;
 }
 
@@ -91,18 +90,18 @@ void require_own_directory(const std::string &directory, const Frame &frame)
   std::error_code ignored;
   const std::filesystem::path folder = frame.file.path.parent_path();
   if (std::filesystem::equivalent(directory, folder.empty() ? "." : folder, ignored))
-    throw InputError("--output-dir " + directory + " is where " + frame.file.path.filename().string() +
-                     " is from, whose run.json and results.json would be lost: give another");
+    throw latcon::support::InputError("--output-dir " + directory + " is where " + frame.file.path.filename().string() +
+                                      " is from, whose run.json and results.json would be lost: give another");
 }
 
 } // namespace
 
-ExitCode compare_frames(const Options &options, const CompareOptions &chosen)
+latcon::support::ExitCode compare_frames(const Options &options, const CompareOptions &chosen)
 {
   if (!options.overrides.empty())
-    throw InputError("latcon compare has no case that --set could change");
+    throw latcon::support::InputError("latcon compare has no case that --set could change");
   if (!chosen.time.empty() && !(chosen.lattice_time.empty() && chosen.continuum_time.empty()))
-    throw InputError("--time is for both sides: give it, or --lattice-time and --continuum-time");
+    throw latcon::support::InputError("--time is for both sides: give it, or --lattice-time and --continuum-time");
   const std::map<std::string, double> tolerances = read_tolerances(chosen.tolerances);
   const Scope scope{chosen.overlap, read_circles(chosen.excluded)};
   const auto lattice_time = time_option(chosen.time.empty() ? "--lattice-time" : "--time",
@@ -133,7 +132,7 @@ ExitCode compare_frames(const Options &options, const CompareOptions &chosen)
     print_dry_run(options, "# lattice: " + lattice.file.path.string() + ", " + std::to_string(lattice.points.size()) +
                              " sites\n# continuum: " + continuum.file.path.string() + ", " +
                              std::to_string(continuum.cells.size()) + " cells\n");
-    return ExitCode::done;
+    return latcon::support::ExitCode::done;
   }
 
   Run run(options);

@@ -9,13 +9,13 @@
 #include "continuum/dynamic_solver.h"
 #include "continuum/errors.h"
 #include "continuum/field_writer.h"
-#include "verification/affine_displacement.h"
-#include "verification/checkpoint/checkpoints.h"
+#include "verification/bridge/affine_displacement.h"
+#include "verification/bridge/continuum_model.h"
 #include "verification/commands/command.h"
 #include "verification/commands/signals.h"
-#include "verification/continuum_model.h"
-#include "verification/continuum_record.h"
-#include "verification/progress.h"
+#include "verification/output/checkpoints.h"
+#include "verification/output/continuum_record.h"
+#include "verification/output/progress.h"
 #include "verification/resources/resources.h"
 
 namespace verification
@@ -271,11 +271,11 @@ Results move(const Case &input, const ContinuumModel &model, Motion &motion, Che
                      4. * epsilon * solver.time());
       const bool has_series = input.frame_interval > 0.;
       if (step > n_steps || !(record.last_time() <= solver.time() && fields.last_time() <= solver.time()))
-        throw InputError("what was recorded is of later times");
+        throw latcon::support::InputError("what was recorded is of later times");
       if (has_series &&
           !(frames_so_far >= 1. && frames_so_far <= done + 1. &&
             std::abs(next_frame - frames_so_far * input.frame_interval) <= frames_so_far * epsilon * next_frame))
-        throw InputError("`next_frame` does not follow the frames that there are");
+        throw latcon::support::InputError("`next_frame` does not follow the frames that there are");
     }
   };
   const auto write_frame = [&]
@@ -353,7 +353,7 @@ Results move(const Case &input, const ContinuumModel &model, Motion &motion, Che
     {
       message += std::string("\nthe state before it could not be written: ") + other.what();
     }
-    throw SolverError(message);
+    throw latcon::support::SolverError(message);
   }
   write_last_state();
   run.info().add("divided_steps", static_cast<std::uint64_t>(solver.n_divided_steps()));
@@ -364,7 +364,7 @@ Results move(const Case &input, const ContinuumModel &model, Motion &motion, Che
 
 } // namespace
 
-ExitCode run_continuum(const Options &options)
+latcon::support::ExitCode run_continuum(const Options &options)
 {
   Case input;
   Parameters parameters;
@@ -408,7 +408,7 @@ ExitCode run_continuum(const Options &options)
     }
     text << "# time: about " << std::ceil(continuum_seconds(input, size, steps, frames)) << " s\n";
     print_dry_run(options, text.str());
-    return ExitCode::done;
+    return latcon::support::ExitCode::done;
   }
   Checkpoints checkpoints(options, parameters, input, "continuum");
   Run run(options, parameters);
@@ -426,11 +426,11 @@ ExitCode run_continuum(const Options &options)
   // The input was good as far as it could be tried, so it is the computed state that is not.
   catch (const continuum::NonPhysicalState &failure)
   {
-    throw SolverError(failure.what());
+    throw latcon::support::SolverError(failure.what());
   }
-  catch (const InputError &failure)
+  catch (const latcon::support::InputError &failure)
   {
-    throw SolverError(failure.what());
+    throw latcon::support::SolverError(failure.what());
   }
 }
 

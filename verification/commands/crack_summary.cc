@@ -6,8 +6,8 @@
 #include <cstdio>
 #include <optional>
 
+#include "support/text_wrap.h"
 #include "verification/study/study_table.h"
-#include "verification/text_wrap.h"
 
 namespace verification
 {
@@ -20,7 +20,7 @@ constexpr std::size_t most_failing_rows = 4;
 
 std::string padded(const std::string &text, std::size_t width)
 {
-  return text + std::string(width - std::min(width, width_of(text)), ' ');
+  return text + std::string(width - std::min(width, latcon::support::width_of(text)), ' ');
 }
 
 // One quantity: "  wavelength, undeformed   2.359 ± 0.026 cm    reference 2.3 cm, +2.6 %".
@@ -49,10 +49,10 @@ std::string crack_summary(const Case &input, const lattice::CrackMeasurement &cr
 {
   const std::string pattern = lattice::to_string(crack.pattern);
   std::string text;
-  for (const std::string &line :
-       wrapped((crack.pattern == lattice::CrackPattern::undecided ? "The pattern of the crack is " : "The crack is ") +
-                 pattern + ": " + crack.reason,
-               columns))
+  for (const std::string &line : latcon::support::wrapped(
+         (crack.pattern == lattice::CrackPattern::undecided ? "The pattern of the crack is " : "The crack is ") +
+           pattern + ": " + crack.reason,
+         columns))
     text += line + "\n";
   text += line_of("Lagrangian crack speed", crack.speed_lagrangian, "m/s", input.reference_speed);
   text += line_of("laboratory crack speed", crack.speed_laboratory, "m/s", {});

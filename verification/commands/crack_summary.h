@@ -2,9 +2,9 @@
 
 #include <string>
 
-#include "lattice/crack_measurement.h"
-#include "verification/case.h"
-#include "verification/results.h"
+#include "verification/analysis/crack_measurement.h"
+#include "verification/input/case.h"
+#include "verification/output/results.h"
 
 namespace verification
 {

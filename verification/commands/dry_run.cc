@@ -5,7 +5,7 @@
 
 #include <omp.h>
 
-#include "verification/lattice_sheet.h"
+#include "verification/bridge/lattice_sheet.h"
 
 namespace verification
 {

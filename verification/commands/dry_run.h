@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "verification/case.h"
+#include "verification/input/case.h"
 #include "verification/resources/resources.h"
 
 namespace verification

@@ -1,15 +1,15 @@
 #include <iostream>
 #include <sstream>
 
+#include "support/largest_error.h"
+#include "verification/bridge/lattice_sheet.h"
 #include "verification/commands/command.h"
 #include "verification/commands/crack_summary.h"
 #include "verification/commands/dry_run.h"
 #include "verification/commands/lattice_motion.h"
 #include "verification/commands/signals.h"
-#include "verification/fracture/crack_film.h"
-#include "verification/fracture/near_tip_record.h"
-#include "verification/largest_error.h"
-#include "verification/lattice_sheet.h"
+#include "verification/output/crack_film.h"
+#include "verification/output/near_tip_record.h"
 
 namespace verification
 {
@@ -49,7 +49,8 @@ Results measured_results(const Case &input, const CrackRecord &record, const lat
     {
       row.tolerance = input.reference_tolerance;
       // A quantity that was published but could not be measured does not agree.
-      row.error = measured ? relative_error(measured->value, *published) : std::numeric_limits<double>::quiet_NaN();
+      row.error = measured ? latcon::support::relative_error(measured->value, *published)
+                           : std::numeric_limits<double>::quiet_NaN();
     }
     results.add(row);
   };
@@ -136,15 +137,15 @@ Crack run_crack(const Case &input, const lattice::TriangularLattice &sheet, cons
 
 // Pictures and page of a run, and where the page is. Collective: an exception on one rank would end the others, rank 0
 // as it draws. @return whether they could be made, on rank 0
-ExitCode draw_page(const Run &run)
+latcon::support::ExitCode draw_page(const Run &run)
 {
-  ExitCode exit_code = ExitCode::done;
+  latcon::support::ExitCode exit_code = latcon::support::ExitCode::done;
   if (run.is_root())
   {
-    const ExitCode drawn = draw_report(run.directory(), true);
-    if (drawn != ExitCode::claim_failed)
+    const latcon::support::ExitCode drawn = draw_report(run.directory(), true);
+    if (drawn != latcon::support::ExitCode::claim_failed)
       exit_code = drawn;
-    if (run.is_verbose() && exit_code == ExitCode::done)
+    if (run.is_verbose() && exit_code == latcon::support::ExitCode::done)
       std::cout << run.directory() << "/report.html" << std::endl;
   }
   MPI_Barrier(MPI_COMM_WORLD);
@@ -158,14 +159,14 @@ Results passed_or_reported(const Case &input, const Options &options, Run &run)
   {
     return require_verified(input, run);
   }
-  catch (const ClaimFailed &)
+  catch (const latcon::support::ClaimFailed &)
   {
     if (!options.no_report)
       try
       {
         draw_page(run);
       }
-      catch (const OutputError &error) // what the claims say weighs more
+      catch (const latcon::support::OutputError &error) // what the claims say weighs more
       {
         std::cerr << "latcon: " << error.what() << std::endl;
       }
@@ -175,7 +176,7 @@ Results passed_or_reported(const Case &input, const Options &options, Run &run)
 
 } // namespace
 
-ExitCode run_fracture(const Options &options)
+latcon::support::ExitCode run_fracture(const Options &options)
 {
   Case input;
   Parameters parameters;
@@ -196,7 +197,7 @@ ExitCode run_fracture(const Options &options)
     if (!options.quiet)
       print_dry_run(options,
                     lattice_text(input, input.fracture_time_stepping(), RunKind::fracture, claims, !options.no_report));
-    return ExitCode::done;
+    return latcon::support::ExitCode::done;
   }
   require_memory(memory);
 
@@ -209,18 +210,19 @@ ExitCode run_fracture(const Options &options)
     results = passed_or_reported(input, options, run);
   const Crack crack = run_crack(input, sheet, material, options.skip_verification, checkpoints, run);
   results.add(crack.results);
-  const ExitCode exit_code = run.end(results, interrupted() ? ExitCode::interrupted : exit_code_of(results));
+  const latcon::support::ExitCode exit_code =
+    run.end(results, interrupted() ? latcon::support::ExitCode::interrupted : exit_code_of(results));
   if (run.is_verbose())
   {
     if (options.verbose)
       results.print(std::cout);
     std::cout << crack_summary(input, crack.measurement, results) << std::flush;
   }
-  if (options.no_report || exit_code == ExitCode::interrupted)
+  if (options.no_report || exit_code == latcon::support::ExitCode::interrupted)
     return exit_code;
   // The verdict in the page is the one returned here; a crack without its page did not end well.
-  const ExitCode drawn = draw_page(run);
-  return exit_code == ExitCode::done ? drawn : exit_code;
+  const latcon::support::ExitCode drawn = draw_page(run);
+  return exit_code == latcon::support::ExitCode::done ? drawn : exit_code;
 }
 
 } // namespace verification

@@ -1,14 +1,14 @@
 #include <cmath>
 #include <iostream>
 
-#include "lattice/field_writer.h"
 #include "lattice/relaxation.h"
+#include "verification/bridge/homogenisation.h"
+#include "verification/bridge/lattice_sheet.h"
 #include "verification/commands/command.h"
 #include "verification/commands/dry_run.h"
 #include "verification/commands/lattice_motion.h"
 #include "verification/commands/signals.h"
-#include "verification/homogenisation.h"
-#include "verification/lattice_sheet.h"
+#include "verification/output/field_writer.h"
 
 namespace verification
 {
@@ -30,7 +30,7 @@ Results relaxed(const Case &input, const lattice::TriangularLattice &sheet, cons
   }
   catch (const std::runtime_error &error)
   {
-    throw SolverError(error.what());
+    throw latcon::support::SolverError(error.what());
   }
   state.time = 1.; // load factor, as for the continuum
   fields.add_frame(state);
@@ -77,7 +77,7 @@ Results moved(const Case &input, const lattice::RowPartition &band, const lattic
 
 } // namespace
 
-ExitCode run_lattice(const Options &options)
+latcon::support::ExitCode run_lattice(const Options &options)
 {
   Case input;
   Parameters parameters;
@@ -100,7 +100,7 @@ ExitCode run_lattice(const Options &options)
     require_memory(memory);
     if (!options.quiet)
       print_dry_run(options, lattice_text(input, input.lattice_time_stepping(), kind));
-    return ExitCode::done;
+    return latcon::support::ExitCode::done;
   }
   Checkpoints checkpoints(options, parameters, input, "lattice");
   require_memory(memory);

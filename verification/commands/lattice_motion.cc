@@ -4,7 +4,7 @@
 #include <limits>
 
 #include "verification/commands/signals.h"
-#include "verification/progress.h"
+#include "verification/output/progress.h"
 
 namespace verification
 {
@@ -99,7 +99,7 @@ void LatticeMotion::go(const StepCallbacks &callbacks, bool resumed, const std::
     record_.energies();
     run_.info().add("divided_steps", static_cast<std::uint64_t>(simulation_.n_divided_steps()));
   }
-  catch (const SolverError &)
+  catch (const latcon::support::SolverError &)
   {
     // The last sound state, and what was noted until then.
     add_frame();

@@ -6,11 +6,11 @@
 #include <utility>
 #include <vector>
 
-#include "lattice/field_writer.h"
 #include "lattice/simulation.h"
-#include "verification/checkpoint/checkpoints.h"
 #include "verification/commands/command.h"
-#include "verification/fracture/crack_record.h"
+#include "verification/output/checkpoints.h"
+#include "verification/output/crack_record.h"
+#include "verification/output/field_writer.h"
 
 namespace verification
 {

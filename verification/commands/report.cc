@@ -6,9 +6,9 @@
 
 #include <deal.II/base/mpi.h>
 
-#include "verification/child_process.h"
+#include "support/child_process.h"
 #include "verification/commands/command.h"
-#include "verification/data_folder.h"
+#include "verification/input/data_folder.h"
 
 namespace verification
 {
@@ -37,39 +37,42 @@ int run_script(const std::string &script, const std::string &directory, const st
   std::vector<std::string> command{python, "-s", data_folder() + "/report/" + script, directory};
   if (quiet)
     command.emplace_back("--quiet");
-  const int status = wait_for_child(start_child({command, environment_of_scripts(), ""}));
-  if (status == not_started)
-    throw OutputError(directory + "/" + page, "cannot start " + python);
+  const int status =
+    latcon::support::wait_for_child(latcon::support::start_child({command, environment_of_scripts(), ""}));
+  if (status == latcon::support::not_started)
+    throw latcon::support::OutputError(directory + "/" + page, "cannot start " + python);
   if (status > 128)
-    throw OutputError(directory + "/" + page, "the report script was killed");
-  for (const ExitCode known : {ExitCode::done, ExitCode::bad_input, ExitCode::claim_failed, ExitCode::output_failed})
+    throw latcon::support::OutputError(directory + "/" + page, "the report script was killed");
+  for (const latcon::support::ExitCode known :
+       {latcon::support::ExitCode::done, latcon::support::ExitCode::bad_input, latcon::support::ExitCode::claim_failed,
+        latcon::support::ExitCode::output_failed})
     if (status == static_cast<int>(known))
       return status;
-  throw OutputError(directory + "/" + page, "the report script failed");
+  throw latcon::support::OutputError(directory + "/" + page, "the report script failed");
 }
 
 } // namespace
 
-ExitCode report(const Options &options, const std::string &directory)
+latcon::support::ExitCode report(const Options &options, const std::string &directory)
 {
   if (!std::filesystem::is_directory(directory))
-    throw InputError(directory + " is not a directory");
+    throw latcon::support::InputError(directory + " is not a directory");
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) != 0)
-    return ExitCode::done;
+    return latcon::support::ExitCode::done;
   const auto lock = lock_directory(directory);
   return draw_report(directory, options.quiet);
 }
 
-ExitCode draw_report(const std::string &directory, bool quiet)
+latcon::support::ExitCode draw_report(const std::string &directory, bool quiet)
 {
   // The script uses the exit codes of this program.
-  return static_cast<ExitCode>(run_script("report.py", directory, "report.html", quiet));
+  return static_cast<latcon::support::ExitCode>(run_script("report.py", directory, "report.html", quiet));
 }
 
 void study_page(const std::string &directory)
 {
   if (run_script("study.py", directory, "study.html", true) != 0)
-    throw OutputError(directory + "/study.html", "the report script failed");
+    throw latcon::support::OutputError(directory + "/study.html", "the report script failed");
 }
 
 } // namespace verification

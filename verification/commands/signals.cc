@@ -17,7 +17,7 @@
 
 #include <deal.II/base/mpi.h>
 
-#include "verification/errors.h"
+#include "support/errors.h"
 
 namespace verification
 {
@@ -53,7 +53,7 @@ void say(const std::string &text)
 
 [[noreturn]] void end_process()
 {
-  constexpr int status = static_cast<int>(ExitCode::interrupted);
+  constexpr int status = static_cast<int>(latcon::support::ExitCode::interrupted);
   try
   {
     if (final_action)

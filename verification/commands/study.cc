@@ -9,12 +9,12 @@
 
 #include "support/available_cores.h"
 #include "support/folder_lock.h"
-#include "verification/atomic_file.h"
+#include "support/machine_memory.h"
 #include "verification/commands/command.h"
 #include "verification/commands/signals.h"
-#include "verification/input_file.h"
-#include "verification/progress.h"
-#include "verification/resources/machine_memory.h"
+#include "verification/input/input_file.h"
+#include "verification/output/output_file.h"
+#include "verification/output/progress.h"
 #include "verification/resources/resources.h"
 #include "verification/study/process_pool.h"
 #include "verification/study/study_output.h"
@@ -206,13 +206,13 @@ MemoryNeed memory_of(const std::vector<PlannedRun> &plan, std::size_t n_cores)
 {
   std::vector<double> needs;
   for (const PlannedRun &run : plan)
-    needs.push_back(run.memory + held_memory());
+    needs.push_back(run.memory + latcon::support::held_memory());
   std::sort(needs.rbegin(), needs.rend());
   needs.resize(std::min(needs.size(), n_cores));
   return {std::accumulate(needs.begin(), needs.end(), 0.), 0.};
 }
 
-ExitCode exit_code_of(const StudyResults &results, const Results &rows)
+latcon::support::ExitCode exit_code_of(const StudyResults &results, const Results &rows)
 {
   const auto any = [&](RunState state)
   {
@@ -220,16 +220,17 @@ ExitCode exit_code_of(const StudyResults &results, const Results &rows)
                        [state](const RunOutcome &outcome) { return outcome.state == state; });
   };
   if (any(RunState::failed))
-    return ExitCode::solver_failed;
-  return any(RunState::refused) || rows.verdict() == Verdict::fails ? ExitCode::claim_failed : ExitCode::done;
+    return latcon::support::ExitCode::solver_failed;
+  return any(RunState::refused) || rows.verdict() == Verdict::fails ? latcon::support::ExitCode::claim_failed
+                                                                    : latcon::support::ExitCode::done;
 }
 
 } // namespace
 
-ExitCode run_study(const Options &options, const std::string &name)
+latcon::support::ExitCode run_study(const Options &options, const std::string &name)
 {
   if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
-    throw InputError("`latcon study` starts its own processes, one a core; run it without mpirun");
+    throw latcon::support::InputError("`latcon study` starts its own processes, one a core; run it without mpirun");
   StudyResults results;
   results.study = read_study_file(study_path(name), options.quick);
   const InputFile base = read_input_file(results.study.base);
@@ -246,7 +247,7 @@ ExitCode run_study(const Options &options, const std::string &name)
       std::cout << memory_text(memory);
     }
     require_memory(memory);
-    return ExitCode::done;
+    return latcon::support::ExitCode::done;
   }
   require_memory(memory);
 
@@ -276,7 +277,8 @@ ExitCode run_study(const Options &options, const std::string &name)
   const Results rows = study_rows(results);
   if (run.is_verbose())
     print_table(std::cout, results);
-  const ExitCode exit_code = run.end(rows, complete ? exit_code_of(results, rows) : ExitCode::interrupted);
+  const latcon::support::ExitCode exit_code =
+    run.end(rows, complete ? exit_code_of(results, rows) : latcon::support::ExitCode::interrupted);
   if (complete)
   {
     study_page(run.directory());

@@ -4,17 +4,17 @@
 #include <optional>
 #include <utility>
 
-#include "verification/claim_inputs.h"
+#include "support/one_thread.h"
+#include "verification/claims/claim_inputs.h"
+#include "verification/claims/energy/energy_claim.h"
+#include "verification/claims/energy/wave_energy.h"
+#include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
+#include "verification/claims/prestretch/cut_study.h"
+#include "verification/claims/prestretch/prestretch_claim.h"
+#include "verification/claims/running_crack/running_crack_claim.h"
+#include "verification/claims/stability_row.h"
+#include "verification/claims/wave_speeds/wave_speeds_claim.h"
 #include "verification/commands/command.h"
-#include "verification/energy/energy_claim.h"
-#include "verification/energy/wave_energy.h"
-#include "verification/intrinsic_length/intrinsic_length_claim.h"
-#include "verification/one_thread.h"
-#include "verification/prestretch/cut_study.h"
-#include "verification/prestretch/prestretch_claim.h"
-#include "verification/running_crack/running_crack_claim.h"
-#include "verification/stability_row.h"
-#include "verification/wave_speeds/wave_speeds_claim.h"
 
 namespace verification
 {
@@ -149,7 +149,7 @@ const std::vector<std::string> &claims_before_fracture()
 ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names, bool quick, Shells shells,
                         const Laws &laws, const std::string &frames)
 {
-  std::optional<OneThread> one_thread;
+  std::optional<latcon::support::OneThread> one_thread;
   if (quick)
     one_thread.emplace();
   const Case read = claim_inputs(input);
@@ -169,7 +169,7 @@ ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names
   return outcome;
 }
 
-ExitCode verify(const Options &options)
+latcon::support::ExitCode verify(const Options &options)
 {
   Case input;
   Parameters parameters;
@@ -178,7 +178,7 @@ ExitCode verify(const Options &options)
   if (options.dry_run)
   {
     print_dry_run(options, parameters.resolved_text());
-    return ExitCode::done;
+    return latcon::support::ExitCode::done;
   }
   Run run(options, parameters);
   ClaimOutcome outcome;

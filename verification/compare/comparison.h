@@ -10,7 +10,7 @@
 
 #include "verification/compare/frame.h"
 #include "verification/compare/site_probe.h"
-#include "verification/results.h"
+#include "verification/output/results.h"
 
 namespace verification
 {

@@ -7,9 +7,10 @@
 #include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
-#include "verification/atomic_file.h"
+#include "support/errors.h"
+#include "support/full_precision.h"
 #include "verification/compare/quiet_vtk.h"
-#include "verification/errors.h"
+#include "verification/output/output_file.h"
 
 namespace verification
 {
@@ -57,7 +58,7 @@ void write_data(const std::string &path, Data *data)
   writer->SetCompressorTypeToZLib();
   writer->WriteToOutputStringOn();
   if (writer->Write() != 1 || !quiet.error().empty())
-    throw OutputError(path, quiet.error().empty() ? "VTK could not format it" : quiet.error());
+    throw latcon::support::OutputError(path, quiet.error().empty() ? "VTK could not format it" : quiet.error());
   write_file(path, writer->GetOutputString());
 }
 
@@ -83,8 +84,8 @@ void write_difference(const std::string &directory, const LatticeFrame &lattice,
                        "byte_order=\"LittleEndian\">\n  <Collection>\n";
   int part = 0;
   for (const char *file : {sites_file, continuum_file})
-    series += "    <DataSet timestep=\"" + full_precision(lattice.time) + "\" part=\"" + std::to_string(part++) +
-              "\" file=\"" + file + "\"/>\n";
+    series += "    <DataSet timestep=\"" + latcon::support::full_precision(lattice.time) + "\" part=\"" +
+              std::to_string(part++) + "\" file=\"" + file + "\"/>\n";
   write_file(directory + "/difference.pvd", series + "  </Collection>\n</VTKFile>\n");
 }
 

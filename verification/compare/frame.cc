@@ -14,9 +14,9 @@
 #include <vtkXMLPolyDataReader.h>
 #include <vtkXMLUnstructuredGridReader.h>
 
-#include "verification/atomic_file.h"
+#include "support/errors.h"
+#include "support/full_precision.h"
 #include "verification/compare/quiet_vtk.h"
-#include "verification/errors.h"
 
 namespace verification
 {
@@ -25,7 +25,7 @@ namespace
 
 [[noreturn]] void fail(const FrameFile &file, const std::string &problem)
 {
-  throw InputError(file.path.string() + ": " + problem);
+  throw latcon::support::InputError(file.path.string() + ": " + problem);
 }
 
 // What a reader of VTK makes of a file.
@@ -114,7 +114,8 @@ double frame_time(const FrameFile &file, vtkDataSet &data, const char *name, std
     fail(file, std::string("has no field data '") + name + "', so its time is not known");
   const double found = time->GetComponent(0, 0);
   if (wanted && !same_time(found, *wanted))
-    fail(file, "is at the time " + full_precision(found) + ", not at " + full_precision(*wanted));
+    fail(file, "is at the time " + latcon::support::full_precision(found) + ", not at " +
+                 latcon::support::full_precision(*wanted));
   return found;
 }
 

@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <string>
 
-#include "verification/case.h"
+#include "verification/input/case.h"
 
 namespace verification
 {

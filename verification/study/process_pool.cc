@@ -7,8 +7,8 @@
 
 #include <unistd.h>
 
+#include "support/child_process.h"
 #include "support/mpi_session.h"
-#include "verification/child_process.h"
 
 extern char **environ;
 
@@ -53,7 +53,9 @@ public:
     {
       if (std::chrono::steady_clock::now() > last_moment)
         tell(SIGKILL);
-      erase(std::remove_if(begin(), end(), [](const Child &child) { return poll_child(child.process) >= 0; }), end());
+      erase(std::remove_if(begin(), end(),
+                           [](const Child &child) { return latcon::support::poll_child(child.process) >= 0; }),
+            end());
       std::this_thread::sleep_for(poll_interval);
     }
   }
@@ -79,7 +81,7 @@ bool run_processes(const ProcessPool &pool)
     for (; next < pool.n_jobs && running.size() < pool.limit; ++next)
     {
       const ProcessPool::Job job = pool.start(next);
-      running.push_back({next, start_child({job.command, environment_of_children(), job.log})});
+      running.push_back({next, latcon::support::start_child({job.command, environment_of_children(), job.log})});
     }
     std::vector<std::size_t> jobs;
     for (const Child &child : running)
@@ -88,7 +90,7 @@ bool run_processes(const ProcessPool &pool)
     std::this_thread::sleep_for(poll_interval);
     for (auto child = running.begin(); child != running.end();)
     {
-      const int status = poll_child(child->process);
+      const int status = latcon::support::poll_child(child->process);
       if (status < 0)
       {
         ++child;

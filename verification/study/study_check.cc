@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <stdexcept>
 
-#include "verification/crack_oracle/steady_crack_study.h"
-#include "verification/one_thread.h"
+#include "support/one_thread.h"
+#include "verification/claims/steady_crack/steady_crack_study.h"
 
 namespace verification
 {
@@ -27,7 +27,7 @@ CheckResult run_check(const std::string &name, const bool quick, const std::stri
                                   [&name](const StudyCheck &known) { return known.name == name; });
   if (check == study_checks().end())
     throw std::logic_error("study: '" + name + "' is no check");
-  const OneThread one_thread;
+  const latcon::support::OneThread one_thread;
   const ClaimOutcome outcome = check->run(quick);
   outcome.write_tables(folder);
   return {check->name, check->about, outcome.results};

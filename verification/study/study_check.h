@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-#include "verification/claim_outcome.h"
+#include "verification/claims/claim_outcome.h"
 
 namespace verification
 {

@@ -7,11 +7,11 @@
 #include <set>
 #include <stdexcept>
 
-#include "verification/case.h"
-#include "verification/case_text.h"
-#include "verification/data_folder.h"
-#include "verification/errors.h"
-#include "verification/input_file.h"
+#include "support/errors.h"
+#include "verification/input/case.h"
+#include "verification/input/case_text.h"
+#include "verification/input/data_folder.h"
+#include "verification/input/input_file.h"
 #include "verification/study/quantities.h"
 #include "verification/study/study_check.h"
 #include "verification/study/study_json.h"
@@ -92,7 +92,7 @@ public:
       for (const JsonPlace &place : top.at("pictures").list())
         study_.pictures.push_back(known_run(place));
     if (!problems_.empty())
-      throw InputError(problems_);
+      throw latcon::support::InputError(problems_);
     return std::move(study_);
   }
 
@@ -398,7 +398,8 @@ Study read_study_file(const std::string &path, const bool quick)
 {
   const InputFile file = read_input_file(path);
   if (!file.problem.empty())
-    throw InputError(printable(path) + ": cannot read the study: " + file.problem + "; give a " + study_choices());
+    throw latcon::support::InputError(printable(path) + ": cannot read the study: " + file.problem + "; give a " +
+                                      study_choices());
   return read_study(file.text, path, quick);
 }
 

@@ -3,9 +3,9 @@
 #include <algorithm>
 #include <set>
 
-#include "verification/case_text.h"
-#include "verification/errors.h"
-#include "verification/spelling.h"
+#include "support/errors.h"
+#include "verification/input/case_text.h"
+#include "verification/input/spelling.h"
 
 namespace verification
 {
@@ -31,13 +31,14 @@ nlohmann::ordered_json parse_json(const std::string &text, const std::string &fi
 {
   using Json = nlohmann::ordered_json;
   if (const auto problem = zero_byte(text, file)) // where the parser would end
-    throw InputError(problem->place + ": " + problem->text);
+    throw latcon::support::InputError(problem->place + ": " + problem->text);
   std::vector<std::set<std::string>> open; // keys of the objects around the place being parsed
   std::vector<std::string> problems;
   const auto check = [&](int depth, Json::parse_event_t event, Json &value)
   {
     if (depth > deepest)
-      throw InputError(file + ": not a study: objects and lists in each other deeper than " + std::to_string(deepest));
+      throw latcon::support::InputError(file + ": not a study: objects and lists in each other deeper than " +
+                                        std::to_string(deepest));
     if (event == Json::parse_event_t::object_start)
       open.emplace_back();
     else if (event == Json::parse_event_t::object_end)
@@ -55,12 +56,13 @@ nlohmann::ordered_json parse_json(const std::string &text, const std::string &fi
   {
     // "[json.exception.parse_error.101] parse error at line 1, column 2: ...": the words after the bracket.
     const std::string what = error.what();
-    throw InputError(file + ": not JSON: " + printable(what.substr(std::min(what.size(), what.find(']') + 2)), 200));
+    throw latcon::support::InputError(
+      file + ": not JSON: " + printable(what.substr(std::min(what.size(), what.find(']') + 2)), 200));
   }
   if (!document.is_object())
     problems.push_back(file + ": a study is a JSON object");
   if (!problems.empty())
-    throw InputError(problems);
+    throw latcon::support::InputError(problems);
   return document;
 }
 

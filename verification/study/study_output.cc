@@ -7,10 +7,10 @@
 
 #include <nlohmann/json.hpp>
 
-#include "verification/csv.h"
+#include "support/text_wrap.h"
+#include "verification/output/csv.h"
+#include "verification/output/run_info.h"
 #include "verification/resources/resources.h"
-#include "verification/run_info.h"
-#include "verification/text_wrap.h"
 
 namespace verification
 {
@@ -216,7 +216,7 @@ void print_table(std::ostream &out, const StudyResults &results)
   const auto paragraph = [&out](const std::string &text, const std::string &first, const std::string &indent)
   {
     std::string lead = first;
-    for (const std::string &line : wrapped(text, width - width_of(indent)))
+    for (const std::string &line : latcon::support::wrapped(text, width - latcon::support::width_of(indent)))
     {
       out << lead << line << '\n';
       lead = indent;

@@ -5,11 +5,11 @@
 #include <cstdlib>
 #include <numeric>
 
-#include "verification/case.h"
-#include "verification/case_text.h"
-#include "verification/errors.h"
-#include "verification/homogenisation.h"
-#include "verification/lattice_sheet.h"
+#include "support/errors.h"
+#include "verification/bridge/homogenisation.h"
+#include "verification/bridge/lattice_sheet.h"
+#include "verification/input/case.h"
+#include "verification/input/case_text.h"
 #include "verification/resources/resources.h"
 
 namespace verification
@@ -99,12 +99,13 @@ Settings parsed(const std::vector<std::string> &texts)
   {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos)
-      throw InputError("--set: not understood: '" + printable(text) + "'; allowed: --set Section/Name=value");
+      throw latcon::support::InputError("--set: not understood: '" + printable(text) +
+                                        "'; allowed: --set Section/Name=value");
     override_settings(settings, {{trimmed(text.substr(0, equals)), trimmed(text.substr(equals + 1))}});
   }
   for (const auto &[key, value] : settings)
     if (key == seed_entry)
-      throw InputError("--set: " + key + " is what the seeds of the study stand for");
+      throw latcon::support::InputError("--set: " + key + " is what the seeds of the study stand for");
   return settings;
 }
 
@@ -137,7 +138,7 @@ std::vector<PlannedRun> plan_runs(const Study &study, const InputFile &base, con
       for (const std::uint64_t seed : run.seeds)
         runs.push_back(plan_run(study, base, run, seed, overrides));
     }
-    catch (const InputError &error)
+    catch (const latcon::support::InputError &error)
     {
       // What is wrong with the base case is wrong in every run: told once.
       for (const std::string &problem : error.problems())
@@ -152,7 +153,7 @@ std::vector<PlannedRun> plan_runs(const Study &study, const InputFile &base, con
   if (problems.empty())
     check_abscissas(study, runs, problems);
   if (!problems.empty())
-    throw InputError(problems);
+    throw latcon::support::InputError(problems);
   return runs;
 }
 

@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "verification/input_file.h"
+#include "verification/input/input_file.h"
 #include "verification/study/quantities.h"
 #include "verification/study/study_file.h"
 

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "verification/results.h"
+#include "verification/output/results.h"
 #include "verification/study/run_outcome.h"
 #include "verification/study/statistical_tests.h"
 #include "verification/study/study_file.h"

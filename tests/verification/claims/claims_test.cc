@@ -1,8 +1,8 @@
 #include <gtest/gtest.h>
 
 #include "tests/verification/claims/faults.h"
-#include "verification/energy/energy_claim.h"
-#include "verification/prestretch/prestretch_claim.h"
+#include "verification/claims/energy/energy_claim.h"
+#include "verification/claims/prestretch/prestretch_claim.h"
 
 namespace
 {

@@ -6,7 +6,7 @@
 
 #include "continuum/lattice_gradient.h"
 #include "tests/verification/claims/subjects.h"
-#include "verification/results.h"
+#include "verification/output/results.h"
 
 /// Mistakes to plant in a subject, one side of which stays right. A claim that cannot fail claims nothing.
 namespace faults

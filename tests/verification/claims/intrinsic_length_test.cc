@@ -1,12 +1,12 @@
 // What length the bonds bring, and what makes the claim about it fail.
-#include "verification/intrinsic_length/intrinsic_length_claim.h"
+#include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/verification/claims/faults.h"
-#include "verification/intrinsic_length/dispersion.h"
-#include "verification/intrinsic_length/edge_layer.h"
-#include "verification/intrinsic_length/gradient_positivity.h"
+#include "verification/claims/intrinsic_length/dispersion.h"
+#include "verification/claims/intrinsic_length/edge_layer.h"
+#include "verification/claims/intrinsic_length/gradient_positivity.h"
 
 namespace
 {

@@ -8,13 +8,13 @@
 #include <stdexcept>
 
 #include "tests/verification/claims/faults.h"
-#include "verification/crack_oracle/steady_crack_study.h"
-#include "verification/energy/energy_claim.h"
-#include "verification/energy/wave_energy.h"
-#include "verification/intrinsic_length/intrinsic_length_claim.h"
-#include "verification/prestretch/cut_study.h"
-#include "verification/prestretch/prestretch_claim.h"
-#include "verification/wave_speeds/wave_speeds_claim.h"
+#include "verification/claims/energy/energy_claim.h"
+#include "verification/claims/energy/wave_energy.h"
+#include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
+#include "verification/claims/prestretch/cut_study.h"
+#include "verification/claims/prestretch/prestretch_claim.h"
+#include "verification/claims/steady_crack/steady_crack_study.h"
+#include "verification/claims/wave_speeds/wave_speeds_claim.h"
 
 namespace
 {

@@ -1,5 +1,5 @@
 // The claim on a running crack fails when either side is wrong.
-#include "verification/running_crack/running_crack_claim.h"
+#include "verification/claims/running_crack/running_crack_claim.h"
 
 #include <gtest/gtest.h>
 

@@ -1,16 +1,16 @@
 // The exact solution of a steady crack in a linear lattice, and the simulator against it.
-#include "verification/crack_oracle/steady_crack.h"
+#include "verification/claims/steady_crack/steady_crack.h"
 
 #include <cmath>
 #include <stdexcept>
 
 #include <gtest/gtest.h>
 
-#include "verification/crack_oracle/crack_run.h"
-#include "verification/crack_oracle/static_crack.h"
-#include "verification/crack_oracle/steady_crack_study.h"
-#include "verification/crack_oracle/steady_fields.h"
-#include "verification/order_fit.h"
+#include "verification/claims/order_fit.h"
+#include "verification/claims/steady_crack/crack_run.h"
+#include "verification/claims/steady_crack/static_crack.h"
+#include "verification/claims/steady_crack/steady_crack_study.h"
+#include "verification/claims/steady_crack/steady_fields.h"
 
 namespace
 {

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "verification/subject.h"
+#include "verification/bridge/subject.h"
 
 /// Subjects that several tests share.
 namespace subjects

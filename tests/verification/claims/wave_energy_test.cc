@@ -1,10 +1,10 @@
 // Energies of fields that vary, and what makes the claim about them fail.
-#include "verification/energy/wave_energy.h"
+#include "verification/claims/energy/wave_energy.h"
 
 #include <gtest/gtest.h>
 
 #include "tests/verification/claims/faults.h"
-#include "verification/energy/energy_claim.h"
+#include "verification/claims/energy/energy_claim.h"
 
 namespace
 {

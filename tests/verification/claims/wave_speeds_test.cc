@@ -1,12 +1,12 @@
 // Waves on the lattice, in the finite elements and in closed form; and what makes the claim about them fail.
-#include "verification/wave_speeds/wave_speeds_claim.h"
+#include "verification/claims/wave_speeds/wave_speeds_claim.h"
 
 #include <gtest/gtest.h>
 
 #include "lattice/forces.h"
 #include "tests/verification/claims/faults.h"
-#include "verification/bloch.h"
-#include "verification/wave_speeds/lattice_waves.h"
+#include "verification/bridge/bloch.h"
+#include "verification/claims/lattice_waves.h"
 
 namespace
 {

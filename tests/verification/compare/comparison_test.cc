@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 #include "frames.h"
-#include "tests/verification/temporary_folder.h"
-#include "verification/errors.h"
+#include "support/errors.h"
+#include "tests/support/temporary_folder.h"
 
 namespace
 {
@@ -55,7 +55,7 @@ protected:
       work();
       ADD_FAILURE() << "accepted, though to be refused for: " << parts.front();
     }
-    catch (const InputError &error)
+    catch (const latcon::support::InputError &error)
     {
       for (const std::string &part : parts)
         EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << part << " is not in: " << error.what();

@@ -1,10 +1,10 @@
 // The frames that the claim on a running crack leaves can be compared.
-#include "verification/running_crack/running_crack_claim.h"
+#include "verification/claims/running_crack/running_crack_claim.h"
 
 #include <gtest/gtest.h>
 
+#include "tests/support/temporary_folder.h"
 #include "tests/verification/claims/faults.h"
-#include "tests/verification/temporary_folder.h"
 #include "verification/compare/comparison.h"
 
 using namespace verification;

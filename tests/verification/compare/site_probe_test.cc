@@ -5,7 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "frames.h"
-#include "tests/verification/temporary_folder.h"
+#include "tests/support/temporary_folder.h"
 
 namespace
 {

@@ -1,0 +1,455 @@
+// Speed, wavelength and amplitude of synthetic crack paths with known answers.
+//
+// Tolerances. For a sinusoid of n periods, amplitude a, in N entries with independent noise sigma, least squares gives
+//   sd(wavelength) = wavelength (sqrt6 / pi) (sigma / a) / (n sqrt N),   sd(amplitude) = sigma sqrt(2 / N)
+// (Cramer-Rao bound); moving to the nearest site of a column, where every other row has one, adds sigma = d / 2.
+// Ensembles are of 200 seeds: a fraction p has a standard deviation of sqrt(p (1 - p) / 200), 0.033 at p = 0.68 and
+// 0.015 at p = 0.95.
+
+#include <cmath>
+#include <random>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/verification/analysis/synthetic_crack.h"
+
+namespace
+{
+
+using namespace synthetic_crack;
+
+constexpr unsigned int n_seeds = 200;
+
+/// How often an ensemble of cracks was found to be what, and how far its numbers were from the truth.
+struct Ensemble
+{
+  unsigned int n_likely_oscillating = 0, n_oscillating = 0, n_straight = 0, n_decided = 0;
+  unsigned int wavelength_within_1 = 0, wavelength_within_2 = 0, amplitude_within_1 = 0, amplitude_within_2 = 0;
+  unsigned int speed_within_1 = 0, speed_within_2 = 0;
+
+  static void count(const lattice::Measured &measured, double truth, unsigned int &within_1, unsigned int &within_2)
+  {
+    const double deviation = std::abs(measured.value - truth) / measured.uncertainty;
+    within_1 += deviation < 1.;
+    within_2 += deviation < 2.;
+  }
+
+  explicit Ensemble(const SyntheticCrack &crack, double true_wavelength = wavelength, double true_amplitude = amplitude)
+  {
+    for (unsigned int seed = 1; seed <= n_seeds; ++seed)
+    {
+      const CrackMeasurement m = measure(crack, seed);
+      n_likely_oscillating += m.wavelength.has_value();
+      n_oscillating += m.pattern == CrackPattern::oscillating;
+      n_straight += m.pattern == CrackPattern::straight;
+      n_decided += m.pattern != CrackPattern::undecided;
+      // Coverage is that of the fit, whatever the pattern: to leave out unclear cases would bias what remains.
+      count(m.sinusoid.value().wavelength, true_wavelength, wavelength_within_1, wavelength_within_2);
+      count(m.sinusoid.value().amplitude, true_amplitude, amplitude_within_1, amplitude_within_2);
+      count(m.speed_lagrangian.value(), speed, speed_within_1, speed_within_2);
+    }
+  }
+};
+
+/// 1 sigma shall cover 68 %: three standard deviations below that, and above it up to where an uncertainty would be
+/// 1.6 times too large. 2 sigma shall cover 95 %: at least 85 %, room for the uncertainty's own error.
+#define EXPECT_COVERS(within_1, within_2)                                                                              \
+  do                                                                                                                   \
+  {                                                                                                                    \
+    EXPECT_GE(within_1, 0.58 * n_seeds);                                                                               \
+    EXPECT_LE(within_1, 0.90 * n_seeds);                                                                               \
+    EXPECT_GE(within_2, 0.85 * n_seeds);                                                                               \
+  } while (false)
+
+// --- sinusoids -----------------------------------------------------------------------------------------------------
+
+TEST(CrackMeasurement, PureSinusoidIsExact)
+{
+  SyntheticCrack crack;
+  crack.path = sinusoid(wavelength, amplitude);
+  crack.on_sites = false;
+  const CrackMeasurement m = measure(crack);
+  ASSERT_EQ(m.pattern, CrackPattern::oscillating) << m.reason;
+  // The wave number is sought to 1e-7 of itself; the amplitude is stationary there.
+  EXPECT_NEAR(m.wavelength->value, wavelength, 1e-6 * wavelength);
+  EXPECT_NEAR(m.amplitude->value, amplitude, 1e-6 * amplitude);
+  EXPECT_NEAR(m.sinusoid->R_squared, 1., 1e-6);
+  EXPECT_NEAR(m.sinusoid->share_of_path, 1., 1e-6);
+  // Entries lie on columns d / 2 apart, up to three d / 2 skipped at the ends.
+  EXPECT_NEAR(m.X_begin, 0.2 * length, 3. * d);
+  EXPECT_NEAR(m.X_end, 0.9 * length, 3. * d);
+  EXPECT_NEAR(m.periods, 0.7 * length / wavelength, 6. * d / wavelength);
+  EXPECT_NEAR(m.sinusoid->curve(0.05), crack.path(0.05), 1e-5 * amplitude);
+}
+
+TEST(CrackMeasurement, ZigzagIsHigherThanItsSinusoid)
+{
+  SyntheticCrack crack;
+  crack.path = [](double X) { return 0.02 * X + amplitude * 2. / pi * std::asin(std::sin(2. * pi * X / wavelength)); };
+  crack.on_sites = false;
+  const CrackMeasurement m = measure(crack);
+  ASSERT_TRUE(m.crest_amplitude) << m.reason;
+  // The first term of the Fourier series; the mean over a column that holds a crest is lower by at most half the
+  // column's width times the slope, and so is what lies between two columns.
+  EXPECT_NEAR(m.amplitude->value, 8. / (pi * pi) * amplitude, 0.02 * amplitude);
+  const double column = 2. * d;
+  EXPECT_LE(m.crest_amplitude->value, amplitude * (1. + 1e-3));
+  EXPECT_GE(m.crest_amplitude->value, amplitude - 0.5 * column * 4. * amplitude / wavelength);
+}
+
+TEST(CrackMeasurement, CrestsOfASinusoidAreItsAmplitude)
+{
+  SyntheticCrack crack;
+  crack.path = sinusoid(wavelength, amplitude);
+  for (unsigned int seed = 1; seed <= 20; ++seed)
+  {
+    const CrackMeasurement m = measure(crack, seed);
+    ASSERT_TRUE(m.crest_amplitude) << m.reason;
+    // The highest of a wavelength's 18 columns, each off by d / 2 over the root of its two or three entries: at most
+    // two standard deviations too high.
+    EXPECT_NEAR(m.crest_amplitude->value, amplitude, 2. * 0.5 * d / std::sqrt(2.));
+    EXPECT_GT(m.crest_amplitude->uncertainty, 0.09 * d);
+  }
+  crack.path = straight;
+  EXPECT_FALSE(measure(crack).crest_amplitude);
+}
+
+TEST(CrackMeasurement, ShortWavesAreNotFlattenedByAveraging)
+{
+  // Columns of 2 d would take (pi 2 d / wavelength)^2 / 6 = 6 % off this amplitude if the model were not averaged too.
+  SyntheticCrack crack;
+  crack.path = sinusoid(10.3 * d, amplitude);
+  crack.on_sites = false;
+  const CrackMeasurement m = measure(crack);
+  ASSERT_TRUE(m.wavelength) << m.reason;
+  EXPECT_NEAR(m.wavelength->value, 10.3 * d, 1e-6 * d);
+  EXPECT_NEAR(m.amplitude->value, amplitude, 1e-5 * amplitude);
+}
+
+TEST(CrackMeasurement, SinusoidOnLatticeSites)
+{
+  SyntheticCrack crack;
+  crack.path = sinusoid(wavelength, amplitude);
+  // n = 4.57, a = 2.72 d, N = 200, sigma = d / 2: sd 0.05 mm; amplitude: site error 0.09 d.
+  for (unsigned int seed = 1; seed <= 20; ++seed)
+  {
+    const CrackMeasurement m = measure(crack, seed);
+    ASSERT_EQ(m.pattern, CrackPattern::oscillating) << m.reason;
+    EXPECT_NEAR(m.wavelength->value, wavelength, 4. * 0.05e-3);
+    EXPECT_NEAR(m.amplitude->value, amplitude, 3. * 0.09 * d);
+  }
+}
+
+TEST(CrackMeasurement, RangeOfWavelengthsAndAmplitudesOnSites)
+{
+  // Hops of d / 2 on top of the sites': sigma = 0.7 d; four of the standard deviations at the top of this file.
+  const double sigma = std::sqrt(0.5) * d;
+  for (const double lambda : {0.010, 0.015, 0.023, 0.030, 0.040})
+    for (const double a : {0.8e-3, 1.7e-3, 3e-3})
+    {
+      SyntheticCrack crack;
+      crack.path = sinusoid(lambda, a);
+      crack.hops = 0.5 * d;
+      const CrackMeasurement m = measure(crack);
+      SCOPED_TRACE(m.reason);
+      ASSERT_EQ(m.pattern, CrackPattern::oscillating);
+      const double n = 0.7 * length / lambda;
+      EXPECT_NEAR(m.wavelength->value, lambda, 4. * lambda * std::sqrt(6.) / pi * sigma / a / (n * std::sqrt(200.)));
+      EXPECT_NEAR(m.amplitude->value, a, 4. * std::hypot(sigma * std::sqrt(2. / 200.), 0.09 * d));
+    }
+}
+
+TEST(CrackMeasurement, UncertaintiesCoverTheTruthWithIndependentNoise)
+{
+  SyntheticCrack crack;
+  crack.path = sinusoid(wavelength, amplitude);
+  crack.hops = d;
+  const Ensemble ensemble(crack);
+  EXPECT_EQ(ensemble.n_oscillating, n_seeds);
+  EXPECT_COVERS(ensemble.wavelength_within_1, ensemble.wavelength_within_2);
+  EXPECT_COVERS(ensemble.amplitude_within_1, ensemble.amplitude_within_2);
+}
+
+TEST(CrackMeasurement, UncertaintiesCoverTheTruthWithCorrelatedNoise)
+{
+  // Had the noise been taken for independent, 1 sigma would cover about 40 %.
+  SyntheticCrack crack;
+  crack.path = sinusoid(wavelength, amplitude);
+  crack.hops = d;
+  crack.wander = d;
+  const Ensemble ensemble(crack);
+  EXPECT_GE(ensemble.n_likely_oscillating, 0.95 * n_seeds);
+  EXPECT_COVERS(ensemble.wavelength_within_1, ensemble.wavelength_within_2);
+  EXPECT_COVERS(ensemble.amplitude_within_1, ensemble.amplitude_within_2);
+}
+
+TEST(CrackMeasurement, UncertaintiesCoverTheTruthWithLongMemory)
+{
+  SyntheticCrack crack;
+  crack.path = sinusoid(wavelength, amplitude);
+  crack.hops = 0.5 * d;
+  crack.wander = d;
+  crack.memory = 12. * d;
+  const Ensemble ensemble(crack);
+  EXPECT_GE(ensemble.n_likely_oscillating, 0.95 * n_seeds);
+  EXPECT_COVERS(ensemble.wavelength_within_1, ensemble.wavelength_within_2);
+  EXPECT_COVERS(ensemble.amplitude_within_1, ensemble.amplitude_within_2);
+}
+
+TEST(CrackMeasurement, HopsOfSeveralSpacingsDoNotHideAnOscillation)
+{
+  // Hops of 3 d rms exceed the amplitude of 2.7 d, but they are errors of the record, not the shape of the path.
+  SyntheticCrack crack;
+  crack.path = sinusoid(wavelength, amplitude);
+  crack.hops = 3. * d;
+  const Ensemble ensemble(crack);
+  EXPECT_GE(ensemble.n_likely_oscillating, 0.85 * n_seeds);
+}
+
+TEST(CrackMeasurement, DriftDoesNotMatter)
+{
+  // A drift of 4.5 mm along the window, three amplitudes.
+  SyntheticCrack crack;
+  crack.on_sites = false;
+  crack.path = [](double X) { return 0.045 * X - 0.002 + sinusoid(wavelength, amplitude)(X); };
+  const CrackMeasurement m = measure(crack);
+  ASSERT_EQ(m.pattern, CrackPattern::oscillating) << m.reason;
+  EXPECT_NEAR(m.wavelength->value, wavelength, 1e-6 * wavelength);
+  EXPECT_NEAR(m.amplitude->value, amplitude, 1e-6 * amplitude);
+  EXPECT_NEAR(m.sinusoid->curve.slope, 0.045, 1e-7);
+}
+
+TEST(CrackMeasurement, GrowingPartIsLeftOut)
+{
+  // Amplitude a / (1 + exp(-(X - X0) / l)), X0 = 55 mm, l = 6 mm: 27 % at 49 mm, 92 % at 70 mm.
+  SyntheticCrack crack;
+  crack.path = [](double X) { return sinusoid(wavelength, amplitude)(X) / (1. + std::exp(-(X - 0.055) / 0.006)); };
+  crack.hops = 0.5 * d;
+  double sum = 0., sum_of_whole = 0.;
+  const unsigned int n = 40;
+  for (unsigned int seed = 1; seed <= n; ++seed)
+  {
+    const std::vector<TipRecord> tip = crack.record(seed);
+    CrackMeasurementOptions options = options_for(tip);
+    const CrackMeasurement m = measure_crack(tip, {}, options);
+    ASSERT_EQ(m.pattern, CrackPattern::oscillating) << m.reason;
+    EXPECT_GT(m.X_begin, 0.049);
+    EXPECT_LT(m.X_begin, 0.070);
+    EXPECT_GE(m.periods, 2.);
+    // Six standard deviations of the formula above with n = 3.3 periods, N = 150, sigma = 0.7 d: growth is left in
+    // part.
+    EXPECT_NEAR(m.wavelength->value, wavelength, 6. * 0.14e-3);
+    sum += m.amplitude->value / n;
+    options.settled_amplitude = 0.01;
+    sum_of_whole += measure_crack(tip, {}, options).sinusoid->amplitude.value / n;
+  }
+  // What is left of the growth, between 27 and 100 % over a fifth of the window, takes off a few per cent. With the
+  // growing part in, 25 mm of 105 have next to no amplitude, which takes off more than a tenth.
+  EXPECT_NEAR(sum, amplitude, 0.06 * amplitude);
+  EXPECT_LT(sum_of_whole, 0.88 * amplitude);
+}
+
+TEST(CrackMeasurement, LateOnsetKeepsTwoWavelengths)
+{
+  // 55 to 65 mm, 1.6 to 1.9 wavelengths, are steady. The window must not shrink to them.
+  const double lambda = 0.035;
+  SyntheticCrack crack;
+  crack.hops = 0.3 * d;
+  for (const double onset : {0.07, 0.075, 0.08})
+  {
+    crack.path = [=](double X) { return X < onset ? 0. : amplitude * std::sin(2. * pi * (X - onset) / lambda); };
+    const CrackMeasurement m = measure(crack);
+    ASSERT_TRUE(m.sinusoid);
+    EXPECT_GT(m.X_begin, 0.05) << m.reason; // it did move
+    EXPECT_GE(m.periods, 2.) << m.reason;
+  }
+}
+
+TEST(CrackMeasurement, UnevenSamplingDoesNotBias)
+{
+  // The wavelength changes from 22 to 24 mm in the middle of the window. With eight times as many entries in the first
+  // half, a fit that weighs entries would settle near 22 mm; one that weighs lengths of crack stays where it was.
+  const double middle = 0.55 * length;
+  const auto Y = [&](double X)
+  {
+    const double s = X - middle;
+    return amplitude * std::sin(2. * pi * s / (s < 0. ? 0.022 : 0.024));
+  };
+  std::vector<TipRecord> even, uneven;
+  for (double X = seed_tip; X < 0.95 * length; X += 2. * d)
+    even.push_back({X / speed, X, Y(X), X, 0.});
+  for (double X = seed_tip; X < 0.95 * length; X += X < middle ? 0.25 * d : 2. * d)
+    uneven.push_back({X / speed, X, Y(X), X, 0.});
+  const CrackMeasurement of_even = measure_crack(even, {}, options_for(even));
+  const CrackMeasurement of_uneven = measure_crack(uneven, {}, options_for(uneven));
+  ASSERT_TRUE(of_even.wavelength && of_uneven.wavelength);
+  EXPECT_NEAR(of_even.wavelength->value, 0.023, 0.1e-3);
+  // Entries spread through a column of 2 d instead of at its edge: the window shifts by up to a column in 105 mm, 1 %
+  // of the difference of 2 mm; weighing entries shifts by 0.5 mm and more.
+  EXPECT_NEAR(of_uneven.wavelength->value, of_even.wavelength->value, 0.05e-3);
+}
+
+TEST(CrackMeasurement, FewerThanTwoPeriodsAreFoundButNotConclusive)
+{
+  // 1.8 periods in the window of 105 mm.
+  const double lambda = 0.7 * length / 1.8;
+  SyntheticCrack crack;
+  crack.path = sinusoid(lambda, amplitude);
+  crack.hops = 0.3 * d;
+  crack.wander = 0.2 * d;
+  const Ensemble ensemble(crack, lambda);
+  EXPECT_GE(ensemble.n_likely_oscillating, 0.9 * n_seeds);
+  EXPECT_EQ(ensemble.n_oscillating, 0u);
+  EXPECT_COVERS(ensemble.wavelength_within_1, ensemble.wavelength_within_2);
+}
+
+TEST(CrackMeasurement, LessThanOnePeriodAndAHalfIsABend)
+{
+  SyntheticCrack crack;
+  crack.path = sinusoid(0.7 * length / 1.2, 2. * amplitude);
+  crack.hops = 0.5 * d;
+  const CrackMeasurement m = measure(crack);
+  EXPECT_EQ(m.pattern, CrackPattern::undecided) << m.reason;
+  EXPECT_FALSE(m.wavelength);
+}
+
+// --- paths that do not oscillate
+// ---------------------------------------------------------------------------------------
+
+TEST(CrackMeasurement, HoppingStraightPathIsStraight)
+{
+  // Odds of 20 to 1 are found by chance in fewer than 1 of 20 straight paths, far fewer in practice: 1 % is asserted.
+  SyntheticCrack crack;
+  for (const double hops : {0.5 * d, 2. * d})
+  {
+    crack.hops = hops;
+    const Ensemble ensemble(crack);
+    EXPECT_LE(ensemble.n_likely_oscillating, 0.01 * n_seeds);
+    EXPECT_GE(ensemble.n_decided, 0.98 * n_seeds);
+  }
+}
+
+TEST(CrackMeasurement, WanderingStraightPathIsNotOscillating)
+{
+  // Correlated over 5 d and 20 d, as strong as an oscillation of amplitude 2.8 d. Sinusoids follow much of the slower
+  // one, so that not every path can be told to be straight; but none may be taken for an oscillation.
+  SyntheticCrack crack;
+  crack.hops = 0.5 * d;
+  crack.wander = 2. * d;
+  for (const double memory : {5. * d, 20. * d})
+  {
+    crack.memory = memory;
+    const Ensemble ensemble(crack);
+    EXPECT_LE(ensemble.n_likely_oscillating, 0.02 * n_seeds);
+    EXPECT_EQ(ensemble.n_oscillating, 0u);
+  }
+}
+
+TEST(CrackMeasurement, RandomWalkIsNotOscillating)
+{
+  // Strays by 0.5 d sqrt(168) = 6.5 d along the window. The nearest sinusoid explains over half of the variance of most
+  // such paths, over one to two periods; the evidence says that a wandering path does as well, and the result says that
+  // nothing is certain: neither straight nor oscillating.
+  SyntheticCrack crack;
+  crack.walk = 0.5 * d;
+  const Ensemble ensemble(crack);
+  EXPECT_LE(ensemble.n_likely_oscillating, 0.03 * n_seeds);
+  EXPECT_LE(ensemble.n_oscillating, 0.01 * n_seeds);
+  EXPECT_LE(ensemble.n_decided, 0.6 * n_seeds);
+}
+
+TEST(CrackMeasurement, RippleOnAWanderingPathIsNotItsPattern)
+{
+  // A true sinusoid of 10 mm and 1 mm, evident as such, on a path that strays by 3 d for reasons of its own.
+  SyntheticCrack crack;
+  crack.path = sinusoid(0.01, 0.001);
+  crack.wander = 3. * d;
+  crack.memory = 40. * d;
+  unsigned int n_ripples = 0;
+  for (unsigned int seed = 1; seed <= 100; ++seed)
+  {
+    const CrackMeasurement m = measure(crack, seed);
+    if (m.sinusoid.value().log_evidence < 3. || m.sinusoid->share_of_path >= 0.5)
+      continue;
+    EXPECT_NE(m.pattern, CrackPattern::oscillating) << m.reason;
+    EXPECT_FALSE(m.wavelength);
+    ++n_ripples;
+  }
+  EXPECT_GE(n_ripples, 10u) << "nothing was tested";
+}
+
+TEST(CrackMeasurement, HoppingBetweenTwoRowsIsStraight)
+{
+  // A regular square wave between neighbouring rows: first harmonic (4 / pi) (sqrt3 / 4) d = 0.55 d.
+  SyntheticCrack crack;
+  crack.on_sites = false;
+  crack.path = [](double X) { return std::sin(2. * pi * X / wavelength) > 0. ? 0.5 * std::sqrt(3.) * d : 0.; };
+  const CrackMeasurement m = measure(crack);
+  EXPECT_EQ(m.pattern, CrackPattern::straight);
+  ASSERT_TRUE(m.sinusoid);
+  EXPECT_NEAR(m.sinusoid->amplitude.value, std::sqrt(3.) / pi * d, 0.03 * d);
+}
+
+TEST(CrackMeasurement, ExactlyStraightPath)
+{
+  SyntheticCrack crack;
+  crack.on_sites = false;
+  const CrackMeasurement m = measure(crack);
+  EXPECT_EQ(m.pattern, CrackPattern::straight);
+  EXPECT_FALSE(m.wavelength);
+  EXPECT_TRUE(m.speed_lagrangian);
+}
+
+// --- speed -----------------------------------------------------------------------------------------------------------
+
+TEST(CrackMeasurement, SteadySpeed)
+{
+  // Constant speed, tip on columns up to 3 d apart: the straight line is off by less than that in 105 mm.
+  const CrackMeasurement m = measure(SyntheticCrack());
+  ASSERT_TRUE(m.speed_lagrangian && m.speed_laboratory);
+  EXPECT_NEAR(m.speed_lagrangian->value, speed, 3. * d / (0.7 * length) * speed);
+  EXPECT_GT(m.speed_lagrangian->uncertainty, 0.);
+  EXPECT_LT(m.speed_lagrangian->uncertainty, 0.02 * speed);
+  // x is an affine function of X here: exact up to round-off, the uncertainty up to its resolution of 1e-3 d.
+  EXPECT_NEAR(m.speed_laboratory->value, stretch_x * m.speed_lagrangian->value, 1e-9 * speed);
+  EXPECT_NEAR(m.speed_laboratory->uncertainty, stretch_x * m.speed_lagrangian->uncertainty, 1e-3 * speed);
+}
+
+TEST(CrackMeasurement, LaboratorySpeedIsMeasuredFromCurrentPositions)
+{
+  // A tip that falls back behind its reference place at 3 m/s: dx/dt = 2.3 * 20 - 3.
+  std::vector<TipRecord> tip = SyntheticCrack().record(1);
+  for (TipRecord &entry : tip)
+    entry.x -= 3. * entry.t;
+  const CrackMeasurement m = measure_crack(tip, {}, options_for(tip));
+  EXPECT_NEAR(m.speed_laboratory->value, stretch_x * speed - 3., 3. * d / (0.7 * length) * stretch_x * speed);
+}
+
+TEST(CrackMeasurement, SpeedUncertaintyCoversTheTruth)
+{
+  // Slowness that varies by 30 %, remembered over 8 d: a position that walks away from the straight line.
+  SyntheticCrack crack;
+  crack.path = sinusoid(wavelength, amplitude);
+  crack.slowness_noise = 0.3;
+  const Ensemble ensemble(crack);
+  EXPECT_COVERS(ensemble.speed_within_1, ensemble.speed_within_2);
+}
+
+TEST(CrackMeasurement, RunInAndClampZoneDoNotEnterTheSpeed)
+{
+  // Half speed up to 0.2 L and beyond 0.9 L: either of them in the window would take 5 % and more off the speed.
+  std::vector<TipRecord> tip = SyntheticCrack().record(1);
+  double t = 0.;
+  for (std::size_t i = 1; i < tip.size(); ++i)
+  {
+    const bool is_slow = tip[i].X < 0.2 * length || tip[i].X > 0.9 * length;
+    t += (tip[i].X - tip[i - 1].X) / (is_slow ? 0.5 * speed : speed);
+    tip[i].t = t;
+  }
+  tip[0].t = 0.;
+  const CrackMeasurement m = measure_crack(tip, {}, options_for(tip));
+  EXPECT_NEAR(m.speed_lagrangian->value, speed, 3. * d / (0.7 * length) * speed);
+}
+
+} // namespace

@@ -1,0 +1,442 @@
+// Branching and arrest of synthetic cracks, and records and options that cannot be used.
+
+#include <cmath>
+#include <functional>
+#include <limits>
+#include <random>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "tests/verification/analysis/synthetic_crack.h"
+
+namespace
+{
+
+using namespace synthetic_crack;
+
+// --- branching
+// ----------------------------------------------------------------------------------------------------------
+
+/// Crack that splits at X = 50 mm into two branches at +-30 degrees, one a little ahead of the other by turns.
+struct BranchedCrack
+{
+  std::vector<TipRecord> tip;
+  std::vector<BreakRecord> breaks;
+
+  explicit BranchedCrack(double degrees = 30., double X_last = 0.98 * length, bool regular_turns = false)
+  {
+    const double X_branch = 0.05;
+    const double slope = std::tan(degrees * pi / 180.);
+    const auto branch = [=](double X) { return std::max(0., slope * (X - X_branch)); };
+    SyntheticCrack crack;
+    crack.X_last = X_last;
+    crack.path = [=](double X)
+    {
+      const auto turn = static_cast<unsigned int>(X / (5. * d));
+      return (regular_turns ? turn : std::mt19937(turn)() >> 16) % 2 == 0 ? branch(X) : -branch(X);
+    };
+    tip = crack.record(1);
+    break_along(breaks, branch, seed_tip, X_last);
+    break_along(
+      breaks, [=](double X) { return -branch(X); }, X_branch, X_last);
+  }
+};
+
+TEST(CrackMeasurement, TwoDivergingStrandsBranch)
+{
+  const BranchedCrack crack;
+  const CrackMeasurement m = measure_crack(crack.tip, crack.breaks, options_for(crack.tip));
+  EXPECT_EQ(m.pattern, CrackPattern::branching) << m.reason;
+  EXPECT_FALSE(m.wavelength);
+  // From where the strands are 10 d (and 2 d of breadth) apart, 12 d / (2 tan 30) past the fork, to 0.9 L; a column of
+  // 4 d at either end.
+  const double expected = (0.9 * length - 0.05 - 12. * d / (2. * std::tan(pi / 6.))) / (0.9 * length - seed_tip);
+  EXPECT_NEAR(m.branched_fraction, expected, 8. * d / (0.9 * length - seed_tip));
+}
+
+TEST(CrackMeasurement, BranchesThatReachTheEdgesAreBranchesNotArrest)
+{
+  // Branches at 60 degrees meet the edges of a sheet 10 cm high 29 mm past the fork, and the crack stands.
+  const BranchedCrack crack(60., 0.05 + 0.029);
+  CrackMeasurementOptions options = options_for(crack.tip);
+  options.end_time *= 3.;
+  EXPECT_EQ(measure_crack(crack.tip, crack.breaks, options).pattern, CrackPattern::branching);
+  EXPECT_EQ(measure_crack(crack.tip, {}, options).pattern, CrackPattern::arrested);
+}
+
+TEST(CrackMeasurement, WithoutBreaksNothingBranches)
+{
+  const BranchedCrack crack;
+  const CrackMeasurement m = measure_crack(crack.tip, {}, options_for(crack.tip));
+  EXPECT_EQ(m.pattern, CrackPattern::undecided) << m.reason;
+  EXPECT_EQ(m.branched_fraction, 0.);
+}
+
+TEST(CrackMeasurement, TipThatJumpsBetweenBranchesByTurnsDoesNotOscillate)
+{
+  // The jumps are periodic to the eye of a sinusoid: 6 mm long, 49 mm high.
+  const BranchedCrack crack(30., 0.98 * length, true);
+  const CrackMeasurement m = measure_crack(crack.tip, {}, options_for(crack.tip));
+  EXPECT_EQ(m.pattern, CrackPattern::undecided) << m.reason;
+}
+
+class OscillatingCrackWithBreaks : public ::testing::Test
+{
+protected:
+  OscillatingCrackWithBreaks()
+  {
+    crack.path = sinusoid(wavelength, amplitude);
+    crack.hops = 0.5 * d;
+    break_along(breaks, crack.path, seed_tip, 0.98 * length);
+  }
+
+  void expect_oscillating() const
+  {
+    const CrackMeasurement m = measure(crack, 1, breaks);
+    EXPECT_EQ(m.pattern, CrackPattern::oscillating) << m.reason;
+    EXPECT_LT(m.branched_fraction, 0.1);
+  }
+
+  SyntheticCrack crack;
+  std::vector<BreakRecord> breaks;
+};
+using CrackMeasurementDamage = OscillatingCrackWithBreaks;
+
+TEST_F(CrackMeasurementDamage, OnThePathIsNoBranch)
+{
+  expect_oscillating();
+}
+
+TEST_F(CrackMeasurementDamage, BandInTheWakeIsNoBranch)
+{
+  break_along(breaks, crack.path, seed_tip, 0.98 * length, 6. * d);
+  expect_oscillating();
+}
+
+TEST_F(CrackMeasurementDamage, RowBesideThePathIsNoBranch)
+{
+  // 14 d off for the whole length, breadth 1 d on both sides: the gap is 12 d, and never more.
+  break_along(
+    breaks, [&](double X) { return crack.path(X) + 14. * d; }, seed_tip, 0.98 * length);
+  expect_oscillating();
+}
+
+TEST_F(CrackMeasurementDamage, StragglingDamageIsNoBranch)
+{
+  // Damage that leaves a gap of 4 d to 16 d and comes back every 37 d: past 10 d for less than 20 d at a time.
+  const auto beside = [&](double X) { return crack.path(X) + (12. + 6. * std::sin(2. * pi * X / wavelength)) * d; };
+  break_along(breaks, beside, seed_tip, 0.98 * length);
+  expect_oscillating();
+}
+
+TEST_F(CrackMeasurementDamage, SpurAtEveryCrestIsNoBranch)
+{
+  // Secondary cracks of 14 d that leave every second crest at 60 degrees and die.
+  for (double X = 0.03; X < 0.13; X += wavelength)
+    break_along(
+      breaks, [&](double s) { return crack.path(X) + std::tan(pi / 3.) * (s - X); }, X, X + 14. * d);
+  expect_oscillating();
+}
+
+TEST_F(CrackMeasurementDamage, ScatteredDebrisIsNoBranch)
+{
+  // One broken bond in every 2 d of length, anywhere up to 60 d from the path.
+  std::mt19937 generator(3);
+  std::uniform_real_distribution<double> offset(-60. * d, 60. * d);
+  for (double X = seed_tip; X < 0.98 * length; X += 2. * d)
+    breaks.push_back({1e-3, X, crack.path(X) + offset(generator)});
+  expect_oscillating();
+}
+
+// --- flanks
+// ------------------------------------------------------------------------------------------------------------
+
+// Bonds along a slanted path, and a few torn out of its flanks at a known distance.
+TEST(FlankDamage, IsMeasuredFromTheNearestPointOfThePath)
+{
+  std::vector<TipRecord> tip;
+  const double slope = 0.75; // a 3-4-5 triangle: the distance is 0.8 of that along Y
+  for (int i = 0; i <= 100; ++i)
+    tip.push_back({1e-5 * i, i * d, slope * i * d, 0., 0.});
+  std::vector<BreakRecord> breaks;
+  for (int i = 0; i < 96; ++i)
+    breaks.push_back({0., (2. + i) * d, slope * (2. + i) * d + (i % 2 == 0 ? 0.5 : -0.5) * d});
+  const auto whole = flank_damage(tip, breaks, 0., 100. * d, d);
+  ASSERT_TRUE(whole);
+  EXPECT_NEAR(whole->depth, 0.8 * 0.5 * d, 1e-12 * d);
+  EXPECT_EQ(whole->share, 0.);
+  for (const double offset : {7.45, 7.55, -12.}) // 5.96, 6.04 and 9.6 d away
+    breaks.push_back({0., 50.2 * d, (slope * 50.2 + offset) * d});
+  breaks.push_back({0., 20. * d, 15. * d + 20. * d});
+  const auto torn = flank_damage(tip, breaks, 22. * d, 90. * d, d); // without the last, and 27 of the path's
+  ASSERT_TRUE(torn);
+  EXPECT_NEAR(torn->depth, 9.6 * d, 1e-12 * d);
+  EXPECT_DOUBLE_EQ(torn->share, 2. / (96 - 27 + 3));
+  EXPECT_NEAR(flank_damage(tip, breaks, 0., 100. * d, d)->depth, 16. * d, 1e-12 * d);
+  // Beyond the ends of the path its last point is the nearest.
+  EXPECT_NEAR(flank_damage(tip, {{0., 103. * d, 79. * d}}, 0., 200. * d, d)->depth, 5. * d, 1e-12 * d);
+  EXPECT_NEAR(flank_damage(tip, {{0., -3. * d, -4. * d}}, -10. * d, 0., d)->depth, 5. * d, 1e-12 * d);
+  EXPECT_FALSE(flank_damage(tip, breaks, 100. * d, 120. * d, d));
+  EXPECT_FALSE(flank_damage({}, breaks, 0., 100. * d, d));
+}
+
+TEST_F(CrackMeasurementDamage, OfTheFlanksIsThatInTheWindow)
+{
+  const auto beside = [&](double X, double offset) { return BreakRecord{1e-3, X, crack.path(X) + offset}; };
+  breaks.push_back(beside(0.1 * length, 30. * d));  // before the window
+  breaks.push_back(beside(0.95 * length, 30. * d)); // and behind it
+  CrackMeasurement m = measure(crack, 1, breaks);
+  ASSERT_TRUE(m.flanks);
+  // Bonds at d on either side of a path that is known at the sites of its tip, d / 2 or so off.
+  EXPECT_NEAR(m.flanks->depth, d, 0.75 * d);
+  EXPECT_EQ(m.flanks->share, 0.);
+  breaks.push_back(beside(0.6 * length, 12. * d));
+  m = measure(crack, 1, breaks);
+  EXPECT_GT(m.flanks->depth, 9. * d); // nearer than along Y: the path is up to 25 degrees steep
+  EXPECT_LT(m.flanks->depth, 12.75 * d);
+  EXPECT_GT(m.flanks->share, 0.);
+}
+
+// --- arrest
+// ----------------------------------------------------------------------------------------------------------------
+
+TEST(CrackMeasurement, CrackThatStopsIsArrested)
+{
+  SyntheticCrack crack;
+  crack.X_last = 0.45 * length;
+  const std::vector<TipRecord> tip = crack.record(1);
+  CrackMeasurementOptions options = options_for(tip);
+  options.end_time = 2. * tip.back().t;
+  const CrackMeasurement m = measure_crack(tip, {}, options);
+  EXPECT_EQ(m.pattern, CrackPattern::arrested) << m.reason;
+  ASSERT_TRUE(m.speed_lagrangian); // while it ran
+  EXPECT_NEAR(m.speed_lagrangian->value, speed, 6. * d / (0.25 * length) * speed);
+}
+
+TEST(CrackMeasurement, PauseIsNoArrest)
+{
+  // The run ends 0.05 L / v after the last advance: half of what arrest takes.
+  SyntheticCrack crack;
+  crack.X_last = 0.6 * length;
+  const std::vector<TipRecord> tip = crack.record(1);
+  CrackMeasurementOptions options = options_for(tip);
+  options.end_time = tip.back().t + 0.05 * length / speed;
+  EXPECT_EQ(measure_crack(tip, {}, options).pattern, CrackPattern::straight);
+  options.end_time = tip.back().t + 0.15 * length / speed;
+  EXPECT_EQ(measure_crack(tip, {}, options).pattern, CrackPattern::arrested);
+}
+
+TEST(CrackMeasurement, BondThatBreaksLongAfterTheStopChangesNothing)
+{
+  SyntheticCrack crack;
+  crack.X_last = 0.5 * length;
+  std::vector<TipRecord> tip = crack.record(1);
+  TipRecord late = tip.back();
+  late.t *= 3.;
+  late.X += 0.5 * d;
+  tip.push_back(late);
+  EXPECT_EQ(measure_crack(tip, {}, options_for(tip)).pattern, CrackPattern::arrested);
+}
+
+TEST(CrackMeasurement, CrackAtTheClampIsNotArrested)
+{
+  SyntheticCrack crack;
+  crack.X_last = 0.91 * length;
+  const std::vector<TipRecord> tip = crack.record(1);
+  CrackMeasurementOptions options = options_for(tip);
+  options.end_time = 5. * tip.back().t;
+  EXPECT_EQ(measure_crack(tip, {}, options).pattern, CrackPattern::straight);
+}
+
+TEST(CrackMeasurement, SeedThatNeverRanIsArrested)
+{
+  const CrackMeasurement of_none = measure_crack({}, {}, options_for({}));
+  EXPECT_EQ(of_none.pattern, CrackPattern::arrested);
+  EXPECT_FALSE(of_none.speed_lagrangian || of_none.speed_laboratory || of_none.wavelength || of_none.sinusoid);
+
+  SyntheticCrack crack;
+  crack.X_last = seed_tip + 4. * d;
+  const std::vector<TipRecord> tip = crack.record(1);
+  CrackMeasurementOptions options = options_for(tip);
+  options.end_time = 3. * tip.back().t;
+  const CrackMeasurement m = measure_crack(tip, {}, options);
+  EXPECT_EQ(m.pattern, CrackPattern::arrested);
+}
+
+// --- the sentence
+// --------------------------------------------------------------------------------------------------------------
+
+TEST(CrackMeasurement, SentenceNamesTheCriterionThatDecided)
+{
+  const auto expect = [](const CrackMeasurement &m, CrackPattern pattern, std::initializer_list<const char *> parts)
+  {
+    EXPECT_EQ(m.pattern, pattern) << m.reason;
+    for (const char *part : parts)
+      EXPECT_NE(m.reason.find(part), std::string::npos) << m.reason;
+  };
+  SyntheticCrack crack;
+  crack.on_sites = false;
+  crack.path = sinusoid(wavelength, 0.4 * d);
+  expect(measure(crack), CrackPattern::straight, {"an amplitude of 0.4 d, less than the 0.75 d of an oscillation"});
+  crack.path = sinusoid(wavelength, 3. * d);
+  expect(measure(crack), CrackPattern::oscillating,
+         {"an amplitude of 3 d, at least the 0.75 d of an oscillation", "% of the path"});
+  crack.path = sinusoid(0.7 * length / 1.2, 6. * d);
+  expect(measure(crack), CrackPattern::undecided, {"an amplitude of", "fewer than 1.5 periods: it may be a bend"});
+}
+
+// --- records and options that cannot be used
+// ---------------------------------------------------------------------------
+
+TEST(CrackMeasurement, ShortRecordOfARunningCrackIsUndecided)
+{
+  SyntheticCrack crack;
+  crack.path = sinusoid(wavelength, amplitude);
+  const std::vector<TipRecord> whole = crack.record(1);
+  // Up to 25 mm, less than the run-in and 12 columns: nothing can be said about the pattern.
+  for (std::size_t n = 1; n < whole.size() && whole[n - 1].X < 0.2 * length + 12. * d; ++n)
+  {
+    const std::vector<TipRecord> tip(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n));
+    const CrackMeasurement m = measure_crack(tip, {}, options_for(tip));
+    EXPECT_EQ(m.pattern, CrackPattern::undecided) << n << " entries";
+    EXPECT_FALSE(m.wavelength) << n << " entries";
+    EXPECT_FALSE(m.reason.empty()) << n << " entries";
+    EXPECT_LE(m.X_begin, m.X_end) << n << " entries";
+  }
+}
+
+TEST(CrackMeasurement, RunStoppedBeforeItsFirstStepSaysNothing)
+{
+  CrackMeasurementOptions options = options_for({});
+  options.end_time = 0.;
+  const CrackMeasurement m = measure_crack({}, {}, options);
+  EXPECT_EQ(m.pattern, CrackPattern::undecided);
+  EXPECT_NE(m.reason.find("before its first step"), std::string::npos) << m.reason;
+}
+
+TEST(CrackMeasurement, AnyPartOfARecordCanBeMeasured)
+{
+  // Every window length, and every one of them with a tenth of the entries: no number may come out that is not finite.
+  SyntheticCrack crack;
+  crack.path = sinusoid(wavelength, amplitude);
+  crack.hops = d;
+  const std::vector<TipRecord> whole = crack.record(2);
+  for (std::size_t n = 0; n < whole.size(); n += 7)
+    for (const std::size_t stride : {1u, 10u})
+    {
+      std::vector<TipRecord> tip;
+      for (std::size_t i = 0; i < n; i += stride)
+        tip.push_back(whole[i]);
+      const CrackMeasurement m = measure_crack(tip, {}, options_for(tip));
+      for (const auto &measured : {m.speed_lagrangian, m.speed_laboratory, m.wavelength, m.amplitude})
+        if (measured)
+        {
+          EXPECT_TRUE(std::isfinite(measured->value) && std::isfinite(measured->uncertainty)) << n << " " << stride;
+          EXPECT_GE(measured->uncertainty, 0.) << n << " " << stride;
+        }
+    }
+}
+
+TEST(CrackMeasurement, SeveralEntriesInOneColumn)
+{
+  // The tip moves along a column of sites without advancing: equal X, and equal times within a step.
+  SyntheticCrack crack;
+  crack.path = sinusoid(wavelength, amplitude);
+  std::vector<TipRecord> tip;
+  for (const TipRecord &entry : crack.record(1))
+    for (const double Y : {entry.Y - d, entry.Y, entry.Y + d})
+      tip.push_back({entry.t, entry.X, Y, entry.x, entry.y});
+  const CrackMeasurement m = measure_crack(tip, {}, options_for(tip));
+  ASSERT_EQ(m.pattern, CrackPattern::oscillating) << m.reason;
+  EXPECT_NEAR(m.wavelength->value, wavelength, 4. * 0.05e-3); // as in SinusoidOnLatticeSites
+  EXPECT_NEAR(m.speed_lagrangian->value, speed, 3. * d / (0.7 * length) * speed);
+}
+
+TEST(CrackMeasurement, RefusesABadRecord)
+{
+  const std::vector<TipRecord> good = SyntheticCrack().record(1);
+  const CrackMeasurementOptions options = options_for(good);
+  EXPECT_NO_THROW(measure_crack(good, {}, options));
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const double infinity = std::numeric_limits<double>::infinity();
+  const auto refuses = [&](const std::function<void(TipRecord &, const TipRecord &)> &spoil)
+  {
+    std::vector<TipRecord> tip = good;
+    spoil(tip[50], tip[49]);
+    EXPECT_THROW(measure_crack(tip, {}, options), std::invalid_argument);
+  };
+  refuses([](TipRecord &entry, const TipRecord &before) { entry.t = before.t - 1e-9; });
+  refuses([](TipRecord &entry, const TipRecord &before) { entry.X = before.X - 0.1 * d; });
+  refuses([&](TipRecord &entry, const TipRecord &) { entry.t = nan; });
+  refuses([&](TipRecord &entry, const TipRecord &) { entry.X = infinity; });
+  refuses([&](TipRecord &entry, const TipRecord &) { entry.Y = nan; });
+  refuses([&](TipRecord &entry, const TipRecord &) { entry.x = nan; });
+  refuses([&](TipRecord &entry, const TipRecord &) { entry.y = infinity; });
+  EXPECT_THROW(measure_crack(good, {{1e-3, nan, 0.}}, options), std::invalid_argument);
+  try
+  {
+    std::vector<TipRecord> tip = good;
+    tip[50].Y = nan;
+    measure_crack(tip, {}, options);
+    FAIL();
+  }
+  catch (const std::invalid_argument &error)
+  {
+    EXPECT_NE(std::string(error.what()).find("record 50"), std::string::npos) << error.what();
+  }
+}
+
+TEST(CrackMeasurement, RefusesBadOptions)
+{
+  const std::vector<TipRecord> tip = SyntheticCrack().record(1);
+  EXPECT_THROW(measure_crack(tip, {}, CrackMeasurementOptions()), std::invalid_argument);
+  const auto refuses = [&](const std::function<void(CrackMeasurementOptions &)> &spoil, const char *what)
+  {
+    CrackMeasurementOptions options = options_for(tip);
+    spoil(options);
+    EXPECT_THROW(measure_crack(tip, {}, options), std::invalid_argument) << what;
+  };
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  refuses([&](auto &o) { o.strip_length = nan; }, "strip length");
+  refuses([&](auto &o) { o.lattice_spacing = nan; }, "no lattice spacing");
+  refuses([&](auto &o) { o.lattice_spacing = 0.; }, "lattice spacing 0");
+  refuses([&](auto &o) { o.end_time = nan; }, "no end");
+  refuses([&](auto &o) { o.end_time = -1e-9; }, "end before the beginning");
+  refuses([&](auto &o) { o.end_time *= 0.5; }, "record after the end");
+  refuses([&](auto &o) { o.seed_tip_X = nan; }, "no seed");
+  refuses([&](auto &o) { o.seed_tip_X = length; }, "seed through the strip");
+  refuses(
+    [&](auto &o)
+    {
+      o.run_in_fraction = 0.6;
+      o.clamp_fraction = 0.4;
+    },
+    "nothing left");
+  refuses([&](auto &o) { o.run_in_fraction = -0.1; }, "run-in");
+  refuses([&](auto &o) { o.min_wavelength = 2.; }, "wavelength");
+  refuses([&](auto &o) { o.min_periods = 0.5; }, "periods");
+  refuses([&](auto &o) { o.clear_periods = 1.; }, "clear periods");
+  refuses([&](auto &o) { o.min_amplitude = -1.; }, "amplitude");
+  refuses([&](auto &o) { o.max_steepness = 0.; }, "steepness");
+  refuses([&](auto &o) { o.max_straight_rms = 0.; }, "straying");
+  refuses([&](auto &o) { o.min_share = 1.; }, "share");
+  refuses([&](auto &o) { o.clear_log_evidence = 1.; }, "evidence");
+  refuses([&](auto &o) { o.settled_amplitude = 0.; }, "settled");
+  refuses([&](auto &o) { o.arrest_fraction = 0.; }, "arrest");
+  refuses([&](auto &o) { o.min_branched_fraction = 1.5; }, "branched fraction");
+  refuses([&](auto &o) { o.branch_rule.gap = 0.; }, "gap");
+}
+
+TEST(CrackMeasurement, PatternsHaveTheNamesOfTheOutputs)
+{
+  EXPECT_STREQ(lattice::to_string(CrackPattern::straight), "straight");
+  EXPECT_STREQ(lattice::to_string(CrackPattern::oscillating), "oscillating");
+  EXPECT_STREQ(lattice::to_string(CrackPattern::branching), "branching");
+  EXPECT_STREQ(lattice::to_string(CrackPattern::arrested), "arrested");
+  EXPECT_STREQ(lattice::to_string(CrackPattern::undecided), "undecided");
+}
+
+} // namespace

@@ -1,0 +1,123 @@
+// Means over rotations of a lattice and bounds of what they leave out.
+#include "verification/bridge/anisotropy.h"
+
+#include <cmath>
+#include <functional>
+
+#include <Eigen/Geometry>
+#include <gtest/gtest.h>
+
+#include "tests/verification/claims/subjects.h"
+#include "verification/bridge/homogenisation.h"
+
+namespace
+{
+
+using namespace verification;
+using Values = std::function<Eigen::VectorXd(const Eigen::Matrix2d &R)>;
+
+RotationMean over_rotations(const Values &values)
+{
+  Eigen::MatrixXd columns(values(lattice_rotation(0)).size(), n_lattice_rotations);
+  for (int k = 0; k < n_lattice_rotations; ++k)
+    columns.col(k) = values(lattice_rotation(k));
+  return rotation_mean(columns);
+}
+
+// Rubber of quick.prm: s = 0.72, 0.81, and rows along x.
+continuum::CauchyBorn quick_law()
+{
+  Case input = subjects::paper_case();
+  input.nearest.area_factor = 0.72;
+  input.next_nearest.area_factor = 0.81;
+  return cauchy_born(input.lattice(), input.material());
+}
+
+TEST(RotationMean, SumsTheAmplitudesOfHarmonics)
+{
+  const auto angle = [](const Eigen::Matrix2d &R) { return std::atan2(R(1, 0), R(0, 0)); };
+  const RotationMean found = over_rotations(
+    [&](const Eigen::Matrix2d &R)
+    {
+      const double t = 6. * angle(R);
+      return Eigen::Vector2d(3. + 0.5 * std::cos(t) + 0.2 * std::sin(3. * t), -7. + 1.2 * std::cos(t + 0.4));
+    });
+  EXPECT_NEAR(found.mean(0), 3., 1e-14);
+  EXPECT_NEAR(found.mean(1), -7., 1e-14);
+  EXPECT_NEAR(found.bound, std::hypot(0.5, 1.2) + 0.2, 1e-13);
+  EXPECT_EQ(lattice_rotation(0), Eigen::Matrix2d(Eigen::Matrix2d::Identity()));
+  EXPECT_THROW(rotation_mean(Eigen::MatrixXd::Zero(1, n_lattice_rotations + 1)), std::invalid_argument);
+}
+
+// theory-comparison.md, eqs. (H.14) and (H.15): bounds over the lattice's own values, from the Fourier coefficients of
+// one bond of each shell by an independent script. The energy attains its bound.
+TEST(RotationMean, BoundsWhatTheNetworkLeavesOut)
+{
+  const continuum::CauchyBorn lattice = quick_law();
+  const continuum::IsotropicNetwork network(lattice.families());
+  struct Known
+  {
+    double x, y, energy, stress;
+  };
+  for (const auto &[x, y, energy, stress] :
+       {Known{1.3, 1.1, 1.83e-3, 9.36e-3}, Known{1.5, 2., 3.98e-4, 3.39e-3}, Known{2.3, 2.8, 2.43e-7, 4.00e-5},
+        Known{1., 2.8, 1.22e-2, 7.44e-2}, Known{1., 3.5, 9.79e-3, 7.83e-2}, Known{2.3, 1., 1.34e-2, 6.81e-2},
+        Known{0.6, 2.8, 8.64e-2, 5.98e-1}})
+  {
+    SCOPED_TRACE(testing::Message() << "F = diag(" << x << ", " << y << ")");
+    const Eigen::Matrix2d F = Eigen::Vector2d(x, y).asDiagonal();
+    const Values energy_of = [&](const Eigen::Matrix2d &R)
+    { return Eigen::VectorXd::Constant(1, lattice.energy(to_continuum(F * R))); };
+    const Values stress_of = [&](const Eigen::Matrix2d &R)
+    {
+      const Eigen::Matrix2d P = to_lattice(lattice.first_piola_stress(to_continuum(F * R))) * R.transpose();
+      return Eigen::VectorXd(P.reshaped());
+    };
+    const RotationMean W = over_rotations(energy_of), P = over_rotations(stress_of);
+    const Eigen::VectorXd network_stress =
+      Eigen::Matrix2d(to_lattice(network.first_piola_stress(to_continuum(F)))).reshaped();
+    EXPECT_NEAR(W.mean(0) / network.energy(to_continuum(F)), 1., 1e-13);
+    EXPECT_LT((P.mean - network_stress).norm(), 1e-13 * network_stress.norm());
+    // Three digits are given.
+    EXPECT_NEAR(W.bound / energy_of(lattice_rotation(0))(0) / energy, 1., 5e-3);
+    EXPECT_NEAR(P.bound / stress_of(lattice_rotation(0)).norm() / stress, 1., 5e-3);
+
+    double farthest_energy = 0., farthest_stress = 0.;
+    for (int k = 0; k < 100; ++k) // angles of which none but 0 is one of the rotations
+    {
+      const Eigen::Matrix2d R = Eigen::Rotation2Dd(M_PI / 3. * k / 100.).toRotationMatrix();
+      farthest_energy = std::max(farthest_energy, (energy_of(R) - W.mean).norm());
+      farthest_stress = std::max(farthest_stress, (stress_of(R) - P.mean).norm());
+    }
+    const double rounding = 1e-13;
+    EXPECT_LE(farthest_energy, W.bound + rounding * W.mean.norm());
+    EXPECT_GE(farthest_energy, 0.99 * W.bound);
+    EXPECT_LE(farthest_stress, P.bound + rounding * P.mean.norm());
+    EXPECT_GE(farthest_stress, 0.5 * P.bound);
+  }
+}
+
+// theory-comparison.md, eq. (H.16): what it leaves out of the energy is smaller by rho^2.
+TEST(RotationMean, LeavesOutTheThirdPowerOfTheDifferenceOfStretches)
+{
+  const continuum::CauchyBorn lattice = quick_law();
+  const continuum::IsotropicNetwork network(lattice.families());
+  const double c1 = 0.72, c2 = std::sqrt(3.) * 0.81, a = 1e5, b = 1.5e5;
+  for (const double L : {1.2, 1.8})
+    for (const double row : {0., 0.2}) // angle of a row from the principal axis
+    {
+      const auto relative_error = [&](const double rho)
+      {
+        const Eigen::Matrix2d F = Eigen::Vector2d(L * (1. + rho), L * (1. - rho)).asDiagonal();
+        const Eigen::Matrix2d R = Eigen::Rotation2Dd(row).toRotationMatrix();
+        const double found = lattice.energy(to_continuum(F * R)) - network.energy(to_continuum(F));
+        const double leading =
+          3. * (c1 - c2) * std::pow(rho, 3) * (b * (L / 8. - 1. / (L * L)) - 5. * a / (8. * L)) * std::cos(6. * row);
+        return std::abs(found / leading - 1.);
+      };
+      EXPECT_LT(relative_error(0.01), 0.01);
+      EXPECT_NEAR(std::log2(relative_error(0.01) / relative_error(0.005)), 2., 0.1);
+    }
+}
+
+} // namespace

@@ -1,0 +1,213 @@
+// What the claims may read of a case: every entry there is either changes the text or is said here not to.
+#include "verification/claims/claim_inputs.h"
+
+#include "support/errors.h"
+#include "verification/bridge/subject.h"
+#include "verification/input/case_text.h"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <map>
+#include <optional>
+#include <set>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <variant>
+#include <vector>
+
+using verification::Case;
+using verification::Parameters;
+
+namespace
+{
+
+// Entries that no claim reads: they may change without a new check. A new entry of a case must be put either here or
+// into the list of claim_inputs.cc.
+const std::set<std::string> no_claim_reads{
+  "Sheet/length",
+  "Sheet/height",
+  "Sheet/hole radius",
+  "Sheet/notch length",
+  "Lattice/solution",
+  "Lattice/noise amplitude",
+  "Lattice/noise seed",
+  "Fracture/breaking stretch",
+  "Fracture/toughening",
+  "Fracture/distance",
+  "Fracture/fraction",
+  "Fracture/factor",
+  "Fracture/seed shape",
+  "Fracture/seed sites",
+  "Fracture/seed length",
+  "Fracture/seed height",
+  "Fracture/seed position",
+  "Fracture/seed offset",
+  "Fracture/stop position",
+  "Fracture/left end",
+  "Fracture/right end",
+  "Contact/present",
+  "Contact/distance",
+  "Contact/stiffness",
+  "Contact/viscosity",
+  "Time/end",
+  "Time/step",
+  "Time/safety factor",
+  "Time/integrator",
+  "Time/stages",
+  "Output/frame interval",
+  "Output/motion frames",
+  "Output/energy interval",
+  "Checkpoints/steps",
+  "Checkpoints/interval",
+  "Near tip/ahead",
+  "Near tip/behind",
+  "Near tip/half height",
+  "Near tip/interval",
+  "Reference/wavelength",
+  "Reference/amplitude",
+  "Reference/speed",
+  "Reference/tolerance",
+};
+
+Case some_case()
+{
+  Case input;
+  input.spacing = 0.625e-3;
+  input.length = 0.03;
+  input.height = 0.02;
+  input.density = 944.;
+  input.strain_x = 1.3;
+  input.strain_y = 1.8;
+  return input;
+}
+
+// All entries of a case with their values.
+std::map<std::string, std::string> entries(Case input)
+{
+  Parameters parameters;
+  input.declare(parameters);
+  std::map<std::string, std::string> values;
+  for (const auto &item : verification::read_prm(parameters.resolved_text(), "case"))
+    if (const auto *entry = std::get_if<verification::Assignment>(&item))
+      values[entry->section + "/" + entry->name] = entry->value;
+  return values;
+}
+
+// The case with one entry changed as little as it can be; none if nothing that is tried is another good value.
+std::optional<Case> with_another(const std::string &key, const std::string &value)
+{
+  std::vector<std::string> candidates;
+  try
+  {
+    std::size_t end = 0;
+    const double number = std::stod(value, &end);
+    std::ostringstream near;
+    near.precision(17);
+    near << number * (1. + 1e-12);
+    if (end == value.size())
+      candidates = {near.str(), std::to_string(std::lround(number) + 1)};
+  }
+  catch (const std::invalid_argument &)
+  {
+  }
+  for (const char *other : {"1e-12",
+                            "1",
+                            "0.5",
+                            "2",
+                            "false",
+                            "true",
+                            "rows-across-crack",
+                            "linear",
+                            "motion",
+                            "behind-tip",
+                            "slit",
+                            "mooney-rivlin",
+                            "isotropic",
+                            "generalised-alpha",
+                            "free",
+                            "held",
+                            "clamped",
+                            "undeformed",
+                            "other.msh",
+                            "runge-kutta-chebyshev"})
+    candidates.emplace_back(other);
+  for (const std::string &candidate : candidates)
+  {
+    Case changed = some_case();
+    Parameters parameters;
+    changed.declare(parameters);
+    std::vector<std::string> overrides{key + "=" + candidate};
+    for (const auto &[required, text] : entries(some_case()))
+      if (required != key)
+        overrides.push_back(required + "=" + text);
+    parameters.read_overrides(overrides);
+    try
+    {
+      parameters.finish();
+    }
+    catch (const latcon::support::InputError &)
+    {
+      continue;
+    }
+    if (entries(changed).at(key) != value)
+      return changed;
+  }
+  return {};
+}
+
+TEST(ClaimInputs, EveryEntryChangesThemOrIsReadByNoClaim)
+{
+  const Case input = some_case();
+  const std::string text = claim_inputs_text(input);
+  std::size_t n_read = 0;
+  for (const auto &[key, value] : entries(input))
+  {
+    const std::optional<Case> changed = with_another(key, value);
+    ASSERT_TRUE(changed) << key << " = " << value << ": no other value was found to try";
+    const std::string section = key.substr(0, key.find('/'));
+    // Of the finite element side claims read the ratio alone: they choose meshes, edges and solvers themselves.
+    const bool finite_elements = section == "Body force" || section == "Initial state" ||
+                                 (section.size() > 5 && section.compare(section.size() - 5, 5, " edge") == 0) ||
+                                 (section == "Continuum" && key != "Continuum/ratio");
+    const bool unread = finite_elements || no_claim_reads.count(key) != 0;
+    EXPECT_EQ(claim_inputs_text(*changed) == text, unread) << key << " = " << entries(*changed).at(key);
+    n_read += unread ? 0 : 1;
+  }
+  EXPECT_EQ(n_read, 20u);
+  for (const std::string &key : no_claim_reads)
+    EXPECT_EQ(entries(input).count(key), 1u) << key;
+}
+
+TEST(ClaimInputs, MakeTheSubjectOfTheCase)
+{
+  Case input = some_case();
+  input.orientation = lattice::Orientation::rows_across_crack;
+  input.nearest.a = 1. / 3.;
+  input.shear = 0.1;
+  input.continuum.mooney_rivlin_ratio = 0.2;
+  const verification::Subject whole = verification::subject(input);
+  const verification::Subject read = verification::subject(verification::claim_inputs(input));
+  EXPECT_EQ(read.spacing, whole.spacing);
+  EXPECT_EQ(read.orientation, whole.orientation);
+  EXPECT_EQ(read.deformation, whole.deformation);
+  EXPECT_EQ(read.theory.shear_modulus, whole.theory.shear_modulus);
+  EXPECT_EQ(read.theory.shear_speed, whole.theory.shear_speed);
+  EXPECT_EQ(read.mooney_rivlin->ratio, whole.mooney_rivlin->ratio);
+  EXPECT_EQ(read.mooney_rivlin->energy_residual, whole.mooney_rivlin->energy_residual);
+}
+
+// A claim that read an entry that is not listed would find its default, whatever the case says.
+TEST(ClaimInputs, HideWhatIsNotListed)
+{
+  Case input = some_case();
+  input.continuum.penalty = 7.;
+  input.noise_seed = 42;
+  const Case read = verification::claim_inputs(input);
+  EXPECT_EQ(read.continuum.penalty, Case().continuum.penalty);
+  EXPECT_EQ(read.noise_seed, Case().noise_seed);
+  EXPECT_NE(read.length, input.length);
+}
+
+} // namespace

@@ -1,0 +1,213 @@
+// Verdicts come back as they were stored, and only for the inputs for which they were found.
+#include "tests/support/temporary_folder.h"
+
+#include "support/errors.h"
+#include "verification/claims/verdict_store.h"
+#include "verification/output/sha256.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <limits>
+#include <sys/stat.h>
+#include <unistd.h>
+
+using verification::Case;
+using verification::sha256;
+using verification::UnusableVerdicts;
+using verification::VerdictKey;
+using verification::Verdicts;
+using verification::VerdictStore;
+
+namespace
+{
+
+Case some_case()
+{
+  Case input;
+  input.spacing = 0.625e-3;
+  input.length = 0.03;
+  input.height = 0.02;
+  input.density = 944.;
+  return input;
+}
+
+Verdicts some_verdicts()
+{
+  verification::ClaimOutcome outcome;
+  outcome.results.add({"energy", "W, \"loaded\"", "J/m^3", 1. / 3., -0.0, {}, 1e-12, 1e-10});
+  outcome.results.add({"energy", "reported", "1", {}, std::numeric_limits<double>::infinity(), {}, 0.5, {}});
+  outcome.table("speeds", {"wave", "k d"}).add({std::string("L"), 0.1});
+  return Verdicts(outcome);
+}
+
+std::string replaced(std::string text, const std::string &from, const std::string &to)
+{
+  const std::size_t at = text.find(from);
+  EXPECT_NE(at, std::string::npos) << from;
+  return text.replace(at, from.size(), to);
+}
+
+// FIPS 180-4's own example, and the hash of nothing.
+TEST(Sha256, HasTheKnownValues)
+{
+  EXPECT_EQ(sha256("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+}
+
+TEST(VerdictKey, IsThatOfProgramClaimsSizeRanksAndInputs)
+{
+  const Case input = some_case();
+  const std::string hash = verdict_key(input, {"energy"}, true, 1).hash;
+  EXPECT_EQ(hash.size(), 64u);
+  EXPECT_EQ(verdict_key(input, {"energy"}, true, 1).hash, hash);
+  EXPECT_NE(verdict_key(input, {"energy", "prestretch"}, true, 1).hash, hash);
+  EXPECT_NE(verdict_key(input, {"energy"}, false, 1).hash, hash);
+  EXPECT_NE(verdict_key(input, {"energy"}, true, 2).hash, hash);
+  Case other = input;
+  other.nearest.viscosity = 1e-300;
+  EXPECT_NE(verdict_key(other, {"energy"}, true, 1).hash, hash);
+  // The program is the one that runs.
+  EXPECT_NE(verdict_key(input, {}, true, 1).text.find("program=" + sha256(content_of("/proc/self/exe"))),
+            std::string::npos);
+}
+
+TEST(Verdicts, ComeBackAsTheyWere)
+{
+  const VerdictKey key("inputs=1\n");
+  const Verdicts stored = some_verdicts();
+  const Verdicts read = read_verdicts(key, verdicts_text(key, stored));
+  EXPECT_EQ(read.results.json(), stored.results.json());
+  EXPECT_TRUE(std::signbit(read.results.rows()[0].continuum.value()));
+  EXPECT_EQ(read.tables, stored.tables);
+  EXPECT_EQ(read.checked_at, stored.checked_at);
+  EXPECT_EQ(stored.checked_at.size(), std::string("2026-11-21T16:20:05Z").size());
+  EXPECT_EQ(stored.checked_at.back(), 'Z');
+}
+
+TEST(Verdicts, OfOtherInputsOrDamagedAreNotUsed)
+{
+  const VerdictKey key("inputs=1\n");
+  const std::string text = verdicts_text(key, some_verdicts());
+  EXPECT_THROW((void)read_verdicts(VerdictKey("inputs=2\n"), text), UnusableVerdicts);
+  // The name is right and what is inside is not.
+  EXPECT_THROW((void)read_verdicts(key, replaced(text, "inputs=1", "inputs=2")), UnusableVerdicts);
+  EXPECT_THROW((void)read_verdicts(key, replaced(text, "\"format\": 1", "\"format\": 2")), UnusableVerdicts);
+  // A number or a verdict that was changed.
+  EXPECT_THROW((void)read_verdicts(key, replaced(text, "0.333", "0.334")), UnusableVerdicts);
+  EXPECT_THROW((void)read_verdicts(key, replaced(text, "L,0.1", "L,0.2")), UnusableVerdicts);
+  EXPECT_THROW((void)read_verdicts(key, replaced(text, "\"reported\"\n", "\"holds\"\n")), UnusableVerdicts);
+  for (std::size_t length = 0; length + 2 < text.size(); length += 7)
+    EXPECT_THROW((void)read_verdicts(key, text.substr(0, length)), UnusableVerdicts) << length;
+  for (const char *other : {"[]", "null", "{}", "{\"format\": 1}"})
+    EXPECT_THROW((void)read_verdicts(key, other), UnusableVerdicts) << other;
+}
+
+// A file whose checksum somebody made right again still cannot say that a failing row holds.
+TEST(Verdicts, DoNotBelieveAWordAgainstItsNumbers)
+{
+  const VerdictKey key("inputs=1\n");
+  auto document = nlohmann::ordered_json::parse(verdicts_text(key, some_verdicts()));
+  document["results"]["claims"][0]["error"] = 1.;
+  document.erase("checksum");
+  document["checksum"] = sha256(document.dump());
+  EXPECT_THROW((void)read_verdicts(key, document.dump()), UnusableVerdicts);
+  document["results"]["claims"][0]["verdict"] = "fails";
+  document.erase("checksum");
+  document["checksum"] = sha256(document.dump());
+  EXPECT_EQ(read_verdicts(key, document.dump()).results.verdict(), verification::Verdict::fails);
+}
+
+TEST(VerdictStore, KeepsOneFileAKey)
+{
+  const TemporaryFolder folder;
+  const VerdictStore store(folder / "a/b");
+  const VerdictKey first("1"), second("2");
+  EXPECT_FALSE(store.read(first));
+  store.write(first, "one");
+  store.write(first, "uno");
+  store.write(second, "two");
+  EXPECT_EQ(store.read(first), "uno");
+  EXPECT_EQ(store.read(second), "two");
+  EXPECT_EQ(store.path(first), folder / ("a/b/" + first.hash + ".json"));
+  std::size_t n_files = 0;
+  for (const auto &entry : std::filesystem::directory_iterator(folder / "a/b"))
+    n_files += entry.is_regular_file() ? 1 : 0;
+  EXPECT_EQ(n_files, 2u); // nothing unfinished is left
+}
+
+TEST(VerdictStore, SaysWhatItCannotReadOrWrite)
+{
+  const TemporaryFolder folder;
+  const VerdictKey key("1");
+  const VerdictStore store(folder.path());
+  std::filesystem::create_directory(store.path(key));
+  EXPECT_THROW((void)store.read(key), UnusableVerdicts);
+  EXPECT_THROW(store.write(key, "text"), latcon::support::OutputError);
+  const VerdictKey empty("2");
+  std::ofstream(store.path(empty)).flush();
+  EXPECT_THROW((void)store.read(empty), UnusableVerdicts);
+  std::ofstream(folder / "file") << "in the way";
+  EXPECT_THROW(VerdictStore(folder / "file").write(key, "text"), latcon::support::OutputError);
+  EXPECT_FALSE(VerdictStore(folder / "file").read(key));
+}
+
+class Environment : public testing::Test
+{
+protected:
+  void SetUp() override
+  {
+    cache_ = value("XDG_CACHE_HOME");
+    home_ = value("HOME");
+  }
+  void TearDown() override
+  {
+    set("XDG_CACHE_HOME", cache_);
+    set("HOME", home_);
+  }
+  static std::optional<std::string> value(const char *name)
+  {
+    const char *text = std::getenv(name);
+    return text == nullptr ? std::nullopt : std::optional<std::string>(text);
+  }
+  static void set(const char *name, const std::optional<std::string> &text)
+  {
+    if (text)
+      setenv(name, text->c_str(), 1);
+    else
+      unsetenv(name);
+  }
+
+private:
+  std::optional<std::string> cache_, home_;
+};
+
+TEST_F(Environment, SaysWhereTheStoreIs)
+{
+  set("HOME", "/home/someone");
+  set("XDG_CACHE_HOME", "/cache");
+  EXPECT_EQ(VerdictStore::folder_of_user(), "/cache/latcon/verdicts");
+  for (const std::optional<std::string> &unusable :
+       {std::optional<std::string>(), std::optional<std::string>(""), std::optional<std::string>("relative")})
+  {
+    set("XDG_CACHE_HOME", unusable);
+    EXPECT_EQ(VerdictStore::folder_of_user(), "/home/someone/.cache/latcon/verdicts");
+  }
+  set("HOME", {});
+  EXPECT_FALSE(VerdictStore::folder_of_user());
+}
+
+TEST(VerdictStore, TakesNoTableThatLeavesItsFolder)
+{
+  const VerdictKey key = verdict_key(some_case(), {"energy"}, true, 1);
+  for (const char *name : {"../../planted", "/tmp/planted", ""})
+  {
+    Verdicts verdicts = some_verdicts();
+    verdicts.tables[name] = "1";
+    const std::string text = verdicts_text(key, verdicts); // with the right checksum
+    EXPECT_THROW((void)read_verdicts(key, text), UnusableVerdicts) << name;
+  }
+}
+
+} // namespace

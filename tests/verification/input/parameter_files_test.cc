@@ -1,0 +1,131 @@
+// JSON, files that cannot be read, and hostile text: every problem has its place and is short and printable.
+#include "tests/verification/input/sample_case.h"
+
+#include "tests/support/temporary_folder.h"
+
+#include <random>
+#include <sys/stat.h>
+#include <unistd.h>
+
+using namespace sample_case;
+
+TEST(Parameters, JsonProblemsAreToldWithTheirPath)
+{
+  const auto json = [](const std::string &more)
+  { return problem(R"({"Lattice": {"spacing": 1}, )" + more + "}", {}, "a.json"); };
+  EXPECT_EQ(json(R"("Run": {"steps": 1.5})"),
+            "a.json:/Run/steps: Run/steps = 1.5: not a whole number; allowed: a whole number");
+  EXPECT_EQ(json(R"("Run": {"stesp": 1})"),
+            "a.json:/Run/stesp: Run/stesp = 1: unknown key; nearest known key: Run/steps; "
+            "known in Run: steps, seed, title, time step");
+  EXPECT_EQ(json(R"("Rum": {"steps": 1})"),
+            "a.json:/Rum: unknown subsection 'Rum'; nearest: Run; known: Lattice, Fracture, Run");
+  EXPECT_EQ(json(R"("Run": {"steps": 1, "steps": 2})"),
+            "a.json:/Run/steps: Run/steps = 2: set twice, first at a.json:/Run/steps to 1");
+  const std::vector<std::string> zero =
+    problems(R"({"Lattice": {"spacing": 1}})" + std::string("\0{}", 3), {}, "a.json");
+  ASSERT_EQ(zero.size(), 2u); // and nothing is read, so the required entry is missing
+  EXPECT_EQ(zero[0], "a.json:1: not a text file: it holds zero bytes");
+  EXPECT_EQ(json(R"("Run": {"steps": null})"),
+            "a.json:/Run/steps: null is not understood here; allowed: a number, a string, a "
+            "boolean, or a list of those");
+  EXPECT_EQ(
+    json(R"("Run": {"steps": {"value": [1, {"a": 2}]}})"),
+    "a.json:/Run/steps: an object is not understood here; allowed: a number, a string, a boolean, or a list of those");
+  EXPECT_EQ(json(R"("Run": [1, [2], {"steps": 1}])"),
+            "a.json:/Run: a list is not understood here; allowed: an object with the entries of the section");
+  EXPECT_EQ(json(R"("Run": 1)"),
+            "a.json:/Run: '1' is not understood here; allowed: an object with the entries of the section");
+  EXPECT_EQ(json(R"("Fracture": {"stretches": [1, [2, 3], 4]})"),
+            "a.json:/Fracture/stretches: a list in a list is not understood here; allowed: numbers, strings, booleans");
+  EXPECT_EQ(json(R"("Fracture": {"stretches": [-1, null]})"),
+            "a.json:/Fracture/stretches: null in a list is not understood here; allowed: numbers, strings, booleans");
+  EXPECT_EQ(json(R"("Run": {"title": "a\u0000b"})"),
+            "a.json:/Run/title: Run/title = a\\x00b: control characters and line "
+            "breaks are not allowed; allowed: a text on one line");
+  EXPECT_EQ(json(R"("Lattice": {"rows": 3}, "Lattice": {"rows": 4})"),
+            "a.json:/Lattice/rows: Lattice/rows = 4: set twice, first at a.json:/Lattice/rows to 3");
+}
+
+TEST(Parameters, BrokenJsonIsToldWithItsLine)
+{
+  const std::string missing = "a.json: Lattice/spacing: required";
+  for (const std::string text :
+       {"", "{", "{\"Lattice\": {\"spacing\": }}", "[1, 2]", "7", "{}}", "\xff\xfe", "{\"a\": 1e999}"})
+  {
+    const std::vector<std::string> all = problems(text, {}, "a.json");
+    ASSERT_EQ(all.size(), 2u) << text;
+    EXPECT_EQ(all[0].find("a.json:"), 0u) << all[0];
+    EXPECT_EQ(all[1].find(missing), 0u) << all[1];
+  }
+  EXPECT_EQ(problems("{\n\n  \"Lattice\": oops}", {}, "a.json")[0].find("a.json:3: not JSON: parse error at line 3"),
+            0u);
+}
+
+TEST(Parameters, UnreadableFilesAreOneProblem)
+{
+  const TemporaryFolder folder;
+  const auto read_problem = [](const std::string &path)
+  {
+    Sample sample;
+    Parameters p;
+    sample.declare(p);
+    p.read_file(path);
+    const std::vector<std::string> all = problems_of(p);
+    EXPECT_EQ(all.size(), 1u);
+    return all.empty() ? "" : all[0];
+  };
+  EXPECT_EQ(read_problem(folder / "none.prm"),
+            (folder / "none.prm") + ": cannot read the case: No such file or directory");
+  EXPECT_EQ(read_problem(folder.path()), folder.path() + ": cannot read the case: it is a folder");
+  EXPECT_EQ(read_problem("/dev/zero"), "/dev/zero: cannot read the case: it is larger than 16 MiB");
+  EXPECT_NE(read_problem(""), "");
+  std::ofstream(folder / "a.prm") << good << "set rows = 1\n";
+  EXPECT_EQ(read_problem(folder / "a.prm").find((folder / "a.prm") + ":4: "), 0u);
+}
+
+TEST(Parameters, HostileTextGivesShortPrintableProblems)
+{
+  std::vector<std::string> texts = {std::string(1000, '\0'),
+                                    "a\n\0b",
+                                    std::string(1 << 20, 'x'),
+                                    "set " + std::string(1 << 20, 'y') + " = 1",
+                                    "subsection Lattice\nset " + std::string(1 << 20, '\xc3') + " = " +
+                                      std::string(1 << 20, '\x1b') + "\nend",
+                                    "subsection Lattice\nset spacing = " + std::string(1 << 20, '9') + "\nend",
+                                    "subsection Lattice\nset spacing = 1 " + std::string(1 << 20, 'm') + "\nend",
+                                    std::string(1 << 16, '\\') + "\n",
+                                    "subsection",
+                                    "set",
+                                    "end",
+                                    "=",
+                                    "set =",
+                                    "subsection \\",
+                                    std::string(1 << 20, '['),
+                                    std::string("{\"a\":") + std::string(1 << 16, '[')};
+  for (int i = 0; i < 20000; ++i)
+    texts[0] += "subsection Lattice\n";
+  std::string deep;
+  for (int i = 0; i < 20000; ++i)
+    deep += "subsection Lattice\n";
+  texts.push_back(deep);
+  for (int i = 0; i < 20000; ++i)
+    deep += "end\n";
+  texts.push_back(deep);
+  std::mt19937_64 random(5);
+  for (int i = 0; i < 300; ++i)
+  {
+    std::string text = "{\"Lattice\": {}}\n" + good + "subsection Run\n set title = x # y\nend\n";
+    for (int k = 0; k < 5; ++k)
+      text[random() % text.size()] = static_cast<char>(random());
+    texts.push_back(text);
+  }
+  for (const std::string &text : texts)
+    for (const char *name : {"a.prm", "a.json"})
+      for (const std::string &line : problems(text, {text.substr(0, 1000)}, name))
+      {
+        EXPECT_LT(line.size(), 1000u);
+        for (const char c : line)
+          ASSERT_TRUE(static_cast<unsigned char>(c) >= 0x20 && c != 0x7f);
+      }
+}

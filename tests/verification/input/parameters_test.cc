@@ -1,0 +1,256 @@
+// Good input comes back bit for bit, and the resolved case says what it was.
+#include "tests/verification/input/sample_case.h"
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <limits>
+#include <random>
+#include <sstream>
+
+using namespace sample_case;
+
+TEST(Parameters, FillsEveryKindOfEntry)
+{
+  const Sample sample = read("# a comment\n"
+                             "subsection Lattice\n"
+                             "  set spacing = 0.625 mm # and another\n"
+                             "  set nearest neighbour area factor=0.5\n"
+                             "\tset rows = +12\n"
+                             "  set periodic = true\n"
+                             "  set law = linear\n"
+                             "  set density = 1.2 g/cm^2\n"
+                             "end\n"
+                             "SUBSECTION Fracture\n"
+                             "  SET rule = behind-tip\n"
+                             "  set stretches = 150 %, \\\n"
+                             "                  250 %\n"
+                             "END\n"
+                             "subsection Run\n"
+                             "  set steps = -3\n"
+                             "  set seed = 18446744073709551615\n"
+                             "  set title = a = b, \xc3\xbc\n"
+                             "  set time step = 5 us\n"
+                             "end\n");
+  EXPECT_EQ(sample.spacing, 0.000625);
+  EXPECT_EQ(sample.area_factor, 0.5);
+  EXPECT_EQ(sample.rows, 12u);
+  EXPECT_TRUE(sample.periodic);
+  EXPECT_EQ(sample.law, "linear");
+  EXPECT_EQ(sample.density, 12.);
+  EXPECT_EQ(sample.rule, Rule::behind_tip);
+  EXPECT_EQ(sample.steps, -3);
+  EXPECT_EQ(sample.seed, std::numeric_limits<std::uint64_t>::max());
+  EXPECT_EQ(sample.title, "a = b, \xc3\xbc");
+  EXPECT_EQ(sample.time_step, 5e-6);
+}
+
+TEST(Parameters, MixedUnitsInAListAreRefused)
+{
+  EXPECT_EQ(problem(good + "subsection Fracture\n set stretches = 1.5, 250 %\nend\n"),
+            "a.prm:5: Fracture/stretches = 1.5, 250 %: some numbers have a unit and some have none; give it to all of "
+            "them or to none; allowed: numbers separated by commas, each > 0");
+}
+
+TEST(Parameters, DefaultsStayWhereNothingIsSet)
+{
+  const Sample sample = read(good);
+  EXPECT_EQ(sample.spacing, 1.);
+  EXPECT_EQ(sample.area_factor, 0.6667);
+  EXPECT_EQ(sample.title, "sample");
+  EXPECT_EQ(sample.stretches, (std::vector<double>{1., 2.}));
+  EXPECT_FALSE(sample.time_step);
+}
+
+TEST(Parameters, OverridesWinOverTheFile)
+{
+  const Sample sample = read(good, {"Lattice/spacing=2 cm", " Run / title = x=y ", "Fracture/rule=retraction"});
+  EXPECT_EQ(sample.spacing, 0.02);
+  EXPECT_EQ(sample.title, "x=y");
+  EXPECT_EQ(sample.rule, Rule::retraction);
+}
+
+TEST(Parameters, AnyLineEndsAndNoneAtTheEnd)
+{
+  EXPECT_EQ(read("subsection Lattice\r\nset spacing = 2\r\nend").spacing, 2.);
+  EXPECT_EQ(read("# a comment must not swallow the file\rsubsection Lattice\rset spacing = 2\rend").spacing, 2.);
+  EXPECT_EQ(read("\xef\xbb\xbfsubsection Lattice\nset spacing = 2\nend").spacing, 2.);
+}
+
+TEST(Parameters, KnowsWhatWasSet)
+{
+  Sample sample;
+  Parameters p;
+  sample.declare(p);
+  p.read_text(good, "a.prm");
+  p.read_overrides({"Run/steps=100"});
+  EXPECT_TRUE(p.is_set("Lattice/spacing"));
+  EXPECT_TRUE(p.is_set("Run/steps"));
+  EXPECT_FALSE(p.is_set("Lattice/rows"));
+}
+
+TEST(Parameters, MisuseByTheProgramIsALogicError)
+{
+  double x = 1.;
+  std::string s = "a";
+  EXPECT_FALSE(is_misuse([&](Parameters &p) { p.add("A", "x", x, Positive(), "m", "x"); }));
+  EXPECT_TRUE(is_misuse([&](Parameters &p) { p.add("", "x", x, Positive(), "m", "x"); }));
+  EXPECT_TRUE(is_misuse([&](Parameters &p) { p.add("A", "x/y", x, Positive(), "m", "x"); }));
+  EXPECT_TRUE(is_misuse([&](Parameters &p) { p.add("A", "x", x, Positive(), "mm", "x"); }));
+  EXPECT_TRUE(is_misuse([&](Parameters &p) { p.add("A", "x", x, Positive(), "deg", "x"); }));
+  EXPECT_TRUE(is_misuse([&](Parameters &p) { p.add("A", "x", x, Positive(), "foot", "x"); }));
+  EXPECT_TRUE(is_misuse([&](Parameters &p) { p.add("A", "x", x, Above(1.), "m", "x"); }));
+  EXPECT_FALSE(is_misuse([&](Parameters &p) { p.add("A", "x", x, Above(1.), "m", "x", Presence::required); }));
+  EXPECT_TRUE(is_misuse([&](Parameters &p) { p.add("A", "s", s, {"b", "c"}, "s"); }));
+  EXPECT_TRUE(is_misuse([&](Parameters &p) { p.error("A/x", "not declared"); }));
+  EXPECT_TRUE(is_misuse(
+    [&](Parameters &p)
+    {
+      p.add("A", "x", x, Positive(), "m", "x");
+      p.add("A", "x", x, Positive(), "m", "x");
+    }));
+}
+
+TEST(Parameters, ResolvedCaseReadsBackBitForBit)
+{
+  std::mt19937_64 random(3);
+  const auto number = [&random]
+  {
+    for (;;)
+    {
+      const std::uint64_t pattern = random() & 0x7fffffffffffffffULL;
+      double value = 0.;
+      std::memcpy(&value, &pattern, sizeof(value));
+      if (Positive().contains(value))
+        return value;
+    }
+  };
+  for (int i = 0; i < 200; ++i)
+  {
+    Sample written;
+    written.spacing = number();
+    written.area_factor = static_cast<double>(random() % 1000003) / 1000003.;
+    written.steps = static_cast<int>(random());
+    written.rows = 2 + static_cast<unsigned int>(random() % 1000);
+    written.seed = random();
+    written.periodic = random() % 2 == 0;
+    written.title = i % 3 == 0 ? "" : "title \xc3\xbc = \\ \"" + std::to_string(i);
+    written.law = random() % 2 == 0 ? "linear" : "mooney-rivlin";
+    written.rule = random() % 2 == 0 ? Rule::retraction : Rule::behind_tip;
+    written.stretches.assign(random() % 4, number());
+    written.time_step = number();
+    if (i % 2 == 0)
+      written.time_step.reset();
+    written.density = 5e-324;
+    Parameters p;
+    written.declare(p);
+    const std::string text = p.resolved_text();
+    const Sample back = read(text);
+    EXPECT_TRUE(same_bits(back.spacing, written.spacing));
+    EXPECT_TRUE(same_bits(back.area_factor, written.area_factor));
+    EXPECT_TRUE(same_bits(back.density, written.density));
+    EXPECT_EQ(back.steps, written.steps);
+    EXPECT_EQ(back.rows, written.rows);
+    EXPECT_EQ(back.seed, written.seed);
+    EXPECT_EQ(back.periodic, written.periodic);
+    EXPECT_EQ(back.title, written.title);
+    EXPECT_EQ(back.law, written.law);
+    EXPECT_EQ(back.rule, written.rule);
+    EXPECT_EQ(back.stretches, written.stretches);
+    EXPECT_EQ(back.time_step, written.time_step);
+    EXPECT_EQ(lines_of(text), p.lines());
+  }
+}
+
+TEST(Parameters, ResolvedCaseIsDocumentedAndInSI)
+{
+  Sample sample;
+  Parameters p;
+  sample.declare(p);
+  p.read_text("subsection Lattice\n set spacing = 0.7 mm\nend\n", "a.prm");
+  p.finish();
+  const std::string text = p.resolved_text();
+  EXPECT_NE(text.find("set spacing"), std::string::npos);
+  EXPECT_NE(text.find("= 7e-04"), std::string::npos) << text;
+  EXPECT_NE(text.find("# Distance d of nearest sites [m] (> 0; required)"), std::string::npos) << text;
+  EXPECT_EQ(text.find("# default"), std::string::npos) << "a required entry has none, the others are at theirs";
+  EXPECT_LT(text.find("subsection Lattice"), text.find("subsection Fracture")) << "not in the order of declaration";
+}
+
+TEST(Parameters, DealIIReadsTheResolvedCaseAsWeDo)
+{
+  Sample sample;
+  Parameters p;
+  sample.declare(p);
+  p.read_text(good + "subsection Run\nset title = a = \\ b\nend", "a.prm");
+  p.finish();
+  dealii::ParameterHandler handler;
+  p.declare_in(handler);
+  std::istringstream text(p.resolved_text());
+  handler.parse_input(text, "case.prm");
+  EXPECT_EQ(handler.get({"Lattice"}, "spacing"), "1");
+  EXPECT_EQ(handler.get({"Run"}, "title"), "a = \\ b");
+  EXPECT_EQ(handler.get_double({"Lattice"}, "nearest neighbour area factor"), 0.6667);
+}
+
+TEST(Parameters, LinesChangeWithEveryValue)
+{
+  const std::string original = lines_of(good);
+  for (const std::string change :
+       {"Lattice/spacing=1.0000000000000002", "Lattice/nearest neighbour area factor=0.5", "Lattice/rows=4",
+        "Lattice/periodic=true", "Lattice/law=linear", "Lattice/density=2", "Fracture/rule=retraction",
+        "Fracture/stretches=2, 1", "Run/steps=101", "Run/seed=8", "Run/title=other", "Run/time step=1"})
+    EXPECT_NE(lines_of(good, {change}), original) << change;
+}
+
+TEST(Parameters, LinesDoNotDependOnHowTheCaseIsWritten)
+{
+  const std::string original = lines_of(good, {"Lattice/rows=4", "Run/steps=5"});
+  EXPECT_EQ(lines_of("subsection Run # first\n  set steps=5\nend\n\nsubsection Lattice\nset rows = 4\nend\n"
+                     "subsection Lattice\nset spacing = 100 cm\nend"),
+            original);
+  EXPECT_EQ(lines_of(R"({"Run": {"steps": 5}, "Lattice": {"rows": 4, "spacing": 1.0}})", {}, "a.json"), original);
+  EXPECT_EQ(lines_of(good, {"Lattice/rows=4", "Run/steps=5", "Run/seed=7"}), original) << "a default written out";
+  // Hashes of the lines are kept in files, so they must never change.
+  double x = 0.5, y = 2.;
+  Parameters p;
+  p.add("A", "x", x, Any(), "1", "x");
+  p.add("B", "y", y, Any(), "m", "y");
+  EXPECT_EQ(p.lines(), "A/x = 0.5\nB/y = 2\n");
+  EXPECT_EQ(p.lines("A"), "B/y = 2\n");
+}
+
+TEST(Parameters, LinesDoNotDependOnTheOrderOfDeclaration)
+{
+  double x = 1.;
+  double y = 2.;
+  Parameters p;
+  p.add("A", "x", x, Any(), "1", "x");
+  p.add("A", "y", y, Any(), "1", "y");
+  Parameters q;
+  q.add("A", "y", y, Any(), "1", "y");
+  q.add("A", "x", x, Any(), "1", "x");
+  EXPECT_EQ(p.lines(), q.lines());
+}
+
+TEST(Parameters, JsonFillsEveryKindOfEntry)
+{
+  const Sample sample = read(R"({
+    // comments are allowed
+    "Lattice": {"spacing": "0.625 mm", "nearest neighbour area factor": 0.5, "rows": 12, "periodic": true,
+                "law": "linear", "density": 1e1},
+    "Fracture": {"rule": "behind-tip", "stretches": [1.5, 0.30000000000000004, "7"]},
+    "Run": {"steps": -3, "seed": 18446744073709551615, "title": "x", "time step": "auto"}
+  })",
+                             {"Run/title=y"}, "a.json");
+  EXPECT_EQ(sample.spacing, 0.000625);
+  EXPECT_EQ(sample.area_factor, 0.5);
+  EXPECT_EQ(sample.rows, 12u);
+  EXPECT_TRUE(sample.periodic);
+  EXPECT_EQ(sample.law, "linear");
+  EXPECT_EQ(sample.density, 10.);
+  EXPECT_EQ(sample.rule, Rule::behind_tip);
+  EXPECT_EQ(sample.stretches, (std::vector<double>{1.5, 0.30000000000000004, 7.}));
+  EXPECT_EQ(sample.steps, -3);
+  EXPECT_EQ(sample.seed, std::numeric_limits<std::uint64_t>::max());
+  EXPECT_EQ(sample.title, "y");
+}

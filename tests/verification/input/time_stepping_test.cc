@@ -1,0 +1,145 @@
+// How a case chooses the time stepping of the lattice, and what it refuses.
+#include <algorithm>
+
+#include <gtest/gtest.h>
+
+#include "lattice/chebyshev_stages.h"
+#include "lattice/contact.h"
+#include "support/errors.h"
+#include "verification/input/case.h"
+
+using namespace verification;
+
+namespace
+{
+
+using Lines = std::vector<std::string>;
+
+constexpr const char *chebyshev = "Time/integrator=runge-kutta-chebyshev";
+
+// The rubber of fig1.prm in a small sheet.
+void read(const Lines &overrides, Case &input)
+{
+  Parameters parameters;
+  input.declare(parameters);
+  parameters.read_text("", "a.prm");
+  Lines all = overrides;
+  for (const std::string entry : {"Sheet/spacing=0.625 mm", "Sheet/length=20 mm", "Sheet/height=20 mm",
+                                  "Material/density=944", "Loading/strain x=1.3", "Loading/strain y=1.8",
+                                  "Nearest neighbours/viscosity=65.625", "Next-nearest neighbours/viscosity=196.875"})
+    if (std::none_of(overrides.begin(), overrides.end(),
+                     [&](const std::string &other)
+                     { return other.substr(0, other.find('=')) == entry.substr(0, entry.find('=')); }))
+      all.push_back(entry);
+  parameters.read_overrides(all);
+  input.check(parameters);
+  parameters.finish();
+}
+
+lattice::TimeStepping stepping(const Lines &overrides)
+{
+  Case input;
+  read(overrides, input);
+  return input.fracture_time_stepping();
+}
+
+lattice::TimeStepLimits limits()
+{
+  Case input;
+  read({}, input);
+  return lattice::time_step_limits(input.lattice(), input.material(), smallest_stable_stretch, input.contact_law());
+}
+
+void expect_refused(const std::string &entry, const Lines &overrides)
+{
+  try
+  {
+    stepping(overrides);
+    ADD_FAILURE() << entry << " is taken";
+  }
+  catch (const latcon::support::InputError &error)
+  {
+    ASSERT_EQ(error.problems().size(), 1u) << error.what();
+    EXPECT_NE(error.problems()[0].find(entry), std::string::npos) << error.what();
+  }
+}
+
+TEST(TimeStepping, IsVelocityVerletUnlessToldOtherwise)
+{
+  EXPECT_EQ(stepping({}).stages, 0u);
+  EXPECT_EQ(stepping({}).step, 0.9 * limits().combined);
+  EXPECT_EQ(stepping({"Time/step=1e-8"}).step, 1e-8);
+}
+
+TEST(TimeStepping, TakesStagesForTheStep)
+{
+  const lattice::TimeStepping automatic = stepping({chebyshev});
+  EXPECT_EQ(automatic.stages, lattice::ChebyshevStages::needed(automatic.step / limits().viscous));
+  EXPECT_GT(automatic.step, 10. * limits().combined);
+  const lattice::TimeStepping shorter = stepping({chebyshev, "Time/safety factor=0.3"});
+  EXPECT_NEAR(shorter.step, automatic.step / 3., 1e-12 * automatic.step);
+  EXPECT_LT(shorter.stages, automatic.stages);
+  EXPECT_EQ(stepping({chebyshev, "Time/step=5e-6"}).stages, lattice::ChebyshevStages::needed(5e-6 / limits().viscous));
+}
+
+// Stages too few for the automatic step shorten it; a stated step is taken as it is.
+TEST(TimeStepping, TakesTheStepForStages)
+{
+  const lattice::TimeStepping few = stepping({chebyshev, "Time/stages=3"});
+  EXPECT_EQ(few.stages, 3u);
+  EXPECT_EQ(few.step, lattice::ChebyshevStages(3).real_limit() * limits().viscous);
+  EXPECT_EQ(stepping({chebyshev, "Time/stages=20"}).step, stepping({chebyshev}).step);
+  const lattice::TimeStepping stated = stepping({chebyshev, "Time/stages=4", "Time/step=2.5e-6"});
+  EXPECT_EQ(stated.stages, 4u);
+  EXPECT_EQ(stated.step, 2.5e-6);
+}
+
+// Of a crack, whose sites may touch; of the motion of a whole sheet there are no contacts.
+TEST(TimeStepping, CountsContactsUnderRungeKuttaChebyshev)
+{
+  const Lines breaks{chebyshev, "Fracture/breaking stretch=3.05", "Sheet/length=40 mm"};
+  const auto with = [&](const std::string &entry)
+  {
+    Lines all = breaks;
+    all.push_back(entry);
+    Case input;
+    read(all, input);
+    return std::pair(input.fracture_time_stepping(), input.lattice_time_stepping());
+  };
+  const auto [as_bonds, alone] = with("Contact/stiffness=1");
+  EXPECT_EQ(as_bonds.step, alone.step);
+  double before = as_bonds.step;
+  for (const std::string stiffness : {"1000", "1e6"})
+  {
+    const auto [stiff, without] = with("Contact/stiffness=" + stiffness);
+    EXPECT_LT(stiff.step, 0.1 * before);
+    EXPECT_EQ(without.step, alone.step);
+    before = stiff.step;
+  }
+  EXPECT_EQ(with("Contact/present=false").first.step, alone.step);
+}
+
+TEST(TimeStepping, RefusesStepsThatAmplifyContacts)
+{
+  const auto refused = [](const std::string &entry, Lines lines)
+  {
+    lines.insert(lines.end(), {"Fracture/breaking stretch=3.05", "Sheet/length=40 mm"});
+    expect_refused(entry, lines);
+  };
+  refused("Contact/viscosity = 0", {chebyshev, "Contact/viscosity=0"});
+  refused("Time/step = 3e-6", {chebyshev, "Time/step=3e-6", "Contact/stiffness=1000"});
+  refused("Time/step = 1e-7", {"Time/step=1e-7", "Contact/stiffness=1e6"});
+  // Without contact nothing is refused.
+  EXPECT_NO_THROW(stepping({chebyshev, "Contact/viscosity=0"}));
+}
+
+TEST(TimeStepping, RefusesWhatCannotBe)
+{
+  expect_refused("Time/stages = 4", {"Time/stages=4"});
+  expect_refused("Time/stages = 1", {chebyshev, "Time/stages=1"});
+  expect_refused("Time/integrator", {chebyshev, "Next-nearest neighbours/viscosity=0"});
+  expect_refused("Time/step = 1e-5", {chebyshev, "Time/stages=4", "Time/step=1e-5"});
+  expect_refused("Time/step = 1e-5", {"Time/step=1e-5"});
+}
+
+} // namespace

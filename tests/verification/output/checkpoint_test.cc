@@ -1,0 +1,282 @@
+#include <cmath>
+#include <deque>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+
+#include <gtest/gtest.h>
+
+#include "lattice/fracture.h"
+#include "tests/support/temporary_folder.h"
+#include "verification/output/archive.h"
+
+namespace
+{
+
+using namespace verification;
+
+struct Inner
+{
+  double number = 0.;
+  std::vector<double> list;
+
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive("number", number);
+    archive("list", list);
+  }
+};
+
+struct Everything
+{
+  bool truth = false;
+  int sign = 0;
+  unsigned int count = 0;
+  std::uint64_t large = 0;
+  double number = 0.;
+  std::string text;
+  Eigen::Matrix2d matrix = Eigen::Matrix2d::Zero();
+  std::vector<double> reals;
+  std::vector<std::uint8_t> bytes;
+  std::vector<std::uint16_t> words;
+  std::vector<Eigen::Vector2d> points;
+  std::vector<std::vector<double>> lists;
+  std::optional<std::size_t> some, none;
+  Inner inner;
+  std::array<Inner, 2> two;
+  std::deque<Inner> queue{{}, {}, {}};
+  std::vector<lattice::BrokenBond> bonds, no_bonds;
+
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive("truth", truth);
+    archive("sign", sign);
+    archive("count", count);
+    archive("large", large);
+    archive("number", number);
+    archive("text", text);
+    archive("matrix", matrix);
+    archive("reals", reals);
+    archive("bytes", bytes);
+    archive("words", words);
+    archive("points", points);
+    archive("lists", lists);
+    archive("some", some);
+    archive("none", none);
+    archive("inner", inner);
+    archive("two", two);
+    archive("queue", queue);
+    archive.records("bonds", bonds);
+    archive.records("no_bonds", no_bonds);
+  }
+};
+
+Everything example()
+{
+  Everything all;
+  all.truth = true;
+  all.sign = -3;
+  all.count = 4000000000U;
+  all.large = std::numeric_limits<std::uint64_t>::max();
+  all.number = std::nextafter(0.1, 1.);
+  all.text = "a line\nand \xc3\xa9";
+  all.matrix << 1., 2., 3., 4.;
+  all.reals = {-0., std::numeric_limits<double>::denorm_min(), std::numeric_limits<double>::max()};
+  all.bytes = {0, 255};
+  all.words = {65535, 1};
+  all.points = {{1., 2.}, {3., 4.}, {5., 6.}};
+  all.lists = {{1., 2.}, {}, {3.}};
+  all.some = 7;
+  all.inner = {8., {9., 10.}};
+  all.two = {Inner{11., {}}, Inner{12., {13.}}};
+  all.queue[2] = {14., {15.}};
+  all.bonds = {{1e-3, 5, 6, 2, {0.1, 0.2}, 3.05, 1e-7}, {2e-3, 7, 8, 3, {0.3, 0.4}, 3.06, 2e-7}};
+  return all;
+}
+
+class Archive : public testing::Test
+{
+protected:
+  // A file with one object, under the name "all".
+  template <class T>
+  std::string written(T &object)
+  {
+    Hdf5Image image;
+    CheckpointWriter archive(&image);
+    archive("all", object);
+    const std::string path = folder_ / "file.h5";
+    std::ofstream(path, std::ios::binary) << image.take_bytes();
+    return path;
+  }
+
+  TemporaryFolder folder_;
+};
+
+TEST_F(Archive, GivesBackWhatItWasGivenBitForBit)
+{
+  Everything saved = example(), loaded;
+  loaded.none = 5;
+  loaded.no_bonds.resize(3);
+  const Hdf5File file(written(saved));
+  CheckpointReader archive(file);
+  archive("all", loaded);
+  EXPECT_EQ(loaded.truth, saved.truth);
+  EXPECT_EQ(loaded.sign, saved.sign);
+  EXPECT_EQ(loaded.count, saved.count);
+  EXPECT_EQ(loaded.large, saved.large);
+  EXPECT_EQ(loaded.number, saved.number);
+  EXPECT_EQ(loaded.text, saved.text);
+  EXPECT_EQ(loaded.matrix, saved.matrix);
+  EXPECT_EQ(loaded.reals, saved.reals);
+  EXPECT_TRUE(std::signbit(loaded.reals[0]));
+  EXPECT_EQ(loaded.bytes, saved.bytes);
+  EXPECT_EQ(loaded.words, saved.words);
+  EXPECT_EQ(loaded.points, saved.points);
+  EXPECT_EQ(loaded.lists, saved.lists);
+  EXPECT_EQ(loaded.some, saved.some);
+  EXPECT_EQ(loaded.none, std::nullopt);
+  EXPECT_EQ(loaded.inner.list, saved.inner.list);
+  EXPECT_EQ(loaded.two[0].number, 11.);
+  EXPECT_EQ(loaded.two[1].list, saved.two[1].list);
+  EXPECT_EQ(loaded.queue[2].number, 14.);
+  ASSERT_EQ(loaded.bonds.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i)
+  {
+    EXPECT_EQ(loaded.bonds[i].time, saved.bonds[i].time);
+    EXPECT_EQ(loaded.bonds[i].near, saved.bonds[i].near);
+    EXPECT_EQ(loaded.bonds[i].far, saved.bonds[i].far);
+    EXPECT_EQ(loaded.bonds[i].kind, saved.bonds[i].kind);
+    EXPECT_EQ(loaded.bonds[i].midpoint, saved.bonds[i].midpoint);
+    EXPECT_EQ(loaded.bonds[i].stretch, saved.bonds[i].stretch);
+    EXPECT_EQ(loaded.bonds[i].energy, saved.bonds[i].energy);
+  }
+  EXPECT_TRUE(loaded.no_bonds.empty());
+}
+
+TEST_F(Archive, LeavesTheUserBlockToTheOwnerOfTheFile)
+{
+  Everything saved = example(), loaded;
+  const std::string path = written(saved);
+  {
+    std::fstream file(path, std::ios::in | std::ios::out | std::ios::binary);
+    file << std::string(Hdf5Image::user_block, 'x');
+  }
+  const Hdf5File file(path);
+  CheckpointReader archive(file);
+  archive("all", loaded);
+  EXPECT_EQ(loaded.text, saved.text);
+}
+
+TEST_F(Archive, RefusesWhatDoesNotFit)
+{
+  Inner saved{1., {2., 3.}};
+  const Hdf5File file(written(saved));
+  CheckpointReader archive(file);
+  double number = 0.;
+  EXPECT_THROW(archive("all/other", number), Hdf5Error);
+  std::uint64_t whole = 0;
+  EXPECT_THROW(archive("all/number", whole), Hdf5Error);
+  EXPECT_THROW(archive("all/list", number), Hdf5Error);
+  std::string text;
+  EXPECT_THROW(archive("all/number", text), Hdf5Error);
+  std::array<Inner, 3> three;
+  EXPECT_THROW(archive("all", three), Hdf5Error);
+}
+
+// What a file holds that was made by hand, under the names that objects have.
+class HostileArchive : public testing::Test
+{
+protected:
+  template <class T>
+  void put(const std::string &name, const std::vector<T> &values)
+  {
+    image_.write(name, element_type<T>(), values.data(), values.size());
+  }
+  template <class T>
+  void expect_refused(T object, bool as_records = false)
+  {
+    const std::string path = folder_ / "file.h5";
+    std::ofstream(path, std::ios::binary) << image_.take_bytes();
+    const Hdf5File file(path);
+    CheckpointReader archive(file);
+    if constexpr (std::is_same_v<T, std::vector<lattice::BrokenBond>>)
+      EXPECT_THROW(as_records ? archive.records("a", object) : void(), Hdf5Error);
+    else
+      EXPECT_THROW(archive("a", object), Hdf5Error);
+  }
+
+  Hdf5Image image_;
+  TemporaryFolder folder_;
+};
+
+TEST_F(HostileArchive, NumberThatIsNotFiniteIsRefused)
+{
+  put<double>("a", {1., std::numeric_limits<double>::quiet_NaN()});
+  expect_refused(std::vector<double>());
+}
+
+TEST_F(HostileArchive, TruthValueIsFalseOrTrue)
+{
+  put<std::uint8_t>("a", {2});
+  expect_refused(false);
+}
+
+TEST_F(HostileArchive, OptionalNumberIsOneAtMost)
+{
+  put<std::uint64_t>("a", {1, 2});
+  expect_refused(std::optional<std::size_t>());
+}
+
+TEST_F(HostileArchive, PartOfAPointIsRefused)
+{
+  put<double>("a", {1., 2., 3.});
+  expect_refused(std::vector<Eigen::Vector2d>());
+}
+
+TEST_F(HostileArchive, ListsAreNotLongerThanTheirValues)
+{
+  put<double>("a/values", {1., 2.});
+  put<std::uint64_t>("a/sizes", {1, std::numeric_limits<std::uint64_t>::max()});
+  expect_refused(std::vector<std::vector<double>>());
+}
+
+TEST_F(HostileArchive, ListsAreNotShorterThanTheirValues)
+{
+  put<double>("a/values", {1., 2.});
+  put<std::uint64_t>("a/sizes", {1});
+  expect_refused(std::vector<std::vector<double>>());
+}
+
+TEST_F(HostileArchive, NumberOfObjectsIsNotTakenFromTheFile)
+{
+  put<std::uint64_t>("a/n", {std::uint64_t{1} << 60U});
+  expect_refused(std::deque<Inner>(3));
+}
+
+TEST_F(HostileArchive, RecordsAreAsManyAsTheirColumnsAreLong)
+{
+  put<std::uint64_t>("a/n", {std::uint64_t{1} << 60U});
+  for (const char *column : {"time", "midpoint_0", "midpoint_1", "stretch", "energy"})
+    put<double>(std::string("a/") + column, {1.});
+  for (const char *column : {"near", "far", "kind"})
+    put<std::uint64_t>(std::string("a/") + column, {1});
+  expect_refused(std::vector<lattice::BrokenBond>(), true);
+}
+
+TEST_F(HostileArchive, TextEndsWhereItSays)
+{
+  image_.write_text("a", std::string("one\0two", 7));
+  expect_refused(std::string());
+}
+
+TEST_F(Archive, RefusesAFileThatIsNotHdf5)
+{
+  const std::string path = folder_ / "file.h5";
+  std::ofstream(path) << "no such thing";
+  EXPECT_THROW(Hdf5File{path}, Hdf5Error);
+  EXPECT_THROW(Hdf5File{path + ".none"}, Hdf5Error);
+}
+
+} // namespace

@@ -1,0 +1,72 @@
+// What write_file adds to support/atomic_file.h: writers, and the list of outputs.
+#include "tests/support/temporary_folder.h"
+
+#include "support/errors.h"
+#include "verification/output/output_file.h"
+
+#include <gtest/gtest.h>
+
+#include <ostream>
+
+using latcon::support::ExitCode;
+using latcon::support::OutputError;
+using verification::write_file;
+
+namespace
+{
+
+// What write_file says when it cannot write; empty if it could.
+std::string complaint(const std::string &path, const std::string &text = "new")
+{
+  try
+  {
+    write_file(path, text);
+  }
+  catch (const OutputError &error)
+  {
+    EXPECT_EQ(error.exit_code(), ExitCode::output_failed);
+    return error.what();
+  }
+  return "";
+}
+
+} // namespace
+
+TEST(WriteFile, WritesAndReplaces)
+{
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.txt";
+  write_file(path, std::string("old and longer"));
+  EXPECT_EQ(content_of(path), "old and longer");
+  write_file(path, [](std::ostream &out) { out << "new\n"; });
+  EXPECT_EQ(content_of(path), "new\n");
+}
+
+TEST(WriteFile, MissingFolderIsNamedWithTheReason)
+{
+  const TemporaryFolder folder;
+  const std::string path = folder / "missing/a.txt";
+  EXPECT_EQ(complaint(path), "cannot write " + path + ": No such file or directory");
+}
+
+TEST(WriteFile, WriterThatFailsOrThrowsLeavesTheOldFile)
+{
+  const TemporaryFolder folder;
+  const std::string path = folder / "a.txt";
+  write_file(path, std::string("old"));
+  EXPECT_THROW(write_file(path,
+                          [](std::ostream &out)
+                          {
+                            out << "half";
+                            out.setstate(std::ios::failbit);
+                          }),
+               OutputError);
+  EXPECT_THROW(write_file(path,
+                          [](std::ostream &out)
+                          {
+                            out << "half";
+                            throw std::runtime_error("stop");
+                          }),
+               std::runtime_error);
+  EXPECT_EQ(content_of(path), "old");
+}

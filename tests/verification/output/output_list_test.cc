@@ -1,0 +1,111 @@
+#include "verification/output/output_list.h"
+
+#include <fstream>
+
+#include <gtest/gtest.h>
+
+#include "tests/support/temporary_folder.h"
+#include "verification/output/output_file.h"
+
+namespace
+{
+
+using namespace verification;
+namespace fs = std::filesystem;
+
+std::string content(const fs::path &path)
+{
+  return content_of(path.string());
+}
+
+class OutputList : public testing::Test
+{
+protected:
+  // A file of a run, and one that a library or a user puts there.
+  void written(const std::string &name, const std::string &text = "run") { write_file((folder / name).string(), text); }
+  void put(const std::string &name, const std::string &text = "user") { std::ofstream(folder / name) << text; }
+  bool has(const std::string &name) const { return fs::exists(folder / name); }
+
+  TemporaryFolder temporary;
+  fs::path folder = temporary.path();
+};
+
+TEST_F(OutputList, NamesWhatWasWrittenOnceAndSorted)
+{
+  written("before.csv"); // no list yet
+  begin_output_list(folder);
+  written("crack.csv");
+  written("a.json");
+  written("crack.csv", "again");
+  EXPECT_TRUE(is_listed_output(folder / "crack.csv"));
+  EXPECT_TRUE(is_listed_output(folder / "lattice-0012.vtp"));
+  EXPECT_TRUE(is_listed_output(folder / "continuum_0001.2.vtu"));
+  for (const char *name : {"before.csv", "lattice-.vtp", "lattice-mine.vtp", "notes.txt", "crack.csv.bak"})
+    EXPECT_FALSE(is_listed_output(folder / name)) << name;
+  const std::string first = content(folder / output_list_name);
+  begin_output_list(folder);
+  EXPECT_EQ(content(folder / output_list_name), first);
+  EXPECT_LT(first.find("a.json\n"), first.find("crack.csv\n"));
+  EXPECT_EQ(first.find("crack.csv\n"), first.rfind("crack.csv\n"));
+}
+
+TEST_F(OutputList, FilesOfTheRunBeforeAreMovedAndNoOthers)
+{
+  begin_output_list(folder);
+  written("crack.csv", "first");
+  put("lattice-0000.vtp", "first");
+  put("lattice-0001.vtp", "first");
+  put("lattice-mine.vtp");
+  put("notes.txt");
+  fs::create_directory(folder / "crack.csv.d");
+  fs::create_symlink(folder / "notes.txt", folder / "lattice-0002.vtp");
+  EXPECT_EQ(set_earlier_output_aside(folder, {}), folder / "earlier-run");
+  for (const char *name : {"crack.csv", "lattice-0000.vtp", "lattice-0001.vtp"})
+  {
+    EXPECT_FALSE(has(name)) << name;
+    EXPECT_EQ(content(folder / "earlier-run" / name), "first") << name;
+  }
+  for (const char *name : {"lattice-mine.vtp", "notes.txt", "crack.csv.d", "lattice-0002.vtp"})
+    EXPECT_TRUE(has(name)) << name;
+
+  EXPECT_EQ(set_earlier_output_aside(folder, {}), fs::path()); // nothing is left to move
+
+  put("earlier-run/mine.txt");
+  begin_output_list(folder);
+  written("crack.csv", "second");
+  EXPECT_EQ(set_earlier_output_aside(folder, {}), folder / "earlier-run");
+  EXPECT_EQ(content(folder / "earlier-run/crack.csv"), "second");
+  EXPECT_FALSE(has("earlier-run/lattice-0000.vtp")); // of the run before that one
+  EXPECT_TRUE(has("earlier-run/mine.txt"));
+}
+
+TEST_F(OutputList, TheCaseStays)
+{
+  begin_output_list(folder);
+  written("case.prm");
+  written("crack.csv");
+  set_earlier_output_aside(folder, folder / "." / "case.prm");
+  EXPECT_TRUE(has("case.prm"));
+  EXPECT_FALSE(has("crack.csv"));
+}
+
+TEST_F(OutputList, AFolderOfTheUsersIsNotUsed)
+{
+  fs::create_directory(folder / "earlier-run");
+  put("earlier-run/crack.csv");
+  begin_output_list(folder);
+  written("crack.csv");
+  EXPECT_EQ(set_earlier_output_aside(folder, {}), folder / "earlier-run-2");
+  EXPECT_EQ(content(folder / "earlier-run/crack.csv"), "user");
+}
+
+TEST_F(OutputList, WithoutAListNothingIsTouched)
+{
+  put("crack.csv");
+  put("lattice-0000.vtp");
+  EXPECT_EQ(set_earlier_output_aside(folder, {}), fs::path());
+  EXPECT_TRUE(has("crack.csv"));
+  EXPECT_FALSE(has(output_list_name));
+}
+
+} // namespace

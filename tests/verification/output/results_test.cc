@@ -1,0 +1,295 @@
+// A result holds if and only if its error is a finite number within its tolerance; files and table say the same.
+#include "tests/support/temporary_folder.h"
+
+#include "support/errors.h"
+#include "verification/output/results.h"
+
+#include <gtest/gtest.h>
+#include <nlohmann/json.hpp>
+
+#include <cmath>
+#include <limits>
+#include <new>
+#include <sstream>
+#include <stdexcept>
+
+using verification::Result;
+using verification::Results;
+using verification::to_string;
+using verification::Verdict;
+
+namespace
+{
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+Result checked(const std::optional<double> error, const std::optional<double> tolerance)
+{
+  Result result;
+  result.claim = "energy";
+  result.quantity = "energy density";
+  result.unit = "J/m^3";
+  result.error = error;
+  result.tolerance = tolerance;
+  return result;
+}
+
+// The fields of a CSV text, by RFC 4180.
+std::vector<std::vector<std::string>> fields_of(const std::string &csv)
+{
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> row(1);
+  bool quoted = false;
+  for (std::size_t i = 0; i < csv.size(); ++i)
+    if (quoted && csv[i] == '"' && i + 1 < csv.size() && csv[i + 1] == '"')
+      row.back() += csv[++i];
+    else if (csv[i] == '"')
+      quoted = !quoted;
+    else if (!quoted && csv[i] == ',')
+      row.emplace_back();
+    else if (!quoted && csv[i] == '\n')
+    {
+      rows.push_back(row);
+      row.assign(1, "");
+    }
+    else
+      row.back() += csv[i];
+  return rows;
+}
+
+Results sample()
+{
+  Results results;
+  Result row = checked(1. / 3., 0.5);
+  row.lattice = 0.1;
+  row.theory = -1e-300;
+  results.add(row);
+  row = checked(not_a_number, 1e-10);
+  row.claim = "a \"quoted\", odd claim";
+  row.unit = "\"";
+  row.quantity = "two\nlines";
+  row.continuum = infinity;
+  results.add(row);
+  results.add(checked({}, {}));
+  return results;
+}
+
+} // namespace
+
+TEST(Results, VerdictIsErrorWithinTolerance)
+{
+  EXPECT_EQ(checked(0.5, 1.).verdict(), Verdict::holds);
+  EXPECT_EQ(checked(0., 0.).verdict(), Verdict::holds);
+  EXPECT_EQ(checked(2., 1.).verdict(), Verdict::fails);
+}
+
+TEST(Results, ErrorEqualToToleranceHoldsAndTheNextNumberFails)
+{
+  EXPECT_EQ(checked(1e-10, 1e-10).verdict(), Verdict::holds);
+  EXPECT_EQ(checked(std::nextafter(1e-10, 1.), 1e-10).verdict(), Verdict::fails);
+}
+
+TEST(Results, WhatIsNotFiniteFails)
+{
+  EXPECT_EQ(checked(not_a_number, 1.).verdict(), Verdict::fails);
+  EXPECT_EQ(checked(0., not_a_number).verdict(), Verdict::fails);
+  EXPECT_EQ(checked(infinity, infinity).verdict(), Verdict::fails);
+  EXPECT_EQ(checked(-infinity, 1.).verdict(), Verdict::fails);
+  EXPECT_EQ(checked(0., infinity).verdict(), Verdict::fails);
+}
+
+TEST(Results, WhatIsNotFiniteOnAnySideFails)
+{
+  for (std::optional<double> Result::*side : {&Result::lattice, &Result::continuum, &Result::theory})
+  {
+    Result row = checked(0., 1.);
+    row.*side = 2.;
+    EXPECT_EQ(row.verdict(), Verdict::holds);
+    for (const double value : {not_a_number, infinity, -infinity})
+    {
+      row.*side = value;
+      EXPECT_EQ(row.verdict(), Verdict::fails);
+      Result reported = row;
+      reported.tolerance.reset();
+      EXPECT_EQ(reported.verdict(), Verdict::reported);
+    }
+  }
+}
+
+TEST(Results, APartThatThrowsIsARowThatFailsAndSaysWhy)
+{
+  Results results;
+  EXPECT_TRUE(results.attempt("energy", "NN: waves", [&] { results.add(checked(0., 1.)); }));
+  EXPECT_TRUE(results.all_hold());
+  EXPECT_FALSE(results.attempt("energy", "NN: waves", [] { throw std::invalid_argument("no positive step"); }));
+  ASSERT_EQ(results.rows().size(), 2u);
+  EXPECT_EQ(results.rows()[1].verdict(), Verdict::fails);
+  EXPECT_EQ(results.rows()[1].claim, "energy");
+  EXPECT_EQ(results.rows()[1].quantity, "NN: waves: not computed: no positive step");
+  // These have exit codes of their own.
+  EXPECT_THROW(results.attempt("energy", "", [] { throw latcon::support::InputError("wrong"); }),
+               latcon::support::InputError);
+  EXPECT_THROW(results.attempt("energy", "", [] { throw std::bad_alloc(); }), std::bad_alloc);
+  EXPECT_EQ(results.rows().size(), 2u);
+}
+
+TEST(Results, MissingErrorFailsAndMissingToleranceOnlyReports)
+{
+  EXPECT_EQ(checked({}, 1.).verdict(), Verdict::fails);
+  EXPECT_EQ(checked(1., {}).verdict(), Verdict::reported);
+  EXPECT_EQ(checked(not_a_number, {}).verdict(), Verdict::reported);
+}
+
+TEST(Results, AllHoldNeedsAtLeastOneCheck)
+{
+  Results results;
+  EXPECT_FALSE(results.all_hold());
+  EXPECT_EQ(results.verdict(), Verdict::reported);
+  results.add(checked(1., {}));
+  EXPECT_FALSE(results.all_hold());
+  results.add(checked(0., 1.));
+  EXPECT_TRUE(results.all_hold());
+  Results bad;
+  bad.add(checked(not_a_number, 1.));
+  results.add(bad);
+  results.add(checked(0., 1.));
+  EXPECT_FALSE(results.all_hold());
+  EXPECT_EQ(results.verdict(), Verdict::fails);
+  EXPECT_EQ(results.rows().size(), 4u);
+  results.add(results);
+  EXPECT_EQ(results.rows().size(), 8u);
+}
+
+TEST(Results, JsonHasARowPerResultInFullPrecision)
+{
+  const nlohmann::ordered_json document = nlohmann::ordered_json::parse(sample().json());
+  EXPECT_EQ(document["verdict"], "fails");
+  ASSERT_EQ(document["claims"].size(), 3u);
+  const auto &first = document["claims"][0];
+  std::vector<std::string> keys;
+  for (const auto &item : first.items())
+    keys.push_back(item.key());
+  EXPECT_EQ(keys, (std::vector<std::string>{"claim", "quantity", "unit", "lattice", "continuum", "theory", "error",
+                                            "tolerance", "verdict"}));
+  EXPECT_EQ(first["claim"], "energy");
+  EXPECT_EQ(first["unit"], "J/m^3");
+  EXPECT_EQ(first["lattice"].get<double>(), 0.1);
+  EXPECT_TRUE(first["continuum"].is_null());
+  EXPECT_EQ(first["theory"].get<double>(), -1e-300);
+  EXPECT_EQ(first["error"].get<double>(), 1. / 3.);
+  EXPECT_EQ(first["tolerance"].get<double>(), 0.5);
+  EXPECT_EQ(first["verdict"], "holds");
+  EXPECT_EQ(document["claims"][1]["error"], "nan");
+  EXPECT_EQ(document["claims"][1]["continuum"], "inf");
+  EXPECT_EQ(document["claims"][1]["verdict"], "fails");
+  EXPECT_EQ(document["claims"][2]["verdict"], "reported");
+}
+
+TEST(Results, CsvHasTheSameRows)
+{
+  const auto rows = fields_of(sample().csv());
+  ASSERT_EQ(rows.size(), 4u);
+  EXPECT_EQ(rows[0], (std::vector<std::string>{"claim", "quantity", "unit", "lattice", "continuum", "theory", "error",
+                                               "tolerance", "verdict"}));
+  for (const auto &row : rows)
+    EXPECT_EQ(row.size(), 9u);
+  EXPECT_EQ(rows[1][3], "0.1");
+  EXPECT_EQ(rows[1][4], "");
+  EXPECT_EQ(std::stod(rows[1][6]), 1. / 3.);
+  EXPECT_EQ(rows[1][8], "holds");
+  EXPECT_EQ(rows[2][0], "a \"quoted\", odd claim");
+  EXPECT_EQ(rows[2][1], "two\nlines");
+  EXPECT_EQ(rows[2][2], "\"");
+  EXPECT_EQ(rows[2][6], "nan");
+  EXPECT_EQ(rows[3][6], "");
+}
+
+TEST(Results, WritesBothFilesOrSaysWhyNot)
+{
+  const TemporaryFolder folder;
+  const Results results = sample();
+  results.write(folder.path());
+  EXPECT_EQ(content_of(folder / "results.json"), results.json());
+  EXPECT_EQ(content_of(folder / "results.csv"), results.csv());
+  EXPECT_THROW(results.write(folder / "missing"), latcon::support::OutputError);
+}
+
+TEST(Results, TextThatIsNotUtf8DoesNotLoseTheFile)
+{
+  Results results;
+  Result row = checked(0., 1.);
+  row.quantity = "bad \xff byte";
+  results.add(row);
+  EXPECT_TRUE(nlohmann::json::accept(results.json()));
+}
+
+TEST(Results, TableShowsNamesUnitsAndSevenDigits)
+{
+  Results results;
+  Result row = checked(1.23456e-11, 1e-10);
+  row.lattice = 1. / 3.;
+  row.theory = 2e6;
+  results.add(row);
+  std::ostringstream out;
+  results.print(out);
+  EXPECT_EQ(out.str(), "claim   quantity [unit]           lattice  continuum   theory     error  tolerance  verdict\n"
+                       "-------------------------------------------------------------------------------------------\n"
+                       "energy  energy density [J/m^3]  0.3333333             2000000  1.23e-11      1e-10  holds\n");
+}
+
+TEST(Results, TableIsAlignedAndFitsTheScreen)
+{
+  Results results = sample();
+  Result wide = checked(-1.23456789e-300, 1.23456789e-300);
+  wide.claim = "a-claim-with-a-name-that-is-much-too-long-for-any-table";
+  wide.quantity =
+    "energy density of the sheet \xc3\xbc" + std::string(70, 'x') + " and many more words to say about it";
+  wide.lattice = wide.continuum = wide.theory = -1.23456789e-300;
+  results.add(wide);
+  std::ostringstream out;
+  results.print(out);
+  const std::string table = out.str();
+  std::istringstream lines(table);
+  std::string line;
+  std::getline(lines, line);
+  const std::size_t verdict_column = line.find("verdict");
+  ASSERT_NE(verdict_column, std::string::npos);
+  std::size_t n_verdicts = 0;
+  while (std::getline(lines, line))
+  {
+    EXPECT_LE(line.size(), 121u) << line; // one character of two bytes
+    if (line.find("energy ") == 0 || line.find("a ") == 0 || line.find("a-claim") == 0)
+    {
+      ++n_verdicts;
+      EXPECT_TRUE(line.find("holds") == verdict_column || line.find("fails") == verdict_column ||
+                  line.find("reported") == verdict_column)
+        << line;
+    }
+  }
+  EXPECT_EQ(n_verdicts, 4u);
+  EXPECT_NE(table.find("-1.234568e-300"), std::string::npos);
+  EXPECT_EQ(table.find("-1.2345679e-300"), std::string::npos);
+  // Nothing is cut away: the wrapped pieces hold all the words.
+  EXPECT_NE(table.find("about it"), std::string::npos);
+}
+
+TEST(Results, SayHowTheChecksCameOutAndWhichFail)
+{
+  Results results;
+  EXPECT_EQ(results.verdict_text(3), "nothing was checked\n");
+  results.add(checked(0.5, {}));
+  EXPECT_EQ(results.verdict_text(3), "nothing was checked\n");
+  results.add(checked(0.5, 1.));
+  EXPECT_EQ(results.verdict_text(3), "1 check holds\n");
+  results.add(checked(0.25, 1.));
+  EXPECT_EQ(results.verdict_text(3), "2 checks hold\n");
+  results.add(checked(not_a_number, 0.5));
+  EXPECT_EQ(results.verdict_text(3), "1 of 3 checks fails:\n  energy: energy density: error nan, tolerance 0.5\n");
+  results.add(checked(2., 1e-10));
+  results.add(checked({}, 1.));
+  EXPECT_EQ(results.verdict_text(2), "3 of 5 checks fail:\n  energy: energy density: error nan, tolerance 0.5\n"
+                                     "  energy: energy density: error 2, tolerance 1e-10\n"
+                                     "  and 1 more, see results.csv\n");
+  EXPECT_EQ(results.count(Verdict::reported), 1u);
+}

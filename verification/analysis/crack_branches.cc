@@ -1,0 +1,76 @@
+#include "verification/analysis/crack_branches.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <stdexcept>
+
+namespace lattice
+{
+namespace
+{
+
+/// Widest empty stretch between neighbouring strands of one column [m]; 0 if there are fewer than two strands.
+double widest_gap(std::vector<double> &Y, double gap, double min_bonds)
+{
+  std::sort(Y.begin(), Y.end());
+  double widest = 0.;
+  bool has_previous = false;
+  double previous_top = 0.;
+  for (std::size_t begin = 0, end; begin < Y.size(); begin = end)
+  {
+    end = begin + 1;
+    while (end < Y.size() && Y[end] - Y[end - 1] < gap)
+      ++end;
+    if (static_cast<double>(end - begin) < min_bonds)
+      continue;
+    if (has_previous)
+      widest = std::max(widest, Y[begin] - previous_top);
+    has_previous = true;
+    previous_top = Y[end - 1];
+  }
+  return widest;
+}
+
+} // namespace
+
+double branched_fraction(const std::vector<BreakRecord> &breaks, double X_begin, double X_end, double lattice_spacing,
+                         const BranchRule &rule)
+{
+  const double width = rule.column_width * lattice_spacing;
+  if (!(X_end - X_begin >= width))
+    return 0.;
+  if (!(X_end - X_begin < 1e9 * width))
+    throw std::invalid_argument("branches are counted in fewer than 1e9 columns");
+  const auto n_columns = static_cast<std::size_t>((X_end - X_begin) / width);
+  std::vector<std::vector<double>> columns(n_columns);
+  for (const BreakRecord &bond : breaks)
+  {
+    const double column = std::floor((bond.X - X_begin) / width);
+    if (column >= 0. && column < static_cast<double>(n_columns))
+      columns[static_cast<std::size_t>(column)].push_back(bond.Y);
+  }
+
+  std::vector<double> gaps;
+  gaps.reserve(n_columns);
+  for (std::vector<double> &column : columns)
+    gaps.push_back(widest_gap(column, rule.gap * lattice_spacing, rule.bonds_per_spacing * rule.column_width));
+
+  std::size_t n_branched = 0;
+  for (std::size_t begin = 0, end; begin < n_columns; begin = end)
+  {
+    end = begin + 1;
+    if (gaps[begin] == 0.)
+      continue;
+    while (end < n_columns && gaps[end] > 0.)
+      ++end;
+    const double widest = *std::max_element(gaps.begin() + static_cast<std::ptrdiff_t>(begin),
+                                            gaps.begin() + static_cast<std::ptrdiff_t>(end));
+    if (static_cast<double>(end - begin) * rule.column_width >= rule.persistence &&
+        widest >= rule.grown_gap * lattice_spacing)
+      n_branched += end - begin;
+  }
+  return static_cast<double>(n_branched) / static_cast<double>(n_columns);
+}
+
+} // namespace lattice

@@ -1,0 +1,267 @@
+#include "verification/analysis/crack_measurement.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <stdexcept>
+
+#include "verification/analysis/crack_steady_part.h"
+
+namespace lattice
+{
+namespace
+{
+
+/// Error of an amplitude, in d, because a tip can only be at sites: root mean square over exact sinusoids of amplitude
+/// d to 5 d and wavelength 20 d to 50 d, each moved to the nearest sites.
+constexpr double site_error = 0.09;
+
+void require(bool condition, const std::string &message)
+{
+  if (!condition)
+    throw std::invalid_argument(message);
+}
+
+bool in_unit_interval(double value)
+{
+  return value > 0. && value < 1.;
+}
+
+void check(const CrackMeasurementOptions &o)
+{
+  require(o.strip_length > 0. && std::isfinite(o.strip_length), "crack measurement: the strip length must be positive");
+  require(o.lattice_spacing > 0. && o.lattice_spacing < o.strip_length,
+          "crack measurement: the lattice spacing must lie between 0 and the strip length");
+  require(o.end_time >= 0. && std::isfinite(o.end_time), "crack measurement: the run cannot end before it begins");
+  require(o.seed_tip_X >= 0. && o.seed_tip_X < o.strip_length, "crack measurement: the seed must end inside the strip");
+  require(o.run_in_fraction >= 0. && o.clamp_fraction >= 0. && o.run_in_fraction + o.clamp_fraction < 1.,
+          "crack measurement: run-in and clamp zone must be fractions and leave something of the strip");
+  require(o.min_wavelength >= 6. && o.min_amplitude >= 0. && o.max_steepness > 0. && o.max_straight_rms > 0. &&
+            o.min_periods >= 1. && o.clear_periods >= o.min_periods,
+          "crack measurement: needs a shortest wavelength >= 6 d, an amplitude >= 0, slope and straying > 0, at "
+          "least one period, and no fewer to be clear");
+  require(in_unit_interval(o.min_share) && in_unit_interval(o.settled_amplitude) &&
+            in_unit_interval(o.arrest_fraction) && in_unit_interval(o.min_branched_fraction),
+          "crack measurement: the thresholds on share, settling, arrest and branching lie between 0 and 1");
+  require(o.min_log_evidence >= 0. && o.clear_log_evidence >= o.min_log_evidence,
+          "crack measurement: clear evidence cannot be less than the evidence needed, nor that less than 0");
+  require(o.branch_rule.column_width > 0. && o.branch_rule.gap > 0. && o.branch_rule.bonds_per_spacing > 0.,
+          "crack measurement: the branch rule needs positive lengths and bond counts");
+}
+
+void check(const std::vector<TipRecord> &tip, double end_time)
+{
+  for (std::size_t i = 0; i < tip.size(); ++i)
+  {
+    const TipRecord &entry = tip[i];
+    const std::string where = "crack measurement: tip record " + std::to_string(i);
+    require(std::isfinite(entry.t) && std::isfinite(entry.X) && std::isfinite(entry.Y) && std::isfinite(entry.x) &&
+              std::isfinite(entry.y),
+            where + " is not finite");
+    require(entry.t <= end_time, where + " is later than the end of the run");
+    require(i == 0 || entry.t >= tip[i - 1].t, where + " goes back in time");
+    require(i == 0 || entry.X >= tip[i - 1].X, where + " goes back in X");
+  }
+}
+
+void check(const std::vector<BreakRecord> &breaks)
+{
+  for (std::size_t i = 0; i < breaks.size(); ++i)
+    require(std::isfinite(breaks[i].t) && std::isfinite(breaks[i].X) && std::isfinite(breaks[i].Y),
+            "crack measurement: broken bond " + std::to_string(i) + " is not finite");
+}
+
+template <typename... Values>
+std::string text(const char *format, Values... values)
+{
+  char buffer[512];
+  std::snprintf(buffer, sizeof(buffer), format, values...);
+  return buffer;
+}
+
+/// Time at which the tip first reached X; tip.back().X >= X.
+double time_at(const std::vector<TipRecord> &tip, double X)
+{
+  return std::find_if(tip.begin(), tip.end(), [&](const TipRecord &entry) { return entry.X >= X; })->t;
+}
+
+/// Where the tip stood at time t.
+double X_at(const std::vector<TipRecord> &tip, double t, double seed_tip_X)
+{
+  double X = seed_tip_X;
+  for (const TipRecord &entry : tip)
+    if (entry.t <= t)
+      X = std::max(X, entry.X);
+  return X;
+}
+
+/// Whether the tip stands still before the clamp zone: during the time in which it would have run `arrest_fraction` of
+/// the strip at its own mean speed, up to the end of the run, it ran less than a tenth of that. The mean speed is taken
+/// from 10 % to 90 % of the advance, so that neither a slow start nor a creeping end enters.
+bool stands_still(const std::vector<TipRecord> &tip, const CrackMeasurementOptions &o)
+{
+  const double X_last = tip.back().X;
+  if (X_last >= (1. - o.clamp_fraction) * o.strip_length)
+    return false;
+  const double advance = X_last - o.seed_tip_X;
+  const double duration = time_at(tip, o.seed_tip_X + 0.9 * advance) - time_at(tip, o.seed_tip_X + 0.1 * advance);
+  if (!(duration > 0.))
+    return false;
+  const double expected = o.arrest_fraction * o.strip_length;
+  const double patience = expected * duration / (0.8 * advance);
+  return patience <= o.end_time && X_last - X_at(tip, o.end_time - patience, o.seed_tip_X) < 0.1 * expected;
+}
+
+/// Sets pattern and reason of a crack that neither branched nor stopped.
+void decide_oscillating_or_straight(CrackMeasurement &m, bool is_long_enough, const CrackMeasurementOptions &o)
+{
+  if (!m.sinusoid)
+  {
+    if (is_long_enough)
+      m.pattern = CrackPattern::straight;
+    m.reason = is_long_enough ? "the path has no waviness at all"
+                              : text("only %.3g mm of path to measure, or too few entries in it: too short to tell",
+                                     1e3 * (m.X_end - m.X_begin));
+    return;
+  }
+  const SinusoidFit &fit = *m.sinusoid;
+  const double amplitude = fit.amplitude.value / o.lattice_spacing, share = 100. * fit.share_of_path;
+  const bool is_high = amplitude >= o.min_amplitude;
+  const bool has_periods = m.periods >= o.min_periods;
+  const bool is_path = 2. * std::acos(-1.) * fit.curve.amplitude() / fit.curve.wavelength <= o.max_steepness;
+  const std::string sinusoid =
+    text("the best-fitting sinusoid has an amplitude of %.3g d, %s the %.3g d of an oscillation (%.3g mm, wavelength "
+         "%.3g mm, %.1f periods)",
+         amplitude, is_high ? "at least" : "less than", o.min_amplitude, 1e3 * fit.amplitude.value,
+         1e3 * fit.wavelength.value, m.periods);
+  if (is_high && is_path && has_periods && fit.share_of_path >= o.min_share && fit.log_evidence >= o.min_log_evidence)
+  {
+    m.wavelength = fit.wavelength;
+    m.amplitude = fit.amplitude;
+    if (m.periods < o.clear_periods)
+      m.reason =
+        sinusoid + text(", but fewer than %.3g periods: an oscillation is likely, not certain", o.clear_periods);
+    else if (fit.log_evidence < o.clear_log_evidence)
+      m.reason = sinusoid + text(", but its log evidence %.1f is below %.3g: an oscillation is likely, not certain",
+                                 fit.log_evidence, o.clear_log_evidence);
+    else
+    {
+      m.pattern = CrackPattern::oscillating;
+      m.reason = sinusoid + text(" and makes up %.0f %% of the path, log evidence %.1f", share, fit.log_evidence);
+    }
+    return;
+  }
+  // Here hops count: a straight path with hops all about it is straight, one that a sinusoid follows or that strays far
+  // is doubtful.
+  const double strayed_rms = fit.residual_rms / std::sqrt(std::max(1. - fit.R_squared, 1e-12)) / o.lattice_spacing;
+  const bool is_wavy = is_high && (fit.R_squared >= o.min_share || strayed_rms > o.max_straight_rms);
+  if (!is_wavy)
+    m.pattern = CrackPattern::straight;
+  if (!is_high)
+    m.reason = sinusoid;
+  else if (!is_wavy)
+    m.reason =
+      sinusoid + text(", but explains only %.0f %% of a path that stays within %.2g d (rms) of a straight line",
+                      100. * fit.R_squared, strayed_rms);
+  else if (!is_path)
+    m.reason = sinusoid + ", but is too steep: the tip jumps between places, which is no path";
+  else if (!has_periods)
+    m.reason = sinusoid + text(", but fewer than %.3g periods: it may be a bend", o.min_periods);
+  else
+    m.reason = sinusoid + text(", but makes up %.0f %% of the path with log evidence %.1f, where an oscillation has at "
+                               "least %.0f %% and %.3g: the path wanders",
+                               share, fit.log_evidence, 100. * o.min_share, o.min_log_evidence);
+}
+
+} // namespace
+
+const char *to_string(CrackPattern pattern)
+{
+  switch (pattern)
+  {
+  case CrackPattern::straight:
+    return "straight";
+  case CrackPattern::oscillating:
+    return "oscillating";
+  case CrackPattern::branching:
+    return "branching";
+  case CrackPattern::arrested:
+    return "arrested";
+  case CrackPattern::undecided:
+    return "undecided";
+  }
+  throw std::invalid_argument("unknown crack pattern");
+}
+
+CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vector<BreakRecord> &breaks,
+                               const CrackMeasurementOptions &options)
+{
+  check(options);
+  check(tip, options.end_time);
+  check(breaks);
+
+  CrackMeasurement m;
+  m.X_begin = m.X_end = options.seed_tip_X;
+  if (options.end_time == 0.)
+  {
+    m.reason = "the run was stopped before its first step: nothing to tell";
+    return m;
+  }
+  const double X_last = tip.empty() ? options.seed_tip_X : std::max(options.seed_tip_X, tip.back().X);
+  const double advance = X_last - options.seed_tip_X;
+  const double least_advance = 0.5 * options.arrest_fraction * options.strip_length;
+  if (advance < least_advance && (tip.empty() || tip.back().t < 0.5 * options.end_time))
+  {
+    m.pattern = CrackPattern::arrested;
+    m.reason = text("the tip advanced %.3g mm from the seed and stood for at least half of the run", 1e3 * advance);
+    return m;
+  }
+  if (advance < least_advance)
+  {
+    m.reason =
+      text("the tip has advanced %.3g mm from the seed and was still moving: too short to tell", 1e3 * advance);
+    return m;
+  }
+
+  m.X_end = std::min(X_last, (1. - options.clamp_fraction) * options.strip_length);
+  m.X_begin = std::min(m.X_end, options.seed_tip_X + options.run_in_fraction * options.strip_length);
+  const SteadyPart settled = find_steady_part(
+    tip, m.X_begin, m.X_end, {options.lattice_spacing, options.min_wavelength, options.settled_amplitude});
+  m.X_begin = settled.X_begin;
+  m.sinusoid = settled.sinusoid;
+  if (m.sinusoid)
+  {
+    m.periods = (m.X_end - m.X_begin) / m.sinusoid->curve.wavelength;
+    Measured &amplitude = m.sinusoid->amplitude;
+    amplitude.uncertainty = std::hypot(amplitude.uncertainty, site_error * options.lattice_spacing);
+  }
+  const std::vector<TipRecord> steady = part_between(tip, m.X_begin, m.X_end);
+  m.speed_lagrangian = steady_speed(steady, options.lattice_spacing, &TipRecord::X);
+  m.speed_laboratory = steady_speed(steady, options.lattice_spacing, &TipRecord::x);
+  m.branched_fraction =
+    branched_fraction(breaks, options.seed_tip_X, m.X_end, options.lattice_spacing, options.branch_rule);
+  m.flanks = flank_damage(tip, breaks, m.X_begin, m.X_end, options.lattice_spacing);
+
+  if (m.branched_fraction >= options.min_branched_fraction)
+  {
+    m.pattern = CrackPattern::branching;
+    m.reason = text("broken bonds form two or more strands over %.0f %% of the crack", 100. * m.branched_fraction);
+  }
+  else if (stands_still(tip, options))
+  {
+    m.pattern = CrackPattern::arrested;
+    m.reason = text("the tip stopped at X = %.3g mm, Y = %.3g mm, %.3g ms before the end of the run", 1e3 * X_last,
+                    1e3 * tip.back().Y, 1e3 * (options.end_time - tip.back().t));
+  }
+  else
+    decide_oscillating_or_straight(m, settled.is_long_enough, options);
+  if (m.wavelength)
+  {
+    m.crest_amplitude = crest_amplitude(steady, options.lattice_spacing, m.sinusoid->curve);
+    if (m.crest_amplitude)
+      m.crest_amplitude->uncertainty = std::hypot(m.crest_amplitude->uncertainty, site_error * options.lattice_spacing);
+  }
+  return m;
+}
+
+} // namespace lattice

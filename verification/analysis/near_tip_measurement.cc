@@ -1,0 +1,367 @@
+#include "verification/analysis/near_tip_measurement.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include <Eigen/LU>
+
+namespace lattice
+{
+namespace
+{
+
+constexpr int points_on_circle = 72;
+constexpr double vortex_radius = 2.; // [d]
+
+Eigen::Vector2d on_circle(const Eigen::Vector2d &centre, double radius, double angle)
+{
+  return centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
+}
+
+// Bilinear interpolation of `value(i, j)` at a reference position relative to the tip; none unless all four points
+// around it hold material.
+template <typename Value>
+auto interpolate(const NearTipField &field, const Eigen::Vector2d &X, const Value &value)
+  -> std::optional<std::decay_t<decltype(value(0, 0))>>
+{
+  const double u = X.x() / field.grid.pitch_X, v = X.y() / field.grid.pitch_Y;
+  if (!(u >= -field.grid.behind && u <= field.grid.ahead && std::abs(v) <= field.grid.half_height))
+    return std::nullopt;
+  // On the last line of points the cell before it serves.
+  const int i = std::min(static_cast<int>(std::floor(u)), field.grid.ahead - 1);
+  const int j = std::min(static_cast<int>(std::floor(v)), field.grid.half_height - 1);
+  if (!field.holds(i, j) || !field.holds(i + 1, j) || !field.holds(i, j + 1) || !field.holds(i + 1, j + 1))
+    return std::nullopt;
+  const double s = u - i, t = v - j;
+  return (1. - t) * ((1. - s) * value(i, j) + s * value(i + 1, j)) +
+         t * ((1. - s) * value(i, j + 1) + s * value(i + 1, j + 1));
+}
+
+double fastest(const NearTipField &field)
+{
+  double square = 0.;
+  for (std::size_t point = 0; point < field.grid.size(); ++point)
+    if (field.occupancy[point] >= 0.5)
+      square = std::max(square, field.velocity[point].squaredNorm());
+  return std::sqrt(square);
+}
+
+// Whether both components change their sign from corner to corner: rules out nearly every cell at little cost.
+bool may_surround_zero(const std::array<Eigen::Vector2d, 4> &corners)
+{
+  const auto changes_sign = [&](Eigen::Index k)
+  {
+    return std::any_of(corners.begin() + 1, corners.end(),
+                       [&](const Eigen::Vector2d &v) { return (v[k] > 0.) != (corners[0][k] > 0.); });
+  };
+  return changes_sign(0) && changes_sign(1);
+}
+
+// Turns of a vector over its corner values, once around: the Poincare index of what is inside.
+int winding(const std::array<Eigen::Vector2d, 4> &corners)
+{
+  double turned = 0.;
+  for (std::size_t c = 0; c < 4; ++c)
+  {
+    const Eigen::Vector2d &a = corners[c], &b = corners[(c + 1) % 4];
+    turned += std::atan2(a.x() * b.y() - a.y() * b.x(), a.dot(b));
+  }
+  return static_cast<int>(std::lround(turned / (2. * M_PI)));
+}
+
+// Means over a cell of the derivatives along the grid of corner values (counter-clockwise from the lower left), as
+// columns, over one pitch.
+Eigen::Matrix2d cell_derivatives(const std::array<Eigen::Vector2d, 4> &corners)
+{
+  Eigen::Matrix2d derivatives;
+  derivatives << 0.5 * (corners[1] - corners[0] + corners[2] - corners[3]),
+    0.5 * (corners[3] - corners[0] + corners[2] - corners[1]);
+  return derivatives;
+}
+
+double slope_of(const std::vector<Eigen::Vector2d> &points)
+{
+  Eigen::Vector2d mean = Eigen::Vector2d::Zero();
+  for (const Eigen::Vector2d &point : points)
+    mean += point / static_cast<double>(points.size());
+  double xx = 0., xy = 0.;
+  for (const Eigen::Vector2d &point : points)
+  {
+    xx += (point.x() - mean.x()) * (point.x() - mean.x());
+    xy += (point.x() - mean.x()) * (point.y() - mean.y());
+  }
+  return xy / xx;
+}
+
+} // namespace
+
+NegativeZone negative_zone(const NearTipField &field, double laboratory_speed, double fraction)
+{
+  const NearTipGrid &grid = field.grid;
+  NegativeZone zone{0., 0., std::nullopt, 0., Eigen::Vector2d::Zero()};
+  int first = grid.ahead + 1, last = 0;
+  std::size_t points = 0;
+  for (int j = -grid.half_height; j <= grid.half_height; ++j)
+    for (int i = 1; i <= grid.ahead; ++i)
+    {
+      if (!field.holds(i, j))
+        continue;
+      const double v = field.velocity[grid.point(i, j)].x();
+      if (v < zone.depth)
+      {
+        zone.depth = v;
+        zone.deepest = grid.reference(i, j);
+      }
+      if (!(v < -fraction * laboratory_speed))
+        continue;
+      ++points;
+      first = std::min(first, i);
+      last = std::max(last, i);
+    }
+  if (points == 0)
+    return zone;
+  zone.area = static_cast<double>(points) * grid.pitch_X * grid.pitch_Y;
+  zone.length = (last - first + 1) * grid.pitch_X;
+  zone.distance = first * grid.pitch_X;
+  return zone;
+}
+
+std::optional<double> velocity_asymmetry(const NearTipField &field)
+{
+  const NearTipGrid &grid = field.grid;
+  double difference = 0., whole = 0.;
+  for (int j = -grid.half_height; j <= grid.half_height; ++j)
+    for (int i = -grid.behind; i <= grid.ahead; ++i)
+      if (field.holds(i, j) && field.holds(i, -j))
+      {
+        const Eigen::Vector2d v = field.velocity[grid.point(i, j)];
+        const Eigen::Vector2d image = field.velocity[grid.point(i, -j)];
+        difference += (v - Eigen::Vector2d(image.x(), -image.y())).squaredNorm();
+        whole += v.squaredNorm();
+      }
+  if (!(whole > 0.))
+    return std::nullopt;
+  return std::sqrt(difference / whole);
+}
+
+std::optional<double> circulation(const NearTipField &field, const Eigen::Vector2d &centre, double radius,
+                                  bool across_opening)
+{
+  struct Point
+  {
+    Eigen::Vector2d x, v;
+  };
+  std::vector<std::optional<Point>> circle;
+  for (int n = 0; n < points_on_circle; ++n)
+  {
+    const Eigen::Vector2d X = on_circle(centre, radius, 2. * M_PI * n / points_on_circle);
+    const auto x = interpolate(field, X, [&](int i, int j) { return field.position(i, j); });
+    const auto v = interpolate(field, X, [&](int i, int j) { return field.velocity[field.grid.point(i, j)]; });
+    if (x)
+      circle.push_back(Point{*x, *v});
+    else if (across_opening)
+      circle.push_back(std::nullopt);
+    else
+      return std::nullopt;
+  }
+  double sum = 0.;
+  bool any = false;
+  for (std::size_t n = 0; n < circle.size(); ++n)
+  {
+    const std::optional<Point> &a = circle[n], &b = circle[(n + 1) % circle.size()];
+    if (!a || !b)
+      continue;
+    sum += 0.5 * (a->v + b->v).dot(b->x - a->x);
+    any = true;
+  }
+  if (!any)
+    return std::nullopt;
+  return sum;
+}
+
+std::vector<Vortex> vortices(const NearTipField &field, double slowest, double within)
+{
+  const NearTipGrid &grid = field.grid;
+  const double radius = vortex_radius * std::max(grid.pitch_X, grid.pitch_Y);
+  const Eigen::Vector2d pitch(grid.pitch_X, grid.pitch_Y);
+  // A zero in a corner belongs to one of the cells around it: whichever this nudge puts it into.
+  const Eigen::Vector2d nudge = 1e-12 * fastest(field) * Eigen::Vector2d(1., std::sqrt(2.));
+  std::vector<Vortex> found;
+  for (int j = -grid.half_height; j < grid.half_height; ++j)
+    for (int i = -grid.behind; i < grid.ahead; ++i)
+    {
+      if (grid.reference(i, j).squaredNorm() > within * within || !field.holds(i, j) || !field.holds(i + 1, j) ||
+          !field.holds(i + 1, j + 1) || !field.holds(i, j + 1))
+        continue;
+      std::array<Eigen::Vector2d, 4> v, x;
+      const std::array<std::array<int, 2>, 4> corners{{{i, j}, {i + 1, j}, {i + 1, j + 1}, {i, j + 1}}};
+      for (std::size_t c = 0; c < 4; ++c)
+      {
+        v[c] = field.velocity[grid.point(corners[c][0], corners[c][1])] + nudge;
+        x[c] = field.position(corners[c][0], corners[c][1]);
+      }
+      if (!may_surround_zero(v) || winding(v) != 1)
+        continue;
+      const Eigen::Matrix2d dv = cell_derivatives(v), dx = cell_derivatives(x);
+      const Eigen::Matrix2d L = dv * dx.inverse(); // dv/dx: the pitches cancel
+      if (!(L.trace() * L.trace() < 4. * L.determinant()))
+        continue;
+      // The zero of the linear part, from the middle of the cell on, in pitches.
+      const Eigen::Vector2d middle = 0.25 * (v[0] + v[1] + v[2] + v[3]);
+      const Eigen::Vector2d offset = (-dv.inverse() * middle).cwiseMax(-0.5).cwiseMin(0.5);
+      const Eigen::Vector2d place = grid.reference(i, j) + pitch.cwiseProduct(Eigen::Vector2d(0.5, 0.5) + offset);
+      const std::optional<double> turning = circulation(field, place, radius, false);
+      if (!turning)
+        continue;
+      // Length of the circle in the current configuration, to the accuracy that a limit needs.
+      const double length = 2. * M_PI * radius * std::sqrt(std::abs(dx.determinant()) / pitch.prod());
+      const double speed = std::abs(*turning) / length;
+      if (speed > slowest)
+        found.push_back({place, *turning, speed});
+    }
+  std::sort(found.begin(), found.end(),
+            [](const Vortex &a, const Vortex &b) { return a.position.norm() < b.position.norm(); });
+  return found;
+}
+
+FollowingZone following_zone(const NearTipField &field, double speed)
+{
+  const NearTipGrid &grid = field.grid;
+  FollowingZone zone{0., -std::numeric_limits<double>::infinity(), Eigen::Vector2d::Zero()};
+  std::vector<std::array<int, 2>> front;
+  std::vector<bool> seen(grid.size(), false);
+  const auto visit = [&](int i, int j)
+  {
+    if (i > 0 || !field.holds(i, j) || seen[grid.point(i, j)] || !(field.velocity[grid.point(i, j)].x() > speed))
+      return;
+    seen[grid.point(i, j)] = true;
+    front.push_back({i, j});
+  };
+  constexpr int reach = 8;
+  for (int j = -grid.half_height; j <= grid.half_height; ++j)
+    for (int i = -grid.behind; i <= 0; ++i)
+    {
+      if (field.holds(i, j) && field.velocity[grid.point(i, j)].x() > zone.fastest)
+      {
+        zone.fastest = field.velocity[grid.point(i, j)].x();
+        zone.place = grid.reference(i, j);
+      }
+      if (i * i + j * j <= reach * reach)
+        visit(i, j);
+    }
+  int first = -grid.behind - 1, last = 0;
+  while (!front.empty())
+  {
+    const auto [i, j] = front.back();
+    front.pop_back();
+    first = std::max(first, i);
+    last = std::min(last, i);
+    for (const auto &[di, dj] : {std::array{1, 0}, std::array{-1, 0}, std::array{0, 1}, std::array{0, -1}})
+      visit(i + di, j + dj);
+  }
+  if (first >= last)
+    zone.length = (first - last + 1) * grid.pitch_X;
+  return zone;
+}
+
+std::vector<double> speeds_behind_tip(const NearTipField &field)
+{
+  constexpr double from = 3., to = 14., half_height = 3., rounding = 1e-9; // [d]
+  const NearTipGrid &grid = field.grid;
+  const double d = std::max(grid.pitch_X, grid.pitch_Y);
+  std::vector<double> speeds;
+  for (int j = -grid.half_height; j <= grid.half_height; ++j)
+    for (int i = -grid.behind; i <= 0; ++i)
+    {
+      const Eigen::Vector2d X = grid.reference(i, j) / d;
+      if (X.x() > -to - rounding && X.x() < -from + rounding && std::abs(X.y()) < half_height + rounding &&
+          field.holds(i, j))
+        speeds.push_back(field.velocity[grid.point(i, j)].x());
+    }
+  return speeds;
+}
+
+std::vector<double> backward_speeds(const NearTipField &field)
+{
+  const NearTipGrid &grid = field.grid;
+  std::vector<double> speeds;
+  for (int j = -grid.half_height; j <= grid.half_height; ++j)
+    for (int i = 1; i <= grid.ahead; ++i)
+      if (field.holds(i, j) && field.velocity[grid.point(i, j)].x() < 0.)
+        speeds.push_back(field.velocity[grid.point(i, j)].x());
+  return speeds;
+}
+
+std::optional<OpeningStress> opening_stress(const NearTipField &field, double radius)
+{
+  constexpr int largest_angle = 120; // [degrees]
+  const auto stress = [&](double angle)
+  {
+    return interpolate(field, on_circle(Eigen::Vector2d::Zero(), radius, angle),
+                       [&](int i, int j) { return field.cauchy_stress[field.grid.point(i, j)](1, 1); });
+  };
+  double ahead = 0.;
+  OpeningStress result{0., 1., -std::numeric_limits<double>::infinity()};
+  for (int angle = 0; angle <= largest_angle; ++angle)
+  {
+    const double theta = angle * M_PI / 180.;
+    const std::optional<double> above = stress(theta), below = stress(-theta);
+    if (!above || !below)
+      return std::nullopt;
+    const double mean = 0.5 * (*above + *below);
+    if (angle == 0)
+      ahead = mean;
+    if (mean > result.peak)
+    {
+      result.peak = mean;
+      result.angle = angle;
+    }
+  }
+  if (!(ahead > 0.))
+    return std::nullopt;
+  result.ratio = result.peak / ahead;
+  return result;
+}
+
+std::optional<double> wedge_angle(const std::vector<Eigen::Vector2d> &sites, const Eigen::Vector2d &pitch, double from,
+                                  double to)
+{
+  const double strips_between = (to - from) / pitch.x();
+  if (!(pitch.x() > 0. && pitch.y() > 0. && strips_between >= 0. && strips_between < 1e9))
+    throw std::invalid_argument("a wedge is measured in strips of a positive pitch from one distance to a larger one");
+  const auto n_strips = static_cast<std::size_t>(strips_between);
+  std::vector<std::vector<Eigen::Vector2d>> strips(n_strips);
+  for (const Eigen::Vector2d &site : sites)
+  {
+    const double strip = (-from - site.x()) / pitch.x();
+    if (strip >= 0. && strip < static_cast<double>(n_strips))
+      strips[static_cast<std::size_t>(strip)].push_back(site);
+  }
+  std::vector<Eigen::Vector2d> lower, upper;
+  for (std::vector<Eigen::Vector2d> &strip : strips)
+  {
+    std::sort(strip.begin(), strip.end(),
+              [](const Eigen::Vector2d &a, const Eigen::Vector2d &b)
+              { return a.y() < b.y() || (a.y() == b.y() && a.x() < b.x()); });
+    std::size_t opening = 0;
+    double widest = 2. * pitch.y();
+    for (std::size_t i = 1; i < strip.size(); ++i)
+      if (strip[i].y() - strip[i - 1].y() > widest)
+      {
+        widest = strip[i].y() - strip[i - 1].y();
+        opening = i;
+      }
+    if (opening == 0)
+      continue;
+    lower.push_back(strip[opening - 1]);
+    upper.push_back(strip[opening]);
+  }
+  if (lower.size() < 2 || 2 * lower.size() < n_strips)
+    return std::nullopt;
+  return std::atan(slope_of(lower)) - std::atan(slope_of(upper));
+}
+
+} // namespace lattice

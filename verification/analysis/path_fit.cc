@@ -1,0 +1,208 @@
+#include "verification/analysis/path_fit.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <utility>
+
+#include <Eigen/QR>
+
+namespace lattice
+{
+namespace
+{
+
+constexpr double pi = 3.14159265358979323846;
+
+/// Stretch of a path that is fitted: coordinates from its middle in units of its length keep the columns of the model
+/// of comparable size.
+struct Stretch
+{
+  double origin;
+  double length;
+};
+
+/// Columns 1, u, sin, cos of the model at one wave number, u = (X - origin) / length.
+Eigen::MatrixXd linear_columns(const ColumnMeans &path, const Stretch &stretch, double wave_number)
+{
+  const double q = 2. * pi * wave_number;
+  Eigen::MatrixXd columns(path.size(), 4);
+  columns.col(0).setOnes();
+  columns.col(1) = (path.X().array() - stretch.origin) / stretch.length;
+  columns.col(2) = path.mean_of([&](double X) { return std::sin(q * (X - stretch.origin)); });
+  columns.col(3) = path.mean_of([&](double X) { return std::cos(q * (X - stretch.origin)); });
+  return columns;
+}
+
+struct Projection
+{
+  Eigen::VectorXd coefficients;
+  Eigen::VectorXd residual;
+};
+
+Projection project(const Eigen::MatrixXd &columns, const Eigen::VectorXd &values)
+{
+  Projection result;
+  result.coefficients = columns.colPivHouseholderQr().solve(values);
+  result.residual = values - columns * result.coefficients;
+  return result;
+}
+
+/// Minimiser of a function with one minimum between a and b, to within `tolerance`.
+template <typename Function>
+double golden_section(const Function &function, double a, double b, double tolerance)
+{
+  const double ratio = 0.5 * (std::sqrt(5.) - 1.);
+  double left = b - ratio * (b - a);
+  double right = a + ratio * (b - a);
+  double at_left = function(left);
+  double at_right = function(right);
+  while (b - a > tolerance)
+  {
+    if (at_left < at_right)
+    {
+      b = right;
+      right = left;
+      at_right = at_left;
+      left = b - ratio * (b - a);
+      at_left = function(left);
+    }
+    else
+    {
+      a = left;
+      left = right;
+      at_left = at_right;
+      right = a + ratio * (b - a);
+      at_right = function(right);
+    }
+  }
+  return 0.5 * (a + b);
+}
+
+} // namespace
+
+ColumnMeans::ColumnMeans(std::vector<double> X, std::vector<double> Y, double width) : X_(std::move(X))
+{
+  if (X_.size() != Y.size() || !(width > 0.))
+    throw std::invalid_argument("a path needs as many X as Y and columns of positive width");
+  double current_column = -1.;
+  for (std::size_t i = 0; i < X_.size(); ++i)
+  {
+    const double column = std::floor((X_[i] - X_[0]) / width);
+    if (column > current_column)
+      first_.push_back(i);
+    current_column = column;
+  }
+  const auto n_columns = static_cast<Eigen::Index>(first_.size());
+  first_.push_back(X_.size());
+  X_mean_.resize(n_columns);
+  Y_mean_.resize(n_columns);
+  for (Eigen::Index column = 0; column < n_columns; ++column)
+  {
+    const std::size_t begin = first_[static_cast<std::size_t>(column)];
+    const auto n_entries = static_cast<Eigen::Index>(first_[static_cast<std::size_t>(column) + 1] - begin);
+    X_mean_(column) = Eigen::Map<const Eigen::VectorXd>(X_.data() + begin, n_entries).mean();
+    Y_mean_(column) = Eigen::Map<const Eigen::VectorXd>(Y.data() + begin, n_entries).mean();
+  }
+}
+
+double Sinusoid::operator()(double X) const
+{
+  const double phase = 2. * pi * (X - origin) / wavelength;
+  return offset + slope * (X - origin) + sine * std::sin(phase) + cosine * std::cos(phase);
+}
+
+std::optional<SinusoidFit> fit_sinusoid(const ColumnMeans &path, double shortest_wavelength, double resolution)
+{
+  if (path.size() < min_columns_of_sinusoid)
+    return std::nullopt;
+  const double X_begin = path.X()(0);
+  const double X_end = path.X()(path.size() - 1);
+  const Stretch stretch{0.5 * (X_begin + X_end), X_end - X_begin};
+  if (!(shortest_wavelength > 0.) || shortest_wavelength >= stretch.length)
+    return std::nullopt;
+
+  const auto unexplained = [&](double wave_number)
+  { return project(linear_columns(path, stretch, wave_number), path.Y()).residual.squaredNorm(); };
+  const double lowest = 1. / stretch.length;
+  const double highest = 1. / shortest_wavelength;
+  const double step = 1. / (8. * stretch.length);
+  double best_wave_number = lowest;
+  double least = unexplained(lowest);
+  for (double wave_number = lowest + step; wave_number <= highest; wave_number += step)
+  {
+    const double value = unexplained(wave_number);
+    if (value < least)
+    {
+      least = value;
+      best_wave_number = wave_number;
+    }
+  }
+  const double wave_number = golden_section(unexplained, std::max(lowest, best_wave_number - step),
+                                            std::min(highest, best_wave_number + step), 1e-7 * best_wave_number);
+
+  const Eigen::MatrixXd columns = linear_columns(path, stretch, wave_number);
+  const Projection fit = project(columns, path.Y());
+  const Eigen::VectorXd &c = fit.coefficients;
+
+  SinusoidFit result{};
+  result.curve = {stretch.origin, c(0), c(1) / stretch.length, c(2), c(3), 1. / wave_number};
+  const double amplitude = result.curve.amplitude();
+  if (!(amplitude > resolution))
+    return std::nullopt; // a path without any waviness has no wave number to speak of
+
+  // Linearised model: the fifth column is the derivative with respect to the wave number.
+  Eigen::MatrixXd jacobian(path.size(), 5);
+  jacobian << columns, path.mean_of(
+                         [&](double X)
+                         {
+                           const double phase = 2. * pi * wave_number * (X - stretch.origin);
+                           return 2. * pi * (X - stretch.origin) * (c(2) * std::cos(phase) - c(3) * std::sin(phase));
+                         });
+  const NoiseFit with_sinusoid = fit_noise(path.X(), jacobian, fit.residual, resolution);
+  const Eigen::MatrixXd covariance = least_squares_covariance(with_sinusoid.noise, path.X(), jacobian);
+  const Eigen::Vector2d direction(c(2) / amplitude, c(3) / amplitude);
+  result.amplitude = {amplitude, std::sqrt(direction.dot(covariance.block<2, 2>(2, 2) * direction))};
+  result.wavelength = {1. / wave_number, std::sqrt(covariance(4, 4)) / (wave_number * wave_number)};
+
+  const Eigen::MatrixXd straight = columns.leftCols(2);
+  const NoiseFit without_sinusoid = fit_noise(path.X(), straight, path.Y(), resolution);
+  const auto count = static_cast<double>(path.size());
+  const double variance_about_line = project(straight, path.Y()).residual.squaredNorm() / count;
+  const double residual_variance = fit.residual.squaredNorm() / count;
+  // Volume of (sine, cosine, wave number) held equally likely: a disc of radius sqrt(2 variance) times a length.
+  const double prior_volume = 2. * pi * variance_about_line * highest;
+  result.log_evidence = with_sinusoid.log_evidence - without_sinusoid.log_evidence - std::log(prior_volume);
+  result.residual_rms = std::sqrt(residual_variance);
+  const double explained = variance_about_line - residual_variance;
+  result.R_squared = explained / variance_about_line;
+  const Eigen::Index n_pairs = path.size() - 1;
+  const double remembered =
+    std::max(0., fit.residual.head(n_pairs).dot(fit.residual.tail(n_pairs)) / static_cast<double>(n_pairs));
+  result.share_of_path = explained / (explained + remembered);
+  return result;
+}
+
+Measured fit_slope(const Eigen::VectorXd &position, const Eigen::VectorXd &samples, double resolution)
+{
+  const Eigen::Index n = samples.size();
+  if (position.size() != n || n < 4)
+    throw std::invalid_argument("a slope and its uncertainty need at least four samples");
+  const Eigen::VectorXd centred = position.array() - position.mean();
+  const double spread = centred.squaredNorm();
+  // The least-squares slope is a weighted mean of the slopes between neighbouring samples.
+  Eigen::VectorXd middle(n - 1), slope(n - 1), weight(n - 1);
+  double sum = 0.;
+  for (Eigen::Index i = 0; i + 1 < n; ++i)
+  {
+    const double step = position(i + 1) - position(i);
+    sum += centred(i);
+    middle(i) = position(i) + 0.5 * step;
+    slope(i) = (samples(i + 1) - samples(i)) / step;
+    weight(i) = -sum * step / spread;
+  }
+  const double slope_resolution = resolution * static_cast<double>(n - 1) / (position(n - 1) - position(0));
+  const CorrelatedNoise noise = fit_noise(middle, Eigen::VectorXd::Ones(n - 1), slope, slope_resolution).noise;
+  return {weight.dot(slope), std::sqrt(weight.dot(covariance(noise, middle) * weight))};
+}
+
+} // namespace lattice

@@ -1,0 +1,165 @@
+#include "verification/bridge/continuum_model.h"
+
+#include <algorithm>
+
+#include "continuum/isotropic_gradient.h"
+#include "continuum/lattice_gradient.h"
+#include "continuum/meshes.h"
+#include "continuum/network_gradient.h"
+#include "support/errors.h"
+#include "verification/bridge/affine_displacement.h"
+
+namespace verification
+{
+namespace
+{
+
+// One component from each of two fields, or of the homogeneous loading.
+class EdgeDisplacement : public dealii::Function<2>
+{
+public:
+  EdgeDisplacement(const EdgeCase &edge, const Eigen::Matrix2d &F, double extent)
+    : dealii::Function<2>(2),
+      loading_(F), is_loading_{edge.displacement_x == "loading", edge.displacement_y == "loading"}
+  {
+    const auto expression = [](const std::string &text) { return text == "loading" || text == "free" ? "0" : text; };
+    FieldCase given;
+    given.x = expression(edge.displacement_x);
+    given.y = expression(edge.displacement_y);
+    given_ = given.field(extent);
+  }
+
+  double value(const dealii::Point<2> &X, unsigned int i) const override
+  {
+    return is_loading_[i] ? loading_.value(X, i) : given_->value(X, i);
+  }
+
+private:
+  AffineDisplacement loading_;
+  bool is_loading_[2];
+  std::shared_ptr<dealii::FunctionParser<2>> given_;
+};
+
+} // namespace
+
+ContinuumModel::ContinuumModel(const Case &input)
+  : subject_(verification::subject(input)), law_(input.continuum.law), penalty_(input.continuum.penalty),
+    mesh_(MPI_COMM_WORLD)
+{
+  if (input.continuum.law == ContinuumLaw::mooney_rivlin)
+  {
+    if (!subject_.mooney_rivlin)
+      throw latcon::support::InputError(
+        "Continuum/law: no plane-stress Mooney-Rivlin law has a thickness in equilibrium all along the loading path to "
+        "Loading/strain x, strain y; give law = cauchy-born or mooney-rivlin-network" +
+        std::string(input.continuum.mooney_rivlin_ratio ? ", or another Continuum/ratio" : ""));
+    mooney_rivlin_.emplace(subject_.mooney_rivlin->law);
+  }
+  const lattice::TriangularLattice sheet = input.lattice();
+  extent_ = std::min(sheet.length(), sheet.height());
+  const GradientLengths lengths = gradient_lengths(sheet, subject_.material);
+  switch (input.continuum.gradient)
+  {
+  case ContinuumGradient::isotropic:
+    static_length_ = input.continuum.static_length.value_or(lengths.isotropic_static);
+    inertia_length_ = input.continuum.inertia_length.value_or(lengths.isotropic_inertia);
+    gradient_ = std::make_unique<continuum::IsotropicGradient>(subject_.theory.shear_modulus, static_length_);
+    break;
+  case ContinuumGradient::lattice:
+    inertia_length_ = input.continuum.inertia_length.value_or(lengths.lattice);
+    gradient_ = std::make_unique<continuum::LatticeGradient>(bond_families(sheet, subject_.material), inertia_length_);
+    break;
+  case ContinuumGradient::network:
+    inertia_length_ = input.continuum.inertia_length.value_or(lengths.lattice);
+    gradient_ = std::make_unique<continuum::NetworkGradient>(bond_families(sheet, subject_.material), inertia_length_);
+    break;
+  case ContinuumGradient::none:
+    inertia_length_ = input.continuum.inertia_length.value_or(0.);
+    break;
+  }
+  make_mesh(input);
+  make_conditions(input);
+}
+
+void ContinuumModel::make_mesh(const Case &input)
+{
+  // The size of the lattice after rounding to whole rows, so that both sides are the same sheet.
+  const lattice::TriangularLattice sheet = input.lattice();
+  const ContinuumCase &c = input.continuum;
+  const auto periodic = [&c](std::size_t edge) { return c.edges[edge].condition == EdgeCase::Condition::periodic; };
+  if (!c.mesh_file.empty())
+    continuum::read_gmsh(mesh_, c.mesh_file, c.refinements);
+  else if (input.hole_radius > 0.)
+    continuum::make_rectangle_with_hole(mesh_, {sheet.length(), sheet.height(), input.hole_radius, c.refinements});
+  else if (input.notch_length > 0.)
+    continuum::make_notched_rectangle(mesh_, {sheet.length(), sheet.height(), input.notch_length, c.refinements});
+  else
+    continuum::make_rectangle(mesh_, {sheet.length(), sheet.height(), c.cells_x, c.cells_y, periodic(0), periodic(2)});
+}
+
+void ContinuumModel::make_conditions(const Case &input)
+{
+  const ContinuumCase &c = input.continuum;
+  const auto ids = mesh_.get_boundary_ids();
+  const Eigen::Matrix2d F = input.deformation();
+  for (dealii::types::boundary_id id = 0; id < c.edges.size(); ++id)
+  {
+    const EdgeCase &edge = c.edges[id];
+    // A mesh from a file may lack edges; the inner edge is there with a hole or a notch alone.
+    if (std::find(ids.begin(), ids.end(), id) == ids.end())
+      continue;
+    if (edge.condition == EdgeCase::Condition::held)
+      conditions_.displacements.push_back(
+        {id, std::make_shared<EdgeDisplacement>(edge, F, extent_),
+         dealii::ComponentMask(std::vector<bool>{edge.displacement_x != "free", edge.displacement_y != "free"})});
+    if (edge.condition == EdgeCase::Condition::periodic)
+    {
+      if (id % 2 == 0)
+        conditions_.periodic.push_back({id, id + 1u, id / 2u});
+      continue;
+    }
+    if (edge.normal_gradient == EdgeCase::NormalGradient::clamped)
+      conditions_.normal_gradients.push_back({id, std::make_shared<dealii::Functions::ZeroFunction<2>>(2)});
+    if (edge.normal_gradient == EdgeCase::NormalGradient::loading)
+    {
+      // (F - I) N with the outward normal of an outer edge; rims of holes have no such single normal.
+      const Eigen::Vector2d normals[4] = {{-1., 0.}, {1., 0.}, {0., -1.}, {0., 1.}};
+      const Eigen::Vector2d slope = (F - Eigen::Matrix2d::Identity()) * normals[id];
+      conditions_.normal_gradients.push_back(
+        {id, std::make_shared<dealii::Functions::ConstantFunction<2>>(std::vector<double>{slope.x(), slope.y()})});
+    }
+    if (!edge.traction.is_zero())
+      conditions_.tractions.push_back({id, edge.traction.field(extent_)});
+    if (!edge.double_traction.is_zero())
+      conditions_.double_tractions.push_back({id, edge.double_traction.field(extent_)});
+  }
+  if (c.solution == ContinuumCase::Solution::equilibrium && conditions_.displacements.empty())
+    throw latcon::support::InputError("the mesh file " + c.mesh_file +
+                                      " has no edge that the case holds, and equilibrium needs one");
+  if (!c.body_force.is_zero())
+    conditions_.body_force =
+      continuum::BodyForce{c.body_force.field(extent_), c.body_force_corrected ? inertia_length_ : 0.};
+}
+
+continuum::Constitution ContinuumModel::constitution() const
+{
+  const continuum::Material *law = nullptr;
+  switch (law_)
+  {
+  case ContinuumLaw::cauchy_born:
+    law = &subject_.cauchy_born;
+    break;
+  case ContinuumLaw::mooney_rivlin_network:
+    law = &subject_.network;
+    break;
+  case ContinuumLaw::mooney_rivlin:
+    law = &*mooney_rivlin_;
+    break;
+  }
+  continuum::Constitution constitution(*law);
+  constitution.gradient = gradient_.get();
+  constitution.penalty = penalty_;
+  return constitution;
+}
+
+} // namespace verification

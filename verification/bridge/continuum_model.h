@@ -1,0 +1,48 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "continuum/conditions.h"
+#include "continuum/constitution.h"
+#include "continuum/sheet.h"
+#include "verification/bridge/subject.h"
+#include "verification/input/case.h"
+
+namespace verification
+{
+
+/// The finite element sheet of a case: laws, mesh and conditions, handed to the continuum as constants and functions.
+/// Lives as long as the solvers made with it. Collective.
+class ContinuumModel
+{
+public:
+  /// @throws InputError if the mesh file cannot be used, or no Mooney-Rivlin law is known for the loading path.
+  explicit ContinuumModel(const Case &input);
+
+  continuum::Sheet::Mesh &mesh() { return mesh_; }
+  continuum::Constitution constitution() const;
+  const continuum::BoundaryConditions &conditions() const { return conditions_; }
+  const Subject &subject() const { return subject_; }
+
+  double extent() const { return extent_; }                 ///< smaller of length and height [m]
+  double static_length() const { return static_length_; }   ///< l_s [m] of the isotropic gradient energy; 0 for others
+  double inertia_length() const { return inertia_length_; } ///< l_d [m]; 0 without a gradient energy
+
+private:
+  void make_mesh(const Case &input);
+  void make_conditions(const Case &input);
+
+  Subject subject_;
+  ContinuumLaw law_;
+  std::optional<continuum::MooneyRivlin> mooney_rivlin_; // if it is the case's law
+  double penalty_;
+  double extent_ = 0.;
+  double static_length_ = 0.;
+  double inertia_length_ = 0.;
+  std::unique_ptr<continuum::GradientLaw> gradient_;
+  continuum::Sheet::Mesh mesh_;
+  continuum::BoundaryConditions conditions_;
+};
+
+} // namespace verification

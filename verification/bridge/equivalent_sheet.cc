@@ -1,0 +1,148 @@
+#include "verification/bridge/equivalent_sheet.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "support/largest_error.h"
+
+namespace verification
+{
+namespace
+{
+
+// Stiffness psi''(1) A0 / l of the bonds of a kind against a change of their length, per sheet thickness [Pa]; 0 if
+// there are none.
+double spring_constant(const lattice::TriangularLattice &lattice, const lattice::Material &material, std::size_t kind)
+{
+  const lattice::Shell *shell = material.shell(kind);
+  return shell == nullptr
+           ? 0.
+           : lattice::stiffness(shell->law, 1.) * lattice::cross_section(*shell, lattice) / lattice.rest_length(kind);
+}
+
+// Depth in units of the distance of planes at which a chain of planes is held whose planes 0 to reach - 1 are at rest,
+// as seen from far away: where the linear displacement found there, continued, vanishes. `springs[m]` ties planes m
+// apart.
+double chain_depth(const std::vector<double> &springs, std::size_t reach)
+{
+  // What the held planes disturb falls off by a factor of three or more with every plane.
+  constexpr std::size_t n = 60;
+  Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
+  Eigen::VectorXd f = Eigen::VectorXd::Zero(n);
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const bool held = i < reach, far = i + reach >= n;
+    if (held || far)
+    {
+      K(i, i) = 1.;
+      f(i) = far ? static_cast<double>(i) : 0.;
+      continue;
+    }
+    for (std::size_t m = 1; m <= reach; ++m)
+      for (const std::size_t j : {i - m, i + m})
+      {
+        K(i, i) += springs[m];
+        K(i, j) -= springs[m];
+      }
+  }
+  const Eigen::VectorXd u = K.partialPivLu().solve(f);
+  const double slope = (u(n / 2 + 10) - u(n / 2 - 10)) / 20.;
+  return static_cast<double>(n / 2) - u(n / 2) / slope;
+}
+
+} // namespace
+
+double rim_recession(const lattice::TriangularLattice &lattice, const lattice::Material &material)
+{
+  double moment = 0., sum = 0.;
+  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+  {
+    const double l = lattice.rest_length(kind);
+    const double weight = spring_constant(lattice, material, kind) * l * l; // A0 l psi''
+    moment += weight * l;
+    sum += weight;
+  }
+  return 23. / (45. * M_PI) * moment / sum;
+}
+
+double held_depth(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                  const Eigen::Vector2d &normal)
+{
+  const double d = lattice.spacing();
+  latcon::support::Extremes pitches;
+  pitches.add(d);
+  std::array<double, lattice::n_bond_kinds> across{};
+  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+  {
+    across[kind] = std::abs(lattice.bond_vector(kind).dot(normal));
+    if (across[kind] > 0.1 * d)
+      pitches.add(across[kind]);
+  }
+  const double pitch = pitches.smallest();
+  std::size_t reach = 0;
+  std::array<std::vector<double>, 2> springs;
+  for (const bool along : {false, true})
+  {
+    springs[along].assign(4, 0.);
+    for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+    {
+      const double k = spring_constant(lattice, material, kind);
+      const auto planes = static_cast<std::size_t>(std::lround(across[kind] / pitch));
+      if (k == 0. || planes == 0)
+        continue;
+      const double cosine = across[kind] / lattice.rest_length(kind);
+      springs[along][planes] += k * (along ? 1. - cosine * cosine : cosine * cosine);
+      reach = std::max<std::size_t>(reach, planes);
+    }
+  }
+  return 0.5 * pitch * (chain_depth(springs[0], reach) + chain_depth(springs[1], reach));
+}
+
+double cell_overhang(const lattice::TriangularLattice &lattice, const Eigen::Vector2d &normal)
+{
+  const bool along_rows =
+    (std::abs(normal.x()) > 0.5) == (lattice.orientation() == lattice::Orientation::rows_along_crack);
+  return lattice.spacing() * (along_rows ? 0.25 : std::sqrt(3.) / 4.);
+}
+
+EquivalentSheet equivalent_sheet(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                                 const lattice::State &state, const lattice::Edges &edges,
+                                 const lattice::Cutout &cutout)
+{
+  const Eigen::Vector2d x(1., 0.), y(0., 1.);
+  const double recession = rim_recession(lattice, material);
+  const auto depth = [&](bool held, const Eigen::Vector2d &normal)
+  { return held ? held_depth(lattice, material, normal) : recession - cell_overhang(lattice, normal); };
+  EquivalentSheet sheet{depth(edges.left, x), lattice.length() - depth(edges.right, x),
+                        -0.5 * lattice.height() + depth(edges.bottom, y), 0.5 * lattice.height() - depth(edges.top, y),
+                        0.};
+  std::size_t removed = 0;
+  latcon::support::Extremes X; // of the sites in a notch
+  X.add(0.);
+  for (std::size_t place = 0; place < lattice.n_places(); ++place)
+    if (lattice.is_site(place) && state.removed[place] != 0)
+    {
+      ++removed;
+      X.add(lattice.reference(place).x());
+    }
+  if (std::holds_alternative<lattice::RoundHole>(cutout))
+    sheet.cut = std::sqrt(static_cast<double>(removed) * lattice.site_area() / M_PI) + recession;
+  else
+    // The cell of the last site ends half way to the next one on the line.
+    sheet.cut =
+      X.largest() - sheet.left +
+      (lattice.orientation() == lattice::Orientation::rows_along_crack ? 0.5 : 0.5 * std::sqrt(3.)) * lattice.spacing();
+  return sheet;
+}
+
+EquivalentSheet nominal_sheet(const lattice::TriangularLattice &lattice, const lattice::Cutout &cutout)
+{
+  const auto *hole = std::get_if<lattice::RoundHole>(&cutout);
+  return {0., lattice.length(), -0.5 * lattice.height(), 0.5 * lattice.height(),
+          hole != nullptr ? hole->radius : std::get<lattice::Notch>(cutout).length};
+}
+
+} // namespace verification

@@ -1,0 +1,38 @@
+#include "verification/bridge/homogeneous_response.h"
+
+#include <cmath>
+
+#include "lattice/forces.h"
+#include "lattice/site_fields.h"
+
+namespace verification
+{
+
+LatticeResponse homogeneous_response(const lattice::TriangularLattice &sheet, const lattice::Material &material,
+                                     const Eigen::Matrix2d &F)
+{
+  const lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::free);
+  lattice::Forces forces(sheet, material);
+  forces.evaluate(state, state.vx, state.vy);
+  const auto force = [&](std::size_t row, std::size_t column)
+  {
+    const std::size_t place = sheet.index(row, column);
+    return Eigen::Vector2d(forces.fx()[place], forces.fy()[place]);
+  };
+
+  // The two uppermost rows hold the rest of the sheet: P times their normal, over the length d of one column; likewise
+  // the left end, whose sites with missing neighbours repeat every two rows.
+  const std::size_t top = sheet.rows() - 1, column = sheet.columns() / 2, row = 2 * (sheet.rows() / 4);
+  const double d = sheet.spacing();
+  const Eigen::Vector2d across = -(force(top, column) + force(top - 1, column)) / d;
+  const Eigen::Vector2d along = (force(row, 0) + force(row, 1) + force(row + 1, 0)) / (std::sqrt(3.) * d);
+
+  const bool rows_along_x = sheet.orientation() == lattice::Orientation::rows_along_crack;
+  Eigen::Matrix2d P;
+  P.col(rows_along_x ? 0 : 1) = along;
+  P.col(rows_along_x ? 1 : 0) = across;
+  const lattice::SiteFields fields = lattice::site_fields(state, sheet, material);
+  return {fields.strain_energy_density[sheet.index(row, column)], P};
+}
+
+} // namespace verification

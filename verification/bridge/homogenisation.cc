@@ -1,0 +1,209 @@
+#include "verification/bridge/homogenisation.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <stdexcept>
+
+#include "continuum/errors.h"
+#include "support/largest_error.h"
+
+namespace verification
+{
+namespace
+{
+
+// c = A0 l / V of one bond kind, V the reference volume of a site: a site owns one bond of each kind.
+double bond_weight(const lattice::TriangularLattice &lattice, const lattice::Shell &shell, std::size_t kind)
+{
+  return lattice::cross_section(shell, lattice) * lattice.rest_length(kind) / lattice.site_area();
+}
+
+// Points along the path; the fit is to the whole of it, not to its end alone.
+constexpr int path_points = 40;
+
+Eigen::Matrix2d on_path(const Eigen::Matrix2d &F, int point)
+{
+  const double t = static_cast<double>(point) / path_points;
+  return Eigen::Matrix2d::Identity() + t * (F - Eigen::Matrix2d::Identity());
+}
+
+} // namespace
+
+dealii::Tensor<2, 2> to_continuum(const Eigen::Matrix2d &F)
+{
+  dealii::Tensor<2, 2> result;
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int J = 0; J < 2; ++J)
+      result[i][J] = F(i, J);
+  return result;
+}
+
+Eigen::Matrix2d to_lattice(const dealii::Tensor<2, 2> &F)
+{
+  Eigen::Matrix2d result;
+  for (unsigned int i = 0; i < 2; ++i)
+    for (unsigned int J = 0; J < 2; ++J)
+      result(i, J) = F[i][J];
+  return result;
+}
+
+SmallStrain small_strain(const lattice::TriangularLattice &lattice, const lattice::Material &material)
+{
+  // Three unit vectors 60 degrees apart have sum N N N N = (3/8) (dd + dd + dd).
+  double mu = 0.;
+  for (std::size_t kind : {std::size_t{0}, lattice::n_nearest_kinds})
+    if (const lattice::Shell *shell = material.shell(kind))
+      mu += 3. / 8. * bond_weight(lattice, *shell, kind) * lattice::stiffness(shell->law, 1.);
+  return {mu, std::sqrt(mu / material.density), std::sqrt(3. * mu / material.density)};
+}
+
+std::vector<continuum::BondFamily> bond_families(const lattice::TriangularLattice &lattice,
+                                                 const lattice::Material &material)
+{
+  std::vector<continuum::BondFamily> families;
+  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+    if (const lattice::Shell *shell = material.shell(kind))
+    {
+      const Eigen::Vector2d direction = lattice.bond_vector(kind).normalized();
+      continuum::FibreFamily family;
+      family.direction[0] = direction.x();
+      family.direction[1] = direction.y();
+      family.weight = bond_weight(lattice, *shell, kind);
+      if (const auto *rod = std::get_if<lattice::MooneyRivlinBond>(&shell->law))
+        family.potential = continuum::RodPotential{rod->a, rod->b};
+      else if (const auto *spring = std::get_if<lattice::LinearBond>(&shell->law))
+        family.potential = continuum::LinearPotential{spring->modulus};
+      else
+        throw std::invalid_argument("no continuum is known here for bonds with a law from outside");
+      families.push_back({family, lattice.rest_length(kind)});
+    }
+  return families;
+}
+
+continuum::CauchyBorn cauchy_born(const lattice::TriangularLattice &lattice, const lattice::Material &material)
+{
+  std::vector<continuum::FibreFamily> fibres;
+  for (const continuum::BondFamily &family : bond_families(lattice, material))
+    fibres.push_back(family.fibre);
+  return continuum::CauchyBorn(std::move(fibres));
+}
+
+continuum::IsotropicNetwork isotropic_network(const lattice::TriangularLattice &lattice,
+                                              const lattice::Material &material)
+{
+  return continuum::IsotropicNetwork(cauchy_born(lattice, material).families());
+}
+
+std::unique_ptr<continuum::Viscosity> homogenised_viscosity(const lattice::TriangularLattice &lattice,
+                                                            const lattice::Material &material)
+{
+  std::vector<continuum::FibreDashpot> dashpots;
+  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+    if (const lattice::Shell *shell = material.shell(kind); shell && shell->viscosity > 0.)
+    {
+      const Eigen::Vector2d direction = lattice.bond_vector(kind).normalized();
+      dashpots.push_back(
+        {dealii::Tensor<1, 2>({direction.x(), direction.y()}), bond_weight(lattice, *shell, kind), shell->viscosity});
+    }
+  if (dashpots.empty())
+    return nullptr;
+  return std::make_unique<continuum::FibreViscosity>(std::move(dashpots));
+}
+
+GradientLengths gradient_lengths(const lattice::TriangularLattice &lattice, const lattice::Material &material)
+{
+  double stiffness = 0.;
+  double with_length = 0.;
+  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+    if (const lattice::Shell *shell = material.shell(kind))
+    {
+      const double c = bond_weight(lattice, *shell, kind) * lattice::stiffness(shell->law, 1.);
+      stiffness += c;
+      with_length += c * std::pow(lattice.rest_length(kind), 2);
+    }
+  const double lambda = with_length / stiffness;
+  return {continuum::LatticeGradient::smallest_length(bond_families(lattice, material)), std::sqrt(lambda / 24.),
+          std::sqrt(lambda / 12.)};
+}
+
+Calibration calibrate_mooney_rivlin(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                                    const Eigen::Matrix2d &F)
+{
+  if (F.isIdentity(1e-12)) // every ratio is exact
+    return with_ratio(lattice, material, F, 0.);
+  const double mu = small_strain(lattice, material).shear_modulus;
+  const continuum::CauchyBorn exact = cauchy_born(lattice, material);
+  const auto law = [mu](double ratio)
+  { return continuum::MooneyRivlin(continuum::MooneyRivlin::Constants::with_equal_lame_constants(mu, ratio)); };
+  const auto mean_square_residual = [&](double ratio)
+  {
+    try
+    {
+      const continuum::MooneyRivlin candidate = law(ratio);
+      double sum = 0.;
+      for (int point = 1; point <= path_points; ++point)
+      {
+        const dealii::Tensor<2, 2> state = to_continuum(on_path(F, point));
+        sum += std::pow(candidate.energy(state) / exact.energy(state) - 1., 2);
+      }
+      return sum / path_points;
+    }
+    catch (const continuum::NonPhysicalState &)
+    {
+      return std::numeric_limits<double>::infinity(); // no thickness in equilibrium: not a law for this path
+    }
+    catch (const continuum::InvalidMaterial &)
+    {
+      return std::numeric_limits<double>::infinity();
+    }
+  };
+
+  // A scan that brackets the minimum, then golden sections. The residual is smooth with one minimum where it is finite.
+  constexpr int scan_steps = 90; // of a hundredth, to either side
+  constexpr double scan_step = largest_ratio / scan_steps;
+  double best = 0.;
+  for (int i = -scan_steps; i <= scan_steps; ++i)
+    if (mean_square_residual(i * scan_step) < mean_square_residual(best))
+      best = i * scan_step;
+  double low = std::clamp(best - scan_step, -largest_ratio, largest_ratio),
+         high = std::clamp(best + scan_step, -largest_ratio, largest_ratio);
+  const double golden = (std::sqrt(5.) - 1.) / 2.;
+  // A minimum is located to the square root of round-off.
+  while (high - low > 1e-9)
+  {
+    const double left = high - golden * (high - low), right = low + golden * (high - low);
+    if (mean_square_residual(left) < mean_square_residual(right))
+      high = right;
+    else
+      low = left;
+  }
+  // An end of the interval is met exactly.
+  const double found = 0.5 * (low + high);
+  const bool is_end = largest_ratio - std::abs(found) < 1e-8;
+  return with_ratio(lattice, material, F, is_end ? std::copysign(largest_ratio, found) : found);
+}
+
+Calibration with_ratio(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                       const Eigen::Matrix2d &F, double ratio)
+{
+  const double mu = small_strain(lattice, material).shear_modulus;
+  const continuum::CauchyBorn exact = cauchy_born(lattice, material);
+  const continuum::MooneyRivlin fitted(continuum::MooneyRivlin::Constants::with_equal_lame_constants(mu, ratio));
+  Calibration calibration{ratio, 0., 0., 0., fitted.constants()};
+  latcon::support::Extremes differences, eigenvalues;
+  for (int point = 1; point <= path_points; ++point)
+  {
+    const dealii::Tensor<2, 2> state = to_continuum(on_path(F, point));
+    const double difference = F.isIdentity(1e-12) ? 0. : fitted.energy(state) / exact.energy(state) - 1.;
+    calibration.energy_residual += difference * difference / path_points;
+    differences.add(std::abs(difference));
+    eigenvalues.add(continuum::minimum_acoustic_eigenvalue(fitted, state) / mu);
+  }
+  calibration.largest_energy_residual = differences.largest();
+  calibration.smallest_acoustic_eigenvalue = eigenvalues.smallest();
+  calibration.energy_residual = std::sqrt(calibration.energy_residual);
+  return calibration;
+}
+
+} // namespace verification

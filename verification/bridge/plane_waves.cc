@@ -1,0 +1,86 @@
+#include "verification/bridge/plane_waves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <complex>
+#include <limits>
+#include <stdexcept>
+
+#include <Eigen/Eigenvalues>
+#include <Eigen/LU>
+
+#include "support/largest_error.h"
+
+namespace verification
+{
+namespace
+{
+
+constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
+
+// Without dashpots the problem is symmetric, and its eigenvectors orthogonal to round-off.
+std::array<PlaneWave, 2> undamped(const Eigen::Matrix2d &stiffness)
+{
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(stiffness);
+  const auto wave = [&](int i) {
+    return PlaneWave{std::sqrt(latcon::support::one_sided(solver.eigenvalues()[i])), 0., solver.eigenvectors().col(i)};
+  };
+  return {wave(0), wave(1)};
+}
+
+std::array<PlaneWave, 2> damped(const WaveMatrices &matrices)
+{
+  // (u, u'/s)' = s B (u, u'/s) with a rate s that makes the entries comparable.
+  const double rate = std::sqrt(matrices.stiffness.norm());
+  Eigen::Matrix4d B;
+  B << Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Identity(), -matrices.stiffness / (rate * rate),
+    -matrices.damping / rate;
+  const Eigen::EigenSolver<Eigen::Matrix4d> solver(B);
+  // Of each conjugate pair the one that turns forward; of two real ones, which an overdamped wave has, the slower.
+  std::array<int, 4> order{0, 1, 2, 3};
+  std::sort(order.begin(), order.end(),
+            [&](int a, int b)
+            {
+              const std::complex<double> va = solver.eigenvalues()[a], vb = solver.eigenvalues()[b];
+              return va.imag() != vb.imag() ? va.imag() > vb.imag() : va.real() > vb.real();
+            });
+  const auto wave = [&](int i)
+  {
+    const std::complex<double> value = rate * solver.eigenvalues()[i];
+    const Eigen::Vector2cd vector = solver.eigenvectors().col(i).head<2>();
+    // Real up to a phase where damping and stiffness share their axes, nearly so elsewhere.
+    const std::complex<double> largest = std::abs(vector[0]) > std::abs(vector[1]) ? vector[0] : vector[1];
+    return PlaneWave{latcon::support::one_sided(value.imag()), -value.real(),
+                     Eigen::Vector2d((vector / largest).real()).normalized()};
+  };
+  return {wave(order[0]), wave(order[1])};
+}
+
+} // namespace
+
+std::array<PlaneWave, 2> plane_waves(const WaveMatrices &matrices, const Eigen::Vector2d &normal)
+{
+  // The solvers may return anything for what is not finite.
+  if (!matrices.stiffness.allFinite() || !matrices.damping.allFinite())
+    return {PlaneWave{not_a_number, not_a_number, {not_a_number, not_a_number}},
+            PlaneWave{not_a_number, not_a_number, {not_a_number, not_a_number}}};
+  std::array<PlaneWave, 2> waves = matrices.damping.isZero(0.) ? undamped(matrices.stiffness) : damped(matrices);
+  if (std::abs(waves[0].polarisation.dot(normal)) < std::abs(waves[1].polarisation.dot(normal)))
+    std::swap(waves[0], waves[1]);
+  return waves;
+}
+
+double fastest_frequency(const std::array<PlaneWave, 2> &waves)
+{
+  for (const PlaneWave &wave : waves)
+    if (!std::isfinite(wave.frequency) || !(wave.frequency > 0.))
+      throw std::runtime_error("a wave does not oscillate: it is overdamped, or the sheet is not stable");
+  return latcon::support::largest_of({waves[0].frequency, waves[1].frequency});
+}
+
+Eigen::Vector2d wave_normal(const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
+{
+  return (F.inverse().transpose() * K).normalized();
+}
+
+} // namespace verification

@@ -1,0 +1,66 @@
+#pragma once
+
+#include "continuum/constitution.h"
+#include "continuum/dynamic_solver.h"
+#include "continuum/viscosity.h"
+#include "verification/bridge/plane_waves.h"
+#include "verification/claims/oscillation.h"
+
+namespace verification
+{
+
+/// A continuum in which waves travel. The laws must outlive it.
+struct WaveContinuum
+{
+  continuum::Constitution constitution;
+  continuum::Inertia inertia;
+  const continuum::Viscosity *viscosity = nullptr; ///< none: elastic
+};
+
+/// What a plane wave meets at the homogeneous state F, in closed form from the tangents of the laws
+/// (theory-comparison.md, eq. (W.3)). @param K referential wave vector [1/m]
+WaveMatrices continuum_matrices(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K);
+
+/// Elements of a periodic sheet as long as the wave, along x and along y (two across where K has no component).
+struct WaveMesh
+{
+  unsigned int cells = 6;
+  unsigned int degree = 4;
+};
+
+/// Bound on the relative error of a discrete frequency [-]: Ainsworth's dispersion error of elements of degree p
+/// (SIAM J. Numer. Anal. 42, 553 (2004)), [p!/(2p)!]^2 (k h)^(2p) / (4p + 2), with p - 1 in place of p, as if all
+/// energy were that of second derivatives.
+double discretisation_bound(const WaveMesh &mesh);
+
+/// Frequencies [rad/s] of both waves as the finite elements have them: eigenvalues of tangent and mass, found by
+/// inverse iteration from the nodal values of both. Every rank computes all of it.
+/// @throws continuum::LinearSolverFailed
+std::array<double, 2> discrete_frequencies(const WaveContinuum &medium, const Eigen::Matrix2d &F,
+                                           const Eigen::Vector2d &K, const WaveMesh &mesh);
+
+/// Frequencies and decays of both waves, measured on the moving finite element sheet as lattice_waves does on the
+/// lattice: average acceleration, extrapolated from two time steps. Every rank computes all of it.
+/// @throws std::runtime_error if a wave does not oscillate; what DynamicSolver throws
+std::array<Oscillation, 2> finite_element_waves(const WaveContinuum &medium, const Eigen::Matrix2d &F,
+                                                const Eigen::Vector2d &K, const WaveMesh &mesh);
+
+/// Energy density that the displacement amplitude * p cos K.X adds to the homogeneous state, over amplitude^2 [J/m^5]:
+/// from second differences of the energy of the finite element sheet, extrapolated. Every rank computes all of it.
+double sinusoidal_energy(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
+                         const Eigen::Vector2d &p, double amplitude, const WaveMesh &mesh);
+
+/// Energy densities of a wave on its way through the finite element sheet [J/m^3].
+struct TravellingEnergy
+{
+  double elastic;       ///< above that of the homogeneous state
+  double kinetic;       ///< with micro-inertia
+  double micro_inertia; ///< the share of that in `kinetic`
+};
+
+/// Lets a wave amplitude * p cos(K.X - w t) of polarisation `wave` (0 longitudinal, 1 shear) travel for an eighth of a
+/// period. Every rank computes all of it. @throws what DynamicSolver throws
+TravellingEnergy travelling_energy(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
+                                   std::size_t wave, double amplitude, const WaveMesh &mesh);
+
+} // namespace verification

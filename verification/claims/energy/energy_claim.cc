@@ -1,0 +1,283 @@
+#include "verification/claims/energy/energy_claim.h"
+
+#include <cmath>
+#include <random>
+
+#include <Eigen/Geometry>
+#include <Eigen/LU>
+
+#include "support/largest_error.h"
+#include "verification/bridge/homogeneous_response.h"
+#include "verification/bridge/network_comparison.h"
+
+namespace verification
+{
+namespace
+{
+
+// Sums over some ten bonds of terms that the subtraction of constants in psi makes larger than the sum: a few hundred
+// round-offs of the largest term. The smallest W here is some 1e-2 of the moduli.
+constexpr double equal_formulas = NetworkComparison::equal_formulas;
+
+// Fourth-order differences of the stress at +-h and +-2h, exact but for h^4 times higher moduli and round-off over h.
+constexpr double strain_step = 1e-3;
+constexpr double small_strain_tolerance = 1e-9;
+
+// Lattice of 12 by 12 sites: the two outer rows and columns lack neighbours, the middle ones do not.
+lattice::TriangularLattice small_sheet(const Subject &subject)
+{
+  return {subject.spacing, 12. * subject.spacing, 12. * subject.spacing, subject.orientation};
+}
+
+double unit_uniform(std::mt19937_64 &generator)
+{
+  return static_cast<double>(generator() >> 11) * 0x1p-53; // the same on every machine, unlike std's distributions
+}
+
+Eigen::Matrix2d random_deformation(std::mt19937_64 &generator)
+{
+  const auto rotation = [&] { return Eigen::Rotation2Dd(2. * M_PI * unit_uniform(generator)).toRotationMatrix(); };
+  const auto stretch = [&] { return 0.7 + 2.8 * unit_uniform(generator); };
+  const Eigen::Matrix2d outer = rotation(), inner = rotation();
+  const double first = stretch(), second = stretch();
+  return outer * Eigen::Vector2d(first, second).asDiagonal() * inner;
+}
+
+// dP_iJ / dF_kL at F = I for one (k, L).
+template <class Stress>
+Eigen::Matrix2d stress_derivative(const Stress &stress, int k, int L)
+{
+  const auto at = [&](double amount)
+  {
+    Eigen::Matrix2d F = Eigen::Matrix2d::Identity();
+    F(k, L) += amount;
+    return Eigen::Matrix2d(stress(F));
+  };
+  const double h = strain_step;
+  return (8. * (at(h) - at(-h)) - (at(2. * h) - at(-2. * h))) / (12. * h);
+}
+
+// Rows of the claim, in their order.
+class Rows
+{
+public:
+  Rows(const Subject &subject, Results &results) : subject_(subject), results_(results) {}
+
+  void add(const std::string &quantity, const std::string &unit, std::optional<double> lattice_value,
+           std::optional<double> continuum_value, std::optional<double> theory, std::optional<double> error,
+           std::optional<double> tolerance)
+  {
+    results_.add(
+      {"energy", subject_.name + ": " + quantity, unit, lattice_value, continuum_value, theory, error, tolerance});
+  }
+
+private:
+  const Subject &subject_;
+  Results &results_;
+};
+
+// Moduli [Pa] and long-wave speeds [m/s] at F = I.
+struct Moduli
+{
+  double mu, lambda, shear_speed, longitudinal_speed;
+
+  Moduli(double shear, double first_lame, double density)
+    : mu(shear), lambda(first_lame), shear_speed(std::sqrt(mu / density)),
+      longitudinal_speed(std::sqrt((lambda + 2. * mu) / density))
+  {
+  }
+};
+
+// mu = dP_xy/dF_xy, lambda = dP_xx/dF_yy.
+Moduli lattice_moduli(const Subject &subject, const lattice::TriangularLattice &sheet)
+{
+  const auto stress = [&](const Eigen::Matrix2d &F)
+  { return homogeneous_response(sheet, subject.material, F).first_piola_stress; };
+  return {stress_derivative(stress, 0, 1)(0, 1), stress_derivative(stress, 1, 1)(0, 0), subject.material.density};
+}
+
+Moduli continuum_moduli(const Subject &subject, const continuum::Material &law)
+{
+  const auto tangent = law.tangent(to_continuum(Eigen::Matrix2d::Identity()));
+  return {tangent[0][1][0][1], tangent[0][0][1][1], subject.material.density};
+}
+
+// Moduli and speeds on the lattice, in a law of the continuum, and in closed form.
+void moduli_rows(const Subject &subject, const Moduli &lattice_side, Law law, const std::string &law_name,
+                 const Moduli &law_side, Rows &rows)
+{
+  const auto row = [&](const std::string &quantity, const std::string &unit, double Moduli::*value, double theory)
+  {
+    const double on_lattice = lattice_side.*value, on_continuum = law_side.*value;
+    const double error = latcon::support::largest_of(
+      {latcon::support::relative_error(on_lattice, theory), latcon::support::relative_error(on_continuum, theory)});
+    rows.add(quantity + " at F = I, " + law_name, unit, on_lattice, on_continuum, theory, error,
+             subject.tolerance(law, small_strain_tolerance));
+  };
+  const SmallStrain &theory = subject.theory;
+  row("mu", "Pa", &Moduli::mu, theory.shear_modulus);
+  row("lambda", "Pa", &Moduli::lambda, theory.shear_modulus);
+  row("c_S", "m/s", &Moduli::shear_speed, theory.shear_speed);
+  row("c_L", "m/s", &Moduli::longitudinal_speed, theory.longitudinal_speed);
+}
+
+// The residual about the calibrated ratio. The least residual has no slope: a wrong ratio has neighbours that are
+// better. At an end of what can be searched it may fall outwards, and only a slope inwards is an error.
+struct Optimum
+{
+  double slope; // error, per unit of the ratio
+  bool is_end;
+};
+
+Optimum optimum(const Subject &subject, const lattice::TriangularLattice &sheet)
+{
+  const double ratio = subject.mooney_rivlin->ratio;
+  constexpr double step = 1e-4, none = std::numeric_limits<double>::infinity();
+  const auto residual = [&](double r)
+  {
+    try
+    {
+      return std::abs(r) > largest_ratio ? none
+                                         : with_ratio(sheet, subject.material, subject.deformation, r).energy_residual;
+    }
+    catch (const continuum::NonPhysicalState &)
+    {
+      return none;
+    }
+  };
+  const double below = residual(ratio - step), above = residual(ratio + step);
+  if (below < none && above < none)
+    return {std::abs(above - below) / (2. * step), false};
+  return {latcon::support::one_sided((residual(ratio) - (below < above ? below : above)) / step), true};
+}
+
+// The law fitted along the loading path. At finite strain the difference is what the fit leaves, and is reported; but
+// the law must be the best there is, and one that finite elements can solve.
+void mooney_rivlin_rows(const Subject &subject, const lattice::TriangularLattice &sheet, const Moduli &lattice_side,
+                        Rows &rows)
+{
+  const auto judged = [&](double tolerance) { return subject.tolerance(Law::mooney_rivlin, tolerance); };
+  if (!subject.mooney_rivlin)
+  {
+    rows.add("plane-stress Mooney-Rivlin: no ratio gives a law that has a thickness all along the loading path", "1",
+             {}, {}, {}, std::numeric_limits<double>::infinity(), judged(0.));
+    return;
+  }
+  const Calibration &fit = *subject.mooney_rivlin;
+  const continuum::MooneyRivlin law(fit.law);
+  moduli_rows(subject, lattice_side, Law::mooney_rivlin, "plane-stress Mooney-Rivlin", continuum_moduli(subject, law),
+              rows);
+
+  const double on_lattice = homogeneous_response(sheet, subject.material, subject.deformation).energy_density;
+  const double on_continuum = law.energy(to_continuum(subject.deformation));
+  rows.add("energy density of the loaded sheet, plane-stress Mooney-Rivlin", "J/m^3", on_lattice, on_continuum, {},
+           latcon::support::relative_error(on_continuum, on_lattice), {});
+  rows.add("rms energy residual of plane-stress Mooney-Rivlin along the loading path", "1", {}, fit.energy_residual, {},
+           fit.energy_residual, {});
+  if (subject.ratio_is_calibrated)
+  {
+    const Optimum found = optimum(subject, sheet);
+    // A minimum is flat, so what is left of its location, 1e-9 by golden sections, is seen as a slope of as much times
+    // the curvature, which is below 100.
+    rows.add(std::string("calibrated ratio r = C2 / (C1 + C2)") +
+               (found.is_end ? ", at the end of the search interval; error: slope of the residual inwards"
+                             : "; error: slope of the residual there"),
+             "1", {}, fit.ratio, {}, found.slope, judged(1e-5));
+  }
+  else
+    rows.add("given ratio r = C2 / (C1 + C2)", "1", {}, fit.ratio, {}, {}, {});
+  // Strong ellipticity: the slowest wave on the path has rho c^2 > 0; the error is how far below zero it falls.
+  const double slowest = fit.smallest_acoustic_eigenvalue;
+  rows.add(std::string("slowest rho c^2 / mu on the path, plane-stress Mooney-Rivlin") +
+             (slowest < 0. ? ": the law loses ellipticity" : ""),
+           "1", {}, slowest, {}, latcon::support::one_sided(-slowest), judged(0.));
+}
+
+// The lattice against its own law of the continuum.
+void random_deformations(const Subject &subject, const lattice::TriangularLattice &sheet, unsigned int samples,
+                         Rows &rows)
+{
+  latcon::support::LargestError energy_error, stress_error;
+  std::mt19937_64 generator(20061111);
+  for (unsigned int sample = 0; sample < samples; ++sample)
+  {
+    Eigen::Matrix2d F = random_deformation(generator);
+    const LatticeResponse measured = homogeneous_response(sheet, subject.material, F);
+    const double energy = subject.cauchy_born.energy(to_continuum(F));
+    const Eigen::Matrix2d stress = to_lattice(subject.cauchy_born.first_piola_stress(to_continuum(F)));
+    energy_error.add_relative(measured.energy_density, energy);
+    stress_error.add((measured.first_piola_stress - stress).norm() / stress.norm());
+  }
+  const std::string count = std::to_string(samples) + " random F";
+  rows.add("energy density, Cauchy-Born, largest relative error, " + count, "1", {}, {}, {}, energy_error.error(),
+           equal_formulas);
+  rows.add("first Piola stress, Cauchy-Born, largest relative error, " + count, "1", {}, {}, {}, stress_error.error(),
+           equal_formulas);
+}
+
+// The network law leaves out the lattice's dependence on direction and nothing else: it is the mean over rotations of
+// the lattice, and no farther from the lattice than that dependence goes (theory-comparison.md, eq. (H.15)).
+void network_rows(const Subject &subject, const lattice::TriangularLattice &sheet, const Moduli &lattice_side,
+                  unsigned int samples, Rows &rows)
+{
+  const auto judged = [&](double tolerance) { return subject.tolerance(Law::mooney_rivlin_network, tolerance); };
+  moduli_rows(subject, lattice_side, Law::mooney_rivlin_network, "network", continuum_moduli(subject, subject.network),
+              rows);
+  latcon::support::LargestError energy_from_mean, stress_from_mean, energy_share, stress_share;
+  std::mt19937_64 generator(20061111);
+  for (unsigned int sample = 0; sample < samples; ++sample)
+  {
+    const NetworkComparison both(subject, sheet, random_deformation(generator));
+    energy_from_mean.add(both.energy_from_mean());
+    stress_from_mean.add(both.stress_from_mean());
+    energy_share.add(both.energy_error() / both.energy_bound());
+    stress_share.add(both.stress_error() / both.stress_bound());
+  }
+  const auto add = [&](const std::string &quantity, const latcon::support::LargestError &error, double tolerance)
+  {
+    rows.add(quantity + ", " + std::to_string(samples) + " random F", "1", {}, {}, {}, error.error(),
+             judged(tolerance));
+  };
+  add("energy density, network against the lattice's mean over rotations, largest relative error", energy_from_mean,
+      equal_formulas);
+  add("first Piola stress, network against the lattice's mean over rotations, largest relative error", stress_from_mean,
+      equal_formulas);
+  add("energy density, network, largest error over the bound of anisotropy", energy_share, 1.);
+  add("first Piola stress, network, largest error over the bound of anisotropy", stress_share, 1.);
+  if (subject.deformation.isIdentity(1e-12))
+    return; // neither stress nor a part of the energy that depends on the direction
+  const NetworkComparison stretched(subject, sheet, subject.deformation);
+  rows.add("energy density of the loaded sheet, network", "J/m^3", stretched.lattice_energy, stretched.network_energy,
+           stretched.energy.mean(0), stretched.energy_error(), judged(stretched.energy_bound()));
+  rows.add("first Piola stress of the loaded sheet, network, Frobenius norm", "Pa", stretched.lattice_stress.norm(),
+           stretched.network_stress.norm(), stretched.stress.mean.norm(), stretched.stress_error(),
+           judged(stretched.stress_bound()));
+}
+
+} // namespace
+
+Results energy_claim(const Subject &subject, unsigned int samples)
+{
+  const lattice::TriangularLattice sheet = small_sheet(subject);
+  Results results;
+  Rows rows(subject, results);
+  const auto attempt = [&](const std::string &part, const std::function<void()> &compute)
+  { return results.attempt("energy", subject.name + ": " + part, compute); };
+  attempt("homogeneous deformations", [&] { random_deformations(subject, sheet, samples, rows); });
+  std::optional<Moduli> on_lattice;
+  attempt("moduli and wave speeds at F = I",
+          [&]
+          {
+            on_lattice = lattice_moduli(subject, sheet);
+            moduli_rows(subject, *on_lattice, Law::cauchy_born, "Cauchy-Born",
+                        continuum_moduli(subject, subject.cauchy_born), rows);
+          });
+  if (!on_lattice)
+    return results;
+  attempt("network", [&] { network_rows(subject, sheet, *on_lattice, samples, rows); });
+  attempt("plane-stress Mooney-Rivlin along the loading path",
+          [&] { mooney_rivlin_rows(subject, sheet, *on_lattice, rows); });
+  return results;
+}
+
+} // namespace verification

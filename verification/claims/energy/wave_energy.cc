@@ -1,0 +1,292 @@
+#include "verification/claims/energy/wave_energy.h"
+
+#include <array>
+#include <cmath>
+#include <sstream>
+
+#include "lattice/simulation.h"
+#include "lattice/time_step.h"
+#include "support/largest_error.h"
+#include "verification/bridge/bloch.h"
+#include "verification/claims/lattice_waves.h"
+#include "verification/claims/order_fit.h"
+#include "verification/claims/state_name.h"
+
+namespace verification
+{
+namespace
+{
+
+// Second differences of energies at +-strain and +-2 strain: exact but for its fourth power times higher moduli, and
+// round-off of the energy of the stretched sheet over its square.
+constexpr double strain = 1e-3;
+constexpr double lattice_tolerance = 1e-6;
+constexpr double order_tolerance = 0.2;
+// Of the travelling waves that rows are about.
+constexpr double judged_kd = 0.25;
+// As for the wave speeds.
+const std::vector<double> order_kd{0.05, 0.1, 0.2, 0.4};
+
+constexpr const char *wave_names[] = {"L", "S"};
+
+// (1/2) d2E/de2 at e = 0 of an energy whose odd terms vanish.
+template <class Energy>
+double half_second_derivative(const Energy &energy, double e)
+{
+  const double at_rest = energy(0.);
+  const auto second = [&](double x) { return 0.5 * (energy(x) + energy(-x) - 2. * at_rest) / (x * x); };
+  return (4. * second(e) - second(2. * e)) / 3.;
+}
+
+// Energy density that the displacement amplitude * p cos K.X adds, over amplitude^2 [J/m^5], on the lattice.
+double lattice_stiffness(const WaveCell &cell, const lattice::Material &material, const Eigen::Matrix2d &F,
+                         const Eigen::Vector2d &p)
+{
+  const lattice::TriangularLattice &sheet = cell.sheet;
+  const lattice::State at_rest = lattice::homogeneous_state(sheet, material, F, lattice::Edges::free);
+  const auto energy = [&](double amplitude)
+  {
+    lattice::State state = at_rest;
+    for (std::size_t row = 0; row < sheet.rows(); ++row)
+      for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
+      {
+        const std::size_t place = sheet.index(row, column);
+        const double shape = amplitude * std::cos(cell.K.dot(sheet.reference(place)));
+        state.x[place] += shape * p.x();
+        state.y[place] += shape * p.y();
+      }
+    lattice::update_images(state, sheet);
+    return lattice::elastic_energy(state, sheet, material);
+  };
+  const double area = static_cast<double>(sheet.n_sites()) * sheet.site_area();
+  return half_second_derivative(energy, strain / cell.K.norm()) / area;
+}
+
+struct Media
+{
+  Media(const Subject &subject)
+    : local{{subject.cauchy_born}, {subject.material.density}}, gradient{
+                                                                  {subject.cauchy_born, *subject.lattice_gradient},
+                                                                  {subject.material.density, subject.lengths.lattice}}
+  {
+  }
+  WaveContinuum local, gradient;
+};
+
+// The same in closed form, (1/4) p.(rho (1 + l^2 k^2) D) p: mean of cos^2 times half the stiffness.
+double closed_stiffness(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
+                        const Eigen::Vector2d &p)
+{
+  const double mass = medium.inertia.density * (1. + std::pow(medium.inertia.length, 2) * K.squaredNorm());
+  return 0.25 * mass * p.dot(continuum_matrices(medium, F, K).stiffness * p);
+}
+
+double bloch_stiffness(const lattice::TriangularLattice &sheet, const lattice::Material &material,
+                       const Eigen::Matrix2d &F, const Eigen::Vector2d &K, const Eigen::Vector2d &p)
+{
+  return 0.25 * material.density * p.dot(bloch_matrices(sheet, material, F, K).stiffness * p);
+}
+
+void sinusoidal(const Subject &subject, const Eigen::Matrix2d &F, const WaveEnergyOptions &options,
+                ClaimOutcome &outcome)
+{
+  const Media media(subject);
+  const lattice::Material material = lattice::without_dashpots(subject.material);
+  const double d = subject.spacing, l_d = subject.lengths.lattice;
+  Table &table = outcome.table("sinusoidal_energy", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d", "lattice",
+                                                     "local", "gradient", "filtered", "fem"});
+  latcon::support::LargestError lattice_error, element_error, excess_error;
+  CommonOrder local_order(order_kd), gradient_order(order_kd), filtered_order(order_kd);
+  for (const WaveDirection &direction : {WaveDirection{1, 0}, WaveDirection{1, 2}})
+  {
+    const Eigen::Vector2d N = unit_vector(direction, subject.orientation);
+    for (const double kd : options.kd)
+    {
+      const WaveCell cell = wave_cell(d, subject.orientation, direction, kd);
+      const double inertia = 1. + std::pow(l_d, 2) * cell.K.squaredNorm();
+      // One field for all: polarised as the waves of the local continuum.
+      const auto waves = plane_waves(continuum_matrices(media.local, F, cell.K), wave_normal(F, cell.K));
+      for (std::size_t w = 0; w < 2; ++w)
+      {
+        const Eigen::Vector2d &p = waves[w].polarisation;
+        const double local = closed_stiffness(media.local, F, cell.K, p),
+                     gradient = closed_stiffness(media.gradient, F, cell.K, p),
+                     bloch = bloch_stiffness(cell.sheet, material, F, cell.K, p),
+                     measured = lattice_stiffness(cell, material, F, p),
+                     elements = sinusoidal_energy(media.gradient, F, cell.K, p, strain / cell.K.norm(), options.mesh);
+        lattice_error.add_relative(measured, bloch);
+        element_error.add_relative(elements, gradient);
+        table.add({subject.name, F(0, 0), F(1, 1), angle(direction, subject.orientation), std::string(wave_names[w]),
+                   cell.K.norm() * d, measured / local, 1., gradient / local, gradient / inertia / local,
+                   elements / local});
+      }
+    }
+    for (std::size_t w = 0; w < 2; ++w)
+    {
+      std::vector<double> local_errors, gradient_errors, filtered_errors;
+      for (const double kd : order_kd)
+      {
+        const Eigen::Vector2d K = kd / d * N;
+        const Eigen::Vector2d p = plane_waves(continuum_matrices(media.local, F, K), wave_normal(F, K))[w].polarisation;
+        const double exact = bloch_stiffness({d, 10. * d, 10. * d, subject.orientation}, material, F, K, p),
+                     gradient = closed_stiffness(media.gradient, F, K, p);
+        local_errors.push_back(std::abs(closed_stiffness(media.local, F, K, p) / exact - 1.));
+        gradient_errors.push_back(std::abs(gradient / exact - 1.));
+        filtered_errors.push_back(std::abs(gradient / (1. + l_d * l_d * K.squaredNorm()) / exact - 1.));
+        // To leading order the excess is l_d^2 k^2, whatever the wave; what follows is of fourth order.
+        if (kd == order_kd[0])
+          excess_error.add_relative(gradient / exact - 1., l_d * l_d * K.squaredNorm());
+      }
+      local_order.add(local_errors);
+      gradient_order.add(gradient_errors);
+      filtered_order.add(filtered_errors);
+    }
+  }
+  const std::string prefix = subject.name + ", sinusoidal field about " + state_name(F) + ": ";
+  const auto add = [&](const std::string &quantity, std::optional<double> continuum_value, std::optional<double> theory,
+                       double error, std::optional<double> tolerance) {
+    outcome.results.add({"energy", prefix + quantity, "1", {}, continuum_value, theory, error, tolerance});
+  };
+  add("energy of the lattice against Bloch, worst of all fields", {}, {}, lattice_error.error(), lattice_tolerance);
+  // Nodal values of a wave are not the best that the elements can do.
+  add("energy of the finite elements against their continuum, worst of all fields", {}, {}, element_error.error(),
+      4. * discretisation_bound(options.mesh));
+  const auto add_order =
+    [&](const std::string &quantity, const CommonOrder &found, double claimed, std::optional<double> tolerance)
+  {
+    const double order = found.order();
+    add("order in kd to which " + quantity, order, claimed, std::abs(order - claimed), tolerance);
+  };
+  add_order("local continuum and lattice agree", local_order, 2., order_tolerance);
+  add_order("the gradient continuum's energy as it stands and the lattice's agree: no better", gradient_order, 2.,
+            subject.gradient_tolerance(F, order_tolerance));
+  add("excess of the gradient continuum's energy over l_d^2 k^2 at kd = 0.05",
+      excess_error.value() / excess_error.reference(), 1., excess_error.error(),
+      subject.gradient_tolerance(F, std::pow(order_kd[0], 2)));
+  add_order("the gradient continuum's energy over 1 + l_d^2 k^2 and the lattice's agree", filtered_order, 4.,
+            subject.gradient_tolerance(F, order_tolerance));
+}
+
+struct Densities
+{
+  double elastic, kinetic; // [J/m^3]
+};
+
+// A wave amplitude * p cos(K.X - w t) on its way through the lattice for an eighth of a period.
+Densities travelling_lattice(const WaveCell &cell, const lattice::Material &material, const Eigen::Matrix2d &F,
+                             const PlaneWave &wave, double amplitude)
+{
+  const lattice::TriangularLattice &sheet = cell.sheet;
+  lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::free);
+  const double at_rest = lattice::elastic_energy(state, sheet, material);
+  for (std::size_t row = 0; row < sheet.rows(); ++row)
+    for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
+    {
+      const std::size_t place = sheet.index(row, column);
+      const double phase = cell.K.dot(sheet.reference(place));
+      const Eigen::Vector2d u = amplitude * std::cos(phase) * wave.polarisation,
+                            v = amplitude * wave.frequency * std::sin(phase) * wave.polarisation;
+      state.x[place] += u.x();
+      state.y[place] += u.y();
+      state.vx[place] = v.x();
+      state.vy[place] = v.y();
+    }
+  // The wave itself shortens bonds a little more.
+  const double limit = lattice::time_step_limits(sheet, material, 0.99 * smallest_stretch(sheet, F)).combined;
+  const double eighth = 0.25 * M_PI / wave.frequency;
+  const auto steps = static_cast<int>(std::ceil(eighth / latcon::support::smallest_of({0.5 * limit, eighth / 40.})));
+  lattice::Simulation simulation(sheet, material, std::move(state), eighth / steps);
+  for (int step = 0; step < steps; ++step)
+    simulation.step();
+  const lattice::EnergyBalance energies = simulation.energies();
+  const double area = static_cast<double>(sheet.n_sites()) * sheet.site_area();
+  return {(energies.elastic - at_rest) / area, energies.kinetic / area};
+}
+
+void travelling(const Subject &subject, const Eigen::Matrix2d &F, double wanted_kd, const WaveMesh &mesh,
+                ClaimOutcome &outcome)
+{
+  const Media media(subject);
+  const lattice::Material material = lattice::without_dashpots(subject.material);
+  const double d = subject.spacing, rho = material.density;
+  const WaveCell cell = wave_cell(d, subject.orientation, {1, 0}, wanted_kd);
+  // The second harmonic that grows on the way has an amplitude of the strain times the ratio of third to second moduli,
+  // a few tens for slow waves of a stretched sheet; kinetic energy in it has sixteen times the micro-inertia. Round-off
+  // of the energy of the stretched sheet, up to 1e11 times that of the wave, bounds the strain from below.
+  constexpr double travelling_strain = 1e-4;
+  const double kd = cell.K.norm() * d, amplitude = travelling_strain / cell.K.norm();
+  const double inertia = 1. + std::pow(subject.lengths.lattice / d * kd, 2);
+  const auto bloch = bloch_waves(cell.sheet, material, F, cell.K),
+             closed = plane_waves(continuum_matrices(media.gradient, F, cell.K), wave_normal(F, cell.K));
+  // Both sides are followed for an eighth of a period, if there is one.
+  for (const auto &waves : {bloch, closed})
+    static_cast<void>(fastest_frequency(waves));
+  Table &table =
+    outcome.table("travelling_waves", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d",
+                                       "lattice_elastic [J/m^3]", "lattice_kinetic [J/m^3]", "fem_elastic [J/m^3]",
+                                       "fem_kinetic [J/m^3]", "fem_micro_inertia [J/m^3]", "theory [J/m^3]"});
+  for (std::size_t w = 0; w < 2; ++w)
+  {
+    const Densities run = travelling_lattice(cell, material, F, bloch[w], amplitude);
+    const TravellingEnergy elements = travelling_energy(media.gradient, F, cell.K, w, amplitude, mesh);
+    const double theory = 0.5 * rho * std::pow(bloch[w].frequency * amplitude, 2),
+                 continuum_theory = 0.5 * rho * inertia * std::pow(closed[w].frequency * amplitude, 2);
+    const double total = run.elastic + run.kinetic, element_total = elements.elastic + elements.kinetic;
+    table.add({subject.name, F(0, 0), F(1, 1), 0., std::string(wave_names[w]), kd, run.elastic, run.kinetic,
+               elements.elastic, elements.kinetic - elements.micro_inertia, elements.micro_inertia, 0.5 * theory});
+    if (wanted_kd != judged_kd)
+      continue; // for the plot
+    std::ostringstream where;
+    where << subject.name << ", travelling " << wave_names[w] << " wave about " << state_name(F)
+          << ", kd = " << std::round(1e3 * kd) / 1e3 << ": ";
+    const auto add = [&](const std::string &quantity, std::optional<double> lattice_value,
+                         std::optional<double> continuum_value, std::optional<double> value, double error,
+                         std::optional<double> tolerance)
+    {
+      outcome.results.add(
+        {"energy", where.str() + quantity, "J/m^3", lattice_value, continuum_value, value, error, tolerance});
+    };
+    // Harmonic waves share their energy equally. Both steppings err by (w h)^2 / 8 at most, the lattice with a fiftieth
+    // of a radian a step, the elements with a fortieth.
+    constexpr double tolerance = 2e-4;
+    add("elastic against kinetic energy, lattice and finite elements", run.elastic, elements.elastic, 0.5 * theory,
+        latcon::support::largest_of({latcon::support::relative_error(run.elastic, run.kinetic),
+                                     latcon::support::relative_error(elements.elastic, elements.kinetic)}),
+        tolerance);
+    add("energy, lattice and finite elements each against its theory", total, element_total, theory,
+        latcon::support::largest_of({latcon::support::relative_error(total, theory),
+                                     latcon::support::relative_error(element_total, continuum_theory)}),
+        tolerance);
+    // The speeds differ by 1e-4 at most here (claim wave-speeds), energies by twice that and the time stepping.
+    add("energy of the finite elements over 1 + l_d^2 k^2, against the lattice", total, element_total / inertia, theory,
+        latcon::support::relative_error(element_total / inertia, total),
+        subject.gradient_tolerance(F, 2e-4 + tolerance));
+    // Sixteen times the square of the second harmonic's amplitude.
+    constexpr double harmonic_tolerance = 1e-4;
+    add("micro-inertia's share of the kinetic energy, l_d^2 k^2 / (1 + l_d^2 k^2)", {}, elements.micro_inertia,
+        elements.kinetic * (1. - 1. / inertia),
+        latcon::support::relative_error(elements.micro_inertia, elements.kinetic * (1. - 1. / inertia)),
+        harmonic_tolerance);
+  }
+}
+
+} // namespace
+
+ClaimOutcome wave_energy_claim(const Subject &subject, const WaveEnergyOptions &options)
+{
+  ClaimOutcome outcome;
+  const auto attempt = [&](const std::string &part, const std::function<void()> &compute)
+  { outcome.results.attempt("energy", subject.name + ", " + part, compute); };
+  for (const Eigen::Matrix2d &F : options.states)
+    attempt("sinusoidal field about " + state_name(F), [&] { sinusoidal(subject, F, options, outcome); });
+  for (const Eigen::Matrix2d &F : options.states)
+    for (const double kd : options.kd)
+    {
+      std::ostringstream part;
+      part << "travelling waves about " << state_name(F) << ", kd = " << kd;
+      attempt(part.str(), [&] { travelling(subject, F, kd, options.travelling_mesh, outcome); });
+    }
+  return outcome;
+}
+
+} // namespace verification

@@ -1,0 +1,87 @@
+#include "verification/claims/oscillation.h"
+
+#include <cmath>
+#include <complex>
+#include <stdexcept>
+
+#include <Eigen/Dense>
+
+namespace verification
+{
+namespace
+{
+
+// Index of the first sample past the first change of sign: about a quarter of a period.
+std::size_t first_crossing(const std::vector<double> &values)
+{
+  for (std::size_t i = 1; i < values.size(); ++i)
+    if (values[i] * values[0] <= 0.)
+      return i;
+  throw std::runtime_error("the wave did not oscillate in the time that it was given");
+}
+
+// Frequency and decay of a(t + 2s) = c1 a(t + s) + c2 a(t), with the stride s in samples.
+std::complex<double> recurrence(const std::vector<double> &values, double step, std::size_t stride)
+{
+  const auto n = static_cast<Eigen::Index>(values.size() - 2 * stride);
+  Eigen::MatrixX2d A(n, 2);
+  Eigen::VectorXd b(n);
+  for (Eigen::Index i = 0; i < n; ++i)
+  {
+    const auto at = static_cast<std::size_t>(i);
+    A.row(i) << values[at + stride], values[at];
+    b[i] = values[at + 2 * stride];
+  }
+  const Eigen::Vector2d c = A.colPivHouseholderQr().solve(b);
+  const std::complex<double> root = 0.5 * (c[0] + std::sqrt(std::complex<double>(c[0] * c[0] + 4. * c[1])));
+  return std::log(root) / (static_cast<double>(stride) * step);
+}
+
+} // namespace
+
+Oscillation fit_oscillation(const std::vector<double> &values, double step)
+{
+  const std::size_t stride = std::max<std::size_t>(1, first_crossing(values) / 2);
+  if (values.size() < 4 * stride + 4)
+    throw std::runtime_error("the wave was followed for less than half a period");
+  const std::complex<double> start = recurrence(values, step, stride);
+  double g = -start.real(), w = std::abs(start.imag());
+
+  const auto n = static_cast<Eigen::Index>(values.size());
+  const Eigen::Map<const Eigen::VectorXd> a(values.data(), n);
+  Eigen::MatrixX4d J(n, 4);
+  Eigen::Vector2d amplitudes = Eigen::Vector2d::Zero();
+  // Quadratic, since the values are an oscillation but for small terms; a handful of steps reach round-off.
+  constexpr int max_iterations = 50;
+  for (int iteration = 0; iteration < max_iterations; ++iteration)
+  {
+    for (Eigen::Index i = 0; i < n; ++i)
+    {
+      const double t = static_cast<double>(i) * step, fade = std::exp(-g * t);
+      J(i, 0) = fade * std::cos(w * t);
+      J(i, 1) = fade * std::sin(w * t);
+    }
+    amplitudes = J.leftCols<2>().colPivHouseholderQr().solve(a);
+    const Eigen::VectorXd left = a - J.leftCols<2>() * amplitudes;
+    const double residual = left.norm() / a.norm();
+    for (Eigen::Index i = 0; i < n; ++i)
+    {
+      const double wt = static_cast<double>(i) * step * w; // derivatives by g/w and by the logarithm of w
+      J(i, 2) = -wt * (amplitudes[0] * J(i, 0) + amplitudes[1] * J(i, 1));
+      J(i, 3) = wt * (-amplitudes[0] * J(i, 1) + amplitudes[1] * J(i, 0));
+    }
+    const Eigen::Vector4d change = J.colPivHouseholderQr().solve(left);
+    g += w * change[2];
+    w *= 1. + change[3];
+    if (!(w > 0.) || !std::isfinite(g))
+      break;
+    if (std::abs(change[2]) + std::abs(change[3]) < 1e-13)
+      return {w, g, residual};
+    // Round-off of the values themselves can keep the last digits moving.
+    if (iteration > 8 && std::abs(change[2]) + std::abs(change[3]) < 1e-10)
+      return {w, g, residual};
+  }
+  throw std::runtime_error("no oscillation fits the wave's amplitude");
+}
+
+} // namespace verification

@@ -1,0 +1,264 @@
+#include "verification/claims/prestretch/cut_comparison.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include <Eigen/LU>
+
+#include "continuum/errors.h"
+#include "continuum/meshes.h"
+#include "continuum/static_solver.h"
+#include "support/largest_error.h"
+#include "verification/bridge/affine_displacement.h"
+
+namespace verification
+{
+namespace
+{
+
+using Mesh = dealii::parallel::distributed::Triangulation<2>;
+
+void make_mesh(Mesh &mesh, const CutSheet &sheet, const EquivalentSheet &domain, const CutMesh &settings)
+{
+  if (std::holds_alternative<lattice::Notch>(sheet.cutout))
+  {
+    continuum::make_notched_rectangle(mesh, {domain.length(), domain.height(), domain.cut, settings.refinements});
+    return;
+  }
+  continuum::make_rectangle_with_hole(mesh, {domain.length(), domain.height(), domain.cut, settings.refinements});
+  const dealii::Point<2> centre(0.5 * domain.length(), 0.);
+  for (unsigned int i = 0; i < settings.rim_refinements; ++i)
+  {
+    for (const auto &cell : mesh.active_cell_iterators())
+      if (cell->is_locally_owned() && cell->center().distance(centre) - domain.cut < 0.5 * cell->diameter())
+        cell->set_refine_flag();
+    mesh.execute_coarsening_and_refinement();
+  }
+}
+
+continuum::BoundaryConditions conditions(const CutSheet &sheet)
+{
+  const auto displacement = std::make_shared<AffineDisplacement>(sheet.F);
+  const bool held[] = {sheet.held.left, sheet.held.right, sheet.held.bottom, sheet.held.top};
+  std::vector<continuum::PrescribedDisplacement> list;
+  for (dealii::types::boundary_id id = 0; id < 4; ++id)
+    if (held[id])
+      list.push_back({id, displacement});
+  return continuum::BoundaryConditions(list);
+}
+
+// Where the continuum is asked, in its own coordinates, and from where it is continued linearly to the site: sites
+// stand where the rim of a hole has receded from them, or before a free edge.
+class Points
+{
+public:
+  Points(const CutLattice &cut, const CutSheet &sheet, const EquivalentSheet &domain) : origin_(domain.left, 0.)
+  {
+    // A little off the boundary, which a mesh has to the accuracy of its polynomials.
+    const double inside = 1e-4 * domain.cut;
+    const bool hole = std::holds_alternative<lattice::RoundHole>(sheet.cutout);
+    const Eigen::Vector2d centre(0.5 * domain.length(), 0.);
+    for (const CutLattice::Site &site : cut.sites)
+    {
+      const Eigen::Vector2d X = cut.lattice.reference(site.place) - origin_;
+      Eigen::Vector2d Y(std::clamp(X.x(), inside, domain.length() - inside),
+                        std::clamp(X.y(), domain.bottom + inside, domain.top - inside));
+      const double distance = (Y - centre).norm();
+      if (hole && distance < domain.cut + inside)
+        Y = centre + (Y - centre) / distance * (domain.cut + inside);
+      points_.emplace_back(Y.x(), Y.y());
+      offsets_.push_back(X - Y);
+    }
+  }
+
+  const std::vector<dealii::Point<2>> &points() const { return points_; }
+
+  // Displacement [m] at the sites, in the coordinates of the lattice.
+  std::vector<Eigen::Vector2d> displacements(const std::vector<continuum::PointState> &states,
+                                             const Eigen::Matrix2d &F) const
+  {
+    const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
+    std::vector<Eigen::Vector2d> u;
+    for (std::size_t i = 0; i < states.size(); ++i)
+      u.emplace_back(Eigen::Vector2d(states[i].displacement[0], states[i].displacement[1]) + (F - I) * origin_ +
+                     (to_lattice(states[i].F) - I) * offsets_[i]);
+    return u;
+  }
+
+private:
+  Eigen::Vector2d origin_; // of the continuum's coordinates in those of the lattice
+  std::vector<dealii::Point<2>> points_;
+  std::vector<Eigen::Vector2d> offsets_;
+};
+
+double rms_difference(const std::vector<Eigen::Vector2d> &a, const std::vector<Eigen::Vector2d> &b)
+{
+  double sum = 0.;
+  for (std::size_t i = 0; i < a.size(); ++i)
+    sum += (a[i] - b[i]).squaredNorm();
+  return std::sqrt(sum / static_cast<double>(a.size()));
+}
+
+// How far the cut has opened [m]: of a hole, the factors of n_x and n_y that fit u_x and u_y over the sites at its rim,
+// n pointing from the centre to the site; of a notch, the mean of u_y over the sites next to the mouth, above less
+// below.
+Eigen::Vector2d opening(const CutLattice &cut, const CutSheet &sheet, const std::vector<Eigen::Vector2d> &u)
+{
+  const bool hole = std::holds_alternative<lattice::RoundHole>(sheet.cutout);
+  const double d = cut.lattice.spacing();
+  const Eigen::Vector2d centre(0.5 * cut.lattice.length(), 0.);
+  Eigen::Vector2d sum = Eigen::Vector2d::Zero(), weight = Eigen::Vector2d::Zero();
+  for (std::size_t i = 0; i < cut.sites.size(); ++i)
+  {
+    const Eigen::Vector2d X = cut.lattice.reference(cut.sites[i].place);
+    if (hole && !cut.sites[i].has_all_bonds)
+    {
+      const Eigen::Vector2d n = (X - centre).normalized();
+      sum += n.cwiseProduct(u[i]);
+      weight += n.cwiseProduct(n);
+    }
+    if (!hole && X.x() < 0.25 * sheet.size && std::abs(X.y()) < 1.1 * d)
+    {
+      sum.y() += X.y() > 0. ? u[i].y() : -u[i].y();
+      weight.y() += 0.5;
+    }
+  }
+  return {weight.x() > 0. ? sum.x() / weight.x() : 0., sum.y() / weight.y()};
+}
+
+// Length of a - b over that of b.
+double relative(const Eigen::Vector2d &a, const Eigen::Vector2d &b)
+{
+  return (a - b).norm() / b.norm();
+}
+
+// What displacements are compared with [m].
+double displacement_scale(const CutSheet &sheet)
+{
+  return sheet.size * (sheet.F - Eigen::Matrix2d::Identity()).norm();
+}
+
+CutSolution solution(const CutLattice &cut, const CutSheet &sheet, const EquivalentSheet &domain,
+                     const continuum::StaticSolver &solver, const std::vector<continuum::PointState> &states,
+                     const std::vector<Eigen::Vector2d> &of_continuum)
+{
+  CutSolution found{{}, of_continuum, {}, {}, opening(cut, sheet, of_continuum)};
+  CutErrors &e = found.errors;
+  for (const continuum::PointState &state : states)
+  {
+    found.F.push_back(to_lattice(state.F));
+    found.P.push_back(to_lattice(state.P));
+  }
+  latcon::support::LargestError displacement_max;
+  const double scale = displacement_scale(sheet);
+  std::vector<Eigen::Vector2d> of_lattice;
+  double stress = 0., stress_norm = 0., cauchy = 0., cauchy_norm = 0., product = 0., inside = 0., n_inside = 0.;
+  for (std::size_t i = 0; i < cut.sites.size(); ++i)
+  {
+    const std::size_t place = cut.sites[i].place;
+    const Eigen::Vector2d X = cut.lattice.reference(place);
+    of_lattice.emplace_back(cut.state.x[place] - X.x(), cut.state.y[place] - X.y());
+    displacement_max.add((of_lattice.back() - of_continuum[i]).norm() / scale);
+    if (!cut.sites[i].has_all_bonds)
+      continue;
+    inside += (of_lattice.back() - of_continuum[i]).squaredNorm();
+    ++n_inside;
+    const Eigen::Matrix2d &P = found.P[i], &F = found.F[i];
+    const Eigen::Matrix2d sigma = P * F.transpose() / F.determinant();
+    stress += (cut.fields.first_piola_stress[place] - P).squaredNorm();
+    product += cut.fields.first_piola_stress[place].cwiseProduct(P).sum();
+    stress_norm += P.squaredNorm();
+    cauchy += (cut.fields.cauchy_stress[place] - sigma).squaredNorm();
+    cauchy_norm += sigma.squaredNorm();
+  }
+  e.displacement_max = displacement_max.error();
+  e.displacement = std::sqrt(inside / n_inside) / scale;
+  e.displacement_all = rms_difference(of_lattice, of_continuum) / scale;
+  e.stress = std::sqrt(stress / stress_norm);
+  e.stress_scale = product / stress_norm - 1.;
+  e.cauchy_stress = std::sqrt(cauchy / cauchy_norm);
+
+  const double width_of_energy = domain.right - (sheet.held.left ? domain.left : cut.left_of_energy);
+  const double width_of_force = domain.right - (sheet.held.left ? domain.left : cut.left_of_force);
+  const double energy = cut.energy_change + cut.homogeneous_energy * width_of_energy * domain.height();
+  e.energy = energy / solver.total_energy() - 1.;
+
+  const Eigen::Vector2d on_lattice(cut.reaction_change.x() + cut.homogeneous_P(0, 0) * domain.height(),
+                                   cut.reaction_change.y() + cut.homogeneous_P(1, 1) * width_of_force);
+  const auto forces = solver.reactions();
+  const Eigen::Vector2d on_continuum(forces.at(continuum::edge::right)[0], forces.at(continuum::edge::top)[1]);
+  e.reaction = (on_lattice - on_continuum).dot(on_continuum) / on_continuum.squaredNorm();
+  e.reaction_vector = relative(on_lattice, on_continuum);
+  e.shape = relative(opening(cut, sheet, of_lattice), found.opening);
+  e.unknowns = static_cast<double>(solver.sheet().dof_handler().n_dofs());
+  return found;
+}
+
+} // namespace
+
+CutDistance distance(const CutLattice &lattice, const CutSheet &sheet, const CutSolution &a, const CutSolution &b)
+{
+  double u = 0., P = 0., norm = 0., n = 0.;
+  for (std::size_t i = 0; i < lattice.sites.size(); ++i)
+    if (lattice.sites[i].has_all_bonds)
+    {
+      u += (a.u[i] - b.u[i]).squaredNorm();
+      P += (a.P[i] - b.P[i]).squaredNorm();
+      norm += b.P[i].squaredNorm();
+      ++n;
+    }
+  return {std::sqrt(u / n) / displacement_scale(sheet),
+          std::sqrt(P / norm),
+          std::abs(a.errors.stress_scale - b.errors.stress_scale),
+          std::abs(a.errors.energy - b.errors.energy),
+          std::abs(a.errors.reaction - b.errors.reaction),
+          relative(a.opening, b.opening)};
+}
+
+std::optional<CutSolution> compare(const CutLattice &cut, const CutSheet &sheet, const EquivalentSheet &domain,
+                                   const continuum::Constitution &law, const CutMesh &mesh_settings,
+                                   std::string &failure)
+{
+  Mesh mesh(MPI_COMM_WORLD);
+  make_mesh(mesh, sheet, domain, mesh_settings);
+  continuum::StaticSettings settings;
+  settings.degree = mesh_settings.degree;
+  settings.relative_tolerance = 1e-9;
+  settings.smallest_load_step = 1. / 16.;
+  const Points points(cut, sheet, domain);
+  try
+  {
+    continuum::StaticSolver solver(mesh, law, conditions(sheet), settings);
+    solver.solve();
+    std::vector<continuum::PointState> states = solver.evaluate(points.points());
+    std::vector<Eigen::Vector2d> u = points.displacements(states, sheet.F), coarser = u;
+    for (unsigned int cycle = 0; cycle < mesh_settings.cycles; ++cycle)
+    {
+      solver.refine(mesh, mesh_settings.fraction);
+      solver.equilibrate();
+      if (cycle + 2 < mesh_settings.cycles)
+        continue;
+      coarser = std::move(u);
+      states = solver.evaluate(points.points());
+      u = points.displacements(states, sheet.F);
+    }
+    CutSolution found = solution(cut, sheet, domain, solver, states, u);
+    found.errors.fem = rms_difference(u, coarser) / displacement_scale(sheet);
+    return found;
+  }
+  catch (const continuum::SolverFailed &error)
+  {
+    failure = error.what();
+  }
+  catch (const continuum::LinearSolverFailed &error)
+  {
+    failure = error.what();
+  }
+  catch (const continuum::NonPhysicalState &error)
+  {
+    failure = error.what();
+  }
+  return std::nullopt;
+}
+
+} // namespace verification

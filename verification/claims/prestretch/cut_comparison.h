@@ -1,0 +1,74 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "continuum/constitution.h"
+#include "verification/bridge/equivalent_sheet.h"
+#include "verification/claims/prestretch/cut_lattice.h"
+
+namespace verification
+{
+
+/// A law of the continuum that a claim sets beside the lattice.
+struct NamedLaw
+{
+  std::string name; ///< "local", "lattice", "isotropic" (gradient energies beside the local law), "mooney-rivlin"
+  continuum::Constitution constitution;
+};
+
+/// How the finite element sheet is solved.
+struct CutMesh
+{
+  unsigned int degree = 3;
+  unsigned int refinements = 0;     ///< of the whole coarse mesh
+  unsigned int rim_refinements = 1; ///< of the cells around a hole
+  unsigned int cycles = 1;          ///< of refinement where the error seems largest, each followed by an equilibrium
+  double fraction = 0.3;            ///< of the cells, in each cycle [-]
+};
+
+/// Differences between a lattice and a continuum that hold the same sheet, all relative [-]. Positive where the lattice
+/// has more, if they have a sign. Energy and reaction are compared as theory-comparison.md, eq. (H.12), has them.
+struct CutErrors
+{
+  double displacement;     ///< rms over the sites with all their bonds, over |F - I| times the size of the cut
+  double displacement_all; ///< rms over all free sites: at a rim, one that few bonds hold is far off by itself
+  double displacement_max; ///< largest of all
+  double stress;           ///< first Piola, rms over the sites with all their bonds, over the rms of the continuum's
+  double cauchy_stress;    ///< likewise
+  double stress_scale;     ///< of all these stresses at once: sum P_lattice : P / sum P : P - 1
+  double energy;           ///< total
+  double reaction; ///< force on the right edge along x and on the top edge along y, as a vector, along the continuum's
+  double reaction_vector; ///< length of the difference of both
+  double shape;           ///< opening of the hole along x and y, or of the mouth of the notch, likewise as a vector
+  double fem;             ///< change of the displacement in the last cycle, as `displacement`
+  double unknowns;
+};
+
+/// Equilibrium of the continuum at the sites of a lattice, in their order.
+struct CutSolution
+{
+  CutErrors errors;               ///< against the lattice
+  std::vector<Eigen::Vector2d> u; ///< displacement [m]
+  std::vector<Eigen::Matrix2d> F; ///< deformation gradient [-]
+  std::vector<Eigen::Matrix2d> P; ///< first Piola stress [Pa]
+  Eigen::Vector2d opening;        ///< of the cut [m], as in CutErrors::shape
+};
+
+/// Differences between two continua beside the same lattice, relative [-], >= 0, normalised as in CutErrors.
+struct CutDistance
+{
+  double displacement, stress, stress_scale, energy, reaction, shape;
+};
+
+/// @param a, b whose errors are against `lattice`
+CutDistance distance(const CutLattice &lattice, const CutSheet &sheet, const CutSolution &a, const CutSolution &b);
+
+/// The finite element sheet of a law beside a lattice; empty if it finds no equilibrium, with the reason in `failure`.
+/// Collective.
+std::optional<CutSolution> compare(const CutLattice &lattice, const CutSheet &sheet, const EquivalentSheet &domain,
+                                   const continuum::Constitution &law, const CutMesh &mesh, std::string &failure);
+
+} // namespace verification

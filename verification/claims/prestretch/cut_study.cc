@@ -1,0 +1,200 @@
+#include "verification/claims/prestretch/cut_study.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+#include <stdexcept>
+
+#include "continuum/mooney_rivlin.h"
+#include "support/largest_error.h"
+#include "verification/bridge/anisotropy.h"
+
+namespace verification
+{
+namespace
+{
+
+Eigen::Matrix2d stretched(double x, double y)
+{
+  return Eigen::Vector2d(x, y).asDiagonal();
+}
+
+// The local law of the lattice after a rotation.
+continuum::CauchyBorn turned(const continuum::CauchyBorn &law, const Eigen::Matrix2d &rotation)
+{
+  std::vector<continuum::FibreFamily> families = law.families();
+  const dealii::Tensor<2, 2> R = to_continuum(rotation);
+  for (continuum::FibreFamily &family : families)
+    family.direction = R * family.direction;
+  return continuum::CauchyBorn(std::move(families));
+}
+
+// Bound (H.18) of the difference between the energies of the two equilibria over the energy, both sums over the sites.
+double network_bound(const Subject &subject, const CutSolution &network, const CutSolution &local)
+{
+  std::vector<continuum::CauchyBorn> rotated;
+  for (int k = 0; k < n_lattice_rotations; ++k)
+    rotated.push_back(turned(subject.cauchy_born, lattice_rotation(k)));
+  latcon::support::Extremes bounds;
+  for (const CutSolution *solution : {&network, &local})
+  {
+    double difference = 0., energy = 0.;
+    Eigen::MatrixXd energies(1, n_lattice_rotations);
+    for (const Eigen::Matrix2d &F : solution->F)
+    {
+      for (int k = 0; k < n_lattice_rotations; ++k)
+        energies(0, k) = rotated[k].energy(to_continuum(F));
+      const double mean = rotation_mean(energies).mean(0);
+      difference += energies(0, 0) - mean;
+      energy += mean;
+    }
+    bounds.add(std::abs(difference / energy));
+  }
+  return bounds.largest();
+}
+
+CutMesh hole_mesh(bool quick)
+{
+  CutMesh mesh;
+  mesh.degree = quick ? 4 : 3;
+  mesh.refinements = quick ? 0 : 1;
+  mesh.rim_refinements = 1;
+  mesh.cycles = 1;
+  mesh.fraction = 0.3;
+  return mesh;
+}
+
+} // namespace
+
+CutStudy hole_study(bool quick)
+{
+  CutStudy study;
+  study.name = "hole";
+  study.sheet = sheet_with_hole;
+  study.mesh = hole_mesh(quick);
+  if (quick)
+  {
+    study.states = {stretched(1.3, 1.1)};
+    study.sizes = {6., 8., 12., 16., 24.};
+    study.other_sizes = {24.};
+  }
+  else
+  {
+    study.states = {stretched(1.1, 1.1), stretched(1.3, 1.1), stretched(1.5, 1.5)};
+    study.sizes = {8., 10., 12., 14., 16., 20., 24., 28., 32., 64.};
+    study.other_sizes = {8., 16., 32., 64.};
+    study.n_judged = 3;
+  }
+  return study;
+}
+
+CutStudy nearest_hole_study(bool quick)
+{
+  CutStudy study = hole_study(quick);
+  study.states = {stretched(1.3, 1.1)};
+  if (quick)
+    study.other_sizes.clear();
+  return study;
+}
+
+CutStudy notch_study(bool quick)
+{
+  CutMesh mesh;
+  mesh.refinements = 2;
+  mesh.cycles = quick ? 3 : 6;
+  mesh.fraction = 0.15;
+  CutStudy study;
+  study.name = "notch";
+  study.sheet = sheet_with_notch;
+  study.states = {stretched(1., 1.1)};
+  study.sizes =
+    quick ? std::vector<double>{4., 6., 8., 10., 12.} : std::vector<double>{8., 10., 12., 16., 20., 24., 32.};
+  study.other_sizes = quick ? std::vector<double>{} : std::vector<double>{8., 16., 32.};
+  study.mesh = mesh;
+  return study;
+}
+
+CutStudy loaded_hole_study(const Eigen::Matrix2d &F)
+{
+  // Coarse, since a law without an equilibrium takes many attempts to say so.
+  CutStudy study = hole_study(true);
+  study.states = {F};
+  study.sizes = study.other_sizes = {8.};
+  study.is_reported = true;
+  return study;
+}
+
+std::vector<CutResult> compare_sizes(const Subject &subject, const CutStudy &study, const Eigen::Matrix2d &F)
+{
+  const double d = subject.spacing;
+  std::optional<continuum::MooneyRivlin> mooney_rivlin;
+  if (subject.mooney_rivlin)
+    mooney_rivlin.emplace(subject.mooney_rivlin->law);
+  std::vector<CutResult> results;
+  for (std::size_t i = 0; i < study.sizes.size(); ++i)
+  {
+    const double size = study.sizes[i];
+    const CutSheet sheet = study.sheet(subject, size * d, F);
+    std::optional<CutLattice> relaxed;
+    try
+    {
+      relaxed.emplace(relaxed_lattice(subject, sheet));
+    }
+    catch (const std::runtime_error &error)
+    {
+      if (!study.is_reported)
+        throw;
+      results.push_back({size, no_lattice, {}, error.what(), std::numeric_limits<double>::quiet_NaN(), {}, {}});
+      continue;
+    }
+    CutLattice &lattice = *relaxed;
+    if (study.spoil)
+      study.spoil(lattice);
+    const EquivalentSheet domain =
+      equivalent_sheet(lattice.lattice, subject.material, lattice.state, sheet.held, sheet.cutout);
+    std::optional<CutSolution> of_local;
+    const auto add = [&](const std::string &law, const continuum::Constitution &constitution, const EquivalentSheet &at)
+    {
+      CutResult result{size, law, {}, {}, lattice.relaxation.residual / (subject.theory.shear_modulus * d), {}, {}};
+      std::optional<CutSolution> found = compare(lattice, sheet, at, constitution, study.mesh, result.failure);
+      if (found)
+        result.errors = found->errors;
+      if (found && of_local)
+        result.from_local = distance(lattice, sheet, *found, *of_local);
+      if (found && law == "network" && !study.is_reported)
+        result.network_bound = network_bound(subject, *found, *of_local);
+      results.push_back(result);
+      return found;
+    };
+    const continuum::Constitution local(subject.cauchy_born);
+    of_local = add("local", local, domain);
+    const bool is_largest = i + 1 == study.sizes.size();
+    const bool has_others =
+      std::find(study.other_sizes.begin(), study.other_sizes.end(), size) != study.other_sizes.end();
+    if (is_largest && !study.is_reported)
+    {
+      EquivalentSheet moved = domain;
+      const bool is_hole = std::holds_alternative<lattice::RoundHole>(sheet.cutout);
+      moved.cut -= is_hole ? rim_recession(lattice.lattice, subject.material) : 0.5 * d;
+      add("local-moved", local, moved);
+      const continuum::CauchyBorn turned_law = turned(subject.cauchy_born, lattice_rotation(n_lattice_rotations / 2));
+      add("local-turned", {turned_law}, domain);
+    }
+    if (is_largest || has_others)
+    {
+      add("network", {subject.network}, domain);
+      add("network-gradient", {subject.network, *subject.network_gradient}, domain);
+    }
+    if (!has_others)
+      continue;
+    add("local-nominal", local, nominal_sheet(lattice.lattice, sheet.cutout));
+    add("lattice", {subject.cauchy_born, *subject.lattice_gradient}, domain);
+    add("isotropic", {subject.cauchy_born, *subject.isotropic_gradient}, domain);
+    if (mooney_rivlin)
+      add("mooney-rivlin", {*mooney_rivlin}, domain);
+  }
+  return results;
+}
+
+} // namespace verification

@@ -1,0 +1,257 @@
+#include "verification/claims/prestretch/prestretch_claim.h"
+
+#include <array>
+#include <cmath>
+
+#include <deal.II/base/function.h>
+
+#include "continuum/errors.h"
+#include "continuum/rectangle.h"
+#include "continuum/static_solver.h"
+#include "lattice/relaxation.h"
+#include "lattice/site_fields.h"
+#include "support/largest_error.h"
+#include "verification/bridge/affine_displacement.h"
+#include "verification/bridge/network_comparison.h"
+#include "verification/claims/stability_row.h"
+
+namespace verification
+{
+namespace
+{
+
+// Both solvers stop at 1e-10 or below of the forces at work, and both errors are multiplied by no more than the number
+// of sites across the sheet on the way to displacements.
+constexpr double solver_tolerance = 1e-10;
+
+struct LatticeSide
+{
+  lattice::State state;
+  lattice::SiteFields fields;
+  std::vector<std::size_t> interior; // sites with all their bonds
+  double energy_density;
+  Eigen::Vector2d right_traction; // [Pa], middle of the edge
+  Eigen::Vector2d top_traction;
+};
+
+// Traction P N that the held sites of an edge exert on the sheet, over the middle half of the edge, away from corners.
+// `normal` picks the edge: (1, 0) right, (0, 1) top.
+Eigen::Vector2d edge_traction(const lattice::TriangularLattice &sheet, const lattice::State &state,
+                              const lattice::Forces &forces, const Eigen::Vector2d &normal)
+{
+  const bool right = normal.x() > 0.5;
+  // Held sites repeat along the edge with this period; whole periods make the mean exact in a homogeneous state.
+  const bool edge_along_rows = (sheet.orientation() == lattice::Orientation::rows_along_crack) != right;
+  const double period = edge_along_rows ? sheet.spacing() : std::sqrt(3.) * sheet.spacing();
+  const double extent = right ? sheet.height() : sheet.length();
+  const double depth = 2. * sheet.spacing(); // of the held layer
+  const double from =
+    (right ? 0. : 0.5 * extent) - period * std::floor(0.25 * extent / period) - 0.25 * sheet.spacing();
+  const double to = from + 2. * period * std::floor(0.25 * extent / period);
+
+  Eigen::Vector2d force = Eigen::Vector2d::Zero();
+  for (std::size_t place = 0; place < sheet.n_places(); ++place)
+  {
+    const Eigen::Vector2d X = sheet.reference(place);
+    const double inward = right ? sheet.length() - X.x() : 0.5 * sheet.height() - X.y();
+    const double along = right ? X.y() : X.x();
+    if (state.held[place] != 0 && inward < depth && along >= from && along < to)
+      force -= Eigen::Vector2d(forces.fx()[place], forces.fy()[place]);
+  }
+  return force / (to - from);
+}
+
+LatticeSide relaxed_lattice(const Subject &subject, const lattice::TriangularLattice &sheet, double noise)
+{
+  LatticeSide side;
+  side.state = lattice::homogeneous_state(sheet, subject.material, subject.deformation, lattice::Edges::held);
+  lattice::add_noise(side.state, sheet, noise * sheet.spacing(), 1);
+  // Bond forces are of the order mu d; the sum of twelve is known to some 1e-15 of that.
+  lattice::relax(side.state, sheet, subject.material, 1e-12 * subject.theory.shear_modulus * sheet.spacing());
+
+  side.fields = lattice::site_fields(side.state, sheet, subject.material);
+  side.energy_density = 0.;
+  for (std::size_t place = 0; place < sheet.n_places(); ++place)
+    if (sheet.is_site(place) && side.state.held[place] == 0)
+    {
+      side.interior.push_back(place);
+      side.energy_density += side.fields.strain_energy_density[place];
+    }
+  side.energy_density /= static_cast<double>(side.interior.size());
+
+  lattice::Forces forces(sheet, subject.material);
+  forces.evaluate(side.state, side.state.vx, side.state.vy);
+  side.right_traction = edge_traction(sheet, side.state, forces, {1., 0.});
+  side.top_traction = edge_traction(sheet, side.state, forces, {0., 1.});
+  return side;
+}
+
+struct Row
+{
+  std::string quantity;
+  std::string unit;
+  std::optional<double> lattice, continuum;
+  std::optional<double> error;
+};
+
+std::vector<Row> compare(const Subject &subject, const lattice::TriangularLattice &sheet, const LatticeSide &side,
+                         const continuum::Material &law, const PrestretchOptions &options)
+{
+  dealii::parallel::distributed::Triangulation<2> mesh(MPI_COMM_WORLD);
+  continuum::make_rectangle(mesh, {sheet.length(), sheet.height(), options.cells_x, options.cells_y});
+  continuum::StaticSettings settings;
+  settings.degree = options.degree;
+  settings.relative_tolerance = 1e-12;
+  continuum::StaticSolver solver(mesh, law, continuum::BoundaryConditions(affine_boundary(subject.deformation)),
+                                 settings);
+  solver.solve();
+
+  std::vector<dealii::Point<2>> points;
+  for (const std::size_t place : side.interior)
+    points.emplace_back(sheet.reference(place).x(), sheet.reference(place).y());
+  const std::vector<continuum::PointState> continuum_states = solver.evaluate(points);
+
+  latcon::support::LargestError displacement_error, gradient_error, stress_error;
+  latcon::support::Extremes stress_scale;
+  for (std::size_t i = 0; i < points.size(); ++i)
+  {
+    const std::size_t place = side.interior[i];
+    const continuum::PointState &state = continuum_states[i];
+    const Eigen::Vector2d X = sheet.reference(place);
+    const Eigen::Vector2d u(side.state.x[place] - X.x(), side.state.y[place] - X.y());
+    displacement_error.add((u - Eigen::Vector2d(state.displacement[0], state.displacement[1])).norm());
+    const Eigen::Matrix2d F = to_lattice(state.F), P = to_lattice(state.P);
+    gradient_error.add((side.fields.deformation_gradient[place] - F).norm() / F.norm());
+    stress_error.add((side.fields.first_piola_stress[place] - P).norm());
+    stress_scale.add(P.norm());
+  }
+
+  const double area = sheet.length() * sheet.height();
+  const double energy_density = solver.total_energy() / area;
+  const auto reactions = solver.reactions();
+  const double right = reactions.at(continuum::edge::right)[0] / sheet.height();
+  const double top = reactions.at(continuum::edge::top)[1] / sheet.length();
+  const auto relative = [](double a, double b) { return std::abs(a - b) / std::abs(b); };
+  return {
+    {"mean energy density", "J/m^3", side.energy_density, energy_density,
+     relative(side.energy_density, energy_density)},
+    {"traction on the right edge", "Pa", side.right_traction.x(), right, relative(side.right_traction.x(), right)},
+    {"traction on the top edge", "Pa", side.top_traction.y(), top, relative(side.top_traction.y(), top)},
+    {"displacement, largest difference / length", "1", {}, {}, displacement_error.error() / sheet.length()},
+    {"deformation gradient, largest relative difference", "1", {}, {}, gradient_error.error()},
+    {"first Piola stress, largest difference / largest", "1", {}, {}, stress_error.error() / stress_scale.largest()}};
+}
+
+// The same with the network, whose energy and stress are off the lattice's by what the lattice depends on direction,
+// within its bound (theory-comparison.md, eq. (H.15)); whose fields are as homogeneous as the lattice's.
+Results network_rows(const Subject &subject, const lattice::TriangularLattice &sheet, const LatticeSide &side,
+                     const PrestretchOptions &options)
+{
+  const lattice::TriangularLattice small(subject.spacing, 12. * subject.spacing, 12. * subject.spacing,
+                                         subject.orientation);
+  const NetworkComparison loaded(subject, small, subject.deformation);
+  const double of_stress = loaded.stress.bound;
+  const std::vector<Row> found = compare(subject, sheet, side, subject.network, options);
+  // In the order in which compare() has them.
+  const std::array<double, 6> bounds{loaded.energy.bound / std::abs(loaded.network_energy),
+                                     of_stress / std::abs(loaded.network_stress(0, 0)),
+                                     of_stress / std::abs(loaded.network_stress(1, 1)),
+                                     0.,
+                                     0.,
+                                     of_stress / loaded.network_stress.norm()};
+  Results results;
+  for (std::size_t i = 0; i < bounds.size(); ++i)
+    results.add({"prestretch",
+                 subject.name + ": " + found[i].quantity + ", network",
+                 found[i].unit,
+                 found[i].lattice,
+                 found[i].continuum,
+                 {},
+                 found[i].error,
+                 subject.tolerance(Law::mooney_rivlin_network, bounds[i] + solver_tolerance)});
+  return results;
+}
+
+// The same with the law that was fitted along the loading path, for information: it is not the lattice's, and need not
+// have an equilibrium.
+Results mooney_rivlin_rows(const Subject &subject, const lattice::TriangularLattice &sheet, const LatticeSide &side,
+                           const PrestretchOptions &options)
+{
+  Results results;
+  const auto add = [&](const std::string &quantity, const Row &row)
+  {
+    results.add({"prestretch",
+                 subject.name + ": " + quantity + ", plane-stress Mooney-Rivlin",
+                 row.unit,
+                 row.lattice,
+                 row.continuum,
+                 {},
+                 row.error,
+                 {}});
+  };
+  if (!subject.mooney_rivlin)
+    return results;
+  const auto no_equilibrium = [&](const std::exception &failure) {
+    add(std::string("no equilibrium: ") + failure.what(), {"", "1", {}, {}, {}});
+  };
+  try
+  {
+    for (const Row &row : compare(subject, sheet, side, continuum::MooneyRivlin(subject.mooney_rivlin->law), options))
+      add(row.quantity, row);
+  }
+  catch (const continuum::SolverFailed &failure)
+  {
+    no_equilibrium(failure);
+  }
+  catch (const continuum::LinearSolverFailed &failure)
+  {
+    no_equilibrium(failure);
+  }
+  catch (const continuum::NonPhysicalState &failure)
+  {
+    no_equilibrium(failure);
+  }
+  return results;
+}
+
+} // namespace
+
+Results prestretch_claim(const Subject &subject, const PrestretchOptions &options)
+{
+  Results results;
+  results.add(stability_row(subject, "prestretch"));
+  if (!subject.is_stable())
+    return results; // nothing homogeneous to compare
+  const auto attempt = [&](const std::string &part, const std::function<void()> &compute)
+  { return results.attempt("prestretch", subject.name + ": " + part, compute); };
+  std::optional<lattice::TriangularLattice> sheet;
+  LatticeSide side;
+  if (!attempt("relaxed lattice",
+               [&]
+               {
+                 sheet.emplace(subject.spacing, options.length * subject.spacing, options.height * subject.spacing,
+                               subject.orientation);
+                 side = relaxed_lattice(subject, *sheet, options.noise);
+               }))
+    return results;
+
+  attempt("equilibrium, Cauchy-Born",
+          [&]
+          {
+            for (const Row &row : compare(subject, *sheet, side, subject.cauchy_born, options))
+              results.add({"prestretch",
+                           subject.name + ": " + row.quantity + ", Cauchy-Born",
+                           row.unit,
+                           row.lattice,
+                           row.continuum,
+                           {},
+                           row.error,
+                           solver_tolerance});
+          });
+  attempt("equilibrium, network", [&] { results.add(network_rows(subject, *sheet, side, options)); });
+  attempt("equilibrium, plane-stress Mooney-Rivlin",
+          [&] { results.add(mooney_rivlin_rows(subject, *sheet, side, options)); });
+  return results;
+}
+
+} // namespace verification

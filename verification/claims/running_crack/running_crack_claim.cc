@@ -1,0 +1,336 @@
+#include "verification/claims/running_crack/running_crack_claim.h"
+
+#include <cctype>
+#include <functional>
+#include <sstream>
+
+#include "support/largest_error.h"
+#include "verification/bridge/equivalent_sheet.h"
+#include "verification/claims/continuum_waves.h"
+#include "verification/claims/stability_row.h"
+#include "verification/claims/state_name.h"
+
+namespace verification
+{
+namespace
+{
+
+constexpr double far_from = 5.;                 // inner radius of the far field [d]
+constexpr double near_from = 1.5, near_to = 4.; // of what is reported near the tip [d]
+constexpr double tip_resolution = 0.5;          // of a lattice: half a spacing [d]
+
+// A compared field at a point.
+struct Quantity
+{
+  std::string name;
+  std::function<Eigen::Vector2d(const TipValues &)> of;
+  bool on_flank = false; // in the row of sites next to the crack, behind the tip, alone
+};
+
+const std::vector<Quantity> &quantities()
+{
+  static const std::vector<Quantity> all{
+    {"velocity", [](const TipValues &values) { return values.velocity; }},
+    {"opening stress", [](const TipValues &values) { return Eigen::Vector2d(0., values.opening_stress); }},
+    {"opening profile", [](const TipValues &values) { return Eigen::Vector2d(0., values.excess.y()); }, true}};
+  return all;
+}
+
+// An annulus around the tip, in the grid of a drive.
+class Region
+{
+public:
+  Region(const CrackDrive &drive, double from, double to)
+    : from_(from * drive.spacing), to_(to * drive.spacing), pitch_(drive.pitch())
+  {
+  }
+
+  // Root mean square of f(point) over the region.
+  template <class Function>
+  double norm(const TipField &field, const Quantity &quantity, const Function &f) const
+  {
+    double sum = 0.;
+    std::size_t n = 0;
+    for (const TipField::Point &point : field.points())
+      if (point.radius() >= from_ && point.radius() <= to_ &&
+          (!quantity.on_flank || (point.xi < 0. && point.eta < pitch_)))
+      {
+        sum += f(point).squaredNorm();
+        ++n;
+      }
+    return std::sqrt(sum / static_cast<double>(n)); // of no point: not a number
+  }
+
+  double size(const TipField &field, const Quantity &quantity) const
+  {
+    return norm(field, quantity, [&](const TipField::Point &point) { return quantity.of(point.values); });
+  }
+
+  // Distance of a second field from a first one, whose tip is taken to be `shift` [m] ahead, relative to the first.
+  double distance(const TipField &first, const TipField &second, const Quantity &quantity, double shift = 0.) const
+  {
+    return norm(first, quantity,
+                [&](const TipField::Point &point) -> Eigen::Vector2d
+                { return quantity.of(point.values) - quantity.of(second.at(point.xi - shift, point.eta)); }) /
+           size(first, quantity);
+  }
+
+private:
+  double from_, to_, pitch_;
+};
+
+// Where the tip of the first field has to be, ahead of the nominal one [d], for the second to be closest to it: golden
+// section, to a thousandth.
+double effective_tip(const TipField &first, const TipField &second, const Region &region, double d)
+{
+  const Quantity &velocity = quantities().front();
+  const auto at = [&](double shift) { return region.distance(first, second, velocity, shift * d); };
+  constexpr double ratio = 0.6180339887498949;
+  double low = -1.5, high = 1.5;
+  double a = high - ratio * (high - low), b = low + ratio * (high - low), f_a = at(a), f_b = at(b);
+  while (high - low > 1e-3)
+  {
+    if (!std::isfinite(f_a) || !std::isfinite(f_b))
+      return std::nan("");
+    const bool left = f_a < f_b;
+    (left ? high : low) = left ? b : a;
+    (left ? b : a) = left ? a : b;
+    (left ? f_b : f_a) = left ? f_a : f_b;
+    double &point = left ? a : b;
+    point = left ? high - ratio * (high - low) : low + ratio * (high - low);
+    (left ? f_a : f_b) = at(point);
+  }
+  return 0.5 * (low + high);
+}
+
+// Cells of about `size` spacings, in strides: a power of two, as the path of the tip is divided.
+CrackMesh mesh_of(const CrackDrive &drive, double size, unsigned int degree)
+{
+  CrackMesh mesh{1., degree};
+  while (2. * mesh.finest * drive.stride() < 1.2 * size * drive.spacing)
+    mesh.finest *= 2.;
+  return mesh;
+}
+
+// Rows and tables of one lattice.
+class Comparison
+{
+public:
+  Comparison(const Subject &subject, const CrackSides &sides, const RunningCrackOptions &options)
+    : subject_(subject), sides_(sides), options_(options), far_(sides.drive, far_from, options.far),
+      near_(sides.drive, near_from, near_to), reach_((options.far + 3.) * subject.spacing),
+      lattice_(drive_lattice_crack(sides.drive, subject.material, subject.deformation, reach_, frame("lattice")))
+  {
+    add_frame("lattice");
+    add_fields("lattice", lattice_);
+  }
+
+  void compare(const std::string &name, const CrackContinuum &medium)
+  {
+    const auto drive = [&](double size, const std::optional<CrackFrame> &frame)
+    {
+      return drive_continuum_crack(sides_.drive, sides_.half, medium, subject_.deformation,
+                                   mesh_of(sides_.drive, size, options_.degree), reach_, frame);
+    };
+    const TipRun coarse = drive(2. * options_.finest, {}), fine = drive(options_.finest, frame(name));
+    add_frame(name);
+    add_fields(name, fine);
+    judge(name, coarse.field, fine.field);
+    report(name, coarse, fine);
+  }
+
+  ClaimOutcome outcome;
+
+private:
+  void add(const std::string &quantity, const std::string &unit, std::optional<double> lattice,
+           std::optional<double> continuum, std::optional<double> error, std::optional<double> tolerance)
+  {
+    outcome.results.add({"running-crack",
+                         subject_.name + ", " + state_name(subject_.deformation) + ": " + quantity,
+                         unit,
+                         lattice,
+                         continuum,
+                         {},
+                         error,
+                         tolerance});
+  }
+
+  // What the law leaves out of the bonds at the strains of the far field, over the stress that drives the motion.
+  double anisotropy(const TipField &field) const
+  {
+    const Quantity all{"", {}};
+    const auto first = [](double value) { return Eigen::Vector2d(value, 0.); };
+    return far_.norm(field, all, [&](const TipField::Point &point) { return first(point.values.anisotropy); }) /
+           far_.norm(field, all, [&](const TipField::Point &point) { return first(point.values.excess_stress); });
+  }
+
+  void judge(const std::string &name, const TipField &coarse, const TipField &fine)
+  {
+    const double d = subject_.spacing, leaves_out = anisotropy(fine);
+    std::ostringstream annulus;
+    annulus << far_from << " d <= r <= " << options_.far << " d";
+    for (const Quantity &quantity : quantities())
+    {
+      const double discretisation = far_.distance(fine, coarse, quantity);
+      const double tip = far_.distance(fine, fine, quantity, tip_resolution * d);
+      const double error = far_.distance(lattice_.field, fine, quantity);
+      add(quantity.name + ", " + annulus.str() + ", " + name + " continuum against lattice", "1", {}, {}, error,
+          subject_.tolerance(Law::mooney_rivlin_network, discretisation + tip + leaves_out));
+      outcome.table("running_crack_far", {"shells", "law", "quantity", "error", "discretisation", "tip", "anisotropy"})
+        .add({subject_.name, name, quantity.name, error, discretisation, tip, leaves_out});
+    }
+    const double tip = effective_tip(lattice_.field, fine, far_, d);
+    const double tip_of_coarse = effective_tip(lattice_.field, coarse, far_, d);
+    add("effective tip of the lattice ahead of the cut, in d, from the far velocity of the " + name + " continuum", "1",
+        tip, 0., std::abs(tip),
+        subject_.tolerance(Law::mooney_rivlin_network, tip_resolution + std::abs(tip - tip_of_coarse)));
+  }
+
+  void report(const std::string &name, const TipRun &coarse, const TipRun &fine)
+  {
+    const double d = subject_.spacing;
+    std::ostringstream annulus;
+    annulus << near_from << " d <= r <= " << near_to << " d";
+    for (const Quantity &quantity : quantities())
+    {
+      const std::string where = quantity.name + ", " + annulus.str() + ", " + name + " continuum: ";
+      add(where + "against lattice", "1", {}, {}, near_.distance(lattice_.field, fine.field, quantity), {});
+      add(where + "mesh against one of twice the size", "1", {}, {}, near_.distance(fine.field, coarse.field, quantity),
+          {});
+    }
+    const auto pair = [&](const std::string &what, const std::string &unit, double lattice, double continuum)
+    {
+      add(what + ", " + name + " continuum", unit, lattice, continuum,
+          latcon::support::relative_error(continuum, lattice), {});
+    };
+    const double limit = 0.01 * sides_.drive.speed * subject_.deformation(0, 0), reach = options_.far * d;
+    const BackwardZone of_lattice = backward_zone(lattice_.field, limit, reach);
+    const BackwardZone zone = backward_zone(fine.field, limit, reach);
+    pair("backward motion ahead of the tip, r <= far field: area over d^2", "1", of_lattice.area / (d * d),
+         zone.area / (d * d));
+    pair("backward motion ahead of the tip: most negative velocity", "m/s", of_lattice.depth, zone.depth);
+    for (const double radius : {2., 3., 4.})
+    {
+      const StressLobes lattice = stress_lobes(lattice_.field, radius * d),
+                        continuum = stress_lobes(fine.field, radius * d);
+      std::ostringstream at;
+      at << " at r = " << radius << " d";
+      pair("opening stress straight ahead" + at.str(), "Pa", lattice.ahead, continuum.ahead);
+      pair("lobes of the opening stress, largest over straight ahead" + at.str(), "1", lattice.ratio, continuum.ratio);
+      add("lobes of the opening stress, angle of the largest" + at.str() + ", " + name + " continuum", "deg",
+          lattice.angle, continuum.angle, std::abs(lattice.angle - continuum.angle), {});
+    }
+    pair("energy lost by the sheet per length of crack", "J/m^2", lattice_.energy.lost, fine.energy.lost);
+    pair("energy dissipated by viscosity per length of crack", "J/m^2", lattice_.energy.dissipated,
+         fine.energy.dissipated);
+    pair("energy of cut bonds, and what the opening edge takes, per length of crack", "J/m^2", lattice_.energy.taken,
+         fine.energy.taken);
+    pair("energy flux into r <= 5 d: cut and dissipated there, per length of crack", "J/m^2",
+         lattice_.energy.taken + lattice_.energy.near, fine.energy.taken + fine.energy.near);
+  }
+
+  std::string frame_name(const std::string &side) const
+  {
+    std::string name = "crack-";
+    for (const char c : subject_.name)
+      name += std::isalnum(static_cast<unsigned char>(c)) != 0
+                ? static_cast<char>(std::tolower(static_cast<unsigned char>(c)))
+                : '-';
+    return name + "-" + side;
+  }
+
+  std::optional<CrackFrame> frame(const std::string &side) const
+  {
+    return options_.frames.empty() ? std::nullopt : std::optional(CrackFrame{options_.frames, frame_name(side)});
+  }
+
+  void add_frame(const std::string &side)
+  {
+    if (!options_.frames.empty())
+      outcome.table("running_crack_frames", {"shells", "side", "file", "X_tip [m]", "Y_tip [m]"})
+        .add({subject_.name, side, frame_name(side) + ".pvd", sides_.drive.end(), sides_.drive.axis()});
+  }
+
+  void add_fields(const std::string &side, const TipRun &run)
+  {
+    Table &table = outcome.table("running_crack", {"shells", "side", "X/d", "Y/d", "v_x [m/s]", "v_y [m/s]",
+                                                   "opening_stress [Pa]", "excess_y [m]"});
+    for (const TipField::Point &point : run.field.points())
+      table.add({subject_.name, side, point.xi / subject_.spacing, point.eta / subject_.spacing,
+                 point.values.velocity.x(), point.values.velocity.y(), point.values.opening_stress,
+                 point.values.excess.y()});
+  }
+
+  const Subject &subject_;
+  const CrackSides &sides_;
+  RunningCrackOptions options_;
+  Region far_, near_;
+  double reach_;
+  TipRun lattice_;
+};
+
+} // namespace
+
+CrackSides crack_sides(const Subject &subject, const RunningCrackOptions &options)
+{
+  const double d = subject.spacing;
+  CrackDrive drive{d, subject.orientation, options.length * d, options.height * d, 0., 0., 0};
+  drive.start_near(options.start * d);
+  drive.n_strides = static_cast<unsigned int>(std::lround(options.advance * d / drive.stride()));
+  const Eigen::Vector2d K(1. / d, 0.);
+  const WaveContinuum medium{{subject.network}, {subject.material.density}};
+  const auto waves =
+    plane_waves(continuum_matrices(medium, subject.deformation, K), wave_normal(subject.deformation, K));
+  drive.speed = 0.5 * latcon::support::smallest_of({waves[0].frequency, waves[1].frequency}) / K.norm();
+
+  const lattice::TriangularLattice sheet(d, drive.length, drive.height, drive.orientation);
+  const double end_depth = held_depth(sheet, subject.material, {1., 0.});
+  const std::shared_ptr<const continuum::Viscosity> viscosity = homogenised_viscosity(sheet, subject.material);
+  const double density = subject.material.density;
+  return {drive,
+          {end_depth, sheet.length() - end_depth, 0.5 * sheet.height() - held_depth(sheet, subject.material, {0., 1.})},
+          viscosity,
+          {{subject.network}, {density}, viscosity.get(), &subject.cauchy_born},
+          {{subject.network, *subject.network_gradient},
+           {density, subject.lengths.lattice},
+           viscosity.get(),
+           &subject.cauchy_born}};
+}
+
+ClaimOutcome running_crack_claim(const Subject &subject, const RunningCrackOptions &options)
+{
+  ClaimOutcome outcome;
+  const Eigen::Matrix2d &F = subject.deformation;
+  constexpr double least_opening = 0.01;
+  if (!subject.is_stable())
+    outcome.results.add(stability_row(subject, "running-crack"));
+  else if (F(0, 1) != 0. || F(1, 0) != 0. || !(F(1, 1) > 1. + least_opening))
+    outcome.results.add(
+      {"running-crack",
+       subject.name + ", " + state_name(F) + ": no crack is compared, the sheet is sheared or not stretched across it",
+       "1",
+       {},
+       {},
+       {},
+       {},
+       {}});
+  else
+    return running_crack_claim(subject, crack_sides(subject, options), options);
+  return outcome;
+}
+
+ClaimOutcome running_crack_claim(const Subject &subject, const CrackSides &sides, const RunningCrackOptions &options)
+{
+  Comparison comparison(subject, sides, options);
+  const std::string prefix = subject.name + ", " + state_name(subject.deformation) + ": ";
+  const auto compare = [&](const std::string &name, const CrackContinuum &medium)
+  {
+    comparison.outcome.results.attempt("running-crack", prefix + name + " continuum",
+                                       [&] { comparison.compare(name, medium); });
+  };
+  compare("local", sides.local);
+  compare("gradient", sides.gradient);
+  return comparison.outcome;
+}
+
+} // namespace verification

@@ -1,0 +1,55 @@
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "verification/bridge/subject.h"
+#include "verification/claims/claim_outcome.h"
+#include "verification/claims/running_crack/continuum_crack.h"
+
+namespace verification
+{
+
+/// Sizes in spacings d, and resolutions. The default is the quick version.
+struct RunningCrackOptions
+{
+  double length = 46.;
+  double height = 30.;  ///< of the whole sheet
+  double start = 12.;   ///< distance of the start from the left edge
+  double advance = 21.; ///< of the tip
+  double far = 9.;      ///< outer radius of the far field, whose inner radius is 5
+  double finest = 1.;   ///< cells along the path, about; a second mesh has cells of twice that
+  unsigned degree = 2;  ///< of the elements
+  std::string frames;   ///< folder for a frame of each side at the end of the drive; empty: none
+};
+
+/// The full version.
+inline RunningCrackOptions full_running_crack()
+{
+  return {66., 48., 18., 30., 12., 0.5, 3, {}};
+}
+
+/// Both sides of the comparison: one lattice and two continua. The subject must outlive it.
+struct CrackSides
+{
+  CrackDrive drive;
+  HalfSheet half; ///< the continuum's sheet
+  std::shared_ptr<const continuum::Viscosity> viscosity;
+  CrackContinuum local;    ///< the network
+  CrackContinuum gradient; ///< the same with its gradient energy and micro-inertia
+};
+
+/// The crack runs at half the speed of the slower plane wave along it in the loaded sheet.
+CrackSides crack_sides(const Subject &subject, const RunningCrackOptions &options);
+
+/// Compares a straight crack that is driven at the same speed through the lattice and through the network continuum,
+/// without and with its gradient energy and micro-inertia (theory-comparison.md, section "A running crack"). The sheet
+/// must be loaded without shear, and open the crack. Frames of the sides are NAME-lattice.pvd, NAME-local.pvd and
+/// NAME-gradient.pvd, NAME being that of the subject in lower case ("crack-nn-nnn"); the table `running_crack_frames`
+/// has the position of the tip in them. Of other sheets the claim reports that there is no such crack.
+ClaimOutcome running_crack_claim(const Subject &subject, const RunningCrackOptions &options);
+
+/// The same for sides that a test has changed.
+ClaimOutcome running_crack_claim(const Subject &subject, const CrackSides &sides, const RunningCrackOptions &options);
+
+} // namespace verification

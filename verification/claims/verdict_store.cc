@@ -1,0 +1,264 @@
+#include "verification/claims/verdict_store.h"
+
+#include <algorithm>
+#include <array>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <ctime>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <system_error>
+#include <thread>
+
+#include <fcntl.h>
+#include <link.h>
+#include <sys/stat.h>
+#include <unistd.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/atomic_file.h"
+#include "support/errors.h"
+#include "verification/claims/claim_inputs.h"
+#include "verification/output/output_file.h"
+#include "verification/output/run_info.h"
+#include "verification/output/sha256.h"
+
+namespace verification
+{
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+constexpr int format = 1;                              // of the file
+constexpr std::uintmax_t largest_file = 256UL << 20UL; // [byte]; no check leaves as much
+
+constexpr mode_t writable_by_others = S_IWGRP | S_IWOTH;
+
+// All bytes of a file that this user alone can have written; none if it cannot be read.
+std::optional<std::string> content_of_own_file(const std::string &path)
+{
+  const int descriptor = open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
+  if (descriptor < 0)
+    return {};
+  const std::string opened = "/proc/self/fd/" + std::to_string(descriptor);
+  struct stat status = {};
+  const bool is_own =
+    fstat(descriptor, &status) == 0 && status.st_uid == geteuid() && (status.st_mode & writable_by_others) == 0;
+  std::ifstream file(is_own ? opened : "", std::ios::binary); // the file whose owner is known, under any name
+  const std::string bytes((std::istreambuf_iterator<char>(file)), std::istreambuf_iterator<char>());
+  close(descriptor);
+  if (!is_own)
+    throw UnusableVerdicts("it belongs to another user, or others may write it");
+  return file ? std::optional(bytes) : std::nullopt;
+}
+
+// A name that leads out of no folder.
+bool is_table_name(const std::string &name)
+{
+  return !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_-") == std::string::npos;
+}
+
+// Build ID of a loaded library (a note that the linker writes), as bytes; empty if it has none.
+std::string build_id(const dl_phdr_info &library)
+{
+  const auto aligned = [](std::size_t n) { return (n + 3) / 4 * 4; };
+  for (int i = 0; i < library.dlpi_phnum; ++i)
+  {
+    const ElfW(Phdr) &segment = library.dlpi_phdr[i];
+    if (segment.p_type != PT_NOTE)
+      continue;
+    // Where the loader put it, which is known as an address.
+    const auto *bytes = reinterpret_cast<const char *>(library.dlpi_addr + segment.p_vaddr); // NOLINT
+    for (std::size_t at = 0; at + sizeof(ElfW(Nhdr)) <= segment.p_memsz;)
+    {
+      ElfW(Nhdr) note{};
+      std::memcpy(&note, bytes + at, sizeof(note));
+      const std::size_t name = at + sizeof(note), content = name + aligned(note.n_namesz);
+      if (note.n_type == NT_GNU_BUILD_ID && note.n_namesz == 4 && std::memcmp(bytes + name, "GNU", 4) == 0)
+        return {bytes + content, note.n_descsz};
+      at = content + aligned(note.n_descsz);
+    }
+  }
+  return {};
+}
+
+// The program is one static file but for the libraries of the system, which are named by what their linker made of
+// their content: the same on all nodes of a cluster.
+std::string hash_of_libraries()
+{
+  std::vector<std::string> libraries;
+  dl_iterate_phdr(
+    [](dl_phdr_info *library, std::size_t, void *list)
+    {
+      const std::filesystem::path file = library->dlpi_name;
+      if (!file.has_parent_path())
+        return 0; // the program itself, and what the kernel brings
+      const std::string id = build_id(*library);
+      static_cast<std::vector<std::string> *>(list)->push_back(file.filename().string() + ' ' +
+                                                               (id.empty() ? sha256_of_file(file) : id) + '\n');
+      return 0;
+    },
+    &libraries);
+  std::sort(libraries.begin(), libraries.end()); // the order of loading is not that of the disk
+  std::string text;
+  for (const std::string &library : libraries)
+    text += library;
+  return sha256(text);
+}
+
+std::string now()
+{
+  const std::time_t seconds = std::time(nullptr);
+  std::tm utc{};
+  gmtime_r(&seconds, &utc);
+  std::array<char, 32> text{};
+  std::strftime(text.data(), text.size(), "%Y-%m-%dT%H:%M:%SZ", &utc);
+  return text.data();
+}
+
+std::string checksum(Json document)
+{
+  document.erase("checksum");
+  return sha256(document.dump());
+}
+
+// A number as results.json holds it.
+std::optional<double> number(const Json &value)
+{
+  if (value.is_null())
+    return {};
+  if (value == "nan")
+    return std::numeric_limits<double>::quiet_NaN();
+  if (value == "inf" || value == "-inf")
+    return value == "inf" ? std::numeric_limits<double>::infinity() : -std::numeric_limits<double>::infinity();
+  return value.get<double>();
+}
+
+Result row(const Json &entry)
+{
+  Result result{entry.at("claim"),           entry.at("quantity"),          entry.at("unit"),
+                number(entry.at("lattice")), number(entry.at("continuum")), number(entry.at("theory")),
+                number(entry.at("error")),   number(entry.at("tolerance"))};
+  if (entry.at("verdict") != to_string(result.verdict()))
+    throw UnusableVerdicts("a verdict in it is not that of its numbers");
+  return result;
+}
+
+} // namespace
+
+VerdictKey::VerdictKey(std::string inputs) : text(std::move(inputs)), hash(sha256(text)) {}
+
+VerdictKey verdict_key(const Case &input, const std::vector<std::string> &claims, bool quick, unsigned int n_ranks)
+{
+  std::string text = "program=" + program_hash() + "\nlibraries=" + hash_of_libraries() + "\n";
+  for (const std::string &claim : claims)
+    text += "claim=" + claim + "\n";
+  text += std::string("quick=") + (quick ? "true" : "false") + "\nranks=" + std::to_string(n_ranks) + "\n";
+  return VerdictKey(text + claim_inputs_text(input));
+}
+
+Verdicts::Verdicts(const ClaimOutcome &outcome) : results(outcome.results), checked_at(now())
+{
+  for (const auto &[name, table] : outcome.tables)
+    tables[name] = table.csv();
+}
+
+void Verdicts::write_tables(const std::string &folder) const
+{
+  for (const auto &[name, csv] : tables)
+    write_file((std::filesystem::path(folder) / (name + ".csv")).string(), csv);
+}
+
+std::string verdicts_text(const VerdictKey &key, const Verdicts &verdicts)
+{
+  Json document;
+  document["format"] = format;
+  document["hash"] = key.hash;
+  document["inputs"] = key.text;
+  document["checked_at"] = verdicts.checked_at;
+  document["version"] = program_version();
+  document["git_commit"] = git_commit();
+  document["hardware_threads"] = std::thread::hardware_concurrency();
+  document["results"] = Json::parse(verdicts.results.json());
+  document["tables"] = verdicts.tables;
+  document["checksum"] = checksum(document);
+  return document.dump(2) + "\n";
+}
+
+Verdicts read_verdicts(const VerdictKey &key, const std::string &text)
+{
+  Verdicts verdicts;
+  try
+  {
+    const Json document = Json::parse(text);
+    if (document.at("format") != format)
+      throw UnusableVerdicts("it has another format");
+    if (document.at("hash") != key.hash || document.at("inputs") != key.text)
+      throw UnusableVerdicts("it belongs to other inputs");
+    if (document.at("checksum") != checksum(document))
+      throw UnusableVerdicts("its checksum is wrong");
+    for (const Json &entry : document.at("results").at("claims"))
+      verdicts.results.add(row(entry));
+    verdicts.tables = document.at("tables").get<std::map<std::string, std::string>>();
+    for (const auto &[name, csv] : verdicts.tables)
+      if (!is_table_name(name))
+        throw UnusableVerdicts("it has a table of an impossible name");
+    verdicts.checked_at = document.at("checked_at");
+  }
+  catch (const Json::exception &)
+  {
+    throw UnusableVerdicts("it is damaged");
+  }
+  return verdicts;
+}
+
+std::optional<std::string> VerdictStore::folder_of_user()
+{
+  const char *cache = std::getenv("XDG_CACHE_HOME");
+  if (cache != nullptr && cache[0] == '/') // others than absolute names are to be ignored
+    return std::string(cache) + "/latcon/verdicts";
+  const char *home = std::getenv("HOME");
+  if (home != nullptr && home[0] == '/')
+    return std::string(home) + "/.cache/latcon/verdicts";
+  return {};
+}
+
+std::string VerdictStore::path(const VerdictKey &key) const
+{
+  return folder_ + "/" + key.hash + ".json";
+}
+
+std::optional<std::string> VerdictStore::read(const VerdictKey &key) const
+{
+  const std::string name = path(key);
+  std::error_code error;
+  const auto status = std::filesystem::status(name, error);
+  if (status.type() == std::filesystem::file_type::not_found)
+    return {};
+  if (!std::filesystem::is_regular_file(status) || std::filesystem::file_size(name, error) > largest_file)
+    throw UnusableVerdicts("it is no file of verdicts");
+  std::optional<std::string> text = content_of_own_file(name);
+  if (!text)
+    throw UnusableVerdicts("it cannot be read");
+  if (text->empty())
+    throw UnusableVerdicts("it is empty");
+  return text;
+}
+
+void VerdictStore::write(const VerdictKey &key, const std::string &text) const
+{
+  std::error_code error;
+  std::filesystem::create_directories(folder_, error);
+  if (error)
+    throw latcon::support::OutputError(folder_, error.message());
+  // Other runs may write here now, in milliseconds: what is older was left by killed ones.
+  latcon::support::remove_stale_parts(folder_, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
+  write_file(path(key), text);
+  chmod(path(key).c_str(), S_IRUSR | S_IWUSR); // whatever the umask: read() takes no other
+}
+
+} // namespace verification

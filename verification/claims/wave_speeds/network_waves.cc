@@ -1,0 +1,94 @@
+#include "verification/claims/wave_speeds/network_waves.h"
+
+#include <cmath>
+
+#include "support/largest_error.h"
+#include "verification/bridge/anisotropy.h"
+#include "verification/bridge/bloch.h"
+#include "verification/claims/order_fit.h"
+#include "verification/claims/state_name.h"
+
+namespace verification
+{
+namespace
+{
+
+// Squares of speeds: twice the error at which the lattice's own gradient continuum is held (wave_speeds_claim.cc).
+constexpr double compared_kd = 0.25;
+constexpr double matrix_tolerance = 2e-4;
+constexpr double order_tolerance = 0.2;
+const std::vector<double> order_kd{0.05, 0.1, 0.2, 0.4};
+
+} // namespace
+
+void network_waves(const Subject &subject, const Eigen::Matrix2d &F, const WaveMesh &mesh, ClaimOutcome &outcome)
+{
+  const double d = subject.spacing, rho = subject.material.density;
+  const lattice::Material material = lattice::without_dashpots(subject.material);
+  const lattice::TriangularLattice sheet(d, 10. * d, 10. * d, subject.orientation); // only its bonds matter
+  const WaveContinuum local{{subject.network}, {rho}},
+    gradient{{subject.network, *subject.network_gradient}, {rho, subject.lengths.lattice}};
+  // Of the lattice turned by its rotations: that of the lattice as it is at F R, for the wave R^T K.
+  const auto on_lattice = [&](const Eigen::Vector2d &K)
+  {
+    Eigen::MatrixXd matrices(4, n_lattice_rotations);
+    for (int k = 0; k < n_lattice_rotations; ++k)
+    {
+      const Eigen::Matrix2d R = lattice_rotation(k);
+      matrices.col(k) = bloch_matrices(sheet, material, F * R, R.transpose() * K).stiffness.reshaped();
+    }
+    return matrices;
+  };
+
+  latcon::support::LargestError from_mean, share, elements_error;
+  CommonOrder local_order(order_kd), gradient_order(order_kd);
+  for (const double degrees : {0., 15., 40., 75.})
+  {
+    const Eigen::Vector2d N(std::cos(degrees * M_PI / 180.), std::sin(degrees * M_PI / 180.));
+    std::vector<double> local_errors, gradient_errors;
+    for (const double kd : order_kd)
+    {
+      const Eigen::Vector2d K = kd / d * N;
+      const Eigen::VectorXd mean = rotation_mean(on_lattice(K)).mean;
+      const auto error = [&](const WaveContinuum &medium)
+      { return (continuum_matrices(medium, F, K).stiffness.reshaped() - mean).norm() / mean.norm(); };
+      local_errors.push_back(error(local));
+      gradient_errors.push_back(error(gradient));
+    }
+    local_order.add(local_errors);
+    gradient_order.add(gradient_errors);
+
+    const Eigen::Vector2d K = compared_kd / d * N;
+    const Eigen::MatrixXd lattice_matrices = on_lattice(K);
+    const RotationMean mean = rotation_mean(lattice_matrices);
+    const Eigen::VectorXd network = continuum_matrices(gradient, F, K).stiffness.reshaped();
+    from_mean.add((network - mean.mean).norm() / mean.mean.norm());
+    share.add((network - lattice_matrices.col(0)).norm() / (mean.bound + matrix_tolerance * mean.mean.norm()));
+
+    const auto closed = plane_waves(continuum_matrices(gradient, F, K), wave_normal(F, K));
+    const auto elements = discrete_frequencies(gradient, F, K, mesh);
+    for (std::size_t w = 0; w < 2; ++w)
+      elements_error.add_relative(elements[w], closed[w].frequency);
+  }
+
+  const std::string prefix = subject.name + ", " + state_name(F) + ": ";
+  const auto add = [&](const std::string &quantity, std::optional<double> found, std::optional<double> theory,
+                       double error, std::optional<double> tolerance) {
+    outcome.results.add({"wave-speeds", prefix + quantity, "1", {}, found, theory, error, tolerance});
+  };
+  const auto judged = [&](double tolerance) { return subject.network_gradient_tolerance(F, tolerance); };
+  add(
+    "matrix of waves at kd = 0.25, network with gradient energy against the lattice's mean over rotations, worst of 4 "
+    "directions",
+    {}, {}, from_mean.error(), judged(matrix_tolerance));
+  add("matrix of waves at kd = 0.25, network with gradient energy, largest error over the bound of anisotropy", {}, {},
+      share.error(), judged(1.));
+  add("order in kd of the local network's error against that mean", local_order.order(), 2.,
+      std::abs(local_order.order() - 2.), subject.tolerance(Law::mooney_rivlin_network, order_tolerance));
+  add("order in kd of the network's error with gradient energy against that mean", gradient_order.order(), 4.,
+      std::abs(gradient_order.order() - 4.), judged(order_tolerance));
+  add("frequency, finite elements of the network with gradient energy against their continuum, worst of all waves", {},
+      {}, elements_error.error(), subject.tolerance(Law::mooney_rivlin_network, discretisation_bound(mesh)));
+}
+
+} // namespace verification

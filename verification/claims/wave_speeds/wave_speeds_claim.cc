@@ -1,0 +1,295 @@
+#include "verification/claims/wave_speeds/wave_speeds_claim.h"
+
+#include <cmath>
+#include <limits>
+#include <sstream>
+#include <stdexcept>
+
+#include "support/largest_error.h"
+#include "verification/bridge/bloch.h"
+#include "verification/claims/lattice_waves.h"
+#include "verification/claims/order_fit.h"
+#include "verification/claims/state_name.h"
+#include "verification/claims/wave_speeds/network_waves.h"
+
+namespace verification
+{
+namespace
+{
+
+// Extrapolated time stepping leaves 2e-7 (lattice_waves.cc), nonlinear terms 1e-10.
+constexpr double lattice_tolerance = 1e-6;
+// The claim: at this wave number the gradient continuum has the lattice's speed to 1e-4.
+constexpr double compared_kd = 0.25;
+constexpr double gradient_tolerance = 1e-4;
+constexpr double order_tolerance = 0.2;
+// Wave numbers over which orders are fitted: the next order is (kd)^2 of the error, so it bends the line by less than
+// the tolerance, and the smallest error is well above round-off.
+const std::vector<double> order_kd{0.05, 0.1, 0.2, 0.4};
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
+constexpr const char *wave_names[] = {"L", "S"};
+
+std::array<double, 2> frequencies(const std::array<PlaneWave, 2> &waves)
+{
+  return {waves[0].frequency, waves[1].frequency};
+}
+
+// Everything about waves of one direction at one state.
+class Waves
+{
+public:
+  Waves(const Subject &subject, const Eigen::Matrix2d &F)
+    : F_(F), material_(lattice::without_dashpots(subject.material)),
+      sheet_(subject.spacing, 10. * subject.spacing, 10. * subject.spacing, subject.orientation),
+      local_(std::make_unique<WaveContinuum>(WaveContinuum{{subject.cauchy_born}, {subject.material.density}})),
+      gradient_(std::make_unique<WaveContinuum>(WaveContinuum{{subject.cauchy_born, *subject.lattice_gradient},
+                                                              {subject.material.density, subject.lengths.lattice}})),
+      isotropic_(
+        std::make_unique<WaveContinuum>(WaveContinuum{{subject.cauchy_born, *subject.isotropic_gradient},
+                                                      {subject.material.density, subject.lengths.isotropic_inertia}}))
+  {
+  }
+
+  std::array<double, 2> bloch(const Eigen::Vector2d &K) const
+  {
+    return frequencies(bloch_waves(sheet_, material_, F_, K));
+  }
+  std::array<double, 2> local(const Eigen::Vector2d &K) const { return closed(*local_, K); }
+  std::array<double, 2> gradient(const Eigen::Vector2d &K) const { return closed(*gradient_, K); }
+  std::array<double, 2> isotropic(const Eigen::Vector2d &K) const { return closed(*isotropic_, K); }
+
+  std::array<double, 2> run(const WaveCell &cell) const
+  {
+    const std::array<Oscillation, 2> found = lattice_waves(cell, material_, F_);
+    return {found[0].frequency, found[1].frequency};
+  }
+
+  std::array<double, 2> finite_elements(const Eigen::Vector2d &K, const WaveMesh &mesh) const
+  {
+    return discrete_frequencies(*gradient_, F_, K, mesh);
+  }
+
+private:
+  std::array<double, 2> closed(const WaveContinuum &medium, const Eigen::Vector2d &K) const
+  {
+    return frequencies(plane_waves(continuum_matrices(medium, F_, K), wave_normal(F_, K)));
+  }
+
+  Eigen::Matrix2d F_;
+  lattice::Material material_;
+  lattice::TriangularLattice sheet_; // only its bonds matter
+  std::unique_ptr<WaveContinuum> local_, gradient_, isotropic_;
+};
+
+void speeds_at(const Subject &subject, const Eigen::Matrix2d &F, const WaveSpeedsOptions &options,
+               ClaimOutcome &outcome)
+{
+  const Waves waves(subject, F);
+  const double d = subject.spacing;
+  const std::string prefix = subject.name + ", " + state_name(F) + ": ";
+  Table &table =
+    outcome.table("wave_speeds", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d", "local [m/s]", "bloch [m/s]",
+                                  "lattice [m/s]", "gradient [m/s]", "isotropic [m/s]", "fem [m/s]"});
+  latcon::support::LargestError run_against_bloch, elements_against_closed, gradient_against_bloch;
+  CommonOrder local_order(order_kd), gradient_order(order_kd);
+  std::array<latcon::support::LargestError, 2> long_waves;
+  for (const WaveDirection &direction : wave_directions(subject.orientation))
+  {
+    std::array<std::array<double, 2>, 2> longest{}; // speeds of the two longest waves run, by wave
+    std::array<double, 2> longest_kd{};
+    const Eigen::Vector2d N = unit_vector(direction, subject.orientation);
+    for (std::size_t i = 0; i < options.kd.size(); ++i)
+    {
+      const WaveCell cell = wave_cell(d, subject.orientation, direction, options.kd[i]);
+      const double k = cell.K.norm();
+      const auto local = waves.local(cell.K), bloch = waves.bloch(cell.K), gradient = waves.gradient(cell.K),
+                 isotropic = waves.isotropic(cell.K);
+      // Without a wave there is no number, and the rows that ask for one fail.
+      std::array<double, 2> run{nothing, nothing}, elements = run;
+      const auto attempt = [&](const std::string &side, const std::function<void()> &compute)
+      {
+        std::ostringstream where;
+        where << prefix << side << ", waves at " << std::lround(angle(direction, subject.orientation))
+              << " degrees, kd = " << options.kd[i];
+        outcome.results.attempt("wave-speeds", where.str(), compute);
+      };
+      attempt("lattice run", [&] { run = waves.run(cell); });
+      attempt("finite elements", [&] { elements = waves.finite_elements(cell.K, options.mesh); });
+      for (std::size_t w = 0; w < 2; ++w)
+      {
+        run_against_bloch.add_relative(run[w] / k, bloch[w] / k);
+        elements_against_closed.add_relative(elements[w] / k, gradient[w] / k);
+        if (i < 2)
+        {
+          longest[w][i] = run[w] / k;
+          longest_kd[i] = k * d;
+        }
+        table.add({subject.name, F(0, 0), F(1, 1), angle(direction, subject.orientation), std::string(wave_names[w]),
+                   k * d, local[w] / k, bloch[w] / k, run[w] / k, gradient[w] / k, isotropic[w] / k, elements[w] / k});
+      }
+    }
+    const Eigen::Vector2d K = compared_kd / d * N;
+    const auto speed = [&](const std::array<double, 2> &frequency, std::size_t w)
+    { return frequency[w] * d / compared_kd; };
+    for (std::size_t w = 0; w < 2; ++w)
+    {
+      gradient_against_bloch.add_relative(speed(waves.gradient(K), w), speed(waves.bloch(K), w));
+      std::vector<double> local_errors, gradient_errors;
+      for (const double kd : order_kd)
+      {
+        const double exact = waves.bloch(kd / d * N)[w];
+        local_errors.push_back(std::abs(waves.local(kd / d * N)[w] / exact - 1.));
+        gradient_errors.push_back(std::abs(waves.gradient(kd / d * N)[w] / exact - 1.));
+      }
+      local_order.add(local_errors);
+      gradient_order.add(gradient_errors);
+      // v = c (1 - alpha (kd)^2 / 2 + ...): two waves give c.
+      const double a = std::pow(longest_kd[0], 2), b = std::pow(longest_kd[1], 2);
+      const double extrapolated = (b * longest[w][0] - a * longest[w][1]) / (b - a);
+      const double closed = F.isIdentity(1e-12)
+                              ? (w == 0 ? subject.theory.longitudinal_speed : subject.theory.shear_speed)
+                              : waves.local(N / d)[w] * d;
+      long_waves[w].add_relative(extrapolated, closed);
+    }
+  }
+
+  const auto add = [&](const std::string &quantity, const std::string &unit, std::optional<double> lattice_value,
+                       std::optional<double> continuum_value, std::optional<double> theory, double error,
+                       std::optional<double> tolerance)
+  {
+    outcome.results.add(
+      {"wave-speeds", prefix + quantity, unit, lattice_value, continuum_value, theory, error, tolerance});
+  };
+  // The next term of the series of v(k) has a coefficient below 1/20: at most (3^2/360)/2 + (3/12)^2/8 for bonds up to
+  // sqrt3 d long.
+  const double remainder = std::pow(options.kd[0] * options.kd[1] * 1.02 * 1.02, 2) / 20.;
+  for (std::size_t w = 0; w < 2; ++w)
+    add(std::string("long-wave speed, ") + wave_names[w] + ", lattice run against closed form, worst of 4 directions",
+        "m/s", long_waves[w].value(), {}, long_waves[w].reference(), long_waves[w].error(),
+        latcon::support::largest_of({remainder, lattice_tolerance}));
+  add("phase velocity, lattice run against Bloch, worst of all waves", "m/s", run_against_bloch.value(), {},
+      run_against_bloch.reference(), run_against_bloch.error(), lattice_tolerance);
+  const auto add_continuum =
+    [&](const std::string &quantity, const latcon::support::LargestError &error, std::optional<double> tolerance)
+  { add(quantity + ", worst of all waves", "m/s", {}, error.value(), error.reference(), error.error(), tolerance); };
+  add_continuum("phase velocity, finite elements against their continuum", elements_against_closed,
+                discretisation_bound(options.mesh));
+  add_continuum("phase velocity at kd = 0.25, gradient continuum against Bloch", gradient_against_bloch,
+                subject.gradient_tolerance(F, gradient_tolerance));
+  const auto add_order = [&](const std::string &name, double order, double claimed, std::optional<double> tolerance)
+  {
+    add("order in kd of the " + name + " continuum's error, all waves together", "1", {}, order, claimed,
+        std::abs(order - claimed), tolerance);
+  };
+  add_order("local", local_order.order(), 2., order_tolerance);
+  add_order("gradient", gradient_order.order(), 4., subject.gradient_tolerance(F, order_tolerance));
+}
+
+// Waves along x, whose two polarisations the dashpots keep apart by symmetry.
+void attenuation_at(const Subject &subject, const Eigen::Matrix2d &F, ClaimOutcome &outcome)
+{
+  const lattice::TriangularLattice any(subject.spacing, 10. * subject.spacing, 10. * subject.spacing,
+                                       subject.orientation);
+  const auto damped = [&](const Eigen::Vector2d &K)
+  { return plane_waves(bloch_matrices(any, subject.material, F, K), wave_normal(F, K)); };
+
+  // Damping grows with kd; a third of critical is seen well within one period.
+  constexpr double probe = 0.01, wanted_ratio = 0.33;
+  double ratio = 0.; // of decay and frequency, infinite if a wave is overdamped
+  for (const PlaneWave &wave : damped(Eigen::Vector2d(probe / subject.spacing, 0.)))
+  {
+    if (!std::isfinite(wave.frequency) || !std::isfinite(wave.decay))
+      throw std::runtime_error("long waves have no frequency and decay");
+    if (wave.decay / wave.frequency > ratio)
+      ratio = wave.decay / wave.frequency;
+  }
+  const double kd = std::clamp(probe * wanted_ratio / ratio, 0.005, 0.5);
+  const WaveCell cell = wave_cell(subject.spacing, subject.orientation, {1, 0}, kd);
+  const double k = cell.K.norm();
+
+  const auto viscosity = homogenised_viscosity(any, subject.material);
+  const WaveContinuum medium{{subject.cauchy_born, *subject.lattice_gradient},
+                             {subject.material.density, subject.lengths.lattice},
+                             viscosity.get()};
+  const std::array<PlaneWave, 2> theory = damped(cell.K),
+                                 kelvin = plane_waves(continuum_matrices(medium, F, cell.K), wave_normal(F, cell.K));
+  std::ostringstream where;
+  where << subject.name << ", " << state_name(F) << ", kd = " << std::round(1e4 * k * subject.spacing) / 1e4 << ": ";
+  // Without a wave there is no number, and the rows that ask for one fail.
+  std::array<Oscillation, 2> run{{{nothing, nothing, 0.}, {nothing, nothing, 0.}}}, elements = run;
+  const auto attempt = [&](const std::string &side, const std::function<void()> &compute)
+  { outcome.results.attempt("wave-speeds", where.str() + side + ", damped waves", compute); };
+  attempt("lattice run", [&] { run = lattice_waves(cell, subject.material, F); });
+  // Waves this long hardly feel the gradient energy: the error in space is below 1e-6.
+  attempt("finite elements", [&] { elements = finite_element_waves(medium, F, cell.K, {4, 4}); });
+
+  Table &table =
+    outcome.table("attenuation",
+                  {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d", "theory_frequency [rad/s]",
+                   "theory_decay [1/s]", "lattice_frequency [rad/s]", "lattice_decay [1/s]",
+                   "continuum_frequency [rad/s]", "continuum_decay [1/s]", "fem_frequency [rad/s]", "fem_decay [1/s]"});
+  // The theories over a decade of longer waves, for the plot.
+  for (double fraction = 0.1; fraction < 0.95; fraction *= std::pow(10., 0.1))
+  {
+    const Eigen::Vector2d K = fraction * cell.K;
+    const auto exact = damped(K), closed = plane_waves(continuum_matrices(medium, F, K), wave_normal(F, K));
+    for (std::size_t w = 0; w < 2; ++w)
+      table.add({subject.name, F(0, 0), F(1, 1), 0., std::string(wave_names[w]), fraction * k * subject.spacing,
+                 exact[w].frequency, exact[w].decay, nothing, nothing, closed[w].frequency, closed[w].decay, nothing,
+                 nothing});
+  }
+  // Both sides step with (w h)^4 left over after extrapolation: 1e-5 for 28 steps a period, and at a third of critical
+  // damping the decay has a third of the frequency's digits.
+  constexpr double tolerance = 1e-4;
+  for (std::size_t w = 0; w < 2; ++w)
+  {
+    table.add({subject.name, F(0, 0), F(1, 1), 0., std::string(wave_names[w]), k * subject.spacing, theory[w].frequency,
+               theory[w].decay, run[w].frequency, run[w].decay, kelvin[w].frequency, kelvin[w].decay,
+               elements[w].frequency, elements[w].decay});
+    const std::string name = where.str() + wave_names[w] + ", ";
+    const auto add = [&](const std::string &quantity, const std::string &unit, double lattice_value,
+                         double element_value, double bloch, double closed)
+    {
+      outcome.results.add({"wave-speeds", name + quantity + ", lattice and finite elements each against its theory",
+                           unit, lattice_value, element_value, bloch,
+                           latcon::support::largest_of({latcon::support::relative_error(lattice_value, bloch),
+                                                        latcon::support::relative_error(element_value, closed)}),
+                           tolerance});
+    };
+    add("damped frequency", "rad/s", run[w].frequency, elements[w].frequency, theory[w].frequency, kelvin[w].frequency);
+    add("decay", "1/s", run[w].decay, elements[w].decay, theory[w].decay, kelvin[w].decay);
+    // Dashpots are homogenised to leading order: l_d^2 k^2 is the largest relative difference.
+    outcome.results.add({"wave-speeds",
+                         name + "decay, Kelvin continuum against Bloch",
+                         "1/s",
+                         {},
+                         kelvin[w].decay,
+                         theory[w].decay,
+                         latcon::support::relative_error(kelvin[w].decay, theory[w].decay),
+                         std::pow(subject.lengths.lattice * k, 2)});
+  }
+}
+
+} // namespace
+
+ClaimOutcome wave_speeds_claim(const Subject &subject, const WaveSpeedsOptions &options)
+{
+  ClaimOutcome outcome;
+  const auto attempt = [&](const Eigen::Matrix2d &F, const std::string &part, const std::function<void()> &compute)
+  { outcome.results.attempt("wave-speeds", subject.name + ", " + state_name(F) + ": " + part, compute); };
+  for (const Eigen::Matrix2d &F : options.states)
+  {
+    attempt(F, "waves", [&] { speeds_at(subject, F, options, outcome); });
+    attempt(F, "waves in the network", [&] { network_waves(subject, F, options.mesh, outcome); });
+  }
+  // Not `> 0.`: a viscosity that is no number is not left out.
+  const auto has_dashpot = [](const lattice::Shell &shell) { return shell.viscosity != 0.; };
+  if (has_dashpot(subject.material.nearest) ||
+      (subject.material.next_nearest && has_dashpot(*subject.material.next_nearest)))
+    for (const Eigen::Matrix2d &F : options.damped_states)
+      attempt(F, "damped waves", [&] { attenuation_at(subject, F, outcome); });
+  return outcome;
+}
+
+} // namespace verification

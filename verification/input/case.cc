@@ -1,0 +1,467 @@
+#include "verification/input/case.h"
+
+#include <algorithm>
+#include <cmath>
+#include <sstream>
+#include <stdexcept>
+#include <tuple>
+
+#include "lattice/chebyshev_stages.h"
+#include "lattice/contact.h"
+#include "lattice/seed.h"
+#include "support/full_precision.h"
+
+namespace verification
+{
+namespace
+{
+
+void check_seed(const Case &input, Parameters &p, const lattice::TriangularLattice &sheet)
+{
+  const std::string extent =
+    input.seed_shape == Case::SeedShape::sites ? "Fracture/seed sites" : "Fracture/seed length";
+  const std::vector<std::string> others{"Fracture/seed position", "Fracture/seed offset", "Fracture/seed height",
+                                        "Fracture/stop position", "Sheet/length",         "Sheet/height"};
+  try
+  {
+    if (sheet.reference(input.seed(sheet).back()).x() + sheet.spacing() > input.stop_position * sheet.length())
+      p.error(extent, "the seed crack must end before the stop position", others);
+  }
+  catch (const std::invalid_argument &problem)
+  {
+    p.error(extent, std::string("the seed crack does not fit: ") + problem.what(), others);
+  }
+}
+
+// More spacings along an edge would be no sheet of rubber, and their number no whole number in places.
+constexpr double most_spacings = 1e6;
+// A step of more force evaluations is no gain: the time that one takes grows as the square of their number.
+constexpr unsigned int most_stages = 200;
+
+void check_size(const Case &input, Parameters &p)
+{
+  for (const auto &[key, extent, way] : {std::tuple("Sheet/height", input.height, " spacings high, "),
+                                         std::tuple("Sheet/length", input.length, " spacings long, ")})
+  {
+    const std::string spacings = way;
+    if (extent < 8. * input.spacing)
+      p.error(key,
+              "the sheet must be at least 8" + spacings + latcon::support::full_precision(8. * input.spacing) + " m",
+              {"Sheet/spacing"});
+    if (extent > most_spacings * input.spacing)
+      p.error(key,
+              "the sheet must be at most 1e6" + spacings +
+                latcon::support::full_precision(most_spacings * input.spacing) + " m",
+              {"Sheet/spacing"});
+  }
+}
+
+void check_cutout(const Case &input, Parameters &p)
+{
+  if (input.hole_radius > 0. && input.notch_length > 0.)
+    p.error("Sheet/notch length", "a sheet has a hole or a notch, not both", {"Sheet/hole radius"});
+  const double widest = 0.45 * std::min(input.length, input.height);
+  if (input.hole_radius >= widest)
+    p.error("Sheet/hole radius",
+            "it must be less than 0.45 of the sheet's length and height, " + latcon::support::full_precision(widest) +
+              " m",
+            {"Sheet/length", "Sheet/height"});
+  if (input.notch_length >= input.length && input.notch_length > 0.)
+    p.error("Sheet/notch length",
+            "it must be less than the sheet's length, " + latcon::support::full_precision(input.length) + " m",
+            {"Sheet/length"});
+  for (const auto &[key, extent] :
+       {std::pair("Sheet/hole radius", input.hole_radius), std::pair("Sheet/notch length", input.notch_length)})
+    if (extent > 0. && extent < input.spacing)
+      p.error(key, "it must be at least a spacing, " + latcon::support::full_precision(input.spacing) + " m, or 0",
+              {"Sheet/spacing"});
+}
+
+// Bonds that the loading alone would break.
+void check_breaking_stretch(const Case &input, Parameters &p, const lattice::TriangularLattice &sheet)
+{
+  double longest = 0.;
+  std::size_t of_kind = 0;
+  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+  {
+    if (!input.has_next_nearest && !lattice::TriangularLattice::is_nearest(kind))
+      continue;
+    const Eigen::Vector2d R = sheet.bond_vector(kind);
+    const double stretch = (input.deformation() * R).norm() / R.norm();
+    // Equal ones differ by rounding.
+    if (stretch > longest * (1. + 1e-12))
+    {
+      longest = stretch;
+      of_kind = kind;
+    }
+  }
+  if (longest < *input.breaking_stretch)
+    return;
+  const Eigen::Vector2d R = sheet.bond_vector(of_kind);
+  p.error("Fracture/breaking stretch",
+          std::string(lattice::TriangularLattice::is_nearest(of_kind) ? "nearest" : "next-nearest") +
+            "-neighbour bonds at " + std::to_string(std::lround(std::atan2(R.y(), R.x()) * 180. / M_PI)) +
+            " degrees to x are stretched to " + latcon::support::full_precision(longest) +
+            " by the loading alone and would all break; give more than that, or less strain",
+          {"Loading/strain x", "Loading/strain y", "Loading/shear"});
+}
+
+// As many stages as the dashpots ask for; what the user has given less of is told.
+void check_stages(const Case &input, Parameters &p)
+{
+  if (input.stages > 0)
+    return;
+  const bool breaks = input.breaking_stretch.has_value();
+  const lattice::TimeStepLimits limits = input.time_step_limits(breaks);
+  const double longest = lattice::ChebyshevStages(most_stages).real_limit() * limits.viscous;
+  const double step = input.time_step ? *input.time_step : input.chebyshev_step(breaks);
+  if (!(step <= longest))
+    p.error("Time/step",
+            "the dashpots allow runge-kutta-chebyshev no more than " + latcon::support::full_precision(longest) +
+              " s in " + std::to_string(most_stages) + " stages, and this step is one of " +
+              latcon::support::full_precision(step) + " s",
+            {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity", "Contact/viscosity", "Sheet/spacing",
+             "Time/integrator"});
+}
+
+// Refuses a stated step with which the oscillation of two sites in contact grows.
+void check_contact_step(const Case &input, Parameters &p)
+{
+  if (input.breaking_stretch && input.has_contact &&
+      lattice::amplifies_contact(input.fracture_time_stepping(), input.lattice(), input.material(),
+                                 input.contact_law()))
+    p.error("Time/step", "two sites in contact would gain energy in every step; omit it, or give a smaller one",
+            {"Contact/stiffness", "Contact/viscosity", "Time/integrator", "Time/stages"});
+}
+
+// Twice the bound on the dashpots is where the undeformed lattice of nearest neighbours is certain to be unstable.
+void check_time_step(const Case &input, Parameters &p)
+{
+  const lattice::TimeStepLimits limits = lattice::time_step_limits(input.lattice(), input.material(), 1.);
+  double limit = 2. * limits.combined;
+  if (input.integrator == Case::Integrator::runge_kutta_chebyshev)
+  {
+    if (input.stages < 2)
+      return;
+    limit = 2. * lattice::ChebyshevStages(input.stages).real_limit() * limits.viscous;
+  }
+  if (*input.time_step > limit)
+    p.error("Time/step",
+            "beyond " + latcon::support::full_precision(limit) + " s the time stepping is unstable; auto is safe",
+            {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity", "Sheet/spacing", "Time/integrator",
+             "Time/stages"});
+}
+
+void check_time_stepping(const Case &input, Parameters &p)
+{
+  const bool chebyshev = input.integrator == Case::Integrator::runge_kutta_chebyshev;
+  if (!chebyshev && input.stages != 0)
+    p.error("Time/stages", "velocity-verlet has no stages; give 0, or integrator = runge-kutta-chebyshev",
+            {"Time/integrator"});
+  if (chebyshev && input.stages == 1)
+    p.error("Time/stages", "a method of second order has two stages or more; give 0 to have them chosen");
+  if (chebyshev && (input.nearest.viscosity == 0. || (input.has_next_nearest && input.next_nearest.viscosity == 0.)))
+    p.error("Time/integrator",
+            "runge-kutta-chebyshev is for sheets whose bonds all have dashpots; give velocity-verlet",
+            {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity"});
+  else if (chebyshev && input.breaking_stretch && input.has_contact && input.contact_viscosity == 0.)
+    p.error(
+      "Contact/viscosity",
+      "runge-kutta-chebyshev amplifies oscillations that have no dashpot, in contacts as well; give more than 0, or "
+      "integrator = velocity-verlet",
+      {"Time/integrator"});
+  else if (input.density > 0. && input.has_sheet() && input.nearest.has_stiffness() &&
+           (!input.has_next_nearest || input.next_nearest.has_stiffness()))
+  {
+    if (chebyshev)
+      check_stages(input, p);
+    if (input.time_step)
+    {
+      check_time_step(input, p);
+      check_contact_step(input, p);
+    }
+  }
+}
+
+} // namespace
+
+void ShellCase::declare(Parameters &parameters, const std::string &section)
+{
+  parameters.add(section, "law", law, {{"mooney-rivlin", Law::mooney_rivlin}, {"linear", Law::linear}},
+                 "law of a bond: rod of incompressible Mooney-Rivlin rubber with constants a and b, or linear spring");
+  parameters.add(section, "a", a, MagnitudeOrZero{}, "Pa", "a = 2 C1 of a Mooney-Rivlin bond");
+  parameters.add(section, "b", b, MagnitudeOrZero{}, "Pa", "b = 2 C2 of a Mooney-Rivlin bond");
+  parameters.add(section, "modulus", modulus, Magnitude{}, "Pa", "modulus e of a linear bond");
+  parameters.add(section, "area factor", area_factor, Magnitude{}, "1",
+                 "s: cross-section of a bond over (sqrt3 / 2) d h; the source paper leaves it open");
+  parameters.add(section, "viscosity", viscosity, MagnitudeOrZero{}, "Pa s",
+                 "eta of the Kelvin dashpot along the bond");
+}
+
+void ShellCase::check(Parameters &parameters, const std::string &section) const
+{
+  if (!has_stiffness())
+    parameters.error(section + "/a", "a bond needs stiffness: a + b must be positive", {section + "/b"});
+}
+
+lattice::Shell ShellCase::shell() const
+{
+  if (law == Law::linear)
+    return {lattice::LinearBond{modulus}, area_factor, viscosity};
+  return {lattice::MooneyRivlinBond{a, b}, area_factor, viscosity};
+}
+
+void Case::declare(Parameters &p)
+{
+  p.add("Sheet", "spacing", spacing, Magnitude{}, "m", "distance d of nearest sites, undeformed", Presence::required);
+  p.add("Sheet", "length", length, Magnitude{}, "m",
+        "extent along x, the way of the crack, undeformed; rounded to whole lattice rows or columns",
+        Presence::required);
+  p.add("Sheet", "height", height, Magnitude{}, "m", "extent along y, undeformed; rounded likewise",
+        Presence::required);
+  p.add("Sheet", "orientation", orientation,
+        {{"rows-along-crack", lattice::Orientation::rows_along_crack},
+         {"rows-across-crack", lattice::Orientation::rows_across_crack}},
+        "rows of nearest neighbours along x, or turned by 30 degrees so that they run along y");
+
+  p.add("Sheet", "hole radius", hole_radius, MagnitudeOrZero{}, "m",
+        "of a round hole in the middle of the sheet, undeformed; 0: none");
+  p.add("Sheet", "notch length", notch_length, MagnitudeOrZero{}, "m",
+        "of a slit from the left edge along y = 0, undeformed; 0: none");
+
+  p.add("Material", "density", density, Magnitude{}, "kg/m^3", "rho of the rubber", Presence::required);
+  nearest.declare(p, "Nearest neighbours");
+  p.add("Next-nearest neighbours", "present", has_next_nearest, "whether there are next-nearest-neighbour bonds");
+  next_nearest.declare(p, "Next-nearest neighbours");
+
+  p.add("Loading", "strain x", strain_x, Range({-1., false}, {1000., true}), "1",
+        "eps_x: the sheet is stretched by 1 + eps_x along x", Presence::required);
+  p.add("Loading", "strain y", strain_y, Range({-1., false}, {1000., true}), "1",
+        "eps_y: the sheet is stretched by 1 + eps_y along y", Presence::required);
+
+  p.add("Loading", "shear", shear, Between{-1000., 1000.}, "1",
+        "F_xy: points move along x by this times their undeformed y");
+
+  p.add("Lattice", "solution", solution, {{"relaxed", Solution::relaxed}, {"motion", Solution::motion}},
+        "what `latcon lattice` computes: static equilibrium, or the motion up to the end time");
+  p.add("Lattice", "noise amplitude", noise_amplitude, Between{0., 0.3}, "1",
+        "largest initial displacement of a site along x and along y, over d");
+  p.add("Lattice", "noise seed", noise_seed, Any{}, "seed of the random numbers");
+
+  p.add("Fracture", "breaking stretch", breaking_stretch, Range({1., false}, {1e6, true}), "1",
+        "lam_f: a bond breaks for good beyond this stretch; needed by `latcon fracture`");
+  p.add("Fracture", "toughening", toughening,
+        {{"none", Toughening::none}, {"behind-tip", Toughening::behind_tip}, {"retraction", Toughening::retraction}},
+        "which bonds have lam_f multiplied by the factor: none, those behind the tip, or those that have retracted");
+  p.add("Fracture", "distance", toughening_distance, MagnitudeOrZero{}, "m",
+        "delta: behind-tip toughens bonds whose undeformed midpoint is farther than this behind the tip");
+  p.add("Fracture", "fraction", toughening_fraction, Between{0.01, 0.999}, "1",
+        "retraction toughens bonds that come below this fraction of their stretch in the loaded sheet");
+  p.add("Fracture", "factor", toughening_factor, Between{1., 1e6}, "1", "toughened bonds break at this times lam_f");
+  p.add("Fracture", "seed shape", seed_shape, {{"sites", SeedShape::sites}, {"slit", SeedShape::slit}},
+        "what is removed as seed crack: sites in a line along x, or all sites in a rectangle");
+  p.add("Fracture", "seed sites", seed_sites, Between{1., 1000.}, "number of sites of a seed of sites");
+  p.add("Fracture", "seed length", seed_length, MagnitudeOrZero{}, "m", "extent of a slit along x, undeformed");
+  p.add("Fracture", "seed height", seed_height, MagnitudeOrZero{}, "m", "extent of a slit along y, undeformed");
+  p.add("Fracture", "seed position", seed_position, Between{0.01, 0.9}, "1",
+        "left end of the seed crack, as a fraction of the length");
+  p.add("Fracture", "seed offset", seed_offset, Between{-1e20, 1e20}, "m",
+        "undeformed y of the centre line of the seed crack; a seed of sites takes the line of sites nearest to it");
+  p.add("Fracture", "stop position", stop_position, Between{0.05, 0.99}, "1",
+        "the run ends when the tip has come this fraction of the length");
+  const std::vector<std::pair<std::string, End>> ends{
+    {"held", End::held}, {"free", End::free}, {"absorbing", End::absorbing}};
+  p.add(
+    "Fracture", "left end", left_end, ends,
+    "short end on the left: held, free under the dead load of the loaded sheet, or, besides, with dashpots that take "
+    "up waves");
+  p.add("Fracture", "right end", right_end, ends, "short end on the right, likewise");
+
+  p.add("Contact", "present", has_contact,
+        "whether sites of a breaking sheet that are not bonded repel each other when they come close");
+  // Next-nearest neighbours of a lattice without bonds between them stand at 1.73 d.
+  p.add("Contact", "distance", contact_distance, Range({1e-20, true}, {1.7, false}), "1",
+        "distance below which sites touch, over d");
+  p.add("Contact", "stiffness", contact_stiffness, Magnitude{}, "1",
+        "stiffness of a contact over that of a nearest-neighbour bond at rest");
+  p.add("Contact", "viscosity", contact_viscosity, MagnitudeOrZero{}, "1",
+        "dashpot of a contact over that of a nearest-neighbour bond");
+
+  p.add("Time", "end", end_time, MagnitudeOrZero{}, "s", "the motion ends here at the latest");
+  p.add("Time", "step", time_step, Magnitude{}, "s",
+        "time step of the lattice; auto: safety factor times the stable one");
+  p.add(
+    "Time", "integrator", integrator,
+    {{"velocity-verlet", Integrator::velocity_verlet}, {"runge-kutta-chebyshev", Integrator::runge_kutta_chebyshev}},
+    "of the lattice: velocity Verlet, whose step the dashpots limit, or longer steps of several stages each");
+  p.add("Time", "stages", stages, Between{0., most_stages},
+        "force evaluations in a step of runge-kutta-chebyshev, 2 or more; 0: as few as are stable");
+  p.add(
+    "Time", "safety factor", safety_factor, Between{0.01, 1.}, "1",
+    "automatic time step over the one that is stable in every configuration, or, of runge-kutta-chebyshev, over the "
+    "one that resolves the motion");
+
+  continuum.declare(p);
+
+  p.add("Output", "frame interval", frame_interval, MagnitudeOrZero{}, "s",
+        "time between frames of the lattice; 0: first and last frame alone");
+  p.add("Output", "motion frames", motion_frames, Between{0., 1e4},
+        "light frames of a crack, for animations, evenly spread over the way of its tip from the seed to the stop "
+        "position; 0: none");
+  p.add("Output", "energy interval", energy_interval, AtLeast{1.}, "time steps between rows of energy.csv");
+  p.add("Checkpoints", "steps", checkpoint_steps, AtLeast{0.},
+        "time steps between checkpoints of a motion; 0: none by steps");
+  p.add("Checkpoints", "interval", checkpoint_interval, NonNegative{}, "s",
+        "wall time between checkpoints of a motion; 0: none by time");
+
+  p.add("Near tip", "ahead", near_tip_ahead, MagnitudeOrZero{}, "m",
+        "how far the window in which fields are averaged reaches ahead of the tip, undeformed; 0: 32 spacings");
+  p.add("Near tip", "behind", near_tip_behind, MagnitudeOrZero{}, "m", "how far behind it; 0: 40 spacings");
+  p.add("Near tip", "half height", near_tip_half_height, MagnitudeOrZero{}, "m",
+        "how far to either side; 0: 32 spacings");
+  p.add("Near tip", "interval", near_tip_interval, MagnitudeOrZero{}, "s",
+        "time between samples of the fields near the tip; 0: none are taken; auto: that in which a shear wave of the "
+        "undeformed sheet travels half a spacing");
+
+  p.add("Reference", "wavelength", reference_wavelength, Magnitude{}, "m",
+        "published wavelength of the crack path, undeformed, to set the measured one beside; auto: none");
+  p.add("Reference", "amplitude", reference_amplitude, Magnitude{}, "m",
+        "published amplitude of the crack path, undeformed, likewise");
+  p.add("Reference", "speed", reference_speed, Magnitude{}, "m/s", "published Lagrangian speed of the crack, likewise");
+  p.add("Reference", "tolerance", reference_tolerance, Magnitude{}, "1",
+        "relative difference from the published values within which a measured one counts as agreeing");
+}
+
+void Case::check(Parameters &p) const
+{
+  nearest.check(p, "Nearest neighbours");
+  if (has_next_nearest)
+    next_nearest.check(p, "Next-nearest neighbours");
+
+  check_size(*this, p);
+  check_cutout(*this, p);
+  if (has_inner_edge() && !continuum.mesh_file.empty())
+    p.error("Continuum/mesh file", "a mesh from a file has its own holes; give hole radius = 0 and notch length = 0",
+            {"Sheet/hole radius", "Sheet/notch length"});
+  continuum.check(p, has_inner_edge());
+  if (has_sheet())
+  {
+    const lattice::TriangularLattice sheet = lattice();
+    continuum.check_values(p, {sheet.length(), sheet.height(), hole_radius, notch_length});
+  }
+
+  for (const auto &[name, extent] : {std::pair{"ahead", near_tip_ahead}, std::pair{"behind", near_tip_behind},
+                                     std::pair{"half height", near_tip_half_height}})
+    if (extent != 0. && (extent < spacing || extent > std::max(length, height)))
+      p.error(std::string("Near tip/") + name, "it must be at least a spacing and no more than the sheet, or 0",
+              {"Sheet/spacing", "Sheet/length", "Sheet/height"});
+
+  if (breaking_stretch && has_sheet())
+  {
+    const lattice::TriangularLattice sheet = lattice();
+    check_breaking_stretch(*this, p, sheet);
+    check_seed(*this, p, sheet);
+  }
+  if (toughening != Toughening::none && toughening_factor == 1.)
+    p.error("Fracture/factor",
+            "toughening by a factor of 1 changes nothing; give a larger factor, or toughening = none",
+            {"Fracture/toughening"});
+  check_time_stepping(*this, p);
+}
+
+std::vector<std::size_t> Case::seed(const lattice::TriangularLattice &sheet) const
+{
+  const double position = seed_position * sheet.length();
+  if (seed_shape == SeedShape::slit)
+    return lattice::seed_sites(sheet, lattice::SeedSlit{position, seed_offset, seed_length, seed_height});
+  return lattice::seed_sites(sheet, lattice::SeedLine{position, seed_offset, seed_sites});
+}
+
+bool Case::has_sheet() const
+{
+  const double shortest = std::min(length, height), longest = std::max(length, height);
+  return spacing > 0. && shortest >= 8. * spacing && longest <= most_spacings * spacing;
+}
+
+lattice::TriangularLattice Case::lattice() const
+{
+  const auto periodic = [this](std::size_t edge)
+  { return continuum.edges[edge].condition == EdgeCase::Condition::periodic; };
+  return {spacing, length, height, orientation, {periodic(0), periodic(2)}};
+}
+
+lattice::Material Case::material() const
+{
+  lattice::Material material{density, nearest.shell(), std::nullopt};
+  if (has_next_nearest)
+    material.next_nearest = next_nearest.shell();
+  return material;
+}
+
+Eigen::Matrix2d Case::deformation() const
+{
+  Eigen::Matrix2d F;
+  F << 1. + strain_x, shear, 0., 1. + strain_y;
+  return F;
+}
+
+lattice::Toughening Case::toughening_rule() const
+{
+  switch (toughening)
+  {
+  case Toughening::behind_tip:
+    return lattice::BehindTipToughening{toughening_distance, toughening_factor};
+  case Toughening::retraction:
+    return lattice::RetractionToughening{toughening_fraction, toughening_factor};
+  default:
+    return lattice::NoToughening{};
+  }
+}
+
+lattice::ContactLaw Case::contact_law() const
+{
+  return lattice::contact_like_nearest_bond(lattice(), material(), contact_distance * spacing, contact_stiffness,
+                                            contact_viscosity);
+}
+
+double Case::chebyshev_step(const bool breaks) const
+{
+  if (breaks && has_contact)
+    return safety_factor * lattice::chebyshev_step(lattice(), material(), smallest_chebyshev_stretch, contact_law());
+  return safety_factor * lattice::chebyshev_step(lattice(), material(), smallest_chebyshev_stretch);
+}
+
+lattice::TimeStepping Case::time_stepping(const bool breaks) const
+{
+  const lattice::TimeStepLimits limits = time_step_limits(breaks);
+  if (integrator == Integrator::velocity_verlet)
+    return time_step ? *time_step : safety_factor * limits.combined;
+  const double step = time_step ? *time_step : chebyshev_step(breaks);
+  if (time_step && stages > 0)
+    return {step, stages};
+  return lattice::chebyshev_time_stepping(step, limits, stages);
+}
+
+lattice::TimeStepLimits Case::time_step_limits(const bool breaks) const
+{
+  if (breaks && has_contact)
+    return lattice::time_step_limits(lattice(), material(), smallest_stable_stretch, contact_law());
+  return lattice::time_step_limits(lattice(), material(), smallest_stable_stretch);
+}
+
+lattice::TimeStepping Case::lattice_time_stepping() const
+{
+  return time_stepping(false);
+}
+
+lattice::TimeStepping Case::fracture_time_stepping() const
+{
+  return time_stepping(true);
+}
+
+std::string case_lines(const Parameters &parameters)
+{
+  return parameters.lines("Checkpoints");
+}
+
+} // namespace verification

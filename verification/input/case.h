@@ -1,0 +1,194 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "lattice/fracture.h"
+#include "lattice/material.h"
+#include "lattice/time_step.h"
+#include "verification/input/continuum_case.h"
+#include "verification/input/parameters.h"
+
+namespace lattice
+{
+struct ContactLaw;
+}
+
+namespace verification
+{
+
+/// One shell of bonds as a case states it.
+struct ShellCase
+{
+  enum class Law
+  {
+    mooney_rivlin,
+    linear
+  };
+
+  Law law = Law::mooney_rivlin;
+  double a = 1e5;       ///< [Pa]
+  double b = 1.5e5;     ///< [Pa]
+  double modulus = 1e5; ///< e [Pa]
+  double area_factor = 2. / 3.;
+  double viscosity = 0.; ///< eta [Pa s]
+
+  void declare(Parameters &parameters, const std::string &section);
+  void check(Parameters &parameters, const std::string &section) const;
+  /// Whether shell() has a law to make.
+  bool has_stiffness() const { return law == Law::linear || a + b > 0.; }
+  lattice::Shell shell() const;
+};
+
+/// Everything that a run is told: one rubber sheet, its loading, what breaks it, and how it is computed. Every command
+/// reads the same entries, so that one file describes one sheet on both sides.
+struct Case
+{
+  // Sheet
+  double spacing = 0.;      ///< d [m]
+  double length = 0.;       ///< [m]
+  double height = 0.;       ///< [m]
+  double hole_radius = 0.;  ///< [m], in the middle of the sheet; 0 for none
+  double notch_length = 0.; ///< [m], from the left edge along y = 0; 0 for none
+  lattice::Orientation orientation = lattice::Orientation::rows_along_crack;
+
+  // Material
+  double density = 0.; ///< rho [kg/m^3]
+  ShellCase nearest;
+  bool has_next_nearest = true;
+  ShellCase next_nearest;
+
+  // Loading
+  double strain_x = 0.; ///< eps_x [-]
+  double strain_y = 0.; ///< eps_y [-]
+  double shear = 0.;    ///< F_xy [-]
+
+  // Lattice
+  enum class Solution
+  {
+    relaxed, ///< static equilibrium
+    motion   ///< motion with dashpots up to the end time
+  };
+  Solution solution = Solution::relaxed;
+  double noise_amplitude = 0.01; ///< in units of d [-]
+  std::uint64_t noise_seed = 1;
+
+  // Fracture
+  std::optional<double> breaking_stretch; ///< lam_f [-]
+  enum class Toughening
+  {
+    none,
+    behind_tip,
+    retraction
+  };
+  Toughening toughening = Toughening::none;
+  double toughening_distance = 0.;  ///< delta [m]
+  double toughening_fraction = 0.9; ///< of the initial stretch [-]
+  double toughening_factor = 1.;    ///< [-]
+  enum class SeedShape
+  {
+    sites, ///< sites in a line
+    slit   ///< all sites in a rectangle
+  };
+  SeedShape seed_shape = SeedShape::sites;
+  unsigned int seed_sites = 8;
+  double seed_length = 0.;     ///< of a slit [m]
+  double seed_height = 0.;     ///< of a slit [m]
+  double seed_position = 0.1;  ///< left end, of the length [-]
+  double seed_offset = 0.;     ///< Y of the seed's centre line [m]
+  double stop_position = 0.93; ///< of the length [-]
+  /// What stands at a short end of a sheet that breaks.
+  enum class End
+  {
+    held,
+    free,     ///< pulled as in the loaded, unbroken sheet
+    absorbing ///< likewise, with dashpots that take up waves
+  };
+  End left_end = End::held;
+  End right_end = End::held;
+
+  // Contact, of sheets that break
+  bool has_contact = true;
+  double contact_distance = 1.;  ///< of d [-]
+  double contact_stiffness = 1.; ///< of that of a nearest bond at rest [-]
+  double contact_viscosity = 1.; ///< of the dashpot of a nearest bond [-]
+
+  // Time
+  double end_time = 0.; ///< [s]
+  enum class Integrator
+  {
+    velocity_verlet,
+    runge_kutta_chebyshev
+  };
+  Integrator integrator = Integrator::velocity_verlet;
+  unsigned int stages = 0;         ///< of Runge-Kutta-Chebyshev; 0: as few as are stable
+  std::optional<double> time_step; ///< [s]; none: safety factor times the stable one
+  double safety_factor = 0.9;
+
+  // Continuum
+  ContinuumCase continuum;
+
+  // Output
+  double frame_interval = 0.;      ///< [s]; 0: first and last frame only
+  unsigned int motion_frames = 48; ///< in motion.pvd while a crack runs all the way; 0: none
+  unsigned int energy_interval = 200;
+
+  // Checkpoints: none of these changes what a run finds
+  unsigned int checkpoint_steps = 0; ///< time steps between two; 0: not by steps
+  double checkpoint_interval = 600.; ///< wall time between two [s]; 0: not by time
+
+  // Near tip: the window that moves with the tip, undeformed; 0: a number of spacings
+  double near_tip_ahead = 0.;              ///< [m]
+  double near_tip_behind = 0.;             ///< [m]
+  double near_tip_half_height = 0.;        ///< [m]
+  std::optional<double> near_tip_interval; ///< time between samples [s]; 0: none are taken; none: near_tip_interval()
+
+  // Reference: published values to set the measured ones beside; none where there are none
+  std::optional<double> reference_wavelength; ///< [m]
+  std::optional<double> reference_amplitude;  ///< [m]
+  std::optional<double> reference_speed;      ///< [m/s], Lagrangian
+  double reference_tolerance = 0.2;           ///< [-]
+
+  void declare(Parameters &parameters);
+  void check(Parameters &parameters) const;
+
+  /// Whether length and height are such that lattice() has a sheet to make.
+  bool has_sheet() const;
+  /// The lattice of the sheet, periodic where its edges are.
+  lattice::TriangularLattice lattice() const;
+  lattice::Material material() const;
+  /// Whether the sheet has an edge inside: of a hole or a notch.
+  bool has_inner_edge() const { return hole_radius > 0. || notch_length > 0.; }
+  /// F = [1 + eps_x, F_xy; 0, 1 + eps_y] of the loaded sheet [-].
+  Eigen::Matrix2d deformation() const;
+  lattice::Toughening toughening_rule() const;
+  /// Places of the sites that the seed crack removes, by increasing X. @throws std::invalid_argument if there are none
+  std::vector<std::size_t> seed(const lattice::TriangularLattice &sheet) const;
+  lattice::ContactLaw contact_law() const;
+  /// Limits of the time step of a sheet, or of one that breaks, whose sites may touch.
+  lattice::TimeStepLimits time_step_limits(bool breaks) const;
+  /// Time stepping of the lattice: the stated step, or safety factor times the limit.
+  lattice::TimeStepping lattice_time_stepping() const;
+  /// The same for a sheet that breaks, whose sites may touch.
+  lattice::TimeStepping fracture_time_stepping() const;
+
+  /// Automatic step of Runge-Kutta-Chebyshev of a sheet, or of one that breaks, whose sites may touch [s].
+  double chebyshev_step(bool breaks) const;
+
+private:
+  lattice::TimeStepping time_stepping(bool breaks) const;
+};
+
+/// Stretch down to which the automatic time step is stable [-]; shorter bonds do not occur in a sheet under tension.
+inline constexpr double smallest_stable_stretch = 0.3;
+
+/// The same for the oscillating modes under Runge-Kutta-Chebyshev [-].
+inline constexpr double smallest_chebyshev_stretch = 0.45;
+
+/// What a run computes, as a line `key = value` for each entry, those of Checkpoints left out, which say only how often
+/// it is saved. Its SHA-256 is `case_hash` in run.json and in checkpoints.
+[[nodiscard]] std::string case_lines(const Parameters &parameters);
+
+} // namespace verification

@@ -1,0 +1,416 @@
+#include "verification/input/continuum_case.h"
+
+#include <algorithm>
+#include <cctype>
+#include <cmath>
+#include <iostream>
+#include <sstream>
+
+#include "support/errors.h"
+#include "support/full_precision.h"
+#include "verification/input/case_text.h"
+
+namespace verification
+{
+namespace
+{
+
+// deal.II prints what muparser says before it throws it; the user is told once, with the entry.
+class SilentErrors
+{
+public:
+  SilentErrors() : buffer_(std::cerr.rdbuf(nullptr)) {}
+  ~SilentErrors() { std::cerr.rdbuf(buffer_); }
+  SilentErrors(const SilentErrors &) = delete;
+  SilentErrors &operator=(const SilentErrors &) = delete;
+
+private:
+  std::streambuf *buffer_;
+};
+
+// Words that muparser and deal.II know and a case may not use: a sheet must be the same in every run and on every rank.
+bool draws_numbers(const std::string &expression)
+{
+  const auto is_part = [](const char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
+  for (const std::string word : {"rand", "rand_seed"})
+    for (std::size_t at = expression.find(word); at != std::string::npos; at = expression.find(word, at + 1))
+      if ((at == 0 || !is_part(expression[at - 1])) &&
+          (at + word.size() == expression.size() || !is_part(expression[at + word.size()])))
+        return true;
+  return false;
+}
+
+// `x = 1`, which muparser takes for 1; comparisons are none.
+bool assigns(const std::string &expression)
+{
+  for (std::size_t at = expression.find('='); at != std::string::npos; at = expression.find('=', at + 1))
+    if (at + 1 < expression.size() && expression[at + 1] == '=')
+      ++at;
+    else if (at == 0 || std::string("<>!").find(expression[at - 1]) == std::string::npos)
+      return true;
+  return false;
+}
+
+// A function whose values are numbers.
+class Expressions : public dealii::FunctionParser<2>
+{
+public:
+  using dealii::FunctionParser<2>::FunctionParser;
+
+  double value(const dealii::Point<2> &X, const unsigned int component) const override
+  {
+    const double value = dealii::FunctionParser<2>::value(X, component);
+    if (!std::isfinite(value))
+      throw latcon::support::InputError("the expression '" + printable(get_expressions()[component]) +
+                                        "' is no finite number at x = " + latcon::support::full_precision(X[0]) +
+                                        " m, y = " + latcon::support::full_precision(X[1]) + " m");
+    return value;
+  }
+
+  void vector_value(const dealii::Point<2> &X, dealii::Vector<double> &values) const override
+  {
+    for (unsigned int component = 0; component < 2; ++component)
+      values[component] = value(X, component);
+  }
+};
+
+using Points = std::vector<dealii::Point<2>>;
+
+// Points on an edge of the sheet, its ends among them, and those where cells of most numbers meet.
+Points points_on(const std::size_t edge, const Outline &outline)
+{
+  constexpr unsigned int n = 720;
+  Points points;
+  for (unsigned int i = 0; i <= n; ++i)
+  {
+    const double part = static_cast<double>(i) / n;
+    const double X = part * outline.length, Y = (part - 0.5) * outline.height, angle = 2. * M_PI * part;
+    if (edge < 2)
+      points.emplace_back(edge == 0 ? 0. : outline.length, Y);
+    else if (edge < 4)
+      points.emplace_back(X, (edge == 2 ? -0.5 : 0.5) * outline.height);
+    else if (outline.hole_radius > 0.)
+      points.emplace_back(0.5 * outline.length + outline.hole_radius * std::cos(angle),
+                          outline.hole_radius * std::sin(angle));
+    else if (outline.notch_length > 0.)
+      points.emplace_back(part * outline.notch_length, 0.);
+  }
+  return points;
+}
+
+// Points all over the sheet, its edges among them.
+Points points_in(const Outline &outline)
+{
+  constexpr unsigned int n = 48;
+  Points points;
+  for (unsigned int i = 0; i <= n; ++i)
+    for (unsigned int j = 0; j <= n; ++j)
+    {
+      const dealii::Point<2> X(outline.length * i / n, outline.height * (static_cast<double>(j) / n - 0.5));
+      if (X.distance(dealii::Point<2>(0.5 * outline.length, 0.)) >= outline.hole_radius)
+        points.push_back(X);
+    }
+  return points;
+}
+
+void check_values_at(Parameters &parameters, const std::string &key, const std::string &text, const Points &points,
+                     const Outline &outline)
+{
+  const SilentErrors silent;
+  FieldCase field;
+  field.x = text;
+  try
+  {
+    const auto function = field.field(std::min(outline.length, outline.height));
+    for (const dealii::Point<2> &X : points)
+      (void)function->value(X, 0);
+  }
+  catch (const latcon::support::InputError &problem)
+  {
+    parameters.error(key, problem.what());
+  }
+  catch (const std::exception &)
+  {
+    // It cannot be parsed, and that has been told.
+  }
+}
+
+// Empty if there is none. Evaluated once, since parsing happens with the first value.
+std::string problem_with(const std::string &expression)
+{
+  // Of a list muparser takes the last entry, where the user may have meant a decimal comma or both components.
+  int open = 0;
+  for (const char c : expression)
+  {
+    open += c == '(' ? 1 : c == ')' ? -1 : 0;
+    if (c == ',' && open == 0)
+      return "a list where one number is wanted";
+  }
+  if (assigns(expression))
+    return "an assignment; to compare, write ==";
+  if (draws_numbers(expression))
+    return "random numbers, which differ from run to run";
+  const SilentErrors silent;
+  try
+  {
+    FieldCase field;
+    field.x = expression;
+    field.field(1.)->value(dealii::Point<2>(0.0123, 0.0045), 0);
+    return "";
+  }
+  catch (const latcon::support::InputError &)
+  {
+    return ""; // it can be parsed; its values are looked at where the sheet is
+  }
+  catch (const std::exception &error)
+  {
+    const std::string text = error.what();
+    const std::string before = "The parser said: ";
+    const std::size_t begin = text.find(before);
+    if (begin == std::string::npos)
+      return "it cannot be parsed";
+    // deal.II breaks long lines, and ends with an empty one or a rule.
+    std::istringstream lines(text.substr(begin + before.size()));
+    std::string said, line;
+    while (std::getline(lines, line) && line.find_first_not_of(" -") != std::string::npos)
+      said += (said.empty() ? "" : " ") + line.substr(line.find_first_not_of(' '));
+    return said;
+  }
+}
+
+bool is_word(const std::string &text)
+{
+  return text == "loading" || text == "free";
+}
+
+void check_expression(Parameters &parameters, const std::string &key, const std::string &text)
+{
+  if (text == "0")
+    return; // nearly all of them, and a parser takes long to make
+  const std::string problem = problem_with(text);
+  if (!problem.empty())
+    parameters.error(key, "it is no expression in x, y and pi: " + problem);
+}
+
+} // namespace
+
+void FieldCase::declare(Parameters &p, const std::string &section, const std::string &name, const std::string &unit,
+                        const std::string &documentation)
+{
+  for (std::string *component : {&x, &y})
+    p.add(section, name + (component == &x ? " x" : " y"), *component,
+          documentation + ", component " + (component == &x ? "x" : "y") + " [" + unit +
+            "]: expression in the undeformed x and y [m], and pi");
+}
+
+void FieldCase::check(Parameters &p, const std::string &section, const std::string &name) const
+{
+  check_expression(p, section + "/" + name + " x", x);
+  check_expression(p, section + "/" + name + " y", y);
+}
+
+std::shared_ptr<dealii::FunctionParser<2>> FieldCase::field(const double extent) const
+{
+  // Gradients by differences of fourth order: the step balances their error against round-off.
+  auto function = std::make_shared<Expressions>(2, 0., 1e-3 * extent);
+  function->set_formula(dealii::AutoDerivativeFunction<2>::FourthOrder);
+  function->initialize("x,y", std::vector<std::string>{x, y}, {{"pi", std::acos(-1.)}});
+  return function;
+}
+
+void EdgeCase::declare(Parameters &p, const bool can_be_periodic)
+{
+  std::vector<std::pair<std::string, Condition>> words = {{"held", Condition::held}, {"free", Condition::free}};
+  if (can_be_periodic)
+    words.emplace_back("periodic", Condition::periodic);
+  p.add(name, "condition", condition, words,
+        "held where the displacement is given, free where the traction is" +
+          std::string(can_be_periodic ? ", periodic where it follows the opposite edge" : ""));
+  for (std::string *component : {&displacement_x, &displacement_y})
+    p.add(name, component == &displacement_x ? "displacement x" : "displacement y", *component,
+          std::string("of a held edge, component ") + (component == &displacement_x ? "x" : "y") +
+            " [m]: `loading` for that of the homogeneous loading, `free`, or an expression in x, y [m] and pi");
+  p.add(
+    name, "normal gradient", normal_gradient,
+    {{"free", NormalGradient::free}, {"clamped", NormalGradient::clamped}, {"loading", NormalGradient::loading}},
+    "derivative of displacement along the outward normal, which a gradient law can hold: free, zero, or that of the "
+    "homogeneous loading");
+  traction.declare(p, name, "traction", "Pa", "dead load per undeformed length and thickness");
+  double_traction.declare(p, name, "double traction", "Pa m", "dead load on the normal gradient of displacement");
+}
+
+void EdgeCase::check(Parameters &p) const
+{
+  if (!is_word(displacement_x))
+    check_expression(p, name + "/displacement x", displacement_x);
+  if (!is_word(displacement_y))
+    check_expression(p, name + "/displacement y", displacement_y);
+  traction.check(p, name, "traction");
+  double_traction.check(p, name, "double traction");
+  if (condition == Condition::held && displacement_x == "free" && displacement_y == "free")
+    p.error(name + "/condition", "a held edge needs a displacement that is not `free`, or condition = free");
+  // What is given has to act: of a held edge on the component that is free, of a periodic one not at all.
+  for (const bool is_x : {true, false})
+    if ((is_x ? traction.x : traction.y) != "0" && condition != Condition::free &&
+        (condition == Condition::periodic || (is_x ? displacement_x : displacement_y) != "free"))
+      p.error(name + (is_x ? "/traction x" : "/traction y"), "a traction needs an edge that is free to move that way",
+              {name + "/condition"});
+  if (condition == Condition::periodic && normal_gradient != NormalGradient::free)
+    p.error(name + "/normal gradient", "that of a periodic edge follows from the opposite one", {name + "/condition"});
+  if (!double_traction.is_zero() && (condition == Condition::periodic || normal_gradient != NormalGradient::free))
+    p.error(name + "/double traction " + double_traction.given(),
+            "a double traction needs an edge whose normal gradient is free",
+            {name + "/condition", name + "/normal gradient"});
+}
+
+ContinuumCase::ContinuumCase()
+{
+  const char *const names[5] = {"Left edge", "Right edge", "Bottom edge", "Top edge", "Inner edge"};
+  for (std::size_t id = 0; id < edges.size(); ++id)
+    edges[id].name = names[id];
+  edges[4].condition = EdgeCase::Condition::free;
+}
+
+void ContinuumCase::declare(Parameters &p)
+{
+  p.add(
+    "Continuum", "law", law,
+    {{"cauchy-born", ContinuumLaw::cauchy_born},
+     {"mooney-rivlin-network", ContinuumLaw::mooney_rivlin_network},
+     {"mooney-rivlin", ContinuumLaw::mooney_rivlin}},
+    "law of the finite element sheet: Cauchy-Born law of the lattice, its mean over all directions of bonds, or the "
+    "plane-stress Mooney-Rivlin law of the textbooks, calibrated along the loading path");
+  p.add("Continuum", "ratio", mooney_rivlin_ratio, Between{-0.9, 0.9}, "1",
+        "r = C2 / (C1 + C2) of the plane-stress law mooney-rivlin; auto: calibrated along the loading path");
+  p.add(
+    "Continuum", "gradient", gradient,
+    {{"none", ContinuumGradient::none},
+     {"isotropic", ContinuumGradient::isotropic},
+     {"lattice", ContinuumGradient::lattice},
+     {"network", ContinuumGradient::network}},
+    "energy of the gradient of deformation: none, (mu l_s^2 / 2) |Grad F|^2, that of the lattice's bonds, or its mean "
+    "over all directions, which goes with the law mooney-rivlin-network");
+  p.add(
+    "Continuum", "static length", static_length, MagnitudeOrZero{}, "m",
+    "l_s of the isotropic gradient energy; auto: fitted to the dispersion of the lattice, averaged over directions");
+  p.add("Continuum", "inertia length", inertia_length, MagnitudeOrZero{}, "m",
+        "l_d of the micro-inertia and of the lattice's gradient energy or its mean; auto: 0 without a gradient energy, "
+        "fitted with l_s for the isotropic one, the longest bond over sqrt(12) for the others");
+  p.add("Continuum", "penalty", penalty, Between{0.5, 1000.}, "1",
+        "gamma of the interior penalty gamma p (p + 1) / h on jumps of the normal derivative");
+  p.add("Continuum", "cells x", cells_x, Between{1., 65536.}, "cells along x of a sheet without hole or notch");
+  p.add("Continuum", "cells y", cells_y, Between{1., 65536.}, "cells along y of a sheet without hole or notch");
+  p.add("Continuum", "refinements", refinements, Between{0., 12.},
+        "halvings of the coarse mesh of a sheet with a hole or a notch, or from a file");
+  p.add(
+    "Continuum", "mesh file", mesh_file,
+    "Gmsh mesh of quadrilaterals [m] in place of the sheet; physical curves 0 left, 1 right, 2 bottom, 3 top, 4 inner");
+  p.add("Continuum", "degree", degree, Between{1., 5.},
+        "polynomial degree p of the elements; at least 2 with a gradient energy");
+  p.add("Continuum", "adaptive cycles", adaptive_cycles, Between{0., 30.},
+        "times that the mesh is refined where the error seems largest, after the loading");
+  p.add("Continuum", "refined fraction", refined_fraction, Between{0.001, 1.}, "1",
+        "of the cells, in each adaptive cycle");
+  p.add("Continuum", "reaction tolerance", reaction_tolerance, Magnitude{}, "1",
+        "largest relative change of the largest reaction in the last adaptive cycle with which it counts as converged; "
+        "auto: reported, not judged");
+  p.add("Continuum", "first load step", first_load_step, Between{0.001, 1.}, "1",
+        "rise of the load factor with which the loading starts");
+  p.add("Continuum", "relative tolerance", relative_tolerance, Between{1e-14, 1e-4}, "1",
+        "residual over the forces at work at which Newton stops; its round-off is never undercut");
+  p.add(
+    "Continuum", "direct limit", direct_limit, Between{0., 1e7},
+    "unknowns up to which linear systems are solved directly; beyond, conjugate gradients or, with dashpots, GMRES, "
+    "with multigrid");
+  p.add("Continuum", "solution", solution, {{"equilibrium", Solution::equilibrium}, {"motion", Solution::motion}},
+        "what `latcon continuum` computes: static equilibrium, or the motion up to the end time");
+  p.add("Continuum", "time step", time_step, Magnitude{}, "s",
+        "of the motion; auto: a tenth of the time that a shear wave takes across a cell");
+  p.add("Continuum", "rule", rule,
+        {{"average-acceleration", Rule::average_acceleration}, {"generalised-alpha", Rule::generalised_alpha}},
+        "of time integration");
+  p.add("Continuum", "spectral radius", spectral_radius, Between{0., 1.}, "1",
+        "of generalised-alpha at high frequencies: 1 keeps their energy, 0 removes it in a step");
+  for (std::size_t id = 0; id < edges.size(); ++id)
+    edges[id].declare(p, id < 4);
+  body_force.declare(p, "Body force", "force", "N/m^3", "dead load of the finite element sheet");
+  p.add("Body force", "corrected", body_force_corrected,
+        "apply (1 - l_d^2 Laplace) of the force, as the lattice's continuum with micro-inertia needs");
+  p.add("Initial state", "base", initial_base,
+        {{"undeformed", Base::undeformed}, {"loading", Base::loading}, {"equilibrium", Base::equilibrium}},
+        "where a motion of the finite elements starts: undeformed, homogeneously loaded, or in equilibrium under the "
+        "conditions of the case");
+  initial_displacement.declare(p, "Initial state", "displacement", "m", "added to the base, zero where edges are held");
+  initial_velocity.declare(p, "Initial state", "velocity", "m/s", "at the start of a motion of the finite elements");
+}
+
+void ContinuumCase::check(Parameters &p, const bool has_inner_edge) const
+{
+  if (gradient != ContinuumGradient::none && degree < 2)
+    p.error("Continuum/degree", "a gradient energy needs elements of degree 2 or more", {"Continuum/gradient"});
+  const bool has_gradient =
+    gradient != ContinuumGradient::none && !(gradient == ContinuumGradient::isotropic && static_length == 0.);
+  for (const EdgeCase &edge : edges)
+  {
+    edge.check(p);
+    if (!has_gradient && edge.normal_gradient != EdgeCase::NormalGradient::free)
+      p.error(edge.name + "/normal gradient", "without a gradient energy it cannot be held", {"Continuum/gradient"});
+    if (!has_gradient && !edge.double_traction.is_zero())
+      p.error(edge.name + "/double traction " + edge.double_traction.given(), "without a gradient energy there is none",
+              {"Continuum/gradient"});
+  }
+  for (const std::size_t id : {0, 2})
+    if ((edges[id].condition == EdgeCase::Condition::periodic) !=
+        (edges[id + 1].condition == EdgeCase::Condition::periodic))
+      p.error(edges[id].name + "/condition", "opposite edges must both be periodic, or neither",
+              {edges[id + 1].name + "/condition"});
+  if (!mesh_file.empty() || has_inner_edge)
+    for (const std::size_t id : {0, 2})
+      if (edges[id].condition == EdgeCase::Condition::periodic)
+        p.error(edges[id].name + "/condition", "only a sheet without hole, notch and mesh file can be periodic");
+  bool held = false;
+  for (std::size_t id = 0; id < edges.size(); ++id)
+    held =
+      held || ((id < 4 || has_inner_edge || !mesh_file.empty()) && edges[id].condition == EdgeCase::Condition::held);
+  if (!held && solution == Solution::equilibrium)
+    p.error("Left edge/condition", "equilibrium needs an edge that is held",
+            {"Right edge/condition", "Bottom edge/condition", "Top edge/condition", "Inner edge/condition"});
+  if (solution == Solution::motion && adaptive_cycles > 0)
+    p.error("Continuum/adaptive cycles", "the mesh of a motion is not refined; give 0", {"Continuum/solution"});
+  if (edges[4].normal_gradient == EdgeCase::NormalGradient::loading)
+    p.error("Inner edge/normal gradient", "an inner edge has no single normal; give free or clamped");
+  body_force.check(p, "Body force", "force");
+  initial_displacement.check(p, "Initial state", "displacement");
+  initial_velocity.check(p, "Initial state", "velocity");
+}
+
+void ContinuumCase::check_values(Parameters &p, const Outline &outline) const
+{
+  // Where a sheet from a file is, is known only when it is read.
+  if (!mesh_file.empty())
+    return;
+  const auto check = [&](const std::string &key, const std::string &text, const Points &points)
+  {
+    if (!is_word(text) && text != "0")
+      check_values_at(p, key, text, points, outline);
+  };
+  const auto check_field = [&](const std::string &key, const FieldCase &field, const Points &points)
+  {
+    check(key + " x", field.x, points);
+    check(key + " y", field.y, points);
+  };
+  for (std::size_t id = 0; id < edges.size(); ++id)
+  {
+    const EdgeCase &edge = edges[id];
+    const Points points = points_on(id, outline);
+    check_field(edge.name + "/displacement", {edge.displacement_x, edge.displacement_y}, points);
+    check_field(edge.name + "/traction", edge.traction, points);
+    check_field(edge.name + "/double traction", edge.double_traction, points);
+  }
+  const Points inside = points_in(outline);
+  check_field("Body force/force", body_force, inside);
+  check_field("Initial state/displacement", initial_displacement, inside);
+  check_field("Initial state/velocity", initial_velocity, inside);
+}
+
+} // namespace verification

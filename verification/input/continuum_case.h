@@ -1,0 +1,142 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include <deal.II/base/function_parser.h>
+
+#include "verification/input/parameters.h"
+
+namespace verification
+{
+
+/// Which constitutive law the finite element sheet is made of.
+enum class ContinuumLaw
+{
+  cauchy_born,           ///< exact continuum of the lattice in homogeneous deformation
+  mooney_rivlin_network, ///< mean of cauchy_born over all directions
+  mooney_rivlin          ///< compressible Mooney-Rivlin of the textbooks, calibrated along the loading path
+};
+
+/// Which gradient energy is added to it.
+enum class ContinuumGradient
+{
+  none,
+  isotropic, ///< (mu l_s^2 / 2) |Grad F|^2
+  lattice,   ///< that of the lattice's own bonds
+  network    ///< mean of lattice over all directions
+};
+
+/// A vector field as a case states it: a text for each component, in x and y [m] of the undeformed sheet.
+struct FieldCase
+{
+  std::string x = "0";
+  std::string y = "0";
+
+  void declare(Parameters &parameters, const std::string &section, const std::string &name, const std::string &unit,
+               const std::string &documentation);
+  void check(Parameters &parameters, const std::string &section, const std::string &name) const;
+  bool is_zero() const { return x == "0" && y == "0"; }
+  /// "x" or "y": the first component that is not zero.
+  const char *given() const { return x != "0" ? "x" : "y"; }
+  /// The field; its values are finite, or @throws InputError with the place of one that is not.
+  /// @param extent a length of the sheet [m], the scale on which the field varies
+  std::shared_ptr<dealii::FunctionParser<2>> field(double extent) const;
+};
+
+/// The shape of a sheet: X from 0 to length, Y from -height / 2 to height / 2.
+struct Outline
+{
+  double length, height; ///< [m], > 0
+  double hole_radius;    ///< [m], in the middle; 0 for none
+  double notch_length;   ///< [m], from the left edge along y = 0; 0 for none
+};
+
+/// What is done to one edge of the sheet. The lattice takes a part of it, see require_lattice_sheet.
+struct EdgeCase
+{
+  enum class Condition
+  {
+    held,    ///< displacement given
+    free,    ///< traction given
+    periodic ///< follows the opposite edge
+  };
+  /// Of the normal gradient of displacement; only a gradient law can be told.
+  enum class NormalGradient
+  {
+    free,    ///< double traction given
+    clamped, ///< zero
+    loading  ///< that of the homogeneous loading
+  };
+
+  std::string name; ///< "Left edge"
+  Condition condition = Condition::held;
+  std::string displacement_x = "loading"; ///< expression [m], or "loading", or "free"
+  std::string displacement_y = "loading";
+  NormalGradient normal_gradient = NormalGradient::free;
+  FieldCase traction;        ///< [Pa]
+  FieldCase double_traction; ///< [Pa m]
+
+  void declare(Parameters &parameters, bool can_be_periodic);
+  void check(Parameters &parameters) const;
+};
+
+/// The entries of a case that concern the finite element side alone.
+struct ContinuumCase
+{
+  ContinuumLaw law = ContinuumLaw::cauchy_born;
+  std::optional<double> mooney_rivlin_ratio; ///< r = C2 / (C1 + C2) [-]; none: calibrated
+  ContinuumGradient gradient = ContinuumGradient::none;
+  std::optional<double> static_length;  ///< l_s [m]; none: that of the lattice, averaged over directions
+  std::optional<double> inertia_length; ///< l_d [m]; none: likewise, or half the longest bond over sqrt3
+  double penalty = 2.;                  ///< gamma [-]
+  unsigned int cells_x = 12;
+  unsigned int cells_y = 8;
+  unsigned int refinements = 2; ///< of the coarse mesh, where cells_x and cells_y do not apply
+  std::string mesh_file;        ///< Gmsh; empty for none
+  unsigned int degree = 3;
+  unsigned int adaptive_cycles = 0;
+  double refined_fraction = 0.1;
+  std::optional<double> reaction_tolerance; ///< [-] change of the largest reaction in the last adaptive cycle
+  double first_load_step = 1.;              ///< [-]
+  double relative_tolerance = 1e-10;        ///< of the residual [-]
+  unsigned int direct_limit = 20000;        ///< unknowns
+
+  enum class Solution
+  {
+    equilibrium,
+    motion
+  };
+  Solution solution = Solution::equilibrium;
+  std::optional<double> time_step; ///< [s]; none: a tenth of what a shear wave needs across a cell
+  enum class Rule
+  {
+    average_acceleration,
+    generalised_alpha
+  };
+  Rule rule = Rule::average_acceleration;
+  double spectral_radius = 0.9; ///< of generalised-alpha at high frequencies [-]
+
+  std::array<EdgeCase, 5> edges; ///< indexed by continuum::edge: left, right, bottom, top, inner
+  FieldCase body_force;          ///< [N/m^3]
+  bool body_force_corrected = false;
+  enum class Base
+  {
+    undeformed,
+    loading,    ///< homogeneously deformed
+    equilibrium ///< under the conditions of the case
+  };
+  Base initial_base = Base::loading;
+  FieldCase initial_displacement; ///< [m], added to the base
+  FieldCase initial_velocity;     ///< [m/s]
+
+  ContinuumCase();
+  void declare(Parameters &parameters);
+  void check(Parameters &parameters, bool has_inner_edge) const;
+  /// Refuses expressions that are not finite somewhere: they are tried in points all over the sheet and its edges.
+  void check_values(Parameters &parameters, const Outline &outline) const;
+};
+
+} // namespace verification

@@ -1,0 +1,316 @@
+#include "verification/input/parameters.h"
+
+#include "support/errors.h"
+#include "verification/input/case_text.h"
+#include "verification/input/input_file.h"
+#include "verification/input/spelling.h"
+
+#include <deal.II/base/parameter_handler.h>
+
+#include <algorithm>
+#include <sstream>
+#include <stdexcept>
+
+namespace verification
+{
+
+namespace
+{
+
+// Problems beyond these are counted, not shown: a wrong file would fill the screen and the memory.
+constexpr std::size_t most_problems = 50;
+
+} // namespace
+
+std::string Parameters::Entry::place() const
+{
+  if (overridden)
+    return "--set";
+  return file_place.empty() ? "default" : file_place;
+}
+
+Parameters::Parameters() = default;
+Parameters::~Parameters() = default;
+
+void Parameters::read_file(const std::string &path)
+{
+  file_ = printable(path, path.size());
+  const InputFile input = read_input_file(path);
+  if (input.problem.empty())
+    read_text(input.text, path);
+  else
+  {
+    unreadable_ = true;
+    report(file_, "cannot read the case: " + input.problem);
+  }
+}
+
+void Parameters::read_text(const std::string &text, const std::string &name)
+{
+  file_ = printable(name, name.size());
+  const std::string json = ".json";
+  const bool is_json = name.size() >= json.size() && name.compare(name.size() - json.size(), json.size(), json) == 0;
+  for (const auto &item : is_json ? read_json(text, file_) : read_prm(text, file_))
+    if (const auto *problem = std::get_if<SyntaxProblem>(&item))
+      report(problem->place, problem->text);
+    else if (const auto *start = std::get_if<SectionStart>(&item))
+      enter(*start);
+    else if (const auto *assignment = std::get_if<Assignment>(&item))
+      take(*assignment);
+}
+
+void Parameters::read_overrides(const std::vector<std::string> &overrides)
+{
+  for (const std::string &text : overrides)
+    take_override(text);
+}
+
+void Parameters::enter(const SectionStart &start)
+{
+  // Told here, once, and not for each entry in the section.
+  if (!has_section(start.section))
+    report(start.place, "unknown subsection '" + printable(start.section) + "'" + nearest_section(start.section) +
+                          "; known: " + known_sections());
+}
+
+void Parameters::take(const Assignment &assignment)
+{
+  const std::string &section = assignment.section;
+  const auto found = keys_.find(section + "/" + assignment.name);
+  const std::string shown = printable(assignment.name) + " = " + printable(assignment.value) + ": ";
+  if (found != keys_.end())
+  {
+    Entry &entry = entries_[found->second];
+    if (entry.file_place.empty())
+    {
+      entry.file_place = assignment.place;
+      assign(entry, assignment.value);
+    }
+    else
+    {
+      entry.wrong = true;
+      report(assignment.place,
+             section + "/" + shown + "set twice, first at " + entry.file_place + " to " + printable(entry.text));
+    }
+  }
+  else if (section.empty())
+    report(assignment.place, shown + "outside of any subsection" + nearest_key("", assignment.name));
+  else if (has_section(section))
+    report(assignment.place, section + "/" + shown + "unknown key" + nearest_key(section, assignment.name) +
+                               "; known in " + section + ": " + known_entries(section));
+}
+
+void Parameters::take_override(const std::string &text)
+{
+  const std::size_t equals = text.find('=');
+  const std::size_t slash = text.find('/');
+  if (equals == std::string::npos || slash == std::string::npos || slash > equals)
+  {
+    report("--set", "not understood: '" + printable(text) + "'; allowed: --set Section/Name=value");
+    return;
+  }
+  const std::string section = trimmed(text.substr(0, slash));
+  const std::string name = trimmed(text.substr(slash + 1, equals - slash - 1));
+  const std::string value = trimmed(text.substr(equals + 1));
+  const auto found = keys_.find(section + "/" + name);
+  const std::string shown = printable(section + "/" + name) + " = " + printable(value) + ": ";
+  if (found != keys_.end())
+  {
+    Entry &entry = entries_[found->second];
+    if (entry.overridden)
+    {
+      entry.wrong = true;
+      report("--set", shown + "set twice, first to " + printable(entry.text));
+    }
+    else
+    {
+      entry.overridden = true;
+      assign(entry, value);
+    }
+  }
+  else if (has_section(section))
+    report("--set", shown + "unknown key" + nearest_key(section, name) + "; known in " + section + ": " +
+                      known_entries(section));
+  else
+    report("--set", shown + "unknown subsection '" + printable(section) + "'" + nearest_key(section, name) +
+                      "; known: " + known_sections());
+}
+
+void Parameters::assign(Entry &entry, const std::string &value)
+{
+  entry.text = value;
+  std::string wrong = unwritable(value);
+  if (wrong.empty())
+    wrong = entry.read(value);
+  if (!wrong.empty())
+  {
+    entry.wrong = true;
+    report(entry.place(), entry.key() + " = " + printable(value) + ": " + wrong + "; allowed: " + entry.allowed);
+  }
+}
+
+void Parameters::report(const std::string &place, const std::string &text)
+{
+  ++n_problems_;
+  if (problems_.size() < most_problems)
+    problems_.push_back(place + ": " + text);
+}
+
+const Parameters::Entry &Parameters::find(const std::string &key) const
+{
+  const auto found = keys_.find(key);
+  if (found == keys_.end())
+    throw std::logic_error("parameters: '" + key + "' is not declared");
+  return entries_[found->second];
+}
+
+bool Parameters::is_set(const std::string &key) const
+{
+  return find(key).is_set();
+}
+
+void Parameters::error(const std::string &key, const std::string &text, const std::vector<std::string> &also)
+{
+  const auto bad = [this](const std::string &k)
+  {
+    const Entry &entry = find(k);
+    return entry.wrong || (entry.presence == Presence::required && !entry.is_set());
+  };
+  bool consequence = bad(key);
+  std::string others;
+  for (const std::string &other : also)
+  {
+    consequence = consequence || bad(other);
+    others += (others.empty() ? "; with " : ", ") + other + " = " + printable(find(other).write()) + " (" +
+              find(other).place() + ")";
+  }
+  if (consequence)
+    return;
+  const Entry &entry = find(key);
+  report(entry.place(),
+         key + " = " + printable(entry.is_set() ? entry.text : entry.default_text) + ": " + text + others);
+}
+
+bool Parameters::good() const
+{
+  return n_problems_ == 0 &&
+         std::none_of(entries_.begin(), entries_.end(),
+                      [](const Entry &entry) { return entry.presence == Presence::required && !entry.is_set(); });
+}
+
+void Parameters::finish()
+{
+  if (!unreadable_)
+    for (const Entry &entry : entries_)
+      if (entry.presence == Presence::required && !entry.is_set())
+        report(printable(file_),
+               entry.key() + ": required, but not set; allowed: " + entry.allowed + "; it is: " + entry.documentation);
+  if (n_problems_ == 0)
+    return;
+  std::vector<std::string> problems = problems_;
+  if (n_problems_ > problems.size())
+    problems.push_back("... and " + std::to_string(n_problems_ - problems.size()) + " more problems");
+  throw latcon::support::InputError(std::move(problems));
+}
+
+bool Parameters::has_section(const std::string &section) const
+{
+  return std::any_of(entries_.begin(), entries_.end(), [&](const Entry &entry) { return entry.section == section; });
+}
+
+std::vector<std::string> Parameters::sections() const
+{
+  std::vector<std::string> sections;
+  for (const Entry &entry : entries_)
+    if (std::find(sections.begin(), sections.end(), entry.section) == sections.end())
+      sections.push_back(entry.section);
+  return sections;
+}
+
+std::string Parameters::known_sections() const
+{
+  return comma_separated(sections());
+}
+
+std::string Parameters::known_entries(const std::string &section) const
+{
+  std::vector<std::string> names;
+  for (const Entry &entry : entries_)
+    if (entry.section == section)
+      names.push_back(entry.name);
+  return comma_separated(names);
+}
+
+std::string Parameters::nearest_section(const std::string &section) const
+{
+  const std::string nearest = nearest_word(section, sections());
+  return nearest.empty() ? "" : "; nearest: " + nearest;
+}
+
+std::string Parameters::nearest_key(const std::string &section, const std::string &name) const
+{
+  const Entry *nearest = nullptr;
+  std::size_t least = std::numeric_limits<std::size_t>::max();
+  for (const Entry &entry : entries_)
+    if (could_mean(name, entry.name))
+    {
+      // Another section is a further mistake to assume; how much of one depends on how its name is spelt.
+      const std::size_t errors =
+        typing_errors(name, entry.name) + std::min<std::size_t>(typing_errors(section, entry.section), 3);
+      if (errors < least)
+      {
+        least = errors;
+        nearest = &entry;
+      }
+    }
+  return nearest == nullptr ? "" : "; nearest known key: " + nearest->key();
+}
+
+void Parameters::declare_in(dealii::ParameterHandler &handler) const
+{
+  for (const Entry &entry : entries_)
+  {
+    const bool required = entry.presence == Presence::required;
+    std::string documentation = entry.documentation;
+    if (!entry.unit.empty())
+      documentation += " [" + entry.unit + "]";
+    if (required || !entry.rule.empty())
+      documentation +=
+        " (" + entry.rule + (required && !entry.rule.empty() ? "; " : "") + (required ? "required" : "") + ")";
+    handler.enter_subsection(entry.section);
+    // Values are checked here, before deal.II sees them, so that all problems can be told at once. A required entry has
+    // no default; its value stands in for one, or deal.II would print an empty default beside it.
+    handler.declare_entry(entry.name, required ? entry.write() : entry.default_text, dealii::Patterns::Anything(),
+                          documentation, required);
+    handler.set(entry.name, entry.write());
+    handler.leave_subsection();
+  }
+}
+
+std::string Parameters::resolved_text() const
+{
+  dealii::ParameterHandler handler;
+  declare_in(handler);
+  std::ostringstream text;
+  handler.print_parameters(text, dealii::ParameterHandler::PRM | dealii::ParameterHandler::KeepDeclarationOrder);
+  return text.str();
+}
+
+std::vector<std::pair<std::string, std::string>> Parameters::values() const
+{
+  std::vector<std::pair<std::string, std::string>> values;
+  for (const auto &[key, index] : keys_)
+    values.emplace_back(key, entries_[index].write());
+  return values;
+}
+
+std::string Parameters::lines(const std::string &section_left_out) const
+{
+  std::string text;
+  for (const auto &[key, value] : values())
+    if (section_left_out.empty() || key.rfind(section_left_out + "/", 0) != 0)
+      text += key + " = " + value + "\n";
+  return text;
+}
+
+} // namespace verification

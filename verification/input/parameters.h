@@ -1,0 +1,298 @@
+/// Cases: named entries with unit, range and documentation, read from a file and from the command line.
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <limits>
+#include <map>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <utility>
+#include <vector>
+
+namespace dealii
+{
+class ParameterHandler;
+}
+
+namespace verification
+{
+
+struct Assignment;
+struct SectionStart;
+
+/// The numbers an entry may have. In the unit of the entry, which is an SI unit.
+class Range
+{
+public:
+  /// One end of a range.
+  struct Bound
+  {
+    double value;  ///< infinite for none
+    bool included; ///< whether the value itself is allowed
+  };
+
+  Range(Bound lower, Bound upper) : lower_(lower), upper_(upper) {}
+
+  /// Not-a-number and infinities are in no range.
+  [[nodiscard]] bool contains(double value) const;
+
+  /// For a message, e.g. "> 0 and <= 1"; empty if every number is allowed.
+  [[nodiscard]] std::string text() const;
+
+protected:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+
+private:
+  Bound lower_;
+  Bound upper_;
+};
+
+/// Every finite number.
+struct Any : Range
+{
+  Any() : Range({-infinity, false}, {infinity, false}) {}
+};
+
+/// x > 0
+struct Positive : Range
+{
+  Positive() : Range({0., false}, {infinity, false}) {}
+};
+
+/// x >= 0
+struct NonNegative : Range
+{
+  NonNegative() : Range({0., true}, {infinity, false}) {}
+};
+
+/// 1e-20 <= x <= 1e20: what has a size, in any system of units. Products of a dozen such numbers are finite.
+struct Magnitude : Range
+{
+  Magnitude() : Range({1e-20, true}, {1e20, true}) {}
+};
+
+/// 0 <= x <= 1e20: likewise, or nothing.
+struct MagnitudeOrZero : Range
+{
+  MagnitudeOrZero() : Range({0., true}, {1e20, true}) {}
+};
+
+/// x > lower
+struct Above : Range
+{
+  explicit Above(double lower) : Range({lower, false}, {infinity, false}) {}
+};
+
+/// x >= lower
+struct AtLeast : Range
+{
+  explicit AtLeast(double lower) : Range({lower, true}, {infinity, false}) {}
+};
+
+/// lower <= x <= upper
+struct Between : Range
+{
+  Between(double lower, double upper) : Range({lower, true}, {upper, true}) {}
+};
+
+/// Whether an entry may be left out.
+enum class Presence
+{
+  optional, ///< if left out, the member keeps the value it had when it was declared
+  required  ///< no default would be honest: leaving it out is an error
+};
+
+/// The entries of a case, each declared once, beside the member it fills.
+///
+/// Order of use: declare with add(); read_file() and read_overrides(); checks that concern several entries, which
+/// report through error(); finish(), which throws one InputError with every problem found by any of them. A member is
+/// filled as soon as a good value is read, so the checks see the members; it keeps its old value if the value read is
+/// bad.
+///
+/// Case files have deal.II's parameter format (`subsection X`, `set name = value`, `end`, `#` starts a comment, `\` at
+/// the end of a line continues it) or, if their name ends in `.json`, are JSON: one object per section, values as
+/// numbers, strings, booleans, or arrays of numbers. Sections do not nest. A number is in the SI unit of its entry or
+/// carries a unit: `0.625 mm`. The decimal digits are kept: `0.625 mm` is bitwise `0.000625`.
+///
+/// Members must be initialised, outlive this object and stay where they are. Misuse by the program (an entry declared
+/// twice, a default out of range, a unit not known, an undeclared key in error()) throws std::logic_error.
+class Parameters
+{
+public:
+  Parameters();
+  ~Parameters();
+  Parameters(const Parameters &) = delete;
+  Parameters &operator=(const Parameters &) = delete;
+
+  /// A real number.
+  /// @param section       section of the entry, at least one word; neither `/`, `#`, `=` nor line breaks
+  /// @param name          name within the section, same rule; key of the entry is `section/name`
+  /// @param member        filled, in SI; its present value is the default
+  /// @param range         what is allowed, in `unit`
+  /// @param unit          SI unit, e.g. "m", "kg/m^3", "N s/m"; "1" for a pure number
+  /// @param documentation what it is, in words and symbol
+  void add(const std::string &section, const std::string &name, double &member, const Range &range,
+           const std::string &unit, const std::string &documentation, Presence presence = Presence::optional);
+
+  /// A real number, or the word `auto` (no value) for one that the program derives.
+  void add(const std::string &section, const std::string &name, std::optional<double> &member, const Range &range,
+           const std::string &unit, const std::string &documentation, Presence presence = Presence::optional);
+
+  /// Real numbers, separated by commas, possibly none; `range` holds for each. All have a unit written, or none has.
+  void add(const std::string &section, const std::string &name, std::vector<double> &member, const Range &range,
+           const std::string &unit, const std::string &documentation, Presence presence = Presence::optional);
+
+  /// Whole numbers. The range is compared in double precision, so bounds beyond 2^53 are blurred.
+  void add(const std::string &section, const std::string &name, int &member, const Range &range,
+           const std::string &documentation, Presence presence = Presence::optional);
+  void add(const std::string &section, const std::string &name, unsigned int &member, const Range &range,
+           const std::string &documentation, Presence presence = Presence::optional);
+  void add(const std::string &section, const std::string &name, std::uint64_t &member, const Range &range,
+           const std::string &documentation, Presence presence = Presence::optional);
+
+  /// `true` or `false`.
+  void add(const std::string &section, const std::string &name, bool &member, const std::string &documentation,
+           Presence presence = Presence::optional);
+
+  /// A text on one line, without `#`, not ending in `\`; blanks around it are lost. Not empty if required.
+  void add(const std::string &section, const std::string &name, std::string &member, const std::string &documentation,
+           Presence presence = Presence::optional);
+
+  /// One word out of several.
+  void add(const std::string &section, const std::string &name, std::string &member,
+           const std::vector<std::string> &words, const std::string &documentation,
+           Presence presence = Presence::optional);
+
+  /// One word out of several, each standing for a value of an enumeration.
+  template <typename Enumeration, typename = std::enable_if_t<std::is_enum_v<Enumeration>>>
+  void add(const std::string &section, const std::string &name, Enumeration &member,
+           const std::vector<std::pair<std::string, Enumeration>> &words, const std::string &documentation,
+           Presence presence = Presence::optional);
+
+  /// Reads a case file; problems are kept for finish().
+  /// @param path name of the file; JSON if it ends in `.json`, deal.II's format otherwise
+  void read_file(const std::string &path);
+
+  /// Reads a case from memory, as read_file() would.
+  /// @param text the content
+  /// @param name what messages call it; its ending decides on the format
+  void read_text(const std::string &text, const std::string &name);
+
+  /// Reads options of the form `Section/Name=value`; to be called after read_file(), whose values they replace. The
+  /// same key twice among them is a problem. Problems are kept for finish().
+  void read_overrides(const std::vector<std::string> &overrides);
+
+  /// Whether the file or an override gave this entry a value, good or bad.
+  [[nodiscard]] bool is_set(const std::string &key) const;
+
+  /// Reports that an entry is wrong in view of others. Dropped if `key` or one of `also` is itself wrong or missing,
+  /// for then the cause is already reported.
+  /// @param key  the entry to blame, as "Section/Name": the message says where it was set, and to what
+  /// @param text what is wrong and what would be right
+  /// @param also the other entries that the check used
+  void error(const std::string &key, const std::string &text, const std::vector<std::string> &also = {});
+
+  /// Whether nothing has been found wrong so far: checks that compute with many entries need that.
+  [[nodiscard]] bool good() const;
+
+  /// Ends reading.
+  /// @throws InputError with all problems if there are any, also required entries that are missing.
+  void finish();
+
+  /// The case as it now stands in the members: deal.II's format, every entry with its documentation, in SI, full
+  /// precision. Reading it back gives the members bit for bit.
+  [[nodiscard]] std::string resolved_text() const;
+
+  /// Declares every entry in deal.II's own class, with its present value, its default and its documentation.
+  void declare_in(dealii::ParameterHandler &handler) const;
+
+  /// All keys and the values of the members as they now stand, as text that reads back to them bit for bit; by key.
+  [[nodiscard]] std::vector<std::pair<std::string, std::string>> values() const;
+
+  /// SI unit of an entry; "1" for a pure number, empty for what is no quantity. @throws std::logic_error for no entry
+  [[nodiscard]] std::string unit(const std::string &key) const { return find(key).unit; }
+
+  /// A line `key = value` for each of values(), those of one section left out. Does not depend on how the case was
+  /// written down (order, comments, units, file or override), nor on the order of declaration, nor on the machine.
+  [[nodiscard]] std::string lines(const std::string &section_left_out = "") const;
+
+private:
+  struct Entry
+  {
+    std::string section;
+    std::string name;
+    std::string documentation;
+    std::string unit;    // empty for entries that are no quantities
+    std::string rule;    // the range in few words, for the documentation
+    std::string allowed; // the same for a message, with units
+    Presence presence = Presence::optional;
+    // Fills the member, or returns what is wrong with the text.
+    std::function<std::string(const std::string &)> read{};
+    std::function<std::string()> write{}; // the member as text
+    std::string default_text{};
+    std::string text{};       // as given
+    std::string file_place{}; // where the file set it; empty if it did not
+    bool overridden = false;
+    bool wrong = false; // something about it has been reported
+
+    [[nodiscard]] std::string key() const { return section + "/" + name; }
+    [[nodiscard]] bool is_set() const { return overridden || !file_place.empty(); }
+    [[nodiscard]] std::string place() const; // where the value comes from
+  };
+
+  void declare(Entry entry);
+  template <typename Integer>
+  void add_integer(const std::string &section, const std::string &name, Integer &member, const Range &range,
+                   const std::string &documentation, Presence presence);
+  void add_words(const std::string &section, const std::string &name, const std::vector<std::string> &words,
+                 const std::function<void(std::size_t)> &set, const std::function<std::size_t()> &get,
+                 const std::string &documentation, Presence presence);
+  void enter(const SectionStart &start);
+  void take(const Assignment &assignment);
+  void take_override(const std::string &text);
+  void assign(Entry &entry, const std::string &value);
+  void report(const std::string &place, const std::string &text);
+  [[nodiscard]] const Entry &find(const std::string &key) const;
+  [[nodiscard]] bool has_section(const std::string &section) const;
+  [[nodiscard]] std::vector<std::string> sections() const;
+  [[nodiscard]] std::string known_sections() const;
+  [[nodiscard]] std::string known_entries(const std::string &section) const;
+  [[nodiscard]] std::string nearest_section(const std::string &section) const;
+  [[nodiscard]] std::string nearest_key(const std::string &section, const std::string &name) const;
+
+  std::vector<Entry> entries_;              // in the order of declaration
+  std::map<std::string, std::size_t> keys_; // to the index in entries_
+  std::vector<std::string> problems_;
+  std::size_t n_problems_ = 0; // also those beyond what is kept
+  bool unreadable_ = false;    // a file could not be read at all, so missing entries mean nothing
+  std::string file_ = "no case file";
+};
+
+template <typename Enumeration, typename>
+void Parameters::add(const std::string &section, const std::string &name, Enumeration &member,
+                     const std::vector<std::pair<std::string, Enumeration>> &words, const std::string &documentation,
+                     const Presence presence)
+{
+  std::vector<std::string> names;
+  std::vector<Enumeration> values;
+  for (const auto &[word, value] : words)
+  {
+    names.push_back(word);
+    values.push_back(value);
+  }
+  add_words(
+    section, name, names, [&member, values](const std::size_t i) { member = values[i]; },
+    [&member, values]
+    {
+      std::size_t i = 0;
+      while (i < values.size() && values[i] != member)
+        ++i;
+      return i;
+    },
+    documentation, presence);
+}
+
+} // namespace verification

@@ -1,0 +1,331 @@
+/// What objects save themselves to and load themselves from.
+///
+/// A class with a state to be kept has one function for both ways:
+///
+///     template <class Archive> void archive(Archive &archive)
+///     {
+///       archive("time", time_);
+///       archive("displacement", displacement_);
+///     }
+///
+/// so that what is saved and what is loaded cannot differ. The class needs to know no more of an archive than that it
+/// is called with names and values, and that `Archive::loads` tells which way it goes. Where MPI ranks share an object,
+/// all call its archive(): to save, the first rank passes the whole (the others' values are not looked at); to load,
+/// every rank gets the whole and takes its share.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <deque>
+#include <map>
+#include <optional>
+#include <string>
+#include <type_traits>
+#include <vector>
+
+#include <Eigen/Core>
+
+#include "verification/output/hdf5_file.h"
+
+namespace verification
+{
+namespace archive_detail
+{
+
+template <class T>
+struct IsVector : std::false_type
+{
+};
+template <class T, class Allocator>
+struct IsVector<std::vector<T, Allocator>> : std::true_type
+{
+};
+
+template <class T>
+struct IsOptional : std::false_type
+{
+};
+template <class T>
+struct IsOptional<std::optional<T>> : std::true_type
+{
+};
+
+template <class T, class Archive, class = void>
+struct HasArchive : std::false_type
+{
+};
+template <class T, class Archive>
+struct HasArchive<T, Archive, std::void_t<decltype(std::declval<T &>().archive(std::declval<Archive &>()))>>
+  : std::true_type
+{
+};
+
+template <class T>
+constexpr bool is_matrix = std::is_base_of_v<Eigen::MatrixBase<T>, T>;
+
+/// Values of the members of many records, by the names of the members.
+struct Columns
+{
+  std::map<std::string, std::vector<double>> reals;
+  std::map<std::string, std::vector<std::uint64_t>> wholes;
+};
+
+/// Takes the members of one record, of row `row`, to columns or from them.
+template <bool loading>
+class RecordArchive
+{
+public:
+  static constexpr bool loads = loading;
+  RecordArchive(Columns &columns, std::size_t row) : columns_(columns), row_(row) {}
+
+  template <class T>
+  void operator()(const std::string &name, T &value)
+  {
+    if constexpr (std::is_same_v<T, double>)
+      exchange(columns_.reals[prefix_ + name], value);
+    else if constexpr (std::is_same_v<T, std::size_t> || std::is_same_v<T, std::uint64_t>)
+      exchange(columns_.wholes[prefix_ + name], value);
+    else if constexpr (is_matrix<T>)
+      for (Eigen::Index i = 0; i < value.size(); ++i)
+        exchange(columns_.reals[prefix_ + name + "_" + std::to_string(i)], value.data()[i]);
+    else
+    {
+      static_assert(HasArchive<T, RecordArchive>::value, "a record holds numbers, and records of them");
+      const std::string outer = prefix_;
+      prefix_ += name + "_";
+      value.archive(*this);
+      prefix_ = outer;
+    }
+  }
+
+private:
+  template <class Number>
+  void exchange(std::vector<Number> &column, Number &value)
+  {
+    if constexpr (loading)
+      value = column.at(row_);
+    else
+      column.push_back(value);
+  }
+
+  Columns &columns_;
+  std::size_t row_;
+  std::string prefix_;
+};
+
+/// What both ways have in common: how an object is taken apart.
+template <class Archive>
+class Base
+{
+public:
+  /// A number, a text, a matrix of fixed size, a vector of numbers or of such matrices, an optional number, a vector of
+  /// vectors of numbers; or an object that has archive(), or a range of those, whose number is the same both ways.
+  template <class T>
+  void operator()(const std::string &name, T &value)
+  {
+    if constexpr (std::is_same_v<T, std::string>)
+      self().text(name, value);
+    else if constexpr (std::is_same_v<T, bool>)
+    {
+      std::uint8_t byte = value ? 1 : 0;
+      self().elements(name, &byte, 1);
+      require(byte <= 1, name, "is neither true nor false");
+      value = byte != 0;
+    }
+    else if constexpr (std::is_arithmetic_v<T>)
+      self().elements(name, &value, 1);
+    else if constexpr (is_matrix<T>)
+      self().elements(name, value.data(), static_cast<std::size_t>(value.size()));
+    else if constexpr (IsOptional<T>::value)
+      optional(name, value);
+    else if constexpr (HasArchive<T, Archive>::value)
+    {
+      const std::string outer = prefix_;
+      prefix_ += name + "/";
+      value.archive(self());
+      prefix_ = outer;
+    }
+    else
+      several(name, value);
+  }
+
+  /// Many small objects whose archive() names numbers, and objects of numbers, alone: a column for each of these.
+  template <class Record>
+  void records(const std::string &name, std::vector<Record> &all)
+  {
+    std::size_t n = all.size();
+    (*this)(name + "/n", n);
+    if constexpr (Archive::loads)
+      all.clear();
+    if (n == 0)
+      return;
+    Columns columns;
+    if constexpr (Archive::loads)
+    {
+      // One record tells which columns there are.
+      Record record{};
+      Columns names;
+      RecordArchive<false> list(names, 0);
+      record.archive(list);
+      const auto read = [&](auto &to, const auto &of)
+      {
+        for (const auto &[column, unused] : of)
+        {
+          (*this)(name + "/" + column, to[column]);
+          require(to[column].size() == n, name + "/" + column, "has another length than `n` says");
+        }
+      };
+      read(columns.reals, names.reals);
+      read(columns.wholes, names.wholes);
+      all.resize(n); // which the columns have shown to be no more than the file holds
+    }
+    for (std::size_t row = 0; row < n; ++row)
+    {
+      RecordArchive<Archive::loads> archive(columns, row);
+      all[row].archive(archive);
+    }
+    if constexpr (!Archive::loads)
+    {
+      for (auto &[column, values] : columns.reals)
+        (*this)(name + "/" + column, values);
+      for (auto &[column, values] : columns.wholes)
+        (*this)(name + "/" + column, values);
+    }
+  }
+
+protected:
+  void require(bool holds, const std::string &name, const std::string &problem) const
+  {
+    if (!holds)
+      throw Hdf5Error("`" + prefix_ + name + "` " + problem);
+  }
+
+  std::string prefix_; // of the object that is being taken apart
+
+private:
+  Archive &self() { return static_cast<Archive &>(*this); }
+
+  template <class T>
+  void optional(const std::string &name, std::optional<T> &value)
+  {
+    std::vector<T> values;
+    if (value)
+      values.push_back(*value);
+    (*this)(name, values);
+    require(values.size() <= 1, name, "is more than one value");
+    value = values.empty() ? std::nullopt : std::optional<T>(values.front());
+  }
+
+  // As the values one after the other, and how many there are in each.
+  template <class Number>
+  void vectors(const std::string &name, std::vector<std::vector<Number>> &all)
+  {
+    std::vector<Number> values;
+    std::vector<std::uint64_t> sizes;
+    for (const std::vector<Number> &one : all)
+    {
+      values.insert(values.end(), one.begin(), one.end());
+      sizes.push_back(one.size());
+    }
+    (*this)(name + "/values", values);
+    (*this)(name + "/sizes", sizes);
+    all.clear();
+    auto next = values.begin();
+    for (const std::uint64_t size : sizes)
+    {
+      require(size <= static_cast<std::uint64_t>(values.end() - next), name + "/sizes",
+              "are of more values than there are");
+      all.emplace_back(next, next + static_cast<std::ptrdiff_t>(size));
+      next += static_cast<std::ptrdiff_t>(size);
+    }
+    require(next == values.end(), name + "/sizes", "are of fewer values than there are");
+  }
+
+  template <class Range>
+  void several(const std::string &name, Range &range)
+  {
+    using T = typename Range::value_type;
+    if constexpr (IsVector<Range>::value && std::is_arithmetic_v<T>)
+    {
+      if constexpr (Archive::loads)
+        range.resize(self().size(name));
+      self().elements(name, range.data(), range.size());
+    }
+    else if constexpr (IsVector<Range>::value && is_matrix<T>)
+    {
+      constexpr auto per_element = static_cast<std::size_t>(T::SizeAtCompileTime);
+      static_assert(sizeof(T) == per_element * sizeof(double));
+      if constexpr (Archive::loads)
+      {
+        const std::size_t n = self().size(name);
+        require(n % per_element == 0, name, "has a part of an element");
+        range.resize(n / per_element);
+      }
+      self().elements(name, range.empty() ? nullptr : range.front().data(), per_element * range.size());
+    }
+    else if constexpr (IsVector<Range>::value && IsVector<T>::value)
+      vectors(name, range);
+    else
+    {
+      std::size_t n = range.size();
+      (*this)(name + "/n", n);
+      require(range.size() == n, name, "holds another number of objects");
+      std::size_t i = 0;
+      for (T &element : range)
+        (*this)(name + "/" + std::to_string(i++), element);
+    }
+  }
+};
+
+} // namespace archive_detail
+
+/// Saves to a file in memory. @throws Hdf5Error if memory is short
+class CheckpointWriter : public archive_detail::Base<CheckpointWriter>
+{
+public:
+  static constexpr bool loads = false;
+
+  /// @param image where to, on the first rank; null on the others
+  explicit CheckpointWriter(Hdf5Image *image) : image_(image) {}
+
+  template <class T>
+  void elements(const std::string &name, const T *values, std::size_t n)
+  {
+    if (image_ != nullptr)
+      image_->write(prefix_ + name, element_type<T>(), values, n);
+  }
+  void text(const std::string &name, const std::string &text)
+  {
+    if (image_ != nullptr)
+      image_->write_text(prefix_ + name, text);
+  }
+
+private:
+  Hdf5Image *image_;
+};
+
+/// Loads from a file. Sizes are those of what is there, never those that a number in the file says; an object that
+/// expects a size or looks something up by a number compares it in its archive().
+/// @throws Hdf5Error if something is not there, of another type or size, or a real number is not finite
+class CheckpointReader : public archive_detail::Base<CheckpointReader>
+{
+public:
+  static constexpr bool loads = true;
+  explicit CheckpointReader(const Hdf5File &file) : file_(file) {}
+
+  template <class T>
+  void elements(const std::string &name, T *values, std::size_t n)
+  {
+    file_.read(prefix_ + name, element_type<T>(), values, n);
+    if constexpr (std::is_same_v<T, double>)
+      require(std::all_of(values, values + n, [](double value) { return std::isfinite(value); }), name,
+              "is not finite");
+  }
+  std::size_t size(const std::string &name) const { return file_.size(prefix_ + name); }
+  void text(const std::string &name, std::string &text) { text = file_.read_text(prefix_ + name); }
+
+private:
+  const Hdf5File &file_;
+};
+
+} // namespace verification

@@ -1,0 +1,263 @@
+#include "verification/output/checkpoints.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <map>
+#include <sstream>
+#include <system_error>
+
+#include <deal.II/base/mpi.h>
+
+#include "support/errors.h"
+#include "support/folder_lock.h"
+#include "verification/input/case.h"
+#include "verification/input/options.h"
+#include "verification/input/parameters.h"
+#include "verification/output/output_file.h"
+#include "verification/output/run_info.h"
+#include "verification/output/sha256.h"
+
+namespace verification
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+
+constexpr int schema = 4; // of what is in a file; another one cannot be read
+constexpr std::size_t n_kept = 2;
+constexpr std::size_t max_reported_differences = 3;
+const std::string first_words = "latcon checkpoint, SHA-256 of the bytes from 512 on: ";
+
+std::map<std::string, std::string> entries_of(const std::string &lines)
+{
+  std::map<std::string, std::string> entries;
+  std::istringstream in(lines);
+  for (std::string line; std::getline(in, line);)
+    if (const std::size_t middle = line.find(" = "); middle != std::string::npos)
+      entries[line.substr(0, middle)] = line.substr(middle + 3);
+  return entries;
+}
+
+// The entries in which two cases differ, in words.
+std::string differences(const std::string &there, const std::string &here)
+{
+  const std::map<std::string, std::string> theirs = entries_of(there), ours = entries_of(here);
+  std::vector<std::string> found;
+  for (const auto &[key, value] : ours)
+  {
+    const auto other = theirs.find(key);
+    if (other == theirs.end() || other->second != value)
+      found.push_back(key + " = " + (other == theirs.end() ? "(none)" : other->second) + " there, " + value + " here");
+  }
+  std::string text;
+  for (std::size_t i = 0; i < std::min(found.size(), max_reported_differences); ++i)
+    text += (i > 0 ? "; " : "") + found[i];
+  if (found.size() > max_reported_differences)
+    text += "; and " + std::to_string(found.size() - max_reported_differences) + " more";
+  return text.empty() ? "entries that are not known here" : text;
+}
+
+// The hash that a file was given; empty if it begins like no checkpoint.
+std::string hash_in(const fs::path &path)
+{
+  std::ifstream in(path, std::ios::binary);
+  std::string line;
+  std::getline(in, line);
+  return in && line.rfind(first_words, 0) == 0 ? line.substr(first_words.size()) : "";
+}
+
+std::string name_of(std::size_t step)
+{
+  char name[48];
+  std::snprintf(name, sizeof(name), "checkpoint-%012zu.h5", step);
+  return name;
+}
+
+} // namespace
+
+void require_course(const CheckpointPlace &place, std::size_t step, double time, double expected, double rounding)
+{
+  if (step != place.step || time != place.time)
+    throw std::invalid_argument("`step` or `time` is not that of `run`");
+  if (!(std::abs(time - expected) <= rounding))
+    throw std::invalid_argument("`time` is not that of its steps");
+}
+
+Checkpoints::Checkpoints(const Options &options, const Parameters &parameters, const Case &input, std::string command)
+  : folder_(fs::path(options.output_dir) / "checkpoints"), command_(std::move(command)),
+    case_text_(case_lines(parameters)), case_hash_(sha256(case_text_)), step_interval_(input.checkpoint_steps),
+    wall_interval_(input.checkpoint_interval),
+    first_rank_(dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+{
+  if (!options.resume)
+    return;
+  std::string problems;
+  CheckpointPlace best;
+  if (first_rank_)
+  {
+    std::string path_of_best;
+    std::vector<CheckpointPlace> good;
+    for (const fs::path &path : files())
+    {
+      CheckpointPlace place;
+      const std::string problem = problem_of(path, place);
+      if (problem.empty())
+        good.push_back(place);
+      else
+        problems += (problems.empty() ? "" : "\n") + path.string() + ": " + problem;
+    }
+    const auto last =
+      std::max_element(good.begin(), good.end(), [](const auto &a, const auto &b) { return a.step < b.step; });
+    if (last != good.end())
+      best = *last;
+  }
+  const auto told = [](const auto &value) { return dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, value); };
+  best.file = told(best.file.string());
+  best.step = told(best.step);
+  best.time = told(best.time);
+  best.commit = told(best.commit);
+  best.program_hash = told(best.program_hash);
+  problems = told(problems);
+  if (!best.file.empty())
+  {
+    found_ = best;
+    last_step_asked_ = best.step;
+  }
+  else if (!problems.empty())
+    throw latcon::support::InputError(
+      "there is no checkpoint to go on from; to start from the beginning leave out --resume\n" + problems);
+  if (first_rank_ && !problems.empty())
+    std::fprintf(stderr, "latcon: %s\n", problems.c_str());
+}
+
+std::vector<fs::path> Checkpoints::files() const
+{
+  std::vector<fs::path> found;
+  std::error_code none;
+  for (const fs::directory_entry &entry : fs::directory_iterator(folder_, none))
+    if (entry.path().extension() == ".h5")
+      found.push_back(entry.path());
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+// Why a file cannot be used, in words; empty if it can.
+std::string Checkpoints::problem_of(const fs::path &path, CheckpointPlace &place) const
+{
+  const std::string hash = hash_in(path);
+  if (hash.empty())
+    return "it is no checkpoint";
+  if (sha256_of_file(path, Hdf5Image::user_block) != hash)
+    return "it is damaged: its bytes are not those that were written";
+  try
+  {
+    const Hdf5File file(path);
+    CheckpointReader archive(file);
+    int its_schema = 0;
+    archive("run/schema", its_schema);
+    if (its_schema != schema)
+      return "it has schema " + std::to_string(its_schema) + ", this program reads " + std::to_string(schema);
+    std::string text;
+    archive("run/command", text);
+    if (text != command_)
+      return "it was left by `latcon " + text + "`, this is `latcon " + command_ + "`";
+    archive("run/case", text);
+    if (text != case_text_)
+      return "it was left by another case: " + differences(text, case_text_);
+    archive("run/commit", place.commit);
+    archive("run/program_hash", place.program_hash);
+    archive("run/step", place.step);
+    archive("run/time", place.time);
+    place.file = path;
+    return "";
+  }
+  catch (const std::exception &error) // HDF5's, or no memory for what it says it holds
+  {
+    return error.what();
+  }
+}
+
+void Checkpoints::load(const std::function<void(CheckpointReader &)> &parts) const
+{
+  try
+  {
+    const Hdf5File file(found_->file.string());
+    CheckpointReader archive(file);
+    parts(archive);
+  }
+  // Whatever the parts object to, it is the file that is wrong: the run was set up without it.
+  catch (const std::exception &error)
+  {
+    throw UnusableCheckpoint(found_->file.string() + ": it was not left by this run: " + error.what() +
+                             "; to start from the beginning leave out --resume");
+  }
+}
+
+bool Checkpoints::due(std::size_t step)
+{
+  const bool by_steps = step_interval_ > 0 && step / step_interval_ > last_step_asked_ / step_interval_;
+  last_step_asked_ = step;
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - last_written_;
+  // Clocks differ: the first rank's counts.
+  const bool by_time = wall_interval_ > 0. && dealii::Utilities::MPI::broadcast(
+                                                MPI_COMM_WORLD, elapsed.count() >= wall_interval_ ? 1 : 0) != 0;
+  return by_steps || by_time;
+}
+
+void Checkpoints::save(std::size_t step, double time, const std::function<void(CheckpointWriter &)> &parts)
+{
+  std::optional<Hdf5Image> image;
+  if (first_rank_)
+    image.emplace();
+  CheckpointWriter archive(image ? &*image : nullptr);
+  int its_schema = schema;
+  archive("run/schema", its_schema);
+  for (auto [name, text] : {std::pair<std::string, std::string>("run/program", program_version()),
+                            {"run/commit", git_commit()},
+                            {"run/program_hash", program_hash()},
+                            {"run/command", command_},
+                            {"run/case", case_text_},
+                            {"run/case_hash", case_hash_}})
+    archive(name, text);
+  archive("run/step", step);
+  archive("run/time", time);
+  parts(archive);
+  if (first_rank_)
+  {
+    std::string bytes = image->take_bytes();
+    const std::string head = first_words + sha256(std::string_view(bytes).substr(Hdf5Image::user_block)) + "\n";
+    bytes.replace(0, head.size(), head);
+    std::error_code error;
+    latcon::support::require_in_place(folder_);
+    fs::create_directory(folder_, error); // not the folder above: if that was removed, so was the run
+    if (error)
+      throw latcon::support::OutputError(folder_.string(), error.message());
+    write_file((folder_ / name_of(step)).string(), bytes);
+    // By now the last one is whole, so that the older ones can go; those of later steps were left by a run that this
+    // one has gone back behind.
+    std::vector<fs::path> all = files();
+    const auto written = std::find(all.begin(), all.end(), folder_ / name_of(step));
+    const auto before = static_cast<std::size_t>(written - all.begin());
+    for (std::size_t i = 0; i < all.size(); ++i)
+      if (i > before || i + n_kept <= before)
+        fs::remove(all[i], error);
+  }
+  last_written_ = std::chrono::steady_clock::now();
+}
+
+void Checkpoints::archive_stale_checkpoints() const
+{
+  if (!first_rank_ || files().empty())
+    return;
+  const fs::path aside = folder_.string() + ".old";
+  std::error_code error;
+  fs::remove_all(aside, error);
+  fs::rename(folder_, aside, error);
+  if (error)
+    throw latcon::support::OutputError(aside.string(), error.message());
+}
+
+} // namespace verification

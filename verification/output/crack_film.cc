@@ -1,0 +1,72 @@
+#include "verification/output/crack_film.h"
+
+#include <algorithm>
+#include <vector>
+
+namespace verification
+{
+
+CrackFilm::CrackFilm(const Case &input, lattice::Simulation &simulation, const CrackRecord &record, double seed_tip_X,
+                     std::filesystem::path directory)
+  : simulation_(simulation), record_(record), frames_(simulation.lattice(), std::move(directory)),
+    wanted_(input.motion_frames > 0),
+    pitch_((input.stop_position * simulation.lattice().length() - seed_tip_X) / std::max(1u, input.motion_frames)),
+    next_frame_(seed_tip_X + pitch_)
+{
+}
+
+void CrackFilm::begin(bool resumed)
+{
+  if (!resumed)
+  {
+    add_frame();
+    next_frame_ = due_beyond(record_.tip_X(), next_frame_);
+  }
+  else if (wanted_ && simulation_.band().is_first())
+    frames_.write_collection();
+}
+
+void CrackFilm::step()
+{
+  const double tip_X = record_.tip_X();
+  if (tip_X < next_frame_)
+    return;
+  add_frame();
+  next_frame_ = due_beyond(tip_X, next_frame_);
+}
+
+// Where the next frame is due once the tip is at tip_X [m]. @param due where one was [m]
+double CrackFilm::due_beyond(double tip_X, double due) const
+{
+  while (tip_X >= due)
+    due += pitch_;
+  return due;
+}
+
+// @param first X of the tip at which a frame is due, after that of the start [m]
+void CrackFilm::check_loaded(double first) const
+{
+  std::vector<double> times{0.};
+  double next = first;
+  for (const lattice::TipRecord &tip : record_.tip())
+    if (tip.X >= next)
+    {
+      if (tip.t > 0.)
+        times.push_back(tip.t);
+      next = due_beyond(tip.X, next);
+    }
+  lattice::require_archived(next_frame_ == next, "`next_frame` is not the first that is due");
+  if (wanted_)
+    lattice::require_archived(frames_.times() == times, "`times` of frames are not those at which the tip came by");
+}
+
+void CrackFilm::add_frame()
+{
+  if (!wanted_)
+    return;
+  const lattice::State &whole = simulation_.gather();
+  if (simulation_.band().is_first())
+    frames_.add_frame(whole);
+}
+
+} // namespace verification

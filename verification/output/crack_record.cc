@@ -1,0 +1,285 @@
+#include "verification/output/crack_record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <ostream>
+#include <sstream>
+
+#include <nlohmann/json.hpp>
+
+#include "lattice/archive_rows.h"
+#include "support/errors.h"
+#include "support/full_precision.h"
+#include "support/largest_error.h"
+#include "verification/analysis/fragments.h"
+#include "verification/output/output_file.h"
+
+namespace verification
+{
+namespace
+{
+
+// The tip hops from site to site; its speed means something over several of them only.
+constexpr double speed_baseline = 6.; // in spacings
+
+void write_row(std::ostream &out, std::initializer_list<double> values)
+{
+  const char *separator = "";
+  for (const double value : values)
+  {
+    out << separator << latcon::support::full_precision(value);
+    separator = ",";
+  }
+}
+
+// The site that moves fastest, one that is not at a finite place or speed before all others.
+struct FastestSite
+{
+  std::size_t place = 0;
+  double speed = -1.; // [m/s]
+};
+
+FastestSite fastest_site(const lattice::Simulation &simulation)
+{
+  const lattice::TriangularLattice &sheet = simulation.lattice();
+  const lattice::State &state = simulation.state();
+  FastestSite fastest;
+  const lattice::Rows rows = simulation.band().rows();
+  for (std::size_t row = rows.begin; row < rows.end; ++row)
+    for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
+    {
+      const std::size_t place = sheet.index(row, column);
+      double speed = std::hypot(state.vx[place], state.vy[place]);
+      if (!std::isfinite(speed) || !std::isfinite(state.x[place]) || !std::isfinite(state.y[place]))
+        speed = std::numeric_limits<double>::infinity();
+      if (speed > fastest.speed)
+        fastest = {place, speed};
+    }
+  for (const FastestSite &other : simulation.band().all_gather(std::vector<FastestSite>{fastest}))
+    if (other.speed > fastest.speed || (other.speed == fastest.speed && other.place < fastest.place))
+      fastest = other;
+  return fastest;
+}
+
+} // namespace
+
+CrackRecord::CrackRecord(lattice::Simulation &simulation) : simulation_(simulation) {}
+
+void CrackRecord::start()
+{
+  note_tip();
+  energies();
+}
+
+void CrackRecord::step(const std::vector<lattice::BrokenBond> &broken)
+{
+  if (broken.empty())
+    return;
+  broken_.insert(broken_.end(), broken.begin(), broken.end());
+  note_tip();
+}
+
+void CrackRecord::note_tip()
+{
+  const std::optional<std::size_t> tip = simulation_.tip();
+  if (!tip || tip == last_tip_)
+    return;
+  last_tip_ = tip;
+  const double time = simulation_.state().time;
+  const Eigen::Vector2d X = simulation_.lattice().reference(*tip), x = simulation_.position(*tip);
+  tip_.push_back({time, X.x(), X.y(), x.x(), x.y()});
+  broken_at_tip_.push_back(simulation_.n_broken());
+
+  double speed = 0.;
+  const double baseline = speed_baseline * simulation_.lattice().spacing();
+  for (std::size_t i = tip_.size() - 1; i-- > 0;)
+    if (X.x() - tip_[i].X >= baseline && time > tip_[i].t)
+    {
+      speed = (X.x() - tip_[i].X) / (time - tip_[i].t);
+      break;
+    }
+  speeds_.push_back(speed);
+}
+
+void CrackRecord::energies()
+{
+  energies_.push_back({simulation_.state().time, sound_energies()});
+}
+
+lattice::EnergyBalance CrackRecord::sound_energies()
+{
+  const lattice::EnergyBalance balance = simulation_.energies();
+  const double available = balance.initial + std::abs(balance.boundary_work);
+  if (balance.elastic + balance.kinetic <= 2. * available)
+  {
+    last_sound_ = {simulation_.state(), simulation_.band()};
+    return balance;
+  }
+  const FastestSite fastest = fastest_site(simulation_);
+  const Eigen::Vector2d X = simulation_.lattice().reference(fastest.place);
+  std::ostringstream message;
+  message << "the lattice blew up: at " << simulation_.state().time << " s it holds " << balance.elastic
+          << " J/m elastic and " << balance.kinetic << " J/m kinetic energy, of " << available
+          << " J/m it was given; the fastest is site " << simulation_.lattice().site_number(fastest.place)
+          << " at X = " << X.x() << " m, Y = " << X.y() << " m, with " << fastest.speed
+          << " m/s; the last frame shows the sheet at " << last_sound_.time()
+          << " s, when it was sound; a smaller Time/safety factor may help";
+  simulation_.show_snapshot(last_sound_);
+  throw latcon::support::SolverError(message.str());
+}
+
+void CrackRecord::check_loaded() const
+{
+  using lattice::require_archived;
+  const lattice::TriangularLattice &sheet = simulation_.lattice();
+  const auto is_site = [&](std::size_t place) { return place < sheet.n_places() && sheet.is_site(place); };
+  const double now = simulation_.state().time;
+  require_archived(speeds_.size() == tip_.size() && broken_at_tip_.size() == tip_.size(),
+                   "`speeds` or `broken_at_tip` are not as many as the records of the tip");
+  require_archived(last_tip_.has_value() == !tip_.empty() && (!last_tip_ || is_site(*last_tip_)),
+                   "`last_tip` is no site of the sheet");
+  require_archived(broken_.size() == simulation_.n_broken(), "`broken_bonds` are not as many as broke");
+  require_archived(!energies_.empty(), "`energies` were never recorded");
+  double before = 0.;
+  const auto require_order = [&](double time, const std::string &what)
+  {
+    require_archived(time >= before && time <= now, "times of `" + what + "` do not grow up to now");
+    before = time;
+  };
+  for (const lattice::TipRecord &tip : tip_)
+  {
+    require_order(tip.t, "tip");
+    require_archived(std::abs(tip.X) <= sheet.length() + sheet.spacing(), "`tip` is beyond the sheet");
+  }
+  before = 0.;
+  for (const EnergyRow &row : energies_)
+    require_order(row.time, "energies");
+  before = 0.;
+  for (const lattice::BrokenBond &bond : broken_)
+  {
+    require_order(bond.time, "broken_bonds");
+    require_archived(is_site(bond.near) && is_site(bond.far) && bond.kind < lattice::n_bond_kinds,
+                     "`broken_bonds` has some that the sheet never had");
+  }
+}
+
+double CrackRecord::largest_imbalance() const
+{
+  latcon::support::LargestError largest;
+  for (const EnergyRow &row : energies_)
+  {
+    const double imbalance = std::abs(row.balance.imbalance());
+    // A sheet at rest has been given nothing, and nothing is missing.
+    largest.add(imbalance == 0. ? 0. : imbalance / (row.balance.initial + std::abs(row.balance.boundary_work)));
+  }
+  return largest.error();
+}
+
+lattice::CrackMeasurement CrackRecord::measure(double seed_tip_X) const
+{
+  std::vector<lattice::BreakRecord> breaks;
+  for (const lattice::BrokenBond &bond : broken_)
+    breaks.push_back({bond.time, bond.midpoint.x(), bond.midpoint.y()});
+  lattice::CrackMeasurementOptions options;
+  options.strip_length = simulation_.lattice().length();
+  options.lattice_spacing = simulation_.lattice().spacing();
+  options.end_time = simulation_.state().time;
+  options.seed_tip_X = seed_tip_X;
+  return lattice::measure_crack(tip_, breaks, options);
+}
+
+void CrackRecord::write_tables(const std::filesystem::path &directory) const
+{
+  write_file(directory / "crack.csv",
+             [this](std::ostream &out)
+             {
+               out << "t,X,Y,x,y,speed,bonds_broken\n";
+               for (std::size_t i = 0; i < tip_.size(); ++i)
+               {
+                 write_row(out, {tip_[i].t, tip_[i].X, tip_[i].Y, tip_[i].x, tip_[i].y, speeds_[i]});
+                 out << ',' << broken_at_tip_[i] << '\n';
+               }
+             });
+  write_file(directory / "broken_bonds.csv",
+             [this](std::ostream &out)
+             {
+               out << "t,site,other_site,X,Y,stretch\n";
+               const lattice::TriangularLattice &sheet = simulation_.lattice();
+               for (const lattice::BrokenBond &bond : broken_)
+               {
+                 out << latcon::support::full_precision(bond.time) << ',' << sheet.site_number(bond.near) << ','
+                     << sheet.site_number(bond.far) << ',';
+                 write_row(out, {bond.midpoint.x(), bond.midpoint.y(), bond.stretch});
+                 out << '\n';
+               }
+             });
+  write_file(
+    directory / "energy.csv",
+    [this](std::ostream &out)
+    {
+      out << "t,elastic,kinetic,viscous,broken,boundary_work,contact,imbalance\n";
+      for (const auto &[time, e] : energies_)
+      {
+        write_row(out, {time, e.elastic, e.kinetic, e.viscous, e.broken, e.boundary_work, e.contact, e.imbalance()});
+        out << '\n';
+      }
+    });
+}
+
+void CrackRecord::write_measurement(const std::filesystem::path &directory,
+                                    const lattice::CrackMeasurement &measurement, double seed_tip_X,
+                                    double breaking_stretch, bool skip_verification)
+{
+  const lattice::State &state = simulation_.gather();
+  if (!simulation_.band().is_first())
+    return;
+  nlohmann::ordered_json json;
+  json["pattern"] = lattice::to_string(measurement.pattern);
+  json["reason"] = measurement.reason;
+  const auto put = [&json](const std::string &name, const std::optional<lattice::Measured> &measured)
+  {
+    json[name] = measured ? nlohmann::ordered_json(measured->value) : nlohmann::ordered_json(nullptr);
+    json[name + "_uncertainty"] =
+      measured ? nlohmann::ordered_json(measured->uncertainty) : nlohmann::ordered_json(nullptr);
+  };
+  put("speed_lagrangian", measurement.speed_lagrangian);
+  put("speed_laboratory", measurement.speed_laboratory);
+  put("wavelength", measurement.wavelength);
+  put("amplitude", measurement.amplitude);
+  put("crest_amplitude", measurement.crest_amplitude);
+  json["periods"] = measurement.periods;
+  json["window_begin"] = measurement.X_begin;
+  json["window_end"] = measurement.X_end;
+  json["branched_fraction"] = measurement.branched_fraction;
+  const auto put_flanks = [&](const std::string &name, double lattice::FlankDamage::*number)
+  { json[name] = measurement.flanks ? nlohmann::ordered_json((*measurement.flanks).*number) : nullptr; };
+  put_flanks("flank_damage_depth", &lattice::FlankDamage::depth);
+  put_flanks("flank_damage_share", &lattice::FlankDamage::share);
+  json["bonds_broken"] = simulation_.n_broken();
+  const lattice::Fragments fragments = lattice::find_fragments(state, simulation_.lattice());
+  json["detached_sites"] = std::accumulate(fragments.sizes.begin(), fragments.sizes.end(), std::size_t{0});
+  json["detached_fragments"] = fragments.sizes.size();
+  json["largest_fragment"] = fragments.sizes.empty() ? 0 : fragments.sizes.front();
+  json["overstretched_bonds"] = lattice::n_overstretched_bonds(state, simulation_.lattice(), breaking_stretch);
+  if (const auto bond = lattice::nearest_to_breaking(state, simulation_.lattice()))
+  {
+    const lattice::TriangularLattice &sheet = simulation_.lattice();
+    const Eigen::Vector2d X = sheet.reference(bond->near) + 0.5 * sheet.bond_vector(bond->kind);
+    json["nearest_to_breaking"] = {{"site", sheet.site_number(bond->near)},
+                                   {"other_site", sheet.site_number(bond->far)},
+                                   {"X", X.x()},
+                                   {"Y", X.y()},
+                                   {"stretch", bond->stretch},
+                                   {"limit", bond->limit}};
+  }
+  json["bridged_length"] = lattice::bridged_length(state, simulation_.lattice(), seed_tip_X, tip_X());
+  json["end_time"] = state.time;
+  json["energy_imbalance"] = largest_imbalance();
+  json["skip_verification"] = skip_verification;
+  json["units"] = "speeds m/s, lengths m in the undeformed sheet, time s; uncertainties are one standard deviation";
+  write_file(directory / "crack.json", json.dump(2) + "\n");
+}
+
+} // namespace verification

@@ -1,0 +1,53 @@
+#include "verification/output/csv.h"
+
+#include <stdexcept>
+
+#include "support/full_precision.h"
+
+namespace verification
+{
+
+std::string csv_field(const std::string &text)
+{
+  if (text.find_first_of(",\"\r\n") == std::string::npos)
+    return text;
+  std::string quoted = "\"";
+  for (const char c : text)
+    quoted += c == '"' ? std::string("\"\"") : std::string(1, c);
+  return quoted + "\"";
+}
+
+void Table::add(std::vector<Cell> row)
+{
+  if (row.size() != columns_.size())
+    throw std::invalid_argument("a row of " + std::to_string(row.size()) + " cells in a table of " +
+                                std::to_string(columns_.size()) + " columns");
+  rows_.push_back(std::move(row));
+}
+
+void Table::add(const Table &other)
+{
+  if (other.columns_ != columns_)
+    throw std::invalid_argument("tables with different columns cannot be joined");
+  rows_.insert(rows_.end(), other.rows_.begin(), other.rows_.end());
+}
+
+std::string Table::csv() const
+{
+  std::string text;
+  const auto end_line = [&text] { text.back() = '\n'; };
+  for (const std::string &column : columns_)
+    text += csv_field(column) + ',';
+  end_line();
+  for (const std::vector<Cell> &row : rows_)
+  {
+    for (const Cell &cell : row)
+      text += (std::holds_alternative<double>(cell) ? latcon::support::full_precision(std::get<double>(cell))
+                                                    : csv_field(std::get<std::string>(cell))) +
+              ',';
+    end_line();
+  }
+  return text;
+}
+
+} // namespace verification

@@ -1,0 +1,233 @@
+#include "verification/output/hdf5_file.h"
+
+#include <algorithm>
+
+#include <hdf5.h>
+
+namespace verification
+{
+namespace
+{
+
+static_assert(std::is_same_v<hid_t, std::int64_t>);
+
+// A handle of HDF5 and how to give it back.
+class Handle
+{
+public:
+  Handle(hid_t id, herr_t (*close)(hid_t), const std::string &what) : id_(id), close_(close)
+  {
+    if (id < 0)
+      throw Hdf5Error(what);
+  }
+  ~Handle() { close_(id_); }
+  Handle(const Handle &) = delete;
+  Handle &operator=(const Handle &) = delete;
+  operator hid_t() const { return id_; }
+
+private:
+  hid_t id_;
+  herr_t (*close_)(hid_t);
+};
+
+void require(herr_t status, const std::string &what)
+{
+  if (status < 0)
+    throw Hdf5Error(what);
+}
+
+// HDF5 prints what goes wrong unless told not to; here exceptions tell it.
+void be_quiet()
+{
+  H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
+}
+
+hid_t type_in_file(ElementType type)
+{
+  switch (type)
+  {
+  case ElementType::float64:
+    return H5T_IEEE_F64LE;
+  case ElementType::int32:
+    return H5T_STD_I32LE;
+  case ElementType::int64:
+    return H5T_STD_I64LE;
+  case ElementType::uint8:
+    return H5T_STD_U8LE;
+  case ElementType::uint16:
+    return H5T_STD_U16LE;
+  case ElementType::uint32:
+    return H5T_STD_U32LE;
+  default:
+    return H5T_STD_U64LE;
+  }
+}
+
+hid_t type_in_memory(ElementType type)
+{
+  switch (type)
+  {
+  case ElementType::float64:
+    return H5T_NATIVE_DOUBLE;
+  case ElementType::int32:
+    return H5T_NATIVE_INT32;
+  case ElementType::int64:
+    return H5T_NATIVE_INT64;
+  case ElementType::uint8:
+    return H5T_NATIVE_UINT8;
+  case ElementType::uint16:
+    return H5T_NATIVE_UINT16;
+  case ElementType::uint32:
+    return H5T_NATIVE_UINT32;
+  default:
+    return H5T_NATIVE_UINT64;
+  }
+}
+
+// Arrays lie in the file itself: links that lead to other files are not followed.
+herr_t refuse_other_file(const char *, const char *, const char *, const char *, unsigned *, hid_t, void *)
+{
+  return -1;
+}
+
+Handle open_array(hid_t file, const std::string &path)
+{
+  const std::string what = "there is no `" + path + "` in it";
+  const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose, what);
+  require(H5Pset_elink_cb(access, refuse_other_file, nullptr), what);
+  return {H5Dopen2(file, path.c_str(), access), H5Dclose, what};
+}
+
+// Number of elements of an array as checkpoints have them: one after the other, within the file. What a file says of
+// its size is not believed, since memory is taken for it.
+std::size_t size_of(hid_t file, hid_t array, const std::string &path)
+{
+  const std::string none = "`" + path + "` has no size";
+  const Handle space(H5Dget_space(array), H5Sclose, none);
+  const Handle type(H5Dget_type(array), H5Tclose, none);
+  const Handle creation(H5Dget_create_plist(array), H5Pclose, none);
+  if (H5Sget_simple_extent_type(space) != H5S_SIMPLE || H5Sget_simple_extent_ndims(space) != 1)
+    throw Hdf5Error("`" + path + "` is no list");
+  if (H5Pget_layout(creation) != H5D_CONTIGUOUS || H5Pget_external_count(creation) != 0)
+    throw Hdf5Error("`" + path + "` does not lie in the file as it is");
+  const hssize_t n = H5Sget_simple_extent_npoints(space);
+  hsize_t bytes = 0;
+  if (n < 0 || H5Fget_filesize(file, &bytes) < 0)
+    throw Hdf5Error(none);
+  if (static_cast<hsize_t>(n) > bytes / std::max<std::size_t>(1, H5Tget_size(type)))
+    throw Hdf5Error("`" + path + "` is larger than the file");
+  return static_cast<std::size_t>(n);
+}
+
+void write_array(hid_t file, const std::string &path, hid_t in_file, hid_t in_memory, const void *elements,
+                 std::size_t n)
+{
+  const std::string what = "cannot write `" + path + "`";
+  const hsize_t extent = n;
+  const Handle space(H5Screate_simple(1, &extent, nullptr), H5Sclose, what);
+  const Handle links(H5Pcreate(H5P_LINK_CREATE), H5Pclose, what);
+  require(H5Pset_create_intermediate_group(links, 1), what);
+  const Handle array(H5Dcreate2(file, path.c_str(), in_file, space, links, H5P_DEFAULT, H5P_DEFAULT), H5Dclose, what);
+  if (n > 0)
+    require(H5Dwrite(array, in_memory, H5S_ALL, H5S_ALL, H5P_DEFAULT, elements), what);
+}
+
+} // namespace
+
+Hdf5Image::Hdf5Image()
+{
+  be_quiet();
+  const std::string what = "HDF5 cannot make a file in memory";
+  const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, what);
+  constexpr std::size_t increment = 1U << 20U;
+  require(H5Pset_fapl_core(access, increment, 0), what);
+  const Handle creation(H5Pcreate(H5P_FILE_CREATE), H5Pclose, what);
+  require(H5Pset_userblock(creation, user_block), what);
+  file_ = H5Fcreate("checkpoint", H5F_ACC_TRUNC, creation, access);
+  if (file_ < 0)
+    throw Hdf5Error(what);
+}
+
+Hdf5Image::~Hdf5Image()
+{
+  if (file_ >= 0)
+    H5Fclose(file_);
+}
+
+void Hdf5Image::write(const std::string &path, ElementType type, const void *elements, std::size_t n)
+{
+  write_array(file_, path, type_in_file(type), type_in_memory(type), elements, n);
+}
+
+void Hdf5Image::write_text(const std::string &path, const std::string &text)
+{
+  const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "cannot write `" + path + "`");
+  require(H5Tset_size(type, text.size() + 1), "cannot write `" + path + "`"); // with the zero at its end
+  require(H5Tset_cset(type, H5T_CSET_UTF8), "cannot write `" + path + "`");
+  write_array(file_, path, type, type, text.c_str(), 1);
+}
+
+std::string Hdf5Image::take_bytes()
+{
+  const std::string what = "HDF5 cannot give the bytes of a file in memory";
+  require(H5Fflush(file_, H5F_SCOPE_GLOBAL), what);
+  const ssize_t size = H5Fget_file_image(file_, nullptr, 0);
+  if (size < 0)
+    throw Hdf5Error(what);
+  // The image begins behind the user block.
+  std::string bytes(user_block + static_cast<std::size_t>(size), '\0');
+  if (H5Fget_file_image(file_, &bytes[user_block], static_cast<std::size_t>(size)) != size)
+    throw Hdf5Error(what);
+  H5Fclose(file_);
+  file_ = H5I_INVALID_HID;
+  return bytes;
+}
+
+Hdf5File::Hdf5File(const std::string &path)
+{
+  be_quiet();
+  file_ = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
+  if (file_ < 0)
+    throw Hdf5Error("it is no HDF5 file");
+}
+
+Hdf5File::~Hdf5File()
+{
+  H5Fclose(file_);
+}
+
+std::size_t Hdf5File::size(const std::string &path) const
+{
+  return size_of(file_, open_array(file_, path), path);
+}
+
+void Hdf5File::read(const std::string &path, ElementType type, void *elements, std::size_t n) const
+{
+  const Handle array = open_array(file_, path);
+  const Handle stored(H5Dget_type(array), H5Tclose, "`" + path + "` has no type");
+  if (H5Tequal(stored, type_in_file(type)) <= 0)
+    throw Hdf5Error("`" + path + "` is of another type");
+  if (size_of(file_, array, path) != n)
+    throw Hdf5Error("`" + path + "` is of another size");
+  if (n > 0)
+    require(H5Dread(array, type_in_memory(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, elements),
+            "cannot read `" + path + "`");
+}
+
+std::string Hdf5File::read_text(const std::string &path) const
+{
+  const Handle array = open_array(file_, path);
+  const Handle type(H5Dget_type(array), H5Tclose, "`" + path + "` has no type");
+  if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0)
+    throw Hdf5Error("`" + path + "` is no text");
+  if (size_of(file_, array, path) != 1)
+    throw Hdf5Error("`" + path + "` is not one text");
+  std::string text(H5Tget_size(type), '\0');
+  require(H5Dread(array, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()), "cannot read `" + path + "`");
+  if (text.find('\0') != text.size() - 1) // where it was written
+    throw Hdf5Error("`" + path + "` does not end where it says");
+  text.pop_back();
+  return text;
+}
+
+} // namespace verification

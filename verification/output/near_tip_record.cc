@@ -1,0 +1,351 @@
+#include "verification/output/near_tip_record.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include <nlohmann/json.hpp>
+
+#include "verification/bridge/bloch.h"
+#include "verification/bridge/homogenisation.h"
+#include "verification/output/near_tip_writer.h"
+#include "verification/output/output_file.h"
+
+namespace verification
+{
+namespace
+{
+
+// Way of a shear wave of the undeformed sheet between two samples [d].
+constexpr double sampled_advance = 0.5;
+// Extent of the window if the case leaves it open [d]: the wake, several process zones long; both lobes of the opening
+// stress; the waves ahead.
+constexpr double default_behind = 40., default_ahead = 32., default_half_height = 32.;
+// Part of the way from the seed to the stop position on which samples are taken.
+constexpr double sampled_from = 0.4, sampled_to = 0.9;
+// The flanks are straight lines from here to there behind the tip [d].
+constexpr double flanks_from = 5., flanks_to = 25.;
+constexpr double tip_loop = 8.; // radius [d]
+// What turns faster than this share of the crack's speed is a vortex: ten times the noise of single sites ahead of a
+// running tip.
+constexpr double vortex_limit = 2e-3;
+// In samples vortices are counted up to here [d]: the zone of negative velocity reaches 10 d, beyond 16 d little moves.
+constexpr double vortices_within = 16.;
+// Fraction of the speed of fully relaxed material, c - C (theory.md, section "Near the tip"), above which forward
+// motion is rapid, for the length of the process zone and for its share.
+constexpr double process_zone_part = 0.5;
+
+lattice::NearTipOptions sampler_options(const Case &input, double X_begin, double X_end)
+{
+  const auto extent = [&](double stated, double spacings) { return stated > 0. ? stated : spacings * input.spacing; };
+  return {extent(input.near_tip_behind, default_behind),
+          extent(input.near_tip_ahead, default_ahead),
+          extent(input.near_tip_half_height, default_half_height),
+          X_begin,
+          X_end,
+          input.deformation()};
+}
+
+// Numbers of `speeds` above and below a limit.
+double number_above(const std::vector<double> &speeds, double limit)
+{
+  return static_cast<double>(std::count_if(speeds.begin(), speeds.end(), [&](double speed) { return speed > limit; }));
+}
+
+double number_below(const std::vector<double> &speeds, double limit)
+{
+  return static_cast<double>(std::count_if(speeds.begin(), speeds.end(), [&](double speed) { return speed < limit; }));
+}
+
+// Share of `speeds` above a limit; none of no speeds.
+std::optional<double> share_above(const std::vector<double> &speeds, double limit)
+{
+  if (speeds.empty())
+    return std::nullopt;
+  return number_above(speeds, limit) / static_cast<double>(speeds.size());
+}
+
+using Number = std::pair<std::string, std::optional<double>>;
+
+// What a mean field says. Numbers that need the speed of the crack have no value without it; the list is always of the
+// same names.
+std::vector<Number> field_numbers(const lattice::NearTipField &field, std::optional<double> laboratory_speed,
+                                  std::optional<double> process_zone_speed, double far_opening_stress, double spacing)
+{
+  std::vector<Number> numbers;
+  const auto add = [&](const std::string &name, const std::optional<double> &value)
+  { numbers.emplace_back(name, value); };
+  std::optional<lattice::NegativeZone> negative;
+  std::optional<std::vector<lattice::Vortex>> vortices;
+  if (laboratory_speed)
+  {
+    negative = lattice::negative_zone(field, *laboratory_speed);
+    vortices = lattice::vortices(field, vortex_limit * *laboratory_speed);
+  }
+  const auto of_zone = [&](auto value) { return negative ? std::optional<double>(value(*negative)) : std::nullopt; };
+  add("negative_zone_area", of_zone([](const auto &zone) { return zone.area; }));
+  add("negative_zone_length", of_zone([](const auto &zone) { return zone.length; }));
+  add("negative_zone_distance", negative ? negative->distance : std::nullopt);
+  add("negative_zone_depth", of_zone([](const auto &zone) { return zone.depth; }));
+  add("negative_zone_depth_X", of_zone([](const auto &zone) { return zone.deepest.x(); }));
+  add("negative_zone_depth_Y", of_zone([](const auto &zone) { return zone.deepest.y(); }));
+  add("velocity_asymmetry", lattice::velocity_asymmetry(field));
+  add("vortices", vortices ? std::optional<double>(vortices->size()) : std::nullopt);
+  const bool any = vortices && !vortices->empty();
+  add("vortex_distance", any ? std::optional<double>(vortices->front().position.norm()) : std::nullopt);
+  add("vortex_circulation", any ? std::optional<double>(vortices->front().circulation) : std::nullopt);
+  add("tip_circulation", lattice::circulation(field, Eigen::Vector2d::Zero(), tip_loop * spacing, true));
+  std::optional<lattice::FollowingZone> process;
+  if (process_zone_speed)
+    process = lattice::following_zone(field, *process_zone_speed);
+  add("process_zone_length", process ? std::optional<double>(process->length) : std::nullopt);
+  add("process_zone_fastest", process ? std::optional<double>(process->fastest) : std::nullopt);
+  add("process_zone_share",
+      process_zone_speed ? share_above(lattice::speeds_behind_tip(field), *process_zone_speed) : std::nullopt);
+  for (const int radius : {4, 8})
+  {
+    const std::optional<lattice::OpeningStress> stress = lattice::opening_stress(field, radius * spacing);
+    const auto of_stress = [&](auto value) { return stress ? std::optional<double>(value(*stress)) : std::nullopt; };
+    const std::string at = "_" + std::to_string(radius) + "d";
+    add("opening_stress_angle" + at, of_stress([](const auto &s) { return s.angle; }));
+    add("opening_stress_ratio" + at, of_stress([](const auto &s) { return s.ratio; }));
+    add("opening_stress_peak" + at, of_stress([](const auto &s) { return s.peak; }));
+    add("opening_stress_concentration" + at,
+        far_opening_stress > 0. ? of_stress([&](const auto &s) { return s.peak / far_opening_stress; }) : std::nullopt);
+  }
+  return numbers;
+}
+
+// Cauchy stress of the loaded sheet [Pa]: of a site in the middle of one, all of whose bonds are stretched alike.
+Eigen::Matrix2d stress_of_loaded_sheet(const Case &input)
+{
+  const double side = 12. * input.spacing;
+  const lattice::TriangularLattice sheet(input.spacing, side, side, input.orientation);
+  const lattice::Material material = input.material();
+  const lattice::RowPartition whole(sheet);
+  const lattice::State state =
+    lattice::homogeneous_state(whole, material, input.deformation(), {true, true, true, true});
+  const std::size_t row = sheet.rows() / 2;
+  return lattice::SiteEvaluator(sheet, material).at(state, sheet.index(row, sheet.sites_in_row(row) / 2)).cauchy_stress;
+}
+
+// Standard deviation of the mean of all blocks, from that of those that have a value; none from fewer than two.
+std::optional<double> uncertainty(const std::vector<std::optional<double>> &blocks)
+{
+  double sum = 0., squares = 0.;
+  double n = 0.;
+  for (const std::optional<double> &block : blocks)
+    if (block)
+    {
+      sum += *block;
+      n += 1.;
+    }
+  if (n < 2.)
+    return std::nullopt;
+  for (const std::optional<double> &block : blocks)
+    if (block)
+      squares += std::pow(*block - sum / n, 2);
+  return std::sqrt(squares / ((n - 1.) * n));
+}
+
+} // namespace
+
+WaveSpeeds wave_speeds_along_crack(const Case &input)
+{
+  constexpr double kd = 1e-3; // the error is of its square, times a tenth
+  const double k = kd / input.spacing;
+  const auto waves = bloch_waves(input.lattice(), input.material(), input.deformation(), {k, 0.});
+  return {waves[0].frequency / k, waves[1].frequency / k};
+}
+
+double near_tip_interval(const Case &input)
+{
+  return input.near_tip_interval.value_or(sampled_advance * input.spacing /
+                                          small_strain(input.lattice(), input.material()).shear_speed);
+}
+
+double near_tip_window(const Case &input)
+{
+  const lattice::NearTipOptions window = sampler_options(input, 0., 0.);
+  return (window.behind + window.ahead) * 2. * window.half_height;
+}
+
+NearTipRecord::NearTipRecord(const Case &input, lattice::Simulation &simulation, double seed_tip_X)
+  : simulation_(simulation), interval_(near_tip_interval(input)), deformation_(input.deformation()),
+    far_opening_stress_(stress_of_loaded_sheet(input)(1, 1)), waves_(wave_speeds_along_crack(input)),
+    X_begin_(seed_tip_X + sampled_from * (input.stop_position * simulation.lattice().length() - seed_tip_X)),
+    X_end_(seed_tip_X + sampled_to * (input.stop_position * simulation.lattice().length() - seed_tip_X)),
+    sampler_(simulation.lattice(), simulation.material(), sampler_options(input, X_begin_, X_end_))
+{
+}
+
+void NearTipRecord::check_loaded() const
+{
+  std::size_t samples = 0;
+  for (const Block &block : blocks_)
+  {
+    const std::size_t n = block.negative_zone_depth.samples;
+    samples += n;
+    lattice::require_archived(block.vortices.size() == n && block.backward_speeds.size() == n &&
+                                block.following_speeds.size() == n && block.asymmetry.samples <= n &&
+                                block.wedge_angle.samples <= n,
+                              "`blocks` are of different numbers of samples");
+  }
+  lattice::require_archived(samples == sampler_.samples(), "`blocks` are not of the samples that were taken");
+}
+
+void NearTipRecord::step()
+{
+  if (interval_ == 0.)
+    return;
+  const double intervals = std::floor(simulation_.state().time / interval_);
+  if (intervals == intervals_)
+    return;
+  intervals_ = intervals;
+  if (!simulation_.tip())
+    return;
+  const std::size_t tip = *simulation_.tip();
+  if (sampler_.looks_at(tip))
+    simulation_.gather(sampler_.rows_around(tip));
+  if (!simulation_.band().is_first())
+    return;
+  const lattice::NearTipSample *sample = sampler_.sample(simulation_.state(), tip);
+  if (sample == nullptr)
+    return;
+  const double d = simulation_.lattice().spacing();
+  Block &block = blocks_[sample->block];
+  const lattice::NearTipField field = sample->sums.mean();
+  if (const auto asymmetry = lattice::velocity_asymmetry(field))
+    block.asymmetry.add(*asymmetry);
+  block.backward_speeds.push_back(lattice::backward_speeds(field));
+  const std::vector<double> &backward = block.backward_speeds.back();
+  block.negative_zone_depth.add(backward.empty() ? 0. : *std::min_element(backward.begin(), backward.end()));
+  block.following_speeds.push_back(lattice::speeds_behind_tip(field));
+  block.vortices.emplace_back();
+  for (const lattice::Vortex &vortex : lattice::vortices(field, 0., vortices_within * d))
+    block.vortices.back().push_back(vortex.speed);
+  const Eigen::Vector2d pitch(deformation_(0, 0) * sampler_.grid().pitch_X,
+                              deformation_(1, 1) * sampler_.grid().pitch_Y);
+  const double stretch = deformation_(0, 0);
+  if (const auto angle = lattice::wedge_angle(sample->sites, pitch, flanks_from * d * stretch, flanks_to * d * stretch))
+    block.wedge_angle.add(*angle * 180. / M_PI);
+}
+
+void NearTipRecord::write(const std::filesystem::path &directory, const lattice::CrackMeasurement &crack)
+{
+  if (interval_ == 0.)
+    return;
+  sampler_.finish();
+  if (sampler_.samples() > 0)
+  {
+    lattice::write_near_tip_field(sampler_.plain(), directory / "near_tip.vti");
+    lattice::write_near_tip_field(sampler_.folded(), directory / "near_tip_folded.vti");
+  }
+  write_file(directory / "near_tip.json", measurements(crack));
+}
+
+std::string NearTipRecord::measurements(const lattice::CrackMeasurement &crack) const
+{
+  nlohmann::ordered_json json;
+  const auto put = [&json](const std::string &name, const std::optional<double> &value)
+  { json[name] = value && std::isfinite(*value) ? nlohmann::ordered_json(*value) : nlohmann::ordered_json(nullptr); };
+  const auto put_measured =
+    [&](const std::string &name, const std::optional<double> &value, const std::optional<double> &deviation)
+  {
+    put(name, value);
+    put(name + "_uncertainty", value ? deviation : std::nullopt);
+  };
+
+  json["samples"] = sampler_.samples();
+  json["reason"] = sampler_.samples() == 0   ? "no crack ran through the stretch in which samples are taken"
+                   : !crack.speed_laboratory ? "the speed of the crack could not be measured, nor what refers to it"
+                                             : "";
+  json["sampled_from"] = X_begin_;
+  json["sampled_to"] = X_end_;
+
+  const double d = simulation_.lattice().spacing();
+  std::optional<double> laboratory_speed, process_zone_speed;
+  if (crack.speed_laboratory)
+    laboratory_speed = crack.speed_laboratory->value;
+  // Of what fully relaxed rubber behind a steady crack has (theory.md, eq. (N.1)).
+  if (laboratory_speed && deformation_(0, 0) > 1.)
+    process_zone_speed = process_zone_part * (1. - 1. / deformation_(0, 0)) * *laboratory_speed;
+
+  std::vector<std::vector<Number>> of_blocks;
+  for (std::size_t block = 0; block < blocks_.size(); ++block)
+    if (sampler_.folded_block(block).samples() > 0)
+      of_blocks.push_back(field_numbers(sampler_.folded_block(block).mean(), laboratory_speed, process_zone_speed,
+                                        far_opening_stress_, d));
+  if (sampler_.samples() == 0)
+    laboratory_speed = process_zone_speed = std::nullopt; // of an empty field nothing is measured, not even 0
+  const std::vector<Number> numbers =
+    field_numbers(sampler_.folded(), laboratory_speed, process_zone_speed, far_opening_stress_, d);
+  for (std::size_t n = 0; n < numbers.size(); ++n)
+  {
+    std::vector<std::optional<double>> values;
+    for (const std::vector<Number> &block : of_blocks)
+      values.push_back(block[n].second);
+    put_measured(numbers[n].first, numbers[n].second, uncertainty(values));
+  }
+  const auto put_sums = [&](const std::string &name, auto sum_of)
+  {
+    Sum all;
+    std::vector<std::optional<double>> means;
+    for (const Block &block : blocks_)
+    {
+      const Sum sum = sum_of(block);
+      all.value += sum.value;
+      all.samples += sum.samples;
+      if (sum.samples > 0)
+        means.push_back(sum.value / static_cast<double>(sum.samples));
+    }
+    put_measured(name,
+                 all.samples > 0 ? std::optional<double>(all.value / static_cast<double>(all.samples)) : std::nullopt,
+                 uncertainty(means));
+  };
+  put_sums("velocity_asymmetry_of_samples", [](const Block &block) { return block.asymmetry; });
+  put_sums("negative_zone_depth_of_samples", [](const Block &block) { return block.negative_zone_depth; });
+  // Mean over samples of a function of the speeds that each has left; no value without the speed that they count from.
+  const auto put_speeds =
+    [&](const std::string &name, auto speeds_of, const std::optional<double> &needed, auto value_of)
+  {
+    put_sums(name,
+             [&](const Block &block)
+             {
+               Sum sum;
+               if (needed)
+                 for (const std::vector<double> &speeds : block.*speeds_of)
+                   if (const std::optional<double> value = value_of(speeds))
+                     sum.add(*value);
+               return sum;
+             });
+  };
+  const auto turning = [&](const auto &speeds) { return number_above(speeds, vortex_limit * *laboratory_speed); };
+  put_speeds("vortices_of_samples", &Block::vortices, laboratory_speed, turning);
+  put_speeds("samples_with_vortex", &Block::vortices, laboratory_speed,
+             [&](const auto &speeds) { return turning(speeds) > 0. ? 1. : 0.; });
+  const double site_area = sampler_.grid().pitch_X * sampler_.grid().pitch_Y;
+  put_speeds("negative_zone_area_of_samples", &Block::backward_speeds, laboratory_speed,
+             [&](const auto &speeds)
+             { return site_area * number_below(speeds, -lattice::negative_zone_limit * *laboratory_speed); });
+  put_speeds("process_zone_share_of_samples", &Block::following_speeds, process_zone_speed,
+             [&](const auto &speeds) { return share_above(speeds, *process_zone_speed); });
+  put_sums("wedge_angle", [](const Block &block) { return block.wedge_angle; });
+  put("process_zone_speed", process_zone_speed);
+  put("far_opening_stress", far_opening_stress_);
+  put("longitudinal_speed", waves_.longitudinal);
+  put("shear_speed", waves_.shear);
+  const auto over = [&](double wave) -> std::optional<double>
+  { return crack.speed_lagrangian ? std::optional<double>(crack.speed_lagrangian->value / wave) : std::nullopt; };
+  const auto deviation = [&](double wave) -> std::optional<double>
+  { return crack.speed_lagrangian ? std::optional<double>(crack.speed_lagrangian->uncertainty / wave) : std::nullopt; };
+  put_measured("speed_over_longitudinal", over(waves_.longitudinal), deviation(waves_.longitudinal));
+  put_measured("speed_over_shear", over(waves_.shear), deviation(waves_.shear));
+  json["units"] =
+    "lengths m, areas m^2, wave speeds m/s in the undeformed sheet; velocities m/s of the laboratory; "
+    "circulations m^2/s in the current one; stresses Pa (Cauchy); angles degrees, that of the peak stress "
+    "undeformed, of the wedge current; uncertainties are one standard deviation of the mean";
+  return json.dump(2) + "\n";
+}
+
+} // namespace verification

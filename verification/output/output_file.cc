@@ -1,0 +1,28 @@
+#include "verification/output/output_file.h"
+
+#include <ostream>
+#include <sstream>
+
+#include "support/atomic_file.h"
+#include "support/errors.h"
+#include "verification/output/output_list.h"
+
+namespace verification
+{
+
+void write_file(const std::string &path, const std::string &text)
+{
+  list_output(path);
+  latcon::support::write_atomically(path, text, latcon::support::Sync::yes);
+}
+
+void write_file(const std::string &path, const std::function<void(std::ostream &)> &writer)
+{
+  std::ostringstream text;
+  writer(text);
+  if (!text)
+    throw latcon::support::OutputError(path, "its content could not be formatted");
+  write_file(path, text.str());
+}
+
+} // namespace verification

@@ -1,0 +1,147 @@
+#include "verification/output/output_list.h"
+
+#include <algorithm>
+#include <cctype>
+#include <fstream>
+#include <set>
+#include <system_error>
+#include <vector>
+
+#include "support/atomic_file.h"
+#include "support/errors.h"
+
+namespace verification
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+using Names = std::set<std::string>;
+
+// What the libraries of either side write by themselves.
+const Names frames{"lattice.pvd", "lattice-*.vtp", "motion.pvd", "motion-*.vtp", "continuum.pvd", "continuum_*.vtu",
+                   "continuum_*.pvtu", "near_tip.vti", "near_tip_folded.vti",
+                   // of the claim running-crack
+                   "crack-nn-nnn-lattice.pvd", "crack-nn-nnn-lattice-*.vtp", "crack-nn-nnn-local.pvd",
+                   "crack-nn-nnn-local_*.vtu", "crack-nn-nnn-gradient.pvd", "crack-nn-nnn-gradient_*.vtu",
+                   "crack-nn-lattice.pvd", "crack-nn-lattice-*.vtp", "crack-nn-local.pvd", "crack-nn-local_*.vtu",
+                   "crack-nn-gradient.pvd", "crack-nn-gradient_*.vtu"};
+
+Names names_in(const fs::path &folder)
+{
+  std::ifstream in(folder / output_list_name);
+  Names names;
+  for (std::string line; std::getline(in, line);)
+    if (!line.empty())
+      names.insert(line);
+  return names;
+}
+
+void write_names(const fs::path &folder, const Names &names)
+{
+  std::string text;
+  for (const std::string &name : names)
+    text += name + "\n";
+  latcon::support::write_atomically(folder / output_list_name, text, latcon::support::Sync::yes);
+}
+
+bool fits(const std::string &file, const std::string &name)
+{
+  const std::size_t star = name.find('*');
+  if (star == std::string::npos)
+    return file == name;
+  const std::string begin = name.substr(0, star), end = name.substr(star + 1);
+  return file.size() > begin.size() + end.size() && file.compare(0, begin.size(), begin) == 0 &&
+         file.compare(file.size() - end.size(), end.size(), end) == 0 &&
+         std::all_of(file.begin() + static_cast<std::ptrdiff_t>(begin.size()),
+                     file.end() - static_cast<std::ptrdiff_t>(end.size()),
+                     [](const unsigned char c) { return std::isdigit(c) != 0 || c == '.'; });
+}
+
+// Regular files of a folder that a list names, without the list itself.
+std::vector<fs::path> files_of(const fs::path &folder, const Names &names)
+{
+  std::vector<fs::path> files;
+  for (const fs::directory_entry &entry : fs::directory_iterator(folder))
+    if (entry.is_regular_file() && !entry.is_symlink() &&
+        std::any_of(names.begin(), names.end(),
+                    [&](const std::string &name) { return fits(entry.path().filename().string(), name); }))
+      files.push_back(entry.path());
+  return files;
+}
+
+// The first name that is free, or of a folder to which files were moved before.
+fs::path folder_for_earlier(const fs::path &folder)
+{
+  const fs::path plain = folder / "earlier-run";
+  fs::path aside = plain;
+  for (int i = 2; fs::exists(aside) && !fs::exists(aside / output_list_name); ++i)
+    aside = plain.string() + "-" + std::to_string(i);
+  return aside;
+}
+
+bool is_same_file(const fs::path &a, const fs::path &b)
+{
+  std::error_code none;
+  return !b.empty() && fs::equivalent(a, b, none);
+}
+
+} // namespace
+
+bool is_listed_output(const fs::path &file)
+{
+  const Names names = names_in(file.parent_path());
+  return std::any_of(names.begin(), names.end(),
+                     [&](const std::string &name) { return fits(file.filename().string(), name); });
+}
+
+void begin_output_list(const fs::path &folder)
+{
+  Names names = names_in(folder);
+  names.insert(frames.begin(), frames.end());
+  write_names(folder, names);
+}
+
+void list_output(const fs::path &file)
+{
+  const fs::path folder = file.parent_path();
+  std::error_code none;
+  if (!fs::exists(folder / output_list_name, none))
+    return;
+  Names names = names_in(folder);
+  if (names.insert(file.filename().string()).second)
+    write_names(folder, names);
+}
+
+fs::path set_earlier_output_aside(const fs::path &folder, const fs::path &keep)
+{
+  try
+  {
+    const Names names = names_in(folder);
+    std::vector<fs::path> files = files_of(folder, names);
+    files.erase(
+      std::remove_if(files.begin(), files.end(), [&](const fs::path &file) { return is_same_file(file, keep); }),
+      files.end());
+    if (files.empty())
+      return {};
+    const fs::path aside = folder_for_earlier(folder);
+    fs::create_directory(aside);
+    // The list is there only while the folder is whole: files that a killed run had moved by half are nobody's to
+    // remove, and the next run takes another folder.
+    const std::vector<fs::path> older = files_of(aside, names_in(aside));
+    fs::remove(aside / output_list_name);
+    for (const fs::path &file : older)
+      fs::remove(file);
+    for (const fs::path &file : files)
+      fs::rename(file, aside / file.filename());
+    write_names(aside, names);
+    return aside;
+  }
+  catch (const fs::filesystem_error &error)
+  {
+    throw latcon::support::OutputError(folder.string(),
+                                       std::string("the files of the run before cannot be moved: ") + error.what());
+  }
+}
+
+} // namespace verification

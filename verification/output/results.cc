@@ -1,0 +1,262 @@
+#include "verification/output/results.h"
+
+#include "support/errors.h"
+#include "support/full_precision.h"
+#include "support/text_wrap.h"
+#include "verification/output/csv.h"
+#include "verification/output/output_file.h"
+
+#include <nlohmann/json.hpp>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <cstdio>
+#include <filesystem>
+#include <limits>
+#include <new>
+#include <ostream>
+#include <system_error>
+
+namespace verification
+{
+
+namespace
+{
+
+using Value = std::optional<double>;
+
+nlohmann::ordered_json json_of(const Value &value)
+{
+  if (!value)
+    return nullptr;
+  // JSON knows no such numbers, and null would say that there is no value.
+  if (!std::isfinite(*value))
+    return latcon::support::full_precision(*value);
+  return *value;
+}
+
+std::string csv_of(const Value &value)
+{
+  return value ? latcon::support::full_precision(*value) : "";
+}
+
+std::string table_number(const Value &value, const int digits)
+{
+  if (!value)
+    return "";
+  std::array<char, 32> text{};
+  std::snprintf(text.data(), text.size(), "%.*g", digits, *value);
+  return text.data();
+}
+
+} // namespace
+
+std::string to_string(const Verdict verdict)
+{
+  switch (verdict)
+  {
+  case Verdict::holds:
+    return "holds";
+  case Verdict::reported:
+    return "reported";
+  case Verdict::fails:
+    break;
+  }
+  return "fails";
+}
+
+Verdict Result::verdict() const
+{
+  if (!tolerance)
+    return Verdict::reported;
+  for (const Value &value : {lattice, continuum, theory, error, tolerance})
+    if (value && !std::isfinite(*value))
+      return Verdict::fails;
+  return error && *error <= *tolerance ? Verdict::holds : Verdict::fails;
+}
+
+Result not_computed(const std::string &claim, const std::string &quantity, const std::string &reason)
+{
+  return {claim, quantity + ": not computed: " + reason, "1", {}, {}, {}, std::numeric_limits<double>::quiet_NaN(), 0.};
+}
+
+void Results::add(Result result)
+{
+  rows_.push_back(std::move(result));
+}
+
+void Results::add(const Results &others)
+{
+  const std::vector<Result> copy = others.rows_; // `others` may be this object
+  rows_.insert(rows_.end(), copy.begin(), copy.end());
+}
+
+bool Results::attempt(const std::string &claim, const std::string &quantity, const std::function<void()> &compute)
+{
+  try
+  {
+    compute();
+    return true;
+  }
+  catch (const latcon::support::Error &)
+  {
+    throw;
+  }
+  catch (const std::bad_alloc &)
+  {
+    throw;
+  }
+  catch (const std::system_error &)
+  {
+    throw;
+  }
+  catch (const std::exception &error)
+  {
+    add(not_computed(claim, quantity, error.what()));
+    return false;
+  }
+}
+
+Verdict Results::verdict() const
+{
+  Verdict all = Verdict::reported;
+  for (const Result &row : rows_)
+    if (row.verdict() == Verdict::fails)
+      return Verdict::fails;
+    else if (row.verdict() == Verdict::holds)
+      all = Verdict::holds;
+  return all;
+}
+
+std::size_t Results::count(const Verdict verdict) const
+{
+  return static_cast<std::size_t>(
+    std::count_if(rows_.begin(), rows_.end(), [verdict](const Result &row) { return row.verdict() == verdict; }));
+}
+
+std::string Results::verdict_text(const std::size_t most) const
+{
+  const std::size_t failing = count(Verdict::fails), judged = failing + count(Verdict::holds);
+  const auto checks = [](const std::size_t n) { return std::to_string(n) + (n == 1 ? " check" : " checks"); };
+  if (judged == 0)
+    return "nothing was checked\n";
+  if (failing == 0)
+    return checks(judged) + (judged == 1 ? " holds\n" : " hold\n");
+  std::string text = std::to_string(failing) + " of " + checks(judged) + (failing == 1 ? " fails:\n" : " fail:\n");
+  std::size_t named = 0;
+  for (const Result &row : rows_)
+    if (row.verdict() == Verdict::fails && named++ < most)
+      text += "  " + row.claim + ": " + row.quantity + ": error " + (row.error ? table_number(row.error, 3) : "none") +
+              ", tolerance " + table_number(row.tolerance, 3) + "\n";
+  if (failing > most)
+    text += "  and " + std::to_string(failing - most) + " more, see results.csv\n";
+  return text;
+}
+
+std::string Results::json() const
+{
+  nlohmann::ordered_json claims = nlohmann::ordered_json::array();
+  for (const Result &row : rows_)
+  {
+    nlohmann::ordered_json claim;
+    claim["claim"] = row.claim;
+    claim["quantity"] = row.quantity;
+    claim["unit"] = row.unit;
+    claim["lattice"] = json_of(row.lattice);
+    claim["continuum"] = json_of(row.continuum);
+    claim["theory"] = json_of(row.theory);
+    claim["error"] = json_of(row.error);
+    claim["tolerance"] = json_of(row.tolerance);
+    claim["verdict"] = to_string(row.verdict());
+    claims.push_back(std::move(claim));
+  }
+  nlohmann::ordered_json document;
+  document["claims"] = std::move(claims);
+  document["verdict"] = to_string(verdict());
+  return document.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace) + "\n";
+}
+
+std::string Results::csv() const
+{
+  std::string text = "claim,quantity,unit,lattice,continuum,theory,error,tolerance,verdict\n";
+  for (const Result &row : rows_)
+    text += csv_field(row.claim) + ',' + csv_field(row.quantity) + ',' + csv_field(row.unit) + ',' +
+            csv_of(row.lattice) + ',' + csv_of(row.continuum) + ',' + csv_of(row.theory) + ',' + csv_of(row.error) +
+            ',' + csv_of(row.tolerance) + ',' + to_string(row.verdict()) + '\n';
+  return text;
+}
+
+void Results::write(const std::string &folder) const
+{
+  const std::filesystem::path path(folder);
+  write_file((path / "results.json").string(), json());
+  write_file((path / "results.csv").string(), csv());
+}
+
+void Results::print(std::ostream &out) const
+{
+  constexpr std::size_t n_columns = 8;
+  constexpr std::size_t n_words =
+    2; // columns of words, at the left, which may be wrapped; then numbers, then the verdict
+  constexpr std::size_t widest = 120;
+  constexpr std::size_t gap = 2;
+  using Cells = std::array<std::string, n_columns>;
+
+  std::vector<Cells> table;
+  table.push_back({"claim", "quantity [unit]", "lattice", "continuum", "theory", "error", "tolerance", "verdict"});
+  for (const Result &row : rows_)
+    table.push_back({row.claim, row.quantity + " [" + row.unit + "]", table_number(row.lattice, 7),
+                     table_number(row.continuum, 7), table_number(row.theory, 7), table_number(row.error, 3),
+                     table_number(row.tolerance, 3), to_string(row.verdict())});
+
+  std::array<std::size_t, n_columns> width{};
+  for (const Cells &cells : table)
+    for (std::size_t i = 0; i < n_columns; ++i)
+      width[i] = std::max(width[i], latcon::support::width_of(cells[i]));
+  // Numbers are never cut, so the words share what is left: the claim has a fixed limit, the quantity takes the rest.
+  width[0] = std::min<std::size_t>(width[0], 20);
+  std::size_t others = 0;
+  for (std::size_t i = 0; i < n_columns; ++i)
+    others += (i == 1 ? 0 : width[i]) + (i == 0 ? 0 : gap);
+  width[1] = std::min(width[1], widest - others);
+
+  const auto padded = [](const std::string &text, const std::size_t columns, const bool right)
+  {
+    const std::string fill(columns - std::min(columns, latcon::support::width_of(text)), ' ');
+    return right ? fill + text : text + fill;
+  };
+  for (std::size_t r = 0; r < table.size(); ++r)
+  {
+    std::array<std::vector<std::string>, n_words> words;
+    std::size_t n_lines = 1;
+    for (std::size_t i = 0; i < n_words; ++i)
+    {
+      words[i] = latcon::support::wrapped(table[r][i], width[i]);
+      n_lines = std::max(n_lines, words[i].size());
+    }
+    for (std::size_t l = 0; l < n_lines; ++l)
+    {
+      std::string line;
+      for (std::size_t i = 0; i < n_columns; ++i)
+      {
+        std::string cell;
+        if (i < n_words)
+          cell = l < words[i].size() ? words[i][l] : "";
+        else if (l == 0)
+          cell = table[r][i];
+        const bool is_number = i >= n_words && i + 1 < n_columns;
+        line += std::string(i == 0 ? 0 : gap, ' ') + padded(cell, width[i], is_number);
+      }
+      line.erase(line.find_last_not_of(' ') + 1);
+      out << line << '\n';
+    }
+    if (r == 0)
+    {
+      std::size_t total = others + width[1];
+      out << std::string(total, '-') << '\n';
+    }
+  }
+}
+
+} // namespace verification

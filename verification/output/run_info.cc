@@ -1,0 +1,257 @@
+#include "verification/output/run_info.h"
+
+#include "support/full_precision.h"
+#include "verification/output/output_file.h"
+#include "verification/output/sha256.h"
+
+#include <latcon_build_facts.h>
+#include <latcon_git_commit.h>
+
+#include <Eigen/src/Core/util/Macros.h>
+#include <Trilinos_version.h>
+#include <deal.II/base/config.h>
+#include <mpi.h>
+#include <nlohmann/json.hpp>
+#ifdef _OPENMP
+#include <omp.h>
+#endif
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <stdexcept>
+#include <sys/resource.h>
+#include <thread>
+
+namespace verification
+{
+
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+std::string mpi_version()
+{
+  std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> text{};
+  int length = 0;
+  MPI_Get_library_version(text.data(), &length); // one of the few calls allowed before MPI_Init
+  // What follows, if anything, is who built it and when.
+  const std::string all(text.data(), static_cast<std::size_t>(std::max(length, 0)));
+  return all.substr(0, all.find_first_of(",\n"));
+}
+
+// Ranks that run together; 1 if MPI is not running.
+int n_ranks()
+{
+  int running = 0;
+  int finalized = 0;
+  int n = 1;
+  MPI_Initialized(&running);
+  MPI_Finalized(&finalized);
+  if (running != 0 && finalized == 0)
+    MPI_Comm_size(MPI_COMM_WORLD, &n);
+  return n;
+}
+
+int n_threads()
+{
+#ifdef _OPENMP
+  return omp_get_max_threads();
+#else
+  return 1;
+#endif
+}
+
+std::string dotted(const int major, const int minor, const int third)
+{
+  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(third);
+}
+
+// JSON has no number for what is not finite.
+Json number(const double value)
+{
+  return std::isfinite(value) ? Json(value) : Json(latcon::support::full_precision(value));
+}
+
+Json json_of(const RunInfo::Scalar &value)
+{
+  if (const double *real = std::get_if<double>(&value))
+    return number(*real);
+  return std::visit([](const auto &v) { return Json(v); }, value);
+}
+
+Json common_facts(const std::vector<std::string> &command_line, const int n_threads, const int n_ranks,
+                  const Stopwatch &stopwatch, const double total,
+                  const std::optional<latcon::support::ExitCode> exit_code, const std::string &verdict)
+{
+  Json document;
+  document["program"] = "latcon";
+  document["version"] = program_version();
+  document["git_commit"] = git_commit();
+  document["program_hash"] = program_hash();
+  document["compiler"] = LATCON_COMPILER;
+  document["build_type"] = LATCON_BUILD_TYPE;
+  document["flags"] = LATCON_FLAGS;
+  document["lattice_flags"] = LATCON_LATTICE_FLAGS;
+  document["libraries"] = {
+    {"deal.II", DEAL_II_PACKAGE_VERSION},
+    {"Trilinos", TRILINOS_VERSION_STRING},
+    {"p4est", dotted(DEAL_II_P4EST_VERSION_MAJOR, DEAL_II_P4EST_VERSION_MINOR, DEAL_II_P4EST_VERSION_SUBMINOR)},
+    {"VTK", LATCON_VTK_VERSION},
+    {"Eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
+    {"MPI", mpi_version()}};
+  document["hardware_threads"] = std::thread::hardware_concurrency();
+  document["threads"] = n_threads;
+  document["mpi_ranks"] = n_ranks;
+  document["command_line"] = command_line;
+  Json phases = Json::object();
+  for (const auto &[name, seconds] : stopwatch.times())
+    phases[name] = number(seconds);
+  document["wall_time_total_s"] = number(total);
+  document["wall_time_s"] = std::move(phases);
+  document["peak_memory_bytes"] = peak_memory();
+  document["verdict"] = verdict.empty() ? Json(nullptr) : Json(verdict);
+  document["exit_code"] = exit_code ? Json(static_cast<int>(*exit_code)) : Json(nullptr);
+  return document;
+}
+
+} // namespace
+
+Stopwatch::Phase::Phase(Stopwatch &stopwatch, std::string name)
+  : stopwatch_(&stopwatch), name_(std::move(name)), start_(std::chrono::steady_clock::now())
+{
+}
+
+Stopwatch::Phase::~Phase()
+{
+  stop();
+}
+
+void Stopwatch::Phase::stop()
+{
+  if (stopwatch_ == nullptr)
+    return;
+  const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - start_;
+  stopwatch_->add(name_, elapsed.count());
+  stopwatch_ = nullptr;
+}
+
+void Stopwatch::add(const std::string &name, const double seconds)
+{
+  const std::lock_guard lock(mutex_);
+  const auto found =
+    std::find_if(times_.begin(), times_.end(), [&name](const auto &time) { return time.first == name; });
+  if (found == times_.end())
+    times_.emplace_back(name, seconds);
+  else
+    found->second += seconds;
+}
+
+std::vector<std::pair<std::string, double>> Stopwatch::times() const
+{
+  const std::lock_guard lock(mutex_);
+  return times_;
+}
+
+std::string program_version()
+{
+  return LATCON_VERSION;
+}
+
+std::string git_commit()
+{
+  return LATCON_GIT_COMMIT;
+}
+
+const std::string &program_hash()
+{
+  static const std::string hash = []
+  {
+    std::string digits = sha256_of_file("/proc/self/exe");
+    if (digits.empty())
+      throw std::runtime_error("the program cannot read its own file");
+    return digits;
+  }();
+  return hash;
+}
+
+std::uint64_t peak_memory()
+{
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024; // Linux counts in kibibytes
+}
+
+RunInfo::RunInfo(std::vector<std::string> command_line)
+  : command_line_(std::move(command_line)), start_(std::chrono::steady_clock::now()), n_threads_(n_threads()),
+    n_ranks_(n_ranks())
+{
+}
+
+void RunInfo::add(const std::string &key, const bool value)
+{
+  add_value(key, Scalar(value));
+}
+void RunInfo::add(const std::string &key, const int value)
+{
+  add_value(key, Scalar(value));
+}
+void RunInfo::add(const std::string &key, const std::uint64_t value)
+{
+  add_value(key, Scalar(value));
+}
+void RunInfo::add(const std::string &key, const double value)
+{
+  add_value(key, Scalar(value));
+}
+void RunInfo::add(const std::string &key, const char *value)
+{
+  add_value(key, Scalar(std::string(value)));
+}
+void RunInfo::add(const std::string &key, const std::string &value)
+{
+  add_value(key, Scalar(value));
+}
+void RunInfo::add(const std::string &key, const Object &object)
+{
+  add_value(key, object);
+}
+
+void RunInfo::add_value(const std::string &key, Value value)
+{
+  if (common_facts(command_line_, n_threads_, n_ranks_, stopwatch_, 0., {}, "").contains(key))
+    throw std::logic_error("run.json has its own '" + key + "'");
+  const std::lock_guard lock(mutex_);
+  const auto found = std::find_if(facts_.begin(), facts_.end(), [&key](const auto &fact) { return fact.first == key; });
+  if (found == facts_.end())
+    facts_.emplace_back(key, std::move(value));
+  else
+    found->second = std::move(value);
+}
+
+std::string RunInfo::json(const std::optional<latcon::support::ExitCode> exit_code, const std::string &verdict) const
+{
+  const std::chrono::duration<double> total = std::chrono::steady_clock::now() - start_;
+  Json document = common_facts(command_line_, n_threads_, n_ranks_, stopwatch_, total.count(), exit_code, verdict);
+  const std::lock_guard lock(mutex_);
+  for (const auto &[key, value] : facts_)
+    if (const auto *object = std::get_if<Object>(&value))
+    {
+      document[key] = Json::object();
+      for (const auto &[name, member] : *object)
+        document[key][name] = json_of(member);
+    }
+    else
+      document[key] = json_of(std::get<Scalar>(value));
+  // Arguments and texts may hold bytes that are not UTF-8.
+  return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
+}
+
+void RunInfo::write(const std::string &path, const std::optional<latcon::support::ExitCode> exit_code,
+                    const std::string &verdict) const
+{
+  write_file(path, json(exit_code, verdict));
+}
+
+} // namespace verification

@@ -1,0 +1,39 @@
+#include "verification/output/vtk_file.h"
+
+#include <string>
+#include <system_error>
+
+#include <vtkErrorCode.h>
+#include <vtkXMLWriter.h>
+
+#include "support/atomic_file.h"
+
+namespace lattice
+{
+namespace
+{
+
+// VTK's codes begin with the system's.
+std::string reason(unsigned long code)
+{
+  if (code == vtkErrorCode::OutOfDiskSpaceError)
+    return std::make_error_code(std::errc::no_space_on_device).message();
+  return code > 0 && code < vtkErrorCode::FirstVTKErrorCode ? std::generic_category().message(static_cast<int>(code))
+                                                            : "error " + std::to_string(code) + " of VTK";
+}
+
+} // namespace
+
+void write_vtk_file(vtkXMLWriter &writer, const std::filesystem::path &path)
+{
+  latcon::support::AtomicFile file(path);
+  writer.SetFileName(file.name().c_str());
+  writer.SetDataModeToAppended();
+  writer.EncodeAppendedDataOff();
+  writer.SetCompressorTypeToZLib();
+  if (writer.Write() != 1 || writer.GetErrorCode() != 0)
+    throw latcon::support::OutputError(path, reason(writer.GetErrorCode()));
+  file.commit(latcon::support::Sync::no);
+}
+
+} // namespace lattice
