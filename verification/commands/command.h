@@ -43,6 +43,7 @@ ExitCode run_fracture(const Options &options);                                 /
 ExitCode compare_frames(const Options &options, const CompareOptions &chosen); ///< `latcon compare`
 ExitCode report(const Options &options, const std::string &directory);         ///< `latcon report`
 ExitCode run_study(const Options &options, const std::string &study);          ///< `latcon study`
+ExitCode print_schema(const Options &options);                                 ///< `latcon schema`
 
 /// Draws pictures and report.html of a run, or of a folder of several, in a directory that this process has locked. On
 /// rank 0. @return the exit code of the script @throws OutputError
