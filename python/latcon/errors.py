@@ -30,7 +30,7 @@ class UnreadableFile(LatconError):
         self.problem = problem
 
 
-class _EndOfProgram:
+class _EndOfProgram(BaseException):
     """Message, exit code and output directory of a program that did not end with 0."""
 
     message: str
@@ -93,7 +93,8 @@ class Interrupted(_EndOfProgram, KeyboardInterrupt):
     """
 
 
-_BY_EXIT_CODE = {1: InternalError, 2: BadInput, 3: ClaimFailed, 4: DidNotConverge, 5: OutputFailed, 130: Interrupted}
+_BY_EXIT_CODE: dict[int, type[ProgramError] | type[Interrupted]] = {
+    1: InternalError, 2: BadInput, 3: ClaimFailed, 4: DidNotConverge, 5: OutputFailed, 130: Interrupted}
 
 
 def error_of(exit_code: int, message: str, directory: pathlib.Path | None = None) -> ProgramError | Interrupted:

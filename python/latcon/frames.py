@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     import xarray
 
 Floats = NDArray[np.float64]
+Field = NDArray[np.generic]
 
 
 @dataclasses.dataclass(frozen=True)
@@ -48,8 +49,8 @@ class Frame:
     position: Floats
     bonds: NDArray[np.int64]
     stretch: Floats
-    fields: dict[str, np.ndarray]
-    bond_fields: dict[str, np.ndarray]
+    fields: dict[str, Field]
+    bond_fields: dict[str, Field]
     units: dict[str, str]
 
 
@@ -180,7 +181,7 @@ def _converter() -> Any:
     return vtk_to_numpy
 
 
-def _arrays(data: Any) -> tuple[dict[str, np.ndarray], dict[str, str]]:
+def _arrays(data: Any) -> tuple[dict[str, Any], dict[str, str]]:
     """Arrays by name, vectors and tensors by their components in the plane, and units of those that have one."""
     from vtkmodules.vtkCommonCore import vtkDataArray
     numpy_of = _converter()

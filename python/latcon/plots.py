@@ -1,7 +1,7 @@
 """Plots of a run with matplotlib; lengths in cm."""
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -79,5 +79,6 @@ def bond_values(frame: Frame, color: str) -> Floats:
     if len(component) != values.ndim - 1 or not set(component) <= set(_AXES):
         example = f"{name} {'xy'[:values.ndim - 1]}".strip()
         raise ValueError(f"{color!r}: the field has {values.ndim - 1} indices; give for instance {example!r}")
-    values = values[(slice(None), *(_AXES[letter] for letter in component))].astype(float)
-    return values if on_bonds else values[frame.bonds].mean(axis=1)
+    index: tuple[Any, ...] = (slice(None), *(_AXES[letter] for letter in component))
+    numbers: Floats = values[index].astype(float)
+    return numbers if on_bonds else np.asarray(numbers[frame.bonds].mean(axis=1))

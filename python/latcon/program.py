@@ -215,7 +215,10 @@ class _Shower:
 
 class _Function(_Shower):
     def __init__(self, function: Callable[[str], None]) -> None:
-        self.line = function  # type: ignore[method-assign]
+        self._function = function
+
+    def line(self, text: str) -> None:
+        self._function(text)
 
 
 class _Stream(_Shower):

@@ -123,6 +123,8 @@ def stop(number, frame):
     print("latcon: saved", file=sys.stderr)
     sys.exit(130)
 signal.signal(signal.SIGINT, stop)
+import os
+if os.getsid(0) != os.getpid(): sys.exit("a terminal would signal this program as well")
 pathlib.Path({ready!r}).touch()
 time.sleep(60)
 """

@@ -108,6 +108,7 @@ def test_plots_show_the_data(crack):
 
 
 def test_damaged_and_missing_files_are_named(crack, tmp_path):
+    copy = tmp_path / "copy"
     for file, damage, action in (
             ("crack.json", "{", lambda run: run.crack), ("crack.json", "[]", lambda run: run.crack),
             ("crack.json", None, lambda run: run.crack), ("crack.csv", "t,X\n1\n", lambda run: run.path),
@@ -116,7 +117,6 @@ def test_damaged_and_missing_files_are_named(crack, tmp_path):
             ("lattice-0000.vtp", "<VTKFile", lambda run: run.frames[0]), ("lattice-0000.vtp", None, lambda run: run.frames[0]),
             ("near_tip.vti", "x", lambda run: run.near_tip_fields()), ("results.json", "{}", lambda run: run.results),
             ("case.prm", None, lambda run: run.case)):
-        copy = tmp_path / "copy"
         shutil.rmtree(copy, ignore_errors=True)
         shutil.copytree(crack.directory, copy)
         (copy / file).unlink()
@@ -125,6 +125,13 @@ def test_damaged_and_missing_files_are_named(crack, tmp_path):
         with pytest.raises(latcon.UnreadableFile, match=file) as caught:
             action(latcon.open(copy))
         assert caught.value.path == copy / file
+        assert damage is not None or "no such file" in caught.value.problem.lower()
+    for file, action in (("lattice-0000.vtp", lambda run: run.frames[0]), ("near_tip.vti", lambda run: run.near_tip_fields())):
+        whole = (crack.directory / file).read_bytes()
+        for share in (0.2, 0.5, 0.9, 0.999):
+            (copy / file).write_bytes(whole[:int(share * len(whole))])
+            with pytest.raises(latcon.UnreadableFile, match=file):
+                action(latcon.open(copy))
     with pytest.raises(latcon.UnreadableFile, match="run.json: No such file"):
         latcon.open(tmp_path)
 
@@ -164,8 +171,8 @@ def test_ctrl_c_leaves_a_checkpoint_from_which_the_run_continues(crack, tmp_path
 
 def test_other_commands(tmp_path):
     case = tiny_case()
-    relaxed = latcon.lattice(case, tmp_path / "lattice", threads=2, progress=False)
-    assert list(relaxed.frames.times) == [0, 1] and relaxed.info["threads"] == 2
+    relaxed = latcon.lattice(case, tmp_path / "lattice", threads=3, progress=False)
+    assert list(relaxed.frames.times) == [0, 1] and relaxed.info["threads"] == 3
     sheet = case.set("Continuum/cells x", 4).set("Continuum/cells y", 2).set("Continuum/refinements", 0)
     assert latcon.continuum(sheet, tmp_path / "continuum", progress=False).energy.attrs["units"]["elastic"] == "J/m"
     verified = latcon.verify("energy", directory=tmp_path / "verify", case=case, quick=True, progress=False)
