@@ -128,8 +128,10 @@ def test_damaged_and_missing_files_are_named(crack, tmp_path):
         assert damage is not None or "no such file" in caught.value.problem.lower()
     for file, action in (("lattice-0000.vtp", lambda run: run.frames[0]), ("near_tip.vti", lambda run: run.near_tip_fields())):
         whole = (crack.directory / file).read_bytes()
-        for share in (0.2, 0.5, 0.9, 0.999):
-            (copy / file).write_bytes(whole[:int(share * len(whole))])
+        damaged = [whole[:int(share * len(whole))] for share in (0.2, 0.5, 0.9, 0.999)]
+        damaged += [whole[:at] + bytes(200) + whole[at + 200:] for at in (int(share * len(whole)) for share in (0.5, 0.9))]
+        for content in damaged:
+            (copy / file).write_bytes(content)
             with pytest.raises(latcon.UnreadableFile, match=file):
                 action(latcon.open(copy))
     with pytest.raises(latcon.UnreadableFile, match="run.json: No such file"):
