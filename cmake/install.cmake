@@ -1,5 +1,5 @@
 # What `cmake --install` puts where, for any prefix: nothing that is installed knows the prefix or the folder of the sources.
-# Two components: `runtime`, the program with all that it reads, and `development`, the libraries.
+# Three components: `runtime`, the program with all that it reads, `development`, the libraries, and `python`, the Python package.
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -37,3 +37,7 @@ install(FILES ${PROJECT_BINARY_DIR}/latconConfig.cmake ${PROJECT_BINARY_DIR}/lat
         DESTINATION ${latcon_cmake_folder})
 install(DIRECTORY examples/own-laws DESTINATION share/doc/latcon-dev/examples)
 install(FILES docs/library.md cmake/copyright ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION share/doc/latcon-dev)
+
+# Where Debian's interpreter looks below /usr.
+install(DIRECTORY python/latcon DESTINATION lib/python3/dist-packages COMPONENT python PATTERN __pycache__ EXCLUDE)
+install(FILES docs/python.md cmake/copyright ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION share/doc/python3-latcon COMPONENT python)

@@ -1,9 +1,10 @@
-# Debian packages by `cpack` in the build folder: latcon, the program, and latcon-dev, the libraries.
+# Debian packages by `cpack` in the build folder: latcon, the program, latcon-dev, the libraries, and python3-latcon, the Python
+# package.
 set(CPACK_GENERATOR DEB)
 set(CPACK_PACKAGE_CONTACT "The latcon developers <latcon@localhost>")
 set(CPACK_PACKAGING_INSTALL_PREFIX /usr)
 set(CPACK_STRIP_FILES ON)
-set(CPACK_COMPONENTS_ALL runtime development)
+set(CPACK_COMPONENTS_ALL runtime development python)
 set(CPACK_DEB_COMPONENT_INSTALL ON)
 set(CPACK_DEBIAN_FILE_NAME DEB-DEFAULT)
 set(CPACK_DEBIAN_PACKAGE_SECTION science)
@@ -26,4 +27,13 @@ their own.")
 # What latconConfig.cmake looks for.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libdeal.ii-dev, libeigen3-dev, libhwy-dev, libopenmpi-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "latcon, cmake")
+
+set(CPACK_DEBIAN_PYTHON_PACKAGE_NAME python3-latcon)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_ARCHITECTURE all)
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SECTION python)
+set(CPACK_DEBIAN_PYTHON_DESCRIPTION "The Python package: it runs latcon and reads its results as numbers with
+uncertainties, tables and arrays.")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "latcon (= ${PROJECT_VERSION}), python3, python3-numpy, python3-pandas")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-matplotlib, python3-vtk9, python3-xarray")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-tqdm")
 include(CPack)

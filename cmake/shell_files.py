@@ -3,6 +3,7 @@
 
 Usage: shell_files.py LATCON DATA_FOLDER OUTPUT_FOLDER
 """
+import json
 import pathlib
 import re
 import subprocess
@@ -139,17 +140,10 @@ def manual(program, commands, version):
     return page + MAN_END.lstrip("\n")
 
 
-def entries(latcon, data):
+def entries(latcon):
     """Section/Name= of every entry of a case."""
-    run = subprocess.run([latcon, "fracture", data / "cases" / "fig1.prm", "--dry-run"], check=True,
-                         capture_output=True, text=True)
-    found, section = [], ""
-    for line in run.stdout.splitlines():
-        if line.startswith("subsection "):
-            section = line[len("subsection "):]
-        elif entry := re.match(r"  set (.*?) *= ", line):
-            found.append(f"{section}/{entry.group(1)}=")
-    return found
+    schema = json.loads(subprocess.run([latcon, "schema"], check=True, capture_output=True, text=True).stdout)
+    return [f"{entry['section']}/{entry['name']}=" for entry in schema["entries"]]
 
 
 def completion(latcon, data, program, commands):
@@ -162,7 +156,7 @@ def completion(latcon, data, program, commands):
     words = {
         "commands": "|".join(commands),
         "command_words": r"\n".join(commands),
-        "entries": " ".join(f"'{entry}'" for entry in entries(latcon, data)),
+        "entries": " ".join(f"'{entry}'" for entry in entries(latcon)),
         "folder_options": of_type(r" DIR"),
         "file_options": of_type(r" FILE"),
         "other_options": of_type(r" (N:|TIME|FIELD=VALUE)"),

@@ -3,10 +3,12 @@
 A block of a page is
 
     ```sh      commands, run in the order of the page, all blocks of a page in one folder
-    ```text    straight after commands: what they print. `...` stands for anything, in a line or for lines
+    ```python  statements, run after the commands, all blocks of a page by one interpreter in that folder
+    ```text    straight after commands or statements: what they print. `...` stands for anything, in a line or for lines
     ```prm, ```json    part of a case, or a study, which has `runs`; a dry run reads it
 
-and any other language is left alone. A comment on the line before a block of commands says what is special about it:
+and any other language is left alone. A comment on the line before a block of commands or statements says what is special about
+it; statements have no exit code:
 
     <!-- not run: REASON -->  it is never run
     <!-- exit code: N -->     its last command ends with N, which is not 0
@@ -30,7 +32,7 @@ class Block:
     text: str
     mark: str = ""  # `not run` or `exit code`
     says: str = ""  # what follows the mark
-    output: str = ""  # of commands: what the page says they print
+    output: str = ""  # of commands or statements: what the page says they print
 
     def place(self):
         return f"{self.page}:{self.line}"
@@ -52,13 +54,13 @@ def blocks(page, text):
             if not fence[1]:
                 raise BadPage(f"{page}:{begin + 1}: a block needs a language, `text` if it is none")
             block = Block(page, begin + 1, fence[1], "\n".join(lines[begin + 1:i]) + "\n", *(mark or ("", "")))
-            if mark and block.language != "sh":
+            if mark and block.language != "sh" and (block.language, mark[0]) != ("python", "not run"):
                 raise BadPage(f"{block.place()}: '{mark[0]}' is for commands (sh)")
             if block.language == "text" and after:
                 after.output = block.text
             else:
                 found.append(block)
-            after = block if block.language == "sh" else None
+            after = block if block.language in ("sh", "python") else None
             mark = None
         elif marked:
             mark, after = (marked[1], marked[2]), None

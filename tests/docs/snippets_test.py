@@ -42,7 +42,8 @@ class Clone:
             (self.folder / "build" / "paraview").symlink_to(source / "build" / "paraview")
         self.environment = dict(os.environ, XDG_CACHE_HOME=self.temporary.name, MPLCONFIGDIR=f"{self.temporary.name}/fonts",
                                 OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1",
-                                OMPI_MCA_rmaps_base_oversubscribe="1", PYTHONDONTWRITEBYTECODE="1")
+                                OMPI_MCA_rmaps_base_oversubscribe="1", PYTHONDONTWRITEBYTECODE="1", MPLBACKEND="Agg",
+                                PYTHONPATH=str(self.folder / "python"), LATCON=str(self.folder / "run"))
 
     def run(self, *command):
         return subprocess.run(command, cwd=self.folder, env=self.environment, stdout=subprocess.PIPE,
@@ -58,6 +59,21 @@ def try_commands(clone, block):
     missing = differences(block.output, ended.stdout)
     if missing:
         return f"{block.place()}: not printed:\n" + "\n".join(missing) + f"\nbut:\n{ended.stdout[-3000:]}"
+    return ""
+
+
+def try_statements(clone, statements):
+    """Runs blocks of Python one after the other. @return what is wrong, or nothing"""
+    end = "----- end of a block -----"
+    script = clone.folder / "statements.py"
+    script.write_text("".join(f"{block.text}\nprint({end!r}, flush=True)\n" for block in statements))
+    ended = clone.run(sys.executable, str(script))
+    printed = ended.stdout.split(end + "\n")
+    for block, text in zip(statements, printed):
+        if missing := differences(block.output, text):
+            return f"{block.place()}: not printed:\n" + "\n".join(missing) + f"\nbut:\n{text[-3000:]}"
+    if ended.returncode:
+        return f"{statements[len(printed) - 1].place()}: exit code {ended.returncode}\n{printed[-1][-3000:]}"
     return ""
 
 
@@ -79,6 +95,7 @@ class Pages(unittest.TestCase):
             with self.subTest(page):
                 clone, begin = Clone(LATCON, SOURCE), time.monotonic()
                 self.addCleanup(clone.temporary.cleanup)
+                statements = []
                 for block in blocks(page, (SOURCE / page).read_text(encoding="utf-8")):
                     if block.mark == "not run":
                         counts["left out"] += 1
@@ -88,10 +105,16 @@ class Pages(unittest.TestCase):
                         problem = (try_commands if block.language == "sh" else try_input)(clone, block)
                         if problem:
                             self.fail(problem)
+                    elif block.language == "python":
+                        counts["executed"] += 1
+                        statements.append(block)
+                if statements and (problem := try_statements(clone, statements)):
+                    self.fail(problem)
                 print(f"{page}: {time.monotonic() - begin:.0f} s", flush=True)
-        print(f"{counts['run']} blocks of commands were run, {counts['read']} of input read, {counts['left out']} left out",
+        print(f"{counts['run']} blocks of commands were run, {counts['executed']} of Python, {counts['read']} of input read, "
+              f"{counts['left out']} left out",
               *left_out, sep="\n")
-        self.assertGreater(counts["run"] + counts["read"], 0)
+        self.assertGreater(counts["run"] + counts["executed"] + counts["read"], 0)
 
 
 class Snippets(unittest.TestCase):
@@ -129,6 +152,11 @@ class Snippets(unittest.TestCase):
             (block,) = blocks("page.md", text)
             wrong = (try_commands if block.language == "sh" else try_input)(clone, block)
             self.assertIn(part, wrong)
+        for text, part in (("```python\nx = 1\n```\n```python\nprint(x)\n```\n```text\n2\n```\n", "page.md:4: not printed"),
+                           ("```python\nx = 1\n```\n```python\nprint(y)\n```\n", "page.md:4: exit code 1"),
+                           ("```python\nx = 1\n```\n```python\nprint(x)\n```\n```text\n1\n```\n", "")):
+            wrong = try_statements(clone, blocks("page.md", text))
+            self.assertTrue(part in wrong and bool(part) == bool(wrong), wrong)
 
 
 if __name__ == "__main__":

@@ -6,7 +6,7 @@ Usage: debian_test.py SOURCE_FOLDER BUILD_FOLDER
 import re
 import unittest
 
-from folders import BUILD, FOLDER, SOURCE, check_program, files_below, mentions_of_sources, run
+from folders import BUILD, FOLDER, SOURCE, check_program, files_below, mentions_of_sources, python, run
 
 
 def field(package, name):
@@ -23,12 +23,12 @@ class Packages(unittest.TestCase):
         # As fast as it can be packed.
         run("cpack", "--config", BUILD / "CPackConfig.cmake", "-B", FOLDER / "packages", "-D",
             "CPACK_DEBIAN_COMPRESSION_TYPE=gzip")
-        cls.program, cls.libraries = (next((FOLDER / "packages").glob(f"{name}_*_*.deb"))
-                                      for name in ("latcon", "latcon-dev"))
+        cls.program, cls.libraries, cls.python = (next((FOLDER / "packages").glob(f"{name}_*_*.deb"))
+                                                  for name in ("latcon", "latcon-dev", "python3-latcon"))
 
     def test_name_their_version(self):
         project = re.search(r"project\(latcon VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text()).group(1)
-        for package in (self.program, self.libraries):
+        for package in (self.program, self.libraries, self.python):
             self.assertEqual(field(package, "Version"), project)
 
     def test_ask_for_what_they_need(self):
@@ -53,6 +53,27 @@ class Packages(unittest.TestCase):
                      "share/doc/latcon/copyright"):
             self.assertTrue((root / "usr" / name).is_file(), name)
         check_program(self, root / "usr")
+
+    def test_python_package_asks_for_what_it_imports_and_runs_the_program(self):
+        version = field(self.program, "Version")
+        depends, recommends = (field(self.python, name) for name in ("Depends", "Recommends"))
+        self.assertIn(f"latcon (= {version})", depends)
+        self.assertEqual(field(self.python, "Architecture"), "all")
+        listed = {line for name in ("packages", "packages-tests")
+                  for line in (SOURCE / f"cmake/{name}.txt").read_text().split("\n")}
+        self.assertLessEqual((names(depends) | names(recommends)) - {"latcon"}, listed)
+        packages = {"matplotlib": "python3-matplotlib", "numpy": "python3-numpy", "pandas": "python3-pandas",
+                    "vtkmodules": "python3-vtk9", "xarray": "python3-xarray"}
+        for path in (SOURCE / "python/latcon").glob("*.py"):
+            for indent, module in re.findall(r"^(\s*)(?:import|from) (\w+)", path.read_text(), re.M):
+                if module in packages:
+                    self.assertIn(packages[module], names(recommends if indent.strip("\n") else depends), path)
+        root = FOLDER / "root-python"
+        for package in (self.program, self.python):
+            run("dpkg-deb", "--extract", package, root)
+        self.assertEqual(mentions_of_sources(root), [])
+        self.assertEqual(python(root / "usr", "print(latcon.Case('quick')['Sheet/length'], latcon.find_program())").split(),
+                         ["0.04", str(root / "usr/bin/latcon")])
 
     def test_libraries_hold_every_header(self):
         root = FOLDER / "root-dev"

@@ -48,3 +48,9 @@ def check_program(test, prefix):
     data.rename(data.with_name("elsewhere"))
     test.assertIn(str(data), run(latcon, "verify", "energy", "--dry-run", fails=True))
     data.with_name("elsewhere").rename(data)
+
+
+def python(prefix, statements):
+    """What statements about the Python package below a prefix print."""
+    return run("env", "-u", "LATCON", f"PYTHONPATH={prefix}/lib/python3/dist-packages", "/usr/bin/python3", "-B", "-c",
+               f"import latcon; {statements}")

@@ -8,7 +8,7 @@ import json
 import shutil
 import unittest
 
-from folders import BUILD, FOLDER, check_program, mentions_of_sources, run
+from folders import BUILD, FOLDER, check_program, mentions_of_sources, python, run
 
 PREFIX = FOLDER / "prefix"
 
@@ -23,6 +23,10 @@ class Installed(unittest.TestCase):
 
     def test_program_runs(self):
         check_program(self, PREFIX)
+
+    def test_python_package_runs_the_program_of_its_prefix(self):
+        self.assertEqual(python(PREFIX, "print(latcon.find_program(), latcon.Case('quick')['Sheet/length'])").split(),
+                         [str((PREFIX / "bin/latcon").resolve()), "0.04"])
 
     def test_example_with_laws_of_its_own_is_built_and_right(self):
         own = FOLDER / "own-laws"

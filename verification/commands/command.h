@@ -43,6 +43,7 @@ latcon::support::ExitCode run_fracture(const Options &options);                 
 latcon::support::ExitCode compare_frames(const Options &options, const CompareOptions &chosen); ///< `latcon compare`
 latcon::support::ExitCode report(const Options &options, const std::string &directory);         ///< `latcon report`
 latcon::support::ExitCode run_study(const Options &options, const std::string &study);          ///< `latcon study`
+latcon::support::ExitCode print_schema(const Options &options);                                 ///< `latcon schema`
 
 /// Draws pictures and report.html of a run, or of a folder of several, in a directory that this process has locked. On
 /// rank 0. @return the exit code of the script @throws OutputError

@@ -219,6 +219,16 @@ latcon::support::ExitCode run_program(int argc, char **argv)
     ->type_name("");
   report_command->callback([&] { command = [&] { return report(options, report_directory); }; });
 
+  CLI::App *schema_command = app.add_subcommand("schema", "all entries of a case as JSON, with the values of one");
+  schema_command->add_option("CASE", options.case_file, "case whose values to print; default: declarations only")
+    ->type_name("");
+  schema_command->callback(
+    [&]
+    {
+      options.case_is_given = schema_command->count("CASE") > 0;
+      command = [&] { return print_schema(options); };
+    });
+
   return run_command(
     [&]
     {

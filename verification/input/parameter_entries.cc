@@ -83,7 +83,8 @@ void Parameters::declare(Entry entry)
 void Parameters::add(const std::string &section, const std::string &name, double &member, const Range &range,
                      const std::string &unit, const std::string &documentation, const Presence presence)
 {
-  Entry entry{section, name, documentation, unit, range.text(), allowed_numbers("a number", range, unit), presence};
+  Entry entry{{section, name, documentation, unit, range.text(), presence, ValueType::number, range},
+              allowed_numbers("a number", range, unit)};
   entry.read = [&member, range, unit](const std::string &text)
   {
     const ParsedNumber quantity = number_in(text, range, unit);
@@ -100,7 +101,9 @@ void Parameters::add(const std::string &section, const std::string &name, std::o
                      const Presence presence)
 {
   const std::string rule = range.text().empty() ? "a number, or auto" : range.text() + ", or auto";
-  Entry entry{section, name, documentation, unit, rule, allowed_numbers("auto, or a number", range, unit), presence};
+  Entry entry{{section, name, documentation, unit, rule, presence, ValueType::number, range},
+              allowed_numbers("auto, or a number", range, unit)};
+  entry.may_be_auto = true;
   entry.read = [&member, range, unit](const std::string &text) -> std::string
   {
     if (text == "auto")
@@ -122,13 +125,9 @@ void Parameters::add(const std::string &section, const std::string &name, std::v
                      const Presence presence)
 {
   const std::string list = std::string("numbers separated by commas") + (range.text().empty() ? "" : ", each");
-  Entry entry{section,
-              name,
-              documentation,
-              unit,
-              list + (range.text().empty() ? "" : " ") + range.text(),
-              allowed_numbers(list, range, unit),
-              presence};
+  const std::string rule = list + (range.text().empty() ? "" : " ") + range.text();
+  Entry entry{{section, name, documentation, unit, rule, presence, ValueType::numbers, range},
+              allowed_numbers(list, range, unit)};
   entry.read = [&member, range, unit, presence](const std::string &text) -> std::string
   {
     std::vector<double> values;
@@ -168,9 +167,13 @@ void Parameters::add_integer(const std::string &section, const std::string &name
 {
   std::string rule = allowed_numbers("a whole number", range, "1");
   constexpr Integer largest = std::numeric_limits<Integer>::max();
+  std::optional<std::uint64_t> largest_whole;
   if (std::is_unsigned_v<Integer> && range.contains(2. * static_cast<double>(largest)))
+  {
     rule += (range.text().empty() ? " <= " : " and <= ") + std::to_string(largest);
-  Entry entry{section, name, documentation, "", rule, rule, presence};
+    largest_whole = largest;
+  }
+  Entry entry{{section, name, documentation, "", rule, presence, ValueType::whole_number, range, largest_whole}, rule};
   entry.read = [&member, range](const std::string &text) -> std::string
   {
     std::string digits = text;
@@ -214,10 +217,11 @@ void Parameters::add(const std::string &section, const std::string &name, std::u
 
 void Parameters::add_words(const std::string &section, const std::string &name, const std::vector<std::string> &words,
                            const std::function<void(std::size_t)> &set, const std::function<std::size_t()> &get,
-                           const std::string &documentation, const Presence presence)
+                           const std::string &documentation, const Presence presence, const ValueType type)
 {
   const std::string rule = "one of " + comma_separated(words);
-  Entry entry{section, name, documentation, "", rule, rule, presence};
+  Entry entry{{section, name, documentation, "", rule, presence, type}, rule};
+  entry.words = words;
   entry.read = [words, set](const std::string &text) -> std::string
   {
     const auto found = std::find(words.begin(), words.end(), text);
@@ -242,7 +246,7 @@ void Parameters::add(const std::string &section, const std::string &name, bool &
 {
   add_words(
     section, name, {"false", "true"}, [&member](const std::size_t i) { member = i == 1; },
-    [&member] { return std::size_t(member ? 1 : 0); }, documentation, presence);
+    [&member] { return std::size_t(member ? 1 : 0); }, documentation, presence, ValueType::boolean);
 }
 
 void Parameters::add(const std::string &section, const std::string &name, std::string &member,
@@ -258,7 +262,7 @@ void Parameters::add(const std::string &section, const std::string &name, std::s
 void Parameters::add(const std::string &section, const std::string &name, std::string &member,
                      const std::string &documentation, const Presence presence)
 {
-  Entry entry{section, name, documentation, "", "", "a text on one line", presence};
+  Entry entry{{section, name, documentation, "", "", presence, ValueType::text}, "a text on one line"};
   entry.read = [&member, presence](const std::string &text) -> std::string
   {
     if (text.empty() && presence == Presence::required)

@@ -304,6 +304,11 @@ std::vector<std::pair<std::string, std::string>> Parameters::values() const
   return values;
 }
 
+std::vector<Declaration> Parameters::declarations() const
+{
+  return {entries_.begin(), entries_.end()};
+}
+
 std::string Parameters::lines(const std::string &section_left_out) const
 {
   std::string text;

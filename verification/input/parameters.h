@@ -42,6 +42,9 @@ public:
   /// For a message, e.g. "> 0 and <= 1"; empty if every number is allowed.
   [[nodiscard]] std::string text() const;
 
+  [[nodiscard]] const Bound &lower() const { return lower_; }
+  [[nodiscard]] const Bound &upper() const { return upper_; }
+
 protected:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
 
@@ -103,6 +106,34 @@ enum class Presence
 {
   optional, ///< if left out, the member keeps the value it had when it was declared
   required  ///< no default would be honest: leaving it out is an error
+};
+
+/// Type of the value of an entry.
+enum class ValueType
+{
+  number,       ///< real
+  whole_number, ///< integer
+  numbers,      ///< list of real numbers
+  boolean,      ///< `true` or `false`
+  word,         ///< one of several
+  text          ///< any text on one line
+};
+
+/// Declaration of one entry of a case.
+struct Declaration
+{
+  std::string section;
+  std::string name;
+  std::string documentation;
+  std::string unit; ///< SI; "1" for a pure number, empty for entries that are no quantities
+  std::string rule; ///< allowed values in few words, as in the documentation
+  Presence presence = Presence::optional;
+  ValueType type = ValueType::text;
+  std::optional<Range> range{};                 ///< of numbers
+  std::optional<std::uint64_t> largest_whole{}; ///< largest value of the integer type if `range` does not exclude it
+  bool may_be_auto = false;                     ///< whether the word `auto` is allowed
+  std::vector<std::string> words{};             ///< of ValueType::word
+  std::string default_text{};                   ///< as a case file would hold it; meaningless if required
 };
 
 /// The entries of a case, each declared once, beside the member it fills.
@@ -212,6 +243,13 @@ public:
   /// All keys and the values of the members as they now stand, as text that reads back to them bit for bit; by key.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> values() const;
 
+  /// All entries, in the order of declaration.
+  [[nodiscard]] std::vector<Declaration> declarations() const;
+
+  /// Value of an entry as it now stands in its member, as a case file would hold it. @throws std::logic_error for no
+  /// entry
+  [[nodiscard]] std::string value(const std::string &key) const { return find(key).write(); }
+
   /// SI unit of an entry; "1" for a pure number, empty for what is no quantity. @throws std::logic_error for no entry
   [[nodiscard]] std::string unit(const std::string &key) const { return find(key).unit; }
 
@@ -220,21 +258,14 @@ public:
   [[nodiscard]] std::string lines(const std::string &section_left_out = "") const;
 
 private:
-  struct Entry
+  struct Entry : Declaration
   {
-    std::string section;
-    std::string name;
-    std::string documentation;
-    std::string unit;    // empty for entries that are no quantities
-    std::string rule;    // the range in few words, for the documentation
-    std::string allowed; // the same for a message, with units
-    Presence presence = Presence::optional;
+    std::string allowed{}; // the rule for a message, with units
     // Fills the member, or returns what is wrong with the text.
     std::function<std::string(const std::string &)> read{};
     std::function<std::string()> write{}; // the member as text
-    std::string default_text{};
-    std::string text{};       // as given
-    std::string file_place{}; // where the file set it; empty if it did not
+    std::string text{};                   // as given
+    std::string file_place{};             // where the file set it; empty if it did not
     bool overridden = false;
     bool wrong = false; // something about it has been reported
 
@@ -249,7 +280,7 @@ private:
                    const std::string &documentation, Presence presence);
   void add_words(const std::string &section, const std::string &name, const std::vector<std::string> &words,
                  const std::function<void(std::size_t)> &set, const std::function<std::size_t()> &get,
-                 const std::string &documentation, Presence presence);
+                 const std::string &documentation, Presence presence, ValueType type = ValueType::word);
   void enter(const SectionStart &start);
   void take(const Assignment &assignment);
   void take_override(const std::string &text);

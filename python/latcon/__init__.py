@@ -1,0 +1,24 @@
+"""Runs latcon, dynamic fracture of rubber on a lattice beside its continuum, and reads its results.
+
+Examples
+--------
+>>> import latcon
+>>> case = latcon.Case("quick.prm").set("Sheet/height", "1.5 cm")
+>>> run = latcon.fracture(case, "output", threads=2)
+>>> run.crack.speed_lagrangian
+"""
+from .case import Case
+from .commands import continuum, fracture, lattice, verify
+from .errors import (BadInput, ClaimFailed, DidNotConverge, InternalError, Interrupted, LatconError, OutputFailed, ProgramError,
+                     ProgramNotFound, UnknownEntry, UnreadableFile)
+from .frames import Frame
+from .program import find_program
+from .quantities import Quantities, Value
+from .results import Run
+from .results import open_run as open  # called as latcon.open
+from .schema import Entry, Schema, schema
+
+# Without `open`, which `from latcon import *` would put in place of Python's own.
+__all__ = ["BadInput", "Case", "ClaimFailed", "DidNotConverge", "Entry", "Frame", "InternalError", "Interrupted", "LatconError",
+           "OutputFailed", "ProgramError", "ProgramNotFound", "Quantities", "Run", "Schema", "UnknownEntry", "UnreadableFile",
+           "Value", "continuum", "find_program", "fracture", "lattice", "schema", "verify"]

@@ -1,0 +1,116 @@
+"""Commands of the program as functions that return the opened run."""
+from __future__ import annotations
+
+import os
+import pathlib
+
+from .case import Case
+from .program import Progress, run
+from .results import Run, open_run
+
+CaseLike = Case | str | os.PathLike[str]
+Directory = str | os.PathLike[str]
+
+
+def fracture(case: CaseLike, directory: Directory, *, threads: int | None = None, resume: bool = False,
+             skip_verification: bool = False, report: bool = True, progress: Progress = True) -> Run:
+    """Verifies the material and the pre-stretch of a case, then runs its crack (``latcon fracture``).
+
+    Parameters
+    ----------
+    case
+        The case, or what :class:`Case` accepts.
+    directory
+        Output directory; created if needed. Files of an earlier run are moved to `earlier-run` in it, unless `resume`.
+    threads
+        Threads; default: all cores that this process may use.
+    resume
+        Whether to continue from the last checkpoint.
+    skip_verification
+        Whether to run the crack unverified; noted in every output.
+    report
+        Whether to make pictures and `report.html`.
+    progress
+        True: a progress indicator on standard error, tqdm if it is installed. False: none. A function: called with each
+        progress line of the program.
+
+    Returns
+    -------
+    Run
+        The results.
+
+    Raises
+    ------
+    BadInput, ClaimFailed, DidNotConverge, OutputFailed, InternalError
+        If the program ends with exit code 2, 3, 4, 5, 1.
+    Interrupted
+        After Ctrl-C or another signal: a checkpoint and all results are written.
+    """
+    options = ["--skip-verification"] * skip_verification + ["--no-report"] * (not report)
+    return _run("fracture", case, directory, threads, resume, progress, options)
+
+
+def lattice(case: CaseLike, directory: Directory, *, threads: int | None = None, resume: bool = False,
+            progress: Progress = True) -> Run:
+    """Computes the equilibrium or the motion of the unbroken lattice sheet (``latcon lattice``).
+
+    Parameters, result and errors are those of :func:`fracture`.
+    """
+    return _run("lattice", case, directory, threads, resume, progress)
+
+
+def continuum(case: CaseLike, directory: Directory, *, threads: int | None = None, resume: bool = False,
+              progress: Progress = True) -> Run:
+    """Computes the equilibrium or the motion of the finite element sheet (``latcon continuum``).
+
+    Parameters, result and errors are those of :func:`fracture`.
+    """
+    return _run("continuum", case, directory, threads, resume, progress)
+
+
+def verify(*claims: str, directory: Directory, case: CaseLike | None = None, quick: bool = False,
+           threads: int | None = None, progress: Progress = True) -> Run:
+    """Checks that lattice and continuum agree, claim by claim (``latcon verify``).
+
+    Parameters
+    ----------
+    *claims
+        Names of claims, such as ``"energy"``; default: all but ``"running-crack"``.
+    directory
+        Output directory.
+    case
+        Case whose material, loading and laws to verify; default: every law on the rubber of Fig. 1.
+    quick
+        Whether to check the small versions.
+    threads, progress
+        As in :func:`fracture`.
+
+    Raises
+    ------
+    ClaimFailed
+        If a quantity is outside its tolerance; ``latcon.open(directory).results`` has all rows.
+    BadInput, DidNotConverge, OutputFailed, InternalError, Interrupted
+        As in :func:`fracture`.
+    """
+    words = ["verify", *claims, *["--quick"] * quick]
+    if case is not None:
+        case = _case(case)
+        words += ["--case", os.fspath(case.file), *case.arguments()]
+    return _start(words, directory, threads, progress)
+
+
+def _case(case: CaseLike) -> Case:
+    return case if isinstance(case, Case) else Case(case)
+
+
+def _run(command: str, case: CaseLike, directory: Directory, threads: int | None, resume: bool, progress: Progress,
+         options: list[str] | None = None) -> Run:
+    case = _case(case)
+    words = [command, os.fspath(case.file), *case.arguments(), *(options or []), *["--resume"] * resume]
+    return _start(words, directory, threads, progress)
+
+
+def _start(words: list[str], directory: Directory, threads: int | None, progress: Progress) -> Run:
+    path = pathlib.Path(directory)
+    run([*words, "--output-dir", os.fspath(path), *([] if threads is None else ["--threads", str(threads)])], path, progress)
+    return open_run(path)

@@ -1,0 +1,102 @@
+"""Exceptions of the package; those of a run carry the program's message and exit code."""
+from __future__ import annotations
+
+import os
+import pathlib
+
+
+class LatconError(Exception):
+    """Base class of all errors of this package except :class:`Interrupted`."""
+
+
+class ProgramNotFound(LatconError):
+    """The program ``latcon`` was not found."""
+
+
+class UnreadableFile(LatconError):
+    """A file of a run is missing or damaged.
+
+    Parameters
+    ----------
+    path
+        The file.
+    problem
+        What is wrong with it.
+    """
+
+    def __init__(self, path: str | os.PathLike[str], problem: str) -> None:
+        super().__init__(f"{path}: {problem}")
+        self.path = pathlib.Path(path)
+        self.problem = problem
+
+
+class _EndOfProgram(BaseException):
+    """Message, exit code and output directory of a program that did not end with 0."""
+
+    message: str
+    exit_code: int
+    directory: pathlib.Path | None
+
+    def __init__(self, message: str, exit_code: int, directory: pathlib.Path | None = None) -> None:
+        super().__init__(message)
+        self.message = message
+        self.exit_code = exit_code
+        self.directory = directory
+
+    def __str__(self) -> str:
+        return self.message
+
+
+class ProgramError(_EndOfProgram, LatconError):
+    """The program ended with an error.
+
+    Attributes
+    ----------
+    message : str
+        The program's message, without its name in front.
+    exit_code : int
+        Exit status; negative: number of the signal that killed the program.
+    directory : pathlib.Path or None
+        Output directory of the run. It holds all results up to the error.
+    """
+
+
+class InternalError(ProgramError):
+    """A defect of latcon itself (exit code 1)."""
+
+
+class BadInput(ProgramError, ValueError):
+    """A case, an option or an input file is wrong, or the output directory is in use (exit code 2)."""
+
+
+class UnknownEntry(BadInput, KeyError):
+    """A key is no entry of a case; the message has the nearest known one."""
+
+
+class ClaimFailed(ProgramError):
+    """A checked quantity is outside its tolerance (exit code 3)."""
+
+
+class DidNotConverge(ProgramError):
+    """A solver did not converge, or the state blew up (exit code 4)."""
+
+
+class OutputFailed(ProgramError):
+    """A file could not be written (exit code 5)."""
+
+
+class Interrupted(_EndOfProgram, KeyboardInterrupt):
+    """The run was stopped by Ctrl-C or another signal, with its results written (exit code 130).
+
+    A subclass of :class:`KeyboardInterrupt` and not of :class:`LatconError`: a loop over runs that continues after errors
+    stops at Ctrl-C. Has the attributes of :class:`ProgramError`. ``resume=True`` continues the run.
+    """
+
+
+_BY_EXIT_CODE: dict[int, type[ProgramError] | type[Interrupted]] = {
+    1: InternalError, 2: BadInput, 3: ClaimFailed, 4: DidNotConverge, 5: OutputFailed, 130: Interrupted}
+
+
+def error_of(exit_code: int, message: str, directory: pathlib.Path | None = None) -> ProgramError | Interrupted:
+    """Exception that belongs to an exit code of the program."""
+    return _BY_EXIT_CODE.get(exit_code, ProgramError)(message, exit_code, directory)

@@ -1,0 +1,98 @@
+"""Readers of single files of a run; errors name the file."""
+from __future__ import annotations
+
+import io
+import json
+import pathlib
+from collections.abc import Mapping
+from typing import Any
+from xml.etree import ElementTree
+
+import pandas as pd
+
+from .errors import UnreadableFile
+
+
+def read_text(path: pathlib.Path) -> str:
+    """Text of a file.
+
+    Raises
+    ------
+    UnreadableFile
+        If it is missing, cannot be read, or is not UTF-8 text.
+    """
+    try:
+        return path.read_text(encoding="utf-8")
+    except OSError as error:
+        raise UnreadableFile(path, error.strerror or str(error)) from error
+    except UnicodeDecodeError as error:
+        raise UnreadableFile(path, f"not UTF-8 text (byte {error.start})") from error
+
+
+def read_json(path: pathlib.Path) -> dict[str, Any]:
+    """Object in a JSON file.
+
+    Raises
+    ------
+    UnreadableFile
+        If it is missing, damaged, or holds no object.
+    """
+    try:
+        value = json.loads(read_text(path))
+    except ValueError as error:
+        raise UnreadableFile(path, f"not JSON: {error}") from error
+    if not isinstance(value, dict):
+        raise UnreadableFile(path, "holds no JSON object")
+    return value
+
+
+def read_table(path: pathlib.Path, units: Mapping[str, str]) -> pd.DataFrame:
+    """Table of a CSV file whose cells are numbers.
+
+    Parameters
+    ----------
+    path
+        The file.
+    units
+        Unit of each column; those of the columns that the file has become ``attrs["units"]``.
+
+    Raises
+    ------
+    UnreadableFile
+        If it is missing, a cell is no number, or rows differ in length.
+    """
+    text = read_text(path)
+    lines = text.splitlines()
+    if not lines:
+        raise UnreadableFile(path, "empty")
+    columns = lines[0].count(",")
+    for number, line in enumerate(lines[1:], start=2):
+        if line.count(",") != columns:
+            raise UnreadableFile(path, f"line {number} has {line.count(',') + 1} fields, the header has {columns + 1}")
+    try:
+        # The default converter is fast and may be off by the last bit.
+        table = pd.read_csv(io.StringIO(text), float_precision="round_trip")
+    except ValueError as error:
+        raise UnreadableFile(path, f"not a table: {error}") from error
+    for name in table:
+        if len(table) and not pd.api.types.is_numeric_dtype(table[name]):
+            raise UnreadableFile(path, f"column {name!r} holds a cell that is no number")
+    table.attrs["units"] = {name: units[name] for name in table if name in units}
+    return table
+
+
+def read_series(path: pathlib.Path) -> list[tuple[float, pathlib.Path]]:
+    """Times [s] and files of the frames that a `.pvd` names.
+
+    Raises
+    ------
+    UnreadableFile
+        If it is missing or damaged.
+    """
+    try:
+        return [(float(frame.attrib["timestep"]), path.parent / frame.attrib["file"])
+                for frame in ElementTree.fromstring(read_text(path)).iter("DataSet")]
+    except ElementTree.ParseError as error:
+        raise UnreadableFile(path, f"not XML: {error}") from error
+    except (KeyError, ValueError) as error:
+        raise UnreadableFile(path, f"a DataSet has no time or file: {error}") from error

@@ -1,0 +1,84 @@
+"""Plots of a run with matplotlib; lengths in cm."""
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .errors import LatconError
+from .frames import Floats, Frame
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+
+    from .results import Run
+
+_AXES = {"x": 0, "y": 1}
+
+
+def _axes(ax: matplotlib.axes.Axes | None) -> matplotlib.axes.Axes:
+    if ax is not None:
+        return ax
+    try:
+        import matplotlib.pyplot as plt
+    except ImportError as error:
+        raise LatconError("plots need the Python package matplotlib (Debian: python3-matplotlib)") from error
+    return plt.subplots(figsize=(10, 5), layout="constrained")[1]
+
+
+def draw_path(run: Run, ax: matplotlib.axes.Axes | None) -> matplotlib.axes.Axes:
+    """Draws the path of the tip and the broken bonds in the undeformed sheet."""
+    ax = _axes(ax)
+    broken = run.broken_bonds
+    ax.scatter(100 * broken["X"], 100 * broken["Y"], s=2, color="0.6", linewidths=0, label="broken bonds")
+    ax.plot(100 * run.path["X"], 100 * run.path["Y"], label=f"tip, {run.crack.speed_lagrangian}")
+    ax.set(xlabel="X, undeformed [cm]", ylabel="Y, undeformed [cm]", title=f"crack path: {run.crack.pattern}")
+    ax.legend(loc="best")
+    return ax
+
+
+def draw_sheet(frame: Frame, color: str, ax: matplotlib.axes.Axes | None) -> matplotlib.axes.Axes:
+    """Draws the bonds of a frame, coloured by a field."""
+    from matplotlib.collections import LineCollection
+    ax = _axes(ax)
+    values = bond_values(frame, color)
+    order = np.argsort(values)  # the largest on top
+    lines = LineCollection(list(100 * frame.position[frame.bonds[order]]), array=values[order], linewidths=0.5,
+                           rasterized=True)
+    ax.add_collection(lines)
+    ax.autoscale_view()
+    ax.set(aspect="equal", xlabel="x [cm]", ylabel="y [cm]", title=f"t = {1e3 * frame.time:.4g} ms")
+    unit = frame.units.get(color.split(" ")[0], "1")
+    ax.figure.colorbar(lines, ax=ax, label=f"{color.replace('_', ' ')} [{unit}]")
+    return ax
+
+
+def bond_values(frame: Frame, color: str) -> Floats:
+    """Values of a field on the bonds; of a field of the sites the mean of both ends.
+
+    Parameters
+    ----------
+    frame
+        Frame with bonds.
+    color
+        ``"FIELD"`` of a scalar, ``"FIELD x"`` of a vector, ``"FIELD xy"`` of a tensor.
+
+    Raises
+    ------
+    ValueError
+        If the frame has no bonds or no such field, or the component does not fit.
+    """
+    if not len(frame.bonds):
+        raise ValueError("the frame has no bonds; take one of run.frames")
+    name, _, component = color.partition(" ")
+    on_bonds = name in frame.bond_fields
+    if not on_bonds and name not in frame.fields:
+        known = ", ".join(sorted({*frame.bond_fields, *frame.fields}))
+        raise ValueError(f"no field {name!r}; known: {known}")
+    values = frame.bond_fields[name] if on_bonds else frame.fields[name]
+    if len(component) != values.ndim - 1 or not set(component) <= set(_AXES):
+        example = f"{name} {'xy'[:values.ndim - 1]}".strip()
+        raise ValueError(f"{color!r}: the field has {values.ndim - 1} indices; give for instance {example!r}")
+    index: tuple[Any, ...] = (slice(None), *(_AXES[letter] for letter in component))
+    numbers: Floats = values[index].astype(float)
+    return numbers if on_bonds else np.asarray(numbers[frame.bonds].mean(axis=1))

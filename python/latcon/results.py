@@ -1,0 +1,196 @@
+"""Results of a run: everything in its output directory."""
+from __future__ import annotations
+
+import functools
+import os
+import pathlib
+from typing import TYPE_CHECKING, Any
+
+import pandas as pd
+
+from .case import Case
+from .errors import UnreadableFile
+from .files import read_json, read_table
+from .frames import Frames, read_near_tip
+from .program import ask
+from .quantities import Quantities
+
+if TYPE_CHECKING:
+    import matplotlib.axes
+    import xarray
+
+_ENERGIES = ("elastic", "kinetic", "micro_inertia", "viscous", "broken", "boundary_work", "contact", "imbalance")
+_PATH_UNITS = {"t": "s", "X": "m", "Y": "m", "x": "m", "y": "m", "speed": "m/s", "bonds_broken": "1"}
+_BROKEN_UNITS = {"t": "s", "site": "1", "other_site": "1", "X": "m", "Y": "m", "stretch": "1"}
+_ENERGY_UNITS = {"t": "s", "load_factor": "1", **{name: "J/m" for name in _ENERGIES}}
+_RESULT_COLUMNS = ("claim", "quantity", "unit", "lattice", "continuum", "theory", "error", "tolerance", "verdict")
+
+
+class Run:
+    """Results of a run in an output directory. Files are read when they are asked for, and once.
+
+    Parameters
+    ----------
+    directory
+        Output directory.
+
+    Raises
+    ------
+    UnreadableFile
+        If the directory holds no `run.json`; of each property if its file is missing or damaged.
+    """
+
+    def __init__(self, directory: str | os.PathLike[str]) -> None:
+        self.directory = pathlib.Path(directory)
+        self.info  # a folder without it holds no run
+
+    def __repr__(self) -> str:
+        return f"latcon.open({str(self.directory)!r})"
+
+    @functools.cached_property
+    def info(self) -> dict[str, Any]:
+        """`run.json`: version, commit, libraries, wall times, memory, exit code."""
+        return read_json(self.directory / "run.json")
+
+    @property
+    def exit_code(self) -> int | None:
+        """Exit code of the program; None while it runs, or if it was killed."""
+        return self.info.get("exit_code")
+
+    @functools.cached_property
+    def case(self) -> Case:
+        """The resolved case."""
+        path = self.directory / "case.prm"
+        if not path.is_file():
+            raise UnreadableFile(path, "no such file")
+        return Case(path)
+
+    @functools.cached_property
+    def crack(self) -> Quantities:
+        """`crack.json`: pattern, speeds, wavelength, amplitude, each a :class:`Value`."""
+        return Quantities(read_json(self.directory / "crack.json"))
+
+    @functools.cached_property
+    def near_tip(self) -> Quantities:
+        """`near_tip.json`: the fields around the running tip as numbers."""
+        return Quantities(read_json(self.directory / "near_tip.json"))
+
+    @functools.cached_property
+    def path(self) -> pd.DataFrame:
+        """`crack.csv`: a row each time the tip moves.
+
+        Columns ``t`` [s], ``X``, ``Y`` (undeformed), ``x``, ``y`` (current) [m], ``speed`` (Lagrangian) [m/s],
+        ``bonds_broken``; units in ``attrs["units"]``.
+        """
+        return read_table(self.directory / "crack.csv", _PATH_UNITS)
+
+    @functools.cached_property
+    def broken_bonds(self) -> pd.DataFrame:
+        """`broken_bonds.csv`: a row for each broken bond.
+
+        Columns ``t`` [s], ``site``, ``other_site`` (the field ``site`` of frames), ``X``, ``Y`` of the undeformed midpoint [m],
+        ``stretch``; units in ``attrs["units"]``.
+        """
+        return read_table(self.directory / "broken_bonds.csv", _BROKEN_UNITS)
+
+    @functools.cached_property
+    def energy(self) -> pd.DataFrame:
+        """`energy.csv`: energies per unit sheet thickness [J/m] against ``t`` [s] or ``load_factor``.
+
+        Columns of a lattice: ``elastic``, ``kinetic``, ``viscous``, ``broken``, ``boundary_work``, ``contact``, ``imbalance``;
+        of finite elements: docs/reference.md. Units in ``attrs["units"]``.
+        """
+        return read_table(self.directory / "energy.csv", _ENERGY_UNITS)
+
+    @functools.cached_property
+    def results(self) -> pd.DataFrame:
+        """`results.json`: a row for each checked quantity.
+
+        Columns ``claim``, ``quantity``, ``unit``, ``lattice``, ``continuum``, ``theory``, ``error``, ``tolerance``,
+        ``verdict`` (``holds``, ``fails``, ``reported``); numbers that do not apply are NaN. The first three numbers are in
+        ``unit``, error and tolerance as the claim defines them.
+        """
+        path = self.directory / "results.json"
+        rows = read_json(path).get("claims")
+        if not isinstance(rows, list) or not all(isinstance(row, dict) for row in rows):
+            raise UnreadableFile(path, "has no list 'claims'")
+        table = pd.DataFrame(rows, columns=list(_RESULT_COLUMNS))
+        for name in ("lattice", "continuum", "theory", "error", "tolerance"):
+            table[name] = table[name].astype(float)
+        return table
+
+    @functools.cached_property
+    def frames(self) -> Frames:
+        """Frames of the lattice, `lattice.pvd`: ``run.frames[-1]`` is the last :class:`Frame`."""
+        return Frames(self.directory / "lattice.pvd")
+
+    @functools.cached_property
+    def motion(self) -> Frames:
+        """Reduced frames of a running crack, `motion.pvd`: displacement and velocity of the sites, no bonds."""
+        return Frames(self.directory / "motion.pvd")
+
+    def near_tip_fields(self, folded: bool = False) -> xarray.Dataset:
+        """Mean fields around the running tip.
+
+        Parameters
+        ----------
+        folded
+            Whether samples where the path descends were mirrored in Y first.
+
+        Returns
+        -------
+        xarray.Dataset
+            See :func:`latcon.frames.read_near_tip`.
+        """
+        return read_near_tip(self.directory / f"near_tip{'_folded' if folded else ''}.vti")
+
+    def plot_path(self, ax: matplotlib.axes.Axes | None = None) -> matplotlib.axes.Axes:
+        """Draws the path of the tip in the undeformed sheet [cm], and the bonds that broke.
+
+        Parameters
+        ----------
+        ax
+            Axes to draw in; default: those of a new figure.
+        """
+        from .plots import draw_path
+        return draw_path(self, ax)
+
+    def plot_sheet(self, frame: int = -1, color: str = "stretch", ax: matplotlib.axes.Axes | None = None
+                   ) -> matplotlib.axes.Axes:
+        """Draws the bonds of the sheet in the current configuration [cm].
+
+        Parameters
+        ----------
+        frame
+            Index of the frame.
+        color
+            Field of the bonds, or scalar field of the sites (a bond has the mean of its ends), such as ``"stretch"``,
+            ``"damage"``, ``"strain_energy_density"``; of a vector or tensor a component: ``"velocity x"``,
+            ``"cauchy_stress yy"``.
+        ax
+            Axes to draw in; default: those of a new figure.
+        """
+        from .plots import draw_sheet
+        return draw_sheet(self.frames[frame], color, ax)
+
+    def to_html(self) -> pathlib.Path:
+        """Makes `report.html` by ``latcon report``, and returns its path.
+
+        Raises
+        ------
+        ProgramError
+            If the report cannot be made.
+        """
+        ask("report", os.fspath(self.directory), "--quiet")
+        return self.directory / "report.html"
+
+
+def open_run(directory: str | os.PathLike[str]) -> Run:
+    """Opens the output directory of a run.
+
+    Raises
+    ------
+    UnreadableFile
+        If it holds no run.
+    """
+    return Run(directory)

@@ -1,0 +1,141 @@
+"""Entries of a case, as the program declares them."""
+from __future__ import annotations
+
+import dataclasses
+import functools
+import json
+import os
+import pathlib
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any, Union
+
+from .errors import LatconError
+from .program import ask, find_program
+
+EntryValue = Union[float, int, bool, str, list[float], None]
+"""Value of an entry in SI units; None is ``auto``."""
+
+_FORMAT_VERSION = 1
+
+
+@dataclasses.dataclass(frozen=True)
+class Entry:
+    """Declaration of one entry of a case.
+
+    Attributes
+    ----------
+    section, name : str
+        Section and name within it.
+    type : str
+        ``number``, ``integer``, ``numbers`` (a list), ``boolean``, ``word`` (one of `words`) or ``text``.
+    unit : str or None
+        SI unit; ``1`` for a pure number, None for entries that are no quantities.
+    required : bool
+        Whether every case must set it; then it has no default.
+    default : EntryValue
+        Default value in SI units; None is ``auto``.
+    range : dict
+        Bounds that exist, of ``minimum``, ``exclusive_minimum``, ``maximum``, ``exclusive_maximum``; of ``numbers`` for each.
+    auto : bool
+        Whether ``auto`` (None) is allowed: the program derives the value.
+    words : tuple of str
+        Allowed words of the type ``word``.
+    allowed : str
+        The rule in words.
+    documentation : str
+        Meaning.
+    """
+
+    section: str
+    name: str
+    type: str
+    unit: str | None
+    required: bool
+    default: EntryValue
+    range: Mapping[str, float]
+    auto: bool
+    words: tuple[str, ...]
+    allowed: str
+    documentation: str
+
+    @property
+    def key(self) -> str:
+        """``Section/Name``."""
+        return f"{self.section}/{self.name}"
+
+
+class Schema(Mapping[str, Entry]):
+    """Entries of a case by key, ``Section/Name``, in the order of declaration.
+
+    Attributes
+    ----------
+    version : str
+        Version of the program.
+    cases : dict
+        Files of the shipped cases by name.
+    quantities : dict
+        Units of the quantities of `crack.json` and `near_tip.json` by name.
+    """
+
+    def __init__(self, document: Mapping[str, Any]) -> None:
+        if document.get("format") != "latcon-schema" or document.get("format_version") != _FORMAT_VERSION:
+            raise LatconError(f"the program {find_program()} prints another schema than this package reads (format version "
+                              f"{document.get('format_version')}, not {_FORMAT_VERSION}); install both from the same version")
+        self.version: str = document["version"]
+        self.cases = {name: pathlib.Path(path) for name, path in document["cases"].items()}
+        self.quantities: dict[str, str] = document["quantities"]
+        self._entries = {entry.key: entry for entry in map(_entry, document["entries"])}
+
+    def __getitem__(self, key: str) -> Entry:
+        return self._entries[key]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._entries)
+
+    def __len__(self) -> int:
+        return len(self._entries)
+
+
+def _entry(item: Mapping[str, Any]) -> Entry:
+    return Entry(item["section"], item["name"], item["type"], item["unit"], item["required"], item.get("default"),
+                 item.get("range", {}), item.get("auto", False), tuple(item.get("words", ())), item["allowed"],
+                 item["documentation"])
+
+
+def schema() -> Schema:
+    """Entries of a case that the program declares (``latcon schema``)."""
+    program = find_program()
+    return _schema(program, program.stat().st_mtime_ns)
+
+
+@functools.lru_cache(maxsize=4)
+def _schema(_program: pathlib.Path, _modified: int) -> Schema:
+    return Schema(json.loads(ask("schema")))
+
+
+@dataclasses.dataclass(frozen=True)
+class ResolvedCase:
+    """Case as the program reads it: every value, and the text of `case.prm`."""
+
+    values: Mapping[str, EntryValue]
+    text: str
+
+
+def resolve(file: str | os.PathLike[str], overrides: Sequence[str]) -> ResolvedCase:
+    """Reads a case by the program.
+
+    Parameters
+    ----------
+    file
+        Case file.
+    overrides
+        ``Section/Name=value``, replacing entries of the file.
+
+    Raises
+    ------
+    BadInput
+        With every problem that the program found.
+    """
+    words = [word for override in overrides for word in ("--set", override)]
+    case = json.loads(ask("schema", os.fspath(file), *words))["case"]
+    return ResolvedCase(case["values"], case["resolved"])

@@ -1,0 +1,35 @@
+#!/usr/bin/python3
+"""The Python package is installed into a fresh virtual environment from the sources alone, and runs the program.
+
+Usage: python_test.py SOURCE_FOLDER BUILD_FOLDER
+"""
+import re
+import shutil
+import unittest
+
+from folders import BUILD, FOLDER, SOURCE, run
+
+LATCON = BUILD / "verification" / "latcon"
+CHECK = "import importlib.metadata as m, latcon; print(m.version('latcon'), latcon.schema().version, " \
+        "latcon.Case('quick')['Sheet/length'], latcon.__file__)"
+
+
+class PythonPackage(unittest.TestCase):
+    def test_is_installed_without_network(self):
+        # Building leaves files beside the sources.
+        shutil.copytree(SOURCE / "python", FOLDER / "python", ignore=shutil.ignore_patterns("__pycache__", "build", "*.egg-info"))
+        run("/usr/bin/python3", "-m", "venv", "--system-site-packages", FOLDER / "own")
+        run(FOLDER / "own/bin/pip", "install", "--quiet", "--no-build-isolation", "--no-index", FOLDER / "python")
+        fresh = FOLDER / "fresh"
+        fresh.mkdir()
+        printed = run("env", "-C", fresh, f"LATCON={LATCON}", FOLDER / "own/bin/python", "-c", CHECK).split()
+        project = re.search(r"project\(latcon VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text()).group(1)
+        self.assertEqual(printed[:3], [project, project, "0.04"])
+        self.assertTrue(printed[3].startswith(str(FOLDER / "own")), printed[3])
+        installed = next((FOLDER / "own").glob("lib/python3*/site-packages/latcon"))
+        self.assertEqual({path.name for path in installed.iterdir()} - {"__pycache__"},
+                         {path.name for path in (SOURCE / "python/latcon").iterdir()} - {"__pycache__"})
+
+
+if __name__ == "__main__":
+    unittest.main()

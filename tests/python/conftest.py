@@ -1,0 +1,42 @@
+"""What the tests of the Python package share: caches of their own, stand-ins for the program, and one small crack."""
+import os
+import pathlib
+import sys
+import tempfile
+
+import pytest
+
+import latcon
+
+# Verdicts and fonts of the tests stay out of the user's caches; pictures need no screen.
+CACHE = tempfile.TemporaryDirectory()
+os.environ.update(XDG_CACHE_HOME=CACHE.name, MPLCONFIGDIR=f"{CACHE.name}/matplotlib", MPLBACKEND="Agg")
+
+# A strip so short that a crack runs through it in a second.
+TINY = {"Sheet/length": "2.5 cm", "Sheet/height": "1.5 cm", "Time/end": "1.5 ms", "Output/frame interval": "0.5 ms"}
+
+
+def tiny_case():
+    case = latcon.Case("quick.prm")
+    for key, value in TINY.items():
+        case = case.set(key, value)
+    return case
+
+
+@pytest.fixture(scope="session")
+def crack(tmp_path_factory):
+    """Output directory of a small crack."""
+    directory = tmp_path_factory.mktemp("crack") / "out"
+    return latcon.fracture(tiny_case(), directory, skip_verification=True, report=False, progress=False)
+
+
+@pytest.fixture
+def stand_in(tmp_path, monkeypatch):
+    """Makes a Python script the program that the package runs."""
+    def make(body):
+        program = tmp_path / "latcon-stand-in"
+        program.write_text(f"#!{sys.executable}\nimport pathlib, signal, sys, time\n{body}\n")
+        program.chmod(0o755)
+        monkeypatch.setenv("LATCON", str(program))
+        return pathlib.Path(program)
+    return make

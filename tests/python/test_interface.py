@@ -1,0 +1,50 @@
+"""Every public name has a docstring that describes its parameters, and is on the page of the package."""
+import inspect
+import pathlib
+import re
+
+import latcon
+
+PAGE = (pathlib.Path(__file__).resolve().parents[2] / "docs" / "python.md").read_text(encoding="utf-8")
+PUBLIC = [*latcon.__all__, "open"]
+
+
+def members():
+    """(name, object) of public functions, classes and their own public members."""
+    for name in PUBLIC:
+        thing = getattr(latcon, name)
+        yield name, thing
+        if inspect.isclass(thing):
+            for member, value in vars(thing).items():
+                value = getattr(value, "func", getattr(value, "fget", value))  # of properties
+                if not member.startswith("_") and inspect.isfunction(value):
+                    yield f"{name}.{member}", value
+
+
+def test_docstrings_describe_all_parameters():
+    seen = dict(members())
+    assert len(seen) > 40
+    for name, thing in seen.items():
+        text = inspect.getdoc(thing) or ""
+        assert re.match(r"[A-Z`].*[.:]$", text.splitlines()[0] if text else ""), f"{name}: {text[:60]!r}"
+        if not inspect.isfunction(thing):
+            continue
+        parameters = [key for key in inspect.signature(thing).parameters if key != "self"]
+        elsewhere = "are those of :func:`fracture`" in text
+        # One parameter whose meaning the first sentence gives needs no section.
+        if len(parameters) > 1 and not elsewhere:
+            section = text.partition("Parameters\n----------\n")[2]
+            for parameter in parameters:
+                assert re.search(rf"^(?:.*, )?\*?{parameter}\b", section.replace("\\*", "*"), re.M), f"{name}: {parameter}"
+
+
+def test_parameters_and_results_are_annotated():
+    for name, thing in members():
+        if inspect.isfunction(thing):
+            missing = {*inspect.signature(thing).parameters, "return"} - {"self"} - set(thing.__annotations__)
+            assert not missing, f"{name}: {missing}"
+
+
+def test_page_has_every_name():
+    known = set(re.findall(r"\w+", PAGE))
+    assert not set(PUBLIC) - known

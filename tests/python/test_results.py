@@ -1,0 +1,181 @@
+"""What a run of the real program left is read as it was written."""
+import csv
+import json
+import math
+import os
+import shutil
+import signal
+
+import numpy as np
+import pytest
+
+import latcon
+from conftest import tiny_case
+
+
+def rows(path):
+    with open(path, newline="") as file:
+        return list(csv.DictReader(file))
+
+
+def test_crack_has_values_uncertainties_and_units(crack):
+    raw = json.loads((crack.directory / "crack.json").read_text())
+    speed = crack.crack.speed_lagrangian
+    assert (speed.value, speed.unit) == (raw["speed_lagrangian"], "m/s") and float(speed) == speed.value
+    assert speed.uncertainty == raw["speed_lagrangian_uncertainty"] or math.isnan(speed.uncertainty)
+    assert crack.crack["pattern"] == raw["pattern"] == crack.crack.pattern
+    assert crack.crack.nearest_to_breaking.X.unit == "m"
+    for name, value in raw.items():
+        if value is None and not name.endswith("_uncertainty"):
+            assert math.isnan(crack.crack[name].value) and str(crack.crack[name]) == "not determined"
+    assert not any(name.endswith("_uncertainty") or name == "units" for name in crack.crack)
+    with pytest.raises(AttributeError, match="wavelenght"):
+        crack.crack.wavelenght
+    assert str(latcon.Value(0.0243900138, 0.000292, "m")) == "0.02439 ± 0.00029 m"
+    assert len(crack.near_tip) > 30
+
+
+@pytest.mark.parametrize("file, name", [("crack.csv", "path"), ("energy.csv", "energy"), ("broken_bonds.csv", "broken_bonds")])
+def test_tables_are_the_files_to_the_last_bit(crack, file, name):
+    table, written = getattr(crack, name), rows(crack.directory / file)
+    assert len(table) == len(written) > 10
+    assert list(table.columns) == list(written[0]) == list(table.attrs["units"])
+    for column in table:
+        assert (table[column].to_numpy(float) == [float(row[column]) for row in written]).all(), column
+    assert table.attrs["units"]["t"] == "s"
+
+
+def test_results_and_provenance(crack):
+    written = json.loads((crack.directory / "results.json").read_text())["claims"]
+    assert crack.results.to_dict("records")[0]["quantity"] == written[0]["quantity"]
+    assert len(crack.results) == len(written) and set(crack.results["verdict"]) <= {"holds", "fails", "reported"}
+    assert crack.exit_code == 0 and crack.info["skip_verification"] is True
+    assert crack.case["Sheet/height"] == 0.015
+    assert crack.case.resolved() == tiny_case().resolved()
+
+
+def test_frames_hold_sites_and_bonds(crack):
+    frames = crack.frames
+    assert len(frames) == len(frames.times) >= 3 and frames.times[0] == 0
+    first, last = frames[0], frames[-1]
+    assert last.time == frames.times[-1] and [frame.time for frame in frames[1:]] == list(frames.times[1:])
+    for frame in (first, last):
+        reference, current = (np.linalg.norm(np.diff(place[frame.bonds], axis=1)[:, 0], axis=1)
+                              for place in (frame.reference, frame.position))
+        np.testing.assert_allclose(frame.stretch, current / reference, rtol=1e-12)
+        assert frame.fields["velocity"].shape == frame.reference.shape
+        assert frame.fields["cauchy_stress"].shape == (len(frame.reference), 2, 2)
+        assert frame.units["cauchy_stress"] == "Pa" and frame.units["stretch"] == "1"
+    # Broken bonds are between neighbours of the first frame, and not among the bonds of the last.
+    place = {int(site): row for row, site in enumerate(last.fields["site"])}
+    pairs = {frozenset(pair) for pair in last.bonds.tolist()}
+    inside = crack.broken_bonds[crack.broken_bonds["t"] < last.time]
+    assert len(inside) > 10
+    for bond in inside.itertuples():
+        ends = [place[bond.site], place[bond.other_site]]
+        assert frozenset(ends) not in pairs
+        np.testing.assert_allclose(last.reference[ends].mean(axis=0), [bond.X, bond.Y], atol=1e-12)
+    F = np.diag([1 + crack.case["Loading/strain x"], 1 + crack.case["Loading/strain y"]])
+    np.testing.assert_allclose(np.median(first.fields["deformation_gradient"], axis=0), F, atol=0.05)
+    assert len(crack.motion) > 3 and len(crack.motion[-1].bonds) == 0
+
+
+def test_fields_near_the_tip(crack):
+    data = crack.near_tip_fields()
+    assert data["velocity"].dims == ("Y", "X", "i") and data["cauchy_stress"].dims == ("Y", "X", "i", "J")
+    assert data["velocity"].attrs["units"] == "m/s" and data["X"].attrs["units"] == "m"
+    assert data.attrs["samples"] == crack.near_tip.samples.value
+    # The window of the case: 40 spacings behind the tip.
+    spacing = crack.case["Sheet/spacing"]
+    assert data["X"].values[0] == pytest.approx(-40 * spacing) and np.diff(data["X"].values) == pytest.approx(spacing)
+    straight_ahead = data["occupancy"].sel(Y=0, X=4 * spacing, method="nearest")
+    assert straight_ahead == 1
+
+
+def test_plots_show_the_data(crack):
+    axes = crack.plot_path()
+    (tip,) = axes.lines
+    np.testing.assert_array_equal(tip.get_xdata(), 100 * crack.path["X"])
+    frame = crack.frames[0]
+    for color, values in (("stretch", frame.stretch),
+                          ("velocity x", frame.fields["velocity"][frame.bonds].mean(axis=1)[:, 0]),
+                          ("cauchy_stress xy", frame.fields["cauchy_stress"][frame.bonds].mean(axis=1)[:, 0, 1])):
+        axes = crack.plot_sheet(0, color)
+        np.testing.assert_array_equal(axes.collections[0].get_array(), np.sort(values))
+    for color in ("mood", "velocity", "stretch x", "velocity z"):
+        with pytest.raises(ValueError, match=color.split()[0]):
+            crack.plot_sheet(0, color)
+
+
+def test_damaged_and_missing_files_are_named(crack, tmp_path):
+    copy = tmp_path / "copy"
+    for file, damage, action in (
+            ("crack.json", "{", lambda run: run.crack), ("crack.json", "[]", lambda run: run.crack),
+            ("crack.json", None, lambda run: run.crack), ("crack.csv", "t,X\n1\n", lambda run: run.path),
+            ("crack.csv", "", lambda run: run.path), ("energy.csv", "t,elastic\n0,much\n", lambda run: run.energy),
+            ("lattice.pvd", "<VTK", lambda run: run.frames), ("lattice.pvd", "<V><DataSet/></V>", lambda run: run.frames),
+            ("lattice-0000.vtp", "<VTKFile", lambda run: run.frames[0]), ("lattice-0000.vtp", None, lambda run: run.frames[0]),
+            ("near_tip.vti", "x", lambda run: run.near_tip_fields()), ("results.json", "{}", lambda run: run.results),
+            ("case.prm", None, lambda run: run.case)):
+        shutil.rmtree(copy, ignore_errors=True)
+        shutil.copytree(crack.directory, copy)
+        (copy / file).unlink()
+        if damage is not None:
+            (copy / file).write_text(damage)
+        with pytest.raises(latcon.UnreadableFile, match=file) as caught:
+            action(latcon.open(copy))
+        assert caught.value.path == copy / file
+        assert damage is not None or "no such file" in caught.value.problem.lower()
+    for file, action in (("lattice-0000.vtp", lambda run: run.frames[0]), ("near_tip.vti", lambda run: run.near_tip_fields())):
+        whole = (crack.directory / file).read_bytes()
+        damaged = [whole[:int(share * len(whole))] for share in (0.2, 0.5, 0.9, 0.999)]
+        damaged += [whole[:at] + bytes(200) + whole[at + 200:] for at in (int(share * len(whole)) for share in (0.5, 0.9))]
+        for content in damaged:
+            (copy / file).write_bytes(content)
+            with pytest.raises(latcon.UnreadableFile, match=file):
+                action(latcon.open(copy))
+    with pytest.raises(latcon.UnreadableFile, match="run.json: No such file"):
+        latcon.open(tmp_path)
+
+
+def test_page_is_made_by_the_program(crack, tmp_path):
+    shutil.copytree(crack.directory, tmp_path / "copy")
+    page = latcon.open(tmp_path / "copy").to_html()
+    assert page == tmp_path / "copy" / "report.html" and "<html" in page.read_text()
+
+
+def test_errors_of_the_program_are_raised(tmp_path):
+    with pytest.raises(latcon.BadInput, match="Sheet/height = 1 kg") as caught:
+        latcon.fracture(tiny_case().set("Sheet/height", "1 kg"), tmp_path / "out", progress=False)
+    assert caught.value.directory == tmp_path / "out" and not (tmp_path / "out").exists()
+    (tmp_path / "file").touch()
+    with pytest.raises(latcon.OutputFailed):
+        latcon.lattice(tiny_case(), tmp_path / "file" / "out", progress=False)
+
+
+def test_ctrl_c_leaves_a_checkpoint_from_which_the_run_continues(crack, tmp_path):
+    lines = []
+
+    def interrupt(line):
+        lines.append(line)
+        if len(lines) == 1:
+            os.kill(os.getpid(), signal.SIGINT)
+    case = tiny_case()
+    with pytest.raises(latcon.Interrupted) as caught:
+        latcon.fracture(case, tmp_path, skip_verification=True, report=False, progress=interrupt)
+    assert caught.value.exit_code == 130
+    stopped = latcon.open(tmp_path)
+    assert stopped.exit_code == 130 and list((tmp_path / "checkpoints").glob("*.h5"))
+    assert stopped.path["t"].iloc[-1] < crack.path["t"].iloc[-1]
+    resumed = latcon.fracture(case, tmp_path, skip_verification=True, report=False, resume=True, progress=False)
+    assert resumed.path.equals(crack.path) and "resumed_from" in resumed.info
+
+
+def test_other_commands(tmp_path):
+    case = tiny_case()
+    relaxed = latcon.lattice(case, tmp_path / "lattice", threads=3, progress=False)
+    assert list(relaxed.frames.times) == [0, 1] and relaxed.info["threads"] == 3
+    sheet = case.set("Continuum/cells x", 4).set("Continuum/cells y", 2).set("Continuum/refinements", 0)
+    assert latcon.continuum(sheet, tmp_path / "continuum", progress=False).energy.attrs["units"]["elastic"] == "J/m"
+    verified = latcon.verify("energy", directory=tmp_path / "verify", case=case, quick=True, progress=False)
+    assert set(verified.results["claim"]) == {"energy"} and "fails" not in set(verified.results["verdict"])

@@ -1,0 +1,174 @@
+#include <charconv>
+#include <cmath>
+#include <filesystem>
+#include <iostream>
+
+#include <deal.II/base/mpi.h>
+#include <nlohmann/json.hpp>
+
+#include "verification/case_text.h"
+#include "verification/commands/command.h"
+#include "verification/data_folder.h"
+#include "verification/study/quantities.h"
+
+namespace verification
+{
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+// Increases with each change that a reader of the previous document would misunderstand.
+constexpr int format_version = 1;
+
+const char *name_of(ValueType type)
+{
+  switch (type)
+  {
+  case ValueType::number:
+    return "number";
+  case ValueType::whole_number:
+    return "integer";
+  case ValueType::numbers:
+    return "numbers";
+  case ValueType::boolean:
+    return "boolean";
+  case ValueType::word:
+    return "word";
+  case ValueType::text:
+    return "text";
+  }
+  return "";
+}
+
+template <typename Number>
+Number parse_number(const std::string &text)
+{
+  Number number{};
+  const auto parsed = std::from_chars(text.data(), text.data() + text.size(), number);
+  if (parsed.ec != std::errc() || parsed.ptr != text.data() + text.size())
+    throw std::logic_error("schema: '" + text + "' is no number");
+  return number;
+}
+
+// Value of an entry in the type of JSON that corresponds to its own; `auto` is null.
+Json value_of(const Declaration &entry, const std::string &text)
+{
+  if (entry.may_be_auto && text == "auto")
+    return nullptr;
+  switch (entry.type)
+  {
+  case ValueType::number:
+    return parse_number<double>(text);
+  case ValueType::whole_number:
+    return text[0] == '-' ? Json(parse_number<std::int64_t>(text)) : Json(parse_number<std::uint64_t>(text));
+  case ValueType::boolean:
+    return text == "true";
+  case ValueType::numbers:
+  {
+    Json list = Json::array();
+    for (std::size_t at = 0; !text.empty() && at <= text.size();)
+    {
+      const std::size_t end = std::min(text.find(',', at), text.size());
+      list.push_back(parse_number<double>(trimmed(text.substr(at, end - at))));
+      at = end + 1;
+    }
+    return list;
+  }
+  default:
+    return text;
+  }
+}
+
+// The bounds that exist, under the keywords of JSON Schema.
+Json range_of(const Declaration &entry)
+{
+  Json range = Json::object();
+  const auto put = [&](const Range::Bound &bound, const char *included, const char *excluded)
+  {
+    if (!std::isfinite(bound.value))
+      return;
+    Json &place = range[bound.included ? included : excluded];
+    if (entry.type == ValueType::whole_number)
+      place = static_cast<std::int64_t>(bound.value);
+    else
+      place = bound.value;
+  };
+  put(entry.range->lower(), "minimum", "exclusive_minimum");
+  put(entry.range->upper(), "maximum", "exclusive_maximum");
+  if (entry.largest_whole)
+    range["maximum"] = *entry.largest_whole;
+  return range;
+}
+
+Json describe(const Declaration &entry)
+{
+  const bool required = entry.presence == Presence::required;
+  Json item{{"section", entry.section},
+            {"name", entry.name},
+            {"type", name_of(entry.type)},
+            {"unit", entry.unit.empty() ? Json() : Json(entry.unit)},
+            {"required", required}};
+  if (entry.range)
+    item["range"] = range_of(entry);
+  if (entry.may_be_auto)
+    item["auto"] = true;
+  if (entry.type == ValueType::word)
+    item["words"] = entry.words;
+  if (!required)
+    item["default"] = value_of(entry, entry.default_text);
+  item["allowed"] = entry.rule;
+  item["documentation"] = entry.documentation;
+  return item;
+}
+
+// Files of the shipped cases by name.
+Json shipped_cases()
+{
+  Json cases = Json::object();
+  const std::filesystem::path folder = data_folder() + "/cases";
+  std::error_code none;
+  for (const auto &file : std::filesystem::directory_iterator(folder, none))
+    if (file.path().extension() == ".prm")
+      cases[file.path().stem()] = file.path();
+  return Json(nlohmann::json(cases)); // by name
+}
+
+} // namespace
+
+ExitCode print_schema(const Options &options)
+{
+  Case input;
+  Parameters parameters;
+  if (options.case_is_given)
+    read_case(options, input, parameters);
+  else if (options.overrides.empty())
+    input.declare(parameters);
+  else
+    throw InputError("--set replaces entries of a case; give one: latcon schema CASE --set ...");
+  const std::vector<Declaration> entries = parameters.declarations();
+  Json document;
+  document["format"] = "latcon-schema";
+  document["format_version"] = format_version;
+  document["version"] = program_version();
+  document["git_commit"] = git_commit();
+  document["cases"] = shipped_cases();
+  for (const StudyQuantity &quantity : quantities())
+    document["quantities"][quantity.name] = quantity.unit;
+  for (const Declaration &entry : entries)
+    document["entries"].push_back(describe(entry));
+  if (options.case_is_given)
+  {
+    parameters.finish();
+    Json values = Json::object();
+    for (const Declaration &entry : entries)
+      values[entry.section + "/" + entry.name] = value_of(entry, parameters.value(entry.section + "/" + entry.name));
+    document["case"] = {
+      {"file", options.case_file}, {"values", std::move(values)}, {"resolved", parameters.resolved_text()}};
+  }
+  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+    std::cout << document.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
+  return ExitCode::done;
+}
+
+} // namespace verification
