@@ -3,7 +3,7 @@ import math
 import textwrap
 from dataclasses import dataclass
 
-from runs import Run
+from runs import Check, Run
 
 VERDICTS = ("fails", "holds", "reported")
 
@@ -16,6 +16,7 @@ class Tally:
     claim: str
     count: dict  # verdict: number of rows
     worst: float  # largest error over tolerance; None if nothing has a tolerance
+    kind: str  # the class that colours it: "fails", "warns" (holds, but was not verified), "holds" or "reported"
 
 
 @dataclass(frozen=True)
@@ -28,7 +29,12 @@ class Comparison:
     published: float
     measured: float  # None: not measured
     uncertainty: float  # one standard deviation; None: not known
-    verdict: str
+    check: Check  # the row
+
+    @property
+    def verdict(self):
+        """Its verdict."""
+        return self.check.verdict
 
     @property
     def difference(self):
@@ -49,7 +55,8 @@ def tally_of(run, claim, checks):
     """Counts of some rows."""
     ratios = [check.ratio for check in checks if check.ratio is not None]
     count = {verdict: sum(check.verdict == verdict for check in checks) for verdict in VERDICTS}
-    return Tally(run, claim, count, max(ratios, default=None))
+    kind = next((kind for kind in ("fails", "warns", "holds") if any(check.kind == kind for check in checks)), "reported")
+    return Tally(run, claim, count, max(ratios, default=None), kind)
 
 
 def comparisons(run):
@@ -63,7 +70,7 @@ def comparisons(run):
         result.append(Comparison(
             run, check.quantity, unit, scale * check.theory,
             None if check.lattice is None else scale * check.lattice,
-            None if uncertainty is None else scale * uncertainty, check.verdict))
+            None if uncertainty is None else scale * uncertainty, check))
     return result
 
 
