@@ -72,6 +72,7 @@ def contents(run, motion, frames):
         "bondEnd": packed(np.searchsorted(times, mesh.bond_end)),
         "triangles": packed(mesh.triangles.T),
         "triangleEnd": packed(np.searchsorted(times, mesh.triangle_end)),
+        "box": box_of(positions),
         "tip": tip_points(run.tip, times, whole.reference),
         "breaking": breaking,
         "ranges": {"stretch": [float(low), max(float(breaking or high), float(low) + 1e-3)],
@@ -79,6 +80,13 @@ def contents(run, motion, frames):
                    "damage": [0.0, 1.0]},
         "colours": {name: colour_table(*parts) for name, parts in COLOURS.items()},
     }
+
+
+def box_of(positions):
+    """Ends of the sheet along x and y over all frames, fragments that flew off left out [m]."""
+    low, high = np.percentile(positions, 0.1, axis=2).min(axis=0), np.percentile(positions, 99.9, axis=2).max(axis=0)
+    low, high = np.minimum(low, positions[0].min(axis=1)), np.maximum(high, positions[0].max(axis=1))
+    return np.column_stack((low, high)).tolist()
 
 
 def ends_distance(position, bonds):

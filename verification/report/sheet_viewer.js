@@ -135,9 +135,7 @@ class SheetViewer {
   // Views: x, y is the middle relative to where the view follows, zoom 1 shows all.
 
   box() {
-    const [x, y] = this.deformed ? this.sheet.position[0].map((steps) => Float64Array.from(steps, (s) => s * this.sheet.quantum))
-      : this.sheet.reference;
-    const ends = [x, y].map((values) => values.reduce(([low, high], v) => [Math.min(low, v), Math.max(high, v)], [Infinity, -Infinity]));
+    const ends = this.deformed ? this.sheet.box : this.sheet.reference.map((values) => values.reduce(([low, high], v) => [Math.min(low, v), Math.max(high, v)], [Infinity, -Infinity]));
     const margin = 0.02 * Math.max(ends[0][1] - ends[0][0], ends[1][1] - ends[1][0]);
     return ends.map(([low, high]) => [low - margin, high + margin]);
   }
