@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """The paper's Fig. 1 at full size: an oscillating crack for every seed of the noise, whose numbers are the published ones
-within the case's tolerance, and more closely in the mean; a report below 8 MB; a zone of backward motion ahead of it. Without next-nearest
-neighbours, in a lattice turned by 30 degrees, it runs straight and has no such zone. docs/limits.md says how the constants
+within the case's tolerance, and more closely in the mean; a report below 8 MB; a zone of backward motion ahead of it.
+Without next-nearest neighbours, in a lattice turned by 30 degrees, it runs straight and has no such zone. docs/limits.md says how the constants
 of the case were chosen.
 
 Usage: fig1_test.py PATH_OF_LATCON
@@ -29,15 +29,17 @@ LOCAL = ["Next-nearest neighbours/present=false", "Sheet/orientation=rows-across
 
 
 def run(latcon, case, seed, *settings):
-    """Runs one seed on one thread. @return exit code, crack.json with the area of near_tip.json and the bytes of the report"""
+    """Runs one seed on one thread. @return exit code, crack.json with the area of near_tip.json and the bytes of a report"""
     with tempfile.TemporaryDirectory() as folder:
         environment = dict(os.environ, XDG_CACHE_HOME=f"{folder}/cache")  # no verdicts of an earlier run
         # Seeds differ in noise alone: the material is verified with the first.
         skip = [] if seed == SEEDS[0] and not settings else ["--skip-verification"]
         report = pathlib.Path(folder) / "report.html"  # of the seed that is verified
-        words = [latcon, "fracture", str(case), "--quiet", *(["--no-report"] if skip or settings else []), "--threads", "1", "--output-dir", folder,
-                 *skip, *(word for setting in (f"Lattice/noise seed={seed}", "Output/frame interval=0", *settings)
-                          for word in ("--set", setting))]
+        if skip or settings:
+            skip = [*skip, "--no-report"]
+        words = [latcon, "fracture", str(case), "--quiet", "--threads", "1", "--output-dir", folder, *skip]
+        for setting in (f"Lattice/noise seed={seed}", "Output/frame interval=0", *settings):
+            words += ["--set", setting]
         exit_code = subprocess.run(words, env=environment, check=False).returncode
         crack, near = (json.loads((pathlib.Path(folder) / name).read_text(encoding="utf-8"))
                        for name in ("crack.json", "near_tip.json"))

@@ -38,8 +38,8 @@ def write_torn_sheet(folder):
     columns = [np.array(values) for values in zip(*[(breaks[b], *site[bonds[b]], *middle[b], 3.0) for b in broken])]
     write_table(folder / "broken_bonds.csv", "t,site,other_site,X,Y,stretch", columns)
     tip = np.array([(breaks[b], *middle[b]) for b in broken])
-    write_table(folder / "crack.csv", "t,X,Y,x,y,speed,bonds_broken",
-                (tip[:, 0], np.maximum.accumulate(tip[:, 1]), tip[:, 2], tip[:, 1], tip[:, 2], 0 * tip[:, 0], np.arange(len(tip))))
+    t, X, Y = tip[:, 0], np.maximum.accumulate(tip[:, 1]), tip[:, 2]
+    write_table(folder / "crack.csv", "t,X,Y,x,y,speed,bonds_broken", (t, X, Y, X, Y, 0 * t, np.arange(len(t))))
     crack = json.loads((folder / "crack.json").read_text())
     crack.update(window_begin=0.02, window_end=0.055)
     (folder / "crack.json").write_text(json.dumps(crack))
@@ -49,7 +49,8 @@ def write_torn_sheet(folder):
         open_by = np.where(above, 1, -1) * 4e-3 * np.clip((time / 1e-3 * end - reference[:, 0]) / end, 0, None)
         moved = np.column_stack((0.1 * reference[:, 0], STRAIN * reference[:, 1] + open_by))
         velocity = np.column_stack((5 * np.cos(number + 300 * reference[:, 0]), 20 * open_by / 4e-3, 0 * open_by))
-        gone = np.bincount(bonds[[b for b in across if breaks[b] <= time or b in seed]].ravel(), minlength=len(reference))
+        lost = [b for b in across if breaks[b] <= time or b in seed]
+        gone = np.bincount(bonds[lost].ravel(), minlength=len(reference))
         return {"displacement": np.column_stack((moved, 0 * open_by)), "velocity": velocity, "damage": gone / degree,
                 "site": site, "cauchy_stress": np.outer(1e4 + open_by, np.eye(9)[4])}
 

@@ -274,7 +274,8 @@ class ReportTest(unittest.TestCase):
         html, page = self.page()
         own = ("data:image/png;base64,", "data:image/gif;base64,", "#")
         self.assertEqual([r[:30] for r in page.references if not r.startswith(own)], [])
-        bare = re.sub(r"base64,[^\"]*|^/\*! @license .*?\*/", "", html, flags=re.M)  # what a browser asks for: report_viewer_test.py
+        # What a browser asks for in fact: report_viewer_test.py.
+        bare = re.sub(r"base64,[^\"]*|^/\*! @license .*?\*/", "", html, flags=re.M)
         self.assertNotRegex(bare, r"https?://|@import|url\(|<script[^>]* src|<link|sourceMappingURL")
         self.assertIn("@license https://github.com/danvk/dygraphs", html)  # MIT: its notice goes along
         self.assertEqual(len(page.images), len(PICTURES) + 1)
@@ -295,8 +296,8 @@ class ReportTest(unittest.TestCase):
         write_fracture(self.folder, [HOLDS, PUBLISHED])
         self.report("--quiet", expect=0)
         html, _ = self.page()
-        order = [html.index(words) for words in ("Holds: all", 'class="key"', 'data-plot="path', 'class="viewer"', 'data-plot="energy', 'id="claims"',
-                                             "(case.prm")]
+        order = [html.index(words) for words in ("Holds: all", 'class="key"', 'data-plot="path', 'class="viewer"',
+                                                 'data-plot="energy', 'id="claims"', "(case.prm")]
         self.assertEqual(order, sorted(order))
 
     def test_animation_has_all_frames_and_is_small(self):

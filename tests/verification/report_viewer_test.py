@@ -32,6 +32,7 @@ SCREEN = 800  # height of a window [pixels]
 PLACE = (0.5e-6, SPACING / 2000 / 2)  # [m]
 SPEED = 0.5e-2  # [m/s]
 STRETCH = (0.5e-3, 2**0.5 / 2000)
+MARK = (0xab, 0x1f, 0x14)  # colour of what is picked, --fails of style.css
 VALUES = re.compile(r"site (\d+): X (\S+) cm, Y (\S+) cm, x (\S+) cm, y (\S+) cm, speed (\S+) m/s, damage (\S+?)"
                     r"(?:; bond (\d+)–(\d+): stretch (\S+))?$")
 
@@ -97,7 +98,8 @@ class ViewerTest(unittest.TestCase):
 
     def place(self, selector):
         """Left, top, width and height of an element in the window, which shows it."""
-        return self.browser.value(f"(() => {{ const e = document.querySelector('{selector}'); e.scrollIntoView({{block: 'center'}});"
+        return self.browser.value(f"(() => {{ const e = document.querySelector('{selector}');"
+                                  "e.scrollIntoView({block: 'center'}); "
                                   "const r = e.getBoundingClientRect(); return [r.left, r.top, r.width, r.height]; })()")
 
     def click(self, selector):
@@ -136,14 +138,18 @@ class ViewerTest(unittest.TestCase):
         while time.monotonic() < end and self.text("play") != "▶":
             seen.append(int(self.browser.value("document.querySelector('.viewer .slider').value")))
         self.assertEqual(seen, sorted(seen))
-        self.assertGreater(len(set(seen)), FRAMES // 2)
+        self.assertGreaterEqual(len(set(seen)), 3)  # a slow machine leaves some out
         self.assertEqual(int(self.browser.value("document.querySelector('.viewer .slider').value")), FRAMES - 1)
         self.click(".viewer .play")
-        self.browser.wait("+document.querySelector('.viewer .slider').value > 1")
-        self.click(".viewer .play")  # pauses
+        self.browser.value("""new Promise((done) => {
+          const pause = () => document.querySelector('.viewer .slider').value > 0
+            ? (document.querySelector('.viewer .play').click(), done()) : setTimeout(pause, 5);
+          pause();
+        })""")
         paused = self.text("time")
         time.sleep(1)
         self.assertEqual(self.text("time"), paused)
+        self.assertEqual(self.text("play"), "▶")
 
     def hover(self, canvas):
         """Values below points of a canvas: [(pointer, match of VALUES), ...]."""
@@ -163,7 +169,8 @@ class ViewerTest(unittest.TestCase):
 
     def check_values(self, file, full, found, configuration):
         """Each number is that of the file; the pointer is where the sites are, on one scale for x and y."""
-        speed_step = max(File(path, file.site).speed.max() for _, path in series(self.runs / "torn" / "motion.pvd")) / 65535 / 2
+        fastest = max(File(path, file.site).speed.max() for _, path in series(self.runs / "torn" / "motion.pvd"))
+        speed_step = fastest / 65535 / 2
         pointers, places = [], []
         for pointer, match in found:
             site, *numbers, first, second, stretch = match.groups()
@@ -202,21 +209,50 @@ class ViewerTest(unittest.TestCase):
                 file = File(frames[number][1], whole.site)
                 self.check_values(file, whole if number == FRAMES - 1 else None, self.hover(canvas), configuration)
 
+    def site_at(self, x, y):
+        """Number of the site below a point of the window, and the distance of its mark from there [pixels]."""
+        self.browser.mouse("mouseMoved", x, y)
+        match = VALUES.match(self.text("values"))
+        left, top, *_ = self.place(".viewer .sheet")
+        url = self.browser.value("document.querySelector('.viewer .sheet').toDataURL()")
+        with Image.open(io.BytesIO(base64.b64decode(url.partition(",")[2]))) as picture:
+            marked = np.argwhere((np.asarray(picture.convert("RGB")) == MARK).all(axis=2))
+        middle = (marked.min(axis=0) + marked.max(axis=0))[::-1] / 2 + (left, top)
+        return int(match[1]), np.hypot(middle[0] - x, middle[1] - y)
+
     def test_zoom_and_pan_keep_the_values_in_place(self):
         before = self.canvas()
         left, top, width, height = self.place(".viewer .sheet")
-        self.click(".viewer .closer")
-        closer = self.canvas()
-        left, top, width, height = self.place(".viewer .sheet")
-        self.browser.mouse("mousePressed", left + width / 2, top + height / 2, button="left", clickCount=1)
-        self.browser.mouse("mouseMoved", left + width / 2 - 60, top + height / 2 + 20, button="left", buttons=1)
-        self.browser.mouse("mouseReleased", left + width / 2 - 60, top + height / 2 + 20, button="left", clickCount=1)
-        self.browser.mouse("mouseMoved", 1, 1)
-        panned = self.canvas()
+        x, y = left + 0.3 * width, top + 0.25 * height
+        site, away = self.site_at(x, y)
+        spacing = width / 60  # about 60 sites along the sheet
+        self.assertLess(away, 1.5 * spacing)
+        for _ in range(2):
+            self.browser.mouse("mousePressed", x, y, button="left", clickCount=2)
+            self.browser.mouse("mouseReleased", x, y, button="left", clickCount=2)
+        closer, away = self.site_at(x, y)
+        self.assertEqual(closer, site)
+        self.assertLess(away, 1.5 * 4 * spacing)
+        enlarged = self.canvas()
+        for dx, dy in ((60, 0), (0, 40)):
+            self.browser.mouse("mousePressed", x, y, button="left", clickCount=1)
+            self.browser.mouse("mouseMoved", x + dx, y + dy, button="left", buttons=1)
+            self.browser.mouse("mouseReleased", x + dx, y + dy, button="left", clickCount=1)
+            x, y = x + dx, y + dy
+            self.assertEqual(self.site_at(x, y)[0], site)
+        for factor, button in ((1.6, "closer"), (1 / 1.6, "farther")):
+            scale = self.browser.value("(() => { const v = document.querySelector('.viewer').viewer;"
+                                       "return v.frameOf(v.views[0]).scale; })()")
+            self.click(f".viewer .{button}")
+            now = self.browser.value("(() => { const v = document.querySelector('.viewer').viewer;"
+                                     "return v.frameOf(v.views[0]).scale; })()")
+            self.assertAlmostEqual(now / scale, factor, places=6)
         whole = File(self.runs / "torn" / "lattice-0001.vtp", None)
-        self.check_values(File(series(self.runs / "torn" / "motion.pvd")[-1][1], whole.site), whole, self.hover("sheet"), "deformed")
+        last = File(series(self.runs / "torn" / "motion.pvd")[-1][1], whole.site)
+        self.check_values(last, whole, self.hover("sheet"), "deformed")
+        self.assertNotEqual(enlarged, before)
         self.click(".viewer .reset")
-        self.assertEqual(len({before, closer, panned}), 3)
+        self.browser.mouse("mouseMoved", 1, 1)
         self.assertEqual(self.canvas(), before)
 
     def test_colours_and_configurations_differ(self):
@@ -228,9 +264,8 @@ class ViewerTest(unittest.TestCase):
                 shown.add(self.canvas())
                 self.assertIn(words, self.text("colour-name"))
         self.assertEqual(len(shown), 6)
-        self.assertNotIn(hashlib.sha256(self.browser.value(
-            "(() => { const c = document.createElement('canvas'), s = document.querySelector('.viewer .sheet'); c.width = s.width;"
-            "c.height = s.height; return c.toDataURL(); })()").encode()).hexdigest(), shown)
+        self.browser.value("(() => { const s = document.querySelector('.viewer .sheet'); s.width = s.width; })()")  # wipes it
+        self.assertNotIn(self.canvas(), shown)
 
     def test_plots_give_the_values_below_the_pointer(self):
         for name, columns in (("path", ("X", "Y")), ("energy", ("t", "broken"))):
@@ -238,7 +273,8 @@ class ViewerTest(unittest.TestCase):
             table = np.genfromtxt(folder / ("crack.csv" if name == "path" else "energy.csv"), delimiter=",", names=True)
             left, top, width, height = self.place(f".plot.{name}")
             self.browser.mouse("mouseMoved", left + 0.6 * width, top + 0.4 * height)
-            shown = self.browser.value(f"[...document.querySelectorAll('[data-plot^={name}] .legend b')].map((b) => b.textContent)")
+            shown = self.browser.value(f"[...document.querySelectorAll('[data-plot^={name}] .legend b')]"
+                                       ".map((b) => b.textContent)")
             scale = (100, 1e3) if name == "path" else (1e3, 1)
             first, second = (scale[i] * table[column] for i, column in enumerate(columns))
             row = np.abs(first - float(shown[0])).argmin()
@@ -259,8 +295,8 @@ class ViewerTest(unittest.TestCase):
 
     def test_figures_are_dark_on_dark_pages(self):
         self.browser.value("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
-        selectors = [".viewer .sheet", ".plot.path", ".plot.energy", *(f"#stills-{self.number()} figure:nth-of-type({i}) .picture"
-                                                                      for i in (1, 2, 3, 4, 5))]
+        selectors = [".viewer .sheet", ".plot.path", ".plot.energy",
+                     *(f"#stills-{self.number()} figure:nth-of-type({i}) .picture" for i in (1, 2, 3, 4, 5))]
         for dark in (False, True):
             self.browser.dark(dark)
             for selector in selectors:

@@ -44,7 +44,8 @@ def claim_section(name, entries, runs, plots):
     """One claim: a line that unfolds; unfolded already if it fails."""
     tally = tally_of(None, name, [check for check, _ in entries])
     opened = " open" if tally.kind == "fails" else ""
-    parts = [f'<section id="claim-{escape(name)}"><details class="claim"{opened}><summary>{claim_line(name, tally)}</summary>']
+    parts = [f'<section id="claim-{escape(name)}"><details class="claim"{opened}>'
+             f"<summary>{claim_line(name, tally)}</summary>"]
     text = explanation(name, {plot for made in plots.values() for plot in made})
     if text:
         parts.append(f"<p>{escape(text)}</p>")

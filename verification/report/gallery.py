@@ -156,7 +156,7 @@ def film_section(run, folder):
     return ["", "## Fig. 1 as it runs", "", "![the sheet of Fig. 1, torn from left to right](pictures/fig1.gif)", "",
             "The sheet as it is, coloured by the speed of the material, in slow motion of one pace: waves run ahead of "
             "the crack, its flanks snap back behind it. Made of the frames in `motion.pvd` of `./run fracture "
-            "verification/cases/fig1.prm`; every run's report has such a film."], [gif]
+            "verification/cases/fig1.prm`; every crack leaves such a film."], [gif]
 
 
 def arrested_section(run, folder):

@@ -28,7 +28,7 @@ def styles(with_plots):
 
 def scripts(with_viewer, with_plots):
     """The scripts of a page, at its end."""
-    files = [HERE / "sheet_viewer.js"] if with_viewer or with_plots else []
+    files = [HERE / "sheet_reader.js", HERE / "sheet_viewer.js"] if with_viewer or with_plots else []
     files += [DYGRAPHS / "dygraph.min.js", HERE / "plots.js"] if with_plots else []
     texts = [path.read_text(encoding="utf-8").partition("//# sourceMappingURL")[0] for path in files]
     return "".join(f"<script>\n{text}</script>\n" for text in texts)
@@ -42,7 +42,8 @@ def data_script(name, text):
 def viewer(position, run, sheet):
     """The sheet of a run over time; sheet: Sheet of sheet_data.py."""
     data, frames = sheet.contents, len(sheet.contents["times"])
-    hint = "Point at the sheet to read the values of a site and of a bond. Drag to pan, double-click to enlarge."
+    hint = ("Point at the sheet to read the values of a site and of a bond. Drag to pan; double-click, or click and "
+            "turn the wheel, to enlarge.")
     near_tip = ('<div class="inset"><canvas class="near-tip" role="img" aria-label="the surroundings of the crack tip, bond '
                 'by bond"></canvas><span>near the tip</span></div>') if data["tip"] else ""
     return f"""<figure class="viewer" id="viewer-{position}" data-sheet="sheet-{position}">
@@ -60,7 +61,8 @@ def viewer(position, run, sheet):
 </div>
 <div class="views"><canvas class="sheet" tabindex="0" role="img"
 aria-label="{escape(run.name)}: the sheet over time, coloured by speed, stretch or damage"></canvas>{near_tip}</div>
-<div class="scale"><span class="colour-name"></span><div><div class="colour-bar"></div><div class="colour-ends"></div></div></div>
+<div class="scale"><span class="colour-name"></span>
+<div><div class="colour-bar"></div><div class="colour-ends"></div></div></div>
 <p class="values" aria-live="polite" data-hint="{hint}">{hint}</p>
 <figcaption>{frames} frames. Values are those of the files to within {precision(data)}.</figcaption>
 </figure>

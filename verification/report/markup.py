@@ -37,8 +37,8 @@ def plain_row(cells):
 
 def row_text(verdict, cells, labels):
     """The HTML of a row."""
-    text = "".join(f'<td class="{kind}">{text}</td>' if kind == "verdict" else f'<td class="{kind}" data-label="{label}">{text}</td>'
-                   for (kind, text), label in zip(cells, labels))
+    names = ["" if kind == "verdict" else f' data-label="{label}"' for (kind, _), label in zip(cells, labels)]
+    text = "".join(f'<td class="{kind}"{name}>{text}</td>' for (kind, text), name in zip(cells, names))
     return f'<tr class="{verdict}">{text}</tr>' if verdict else f"<tr>{text}</tr>"
 
 

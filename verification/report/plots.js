@@ -7,7 +7,8 @@ function legend(plot, {x, series}, row) {
   const parts = plot.labels.slice(1).map((label, i) => {
     const colour = series[i]?.color ?? themed(plot.colours[i]);
     const value = row === null ? "" : ` <b>${text(plot.rows[row][i + 1])}</b>`;
-    return `<span class="entry"><i class="${plot.dashed[i] ? "dashed" : ""}" style="border-color:${colour}"></i>${label}${value}</span>`;
+    const line = `<i class="${plot.dashed[i] ? "dashed" : ""}" style="border-color:${colour}"></i>`;
+    return `<span class="entry">${line}${label}${value}</span>`;
   });
   return `${x === undefined ? "" : `<span class="entry">${plot.labels[0]} <b>${text(x)}</b></span>`}${parts.join("")}`;
 }
@@ -62,6 +63,9 @@ function drawPlot(figure, viewer) {
       }
     },
     drawCallback: (graph) => drawCursor(graph),
+    // Fingers scroll the page; a tap shows the values.
+    interactionModel: Object.fromEntries(
+      Object.entries(Dygraph.defaultInteractionModel).filter(([name]) => !name.startsWith("touch"))),
     ...look(),
   };
   /** The time of the sheet above, on top of all curves. */

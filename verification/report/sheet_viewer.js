@@ -1,63 +1,8 @@
-// The sheet of a run in motion, on a canvas: data of sheet_data.py, elements of viewer.py. Lengths in m, times in s.
+// The sheet of a run in motion, on a canvas: data of sheet_reader.js, elements of live.py. Lengths in m, times in s.
 "use strict";
 
-/** Array of numbers from deflated bytes of equal weight side by side. */
-async function inflated({shape, data}, Kind) {
-  const bytes = Uint8Array.from(atob(data), (letter) => letter.charCodeAt(0));
-  const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate"));
-  const planes = new Uint8Array(await new Response(stream).arrayBuffer());
-  const size = Kind.BYTES_PER_ELEMENT, count = planes.length / size, mixed = new Uint8Array(planes.length);
-  for (let plane = 0; plane < size; plane++)
-    for (let i = 0; i < count; i++) mixed[i * size + plane] = planes[plane * count + i];
-  return {shape, values: new Kind(mixed.buffer)};
-}
-
-/** Integers whose differences along the last axis are stored; a list of its rows. */
-async function integers(packed) {
-  const {shape, values} = await inflated(packed, Uint32Array);
-  const length = shape[shape.length - 1], rows = length ? values.length / length : shape[0], found = [];
-  for (let row = 0; row < rows; row++) {
-    const part = new Int32Array(length);
-    for (let i = 0, sum = 0; i < length; i++) {
-      const step = values[row * length + i];
-      part[i] = sum += (step >>> 1) ^ -(step & 1);
-    }
-    found.push(part);
-  }
-  return found;
-}
-
-/** Arrays of a sheet: position[frame] = [x, y] and speed[frame] in multiples of their quanta, bonds, triangles. */
-async function readSheet(data) {
-  const sheet = {...data};
-  const names = ["position", "speed", "site", "degree", "bonds", "bondEnd", "triangles", "triangleEnd"];
-  for (const name of names) sheet[name] = await integers(data[name]);
-  for (const name of ["site", "degree", "bondEnd", "triangleEnd"]) sheet[name] = sheet[name][0];
-  const position = [];
-  sheet.position.forEach((steps, row) => {
-    const before = row > 1 ? position[(row >> 1) - 1][row & 1] : null;
-    if (before) for (let i = 0; i < steps.length; i++) steps[i] += before[i];
-    if (row & 1) position[row >> 1].push(steps); else position.push([steps]);
-  });
-  sheet.position = position;
-  const {values, shape} = await inflated(data.reference, Float64Array);
-  sheet.reference = [values.subarray(0, shape[1]), values.subarray(shape[1])];
-  sheet.length = lengths(sheet.reference, sheet.bonds);
-  for (const name of Object.keys(data.colours)) {
-    const rgb = atob(data.colours[name]), table = new Uint32Array(257);
-    for (let i = 0; i < 256; i++)
-      table[i] = 0xff000000 | rgb.charCodeAt(3 * i + 2) << 16 | rgb.charCodeAt(3 * i + 1) << 8 | rgb.charCodeAt(3 * i);
-    table[256] = name === "stretch" ? 0xff005ed5 : table[255]; // beyond the breaking stretch
-    sheet.colours[name] = table;
-  }
-  return sheet;
-}
-
-/** Distance of the ends of each bond. */
-function lengths([x, y], [from, to]) {
-  return Float64Array.from(from, (a, i) => Math.hypot(x[a] - x[to[i]], y[a] - y[to[i]]));
-}
-
+/** Numbers of a list of steps. */
+const scaled = (steps, quantum) => new Float64Array(steps).map((step) => step * quantum);
 const css = (colour) => `rgb(${colour & 255},${colour >> 8 & 255},${colour >> 16 & 255})`;
 const themed = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const QUANTITIES = {
@@ -98,20 +43,21 @@ class SheetViewer {
   /** Positions, and values of sites and bonds, of this frame. */
   evaluate() {
     const {sheet, frame} = this, {bonds: [from, to], bondEnd, degree, quantum} = sheet;
-    const now = sheet.position[frame].map((steps) => Float64Array.from(steps, (step) => step * quantum));
+    const now = sheet.position[frame].map((steps) => scaled(steps, quantum));
     const n = degree.length, alive = new Uint16Array(n);
     for (let i = 0; i < from.length; i++) if (bondEnd[i] > frame) { alive[from[i]]++; alive[to[i]]++; }
     this.current = now;
     this.place = this.deformed ? now : sheet.reference;
     this.stretch = lengths(now, sheet.bonds).map((length, i) => length / sheet.length[i]);
-    this.speed = Float64Array.from(sheet.speed[frame], (step) => step * sheet.speedQuantum);
-    this.damage = Float64Array.from(degree, (count, i) => 1 - alive[i] / count);
+    this.speed = scaled(sheet.speed[frame], sheet.speedQuantum);
+    this.damage = new Float64Array(n).map((_, i) => 1 - alive[i] / degree[i]);
     this.bondValue = this.quantity === "stretch" ? this.stretch
       : this.stretch.map((_, i) => (this[this.quantity][from[i]] + this[this.quantity][to[i]]) / 2);
     // Bonds of sites that have lost some, or are in no whole triangle, are drawn one by one.
     this.torn = new Uint8Array(n).fill(1);
     const [a, b, c] = sheet.triangles;
-    for (let i = 0; i < a.length; i++) if (sheet.triangleEnd[i] > frame) this.torn[a[i]] = this.torn[b[i]] = this.torn[c[i]] = 0;
+    for (let i = 0; i < a.length; i++)
+      if (sheet.triangleEnd[i] > frame) this.torn[a[i]] = this.torn[b[i]] = this.torn[c[i]] = 0;
     for (let i = 0; i < from.length; i++) if (bondEnd[i] <= frame) this.torn[from[i]] = this.torn[to[i]] = 1;
     this.siteValue = this.quantity === "stretch" ? this.meanStretch(n, from, to, alive) : this[this.quantity];
   }
@@ -135,7 +81,8 @@ class SheetViewer {
   // Views: x, y is the middle relative to where the view follows, zoom 1 shows all.
 
   box() {
-    const ends = this.deformed ? this.sheet.box : this.sheet.reference.map((values) => values.reduce(([low, high], v) => [Math.min(low, v), Math.max(high, v)], [Infinity, -Infinity]));
+    const span = (values) => values.reduce(([low, high], v) => [Math.min(low, v), Math.max(high, v)], [Infinity, -Infinity]);
+    const ends = this.deformed ? this.sheet.box : this.sheet.reference.map(span);
     const margin = 0.02 * Math.max(ends[0][1] - ends[0][0], ends[1][1] - ends[1][0]);
     return ends.map(([low, high]) => [low - margin, high + margin]);
   }
@@ -219,8 +166,8 @@ class SheetViewer {
     for (let i = 0; i < from.length; i++) {
       const a = from[i], b = to[i];
       if (bondEnd[i] <= this.frame || !(all || this.torn[a] || this.torn[b])) continue;
-      if (Math.max(px[a], px[b]) < 0 || Math.min(px[a], px[b]) > width || Math.max(py[a], py[b]) < 0 || Math.min(py[a], py[b]) > height)
-        continue;
+      if (Math.max(px[a], px[b]) < 0 || Math.min(px[a], px[b]) > width) continue;
+      if (Math.max(py[a], py[b]) < 0 || Math.min(py[a], py[b]) > height) continue;
       const shade = this.shade(this.bondValue[i]);
       if (!lines.has(shade)) lines.set(shade, []);
       lines.get(shade).push(a, b);
@@ -249,11 +196,12 @@ class SheetViewer {
 
   /** Scale bar, tip, and what is picked. */
   drawMarks(context, view, scale) {
-    const {canvas, px, py, followsTip} = view, density = canvas.width / canvas.clientWidth || 1, text = themed("--text");
+    const {canvas, px, py, followsTip} = view, density = canvas.width / canvas.clientWidth || 1;
+    const text = themed("--text"), left = 8 * density, low = canvas.height - 8 * density;
     context.lineWidth = 1.5 * density;
     context.strokeStyle = context.fillStyle = text;
     const steps = [1, 2, 5], wanted = 0.2 * canvas.width / scale, decade = 10 ** Math.floor(Math.log10(wanted));
-    const bar = decade * Math.max(...steps.filter((step) => step * decade <= wanted), 1), left = 8 * density, low = canvas.height - 8 * density;
+    const bar = decade * Math.max(...steps.filter((step) => step * decade <= wanted), 1);
     context.font = `${12 * density}px system-ui, sans-serif`;
     const label = bar >= 0.01 ? `${+(100 * bar).toPrecision(2)} cm` : `${+(1000 * bar).toPrecision(2)} mm`;
     context.shadowColor = themed("--page"); // a halo, on whatever is below
@@ -312,7 +260,8 @@ class SheetViewer {
     const table = sheet.colours[this.quantity], stops = [0, 51, 102, 153, 204, 255].map((i) => css(table[i]));
     this.part("colour-bar").style.background = `linear-gradient(to right, ${stops.join(",")})`;
     const middle = low + (high - low) * (root ? 0.25 : 0.5);
-    this.part("colour-ends").innerHTML = [low, middle, high].map((end) => `<span>${+end.toPrecision(3)}</span>`).join("");
+    const ends = [low, middle, high].map((end) => `<span>${+end.toPrecision(3)}</span>`);
+    this.part("colour-ends").innerHTML = ends.join("");
     const beyond = this.quantity === "stretch" && sheet.breaking ? "; orange: beyond the breaking stretch" : "";
     this.part("colour-name").textContent = `${name} [${unit}]${beyond}`;
     const said = this.part("values");
@@ -320,10 +269,13 @@ class SheetViewer {
       said.textContent = said.dataset.hint;
     } else {
       const {site, bond} = picked, [X, Y] = sheet.reference, [x, y] = this.current;
-      let text = `site ${sheet.site[site]}: X ${cm(X[site])} cm, Y ${cm(Y[site])} cm, x ${cm(x[site])} cm, y ${cm(y[site])} cm, ` +
+      let text = `site ${sheet.site[site]}: X ${cm(X[site])} cm, Y ${cm(Y[site])} cm, ` +
+        `x ${cm(x[site])} cm, y ${cm(y[site])} cm, ` +
         `speed ${this.speed[site].toFixed(2)} m/s, damage ${this.damage[site].toFixed(3)}`;
-      if (bond !== null)
-        text += `; bond ${sheet.site[sheet.bonds[0][bond]]}–${sheet.site[sheet.bonds[1][bond]]}: stretch ${this.stretch[bond].toFixed(3)}`;
+      if (bond !== null) {
+        const ends = sheet.bonds.map((end) => sheet.site[end[bond]]);
+        text += `; bond ${ends.join("–")}: stretch ${this.stretch[bond].toFixed(3)}`;
+      }
       said.textContent = text;
     }
   }
@@ -392,7 +344,8 @@ class SheetViewer {
     this.part("reset").addEventListener("click", () => { for (const view of this.views) this.zoom(view, 0); });
     this.views.forEach((view) => this.listenTo(view));
     new ResizeObserver(() => this.resize()).observe(sheet.canvas);
-    for (const query of ["(prefers-color-scheme: dark)", "print"]) matchMedia(query).addEventListener("change", () => this.draw());
+    for (const query of ["(prefers-color-scheme: dark)", "print"])
+      matchMedia(query).addEventListener("change", () => this.draw());
   }
 
   listenTo(view) {
@@ -409,7 +362,8 @@ class SheetViewer {
       fingers.set(event.pointerId, place(event));
       canvas.setPointerCapture(event.pointerId);
     });
-    for (const kind of ["pointerup", "pointercancel"]) canvas.addEventListener(kind, (event) => fingers.delete(event.pointerId));
+    for (const kind of ["pointerup", "pointercancel"])
+      canvas.addEventListener(kind, (event) => fingers.delete(event.pointerId));
     canvas.addEventListener("pointermove", (event) => {
       const [u, v] = place(event), last = fingers.get(event.pointerId);
       if (last && fingers.size === 2) {
@@ -423,7 +377,8 @@ class SheetViewer {
         fingers.set(event.pointerId, [u, v]);
         this.draw();
       } else {
-        const found = this.pick(view, u, v), same = found?.site === this.picked?.site && found?.bond === this.picked?.bond;
+        const found = this.pick(view, u, v), {picked} = this;
+        const same = found?.site === picked?.site && found?.bond === picked?.bond;
         this.picked = found;
         if (!same) this.draw();
       }
