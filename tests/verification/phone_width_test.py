@@ -32,6 +32,7 @@ class PhoneWidth(unittest.TestCase):
             write_verification(runs / "a-run-with-a-rather-long-name", [HOLDS, FAILS, REPORTED])
             write_fracture(runs / "fig1", [HOLDS, PUBLISHED])
             write_torn_sheet(runs / "torn")
+            (runs / "torn" / "case.prm").write_text(f"subsection Sheet\n  set height = 0.1 # {'m' * WIDTH}\nend\n")
             report.main([str(runs), "--quiet"])
             browser.resize(WIDTH, 844, phone=True)
             browser.open(runs / "report.html")
