@@ -205,6 +205,7 @@ class ReportTest(unittest.TestCase):
         out, err = self.report(expect=0)
         self.assertEqual(err, "")
         _, page = self.page()
+        self.assertRegex(" ".join(page.text.split()), r"· measured Lagrangian crack speed 20.00 ± 0.20 – m/s –")
         for words in ("c² <of> a wave", "1.25", "✓ holds", "2.00e-03", "0.01", "· reported", "0.042", "oscillating",
                       "it winds", "2.1", "2.000 ± 0.015", "-4.8 %", "breaking stretch", "1.2.3", "verify, fig",
                       "Holds: all 3 checks"):
@@ -274,7 +275,6 @@ class ReportTest(unittest.TestCase):
         html, page = self.page()
         own = ("data:image/png;base64,", "data:image/gif;base64,", "#")
         self.assertEqual([r[:30] for r in page.references if not r.startswith(own)], [])
-        # What a browser asks for in fact: report_viewer_test.py.
         bare = re.sub(r"base64,[^\"]*|^/\*! @license .*?\*/", "", html, flags=re.M)
         self.assertNotRegex(bare, r"https?://|@import|url\(|<script[^>]* src|<link|sourceMappingURL")
         self.assertIn("@license https://github.com/danvk/dygraphs", html)  # MIT: its notice goes along

@@ -7,7 +7,7 @@ from claim_sections import WORDS, claim_sections
 from crack_section import crack_section, pattern_phrase
 from live import has_dygraphs, scripts, styles
 from markup import folded, number, raised, row, table, verb
-from summary import comparisons, percent, ratio_text, tallies, tally_of, with_uncertainty
+from summary import comparisons, percent, ratio_text, tallies, tally_of, unpublished, with_uncertainty
 
 def page(title, runs, pictures, plots, sheets, unreadable=()):
     """The whole page.
@@ -144,12 +144,16 @@ def facts(run):
 
 
 def key_numbers(runs):
-    """What was measured of the cracks, beside what was published."""
+    """What was measured of the cracks, beside what was published if anything was."""
     several = sum(run.crack is not None for run in runs) > 1
     rows = [row(c.check.kind, [
         *([("short", escape(run.name))] if several else []), ("words", raised(c.quantity)),
         ("number", "not measured" if c.measured is None else with_uncertainty(c.measured, c.uncertainty)),
         ("number", number(c.published, ".4g")), ("short", raised(c.unit)), ("number", percent(c.difference))],
         c.check.word) for run in runs for c in comparisons(run)]
+    rows += [row("reported", [
+        *([("short", escape(run.name))] if several else []), ("words", raised(quantity)),
+        ("number", with_uncertainty(value, uncertainty)), ("number", "–"), ("short", unit), ("number", "–")], "measured")
+        for run in runs for quantity, unit, value, uncertainty in unpublished(run)]
     head = ["verdict", *(["run"] if several else []), "quantity", "#latcon", "#paper", "unit", "#difference"]
     return f'<div class="key">{table(head, rows, "narrow")}</div>' if rows else ""

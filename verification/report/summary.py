@@ -84,6 +84,18 @@ def uncertainty_of(quantity, crack):
     return crack[f"{NAMES[quantity]}_uncertainty"] if crack is not None and quantity in NAMES else None
 
 
+def unpublished(run):
+    """What crack.json measured and no published value is known of: [(quantity, unit, value, uncertainty), ...], lengths in cm."""
+    compared = {c.quantity for c in comparisons(run)}
+    found = []
+    for quantity, name in NAMES.items():
+        value, uncertainty = ((run.crack or {}).get(key) for key in (name, f"{name}_uncertainty"))
+        if quantity not in compared and value is not None:
+            scale, unit = (1, "m/s") if "speed" in name else (100, "cm")
+            found.append((quantity, unit, scale * value, None if uncertainty is None else scale * uncertainty))
+    return found
+
+
 def with_uncertainty(value, uncertainty, sign="±"):
     """A value to the digits that its uncertainty leaves, "20.06 ± 0.23"; four digits without one."""
     if uncertainty is None or not uncertainty > 0 or not math.isfinite(uncertainty):
