@@ -15,7 +15,7 @@ of bonds, sets the finite element continuum that the lattice stands for beside
 it, and runs a crack only after both have been shown to agree.")
 # Libraries, and what the report is drawn with.
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
-set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS "python3, python3-matplotlib, python3-numpy, python3-pil, python3-vtk9")
+set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS "libjs-dygraphs, python3, python3-matplotlib, python3-numpy, python3-pil, python3-vtk9")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "libopenblas0-pthread, openmpi-bin")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SUGGESTS "paraview")
 

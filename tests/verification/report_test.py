@@ -27,6 +27,7 @@ FOLDER = Path(__file__).resolve().parents[2] / "verification" / "report"
 sys.path.insert(0, str(FOLDER))
 
 import animation
+import live
 import report
 from crack_path import fit_sinusoid
 from summary import with_uncertainty
@@ -170,7 +171,7 @@ class Page(HTMLParser):
         self.kinds.pop()
 
     def handle_data(self, data):
-        if "style" not in self.open:
+        if not {"style", "script"} & set(self.open):
             self.text += data + " "
 
 
@@ -204,6 +205,7 @@ class ReportTest(unittest.TestCase):
         out, err = self.report(expect=0)
         self.assertEqual(err, "")
         _, page = self.page()
+        self.assertRegex(" ".join(page.text.split()), r"· measured Lagrangian crack speed 20.00 ± 0.20 – m/s –")
         for words in ("c² <of> a wave", "1.25", "✓ holds", "2.00e-03", "0.01", "· reported", "0.042", "oscillating",
                       "it winds", "2.1", "2.000 ± 0.015", "-4.8 %", "breaking stretch", "1.2.3", "verify, fig",
                       "Holds: all 3 checks"):
@@ -273,7 +275,9 @@ class ReportTest(unittest.TestCase):
         html, page = self.page()
         own = ("data:image/png;base64,", "data:image/gif;base64,", "#")
         self.assertEqual([r[:30] for r in page.references if not r.startswith(own)], [])
-        self.assertNotRegex(re.sub(r"base64,[^\"]*", "", html), r"https?://|@import|url\(|<script|<link")
+        bare = re.sub(r"base64,[^\"]*|^/\*! @license .*?\*/", "", html, flags=re.M)
+        self.assertNotRegex(bare, r"https?://|@import|url\(|<script[^>]* src|<link|sourceMappingURL")
+        self.assertIn("@license https://github.com/danvk/dygraphs", html)  # MIT: its notice goes along
         self.assertEqual(len(page.images), len(PICTURES) + 1)
 
     def test_can_be_read_without_seeing_it(self):
@@ -292,14 +296,21 @@ class ReportTest(unittest.TestCase):
         write_fracture(self.folder, [HOLDS, PUBLISHED])
         self.report("--quiet", expect=0)
         html, _ = self.page()
-        order = [html.index(words) for words in ("Holds: all", 'class="key"', "image/gif", 'id="claims"', "(case.prm")]
+        order = [html.index(words) for words in ("Holds: all", 'class="key"', 'data-plot="path', 'class="viewer"',
+                                                 'data-plot="energy', 'id="claims"', "(case.prm")]
         self.assertEqual(order, sorted(order))
 
     def test_animation_has_all_frames_and_is_small(self):
         write_fracture(self.folder, [HOLDS])
         self.report("--quiet", expect=0)
+        gif, still = ((self.folder / f"animation.{kind}").read_bytes() for kind in ("gif", "png"))
         html, page = self.page()
-        gif = (self.folder / "animation.gif").read_bytes()
+        self.assertNotIn("image/gif", html)  # the viewer shows more in fewer bytes; its last picture is among the still ones
+        self.assertIn(still, [base64.b64decode(image.partition(",")[2]) for image in page.images])
+        with mock.patch.object(report, "LARGEST_SHEETS", 0):  # no viewer
+            self.report("--quiet", expect=0)
+        html, page = self.page()
+        self.assertNotIn('class="viewer"', html)
         self.assertEqual(gif, base64.b64decode(page.images[0].partition(",")[2]))
         self.assertRegex(html, r'<source media="print, [^"]*" srcset="data:image/png;base64,')
         with Image.open(io.BytesIO(gif)) as film:
@@ -328,13 +339,24 @@ class ReportTest(unittest.TestCase):
         self.assertFalse((self.folder / "animation.gif").exists())
         self.assertIn("nothing to draw: animation.gif", self.page()[1].text)
 
+    def test_without_the_library_of_the_plots_pictures_take_their_place(self):
+        write_fracture(self.folder, [HOLDS])
+        with mock.patch.object(live, "DYGRAPHS", self.folder):
+            self.report("--quiet", expect=0)
+        html, _ = self.page()
+        self.assertNotIn("new Dygraph", html)
+        self.assertIn('class="viewer"', html)
+        stills = html.index('id="stills-0"')
+        for name in ("The crack in the undeformed sheet", "Where the elastic energy went"):
+            self.assertLess(html.index(f'alt="runs: {name}'), stills)
+
     def test_pictures_show_something(self):
         write_fracture(self.folder, [HOLDS])
         self.report("--quiet", expect=0)
         _, page = self.page()
-        for name, source in zip(PICTURES, page.images[1:]):
+        for name in PICTURES:
             png = (self.folder / name).read_bytes()
-            self.assertEqual(png, base64.b64decode(source.partition(",")[2]))
+            self.assertIn(png, [base64.b64decode(source.partition(",")[2]) for source in page.images])
             pixels = np.asarray(Image.open(io.BytesIO(png)).convert("RGB"), dtype=float)
             self.assertEqual(pixels.shape[1], 1600)
             self.assertGreater(pixels.shape[0], 500)
@@ -370,8 +392,9 @@ class ReportTest(unittest.TestCase):
         html, page = self.page()
         self.assertIn("without its material and pre-stretch having been verified", page.text)
         self.assertIn("Not verified: what was checked holds", page.text)
-        self.assertNotIn('class="banner holds"', html)
         self.assertIn('class="banner warns"', html)
+        self.assertIn("holds, not verified", page.text)
+        self.assertNotRegex(html, r'class="[^"]*\bholds\b')  # nothing is green
         self.assertIn("not verified", out)
         # Beside a run that was verified as well.
         write_verification(self.folder.parent / "both" / "verify", [HOLDS])

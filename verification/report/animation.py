@@ -7,10 +7,9 @@ from matplotlib.colors import PowerNorm
 from matplotlib.ticker import MaxNLocator
 from PIL import Image, ImageDraw, ImageFont
 
-from files import DamagedFile, write_file
-from frame import read_frame, read_series
+from files import write_file
 from pictures import PIXELS_PER_INCH, WIDTH, Page, figure_pixels, limits, save_png
-from raster import Mesh, Raster
+from raster import Raster
 
 COLOURS = "inferno"
 GREYS = 48  # of axes and text, from black to white
@@ -21,34 +20,19 @@ SIZES = [(width, shades) for width in (900, 750, 600, 450) for shades in (192, 9
 LEFT, TOP, FOOT, BAR = 0.85, 0.5, 0.62, 0.75  # margins of the axes and room of the colour bar [in]
 
 
-def draw_animation(run, gif, still=None):
-    """Writes the animation, and its last picture as PNG, if the run left frames of the motion. @return if it did"""
-    frames = [(time, path) for time, path in read_series(run.folder / "motion.pvd") or [] if path.exists()]
-    sheets = read_series(run.folder / "lattice.pvd")
-    if len(frames) < 2 or not sheets or not sheets[0][1].exists() or run.broken is None:
-        return False
-    mesh = Mesh(read_frame(sheets[0][1], sheets[0][0]), run.broken)
-    motion = [read_motion(path, time, mesh) for time, path in frames]
-    shown = durations([frame.time for frame in motion])
+def draw_animation(motion, gif, still=None):
+    """Writes the animation, and its last picture as PNG."""
+    shown = durations([frame.time for frame in motion.frames])
     film = None
     for width, shades in SIZES:
         if film is None or film.width != width:
-            film = Film(motion, mesh, width)
+            film = Film(motion.frames, motion.mesh, width)
         pictures = film.pictures(shades)
         write_file(gif, lambda beside: write_gif(pictures, shown, beside))
         if gif.stat().st_size <= LARGEST:
             break
     if still is not None:
         save_png(pictures[-1].convert("RGB"), still)
-    return True
-
-
-def read_motion(path, time, mesh):
-    """A light frame, its sites those of the mesh."""
-    frame = read_frame(path, time, with_bonds=False)
-    if "velocity" not in frame.fields or len(frame.position) <= mesh.bonds.max(initial=0):
-        raise DamagedFile(path, "no frame of the motion of this sheet: it lacks velocities or sites")
-    return frame
 
 
 def durations(times):

@@ -2,11 +2,13 @@
 from html import escape
 
 from claims_text import CLAIMS, PLOTS, explanation, heading
-from markup import figure, first_sentence, number, raised, row, table, verb
+from markup import MARKS, figure, first_sentence, number, raised, row, table, verb
 from summary import VERDICTS, ratio_text, tally_of
 
 # More rows than these are folded.
 MOST_OPEN_ROWS = 8
+# Verdicts of a claim by the class that colours them.
+WORDS = {"fails": "fails", "holds": "holds", "warns": "holds, not verified", "reported": "reported"}
 
 
 def claim_sections(runs, plots):
@@ -14,12 +16,6 @@ def claim_sections(runs, plots):
     entries = shared_rows(runs)
     parts = [claim_section(name, entries.get(name, []), runs, plots) for name in claim_order(entries, plots)]
     return "\n".join(parts) or "<p>Nothing was checked.</p>"
-
-
-def claim_links(runs, plots):
-    """Links to the sections."""
-    names = claim_order(shared_rows(runs), plots)
-    return [f'<a href="#claim-{escape(name)}">{escape(name)}</a>' for name in names]
 
 
 def claim_order(entries, plots):
@@ -45,28 +41,29 @@ def shared_rows(runs):
 
 
 def claim_section(name, entries, runs, plots):
-    """One claim."""
-    parts = [f'<section id="claim-{escape(name)}"><h3>{escape(heading(name))}</h3>']
+    """One claim: a line that unfolds; unfolded already if it fails."""
+    tally = tally_of(None, name, [check for check, _ in entries])
+    opened = " open" if tally.kind == "fails" else ""
+    parts = [f'<section id="claim-{escape(name)}"><details class="claim"{opened}>'
+             f"<summary>{claim_line(name, tally)}</summary>"]
     text = explanation(name, {plot for made in plots.values() for plot in made})
     if text:
         parts.append(f"<p>{escape(text)}</p>")
-    parts.append(tally_sentence(name, entries))
+    if not entries:
+        parts.append('<p class="soft">No quantity of this claim was checked.</p>')
     parts += [plot_figures(plot, runs, plots) for plot in PLOTS if plot.claim == name]
     parts.append(rows_of_claim(name, entries, len(runs) > 1))
-    return "\n".join(part for part in parts if part) + "</section>"
+    return "\n".join(part for part in parts if part) + "</details></section>"
 
 
-def tally_sentence(name, entries):
-    """Counts of a claim's rows."""
-    if not entries:
-        return '<p class="soft">No quantity of this claim was checked.</p>'
-    tally = tally_of(None, name, [check for check, _ in entries])
+def claim_line(name, tally):
+    """Verdict, heading and counts of a claim."""
     counts = ", ".join(f"{tally.count[v]} {verb(tally.count[v], one, many)}"
                        for v, one, many in (("fails", "fails", "fail"), ("holds", "holds", "hold"),
                                             ("reported", "reported", "reported")) if tally.count[v])
     worst = "" if tally.worst is None else f", worst error / tolerance {ratio_text(tally.worst)}"
-    kind = next(v for v in VERDICTS if tally.count[v])
-    return f'<p class="tally {kind}"><b>{escape(name)}</b>: {counts}{worst}</p>'
+    return (f'<span class="tally {tally.kind}">{MARKS[tally.kind]} {WORDS[tally.kind]}</span> <h3>{escape(heading(name))}</h3> '
+            f'<span class="soft">{counts}{worst}</span>')
 
 
 def plot_figures(plot, runs, plots):
@@ -114,4 +111,4 @@ def claim_row(check, shared, show_runs):
     cells += [("number", number(check.error, ".2e")), ("number", number(check.tolerance, ".3g"))]
     if show_runs:
         cells.append(("short", escape(", ".join(shared))))
-    return row(check.verdict, cells)
+    return row(check.kind, cells, check.word)

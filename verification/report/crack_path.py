@@ -43,6 +43,19 @@ def fit_sinusoid(X, Y, wavelength, begin, end):
     return Sinusoid(origin, offset, slope, math.hypot(sine, cosine), math.atan2(cosine, sine), wavelength)
 
 
+def measured_sinusoid(run):
+    """The sinusoid of an oscillating crack, with the measured wavelength and amplitude; None if there is none."""
+    crack = run.crack
+    if crack is None or crack["pattern"] != "oscillating" or not crack["wavelength"]:
+        return None
+    if None in (crack["window_begin"], crack["window_end"]):
+        return None
+    curve = fit_sinusoid(run.tip["X"], run.tip["Y"], crack["wavelength"], crack["window_begin"], crack["window_end"])
+    if curve is None or crack["amplitude"] is None:
+        return curve
+    return replace(curve, amplitude=crack["amplitude"])
+
+
 def draw_crack_path(run, path):
     """Above: the tip's path and what was measured of it. Below: where bonds broke, and when."""
     X, Y = 100 * run.tip["X"], 100 * run.tip["Y"]
@@ -100,14 +113,11 @@ def draw_measurement(axes, run):
     begin, end = crack["window_begin"], crack["window_end"]
     if end > begin:
         axes.axvspan(100 * begin, 100 * end, color=GREY, alpha=0.15, linewidth=0, label="measured window")
-    if crack["pattern"] != "oscillating" or not crack["wavelength"]:
-        return
-    curve = fit_sinusoid(run.tip["X"], run.tip["Y"], crack["wavelength"], begin, end)
+    curve = measured_sinusoid(run)
     if curve is None:
         return
     text = f"sinusoid, wavelength {in_cm(crack, 'wavelength')} cm"
     if crack["amplitude"] is not None:
-        curve = replace(curve, amplitude=crack["amplitude"])
         text += f", amplitude {in_cm(crack, 'amplitude')} cm"
     X = np.linspace(begin, end, 500)
     axes.plot(100 * X, 100 * curve(X), "--", color=RED, label=text)

@@ -19,6 +19,7 @@ from animation import draw_animation
 from crack_path import draw_crack_path
 from files import CLAIM_FAILS, DONE, UnwritableFile, exit_code_of, read_text, write_file
 from frame import read_last_frame
+from motion import read_motion
 from pictures import draw_sheet, shrink
 from runs import has_rows, read_run
 from study import draw_run
@@ -148,12 +149,14 @@ def claims_section(study):
 def film_section(run, folder):
     """The crack of Fig. 1 as it runs: ([line, ...], [picture, ...]); nothing if there is no such run."""
     gif = folder / "fig1.gif"
-    if not draw_animation(run, gif):
+    motion = read_motion(run)
+    if motion is None:
         return [], []
+    draw_animation(motion, gif)
     return ["", "## Fig. 1 as it runs", "", "![the sheet of Fig. 1, torn from left to right](pictures/fig1.gif)", "",
             "The sheet as it is, coloured by the speed of the material, in slow motion of one pace: waves run ahead of "
             "the crack, its flanks snap back behind it. Made of the frames in `motion.pvd` of `./run fracture "
-            "verification/cases/fig1.prm`; every run's report has such a film."], [gif]
+            "verification/cases/fig1.prm`; every crack leaves such a film."], [gif]
 
 
 def arrested_section(run, folder):

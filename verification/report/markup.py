@@ -12,10 +12,14 @@ def verb(count, one, many):
 
 
 def table(head, rows, kind=""):
-    """A table that scrolls in its own box; columns whose head begins with # hold numbers."""
+    """A table; columns whose head begins with # hold numbers. On a phone each row is a block, its cells under their heads.
+
+    rows: of `row` and `plain_row`.
+    """
     cells = "".join(f'<th scope="col" class="{"number" if name[0] == "#" else "words"}">{name.lstrip("#")}</th>'
                     for name in head)
-    body = "".join(rows)
+    labels = [escape(name.lstrip("#"), quote=True) for name in head]
+    body = "".join(row_text(kind, row_cells, labels) for kind, row_cells in rows)
     return (f'<div class="scroll {kind}" tabindex="0"><table><thead><tr>{cells}</tr></thead>'
             f"<tbody>{body}</tbody></table></div>")
 
@@ -23,12 +27,19 @@ def table(head, rows, kind=""):
 def row(verdict, cells, word=None):
     """A table row in the colour of its verdict, which comes first, or `word` for it; cells are (class, HTML)."""
     cells = [("verdict", f"{MARKS[verdict]} {word or verdict}"), *cells]
-    return f'<tr class="{verdict}">' + "".join(f'<td class="{kind}">{text}</td>' for kind, text in cells) + "</tr>"
+    return verdict, cells
 
 
 def plain_row(cells):
     """A table row without a verdict; cells are (class, HTML)."""
-    return "<tr>" + "".join(f'<td class="{kind}">{text}</td>' for kind, text in cells) + "</tr>"
+    return "", list(cells)
+
+
+def row_text(verdict, cells, labels):
+    """The HTML of a row."""
+    names = ["" if kind == "verdict" else f' data-label="{label}"' for (kind, _), label in zip(cells, labels)]
+    text = "".join(f'<td class="{kind}"{name}>{text}</td>' for (kind, text), name in zip(cells, names))
+    return f'<tr class="{verdict}">{text}</tr>' if verdict else f"<tr>{text}</tr>"
 
 
 def data_url(path):

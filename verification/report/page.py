@@ -3,47 +3,25 @@ import json
 from html import escape
 from pathlib import Path
 
-from claim_sections import claim_links, claim_sections
-from markup import figure, first_sentence, folded, number, raised, row, table, verb
-from near_tip_table import near_tip_table
-from summary import VERDICTS, comparisons, percent, ratio_text, tallies, tally_of, with_uncertainty
+from claim_sections import WORDS, claim_sections
+from crack_section import crack_section, pattern_phrase
+from live import has_dygraphs, scripts, styles
+from markup import folded, number, raised, row, table, verb
+from summary import comparisons, percent, ratio_text, tallies, tally_of, unpublished, with_uncertainty
 
-CAPTIONS = {
-    "animation.gif": "The crack as it runs, in slow motion of one pace: the sheet as it is, coloured by the speed of "
-                     "the material. What is filled has all its bonds; lines are bonds of sites that have lost some.",
-    "sheet.png": "The sheet in its last frame, as it is: every unbroken bond is a line, the crack is the white "
-                 "opening; lines across it are bonds that still hold.",
-    "sheet_fields.png": "Fields of the last frame: speed and opening stress in the sheet as it is, damage where it was "
-                        "before the loading. Stress is force per current length and undeformed thickness. Scales end "
-                        "where 1 % of the sites are beyond.",
-    "crack_path.png": "The crack in the undeformed sheet. Above: its tip, the right-most site that has lost enough "
-                      "bonds; the dashed sinusoid has the measured wavelength and amplitude, its phase, offset and "
-                      "slope are least squares. Below: where bonds broke, coloured by time.",
-    "energy.png": "Where the elastic energy went, per metre of sheet thickness, from the cut of the seed crack on. The "
-                  "dashed line is what the bonds gave; the areas are what was found elsewhere; the small axis is the "
-                  "difference, over the energy given to the sheet.",
-    "near_tip_velocity.png": "Velocity of the material around the tip (cross), mean over samples; where the path "
-                             "descends, samples were mirrored first, so that the two sides of an oscillating crack "
-                             "stay apart. White: the opening, or fewer than half the samples had material there. "
-                             "Numbers are in the table below.",
-    "near_tip_stress.png": "Stress across the crack, in the same mean. Two lobes off the axis are what is called "
-                           "kidney shaped.",
-}
-
-
-def page(title, runs, pictures, plots, unreadable=()):
+def page(title, runs, pictures, plots, sheets, unreadable=()):
     """The whole page.
 
     unreadable: runs that cannot be shown
-    pictures: of cracks, {folder of a run: {name in CAPTIONS: (picture, still picture for print or None)}}
+    pictures: of cracks, {folder of a run: {name of crack_section.CAPTIONS: (picture, still picture for print or None)}}
     plots: of claims, {folder of a run: {plot name: (PNG file, error metrics)}}
+    sheets: of cracks, {folder of a run: data of the viewer (sheet_data.py) or None}
     """
     style = (Path(__file__).parent / "style.css").read_text(encoding="utf-8")
     versions = sorted({f"latcon {run.info['version']}" for run in runs if run.info and "version" in run.info})
-    cracks = [crack_section(run, number, pictures.get(run.folder, {})) for number, run in enumerate(runs)
-              if run.is_fracture]
-    links = [f'<a href="#crack-{number}">{escape(run.name)}</a>' for number, run in enumerate(runs) if run.is_fracture]
-    links += ['<a href="#claims">Claims:</a>', *claim_links(runs, plots), '<a href="#inputs">Inputs and versions</a>']
+    cracks = [crack_section(run, number, pictures.get(run.folder, {}), sheets.get(run.folder))
+              for number, run in enumerate(runs) if run.is_fracture]
+    with_plots = has_dygraphs() and bool(cracks)
     return f"""<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -51,25 +29,34 @@ def page(title, runs, pictures, plots, unreadable=()):
 <meta name="viewport" content="width=device-width, initial-scale=1">
 <title>latcon: {escape(title)}</title>
 <style>
-{style}</style>
+{styles(with_plots)}{style}</style>
 </head>
-<body>
-<h1>latcon report: {escape(title)}</h1>
-<p class="soft">{escape(", ".join(versions) or "latcon")}: what was checked, what came out, and whether it holds</p>
+<body id="top">
+<h1>latcon report: {escape(title)} <small>{escape(", ".join(versions) or "latcon")}</small></h1>
+{contents(runs)}
 <main>
+<div class="result">
 {banner(runs, unreadable)}
 {key_numbers(runs)}
-<nav aria-label="sections">{"".join(links)}</nav>
+</div>
 {"".join(cracks)}
 <h2 id="claims">Claims</h2>
-{overview(runs)}
 {claim_sections(runs, plots)}
+{overview(runs)}
 <h2 id="inputs">Inputs and versions</h2>
 {"".join(inputs_section(run, number) for number, run in enumerate(runs))}
 </main>
-</body>
+{scripts(any(sheet is not None for sheet in sheets.values()), with_plots)}</body>
 </html>
 """
+
+
+def contents(runs):
+    """Links to the sections, which stay in view."""
+    links = [("top", "Result")]
+    links += [(f"crack-{number}", f"Crack {run.name}") for number, run in enumerate(runs) if run.is_fracture]
+    links += [("claims", "Claims"), ("inputs", "Inputs")]
+    return f'<nav aria-label="sections">{"".join(f"""<a href="#{to}">{escape(text)}</a>""" for to, text in links)}</nav>'
 
 
 def banner(runs, unreadable=()):
@@ -99,7 +86,7 @@ def banner(runs, unreadable=()):
               "what it had written by then is shown" for run in incomplete]
     notes += [f"{escape(run.name)}: the crack was run without its material and pre-stretch having been verified "
               "(--skip-verification)" for run in unverified]
-    notes += [f"{escape(run.name)}: {headline(run)}" for run in runs if run.crack is not None]
+    notes += [f"{escape(run.name)}: {pattern_phrase(run.crack)}" for run in runs if run.crack is not None]
     if total["reported"]:
         rows = verb(total["reported"], "1 row has", f"{total['reported']} rows have")
         notes.append(f"{rows} no tolerance and {verb(total['reported'], 'is', 'are')} for information")
@@ -107,42 +94,21 @@ def banner(runs, unreadable=()):
     return f'<div class="banner {kind}"><strong>{head}</strong>{f"<ul>{items}</ul>" if items else ""}</div>'
 
 
-def headline(run):
-    """A crack in one line."""
-    found = [f"{escape(c.quantity.split(',')[0])} {with_uncertainty(c.measured, c.uncertainty)} {escape(c.unit)} "
-             f"({percent(c.difference)} from the paper)" for c in comparisons(run) if c.measured is not None]
-    return "; ".join([pattern_phrase(run.crack)] + found)
-
-
 def overview(runs):
-    """Counts by run and claim."""
+    """Counts by run and claim, folded."""
     rows = []
     for position, run in enumerate(runs):
         link = f'<a href="#run-{position}">{escape(run.name)}</a>'
         for tally in tallies(run):
-            verdict = next((v for v in VERDICTS if tally.count[v]), "reported")
-            rows.append(row(verdict, [
+            rows.append(row(tally.kind, [
                 ("short", link), ("short", f'<a href="#claim-{escape(tally.claim)}">{escape(tally.claim)}</a>'),
                 *(("number", str(tally.count[v])) for v in ("holds", "fails", "reported")),
-                ("number", ratio_text(tally.worst))]))
+                ("number", ratio_text(tally.worst))], WORDS[tally.kind]))
         if not run.checks:
             word = "reported" if run.state == "complete" else run.state
             rows.append(row(word, [("short", link), ("short", "none"), *[("number", "–")] * 4]))
     head = ["verdict", "run", "claim", "#holds", "#fails", "#reported", "#worst error / tolerance"]
-    return table(head, rows, "narrow") if rows else ""
-
-
-def crack_section(run, position, pictures):
-    """A crack: what it did, as pictures and numbers."""
-    parts = [f'<h2 id="crack-{position}">Crack: {escape(run.name)}</h2>', pattern_sentence(run)]
-    parts += [figure(pictures[name][0], f"{run.name}: {first_sentence(caption)}", caption, pictures[name][1])
-              for name, caption in CAPTIONS.items() if name in pictures]
-    if run.near_tip is not None:
-        parts.append(near_tip_table(run.near_tip))
-    missing = [name for name in CAPTIONS if name not in pictures]
-    if missing:
-        parts.append(f'<p class="soft">Not drawn, for the run left nothing to draw: {", ".join(missing)}</p>')
-    return "\n".join(parts)
+    return f"<details><summary>Counts by run and claim</summary>{table(head, rows, 'narrow')}</details>" if rows else ""
 
 
 def inputs_section(run, position):
@@ -177,28 +143,17 @@ def facts(run):
     return f'<p class="soft">{escape(" · ".join(found))}</p>' if found else ""
 
 
-def pattern_phrase(crack):
-    """The pattern of a crack in words."""
-    word = escape(crack["pattern"])
-    return "the pattern of the crack is <b>undecided</b>" if word == "undecided" else f"the crack is <b>{word}</b>"
-
-
-def pattern_sentence(run):
-    """What the crack did, and why it is called that."""
-    if run.crack is None:
-        return "<p>The run did not get to the measurement of its crack (no crack.json).</p>"
-    phrase = pattern_phrase(run.crack)
-    reason = f": {escape(run.crack['reason'])}" if run.crack.get("reason") else ""
-    return f"<p>{phrase[:1].upper()}{phrase[1:]}{reason}.</p>"
-
-
 def key_numbers(runs):
-    """What was measured of the cracks, beside what was published."""
+    """What was measured of the cracks, beside what was published if anything was."""
     several = sum(run.crack is not None for run in runs) > 1
-    rows = [row(c.verdict, [
+    rows = [row(c.check.kind, [
         *([("short", escape(run.name))] if several else []), ("words", raised(c.quantity)),
         ("number", "not measured" if c.measured is None else with_uncertainty(c.measured, c.uncertainty)),
-        ("number", number(c.published, ".4g")), ("short", raised(c.unit)), ("number", percent(c.difference))])
-        for run in runs for c in comparisons(run)]
+        ("number", number(c.published, ".4g")), ("short", raised(c.unit)), ("number", percent(c.difference))],
+        c.check.word) for run in runs for c in comparisons(run)]
+    rows += [row("reported", [
+        *([("short", escape(run.name))] if several else []), ("words", raised(quantity)),
+        ("number", with_uncertainty(value, uncertainty)), ("number", "–"), ("short", unit), ("number", "–")], "measured")
+        for run in runs for quantity, unit, value, uncertainty in unpublished(run)]
     head = ["verdict", *(["run"] if several else []), "quantity", "#latcon", "#paper", "unit", "#difference"]
     return f'<div class="key">{table(head, rows, "narrow")}</div>' if rows else ""

@@ -121,14 +121,23 @@ def limits(position):
     return low - margin, high + margin
 
 
+# Where elastic energy goes: {column of energy.csv: (words, colour)}.
+SHARES = {"broken": ("in broken bonds", RED), "viscous": ("viscous heat", SKY), "kinetic": ("kinetic", BLUE),
+          "contact": ("contact", GREEN)}
+
+
+def energy_shares(energy):
+    """Elastic energy released, with the work of the edges, and its shares that are not zero [(column, values), ...]; all
+    since the first row [J/m]."""
+    released = energy["elastic"][0] - energy["elastic"] + energy["boundary_work"] - energy["boundary_work"][0]
+    shares = [(name, energy[name] - energy[name][0]) for name in SHARES]
+    return released, [(name, values) for name, values in shares if values.any()]
+
+
 def draw_energy(energy, path):
     """What the elastic energy became: kinetic, viscous and broken on top of each other; below, what is unaccounted."""
     t = 1e3 * energy["t"]
-    released = energy["elastic"][0] - energy["elastic"] + energy["boundary_work"] - energy["boundary_work"][0]
-    parts = {name: energy[name] - energy[name][0] for name in ("broken", "viscous", "kinetic", "contact")}
-    shares = [("in broken bonds", "broken", RED), ("viscous heat", "viscous", SKY), ("kinetic", "kinetic", BLUE),
-              ("contact", "contact", GREEN)]
-    shares = [share for share in shares if parts[share[1]].any()]
+    released, shares = energy_shares(energy)
 
     page = Page(5.4)
     axes = page.axes(1.0, 0.25, WIDTH - 1.25, 3.3)
@@ -136,8 +145,8 @@ def draw_energy(energy, path):
     axes.plot(t, released, "--", color=BLACK,
               label=f"elastic energy released{' and work of the edges' if worked else ''}, {released[-1]:.4g} J/m")
     if shares:
-        axes.stackplot(t, [parts[name] for _, name, _ in shares], colors=[colour for *_, colour in shares], alpha=0.85,
-                       linewidth=0, labels=[f"{label}, {parts[name][-1]:.4g} J/m" for label, name, _ in shares])
+        axes.stackplot(t, [values for *_, values in shares], colors=[SHARES[name][1] for name, _ in shares], alpha=0.85,
+                       linewidth=0, labels=[f"{SHARES[name][0]}, {values[-1]:.4g} J/m" for name, values in shares])
     axes.set(xlim=(t[0], t[-1]), ylabel="energy per sheet thickness\nsince the seed crack [J/m]")
     axes.tick_params(labelbottom=False)
     handles, labels = axes.get_legend_handles_labels()

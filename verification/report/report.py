@@ -19,15 +19,24 @@ from crack_path import draw_crack_path
 from field_pictures import draw_fields, has_fields
 from files import BAD_INPUT, CLAIM_FAILS, DONE, DamagedFile, exit_code_of, write_file
 from frame import read_last_frame
+from motion import read_motion
 from near_tip_plots import opening_stress_picture, velocity_picture
 from page import page
 from pictures import draw_energy, draw_sheet
 from runs import Unreadable, find_runs, has_rows
+from sheet_data import sheet_data
 from summary import text_summary
 
 
-def draw_pictures(run):
-    """Pictures of a fracture run, as far as its files go: {name: (picture, still picture for print or None)}."""
+# Bytes of all sheets of a page: with pictures and scripts, 3.5 MB at most for Fig. 1, the page stays below 8 MB.
+LARGEST_SHEETS = 4_500_000
+
+
+def draw_pictures(run, motion):
+    """Pictures of a fracture run, as far as its files go: {name: (picture, still picture for print or None)}.
+
+    motion: frames of the run, or None.
+    """
     drawn = {}
 
     def place(name, still=None):
@@ -35,7 +44,8 @@ def draw_pictures(run):
         return run.folder / name
 
     gif, still = run.folder / "animation.gif", run.folder / "animation.png"
-    if draw_animation(run, gif, still):
+    if motion is not None:
+        draw_animation(motion, gif, still)
         place("animation.gif", still)
     frame = read_last_frame(run.folder)
     if frame is not None:
@@ -67,15 +77,18 @@ def report(directory, quiet):
     """Everything, for the folder as the user gave it. @return exit code"""
     folder = Path(directory)
     found, unreadable = find_runs(folder)
-    runs, pictures, plots = [], {}, {}
+    runs, pictures, plots, sheets = [], {}, {}, {}
+    most = LARGEST_SHEETS // max(1, sum(run.is_fracture for run in found))
     for run in found:
         try:  # frames and fields are read only now
-            pictures[run.folder] = draw_pictures(run) if run.is_fracture else {}
+            motion = read_motion(run) if run.is_fracture else None
+            pictures[run.folder] = draw_pictures(run, motion) if run.is_fracture else {}
+            sheets[run.folder] = None if motion is None else sheet_data(run, motion, most)
             plots[run.folder] = draw_plots(run)
             runs.append(run)
         except DamagedFile as error:
             unreadable.append(Unreadable(run.name, run.folder, str(error)))
-    html = page(folder.resolve().name, runs, pictures, plots, unreadable)
+    html = page(folder.resolve().name, runs, pictures, plots, sheets, unreadable)
     write_file(folder / "report.html", lambda beside: beside.write_text(html, encoding="utf-8"))
     for one in unreadable:
         print(f"error: {one.problem}", file=sys.stderr)

@@ -27,6 +27,17 @@ class Check:
     error: float  # as the claim defines it, smaller is better
     tolerance: float  # None: for information only
     verdict: str  # "holds", "fails" or "reported"
+    verified: bool = True  # whether the material of the run was
+
+    @property
+    def kind(self):
+        """The class that colours it: nothing of a run that was not verified looks as if it held."""
+        return "warns" if self.verdict == "holds" and not self.verified else self.verdict
+
+    @property
+    def word(self):
+        """The verdict in words."""
+        return "holds, not verified" if self.kind == "warns" else self.verdict
 
     @property
     def ratio(self):
@@ -131,13 +142,14 @@ def find_runs(folder):
 
 def read_run(folder):
     """Everything a run wrote but its fields."""
-    results = read_json(folder / "results.json")
+    results, info = read_json(folder / "results.json"), read_json(folder / "run.json")
+    verified = not (info or {}).get("skip_verification")
     return Run(
         name=folder.resolve().name,
         folder=folder,
-        checks=[] if results is None else read_checks(folder / "results.json", results),
+        checks=[] if results is None else read_checks(folder / "results.json", results, verified),
         has_results=results is not None,
-        info=read_json(folder / "run.json"),
+        info=info,
         case_text=read_text(folder / "case.prm"),
         crack=read_crack(folder / "crack.json"),
         near_tip=read_near_tip(folder / "near_tip.json"),
@@ -157,7 +169,7 @@ def read_energy(path):
     return read_table(path, ("t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "imbalance"))
 
 
-def read_checks(path, results):
+def read_checks(path, results, verified):
     """The rows of results.json."""
     rows = results.get("claims")
     if not isinstance(rows, list):
@@ -175,7 +187,7 @@ def read_checks(path, results):
                 raise DamagedFile(path, f"{where}: {key} is {value!r}, no text")
         for key, value in numbers.items():
             numbers[key] = checked_number(path, f"{where}: {key}", value)
-        check = Check(**texts, **numbers)
+        check = Check(**texts, **numbers, verified=verified)
         if check.verdict != expected_verdict(check):
             raise DamagedFile(path, f"{where} says {check.verdict!r}, its numbers say otherwise")
         checks.append(check)

@@ -3,7 +3,7 @@ import re
 from html import escape
 from pathlib import Path
 
-from markup import figure, first_sentence, number, row, table, verb
+from markup import figure, first_sentence, number, plain_row, row, table, verb
 from study_plots import pattern_text
 from study_quantities import MEASURED, NEAR_TIP
 from study_runs import mean_of, value_text
@@ -181,17 +181,16 @@ def runs_table(study):
     lines = []
     for name, (about, changed, seeds) in study.runs.items():
         changes = "<br>".join(f"{escape(key)} = {escape(value)}" for key, value in changed.items()) or "–"
-        lines.append("<tr>" + "".join(f'<td class="{kind}">{text}</td>' for kind, text in (
-            ("short", escape(name)), ("words", escape(about)), ("words", changes),
-            ("short", ", ".join(str(seed.seed) for seed in seeds)))) + "</tr>")
+        lines.append(plain_row([("short", escape(name)), ("words", escape(about)), ("words", changes),
+                                ("short", ", ".join(str(seed.seed) for seed in seeds))]))
     return table(["run", "about", "changes", "seeds"], lines)
 
 
 def measured_table(study, columns):
     """A line for each case with its pattern and the means of some quantities."""
-    lines = ["<tr>" + "".join(f'<td class="{kind}">{text}</td>' for kind, text in (
+    lines = [plain_row([
         ("short", escape(name)), ("words", escape(pattern_text(seeds))),
-        *(("number", value_text(mean_of(seeds, quantity), scale)) for quantity, scale, _ in columns))) + "</tr>"
+        *(("number", value_text(mean_of(seeds, quantity), scale)) for quantity, scale, _ in columns)])
              for name, (_, _, seeds) in study.runs.items()]
     return table(["run", "pattern", *(f"#{head}" for *_, head in columns)], lines)
 

@@ -3,7 +3,7 @@ import math
 import textwrap
 from dataclasses import dataclass
 
-from runs import Run
+from runs import Check, Run
 
 VERDICTS = ("fails", "holds", "reported")
 
@@ -16,6 +16,7 @@ class Tally:
     claim: str
     count: dict  # verdict: number of rows
     worst: float  # largest error over tolerance; None if nothing has a tolerance
+    kind: str  # the class that colours it: "fails", "warns" (holds, but was not verified), "holds" or "reported"
 
 
 @dataclass(frozen=True)
@@ -28,7 +29,12 @@ class Comparison:
     published: float
     measured: float  # None: not measured
     uncertainty: float  # one standard deviation; None: not known
-    verdict: str
+    check: Check  # the row
+
+    @property
+    def verdict(self):
+        """Its verdict."""
+        return self.check.verdict
 
     @property
     def difference(self):
@@ -49,7 +55,8 @@ def tally_of(run, claim, checks):
     """Counts of some rows."""
     ratios = [check.ratio for check in checks if check.ratio is not None]
     count = {verdict: sum(check.verdict == verdict for check in checks) for verdict in VERDICTS}
-    return Tally(run, claim, count, max(ratios, default=None))
+    kind = next((kind for kind in ("fails", "warns", "holds") if any(check.kind == kind for check in checks)), "reported")
+    return Tally(run, claim, count, max(ratios, default=None), kind)
 
 
 def comparisons(run):
@@ -63,7 +70,7 @@ def comparisons(run):
         result.append(Comparison(
             run, check.quantity, unit, scale * check.theory,
             None if check.lattice is None else scale * check.lattice,
-            None if uncertainty is None else scale * uncertainty, check.verdict))
+            None if uncertainty is None else scale * uncertainty, check))
     return result
 
 
@@ -75,6 +82,18 @@ NAMES = {"Lagrangian crack speed": "speed_lagrangian", "laboratory crack speed":
 def uncertainty_of(quantity, crack):
     """Uncertainty that crack.json gives for the quantity of a row; None if there is none."""
     return crack[f"{NAMES[quantity]}_uncertainty"] if crack is not None and quantity in NAMES else None
+
+
+def unpublished(run):
+    """What crack.json measured and no published value is known of: [(quantity, unit, value, uncertainty), ...], lengths in cm."""
+    compared = {c.quantity for c in comparisons(run)}
+    found = []
+    for quantity, name in NAMES.items():
+        value, uncertainty = ((run.crack or {}).get(key) for key in (name, f"{name}_uncertainty"))
+        if quantity not in compared and value is not None:
+            scale, unit = (1, "m/s") if "speed" in name else (100, "cm")
+            found.append((quantity, unit, scale * value, None if uncertainty is None else scale * uncertainty))
+    return found
 
 
 def with_uncertainty(value, uncertainty, sign="±"):

@@ -1,0 +1,368 @@
+#!/usr/bin/python3
+"""The report in Chromium: the viewer of the sheet shows what the files hold, the plots and the page answer their reader."""
+import base64
+import hashlib
+import io
+import re
+import sys
+import tempfile
+import time
+import unittest
+import zlib
+from dataclasses import replace
+from pathlib import Path
+from xml.etree import ElementTree
+
+import numpy as np
+from PIL import Image
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+sys.dont_write_bytecode = True
+from browser import Browser
+from made_up_sheet import FRAMES, SPACING, write_torn_sheet
+from report_test import FAILS, HOLDS, REPORTED, report, write_verification
+
+import sheet_data
+from motion import read_motion
+from runs import read_run
+
+SCREEN = 800  # height of a window [pixels]
+# Half of the last digit shown, and half of the step stored (sheet_data.py).
+PLACE = (0.5e-6, SPACING / 2000 / 2)  # [m]
+SPEED = 0.5e-2  # [m/s]
+STRETCH = (0.5e-3, 2**0.5 / 2000)
+MARK = (0xab, 0x1f, 0x14)  # colour of what is picked, --fails of style.css
+VALUES = re.compile(r"site (\d+): X (\S+) cm, Y (\S+) cm, x (\S+) cm, y (\S+) cm, speed (\S+) m/s, damage (\S+?)"
+                    r"(?:; bond (\d+)–(\d+): stretch (\S+))?$")
+
+
+class File:
+    """A .vtp as VTK reads it, values by the number of the site."""
+
+    def __init__(self, path, site):
+        reader = vtkXMLPolyDataReader()
+        reader.SetFileName(str(path))
+        reader.Update()
+        sheet = reader.GetOutput()
+        points = sheet.GetPointData()
+        self.reference = vtk_to_numpy(sheet.GetPoints().GetData())[:, :2].astype(float)
+        self.place = self.reference + vtk_to_numpy(points.GetArray("displacement"))[:, :2]
+        self.speed = np.linalg.norm(vtk_to_numpy(points.GetArray("velocity")), axis=1)
+        self.damage = None if points.GetArray("damage") is None else vtk_to_numpy(points.GetArray("damage"))
+        site = vtk_to_numpy(points.GetArray("site")) if site is None else site
+        self.site, self.point = site, {int(number): point for point, number in enumerate(site)}
+        self.stretch = {}
+        if sheet.GetNumberOfLines():
+            ends = self.site[vtk_to_numpy(sheet.GetLines().GetConnectivityArray())].reshape(-1, 2)
+            values = vtk_to_numpy(sheet.GetCellData().GetArray("stretch"))[sheet.GetNumberOfVerts():]
+            self.stretch = {frozenset(pair): value for pair, value in zip(ends.tolist(), values)}
+
+
+def series(path):
+    """Files that a .pvd names, with their times."""
+    return [(float(d.attrib["timestep"]), path.parent / d.attrib["file"]) for d in ElementTree.parse(path).iter("DataSet")]
+
+
+class ViewerTest(unittest.TestCase):
+    @classmethod
+    def setUpClass(cls):
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.runs = Path(folder.name) / "runs"
+        write_verification(cls.runs / "verify", [HOLDS, REPORTED])
+        write_torn_sheet(cls.runs / "torn")
+        cls.page = cls.runs / "report.html"
+        assert report.main([str(cls.runs), "--quiet"]) == 0
+        cls.browser = cls.enterClassContext(Browser(1280, SCREEN))
+
+    def setUp(self):
+        self.browser.said.clear()
+        self.browser.requested.clear()
+        self.browser.resize(1280, SCREEN)
+        self.browser.dark(False)
+        self.browser.open(self.page)
+
+    def tearDown(self):
+        self.assertEqual(self.browser.said, [])
+        own = ("data:", "blob:", self.page.resolve().as_uri())
+        self.assertEqual([url for url in self.browser.requested if not url.startswith(own)], [])
+
+    def canvas(self, name="sheet"):
+        """Digest of what a canvas shows."""
+        url = self.browser.value(f"document.querySelector('.viewer .{name}').toDataURL()")
+        return hashlib.sha256(url.encode()).hexdigest()
+
+    def text(self, name):
+        return self.browser.value(f"document.querySelector('.viewer .{name}').textContent")
+
+    def place(self, selector):
+        """Left, top, width and height of an element in the window, which shows it."""
+        return self.browser.value(f"(() => {{ const e = document.querySelector('{selector}');"
+                                  "e.scrollIntoView({block: 'center'}); "
+                                  "const r = e.getBoundingClientRect(); return [r.left, r.top, r.width, r.height]; })()")
+
+    def click(self, selector):
+        left, top, width, height = self.place(selector)
+        for kind in ("mousePressed", "mouseReleased"):
+            self.browser.mouse(kind, left + width / 2, top + height / 2, button="left", clickCount=1)
+
+    def key(self, key):
+        codes = {"Home": 36, "End": 35, "ArrowLeft": 37, "ArrowRight": 39}
+        for kind in ("keyDown", "keyUp"):
+            self.browser.call("Input.dispatchKeyEvent", type=kind, key=key, code=key, windowsVirtualKeyCode=codes[key])
+
+    def choose(self, name, value):
+        self.browser.value(f"(() => {{ const s = document.querySelector('.viewer .{name}'); s.value = '{value}';"
+                           "s.dispatchEvent(new Event('change', {bubbles: true})); })()")
+
+    def test_the_slider_moves_the_sheet(self):
+        times = [time for time, _ in series(self.runs / "torn" / "motion.pvd")]
+        self.assertEqual(self.text("time"), f"{1e3 * times[-1]:.3f} ms")
+        self.browser.value("document.querySelector('.viewer .slider').focus()")
+        shown = {"sheet": [self.canvas()], "near-tip": [self.canvas("near-tip")]}
+        self.key("Home")
+        for number in range(3):
+            self.assertEqual(self.text("time"), f"{1e3 * times[number]:.3f} ms")
+            for name, digests in shown.items():
+                digests.append(self.canvas(name))
+            self.key("ArrowRight")
+        self.key("End")
+        for name, digests in shown.items():
+            self.assertEqual(len(set(digests)), 4, name)
+            self.assertEqual(self.canvas(name), digests[0], name)
+
+    def test_play_advances_to_the_end(self):
+        self.click(".viewer .play")
+        seen, end = [], time.monotonic() + 60
+        while time.monotonic() < end and self.text("play") != "▶":
+            seen.append(int(self.browser.value("document.querySelector('.viewer .slider').value")))
+        self.assertEqual(seen, sorted(seen))
+        self.assertGreaterEqual(len(set(seen)), 3)  # a slow machine leaves some out
+        self.assertEqual(int(self.browser.value("document.querySelector('.viewer .slider').value")), FRAMES - 1)
+        self.click(".viewer .play")
+        self.browser.value("""new Promise((done) => {
+          const pause = () => document.querySelector('.viewer .slider').value > 0
+            ? (document.querySelector('.viewer .play').click(), done()) : setTimeout(pause, 5);
+          pause();
+        })""")
+        paused = self.text("time")
+        time.sleep(1)
+        self.assertEqual(self.text("time"), paused)
+        self.assertEqual(self.text("play"), "▶")
+
+    def hover(self, canvas):
+        """Values below points of a canvas: [(pointer, match of VALUES), ...]."""
+        left, top, width, height = self.place(f".viewer .{canvas}")
+        found = []
+        for u in np.linspace(0.05, 0.95, 12):
+            for v in np.linspace(0.08, 0.92, 7):
+                pointer = left + u * width, top + v * height
+                self.browser.mouse("mouseMoved", *pointer)
+                match = VALUES.match(self.text("values"))
+                if match:
+                    found.append((pointer, match))
+        self.assertGreater(len(found), 10)
+        self.browser.mouse("mouseMoved", 1, 1)
+        self.assertIn("Point at the sheet", self.text("values"))
+        return found
+
+    def check_values(self, file, full, found, configuration):
+        """Each number is that of the file; the pointer is where the sites are, on one scale for x and y."""
+        fastest = max(File(path, file.site).speed.max() for _, path in series(self.runs / "torn" / "motion.pvd"))
+        speed_step = fastest / 65535 / 2
+        pointers, places = [], []
+        for pointer, match in found:
+            site, *numbers, first, second, stretch = match.groups()
+            X, Y, x, y, speed, damage = map(float, numbers)
+            point = file.point[int(site)]
+            for shown, value in zip((X, Y), file.reference[point]):
+                self.assertAlmostEqual(shown / 100, value, delta=1.001 * PLACE[0])
+            for shown, value in zip((x, y), file.place[point]):
+                self.assertAlmostEqual(shown / 100, value, delta=1.001 * sum(PLACE))
+            self.assertAlmostEqual(speed, file.speed[point], delta=1.001 * (SPEED + speed_step))
+            pointers.append(pointer)
+            places.append((file.reference if configuration == "undeformed" else file.place)[point])
+            if first is not None:
+                a, b = file.point[int(first)], file.point[int(second)]
+                expected = np.hypot(*(file.place[a] - file.place[b])) / np.hypot(*(file.reference[a] - file.reference[b]))
+                self.assertAlmostEqual(float(stretch), expected, delta=1.001 * sum(STRETCH))
+            if full is not None:
+                self.assertAlmostEqual(damage, full.damage[point], delta=0.51e-3)
+                if first is not None:  # fails for a bond that has broken
+                    self.assertAlmostEqual(float(stretch), full.stretch[frozenset((int(first), int(second)))],
+                                           delta=1.001 * sum(STRETCH))
+        pointers, places = np.array(pointers), np.array(places)
+        x, y = (np.polyfit(places[:, axis], pointers[:, axis], 1) for axis in (0, 1))
+        self.assertAlmostEqual(x[0] / -y[0], 1, delta=0.02)
+        away = np.hypot(np.polyval(x, places[:, 0]) - pointers[:, 0], np.polyval(y, places[:, 1]) - pointers[:, 1])
+        self.assertLess(np.median(away), 0.6 * x[0] * SPACING * 1.8)  # of a spacing, stretched
+
+    def test_values_below_the_pointer_are_those_of_the_file(self):
+        whole = File(self.runs / "torn" / "lattice-0001.vtp", None)
+        frames = series(self.runs / "torn" / "motion.pvd")
+        for number, configuration, canvas in ((FRAMES - 1, "deformed", "sheet"), (FRAMES - 1, "deformed", "near-tip"),
+                                              (5, "undeformed", "sheet"), (0, "deformed", "sheet")):
+            with self.subTest(frame=number, configuration=configuration, canvas=canvas):
+                self.choose("configuration", configuration)
+                self.browser.value(f"document.querySelector('.viewer').viewer.show({number})")
+                file = File(frames[number][1], whole.site)
+                self.check_values(file, whole if number == FRAMES - 1 else None, self.hover(canvas), configuration)
+
+    def site_at(self, x, y):
+        """Number of the site below a point of the window, and the distance of its mark from there [pixels]."""
+        self.browser.mouse("mouseMoved", x, y)
+        match = VALUES.match(self.text("values"))
+        left, top, *_ = self.place(".viewer .sheet")
+        url = self.browser.value("document.querySelector('.viewer .sheet').toDataURL()")
+        with Image.open(io.BytesIO(base64.b64decode(url.partition(",")[2]))) as picture:
+            marked = np.argwhere((np.asarray(picture.convert("RGB")) == MARK).all(axis=2))
+        middle = (marked.min(axis=0) + marked.max(axis=0))[::-1] / 2 + (left, top)
+        return int(match[1]), np.hypot(middle[0] - x, middle[1] - y)
+
+    def test_zoom_and_pan_keep_the_values_in_place(self):
+        before = self.canvas()
+        left, top, width, height = self.place(".viewer .sheet")
+        x, y = left + 0.3 * width, top + 0.25 * height
+        site, away = self.site_at(x, y)
+        spacing = width / 60  # about 60 sites along the sheet
+        self.assertLess(away, 1.5 * spacing)
+        for _ in range(2):
+            self.browser.mouse("mousePressed", x, y, button="left", clickCount=2)
+            self.browser.mouse("mouseReleased", x, y, button="left", clickCount=2)
+        closer, away = self.site_at(x, y)
+        self.assertEqual(closer, site)
+        self.assertLess(away, 1.5 * 4 * spacing)
+        enlarged = self.canvas()
+        for dx, dy in ((60, 0), (0, 40)):
+            self.browser.mouse("mousePressed", x, y, button="left", clickCount=1)
+            self.browser.mouse("mouseMoved", x + dx, y + dy, button="left", buttons=1)
+            self.browser.mouse("mouseReleased", x + dx, y + dy, button="left", clickCount=1)
+            x, y = x + dx, y + dy
+            self.assertEqual(self.site_at(x, y)[0], site)
+        for factor, button in ((1.6, "closer"), (1 / 1.6, "farther")):
+            scale = self.browser.value("(() => { const v = document.querySelector('.viewer').viewer;"
+                                       "return v.frameOf(v.views[0]).scale; })()")
+            self.click(f".viewer .{button}")
+            now = self.browser.value("(() => { const v = document.querySelector('.viewer').viewer;"
+                                     "return v.frameOf(v.views[0]).scale; })()")
+            self.assertAlmostEqual(now / scale, factor, places=6)
+        whole = File(self.runs / "torn" / "lattice-0001.vtp", None)
+        last = File(series(self.runs / "torn" / "motion.pvd")[-1][1], whole.site)
+        self.check_values(last, whole, self.hover("sheet"), "deformed")
+        self.assertNotEqual(enlarged, before)
+        self.click(".viewer .reset")
+        self.browser.mouse("mouseMoved", 1, 1)
+        self.assertEqual(self.canvas(), before)
+
+    def test_colours_and_configurations_differ(self):
+        shown = set()
+        for configuration in ("deformed", "undeformed"):
+            self.choose("configuration", configuration)
+            for colour, words in (("speed", "[m/s]"), ("stretch", "stretch of bonds"), ("damage", "fraction of bonds broken")):
+                self.choose("colour", colour)
+                shown.add(self.canvas())
+                self.assertIn(words, self.text("colour-name"))
+        self.assertEqual(len(shown), 6)
+        self.browser.value("(() => { const s = document.querySelector('.viewer .sheet'); s.width = s.width; })()")  # wipes it
+        self.assertNotIn(self.canvas(), shown)
+
+    def test_plots_give_the_values_below_the_pointer(self):
+        for name, columns in (("path", ("X", "Y")), ("energy", ("t", "broken"))):
+            folder = self.runs / "torn"
+            table = np.genfromtxt(folder / ("crack.csv" if name == "path" else "energy.csv"), delimiter=",", names=True)
+            left, top, width, height = self.place(f".plot.{name}")
+            self.browser.mouse("mouseMoved", left + 0.6 * width, top + 0.4 * height)
+            shown = self.browser.value(f"[...document.querySelectorAll('[data-plot^={name}] .legend b')]"
+                                       ".map((b) => b.textContent)")
+            scale = (100, 1e3) if name == "path" else (1e3, 1)
+            first, second = (scale[i] * table[column] for i, column in enumerate(columns))
+            row = np.abs(first - float(shown[0])).argmin()
+            self.assertAlmostEqual(float(shown[0]) / first[row], 1, delta=0.5e-4)
+            value = second[row] - (second[0] if name == "energy" else 0)
+            self.assertAlmostEqual(float(shown[1 if name == "path" else 2]) / value, 1, delta=0.5e-4)
+
+    def test_is_short_and_its_contents_stay(self):
+        self.assertLessEqual(self.browser.value("document.documentElement.scrollHeight"), 3 * SCREEN)
+        self.assertLess(self.place(".plot.path")[1], SCREEN)
+        self.browser.value("document.querySelector('nav a[href=\"#inputs\"]').click()")
+        self.browser.wait("scrollY > 400")
+        self.assertEqual(self.browser.value("document.querySelector('nav').getBoundingClientRect().top"), 0)
+        self.assertEqual(self.browser.value("[...document.querySelectorAll('details')].filter((d) => d.open && !d.parentElement"
+                                            ".closest('details')).length"), 0)
+        self.browser.value("location.hash = 'claim-energy'")
+        self.browser.wait("document.querySelector('#claim-energy > details').open")
+
+    def test_figures_are_dark_on_dark_pages(self):
+        self.browser.value("document.querySelectorAll('details').forEach((d) => { d.open = true; })")
+        selectors = [".viewer .sheet", ".plot.path", ".plot.energy",
+                     *(f"#stills-{self.number()} figure:nth-of-type({i}) .picture" for i in (1, 2, 3, 4, 5))]
+        for dark in (False, True):
+            self.browser.dark(dark)
+            for selector in selectors:
+                left, top, width, height = self.place(selector)
+                data = self.browser.call("Page.captureScreenshot", format="png")["data"]
+                with Image.open(io.BytesIO(base64.b64decode(data))) as picture:
+                    grey = np.asarray(picture.convert("L"), dtype=float)
+                # The corner of a figure is its background.
+                corner = grey[max(0, int(top) + 3):int(top) + 6, int(left) + 3:int(left) + 6]
+                if corner.size:
+                    (self.assertLess if dark else self.assertGreater)(corner.mean(), 60 if dark else 230, f"{selector}, {dark}")
+
+    def number(self):
+        """Of the crack in the page."""
+        return self.browser.value("document.querySelector('[id^=stills-]').id.split('-')[1]")
+
+
+class SizeTest(unittest.TestCase):
+    def test_a_sheet_takes_no_more_than_it_may(self):
+        """Displacements of a thousand steps at random do not compress: frames are left out until they fit."""
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            write_torn_sheet(folder / "run")
+            run = read_run(folder / "run")
+            motion = read_motion(run)
+            generator, step = np.random.default_rng(5), SPACING / sheet_data.STEPS_PER_SPACING
+            motion = replace(motion, frames=[
+                replace(frame, time=frame.time + 1e-6 * copy,
+                        position=frame.position + step * generator.integers(-512, 512, frame.position.shape))
+                for frame in motion.frames for copy in range(4)])
+            all_frames = sheet_data.sheet_data(run, motion, 10**9)
+            sites = len(motion.whole.reference)
+            # At least the 10 bits of a coordinate that are at random; base64 has 4 letters for 3 bytes.
+            self.assertGreater(len(all_frames.text), len(motion.frames) * 2 * sites * 10 / 8 * 4 / 3)
+            most = len(all_frames.text) // 3
+            fewer = sheet_data.sheet_data(run, motion, most)
+            self.assertLessEqual(len(fewer.text), most)
+            self.assertGreaterEqual(len(fewer.contents["times"]), sheet_data.FEWEST_FRAMES)
+            for end in (0, -1):
+                self.assertEqual(fewer.contents["times"][end], motion.frames[end].time)
+            self.assertIsNone(sheet_data.sheet_data(run, motion, most // 20))
+
+    def test_fig_1_is_below_8_megabytes(self):
+        """What a page may hold of each kind. Fig. 1 itself: fig1_test.py, which finds all of its pictures below 3 MB."""
+        scripts = sum(path.stat().st_size for path in [*(report.Path(report.__file__).parent).glob("*.js"),
+                                                       report.Path("/usr/share/javascript/dygraphs/dygraph.min.js")])
+        self.assertLess(report.LARGEST_SHEETS + scripts + 3_000_000, 8_000_000)
+
+    def test_stored_numbers_are_read_back(self):
+        generator = np.random.default_rng(3)
+        for values in (generator.integers(-2**29, 2**29, (3, 50)), np.arange(7), np.zeros((2, 0), dtype=int)):
+            packed = sheet_data.packed(values)
+            planes = np.frombuffer(zlib.decompress(base64.b64decode(packed["data"])), dtype=np.uint8)
+            steps = planes.reshape(4, -1).T.copy().view("<u4").reshape(packed["shape"]).astype(np.int64)
+            np.testing.assert_array_equal(np.cumsum((steps >> 1) ^ -(steps & 1), axis=-1), values)
+
+
+class FoldedTest(unittest.TestCase):
+    def test_claims_that_fail_are_open(self):
+        with tempfile.TemporaryDirectory() as name:
+            write_verification(Path(name) / "verify", [HOLDS, FAILS])
+            self.assertEqual(report.main([name, "--quiet"]), 3)
+            html = (Path(name) / "report.html").read_text(encoding="utf-8")
+        for claim, opened in (("energy", ""), ("prestretch", " open")):
+            self.assertIn(f'<section id="claim-{claim}"><details class="claim"{opened}><summary>', html)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)
