@@ -6,9 +6,9 @@
 #include <deal.II/base/mpi.h>
 #include <nlohmann/json.hpp>
 
-#include "verification/case_text.h"
 #include "verification/commands/command.h"
-#include "verification/data_folder.h"
+#include "verification/input/case_text.h"
+#include "verification/input/data_folder.h"
 #include "verification/study/quantities.h"
 
 namespace verification
@@ -136,7 +136,7 @@ Json shipped_cases()
 
 } // namespace
 
-ExitCode print_schema(const Options &options)
+latcon::support::ExitCode print_schema(const Options &options)
 {
   Case input;
   Parameters parameters;
@@ -168,7 +168,7 @@ ExitCode print_schema(const Options &options)
   }
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
     std::cout << document.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
-  return ExitCode::done;
+  return latcon::support::ExitCode::done;
 }
 
 } // namespace verification
