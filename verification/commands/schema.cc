@@ -145,7 +145,7 @@ latcon::support::ExitCode print_schema(const Options &options)
   else if (options.overrides.empty())
     input.declare(parameters);
   else
-    throw InputError("--set replaces entries of a case; give one: latcon schema CASE --set ...");
+    throw latcon::support::InputError("--set replaces entries of a case; give one: latcon schema CASE --set ...");
   const std::vector<Declaration> entries = parameters.declarations();
   Json document;
   document["format"] = "latcon-schema";
