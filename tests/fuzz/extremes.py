@@ -9,6 +9,7 @@ alone. What fails is left in DIR, with the command that repeats it.
 """
 import argparse
 import collections
+import json
 import math
 import pathlib
 import random
@@ -24,9 +25,6 @@ from vtk.util.numpy_support import vtk_to_numpy
 import numpy
 
 import mutate
-
-sys.path.append(str(mutate.ROOT / "tests" / "docs"))
-import entries_page
 
 BASE = mutate.ROOT / "verification" / "cases" / "quick.prm"
 # About 180 sites, or some finite elements; a crack is seeded in them.
@@ -59,8 +57,8 @@ def bounds(rule):
     return low, high
 
 
-def number_in(rule, default, pick):
-    """Anywhere in a range, as often at its ends as within, on a logarithmic scale."""
+def number_in(rule, middle, pick):
+    """Anywhere in a range, as often at its ends as within, on a logarithmic scale about a number."""
     (low, with_low), (high, with_high) = bounds(rule)
     is_whole = "whole number" in rule
     kind = pick.random()
@@ -73,10 +71,7 @@ def number_in(rule, default, pick):
         elif value == high and not with_high:
             value = math.nextafter(high, -math.inf)
     else:
-        try:
-            middle = abs(float(default)) or 1.
-        except ValueError:
-            middle = 1.
+        middle = abs(middle or 1.)  # None is auto
         decades = 2. if kind < 0.75 else 20.
         value = middle * 10.**pick.uniform(-decades, decades)
         if low < 0. and pick.random() < 0.5:
@@ -85,27 +80,33 @@ def number_in(rule, default, pick):
     return str(int(value)) if is_whole else repr(value)
 
 
-def value_of(entry, pick):
-    _, _, _, rule, default, _ = entry
+def value_of(entry, value, pick):
+    """@param value that of the base case"""
+    rule = entry["allowed"]
     if rule.startswith("one of "):
         return pick.choice(rule[len("one of "):].split(", "))
     if rule.endswith(", or auto") and pick.random() < 0.2:
         return "auto"
     if RANGE.search(rule) or "number" in rule:
-        return number_in(rule, default, pick)
+        return number_in(rule, value, pick)
     return pick.choice(EXPRESSIONS)
 
 
-def make(entries, seed, number):
-    """A command, and the entries that it sets."""
+def make(schema, seed, number):
+    """A command, and the entries that it sets.
+
+    @param schema what `latcon schema` prints of the base case
+    """
     pick = random.Random(f"{seed}/{number}")
     command = pick.choice(COMMANDS)
     chosen = dict(TINY)
     if command[0] in MOVES and pick.random() < 0.7:
         chosen[MOVES[command[0]]] = "motion"
-    may_change = [entry for entry in entries if not LARGE.match(entry[1]) and entry[0] not in ("Output", "Checkpoints", "Reference")]
+    may_change = [entry for entry in schema["entries"]
+                  if not LARGE.match(entry["name"]) and entry["section"] not in ("Output", "Checkpoints", "Reference")]
     for entry in pick.sample(may_change, pick.choice([1, 1, 2, 2, 3, 5])):
-        chosen[f"{entry[0]}/{entry[1]}"] = value_of(entry, pick)
+        key = f"{entry['section']}/{entry['name']}"
+        chosen[key] = value_of(entry, schema["case"]["values"][key], pick)
     return command, chosen
 
 
@@ -146,10 +147,10 @@ class Runner:
         self.server = mutate.Server(options.server, self.work)
         self.counts = collections.Counter()
         self.findings = 0
-        outcome, _, printed = self.run(["verify", "--case", str(BASE), "--dry-run"])
-        self.entries = entries_page.entries(printed)
-        if outcome != "exit 0" or len(self.entries) < 50:
+        outcome, _, printed = self.run(["schema", str(BASE)])
+        if outcome != "exit 0":
             raise SystemExit(f"no list of entries: {outcome}")
+        self.schema = json.loads(printed)
 
     def run(self, arguments):
         """@return outcome, standard error, standard output"""
@@ -163,7 +164,7 @@ class Runner:
         return [command[0], str(BASE), *command[1:], *(word for key, value in chosen.items() for word in ("--set", f"{key}={value}"))]
 
     def check(self, number):
-        command, chosen = make(self.entries, self.options.seed, number)
+        command, chosen = make(self.schema, self.options.seed, number)
         dry, said, printed = self.run([*self.arguments(command, chosen), "--dry-run"])
         # As many steps as make sense, whatever their length.
         step = re.search(r"time step:? (\S+) s", printed)
