@@ -30,6 +30,8 @@ def draw_running_crack(tables, path):
             axes.grid(False)
             own = part["side"] == side
             if not own.any():
+                axes.set(xlim=(-1, 1), ylim=(-1, 1), xticks=[], yticks=[])
+                axes.text(0, 0, "not computed", ha="center", va="center")
                 continue
             x, y, values = field(part["X/d"][own], part["Y/d"][own], shown[own])
             mesh = axes.pcolormesh(x, y, values, cmap="RdBu_r", norm=TwoSlopeNorm(0.0, low, high), shading="nearest",
