@@ -6,7 +6,7 @@
 
 using dealii::Tensor;
 
-namespace continuum
+namespace latcon::continuum
 {
 CauchyBorn::CauchyBorn(std::vector<FibreFamily> families) : families_(std::move(families))
 {
@@ -68,4 +68,4 @@ double CauchyBorn::thickness_stretch(const Tensor<2, 2> &F) const
   checked_determinant(F);
   return 1.;
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// A network of fibres that all follow the deformation gradient (theory-continuum.md, eqs. (C.11) to (C.14)):
 ///   W(F) = sum over families of  c_k psi_k(l_k),   l_k = |F N_k|    [Pa]
@@ -27,4 +27,4 @@ public:
 private:
   std::vector<FibreFamily> families_;
 };
-} // namespace continuum
+} // namespace latcon::continuum

@@ -4,7 +4,7 @@
 
 #include <exception>
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -98,4 +98,4 @@ void collectively(const MPI_Comm communicator, const std::function<void()> &work
 {
   DeferredException(work).rethrow_collectively(communicator);
 }
-} // namespace continuum
+} // namespace latcon::continuum

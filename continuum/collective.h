@@ -5,7 +5,7 @@
 #include <functional>
 #include <string>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// Work of one rank that may throw, kept from throwing until all ranks have agreed on it: an exception that left one
 /// rank alone would leave the others waiting in their next communication.
@@ -31,4 +31,4 @@ private:
 
 /// DeferredException and its agreement in one: for work that needs no communication before the agreement.
 void collectively(MPI_Comm communicator, const std::function<void()> &work);
-} // namespace continuum
+} // namespace latcon::continuum

@@ -9,7 +9,7 @@
 #include <optional>
 #include <vector>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// A field of two components over the reference configuration.
 using VectorField = std::shared_ptr<const dealii::Function<2>>;
@@ -79,4 +79,4 @@ struct BoundaryConditions
   std::optional<BodyForce> body_force;
   std::vector<PeriodicPair> periodic;
 };
-} // namespace continuum
+} // namespace latcon::continuum

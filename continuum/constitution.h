@@ -3,7 +3,7 @@
 #include "continuum/gradient_law.h"
 #include "continuum/material.h"
 
-namespace continuum
+namespace latcon::continuum
 {
 /// What a sheet is made of: W(F) + W_g(F, Grad F), and the inertia that goes with them. The laws must outlive all that
 /// is made with it.
@@ -46,4 +46,4 @@ struct Constitution
   /// than 2 makes quadratic elements reach their order on finer meshes only; more costs linear iterations.
   double penalty = 2.;
 };
-} // namespace continuum
+} // namespace latcon::continuum

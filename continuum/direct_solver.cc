@@ -17,7 +17,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -177,4 +177,4 @@ void DirectSolver::solve(LinearAlgebra::distributed::Vector<double> &x,
 {
   solve(x.begin(), b.begin());
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// LU factors of a matrix whose rows are spread over ranks. The first rank gathers it and factorises it alone: factors
 /// that ranks share are rounded as messages happen to arrive, and the same matrix has to give the same bits every time
@@ -48,4 +48,4 @@ private:
   std::size_t n_own_ = 0; // rows
   std::unique_ptr<Factors> factors_;
 };
-} // namespace continuum
+} // namespace latcon::continuum

@@ -6,7 +6,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 void DynamicSolver::update_energies(EnergyLedger &ledger, const Vector &u, const Vector &v,
                                     const double load_factor) const
@@ -85,4 +85,4 @@ Tensor<1, 2> DynamicSolver::momentum() const
   }
   return Utilities::MPI::sum(sum, sheet_.communicator());
 }
-} // namespace continuum
+} // namespace latcon::continuum

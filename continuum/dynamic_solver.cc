@@ -18,7 +18,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 NewmarkParameters NewmarkParameters::generalised_alpha(const double rho_inf)
 {
@@ -474,4 +474,4 @@ std::vector<PointState> DynamicSolver::evaluate(const std::vector<Point<2>> &poi
 {
   return sheet_.evaluate(displacement_, points);
 }
-} // namespace continuum
+} // namespace latcon::continuum

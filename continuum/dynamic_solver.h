@@ -12,7 +12,7 @@
 #include <memory>
 #include <string>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// Mass and micro-inertia: kinetic energy density (rho/2) (|v|^2 + l_d^2 |Grad v|^2) [J/m^3].
 struct Inertia
@@ -285,4 +285,4 @@ void DynamicSolver::archive(Archive &archive)
     has_started_ = true;
   }
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -13,7 +13,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 DynamicSolver::Residual DynamicSolver::evaluate(const Step &step, const Vector &u) const
 {
@@ -259,4 +259,4 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
     return failure.what();
   }
 }
-} // namespace continuum
+} // namespace latcon::continuum

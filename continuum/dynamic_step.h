@@ -4,7 +4,7 @@
 
 #include "continuum/dynamic_solver.h"
 
-namespace continuum
+namespace latcon::continuum
 {
 /// What is known when a step begins, all without ghost entries, and Newmark's formulas from there.
 struct DynamicSolver::Step
@@ -60,4 +60,4 @@ struct DynamicSolver::Residual
   double reference; // norm of internal, viscous and inertial forces and of loads, of every unknown [N/m]
   double energy;    // of the mean state, less the work of dead loads [J/m]
 };
-} // namespace continuum
+} // namespace latcon::continuum

@@ -14,7 +14,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -319,4 +319,4 @@ void integrate(const Sheet &sheet, const Sheet::Vector &u, const double load_fac
       visitor.cell_end();
     }
 }
-} // namespace continuum
+} // namespace latcon::continuum

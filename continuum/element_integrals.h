@@ -9,7 +9,7 @@
 #include <functional>
 #include <vector>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// What one cell or face adds to the functional of eq. (C.28) and its derivatives, up to the order asked for. Its
 /// unknowns are 2 a + i for scalar shape function a and component i.
@@ -26,4 +26,4 @@ struct Contribution
 /// ghost entries). Order::second gives no first derivatives. Throws NonPhysicalState, on the rank where it happens.
 void integrate(const Sheet &sheet, const Sheet::Vector &u, double load_factor, Order order,
                const std::function<void(const Contribution &)> &add);
-} // namespace continuum
+} // namespace latcon::continuum

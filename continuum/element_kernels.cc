@@ -2,7 +2,7 @@
 
 #include "continuum/vector_kernels.h"
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -114,4 +114,4 @@ LATCON_CLONES void add_second(const double *basis, const unsigned int stride, co
     }
   }
 }
-} // namespace continuum
+} // namespace latcon::continuum

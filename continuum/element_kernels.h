@@ -6,7 +6,7 @@
 
 #include "continuum/point_integrand.h"
 
-namespace continuum
+namespace latcon::continuum
 {
 /// Rows of the basis that a density looks at: of each of `n_sides` sides the first `n_derivatives`.
 struct Rows
@@ -28,4 +28,4 @@ void add_first(const double *basis, unsigned int stride, const Rows &rows, const
 /// room for 2 * n_derivatives * stride numbers.
 void add_second(const double *basis, unsigned int stride, const Rows &rows, const double *second, double weight,
                 bool is_symmetric, unsigned int n_nodes, double *work, double *K);
-} // namespace continuum
+} // namespace latcon::continuum

@@ -12,7 +12,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -132,4 +132,4 @@ Vector<float> error_indicators(const Sheet &sheet, const Sheet::Vector &u)
       eta[cell->active_cell_index()] = std::sqrt(eta_squared(cell->global_active_cell_index()));
   return eta;
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -4,7 +4,7 @@
 
 #include <deal.II/lac/vector.h>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// How much each active cell seems to add to the error in the energy norm: eta_K^2 [J/m], half of each of its faces'
 /// sum of
@@ -13,4 +13,4 @@ namespace continuum
 /// gradient law, whose two terms are absent without one (theory-continuum.md, eq. (C.33)). An indicator to refine by,
 /// not a bound. Entries of cells of other ranks are zero. Collective. Throws NonPhysicalState on every rank.
 dealii::Vector<float> error_indicators(const Sheet &sheet, const Sheet::Vector &u);
-} // namespace continuum
+} // namespace latcon::continuum

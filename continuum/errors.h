@@ -3,7 +3,7 @@
 #include <stdexcept>
 #include <string>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// A deformation that no sheet can have: det F <= 0, or no thickness in equilibrium. A solver may retry with a
 /// smaller step.
@@ -40,4 +40,4 @@ class OutputFailed : public std::runtime_error
 public:
   using std::runtime_error::runtime_error;
 };
-} // namespace continuum
+} // namespace latcon::continuum

@@ -4,7 +4,7 @@
 
 #include <cmath>
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -40,4 +40,4 @@ void check(const FibreFamily &family)
   if (!(stiffness > 0. && std::isfinite(stiffness)))
     throw InvalidMaterial("a fibre must have a positive and finite stiffness at stretch 1");
 }
-} // namespace continuum
+} // namespace latcon::continuum

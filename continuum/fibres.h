@@ -4,7 +4,7 @@
 
 #include <variant>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// Energy of an incompressible Mooney-Rivlin rod at stretch l [-] (theory-continuum.md, eq. (C.12)):
 ///   psi = a (l^2/2 + 1/l - 3/2) + b (l + 1/(2 l^2) - 3/2)    [Pa], with a, b [Pa] and a + b > 0.
@@ -49,4 +49,4 @@ PotentialDerivatives derivatives(const FibrePotential &potential, double l);
 /// Throws InvalidMaterial, unless the direction is a unit vector to 1e-12, the weight is positive, and the stiffness
 /// psi''(1) is positive, all of them finite.
 void check(const FibreFamily &family);
-} // namespace continuum
+} // namespace latcon::continuum

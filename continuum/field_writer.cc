@@ -15,7 +15,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -90,9 +90,9 @@ void write_whole(const std::filesystem::path &path, const std::string &text)
 {
   try
   {
-    latcon::support::write_atomically(path, text, latcon::support::Sync::no);
+    support::write_atomically(path, text, support::Sync::no);
   }
-  catch (const latcon::support::OutputError &error)
+  catch (const support::OutputError &error)
   {
     throw OutputFailed(error.what());
   }
@@ -236,4 +236,4 @@ std::filesystem::path FieldWriter::collection() const
 {
   return directory_ / (name_ + ".pvd");
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// Writes the fields of a sheet as a series that ParaView opens: NAME.pvd, and for each frame NAME_0000.vtu, or
 /// NAME_0000.pvtu with a piece for each rank. Fields, over the reference configuration: `displacement` [m],
@@ -73,4 +73,4 @@ private:
   std::string name_;
   std::vector<Frame> frames_;
 };
-} // namespace continuum
+} // namespace latcon::continuum

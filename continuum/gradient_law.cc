@@ -7,7 +7,7 @@
 
 using dealii::Tensor;
 
-namespace continuum
+namespace latcon::continuum
 {
 double GradientLaw::energy(const Tensor<2, 2> &F, const Gradient &G) const
 {
@@ -47,4 +47,4 @@ double GradientLaw::normal_stiffness() const
   }
   return largest;
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -2,7 +2,7 @@
 
 #include <deal.II/base/tensor.h>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// The energy that a sheet has from the gradient of its deformation, added to that of the local law:
 ///   W_g(F, G) = B(F; G, G) / 2    [Pa = J/m^3],        G_iJK = dF_iJ/dX_K = d2x_i/dX_J dX_K  [1/m]
@@ -56,4 +56,4 @@ public:
   /// of n_J n_K (dQ_iJK/dG_lMN) n_M n_N [Pa m^2].
   double normal_stiffness() const;
 };
-} // namespace continuum
+} // namespace latcon::continuum

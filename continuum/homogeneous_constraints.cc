@@ -15,7 +15,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 DirichletBoundaries dirichlet_boundaries(const BoundaryConditions &conditions)
 {
@@ -82,4 +82,4 @@ AffineConstraints<double> shared_constraints(const AffineConstraints<double> &kn
   constraints.close();
   return constraints;
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -9,7 +9,7 @@
 
 #include <map>
 
-namespace continuum
+namespace latcon::continuum
 {
 class Sheet;
 
@@ -30,4 +30,4 @@ dealii::AffineConstraints<double> shared_constraints(const dealii::AffineConstra
 /// What makes the displacement one field (Sheet::conformity_constraints), and the components that are `held` at its
 /// boundaries at zero, chains resolved and closed. Shared as above. Collective.
 dealii::AffineConstraints<double> homogeneous_constraints(const Sheet &sheet, const DirichletBoundaries &held);
-} // namespace continuum
+} // namespace latcon::continuum

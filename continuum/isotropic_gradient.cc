@@ -6,7 +6,7 @@
 
 using dealii::Tensor;
 
-namespace continuum
+namespace latcon::continuum
 {
 IsotropicGradient::IsotropicGradient(const double shear_modulus, const double length)
   : modulus_(shear_modulus * length * length)
@@ -53,4 +53,4 @@ Tensor<6, 2> IsotropicGradient::double_stress_by_G(const Tensor<2, 2> &) const
       }
   return C;
 }
-} // namespace continuum
+} // namespace latcon::continuum

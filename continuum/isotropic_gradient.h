@@ -2,7 +2,7 @@
 
 #include "continuum/gradient_law.h"
 
-namespace continuum
+namespace latcon::continuum
 {
 /// W_g = (c_g/2) |Grad F|^2 with one constant c_g = mu l_s^2 (theory-continuum.md, eq. (C.21)): isotropic, objective,
 /// positive. It resists gradients, so short waves travel faster than long ones.
@@ -25,4 +25,4 @@ public:
 private:
   double modulus_;
 };
-} // namespace continuum
+} // namespace latcon::continuum

@@ -4,7 +4,7 @@
 
 using dealii::Tensor;
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -70,4 +70,4 @@ double IsotropicNetwork::thickness_stretch(const Tensor<2, 2> &F) const
   checked_determinant(F);
   return 1.;
 }
-} // namespace continuum
+} // namespace latcon::continuum

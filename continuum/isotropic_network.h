@@ -6,7 +6,7 @@
 
 #include <vector>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// A network of fibres with all directions alike: the mean of the law CauchyBorn over all rotations of its reference
 /// configuration, in closed form (theory-continuum.md, eqs. (C.50) to (C.56)). With Mooney-Rivlin rods it is the
@@ -34,4 +34,4 @@ private:
   double b_ = 0.;
   double e_ = 0.;
 };
-} // namespace continuum
+} // namespace latcon::continuum

@@ -10,7 +10,7 @@
 using dealii::outer_product;
 using dealii::Tensor;
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -268,4 +268,4 @@ Tensor<6, 2> LatticeGradient::double_stress_by_G(const Tensor<2, 2> &F) const
               result[i][J][K][l][M][N] = sum[pair_of[i][l]][pair_of[J][K]][pair_of[M][N]];
   return result;
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// Fibres of one direction that are not endless threads but bonds of one length.
 struct BondFamily
@@ -54,4 +54,4 @@ private:
 
   std::vector<Family> families_;
 };
-} // namespace continuum
+} // namespace latcon::continuum

@@ -10,7 +10,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 LinearSolver::LinearSolver(const Sheet &sheet, DirichletBoundaries held, const LinearSettings &settings,
                            const Symmetry symmetry)
@@ -139,4 +139,4 @@ unsigned int LinearSolver::iterate(const Sheet::Matrix &K, Sheet::Vector &x, con
   is_stale_ = effort > settings_.rebuild_ratio * baseline_iterations_;
   return control.last_step();
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -6,7 +6,7 @@
 
 #include <memory>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// How linear systems are solved.
 struct LinearSettings
@@ -95,4 +95,4 @@ private:
   bool is_stale_ = true;            // whether it has to be set up anew
   double baseline_iterations_ = 0.; // iterations for each digit with a fresh multigrid
 };
-} // namespace continuum
+} // namespace latcon::continuum

@@ -7,7 +7,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -97,4 +97,4 @@ void VectorAssembly::add(const Vector<double> &local, const std::vector<types::g
   for (unsigned int a = 0; a < dofs.size(); ++a)
     own_[dofs[a] - begin_] += local[a];
 }
-} // namespace continuum
+} // namespace latcon::continuum

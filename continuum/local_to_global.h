@@ -10,7 +10,7 @@
 
 class Epetra_CrsMatrix;
 
-namespace continuum
+namespace latcon::continuum
 {
 /// Adds what elements contribute to a matrix or a vector, condensed by constraints: the same as
 /// AffineConstraints::distribute_local_to_global, rounding apart, but written in place where no unknown of the element
@@ -50,4 +50,4 @@ private:
   dealii::types::global_dof_index begin_;
   dealii::types::global_dof_index end_;
 };
-} // namespace continuum
+} // namespace latcon::continuum

@@ -7,7 +7,7 @@
 
 using dealii::Tensor;
 
-namespace continuum
+namespace latcon::continuum
 {
 double checked_determinant(const Tensor<2, 2> &F)
 {
@@ -73,4 +73,4 @@ double minimum_acoustic_eigenvalue(const Material &law, const Tensor<2, 2> &F)
   }
   return std::min(best, smallest_eigenvalue(0.5 * (low + high)));
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -2,7 +2,7 @@
 
 #include <deal.II/base/tensor.h>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// A hyperelastic law of a sheet: energy, stress, tangent, and nothing else. Const and stateless.
 ///
@@ -43,4 +43,4 @@ dealii::Tensor<2, 2> cauchy_stress(const dealii::Tensor<2, 2> &P, const dealii::
 /// reference direction n (theory-continuum.md, eq. (C.3)); rho c^2 of the slowest plane wave. The law is strongly
 /// elliptic at F if and only if it is positive. Relative accuracy 1e-10. Throws NonPhysicalState as the law does.
 double minimum_acoustic_eigenvalue(const Material &law, const dealii::Tensor<2, 2> &F);
-} // namespace continuum
+} // namespace latcon::continuum

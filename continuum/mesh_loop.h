@@ -3,7 +3,7 @@
 #include <deal.II/base/types.h>
 #include <deal.II/dofs/dof_handler.h>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// Calls `visit.cell(cell)` with each active cell that this rank owns and then, for each of its faces in turn,
 ///     visit.boundary(cell, face)     where nothing is beyond, nor a periodic edge;
@@ -50,4 +50,4 @@ void for_each_cell_and_face(const dealii::DoFHandler<2> &dofs, Visitor &visit)
     visit.cell_end();
   }
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -21,7 +21,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -357,4 +357,4 @@ void read_gmsh(parallel::distributed::Triangulation<2> &mesh, const std::filesys
   reader.read_msh(stream);
   mesh.refine_global(refinements);
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -4,7 +4,7 @@
 
 #include <filesystem>
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace edge
 {
@@ -52,4 +52,4 @@ double n_coarse_cells(const std::filesystem::path &gmsh_file);
 /// it cannot be read or is no such mesh.
 void read_gmsh(dealii::parallel::distributed::Triangulation<2> &mesh, const std::filesystem::path &file,
                unsigned int refinements = 0);
-} // namespace continuum
+} // namespace latcon::continuum

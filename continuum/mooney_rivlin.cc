@@ -8,7 +8,7 @@
 
 using dealii::Tensor;
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -130,4 +130,4 @@ double MooneyRivlin::lame_lambda() const
   const double lambda_3d = constants_.kappa + 4. * constants_.c2;
   return 2. * mu * lambda_3d / (lambda_3d + 2. * mu);
 }
-} // namespace continuum
+} // namespace latcon::continuum

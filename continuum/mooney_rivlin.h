@@ -2,7 +2,7 @@
 
 #include "continuum/material.h"
 
-namespace continuum
+namespace latcon::continuum
 {
 /// Compressible Mooney-Rivlin sheet in plane stress (theory-continuum.md, eqs. (C.4) to (C.9)).
 ///   W(F) = min over F_33 of  c1 (I1 - 3 - 2 ln J) + c2 (I2 - 3 - 4 ln J) + (kappa/2) (J - 1)^2       [Pa]
@@ -48,4 +48,4 @@ public:
 private:
   Constants constants_;
 };
-} // namespace continuum
+} // namespace latcon::continuum

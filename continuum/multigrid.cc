@@ -17,7 +17,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 struct Multigrid::Level
 {
@@ -292,4 +292,4 @@ std::vector<Multigrid::LevelFacts> Multigrid::levels() const
                      level->patches ? level->patches->n_replaced() : 0});
   return facts;
 }
-} // namespace continuum
+} // namespace latcon::continuum

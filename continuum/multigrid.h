@@ -9,7 +9,7 @@
 #include <memory>
 #include <vector>
 
-namespace continuum
+namespace latcon::continuum
 {
 class DirectSolver;
 
@@ -95,4 +95,4 @@ private:
   std::vector<std::unique_ptr<Level>> levels_; // from the coarsest to the finest
   std::unique_ptr<DirectSolver> coarsest_;
 };
-} // namespace continuum
+} // namespace latcon::continuum

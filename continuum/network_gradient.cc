@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -57,4 +57,4 @@ double NetworkGradient::smallest_length(const std::vector<BondFamily> &families)
 {
   return LatticeGradient::smallest_length(merged(families));
 }
-} // namespace continuum
+} // namespace latcon::continuum

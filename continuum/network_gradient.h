@@ -2,7 +2,7 @@
 
 #include "continuum/lattice_gradient.h"
 
-namespace continuum
+namespace latcon::continuum
 {
 /// The gradient energy of a network with all directions alike: the mean of LatticeGradient over all rotations of its
 /// reference configuration (theory-continuum.md, eq. (C.57)), as a sum over equispaced directions. It goes with the law
@@ -26,4 +26,4 @@ public:
   /// potential, over sqrt(12) (theory-continuum.md, eq. (C.58)).
   static double smallest_length(const std::vector<BondFamily> &families);
 };
-} // namespace continuum
+} // namespace latcon::continuum

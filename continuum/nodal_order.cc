@@ -10,7 +10,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -108,4 +108,4 @@ void NodalOrder::spread(const std::vector<double> &values, Sheet::Vector &x) con
   owned.compress(VectorOperation::insert);
   x = owned;
 }
-} // namespace continuum
+} // namespace latcon::continuum

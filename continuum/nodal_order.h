@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// The nodal values of a sheet in an order that does not depend on how ranks share the mesh: cell after cell by their
 /// places in the tree of refinements, every unknown where it is met first. So a state that some ranks store is one that
@@ -39,4 +39,4 @@ private:
   const Sheet &sheet_;
   std::vector<unsigned int> place_; // of each owned unknown in the order; on the first rank of each unknown
 };
-} // namespace continuum
+} // namespace latcon::continuum

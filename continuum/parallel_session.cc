@@ -13,7 +13,7 @@
 #include <p4est.h>
 #include <zoltan.h>
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -44,4 +44,4 @@ ParallelSession::~ParallelSession()
                        distributed::BlockVector<float>, trilinos::Vector, trilinos::BlockVector>();
   sc_finalize();
 }
-} // namespace continuum
+} // namespace latcon::continuum

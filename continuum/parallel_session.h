@@ -2,7 +2,7 @@
 
 #include "support/mpi_session.h"
 
-namespace continuum
+namespace latcon::continuum
 {
 /// MPI with the libraries that finite elements need, from construction to destruction: deal.II (one thread), p4est and
 /// Zoltan. To be made once, at the start of main, and destroyed after all objects of this library.
@@ -21,6 +21,6 @@ public:
   ParallelSession &operator=(const ParallelSession &) = delete;
 
 private:
-  latcon::support::MpiSession mpi_;
+  support::MpiSession mpi_;
 };
-} // namespace continuum
+} // namespace latcon::continuum

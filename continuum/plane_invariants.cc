@@ -5,7 +5,7 @@
 
 using dealii::Tensor;
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -114,4 +114,4 @@ StretchMeans stretch_means(const double I, const double J)
   means.inverse.by_JJ = twice * (3. + 2. * x * (3. * D + x * (D + 2. * d))) / root5;
   return means;
 }
-} // namespace continuum
+} // namespace latcon::continuum

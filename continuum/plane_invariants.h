@@ -2,7 +2,7 @@
 
 #include <deal.II/base/tensor.h>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// A function of the invariants I = |F|^2 and J = det F of an in-plane deformation, with its partial derivatives.
 struct InvariantFunction
@@ -34,4 +34,4 @@ struct StretchMeans
 /// The means of l and 1/l with their derivatives, each to a relative error of some roundings, whatever the ratio of the
 /// principal stretches (theory-continuum.md, eqs. (C.51) to (C.54)). J > 0 and I >= 2 J but for rounding, I/J finite.
 StretchMeans stretch_means(double I, double J);
-} // namespace continuum
+} // namespace latcon::continuum

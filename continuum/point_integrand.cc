@@ -4,7 +4,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -188,4 +188,4 @@ void face_density(const GradientLaw &law, const std::array<FieldDerivatives, 2> 
           for (unsigned int L = 0; L < 2; ++L)
             d.second[i][i][s][J][t][L] += sign[s] * sign[t] * penalty * N[J] * N[L];
 }
-} // namespace continuum
+} // namespace latcon::continuum

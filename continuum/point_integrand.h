@@ -4,7 +4,7 @@
 
 #include <array>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// Derivatives of a scalar field at a point, by reference position: f_,1 f_,2 f_,11 f_,22 f_,12. Both components of the
 /// displacement have the same scalar shape functions, so all kernels work on these five numbers.
@@ -45,4 +45,4 @@ void cell_density(const Constitution &laws, bool has_gradient, const FieldDeriva
 void face_density(const GradientLaw &law, const std::array<FieldDerivatives, 2> &u, unsigned int n_sides,
                   const dealii::Tensor<1, 2> &N, const dealii::Tensor<1, 2> &prescribed,
                   const std::array<bool, 2> &held, double penalty, Order order, PointIntegrand &density);
-} // namespace continuum
+} // namespace latcon::continuum

@@ -9,7 +9,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -109,4 +109,4 @@ std::map<types::boundary_id, Tensor<1, 2>> boundary_reactions(const Sheet &sheet
     forces[boundary.id] = Utilities::MPI::sum(boundary.force, sheet.communicator());
   return forces;
 }
-} // namespace continuum
+} // namespace latcon::continuum

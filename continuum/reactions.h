@@ -6,7 +6,7 @@
 
 #include <map>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// Forces [N/m] that boundaries exert on the sheet in the state `u` (nodal displacement [m], with ghost entries) at
 /// `load_factor` [-], per unit reference thickness: sums of the nodal residuals, dead loads taken off, of the unknowns
@@ -20,4 +20,4 @@ namespace continuum
 std::map<dealii::types::boundary_id, dealii::Tensor<1, 2>>
 boundary_reactions(const Sheet &sheet, const Sheet::Vector &u, double load_factor,
                    const std::map<dealii::types::boundary_id, dealii::ComponentMask> &held);
-} // namespace continuum
+} // namespace latcon::continuum

@@ -8,7 +8,7 @@
 #include <cmath>
 #include <vector>
 
-namespace continuum
+namespace latcon::continuum
 {
 void make_rectangle(dealii::parallel::distributed::Triangulation<2> &mesh, const Rectangle &rectangle)
 {
@@ -45,4 +45,4 @@ void make_rectangle(dealii::parallel::distributed::Triangulation<2> &mesh, const
     mesh.add_periodicity(pairs);
   mesh.refine_global(halvings);
 }
-} // namespace continuum
+} // namespace latcon::continuum

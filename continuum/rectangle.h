@@ -2,7 +2,7 @@
 
 #include <deal.II/distributed/tria.h>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// Boundary ids of a Rectangle.
 namespace edge
@@ -29,4 +29,4 @@ struct Rectangle
 /// A periodic mesh still has its four edges; what follows from it for the displacement is for PeriodicPair to say.
 /// Throws InvalidInput for a size that is not positive and finite, or too few cells.
 void make_rectangle(dealii::parallel::distributed::Triangulation<2> &mesh, const Rectangle &rectangle);
-} // namespace continuum
+} // namespace latcon::continuum

@@ -8,7 +8,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -121,4 +121,4 @@ const FEFaceValues<2> &ShapeTables::face_values(const Cell &cell, const unsigned
   face_values_->reinit(cell, face);
   return *face_values_;
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -13,7 +13,7 @@
 #include <utility>
 #include <vector>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// The scalar shape functions of a cell at the Gauss points of the cell or of one of its faces.
 struct ShapeTable
@@ -71,4 +71,4 @@ private:
   ShapeTable own_table_;    // of a cell that shares its shape with none
   std::array<ShapeTable, 2> own_faces_;
 };
-} // namespace continuum
+} // namespace latcon::continuum

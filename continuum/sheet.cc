@@ -18,7 +18,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -286,4 +286,4 @@ Sheet::Vector Sheet::make_ghosted() const
 {
   return Vector(owned_, relevant_, communicator());
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -17,7 +17,7 @@
 #include <memory>
 #include <vector>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// What the sheet does at one reference point.
 struct PointState
@@ -152,4 +152,4 @@ private:
   dealii::IndexSet relevant_;
   dealii::AffineConstraints<double> conformity_constraints_;
 };
-} // namespace continuum
+} // namespace latcon::continuum

@@ -15,7 +15,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 double Sheet::energy(const Vector &u, const double load_factor) const
 {
@@ -117,4 +117,4 @@ DeterminantRange Sheet::determinant_range(const Vector &u) const
     }
   return {Utilities::MPI::min(smallest, communicator()), Utilities::MPI::max(largest, communicator())};
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -9,7 +9,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 Sheet::Vector Sheet::loads() const
 {
@@ -113,4 +113,4 @@ void Sheet::mass(const double density, const double inertia_length, const Affine
   }
   M.compress(VectorOperation::add);
 }
-} // namespace continuum
+} // namespace latcon::continuum

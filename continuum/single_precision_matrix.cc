@@ -12,7 +12,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -107,4 +107,4 @@ void SinglePrecisionMatrix::vmult(Vector &y, const Vector &x) const
   if (from == &x_)
     x_.zero_out_ghost_values();
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -7,7 +7,7 @@
 
 #include <vector>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// A copy of the tangent of a sheet for smoothers, which read it many times and need no more than six digits of it: its
 /// entries are rounded to single precision and stored in blocks of two by two, the unknowns 2 n and 2 n + 1, which are
@@ -34,4 +34,4 @@ private:
   std::vector<float> values_;            // of each block, by rows
   mutable Vector x_;                     // with the ghost entries that the owned rows need
 };
-} // namespace continuum
+} // namespace latcon::continuum

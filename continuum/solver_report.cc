@@ -3,7 +3,7 @@
 #include <iomanip>
 #include <sstream>
 
-namespace continuum
+namespace latcon::continuum
 {
 std::string SolverReport::text() const
 {
@@ -26,4 +26,4 @@ SolverFailed::SolverFailed(const std::string &reason, SolverReport report)
   : std::runtime_error(reason + "\n" + report.text()), report_(std::move(report))
 {
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -4,7 +4,7 @@
 #include <string>
 #include <vector>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// One evaluation of the residual within a load step: iteration 0 follows the predictor, later ones a Newton step.
 struct NewtonIteration
@@ -59,4 +59,4 @@ public:
 private:
   SolverReport report_;
 };
-} // namespace continuum
+} // namespace latcon::continuum

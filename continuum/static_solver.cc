@@ -16,7 +16,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -350,4 +350,4 @@ std::vector<PointState> StaticSolver::evaluate(const std::vector<Point<2>> &poin
 {
   return sheet_.evaluate(displacement_, points);
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -10,7 +10,7 @@
 #include <string>
 #include <vector>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// How the nonlinear problem is solved.
 struct StaticSettings
@@ -105,4 +105,4 @@ private:
   Vector displacement_;
   double load_factor_ = 0.;
 };
-} // namespace continuum
+} // namespace latcon::continuum

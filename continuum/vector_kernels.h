@@ -5,7 +5,7 @@
 
 #include <cstring>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// Four doubles at once.
 typedef double Lanes __attribute__((vector_size(32)));
@@ -19,7 +19,7 @@ constexpr unsigned int padded(const unsigned int n)
 {
   return (n + n_lanes - 1) / n_lanes * n_lanes;
 }
-} // namespace continuum
+} // namespace latcon::continuum
 
 /// Compiles a function for AVX2 as well, chosen when the program starts.
 #if defined(__x86_64__) && defined(__GNUC__) && !defined(__clang__) && !defined(__SANITIZE_ADDRESS__)

@@ -20,7 +20,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -361,4 +361,4 @@ unsigned int VertexPatches::n_replaced() const
 {
   return Utilities::MPI::sum(own_replaced_, layout_->get_mpi_communicator());
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -10,7 +10,7 @@
 
 class Epetra_Map;
 
-namespace continuum
+namespace latcon::continuum
 {
 /// Additive Schwarz over the stars of the vertices of a mesh: z = sum over patches p of R_p^T (R_p K R_p^T)^{-1} R_p r,
 /// where R_p picks the free degrees of freedom, both components, whose shape functions vanish outside the star of a
@@ -58,4 +58,4 @@ private:
   std::unique_ptr<Epetra_Map> ghost_rows_; // rows of K that patches need and other ranks own
   unsigned int own_replaced_ = 0;
 };
-} // namespace continuum
+} // namespace latcon::continuum

@@ -7,7 +7,7 @@
 
 using dealii::Tensor;
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -98,4 +98,4 @@ Tensor<4, 2> FibreViscosity::stress_by_rate(const Tensor<2, 2> &F, const Tensor<
   }
   return T;
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -4,7 +4,7 @@
 
 #include <vector>
 
-namespace continuum
+namespace latcon::continuum
 {
 /// A viscous law of a sheet: a stress that resists the rate of deformation, added to the elastic one. Const and
 /// stateless. F and densities as in Material; Fdot_iJ = dv_i/dX_J [1/s]. All functions throw NonPhysicalState when
@@ -59,4 +59,4 @@ public:
 private:
   std::vector<FibreDashpot> dashpots_;
 };
-} // namespace continuum
+} // namespace latcon::continuum

@@ -11,7 +11,7 @@
 
 using namespace dealii;
 
-namespace continuum
+namespace latcon::continuum
 {
 namespace
 {
@@ -132,4 +132,4 @@ double ViscousForces::dissipation(const Vector &u, const Vector &v) const
                });
   return Utilities::MPI::sum(own, sheet_.communicator());
 }
-} // namespace continuum
+} // namespace latcon::continuum

@@ -3,7 +3,7 @@
 #include "continuum/sheet.h"
 #include "continuum/viscosity.h"
 
-namespace continuum
+namespace latcon::continuum
 {
 /// Nodal forces of a viscosity, C_a = integral of P_v(F, Fdot) : Grad phi_a dX (theory-continuum.md, eq. (C.40)), zero
 /// without one. The nodal vectors u [m] and v [m/s] have ghost entries. All functions are collective, and throw
@@ -30,4 +30,4 @@ private:
   const Sheet &sheet_;
   const Viscosity *viscosity_;
 };
-} // namespace continuum
+} // namespace latcon::continuum

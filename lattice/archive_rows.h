@@ -7,7 +7,7 @@
 
 #include "lattice/row_partition.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// Refuses what an archive holds, before it is used. @throws std::invalid_argument unless it `holds`
@@ -62,4 +62,4 @@ void archive_rows(Archive &archive, const std::string &name, std::vector<double>
   }
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

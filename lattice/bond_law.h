@@ -13,7 +13,7 @@
 ///
 /// A bond of rest length l and cross-section A0 stores A0 l psi(lam), lam = |x_j - x_i| / l > 0 being its stretch, and
 /// pulls with the axial force A0 psi'(lam), tension positive. A law gives psi, psi' and psi'' in Pa.
-namespace lattice
+namespace latcon::lattice
 {
 
 #include "lattice/bond_force.inc"
@@ -113,4 +113,4 @@ inline double largest_stiffness(const BondLaw &law, double smallest_stretch)
   return std::visit([smallest_stretch](const auto &l) { return l.largest_stiffness(smallest_stretch); }, law);
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -7,7 +7,7 @@
 #include "lattice/triangular_lattice.h"
 #include "lattice/zero_pages.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// Which bonds there are and which of them are toughened, two bits a bond: one word for the six bonds that start at a
@@ -49,4 +49,4 @@ private:
   Words words_;
 };
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -2,7 +2,7 @@
 
 #include <stdexcept>
 
-namespace lattice
+namespace latcon::lattice
 {
 namespace
 {
@@ -67,4 +67,4 @@ unsigned int ChebyshevStages::needed(double limit)
   return stages;
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -3,7 +3,7 @@
 #include <complex>
 #include <vector>
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// The stages of a Runge-Kutta-Chebyshev method of second order (theory.md, eqs. (L.17) to (L.20)):
@@ -43,4 +43,4 @@ private:
   std::vector<Stage> stages_;
 };
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace lattice
+namespace latcon::lattice
 {
 namespace
 {
@@ -186,4 +186,4 @@ double Contact::elastic_energy(const State &state) const
   return energy;
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -7,7 +7,7 @@
 #include "lattice/link_cells.h"
 #include "lattice/site_forces.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// Repulsion of two sites at distance r: max(0, k o + c do/dt), o = distance - r > 0 being their overlap (theory.md,
@@ -93,4 +93,4 @@ private:
   std::size_t n_list_builds_ = 0;
 };
 
-} // namespace lattice
+} // namespace latcon::lattice

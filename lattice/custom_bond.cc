@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace lattice
+namespace latcon::lattice
 {
 
 CustomBond::CustomBond(std::shared_ptr<const CustomBondLaw> law) : law_(std::move(law))
@@ -20,4 +20,4 @@ CustomBond::CustomBond(std::shared_ptr<const CustomBondLaw> law) : law_(std::mov
                                 std::to_string(law_->energy(1.)) + " and " + std::to_string(law_->force(1.)) + " Pa");
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

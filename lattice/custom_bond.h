@@ -2,7 +2,7 @@
 
 #include <memory>
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// A bond law from outside of latcon: derive from it, and give a Shell a CustomBond of it.
@@ -55,4 +55,4 @@ private:
   std::shared_ptr<const CustomBondLaw> law_;
 };
 
-} // namespace lattice
+} // namespace latcon::lattice

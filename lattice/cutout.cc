@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace lattice
+namespace latcon::lattice
 {
 namespace
 {
@@ -65,4 +65,4 @@ void cut_out(State &state, const TriangularLattice &lattice, const Cutout &cutou
                 });
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

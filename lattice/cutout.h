@@ -4,7 +4,7 @@
 
 #include "lattice/state.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// Sites closer to the middle of the sheet, (length() / 2, 0), than this are not there.
@@ -26,4 +26,4 @@ using Cutout = std::variant<RoundHole, Notch>;
 /// were never there are not lost.
 void cut_out(State &state, const TriangularLattice &lattice, const Cutout &cutout);
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -5,7 +5,7 @@
 
 #include <Eigen/Eigenvalues>
 
-namespace lattice
+namespace latcon::lattice
 {
 namespace
 {
@@ -109,4 +109,4 @@ const std::vector<SiteForce> &EndLoads::evaluate(const State &, const Field &vx,
   return forces_;
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

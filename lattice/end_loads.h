@@ -2,7 +2,7 @@
 
 #include "lattice/site_forces.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// Long-wave tangent along x of the sheet at x = F X: rho c^2 p = A p for a plane wave along X with referential speed c
@@ -44,4 +44,4 @@ private:
   Eigen::Matrix2d impedance_;          // [Pa s], force per velocity of a site and sheet thickness
 };
 
-} // namespace lattice
+} // namespace latcon::lattice

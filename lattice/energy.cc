@@ -1,6 +1,6 @@
 #include "lattice/energy.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 double elastic_energy(const State &state, const RowPartition &band, const Material &material)
@@ -50,4 +50,4 @@ double boundary_power(const State &state, const TriangularLattice &lattice, cons
   return power;
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -2,7 +2,7 @@
 
 #include "lattice/forces.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 // Sums over a sheet are sums over its rows, added from the lowest up, so that their bits do not depend on who moves
@@ -48,4 +48,4 @@ struct EnergyBalance
   }
 };
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -4,7 +4,7 @@
 
 #include <omp.h>
 
-namespace lattice
+namespace latcon::lattice
 {
 namespace
 {
@@ -216,4 +216,4 @@ Eigen::Vector2d Forces::on_site(const State &state, const Field &vx, const Field
   return {sum_of_bonds(start[0], end[0]), sum_of_bonds(start[1], end[1])};
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -7,7 +7,7 @@
 #include "lattice/row_kernels.h"
 #include "lattice/state.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// Forces on all sites from all bonds. The loops over a row are in row_kernels.h.
@@ -141,4 +141,4 @@ private:
   std::vector<std::uint8_t> row_events_, row_short_bonds_;
 };
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -6,7 +6,7 @@
 
 #include "lattice/integrator.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 namespace
 {
@@ -269,4 +269,4 @@ std::optional<StretchedBond> nearest_to_breaking(const State &state, const Trian
   return nearest;
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

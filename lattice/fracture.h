@@ -8,7 +8,7 @@
 #include "lattice/archive_rows.h"
 #include "lattice/forces.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// No toughening: one breaking stretch for all bonds.
@@ -174,4 +174,4 @@ struct StretchedBond
 /// in a sheet without bonds. @param state of the whole sheet
 std::optional<StretchedBond> nearest_to_breaking(const State &state, const TriangularLattice &lattice);
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -4,7 +4,7 @@
 
 #include "lattice/row_kernels.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 namespace
 {
@@ -107,4 +107,4 @@ void Integrator::update_accelerations(State &state, const std::vector<std::size_
   accelerate_sites(state);
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

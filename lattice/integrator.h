@@ -3,7 +3,7 @@
 #include "lattice/forces.h"
 #include "lattice/site_forces.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// Advances the rows of a band in time, step by step. The forces at the end of a step are those the next one starts
@@ -80,4 +80,4 @@ void for_each_row(const TriangularLattice &lattice, Rows rows, const RowOperatio
     operation(static_cast<std::size_t>(row));
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

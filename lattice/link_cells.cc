@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace lattice
+namespace latcon::lattice
 {
 namespace
 {
@@ -59,4 +59,4 @@ void LinkCells::insert(std::size_t id, double x, double y)
   head = points_.size() - 1;
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

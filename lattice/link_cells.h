@@ -4,7 +4,7 @@
 #include <cstdint>
 #include <vector>
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// Points of the plane sorted into square cells, to find those near a position without looking at all of them.
@@ -56,4 +56,4 @@ private:
   std::vector<std::size_t> first_; // point of each bucket; their number is a power of two
 };
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -1,6 +1,6 @@
 #include "lattice/material.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 Material without_dashpots(Material material)
@@ -21,4 +21,4 @@ double site_mass(const Material &material, const TriangularLattice &lattice)
   return material.density * lattice.site_area();
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -5,7 +5,7 @@
 #include "lattice/bond_law.h"
 #include "lattice/triangular_lattice.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// One shell of bonds: nearest or next-nearest neighbours.
@@ -47,4 +47,4 @@ double cross_section(const Shell &shell, const TriangularLattice &lattice);
 /// m / h = rho (sqrt3 / 2) d^2 [kg/m], mass of a site per sheet thickness (theory.md, eq. (L.1)).
 double site_mass(const Material &material, const TriangularLattice &lattice);
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -8,7 +8,7 @@
 #include "lattice/time_step.h"
 #include "lattice/velocity_verlet.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 namespace
 {
@@ -127,4 +127,4 @@ Relaxation relax(State &state, const TriangularLattice &lattice, const Material 
   throw std::runtime_error(message.str());
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -2,7 +2,7 @@
 
 #include "lattice/state.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// How a relaxation ended.
@@ -20,4 +20,4 @@ struct Relaxation
 Relaxation relax(State &state, const TriangularLattice &lattice, const Material &material, double tolerance,
                  std::size_t max_iterations = 200000);
 
-} // namespace lattice
+} // namespace latcon::lattice

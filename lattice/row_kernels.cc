@@ -16,7 +16,7 @@
 #include <hwy/highway.h>
 
 HWY_BEFORE_NAMESPACE();
-namespace lattice::kernels::HWY_NAMESPACE
+namespace latcon::lattice::kernels::HWY_NAMESPACE
 {
 
 namespace hn = hwy::HWY_NAMESPACE;
@@ -346,11 +346,11 @@ const char *InstructionSet()
   return hwy::TargetName(HWY_TARGET);
 }
 
-} // namespace lattice::kernels::HWY_NAMESPACE
+} // namespace latcon::lattice::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
 #if HWY_ONCE
-namespace lattice::kernels
+namespace latcon::lattice::kernels
 {
 
 HWY_EXPORT(BondsOfRow);
@@ -462,5 +462,5 @@ BondForce bond_force(const BondLaw &law, const BondConstants &bond, double dx, d
   return {axial * nx, axial * ny, stretch, viscous * rate};
 }
 
-} // namespace lattice::kernels
+} // namespace latcon::lattice::kernels
 #endif

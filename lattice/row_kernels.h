@@ -16,7 +16,7 @@
 /// instruction set, from SSSE3 to AVX-512; the best that the processor has is chosen at run time, and all give the same
 /// bits. Rows begin at multiples of TriangularLattice::row_alignment and are worked on in blocks of as many places, so
 /// arrays must be readable, and those written to writable, to the end of the last block.
-namespace lattice::kernels
+namespace latcon::lattice::kernels
 {
 
 /// Laws of nearest and next-nearest neighbours; the second is unused in a sheet of nearest neighbours alone.
@@ -114,4 +114,4 @@ struct BondForce
 /// Of a bond whose ends are at a distance (dx, dy) [m] and move apart with (dvx, dvy) [m/s].
 BondForce bond_force(const BondLaw &law, const BondConstants &bond, double dx, double dy, double dvx, double dvy);
 
-} // namespace lattice::kernels
+} // namespace latcon::lattice::kernels

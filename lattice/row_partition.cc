@@ -4,7 +4,7 @@
 #include <array>
 #include <numeric>
 
-namespace lattice
+namespace latcon::lattice
 {
 namespace
 {
@@ -234,4 +234,4 @@ void HaloExchange::finish()
   }
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -10,7 +10,7 @@
 #include "lattice/triangular_lattice.h"
 #include "lattice/zero_pages.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// A field over the places of a lattice, one value each, margin included. Make one of zeros as Field(n): see ZeroPages.
@@ -144,4 +144,4 @@ private:
   std::vector<MPI_Request> requests_;
 };
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -2,7 +2,7 @@
 
 #include "lattice/row_kernels.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 RungeKuttaChebyshev::RungeKuttaChebyshev(const RowPartition &band, Forces &forces, double time_step,
@@ -63,4 +63,4 @@ void RungeKuttaChebyshev::step(State &state)
   state.time += h;
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

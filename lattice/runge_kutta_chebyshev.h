@@ -3,7 +3,7 @@
 #include "lattice/chebyshev_stages.h"
 #include "lattice/integrator.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// Runge-Kutta-Chebyshev method of second order for y = (x, v), y' = (v, a(x, v)) (theory.md, eqs. (L.17) to (L.20),
@@ -38,4 +38,4 @@ private:
   Motion previous_; // those of the stage before the one that the state holds
 };
 
-} // namespace lattice
+} // namespace latcon::lattice

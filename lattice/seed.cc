@@ -6,7 +6,7 @@
 
 #include "lattice/row_partition.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 namespace
 {
@@ -137,4 +137,4 @@ std::vector<std::size_t> seed_sites(const TriangularLattice &lattice, const Seed
   return places;
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -5,7 +5,7 @@
 
 #include "lattice/triangular_lattice.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// `n` sites in a line along x: the line nearest to Y = offset, from its site nearest to X = position on. Of two that
@@ -35,4 +35,4 @@ using Seed = std::variant<SeedLine, SeedSlit>;
 /// lower or the upper edge, where sites are held
 std::vector<std::size_t> seed_sites(const TriangularLattice &lattice, const Seed &seed);
 
-} // namespace lattice
+} // namespace latcon::lattice

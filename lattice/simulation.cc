@@ -8,7 +8,7 @@
 #include "lattice/runge_kutta_chebyshev.h"
 #include "lattice/velocity_verlet.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 namespace
 {
@@ -302,4 +302,4 @@ EnergyBalance Simulation::energies() const
           initial_energy_};
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

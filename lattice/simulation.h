@@ -16,7 +16,7 @@
 #include "lattice/snapshot.h"
 #include "lattice/time_step.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// A sheet in motion: state, forces, time stepping, fracture and the energy ledger, one step at a time.
@@ -176,4 +176,4 @@ void Simulation::archive(Archive &archive)
   }
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

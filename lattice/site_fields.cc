@@ -4,7 +4,7 @@
 
 #include <Eigen/LU>
 
-namespace lattice
+namespace latcon::lattice
 {
 
 SiteEvaluator::SiteEvaluator(const TriangularLattice &lattice, const Material &material)
@@ -91,4 +91,4 @@ SiteFields site_fields(const State &state, const TriangularLattice &lattice, con
   return fields;
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -2,7 +2,7 @@
 
 #include "lattice/state.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// A 2 x 2 tensor at every place.
@@ -66,4 +66,4 @@ struct SiteFields
 /// All fields of a state.
 SiteFields site_fields(const State &state, const TriangularLattice &lattice, const Material &material);
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -4,7 +4,7 @@
 
 #include "lattice/state.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// A force on one site, per sheet thickness.
@@ -40,4 +40,4 @@ protected:
   std::vector<SiteForce> forces_;
 };
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace lattice
+namespace latcon::lattice
 {
 namespace
 {
@@ -44,4 +44,4 @@ void Snapshot::put_into(State &state, const RowPartition &band) const
   copy(lost_bonds_, state.lost_bonds);
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -4,7 +4,7 @@
 
 #include "lattice/state.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// What can be seen of a sheet at an instant, positions, velocities and bonds, in the rows that a rank moves.
@@ -26,4 +26,4 @@ private:
   std::vector<std::uint8_t> lost_bonds_;
 };
 
-} // namespace lattice
+} // namespace latcon::lattice

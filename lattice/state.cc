@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace lattice
+namespace latcon::lattice
 {
 namespace
 {
@@ -143,4 +143,4 @@ double stretch(const State &state, const TriangularLattice &lattice, std::size_t
   return std::sqrt(dx * dx + dy * dy) * (1. / lattice.rest_length(kind));
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -11,7 +11,7 @@
 #include "lattice/material.h"
 #include "lattice/row_partition.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// Sheets of fewer places are computed by one thread: starting the others would take longer than they save. Results are
@@ -118,4 +118,4 @@ void for_each_bond_of_site(const State &state, const TriangularLattice &lattice,
   }
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

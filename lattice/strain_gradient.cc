@@ -4,7 +4,7 @@
 
 #include <Eigen/QR>
 
-namespace lattice
+namespace latcon::lattice
 {
 
 const StrainGradientFit::Entry &StrainGradientFit::entry(unsigned int bonds)
@@ -69,4 +69,4 @@ std::optional<StrainGradient> StrainGradientFit::at(const State &state, std::siz
   return gradient;
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

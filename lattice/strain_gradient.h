@@ -6,7 +6,7 @@
 
 #include "lattice/state.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// G_iJK = d^2 x_i / dX_J dX_K at a site [1/m], symmetric in J, K.
@@ -51,4 +51,4 @@ private:
   std::array<std::unique_ptr<Entry>, 1u << n_neighbours> entries_;
 };
 
-} // namespace lattice
+} // namespace latcon::lattice

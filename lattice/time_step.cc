@@ -9,7 +9,7 @@
 #include "lattice/chebyshev_stages.h"
 #include "lattice/contact.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 namespace
 {
@@ -158,4 +158,4 @@ TimeStepping chebyshev_time_stepping(double step, const TimeStepLimits &limits, 
   return {std::min(step, ChebyshevStages(stages).real_limit() * limits.viscous), stages};
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

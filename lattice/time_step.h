@@ -2,7 +2,7 @@
 
 #include "lattice/material.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 struct ContactLaw;
@@ -82,4 +82,4 @@ bool amplifies_contact(const TimeStepping &stepping, const TriangularLattice &la
 /// @param stages s; 0: as few as are stable with `step`
 TimeStepping chebyshev_time_stepping(double step, const TimeStepLimits &limits, unsigned int stages);
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace lattice
+namespace latcon::lattice
 {
 namespace
 {
@@ -181,4 +181,4 @@ Eigen::Vector2d TriangularLattice::from_row_frame(double along, double across) c
   return orientation_ == Orientation::rows_along_crack ? Eigen::Vector2d(u, v) : Eigen::Vector2d(v, u);
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// Which way the rows of nearest neighbours run. The crack runs along x.
@@ -132,4 +132,4 @@ private:
   std::vector<Image> images_;
 };
 
-} // namespace lattice
+} // namespace latcon::lattice

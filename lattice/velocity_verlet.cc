@@ -4,7 +4,7 @@
 
 #include "lattice/row_kernels.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 VelocityVerlet::VelocityVerlet(const RowPartition &band, Forces &forces, double time_step)
@@ -74,4 +74,4 @@ void VelocityVerlet::step(State &state)
   state.time += time_step();
 }
 
-} // namespace lattice
+} // namespace latcon::lattice

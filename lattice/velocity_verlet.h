@@ -2,7 +2,7 @@
 
 #include "lattice/integrator.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// Velocity Verlet for forces that depend on velocity (theory.md, eq. (L.7)):
@@ -33,4 +33,4 @@ private:
   Field predicted_vx_, predicted_vy_;
 };
 
-} // namespace lattice
+} // namespace latcon::lattice

@@ -6,7 +6,7 @@
 #include <type_traits>
 #include <utility>
 
-namespace lattice
+namespace latcon::lattice
 {
 
 /// Allocator of zeros that take memory only where they are touched: a large vector made as `Vector(n)` is zero pages,
@@ -52,4 +52,4 @@ struct ZeroPages
   friend bool operator!=(const ZeroPages &, const ZeroPages &) { return false; }
 };
 
-} // namespace lattice
+} // namespace latcon::lattice

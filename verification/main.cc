@@ -4,7 +4,7 @@
 
 int main(int argc, char **argv)
 {
-  verification::install_signal_handlers();
-  const continuum::ParallelSession session;
-  return static_cast<int>(verification::run_program(argc, argv));
+  latcon::verification::install_signal_handlers();
+  const latcon::continuum::ParallelSession session;
+  return static_cast<int>(latcon::verification::run_program(argc, argv));
 }

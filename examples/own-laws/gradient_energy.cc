@@ -17,6 +17,8 @@
 #include "continuum/rectangle.h"
 #include "continuum/static_solver.h"
 
+using namespace latcon;
+
 namespace
 {
 

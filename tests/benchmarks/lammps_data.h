@@ -13,9 +13,9 @@ namespace benchmarks
 /// Atom type 1 is a free site, 2 a held one; bond type 1 is a nearest-neighbour bond, 2 a next-nearest one, with the
 /// constants of `bond_style harmonic`, energy K (r - l)^2, K = A0 e / (2 l) [N/m].
 /// @throws std::runtime_error if the file cannot be written
-inline void write_lammps_data(const lattice::Simulation &simulation, const std::string &path)
+inline void write_lammps_data(const latcon::lattice::Simulation &simulation, const std::string &path)
 {
-  using namespace lattice;
+  using namespace latcon::lattice;
   const std::unique_ptr<std::FILE, int (*)(std::FILE *)> file(std::fopen(path.c_str(), "w"), std::fclose);
   if (!file)
     throw std::runtime_error("cannot write " + path);

@@ -8,6 +8,8 @@
 #include "tests/benchmarks/sheets.h"
 #include "tests/lattice/reference_forces.h"
 
+using namespace latcon;
+
 namespace
 {
 

@@ -20,6 +20,8 @@
 #include "tests/benchmarks/lammps_data.h"
 #include "tests/benchmarks/sheets.h"
 
+using namespace latcon;
+
 namespace
 {
 

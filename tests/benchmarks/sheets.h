@@ -31,14 +31,14 @@ inline Work work_of(const std::string &name)
   return found->second;
 }
 
-inline lattice::Material material(Work work)
+inline latcon::lattice::Material material(Work work)
 {
   if (work == Work::nearest)
     return sheets::nearest_only();
   if (work == Work::everything)
     return sheets::rubber();
-  const lattice::LinearBond bond{6e5};
-  return {944., {bond, 2. / 3., 0.}, lattice::Shell{bond, 2. / 3., 0.}};
+  const latcon::lattice::LinearBond bond{6e5};
+  return {944., {bond, 2. / 3., 0.}, latcon::lattice::Shell{bond, 2. / 3., 0.}};
 }
 
 /// A square sheet that is ready to move.
@@ -52,9 +52,9 @@ struct Motion
   {
   }
 
-  lattice::TriangularLattice sheet;
-  lattice::Material bonds;
-  lattice::Simulation simulation;
+  latcon::lattice::TriangularLattice sheet;
+  latcon::lattice::Material bonds;
+  latcon::lattice::Simulation simulation;
 
 private:
   static Eigen::Matrix2d deformation(Work work)
@@ -62,18 +62,19 @@ private:
     return work == Work::linear ? sheets::stretched(1.05, 1.1) : sheets::stretched(2.3, 2.8);
   }
 
-  lattice::State loaded(Work work) const
+  latcon::lattice::State loaded(Work work) const
   {
-    lattice::State state = homogeneous_state(sheet, bonds, deformation(work), lattice::Edges::held);
+    latcon::lattice::State state = homogeneous_state(sheet, bonds, deformation(work), latcon::lattice::Edges::held);
     add_noise(state, sheet, 0.05 * sheets::spacing, 1);
     return state;
   }
 
-  std::optional<lattice::Fracture> rules(Work work) const
+  std::optional<latcon::lattice::Fracture> rules(Work work) const
   {
     if (work == Work::linear)
       return std::nullopt;
-    return lattice::Fracture(sheet, bonds, breaking_stretch, lattice::RetractionToughening{0.5, 3.}, deformation(work));
+    return latcon::lattice::Fracture(sheet, bonds, breaking_stretch, latcon::lattice::RetractionToughening{0.5, 3.},
+                                     deformation(work));
   }
 
   static constexpr double breaking_stretch = 5.;

@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+using namespace latcon;
 using namespace multigrid_cases;
 
 namespace

@@ -13,6 +13,7 @@
 #include <fstream>
 #include <iomanip>
 
+using namespace latcon;
 using namespace sheets;
 using continuum::BoundaryConditions;
 using continuum::Constitution;

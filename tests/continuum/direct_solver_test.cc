@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+using namespace latcon;
 using namespace sheets;
 using continuum::DirectSolver;
 using continuum::Sheet;

@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 
+using namespace latcon;
 using namespace moving_sheets;
 using continuum::BoundaryConditions;
 using continuum::Constitution;

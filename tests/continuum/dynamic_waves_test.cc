@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 
+using namespace latcon;
 using namespace moving_sheets;
 using continuum::BoundaryConditions;
 using continuum::Constitution;

@@ -12,6 +12,7 @@
 #include <fstream>
 #include <sstream>
 
+using namespace latcon;
 using namespace sheets;
 namespace fs = std::filesystem;
 

@@ -15,9 +15,9 @@
 namespace gradient_checks
 {
 using namespace sheets;
-using continuum::BondFamily;
-using continuum::GradientLaw;
-using continuum::LatticeGradient;
+using latcon::continuum::BondFamily;
+using latcon::continuum::GradientLaw;
+using latcon::continuum::LatticeGradient;
 
 using Gradient = GradientLaw::Gradient;
 using Fad = Sacado::Fad::DFad<double>;
@@ -58,14 +58,14 @@ Number lattice_energy(const std::vector<BondFamily> &bonds, const double length,
     for (Number &component : n)
       component /= stretch;
     Number psi1, psi2;
-    if (const auto *rod = std::get_if<continuum::RodPotential>(&bond.fibre.potential))
+    if (const auto *rod = std::get_if<latcon::continuum::RodPotential>(&bond.fibre.potential))
     {
       psi1 = rod->a * (stretch - 1. / (stretch * stretch)) + rod->b * (1. - 1. / (stretch * stretch * stretch));
       psi2 = rod->a * (1. + 2. / (stretch * stretch * stretch)) + 3. * rod->b / (stretch * stretch * stretch * stretch);
     }
     else
     {
-      const double e = std::get<continuum::LinearPotential>(bond.fibre.potential).e;
+      const double e = std::get<latcon::continuum::LinearPotential>(bond.fibre.potential).e;
       psi1 = e * (stretch - 1.);
       psi2 = e;
     }
@@ -96,9 +96,9 @@ Number lattice_energy(const std::vector<BondFamily> &bonds, const double length,
 
 inline std::vector<BondFamily> mixed_bonds()
 {
-  return {{{Tensor<1, 2>({1., 0.}), 0.7, continuum::RodPotential{1e5, 1.5e5}}, 1.3 * spacing},
-          {{Tensor<1, 2>({0.6, 0.8}), 1.1, continuum::LinearPotential{2e5}}, 0.8 * spacing},
-          {{Tensor<1, 2>({-0.28, 0.96}), 0.4, continuum::RodPotential{2e5, -0.5e5}}, spacing}};
+  return {{{Tensor<1, 2>({1., 0.}), 0.7, latcon::continuum::RodPotential{1e5, 1.5e5}}, 1.3 * spacing},
+          {{Tensor<1, 2>({0.6, 0.8}), 1.1, latcon::continuum::LinearPotential{2e5}}, 0.8 * spacing},
+          {{Tensor<1, 2>({-0.28, 0.96}), 0.4, latcon::continuum::RodPotential{2e5, -0.5e5}}, spacing}};
 }
 
 // Value, first and second derivatives of an energy by the ten variables.

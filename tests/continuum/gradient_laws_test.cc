@@ -2,6 +2,7 @@
 #include "continuum/network_gradient.h"
 #include "gradient_checks.h"
 
+using namespace latcon;
 using namespace gradient_checks;
 using continuum::IsotropicGradient;
 using continuum::NetworkGradient;

@@ -7,6 +7,7 @@
 
 #include <gtest/gtest.h>
 
+using namespace latcon;
 using namespace sheets;
 using continuum::BoundaryConditions;
 using continuum::Constitution;

@@ -5,6 +5,7 @@
 
 #include <array>
 
+using namespace latcon;
 using namespace material_checks;
 using continuum::CauchyBorn;
 using continuum::FibreFamily;

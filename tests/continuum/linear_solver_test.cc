@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+using namespace latcon;
 using namespace multigrid_cases;
 using continuum::LinearSettings;
 using continuum::LinearSolver;

@@ -3,6 +3,8 @@
 
 #include "continuum/parallel_session.h"
 
+using namespace latcon;
+
 // Under AddressSanitizer: MPI and Trilinos keep memory until the process ends, some of it in modules unloaded by then,
 // which no suppression can name. Every other check stays on.
 extern "C" const char *__asan_default_options();

@@ -59,7 +59,7 @@ struct Solution
 /// Energy of the rod network, bond by bond.
 struct NetworkEnergy
 {
-  std::vector<continuum::FibreFamily> families;
+  std::vector<latcon::continuum::FibreFamily> families;
 
   Energy operator()(const Variables &v) const
   {
@@ -67,7 +67,7 @@ struct NetworkEnergy
     for (const auto &family : families)
     {
       const auto &N = family.direction;
-      const auto &rod = std::get<continuum::RodPotential>(family.potential);
+      const auto &rod = std::get<latcon::continuum::RodPotential>(family.potential);
       const Energy x = v[0] * N[0] + v[1] * N[1];
       const Energy y = v[2] * N[0] + v[3] * N[1];
       const Energy l2 = x * x + y * y;
@@ -81,10 +81,10 @@ struct NetworkEnergy
 /// Compressible Mooney-Rivlin in plane stress, thickness eliminated by Newton on dw/dt = 0.
 struct MooneyRivlinEnergy
 {
-  continuum::MooneyRivlin::Constants m;
+  latcon::continuum::MooneyRivlin::Constants m;
 
   template <typename Number>
-  static Number by_thickness(const continuum::MooneyRivlin::Constants &m, const Number &f, const Number &j,
+  static Number by_thickness(const latcon::continuum::MooneyRivlin::Constants &m, const Number &f, const Number &j,
                              const Number &t)
   {
     return m.c1 * (2. * t - 2. / t) + m.c2 * (2. * t * f - 4. / t) + m.kappa * (j * t - 1.) * j;
@@ -133,7 +133,7 @@ struct IsotropicGradientEnergy
 /// theory-continuum.md, eq. (C.22), bond by bond.
 struct LatticeGradientEnergy
 {
-  std::vector<continuum::BondFamily> bonds;
+  std::vector<latcon::continuum::BondFamily> bonds;
   double length;
 
   Energy operator()(const Variables &v) const
@@ -142,7 +142,7 @@ struct LatticeGradientEnergy
     for (const auto &bond : bonds)
     {
       const auto &N = bond.fibre.direction;
-      const auto &rod = std::get<continuum::RodPotential>(bond.fibre.potential);
+      const auto &rod = std::get<latcon::continuum::RodPotential>(bond.fibre.potential);
       const Energy x = v[0] * N[0] + v[1] * N[1];
       const Energy y = v[2] * N[0] + v[3] * N[1];
       const Energy l2 = x * x + y * y;

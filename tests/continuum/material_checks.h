@@ -37,7 +37,7 @@ inline double observed_order(const std::function<double(double)> &remainder)
 
 // Energy to stress and stress to tangent by Taylor's theorem. The second-order remainders are left by terms of the size
 // of the stiffness, so an error of any derivative shows as order 1.
-inline void expect_taylor_orders(const continuum::Material &law, const bool of_energy)
+inline void expect_taylor_orders(const latcon::continuum::Material &law, const bool of_energy)
 {
   std::mt19937 generator(11);
   std::uniform_real_distribution<double> entry(-0.3, 0.3);
@@ -57,7 +57,7 @@ inline void expect_taylor_orders(const continuum::Material &law, const bool of_e
   }
 }
 
-inline void expect_objective(const continuum::Material &law)
+inline void expect_objective(const latcon::continuum::Material &law)
 {
   std::mt19937 generator(5);
   for (int sample = 0; sample < 50; ++sample)
@@ -76,7 +76,7 @@ inline void expect_objective(const continuum::Material &law)
   }
 }
 
-inline void expect_major_symmetry(const continuum::Material &law)
+inline void expect_major_symmetry(const latcon::continuum::Material &law)
 {
   std::mt19937 generator(6);
   for (int sample = 0; sample < 50; ++sample)
@@ -90,29 +90,29 @@ inline void expect_major_symmetry(const continuum::Material &law)
   }
 }
 
-inline void expect_refusal(const continuum::Material &law)
+inline void expect_refusal(const latcon::continuum::Material &law)
 {
   const double nan = std::numeric_limits<double>::quiet_NaN();
   const double infinity = std::numeric_limits<double>::infinity();
   for (const Tensor<2, 2> &F : {matrix(1., 0., 0., -1.25), matrix(1., 2., 2., 4.), matrix(nan, 0., 0., 1.),
                                 matrix(infinity, 0., 0., 1.), Tensor<2, 2>()})
   {
-    EXPECT_THROW(law.energy(F), continuum::NonPhysicalState);
-    EXPECT_THROW(law.first_piola_stress(F), continuum::NonPhysicalState);
-    EXPECT_THROW(law.tangent(F), continuum::NonPhysicalState);
-    EXPECT_THROW(law.thickness_stretch(F), continuum::NonPhysicalState);
+    EXPECT_THROW(law.energy(F), latcon::continuum::NonPhysicalState);
+    EXPECT_THROW(law.first_piola_stress(F), latcon::continuum::NonPhysicalState);
+    EXPECT_THROW(law.tangent(F), latcon::continuum::NonPhysicalState);
+    EXPECT_THROW(law.thickness_stretch(F), latcon::continuum::NonPhysicalState);
   }
   try
   {
     law.energy(matrix(1., 0., 0., -1.25));
   }
-  catch (const continuum::NonPhysicalState &failure)
+  catch (const latcon::continuum::NonPhysicalState &failure)
   {
     EXPECT_NE(std::string(failure.what()).find("-1.25"), std::string::npos) << failure.what();
   }
 }
 
-inline void expect_isotropic_moduli(const continuum::Material &law, const double lambda, const double mu)
+inline void expect_isotropic_moduli(const latcon::continuum::Material &law, const double lambda, const double mu)
 {
   const Tensor<2, 2> I = matrix(1., 0., 0., 1.);
   EXPECT_NEAR(law.energy(I), 0., 10. * epsilon * mu);

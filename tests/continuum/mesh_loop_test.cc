@@ -14,6 +14,7 @@
 #include <string>
 #include <vector>
 
+using namespace latcon;
 using namespace sheets;
 
 namespace

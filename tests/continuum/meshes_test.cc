@@ -14,6 +14,7 @@
 #include <fstream>
 #include <map>
 
+using namespace latcon;
 using namespace sheets;
 using continuum::StaticSettings;
 using continuum::StaticSolver;

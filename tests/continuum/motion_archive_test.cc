@@ -14,6 +14,7 @@
 
 #include <set>
 
+using namespace latcon;
 using namespace moving_sheets;
 using continuum::DynamicSolver;
 using memory_archive::load;

@@ -17,16 +17,16 @@ inline std::shared_ptr<Field> constant(const double x, const double y)
   return std::make_shared<Field>([=](const Point<2> &) { return Tensor<1, 2>({x, y}); });
 }
 
-inline continuum::BoundaryConditions periodic()
+inline latcon::continuum::BoundaryConditions periodic()
 {
-  continuum::BoundaryConditions conditions;
-  conditions.periodic = {{continuum::edge::left, continuum::edge::right, 0},
-                         {continuum::edge::bottom, continuum::edge::top, 1}};
+  latcon::continuum::BoundaryConditions conditions;
+  conditions.periodic = {{latcon::continuum::edge::left, latcon::continuum::edge::right, 0},
+                         {latcon::continuum::edge::bottom, latcon::continuum::edge::top, 1}};
   return conditions;
 }
 
 // Along x one wavelength of 1 m and n cells, two of them across.
-inline continuum::Rectangle strip(const unsigned int n)
+inline latcon::continuum::Rectangle strip(const unsigned int n)
 {
   return {1., 2. / n, n, 2, true, true};
 }
@@ -38,12 +38,12 @@ inline std::shared_ptr<Field> wave(const Tensor<1, 2> &polarisation)
 }
 
 // Dashpots along the bonds of rubber_network.
-inline continuum::FibreViscosity network_viscosity(const double eta)
+inline latcon::continuum::FibreViscosity network_viscosity(const double eta)
 {
-  const continuum::CauchyBorn network = rubber_network();
-  std::vector<continuum::FibreDashpot> dashpots;
+  const latcon::continuum::CauchyBorn network = rubber_network();
+  std::vector<latcon::continuum::FibreDashpot> dashpots;
   for (const auto &family : network.families())
     dashpots.push_back({family.direction, family.weight, eta});
-  return continuum::FibreViscosity(dashpots);
+  return latcon::continuum::FibreViscosity(dashpots);
 }
 } // namespace moving_sheets

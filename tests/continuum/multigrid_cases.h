@@ -16,9 +16,9 @@
 namespace multigrid_cases
 {
 using namespace sheets;
-using continuum::Multigrid;
-using continuum::Sheet;
 using dealii::AffineConstraints;
+using latcon::continuum::Multigrid;
+using latcon::continuum::Sheet;
 
 /// Grad u : Grad v + l^2 Grad Grad u : Grad Grad v, the normal derivative continuous by an interior penalty: the
 /// linear form of strain-gradient elasticity, with fourth-order operator and face terms.
@@ -164,17 +164,17 @@ private:
 };
 
 /// Sheets of the same law and degree on coarser meshes.
-inline Multigrid::SheetFactory same_sheets(const continuum::Material &law, const unsigned int degree)
+inline Multigrid::SheetFactory same_sheets(const latcon::continuum::Material &law, const unsigned int degree)
 {
   return [&law, degree](const Mesh &mesh) { return std::make_unique<Sheet>(mesh, law, degree); };
 }
 
-inline continuum::DirichletBoundaries all_held()
+inline latcon::continuum::DirichletBoundaries all_held()
 {
-  return {{continuum::edge::left, {}},
-          {continuum::edge::right, {}},
-          {continuum::edge::bottom, {}},
-          {continuum::edge::top, {}}};
+  return {{latcon::continuum::edge::left, {}},
+          {latcon::continuum::edge::right, {}},
+          {latcon::continuum::edge::bottom, {}},
+          {latcon::continuum::edge::top, {}}};
 }
 
 /// Refines `times` times around `tip`, each time within half the radius of the last [m].

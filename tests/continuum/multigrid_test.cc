@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+using namespace latcon;
 using namespace multigrid_cases;
 using continuum::MultigridSettings;
 

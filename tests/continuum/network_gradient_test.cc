@@ -4,6 +4,7 @@
 
 #include <tuple>
 
+using namespace latcon;
 using namespace gradient_checks;
 using continuum::NetworkGradient;
 

@@ -15,6 +15,7 @@
 #include <cstdlib>
 #include <filesystem>
 
+using namespace latcon;
 using namespace sheets;
 using continuum::StaticSettings;
 using continuum::StaticSolver;

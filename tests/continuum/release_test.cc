@@ -8,6 +8,7 @@
 
 #include <cmath>
 
+using namespace latcon;
 using namespace moving_sheets;
 using continuum::BoundaryConditions;
 using continuum::Constitution;

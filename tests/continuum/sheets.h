@@ -40,15 +40,15 @@ inline Tensor<2, 2> rotation(const double angle)
 }
 
 /// A displacement [m], given at reference places, at the nodes of a sheet: one field, with ghost entries.
-inline continuum::Sheet::Vector nodal(const continuum::Sheet &sheet,
-                                      const std::function<Tensor<1, 2>(const Point<2> &)> &field)
+inline latcon::continuum::Sheet::Vector nodal(const latcon::continuum::Sheet &sheet,
+                                              const std::function<Tensor<1, 2>(const Point<2> &)> &field)
 {
-  continuum::Sheet::Vector owned = sheet.make_owned();
+  latcon::continuum::Sheet::Vector owned = sheet.make_owned();
   sheet.for_each_owned_dof([&](const auto dof, const unsigned int component, const Point<2> &X)
                            { owned(dof) = field(X)[component]; });
   owned.compress(dealii::VectorOperation::insert);
   sheet.conformity_constraints().distribute(owned);
-  continuum::Sheet::Vector u = sheet.make_ghosted();
+  latcon::continuum::Sheet::Vector u = sheet.make_ghosted();
   u = owned;
   return u;
 }
@@ -69,35 +69,36 @@ inline Tensor<3, 2> random_gradient(std::mt19937 &generator, const double length
 
 /// Rubber of the source paper's Fig. 1: both shells of the triangular network, area factor s = 2/3, so weights s and
 /// sqrt(3) s.
-inline continuum::CauchyBorn rubber_network(const double a = 1e5, const double b = 1.5e5)
+inline latcon::continuum::CauchyBorn rubber_network(const double a = 1e5, const double b = 1.5e5)
 {
   const double s = 2. / 3.;
-  std::vector<continuum::FibreFamily> families;
+  std::vector<latcon::continuum::FibreFamily> families;
   for (int k = 0; k < 6; ++k)
     families.push_back({Tensor<1, 2>({std::cos(pi * k / 6.), std::sin(pi * k / 6.)}),
-                        k % 2 == 0 ? s : std::sqrt(3.) * s, continuum::RodPotential{a, b}});
-  return continuum::CauchyBorn(families);
+                        k % 2 == 0 ? s : std::sqrt(3.) * s, latcon::continuum::RodPotential{a, b}});
+  return latcon::continuum::CauchyBorn(families);
 }
 
 /// Its bonds, for nearest neighbours at the distance `spacing` [m].
-inline std::vector<continuum::BondFamily> rubber_bonds(const double spacing)
+inline std::vector<latcon::continuum::BondFamily> rubber_bonds(const double spacing)
 {
-  const continuum::CauchyBorn network = rubber_network();
-  std::vector<continuum::BondFamily> bonds;
-  for (const continuum::FibreFamily &family : network.families())
+  const latcon::continuum::CauchyBorn network = rubber_network();
+  std::vector<latcon::continuum::BondFamily> bonds;
+  for (const latcon::continuum::FibreFamily &family : network.families())
     bonds.push_back({family, (bonds.size() % 2 == 0 ? 1. : std::sqrt(3.)) * spacing});
   return bonds;
 }
 
-inline continuum::LatticeGradient rubber_gradient(const double spacing)
+inline latcon::continuum::LatticeGradient rubber_gradient(const double spacing)
 {
   const auto bonds = rubber_bonds(spacing);
-  return continuum::LatticeGradient(bonds, continuum::LatticeGradient::smallest_length(bonds));
+  return latcon::continuum::LatticeGradient(bonds, latcon::continuum::LatticeGradient::smallest_length(bonds));
 }
 
-inline continuum::MooneyRivlin rubber_sheet(const double ratio = -0.05)
+inline latcon::continuum::MooneyRivlin rubber_sheet(const double ratio = -0.05)
 {
-  return continuum::MooneyRivlin(continuum::MooneyRivlin::Constants::with_equal_lame_constants(5e5, ratio));
+  return latcon::continuum::MooneyRivlin(
+    latcon::continuum::MooneyRivlin::Constants::with_equal_lame_constants(5e5, ratio));
 }
 
 /// A deformation gradient with principal stretches from `low` to `high` and rotations on both sides.
@@ -134,20 +135,20 @@ inline std::shared_ptr<Field> affine(const Tensor<2, 2> &F)
 }
 
 /// The same displacement on all four edges.
-inline std::vector<continuum::PrescribedDisplacement> on_all_edges(const std::shared_ptr<Field> &field)
+inline std::vector<latcon::continuum::PrescribedDisplacement> on_all_edges(const std::shared_ptr<Field> &field)
 {
-  return {{continuum::edge::left, field},
-          {continuum::edge::right, field},
-          {continuum::edge::bottom, field},
-          {continuum::edge::top, field}};
+  return {{latcon::continuum::edge::left, field},
+          {latcon::continuum::edge::right, field},
+          {latcon::continuum::edge::bottom, field},
+          {latcon::continuum::edge::top, field}};
 }
 
 /// Stretch by (stretch_x, stretch_y) on all edges of a 0.15 m x 0.1 m sheet, and on top of it a bump of the top edge of
 /// height `bump` [m] that vanishes with three derivatives at the corners, so that the solution is smooth there.
 constexpr double length = 0.15;
 constexpr double height = 0.1;
-inline std::vector<continuum::PrescribedDisplacement> bump_problem(const double stretch_x, const double stretch_y,
-                                                                   const double bump)
+inline std::vector<latcon::continuum::PrescribedDisplacement> bump_problem(const double stretch_x,
+                                                                           const double stretch_y, const double bump)
 {
   return on_all_edges(std::make_shared<Field>(
     [=](const Point<2> &X)
@@ -157,7 +158,7 @@ inline std::vector<continuum::PrescribedDisplacement> bump_problem(const double 
     }));
 }
 
-inline continuum::Rectangle rectangle(const unsigned int cells_x, const unsigned int cells_y)
+inline latcon::continuum::Rectangle rectangle(const unsigned int cells_x, const unsigned int cells_y)
 {
   return {length, height, cells_x, cells_y};
 }

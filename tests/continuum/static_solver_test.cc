@@ -13,6 +13,7 @@
 
 #include <gtest/gtest.h>
 
+using namespace latcon;
 using namespace sheets;
 using continuum::StaticSettings;
 using continuum::StaticSolver;

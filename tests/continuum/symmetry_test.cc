@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+using namespace latcon;
 using namespace moving_sheets;
 using continuum::GradientLaw;
 using continuum::Material;

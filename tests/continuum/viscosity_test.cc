@@ -11,6 +11,7 @@
 #include <cmath>
 #include <limits>
 
+using namespace latcon;
 using namespace sheets;
 using continuum::FibreDashpot;
 using continuum::FibreViscosity;

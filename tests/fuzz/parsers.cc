@@ -15,6 +15,8 @@
 #include "verification/input/case.h"
 #include "verification/study/study_file.h"
 
+using namespace latcon;
+
 namespace
 {
 

@@ -22,6 +22,8 @@
 #include "continuum/parallel_session.h"
 #include "verification/commands/command_line.h"
 
+using namespace latcon;
+
 namespace
 {
 

@@ -8,6 +8,8 @@
 #include "lattice/time_step.h"
 #include "tests/lattice/plane_modes.h"
 
+using namespace latcon;
+
 namespace
 {
 

@@ -11,6 +11,8 @@
 #include "lattice/time_step.h"
 #include "tests/lattice/sheets.h"
 
+using namespace latcon;
+
 namespace
 {
 

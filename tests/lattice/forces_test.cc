@@ -12,6 +12,8 @@
 #include "tests/lattice/reference_forces.h"
 #include "tests/lattice/sheets.h"
 
+using namespace latcon;
+
 namespace
 {
 

@@ -19,13 +19,13 @@ struct PlaneModes
 };
 
 /// @param K referential [1/m]
-inline PlaneModes of(const lattice::TriangularLattice &sheet, const lattice::Material &material,
+inline PlaneModes of(const latcon::lattice::TriangularLattice &sheet, const latcon::lattice::Material &material,
                      const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
 {
   Eigen::Matrix4d system = Eigen::Matrix4d::Zero();
   system.topRightCorner<2, 2>().setIdentity();
-  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
-    if (const lattice::Shell *shell = material.shell(kind))
+  for (std::size_t kind = 0; kind < latcon::lattice::n_bond_kinds; ++kind)
+    if (const latcon::lattice::Shell *shell = material.shell(kind))
     {
       const Eigen::Vector2d R = sheet.bond_vector(kind), r = F * R;
       const double stretch = r.norm() / R.norm(), sine = std::sin(0.5 * K.dot(R));
@@ -44,8 +44,9 @@ inline PlaneModes of(const lattice::TriangularLattice &sheet, const lattice::Mat
 }
 
 /// Rates of n by n wave vectors that fill the first Brillouin zone and more, [1/s].
-inline std::vector<std::complex<double>> rates(const lattice::TriangularLattice &sheet,
-                                               const lattice::Material &material, const Eigen::Matrix2d &F, int n = 48)
+inline std::vector<std::complex<double>> rates(const latcon::lattice::TriangularLattice &sheet,
+                                               const latcon::lattice::Material &material, const Eigen::Matrix2d &F,
+                                               int n = 48)
 {
   std::vector<std::complex<double>> all;
   for (int i = -n; i <= n; ++i)

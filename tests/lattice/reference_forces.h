@@ -8,23 +8,24 @@
 /// The forces of theory.md, eq. (L.3), bond by bond and in no hurry: what the hot loop is measured against.
 struct ReferenceForces
 {
-  lattice::Field fx, fy;     // [N/m], one a place; zero at images, whose share goes to their sites
-  lattice::Field magnitude;  // sum of the absolute values of all terms that add up to a site's force [N/m]
-  double viscous_power = 0.; // [W/m]
+  latcon::lattice::Field fx, fy;    // [N/m], one a place; zero at images, whose share goes to their sites
+  latcon::lattice::Field magnitude; // sum of the absolute values of all terms that add up to a site's force [N/m]
+  double viscous_power = 0.;        // [W/m]
   std::vector<bool> row_has_events;
 };
 
 /// @param retraction_stretch as in Forces::set_retraction_threshold
-inline ReferenceForces reference_forces(const lattice::State &state, const lattice::TriangularLattice &sheet,
-                                        const lattice::Material &material,
-                                        const std::array<double, lattice::n_bond_kinds> &retraction_stretch = {})
+inline ReferenceForces
+reference_forces(const latcon::lattice::State &state, const latcon::lattice::TriangularLattice &sheet,
+                 const latcon::lattice::Material &material,
+                 const std::array<double, latcon::lattice::n_bond_kinds> &retraction_stretch = {})
 {
   using Eigen::Vector2d;
-  const lattice::Field zero(sheet.n_places(), 0.);
+  const latcon::lattice::Field zero(sheet.n_places(), 0.);
   ReferenceForces result{zero, zero, zero, 0., std::vector<bool>(sheet.rows(), false)};
   const auto visit = [&](std::size_t near, std::size_t kind, std::size_t far)
   {
-    const lattice::Shell &shell = *material.shell(kind);
+    const latcon::lattice::Shell &shell = *material.shell(kind);
     const double section = cross_section(shell, sheet), rest_length = sheet.rest_length(kind);
     const Vector2d bond(state.x[far] - state.x[near], state.y[far] - state.y[near]);
     const Vector2d velocity(state.vx[far] - state.vx[near], state.vy[far] - state.vy[near]);

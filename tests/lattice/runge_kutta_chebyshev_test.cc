@@ -10,6 +10,8 @@
 #include "tests/lattice/plane_modes.h"
 #include "tests/lattice/smooth_motion.h"
 
+using namespace latcon;
+
 namespace
 {
 

@@ -5,14 +5,14 @@
 
 #include "lattice/simulation.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 /// How an orientation reads in the name of a test.
 inline void PrintTo(const Orientation orientation, std::ostream *out)
 {
   *out << (orientation == Orientation::rows_along_crack ? "rows along crack" : "rows across crack");
 }
-} // namespace lattice
+} // namespace latcon::lattice
 
 /// Sheets that several tests share.
 namespace sheets
@@ -22,7 +22,7 @@ inline constexpr double spacing = 0.625e-3;
 
 /// A law of latcon's own, given as one from outside.
 template <class Law>
-class FromOutside : public lattice::CustomBondLaw
+class FromOutside : public latcon::lattice::CustomBondLaw
 {
 public:
   explicit FromOutside(const Law &law) : law_(law) {}
@@ -39,31 +39,31 @@ private:
 };
 
 template <class Law>
-lattice::CustomBond from_outside(const Law &law)
+latcon::lattice::CustomBond from_outside(const Law &law)
 {
-  return lattice::CustomBond(std::make_shared<FromOutside<Law>>(law));
+  return latcon::lattice::CustomBond(std::make_shared<FromOutside<Law>>(law));
 }
 
 /// The rubber of the source paper's Fig. 1; viscosity of the nearest neighbours in Pa s, three times that for the next.
-inline lattice::Material rubber(double viscosity = 65.625)
+inline latcon::lattice::Material rubber(double viscosity = 65.625)
 {
-  const lattice::MooneyRivlinBond bond{1e5, 1.5e5};
+  const latcon::lattice::MooneyRivlinBond bond{1e5, 1.5e5};
   const double area_factor = 2. / 3.;
-  return {944., {bond, area_factor, viscosity}, lattice::Shell{bond, area_factor, 3. * viscosity}};
+  return {944., {bond, area_factor, viscosity}, latcon::lattice::Shell{bond, area_factor, 3. * viscosity}};
 }
 
-inline lattice::Material nearest_only(double viscosity = 65.625)
+inline latcon::lattice::Material nearest_only(double viscosity = 65.625)
 {
-  lattice::Material material = rubber(viscosity);
+  latcon::lattice::Material material = rubber(viscosity);
   material.next_nearest.reset();
   return material;
 }
 
 /// The same rubber with laws from outside.
-inline lattice::Material rubber_from_outside()
+inline latcon::lattice::Material rubber_from_outside()
 {
-  lattice::Material material = rubber();
-  material.nearest.law = from_outside(lattice::MooneyRivlinBond{1e5, 1.5e5});
+  latcon::lattice::Material material = rubber();
+  material.nearest.law = from_outside(latcon::lattice::MooneyRivlinBond{1e5, 1.5e5});
   material.next_nearest->law = material.nearest.law;
   return material;
 }
@@ -74,14 +74,15 @@ inline Eigen::Matrix2d stretched(double x, double y)
 }
 
 /// A sheet of about n by n sites.
-inline lattice::TriangularLattice square(double n,
-                                         lattice::Orientation orientation = lattice::Orientation::rows_along_crack)
+inline latcon::lattice::TriangularLattice
+square(double n, latcon::lattice::Orientation orientation = latcon::lattice::Orientation::rows_along_crack)
 {
   return {spacing, n * spacing, n * spacing, orientation};
 }
 
 /// The n places in the middle row from a given column on; a seed crack.
-inline std::vector<std::size_t> middle_row(const lattice::TriangularLattice &sheet, std::size_t column, std::size_t n)
+inline std::vector<std::size_t> middle_row(const latcon::lattice::TriangularLattice &sheet, std::size_t column,
+                                           std::size_t n)
 {
   std::vector<std::size_t> places;
   for (std::size_t i = 0; i < n; ++i)

@@ -10,6 +10,8 @@
 #include "lattice/site_fields.h"
 #include "tests/lattice/sheets.h"
 
+using namespace latcon;
+
 namespace
 {
 

@@ -8,6 +8,8 @@
 #include "lattice/relaxation.h"
 #include "tests/lattice/sheets.h"
 
+using namespace latcon;
+
 namespace
 {
 

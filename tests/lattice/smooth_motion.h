@@ -11,10 +11,10 @@ namespace smooth_motion
 
 /// A held, stretched sheet set off by a smooth velocity field of a few m/s, after `steps` steps.
 /// @param imbalance takes that of the energy ledger [J/m], if given
-inline lattice::State run(const lattice::Material &material, lattice::TimeStepping stepping, std::size_t steps,
-                          double *imbalance = nullptr)
+inline latcon::lattice::State run(const latcon::lattice::Material &material, latcon::lattice::TimeStepping stepping,
+                                  std::size_t steps, double *imbalance = nullptr)
 {
-  using namespace lattice;
+  using namespace latcon::lattice;
   const TriangularLattice sheet = sheets::square(12);
   Simulation simulation(sheet, material, homogeneous_state(sheet, material, sheets::stretched(1.5, 1.4), Edges::held),
                         stepping);
@@ -34,7 +34,7 @@ inline lattice::State run(const lattice::Material &material, lattice::TimeSteppi
 }
 
 /// Between two states, over all positions [m].
-inline double distance(const lattice::State &a, const lattice::State &b)
+inline double distance(const latcon::lattice::State &a, const latcon::lattice::State &b)
 {
   double square = 0.;
   for (std::size_t i = 0; i < a.x.size(); ++i)

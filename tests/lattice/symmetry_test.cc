@@ -10,6 +10,8 @@
 #include "lattice/simulation.h"
 #include "tests/lattice/smooth_motion.h"
 
+using namespace latcon;
+
 namespace
 {
 

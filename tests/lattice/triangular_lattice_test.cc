@@ -7,6 +7,8 @@
 
 #include "tests/lattice/sheets.h"
 
+using namespace latcon;
+
 namespace
 {
 

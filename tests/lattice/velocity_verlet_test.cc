@@ -11,6 +11,8 @@
 #include "tests/lattice/sheets.h"
 #include "tests/lattice/smooth_motion.h"
 
+using namespace latcon;
+
 namespace
 {
 

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-namespace lattice
+namespace latcon::verification
 {
 namespace
 {
@@ -64,4 +64,4 @@ std::optional<FlankDamage> flank_damage(const std::vector<TipRecord> &tip, const
   return damage;
 }
 
-} // namespace lattice
+} // namespace latcon::verification

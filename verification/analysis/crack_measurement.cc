@@ -7,7 +7,7 @@
 
 #include "verification/analysis/crack_steady_part.h"
 
-namespace lattice
+namespace latcon::verification
 {
 namespace
 {
@@ -264,4 +264,4 @@ CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vec
   return m;
 }
 
-} // namespace lattice
+} // namespace latcon::verification

@@ -6,7 +6,7 @@
 #include "verification/analysis/crack_records.h"
 #include "verification/analysis/path_fit.h"
 
-namespace lattice
+namespace latcon::verification
 {
 
 /// How the steady part of an oscillating path is told.
@@ -52,4 +52,4 @@ std::optional<Measured> crest_amplitude(const std::vector<TipRecord> &tip, doubl
 /// @return none for fewer than ten records, or if the tip or time does not advance
 std::optional<Measured> steady_speed(const std::vector<TipRecord> &tip, double spacing, double TipRecord::*coordinate);
 
-} // namespace lattice
+} // namespace latcon::verification

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace lattice
+namespace latcon::verification
 {
 namespace
 {
@@ -15,7 +15,7 @@ struct Piece
 };
 
 // Pieces in the order of their lowest sites.
-std::vector<Piece> pieces(const State &state, const TriangularLattice &lattice)
+std::vector<Piece> pieces(const lattice::State &state, const lattice::TriangularLattice &lattice)
 {
   std::vector<std::vector<std::size_t>> neighbours(lattice.n_places());
   for_each_bond(state, lattice,
@@ -51,7 +51,7 @@ std::vector<Piece> pieces(const State &state, const TriangularLattice &lattice)
 
 } // namespace
 
-Fragments find_fragments(const State &state, const TriangularLattice &lattice)
+Fragments find_fragments(const lattice::State &state, const lattice::TriangularLattice &lattice)
 {
   std::vector<Piece> all = pieces(state, lattice);
   std::stable_sort(all.begin(), all.end(),
@@ -70,7 +70,8 @@ Fragments find_fragments(const State &state, const TriangularLattice &lattice)
   return fragments;
 }
 
-std::size_t n_overstretched_bonds(const State &state, const TriangularLattice &lattice, double breaking_stretch)
+std::size_t n_overstretched_bonds(const lattice::State &state, const lattice::TriangularLattice &lattice,
+                                  double breaking_stretch)
 {
   std::size_t n = 0;
   for_each_bond(state, lattice,
@@ -79,7 +80,8 @@ std::size_t n_overstretched_bonds(const State &state, const TriangularLattice &l
   return n;
 }
 
-double bridged_length(const State &state, const TriangularLattice &lattice, double X_from, double X_to)
+double bridged_length(const lattice::State &state, const lattice::TriangularLattice &lattice, double X_from,
+                      double X_to)
 {
   const double width = 4. * lattice.spacing();
   const auto n_strips = static_cast<std::ptrdiff_t>(std::floor((X_to - X_from) / width));
@@ -120,4 +122,4 @@ double bridged_length(const State &state, const TriangularLattice &lattice, doub
   return width * static_cast<double>(std::count(bridged.begin(), bridged.end(), 1));
 }
 
-} // namespace lattice
+} // namespace latcon::verification

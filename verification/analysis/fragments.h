@@ -5,7 +5,7 @@
 
 #include "lattice/state.h"
 
-namespace lattice
+namespace latcon::verification
 {
 
 /// The pieces of a broken sheet: its sites, connected through the bonds that are present.
@@ -20,16 +20,18 @@ struct Fragments
 };
 
 /// Of the bonds that are present.
-Fragments find_fragments(const State &state, const TriangularLattice &lattice);
+Fragments find_fragments(const lattice::State &state, const lattice::TriangularLattice &lattice);
 
 /// Bonds present beyond the stretch that would have broken them had they not been toughened: fibrils in the wake of a
 /// crack, and flanks that were held together.
-std::size_t n_overstretched_bonds(const State &state, const TriangularLattice &lattice, double breaking_stretch);
+std::size_t n_overstretched_bonds(const lattice::State &state, const lattice::TriangularLattice &lattice,
+                                  double breaking_stretch);
 
 /// Length of crack that fibrils bridge: of the strips across the sheet, 4 d wide, that lie between X_from and X_to,
 /// those in which bonds still lead from a held site below the middle to one above it without leaving the strip.
 /// @param X_from, X_to reference [m]; the seed's tip and the tip, say
 /// @return their width in all, reference [m]
-double bridged_length(const State &state, const TriangularLattice &lattice, double X_from, double X_to);
+double bridged_length(const lattice::State &state, const lattice::TriangularLattice &lattice, double X_from,
+                      double X_to);
 
-} // namespace lattice
+} // namespace latcon::verification

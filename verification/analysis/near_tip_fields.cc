@@ -5,7 +5,7 @@
 #include <limits>
 #include <stdexcept>
 
-namespace lattice
+namespace latcon::verification
 {
 namespace
 {
@@ -61,11 +61,11 @@ Eigen::Matrix2d symmetric_in(const Array &values, Eigen::Index first)
   return tensor;
 }
 
-NearTipGrid make_grid(const TriangularLattice &lattice, const NearTipOptions &options)
+NearTipGrid make_grid(const lattice::TriangularLattice &lattice, const NearTipOptions &options)
 {
   const double d = lattice.spacing(), across = lattice.site_area() / d;
   NearTipGrid grid;
-  const bool along = lattice.orientation() == Orientation::rows_along_crack;
+  const bool along = lattice.orientation() == lattice::Orientation::rows_along_crack;
   grid.pitch_X = along ? d : across;
   grid.pitch_Y = along ? across : d;
   const auto points = [](double extent, double pitch)
@@ -87,7 +87,7 @@ NearTipField::NearTipField(const NearTipGrid &grid_of_points) : grid(grid_of_poi
   const double none = std::numeric_limits<double>::quiet_NaN();
   for (auto *vectors : {&velocity, &displacement, &excess_displacement})
     vectors->assign(grid.size(), Eigen::Vector2d::Constant(none));
-  for (TensorField *tensors :
+  for (lattice::TensorField *tensors :
        {&deformation_gradient, &first_piola_stress, &cauchy_stress, &strain_gradient_x, &strain_gradient_y})
     tensors->assign(grid.size(), Eigen::Matrix2d::Constant(none));
 }
@@ -204,7 +204,7 @@ NearTipField NearTipSums::mean() const
   return field;
 }
 
-NearTipSampler::NearTipSampler(const TriangularLattice &lattice, const Material &material,
+NearTipSampler::NearTipSampler(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                                const NearTipOptions &options)
   : lattice_(lattice), material_(material), options_(options), grid_(make_grid(lattice, options)),
     evaluator_(lattice, material), gradient_fit_(lattice), plain_(grid_), folded_(n_blocks, NearTipSums(grid_))
@@ -220,7 +220,7 @@ bool NearTipSampler::looks_at(std::size_t tip) const
 }
 
 // Of `n` rows or columns those that a grid around the one of the tip may have to do with.
-Rows NearTipSampler::around(std::size_t centre, int before, int after, std::size_t n)
+lattice::Rows NearTipSampler::around(std::size_t centre, int before, int after, std::size_t n)
 {
   // One more than the grid has, up to four between the tip and the axis, and two whose bonds reach a site.
   constexpr int more = 7;
@@ -229,21 +229,21 @@ Rows NearTipSampler::around(std::size_t centre, int before, int after, std::size
           std::min(n, centre + static_cast<std::size_t>(after + more + 1))};
 }
 
-Rows NearTipSampler::rows_around(std::size_t tip) const
+lattice::Rows NearTipSampler::rows_around(std::size_t tip) const
 {
-  const bool along = lattice_.orientation() == Orientation::rows_along_crack;
+  const bool along = lattice_.orientation() == lattice::Orientation::rows_along_crack;
   return around(lattice_.row_of(tip), along ? grid_.half_height : grid_.behind, along ? grid_.half_height : grid_.ahead,
                 lattice_.rows());
 }
 
-Rows NearTipSampler::columns_around(std::size_t tip) const
+lattice::Rows NearTipSampler::columns_around(std::size_t tip) const
 {
-  const bool along = lattice_.orientation() == Orientation::rows_along_crack;
+  const bool along = lattice_.orientation() == lattice::Orientation::rows_along_crack;
   return around(lattice_.column_of(tip), along ? grid_.behind : grid_.half_height,
                 along ? grid_.ahead : grid_.half_height, lattice_.columns());
 }
 
-const NearTipSample *NearTipSampler::sample(const State &state, std::size_t tip)
+const NearTipSample *NearTipSampler::sample(const lattice::State &state, std::size_t tip)
 {
   calls_at_rest_ = last_tip_ == tip ? calls_at_rest_ + 1 : 0;
   last_tip_ = tip;
@@ -258,10 +258,10 @@ const NearTipSample *NearTipSampler::sample(const State &state, std::size_t tip)
   return &pending_.back();
 }
 
-NearTipSampler::Axis NearTipSampler::axis(const State &state, std::size_t tip) const
+NearTipSampler::Axis NearTipSampler::axis(const lattice::State &state, std::size_t tip) const
 {
   // Sites at the X of the tip are two rows apart, or neighbours in the row across.
-  const bool along = lattice_.orientation() == Orientation::rows_along_crack;
+  const bool along = lattice_.orientation() == lattice::Orientation::rows_along_crack;
   const auto step = static_cast<std::ptrdiff_t>(along ? 2 * lattice_.stride() : 1);
   std::size_t lowest = tip, highest = tip;
   for (std::ptrdiff_t n = -2; n <= 2; ++n)
@@ -277,7 +277,7 @@ NearTipSampler::Axis NearTipSampler::axis(const State &state, std::size_t tip) c
   return {0.5 * (lattice_.reference(lowest) + lattice_.reference(highest)), 0.5 * (low + high)};
 }
 
-NearTipSample NearTipSampler::look(const State &state, const Axis &axis, std::size_t tip, bool with_tensors)
+NearTipSample NearTipSampler::look(const lattice::State &state, const Axis &axis, std::size_t tip, bool with_tensors)
 {
   const double part = (axis.reference.x() - options_.X_begin) / (options_.X_end - options_.X_begin);
   NearTipSample sample{axis.reference.x(),
@@ -304,12 +304,12 @@ NearTipSample NearTipSampler::look(const State &state, const Axis &axis, std::si
     std::optional<NearTipSums::Gradients> gradients;
     if (with_tensors)
     {
-      const SiteValues site = evaluator_.at(state, place);
+      const lattice::SiteValues site = evaluator_.at(state, place);
       const Eigen::Matrix2d &F = site.deformation_gradient, &P = site.first_piola_stress, &sigma = site.cauchy_stress;
       tensors.emplace();
       *tensors << F(0, 0), F(0, 1), F(1, 0), F(1, 1), P(0, 0), P(0, 1), P(1, 0), P(1, 1), sigma(0, 0), sigma(0, 1),
         sigma(1, 0), sigma(1, 1);
-      if (const std::optional<StrainGradient> G = gradient_fit_.at(state, place))
+      if (const std::optional<lattice::StrainGradient> G = gradient_fit_.at(state, place))
       {
         gradients.emplace();
         *gradients << G->x(0, 0), G->x(0, 1), G->x(1, 1), G->y(0, 0), G->y(0, 1), G->y(1, 1);
@@ -320,7 +320,7 @@ NearTipSample NearTipSampler::look(const State &state, const Axis &axis, std::si
                          gradients);
     sample.sites.emplace_back(position - axis.current);
   };
-  const Rows rows = rows_around(tip), columns = columns_around(tip);
+  const lattice::Rows rows = rows_around(tip), columns = columns_around(tip);
   for (std::size_t row = rows.begin; row < rows.end; ++row)
     for (std::size_t column = columns.begin; column < std::min(columns.end, lattice_.sites_in_row(row)); ++column)
       look_at(lattice_.index(row, column));
@@ -372,4 +372,4 @@ NearTipField NearTipSampler::folded() const
   return all.mean();
 }
 
-} // namespace lattice
+} // namespace latcon::verification

@@ -8,7 +8,7 @@
 #include "lattice/site_fields.h"
 #include "lattice/strain_gradient.h"
 
-namespace lattice
+namespace latcon::verification
 {
 
 /// A regular grid in the reference configuration that moves with the tip: points at (X, Y) - (X_tip, Y_tip), the tip
@@ -49,10 +49,10 @@ struct NearTipField
   std::vector<Eigen::Vector2d> displacement;
   std::vector<Eigen::Vector2d> excess_displacement; ///< x - F X [m], F that of the loaded sheet
   // Over every fourth sample, from the first on: they cost more than the rest and change as slowly.
-  TensorField deformation_gradient;                 ///< see SiteValues
-  TensorField first_piola_stress;                   ///< [Pa], likewise
-  TensorField cauchy_stress;                        ///< [Pa], likewise
-  TensorField strain_gradient_x, strain_gradient_y; ///< [1/m], see StrainGradient; where its bonds fix it
+  lattice::TensorField deformation_gradient;                 ///< see SiteValues
+  lattice::TensorField first_piola_stress;                   ///< [Pa], likewise
+  lattice::TensorField cauchy_stress;                        ///< [Pa], likewise
+  lattice::TensorField strain_gradient_x, strain_gradient_y; ///< [1/m], see StrainGradient; where its bonds fix it
 
   explicit NearTipField(const NearTipGrid &grid);
   /// Whether material was at a point of the grid more often than not: what lies off the crack.
@@ -89,8 +89,8 @@ public:
     archive("gradients", gradients_);
     archive("tensors", tensors_);
     if constexpr (Archive::loads)
-      require_archived(motion_.fits(grid_) && gradients_.fits(grid_) && tensors_.fits(grid_),
-                       "sums near the tip are over another grid");
+      lattice::require_archived(motion_.fits(grid_) && gradients_.fits(grid_) && tensors_.fits(grid_),
+                                "sums near the tip are over another grid");
   }
 
 private:
@@ -121,7 +121,8 @@ private:
       std::vector<double> of_points(weights.data(), weights.data() + weights.size());
       archive("values", all);
       archive("weights", of_points);
-      require_archived(all.size() == n * of_points.size(), "`values` near the tip are not as many as `weights`");
+      lattice::require_archived(all.size() == n * of_points.size(),
+                                "`values` near the tip are not as many as `weights`");
       values = Eigen::Map<const decltype(values)>(all.data(), n, static_cast<Eigen::Index>(all.size()) / n);
       weights = Eigen::Map<const Eigen::ArrayXd>(of_points.data(), static_cast<Eigen::Index>(of_points.size()));
     }
@@ -175,17 +176,18 @@ public:
   static constexpr std::size_t n_blocks = 4;
 
   /// The lattice must outlive this object.
-  NearTipSampler(const TriangularLattice &lattice, const Material &material, const NearTipOptions &options);
+  NearTipSampler(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                 const NearTipOptions &options);
 
   /// To be called at equal intervals of time, wherever the tip is. @param tip its place
   /// @return the sample, until the next call; null where none is taken: away from the stretch between X_begin and
   /// X_end, or because the tip has rested for the last ten calls and is no running one
-  const NearTipSample *sample(const State &state, std::size_t tip);
+  const NearTipSample *sample(const lattice::State &state, std::size_t tip);
 
   /// Whether sample() looks at the sheet if the tip is there, unless the tip rests.
   bool looks_at(std::size_t tip) const;
   /// The rows that it then looks at.
-  Rows rows_around(std::size_t tip) const;
+  lattice::Rows rows_around(std::size_t tip) const;
 
   /// Folds the last samples by what is known of the path. To be called once, when there is no more to come.
   void finish();
@@ -211,8 +213,8 @@ public:
     archive("n_pending", n_pending);
     if constexpr (Archive::loads)
     {
-      require_archived(folded_.size() == n_blocks && n_pending <= path_.size(),
-                       "`n_pending` samples are more than were taken");
+      lattice::require_archived(folded_.size() == n_blocks && n_pending <= path_.size(),
+                                "`n_pending` samples are more than were taken");
       pending_.assign(n_pending, {0., 0., 0, NearTipSums(grid_), {}});
     }
     archive("pending", pending_);
@@ -221,18 +223,18 @@ public:
     archive("taken", taken_);
     if constexpr (Archive::loads)
     {
-      require_archived(taken_ <= path_.size() && n_pending <= taken_,
-                       "`taken` samples are not as many as there can be");
-      require_archived(!last_tip_ || (*last_tip_ < lattice_.n_places() && lattice_.is_site(*last_tip_)),
-                       "`last_tip` is no site of the sheet");
+      lattice::require_archived(taken_ <= path_.size() && n_pending <= taken_,
+                                "`taken` samples are not as many as there can be");
+      lattice::require_archived(!last_tip_ || (*last_tip_ < lattice_.n_places() && lattice_.is_site(*last_tip_)),
+                                "`last_tip` is no site of the sheet");
       std::size_t folded = 0;
       for (const NearTipSums &sums : folded_)
         folded += sums.samples();
-      require_archived(plain_.samples() == taken_ && folded == taken_ - n_pending,
-                       "`samples` are not as many as were taken");
+      lattice::require_archived(plain_.samples() == taken_ && folded == taken_ - n_pending,
+                                "`samples` are not as many as were taken");
       for (const NearTipSample &sample : pending_)
-        require_archived(sample.block < n_blocks && sample.sums.samples() == 1,
-                         "a pending sample is none of those that there can be");
+        lattice::require_archived(sample.block < n_blocks && sample.sums.samples() == 1,
+                                  "a pending sample is none of those that there can be");
     }
   }
 
@@ -241,19 +243,19 @@ private:
   {
     Eigen::Vector2d reference, current; // of the tip [m]
   };
-  Axis axis(const State &state, std::size_t tip) const;
-  static Rows around(std::size_t centre, int before, int after, std::size_t n);
-  Rows columns_around(std::size_t tip) const;
-  NearTipSample look(const State &state, const Axis &axis, std::size_t tip, bool with_tensors);
+  Axis axis(const lattice::State &state, std::size_t tip) const;
+  static lattice::Rows around(std::size_t centre, int before, int after, std::size_t n);
+  lattice::Rows columns_around(std::size_t tip) const;
+  NearTipSample look(const lattice::State &state, const Axis &axis, std::size_t tip, bool with_tensors);
   bool descends(double X) const;
   void fold_until(double X);
 
-  const TriangularLattice &lattice_;
-  Material material_;
+  const lattice::TriangularLattice &lattice_;
+  lattice::Material material_;
   NearTipOptions options_;
   NearTipGrid grid_;
-  SiteEvaluator evaluator_;
-  StrainGradientFit gradient_fit_;
+  lattice::SiteEvaluator evaluator_;
+  lattice::StrainGradientFit gradient_fit_;
   std::vector<Eigen::Vector2d> path_; // of the tip at all calls, reference [m]
   NearTipSums plain_;
   std::vector<NearTipSums> folded_;   // a sum for each block
@@ -263,4 +265,4 @@ private:
   std::size_t taken_ = 0;
 };
 
-} // namespace lattice
+} // namespace latcon::verification

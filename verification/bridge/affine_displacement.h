@@ -9,7 +9,7 @@
 #include "continuum/rectangle.h"
 #include "continuum/static_solver.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// u(X) = (F - I) X [m].
@@ -37,4 +37,4 @@ inline std::vector<continuum::PrescribedDisplacement> affine_boundary(const Eige
   return conditions;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -9,7 +9,7 @@
 #include "support/errors.h"
 #include "verification/bridge/affine_displacement.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -49,7 +49,7 @@ ContinuumModel::ContinuumModel(const Case &input)
   if (input.continuum.law == ContinuumLaw::mooney_rivlin)
   {
     if (!subject_.mooney_rivlin)
-      throw latcon::support::InputError(
+      throw support::InputError(
         "Continuum/law: no plane-stress Mooney-Rivlin law has a thickness in equilibrium all along the loading path to "
         "Loading/strain x, strain y; give law = cauchy-born or mooney-rivlin-network" +
         std::string(input.continuum.mooney_rivlin_ratio ? ", or another Continuum/ratio" : ""));
@@ -134,8 +134,8 @@ void ContinuumModel::make_conditions(const Case &input)
       conditions_.double_tractions.push_back({id, edge.double_traction.field(extent_)});
   }
   if (c.solution == ContinuumCase::Solution::equilibrium && conditions_.displacements.empty())
-    throw latcon::support::InputError("the mesh file " + c.mesh_file +
-                                      " has no edge that the case holds, and equilibrium needs one");
+    throw support::InputError("the mesh file " + c.mesh_file +
+                              " has no edge that the case holds, and equilibrium needs one");
   if (!c.body_force.is_zero())
     conditions_.body_force =
       continuum::BodyForce{c.body_force.field(extent_), c.body_force_corrected ? inertia_length_ : 0.};
@@ -162,4 +162,4 @@ continuum::Constitution ContinuumModel::constitution() const
   return constitution;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -9,7 +9,7 @@
 #include "verification/bridge/subject.h"
 #include "verification/input/case.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// The finite element sheet of a case: laws, mesh and conditions, handed to the continuum as constants and functions.
@@ -45,4 +45,4 @@ private:
   continuum::BoundaryConditions conditions_;
 };
 
-} // namespace verification
+} // namespace latcon::verification

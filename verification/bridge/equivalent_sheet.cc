@@ -8,7 +8,7 @@
 
 #include "support/largest_error.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -72,7 +72,7 @@ double held_depth(const lattice::TriangularLattice &lattice, const lattice::Mate
                   const Eigen::Vector2d &normal)
 {
   const double d = lattice.spacing();
-  latcon::support::Extremes pitches;
+  support::Extremes pitches;
   pitches.add(d);
   std::array<double, lattice::n_bond_kinds> across{};
   for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
@@ -120,7 +120,7 @@ EquivalentSheet equivalent_sheet(const lattice::TriangularLattice &lattice, cons
                         -0.5 * lattice.height() + depth(edges.bottom, y), 0.5 * lattice.height() - depth(edges.top, y),
                         0.};
   std::size_t removed = 0;
-  latcon::support::Extremes X; // of the sites in a notch
+  support::Extremes X; // of the sites in a notch
   X.add(0.);
   for (std::size_t place = 0; place < lattice.n_places(); ++place)
     if (lattice.is_site(place) && state.removed[place] != 0)
@@ -145,4 +145,4 @@ EquivalentSheet nominal_sheet(const lattice::TriangularLattice &lattice, const l
           hole != nullptr ? hole->radius : std::get<lattice::Notch>(cutout).length};
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -8,7 +8,7 @@
 #include "continuum/errors.h"
 #include "support/largest_error.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -191,7 +191,7 @@ Calibration with_ratio(const lattice::TriangularLattice &lattice, const lattice:
   const continuum::CauchyBorn exact = cauchy_born(lattice, material);
   const continuum::MooneyRivlin fitted(continuum::MooneyRivlin::Constants::with_equal_lame_constants(mu, ratio));
   Calibration calibration{ratio, 0., 0., 0., fitted.constants()};
-  latcon::support::Extremes differences, eigenvalues;
+  support::Extremes differences, eigenvalues;
   for (int point = 1; point <= path_points; ++point)
   {
     const dealii::Tensor<2, 2> state = to_continuum(on_path(F, point));
@@ -206,4 +206,4 @@ Calibration with_ratio(const lattice::TriangularLattice &lattice, const lattice:
   return calibration;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -3,7 +3,7 @@
 #include "lattice/cutout.h"
 #include "lattice/end_loads.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -116,4 +116,4 @@ lattice::State lattice_state(const Case &input, const lattice::RowPartition &ban
   return state;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -4,7 +4,7 @@
 
 #include "verification/input/case.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 // The lattice side of the sheet that a case describes: the same edges, hole and notch as the finite elements have.
@@ -25,4 +25,4 @@ void require_fracture_case(const Case &input, Parameters &parameters);
 /// @param band all rows of input.lattice(), or a share of them
 lattice::State lattice_state(const Case &input, const lattice::RowPartition &band);
 
-} // namespace verification
+} // namespace latcon::verification

@@ -4,7 +4,7 @@
 
 #include "verification/input/case.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// Laws of the continuum that claims set beside a lattice.
@@ -46,4 +46,4 @@ inline Laws laws_of(const Case &input)
   return laws;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -11,7 +11,7 @@
 
 #include "support/largest_error.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -23,7 +23,7 @@ std::array<PlaneWave, 2> undamped(const Eigen::Matrix2d &stiffness)
 {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(stiffness);
   const auto wave = [&](int i) {
-    return PlaneWave{std::sqrt(latcon::support::one_sided(solver.eigenvalues()[i])), 0., solver.eigenvectors().col(i)};
+    return PlaneWave{std::sqrt(support::one_sided(solver.eigenvalues()[i])), 0., solver.eigenvectors().col(i)};
   };
   return {wave(0), wave(1)};
 }
@@ -50,7 +50,7 @@ std::array<PlaneWave, 2> damped(const WaveMatrices &matrices)
     const Eigen::Vector2cd vector = solver.eigenvectors().col(i).head<2>();
     // Real up to a phase where damping and stiffness share their axes, nearly so elsewhere.
     const std::complex<double> largest = std::abs(vector[0]) > std::abs(vector[1]) ? vector[0] : vector[1];
-    return PlaneWave{latcon::support::one_sided(value.imag()), -value.real(),
+    return PlaneWave{support::one_sided(value.imag()), -value.real(),
                      Eigen::Vector2d((vector / largest).real()).normalized()};
   };
   return {wave(order[0]), wave(order[1])};
@@ -75,7 +75,7 @@ double fastest_frequency(const std::array<PlaneWave, 2> &waves)
   for (const PlaneWave &wave : waves)
     if (!std::isfinite(wave.frequency) || !(wave.frequency > 0.))
       throw std::runtime_error("a wave does not oscillate: it is overdamped, or the sheet is not stable");
-  return latcon::support::largest_of({waves[0].frequency, waves[1].frequency});
+  return support::largest_of({waves[0].frequency, waves[1].frequency});
 }
 
 Eigen::Vector2d wave_normal(const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
@@ -83,4 +83,4 @@ Eigen::Vector2d wave_normal(const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
   return (F.inverse().transpose() * K).normalized();
 }
 
-} // namespace verification
+} // namespace latcon::verification

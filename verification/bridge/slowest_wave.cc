@@ -7,7 +7,7 @@
 
 #include "verification/bridge/bloch.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 SlowestWave slowest_wave(const lattice::TriangularLattice &lattice, const lattice::Material &material,
@@ -37,4 +37,4 @@ SlowestWave slowest_wave(const lattice::TriangularLattice &lattice, const lattic
   return slowest;
 }
 
-} // namespace verification
+} // namespace latcon::verification

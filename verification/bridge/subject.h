@@ -16,7 +16,7 @@
 #include "verification/bridge/slowest_wave.h"
 #include "verification/input/case.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// What rows call a lattice with one shell or two: "NN" or "NN+NNN".
@@ -119,4 +119,4 @@ inline Subject subject(const Case &input)
   return subject(input, input.material());
 }
 
-} // namespace verification
+} // namespace latcon::verification

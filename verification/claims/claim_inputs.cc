@@ -8,7 +8,7 @@
 #include "support/full_precision.h"
 #include "verification/input/case_text.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -71,7 +71,7 @@ Case claim_inputs(const Case &input)
 {
   std::vector<std::string> lines = assignments(input);
   for (const char *extent : {"length", "height"})
-    lines.push_back(std::string("Sheet/") + extent + "=" + latcon::support::full_precision(sheet_size * input.spacing));
+    lines.push_back(std::string("Sheet/") + extent + "=" + support::full_precision(sheet_size * input.spacing));
   Case read;
   Parameters parameters;
   read.declare(parameters);
@@ -80,4 +80,4 @@ Case claim_inputs(const Case &input)
   return read;
 }
 
-} // namespace verification
+} // namespace latcon::verification

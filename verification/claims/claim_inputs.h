@@ -5,7 +5,7 @@
 
 #include "verification/input/case.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// The entries that claims may read, as they stand in `input`: a line `Section/Name=value` for each, in SI and full
@@ -17,4 +17,4 @@ namespace verification
 /// that wants another entry finds its default until the entry is added to the list.
 [[nodiscard]] Case claim_inputs(const Case &input);
 
-} // namespace verification
+} // namespace latcon::verification

@@ -4,7 +4,7 @@
 
 #include "verification/output/output_file.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 void ClaimOutcome::write_tables(const std::string &folder) const
@@ -13,4 +13,4 @@ void ClaimOutcome::write_tables(const std::string &folder) const
     write_file((std::filesystem::path(folder) / (name + ".csv")).string(), rows.csv());
 }
 
-} // namespace verification
+} // namespace latcon::verification

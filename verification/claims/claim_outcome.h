@@ -6,7 +6,7 @@
 #include "verification/output/csv.h"
 #include "verification/output/results.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// What a claim found: a row for each thing checked, and the numbers behind them for plots and readers.
@@ -33,4 +33,4 @@ struct ClaimOutcome
   void write_tables(const std::string &folder) const;
 };
 
-} // namespace verification
+} // namespace latcon::verification

@@ -12,7 +12,7 @@
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/homogenisation.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -237,7 +237,7 @@ std::array<double, 2> discrete_frequencies(const WaveContinuum &medium, const Ei
   continuum::Sheet::Matrix shifted;
   sheet.make_matrix(sheet.conformity_constraints(), shifted);
   shifted.add(1., stiffness);
-  shifted.add(0.1 * latcon::support::smallest_of({quotient(0), quotient(1)}), wave_sheet.mass());
+  shifted.add(0.1 * support::smallest_of({quotient(0), quotient(1)}), wave_sheet.mass());
   Vector b = sheet.make_owned();
   for (Vector &y : x)
   {
@@ -260,7 +260,7 @@ std::array<double, 2> discrete_frequencies(const WaveContinuum &medium, const Ei
   if (!K2.allFinite() || !M2.allFinite())
     throw std::runtime_error("the finite elements have no waves: their tangent is not finite");
   const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> ritz(K2, M2);
-  const auto frequency = [&](int i) { return std::sqrt(latcon::support::one_sided(ritz.eigenvalues()[i])); };
+  const auto frequency = [&](int i) { return std::sqrt(support::one_sided(ritz.eigenvalues()[i])); };
   const bool first_is_longitudinal = std::abs(ritz.eigenvectors()(0, 0)) * std::sqrt(M2(0, 0)) >
                                      std::abs(ritz.eigenvectors()(1, 0)) * std::sqrt(M2(1, 1));
   return {frequency(first_is_longitudinal ? 0 : 1), frequency(first_is_longitudinal ? 1 : 0)};
@@ -332,4 +332,4 @@ TravellingEnergy travelling_energy(const WaveContinuum &medium, const Eigen::Mat
   return {(ledger.stored - at_rest) / area, ledger.kinetic / area, ledger.micro_kinetic / area};
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -6,7 +6,7 @@
 #include "verification/bridge/plane_waves.h"
 #include "verification/claims/oscillation.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// A continuum in which waves travel. The laws must outlive it.
@@ -63,4 +63,4 @@ struct TravellingEnergy
 TravellingEnergy travelling_energy(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
                                    std::size_t wave, double amplitude, const WaveMesh &mesh);
 
-} // namespace verification
+} // namespace latcon::verification

@@ -5,7 +5,7 @@
 #include <set>
 #include <vector>
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -72,4 +72,4 @@ std::string row_problem(const Results &results, const std::string &shells)
   return "";
 }
 
-} // namespace verification
+} // namespace latcon::verification

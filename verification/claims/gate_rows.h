@@ -5,7 +5,7 @@
 
 #include "verification/output/results.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// Compares verdicts that hold, of the verification before fracture, with the rows that its claims decide for every
@@ -14,4 +14,4 @@ namespace verification
 /// @return the first row that is missing or foreign, in words; empty: none
 [[nodiscard]] std::string row_problem(const Results &results, const std::string &shells);
 
-} // namespace verification
+} // namespace latcon::verification

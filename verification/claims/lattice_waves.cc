@@ -9,7 +9,7 @@
 #include "support/largest_error.h"
 #include "verification/bridge/bloch.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -72,9 +72,9 @@ std::array<Oscillation, 2> measure(const WaveCell &cell, const lattice::Material
   // A wave turns twice within three quarters of its damped period; one that is overdamped never does. The undamped
   // period tells them apart, in as many steps as dashpots leave time for.
   constexpr double most_periods = 2., most_steps = 5e6;
-  const double slowest = latcon::support::smallest_of({waves[0].frequency, waves[1].frequency});
-  const auto max_steps = static_cast<std::size_t>(
-    latcon::support::smallest_of({most_steps, most_periods * 2. * M_PI / (slowest * time_step)}));
+  const double slowest = support::smallest_of({waves[0].frequency, waves[1].frequency});
+  const auto max_steps =
+    static_cast<std::size_t>(support::smallest_of({most_steps, most_periods * 2. * M_PI / (slowest * time_step)}));
   for (std::size_t step = 1; std::min<unsigned int>(sign_changes[0], sign_changes[1]) < 2; ++step)
   {
     if (step > max_steps)
@@ -143,7 +143,7 @@ WaveCell wave_cell(double spacing, lattice::Orientation orientation, const WaveD
 
 double smallest_stretch(const lattice::TriangularLattice &lattice, const Eigen::Matrix2d &F)
 {
-  latcon::support::Extremes stretches;
+  support::Extremes stretches;
   stretches.add(1.);
   for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
     stretches.add((F * lattice.bond_vector(kind)).norm() / lattice.rest_length(kind));
@@ -156,7 +156,7 @@ std::array<Oscillation, 2> lattice_waves(const WaveCell &cell, const lattice::Ma
   const std::array<PlaneWave, 2> waves = bloch_waves(cell.sheet, material, F, cell.K);
   const double limit = 0.9 * lattice::time_step_limits(cell.sheet, material, smallest_stretch(cell.sheet, F)).combined;
   const double fastest = fastest_frequency(waves);
-  const double time_step = latcon::support::smallest_of({limit, phase_per_step / fastest});
+  const double time_step = support::smallest_of({limit, phase_per_step / fastest});
   // Dashpots can ask for steps so short that there is no error to extrapolate, and no news in every step.
   const double phase = fastest * time_step;
   const auto stride = std::max<std::size_t>(1, static_cast<std::size_t>(0.5 * phase_per_step / phase));
@@ -174,4 +174,4 @@ std::array<Oscillation, 2> lattice_waves(const WaveCell &cell, const lattice::Ma
   return result;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -6,7 +6,7 @@
 
 #include <Eigen/Dense>
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -84,4 +84,4 @@ Oscillation fit_oscillation(const std::vector<double> &values, double step)
   throw std::runtime_error("no oscillation fits the wave's amplitude");
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -7,7 +7,7 @@
 #include "verification/bridge/subject.h"
 #include "verification/output/results.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// The row by which a claim says whether the loaded lattice is stable against waves of every length, which all that is
@@ -24,8 +24,8 @@ inline Result stability_row(const Subject &subject, const std::string &claim)
   }
   const double smallest = subject.slowest_wave.squared_speed / std::pow(subject.theory.shear_speed, 2);
   // At zero the lattice is about to buckle, which is no stability either.
-  const double error = subject.is_stable() ? 0. : latcon::support::largest_of({-smallest, 1e-15});
+  const double error = subject.is_stable() ? 0. : support::largest_of({-smallest, 1e-15});
   return {claim, quantity.str(), "1", smallest, {}, {}, error, 0.};
 }
 
-} // namespace verification
+} // namespace latcon::verification

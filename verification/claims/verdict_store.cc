@@ -26,7 +26,7 @@
 #include "verification/output/run_info.h"
 #include "verification/output/sha256.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -254,11 +254,11 @@ void VerdictStore::write(const VerdictKey &key, const std::string &text) const
   std::error_code error;
   std::filesystem::create_directories(folder_, error);
   if (error)
-    throw latcon::support::OutputError(folder_, error.message());
+    throw support::OutputError(folder_, error.message());
   // Other runs may write here now, in milliseconds: what is older was left by killed ones.
-  latcon::support::remove_stale_parts(folder_, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
+  support::remove_stale_parts(folder_, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
   write_file(path(key), text);
   chmod(path(key).c_str(), S_IRUSR | S_IWUSR); // whatever the umask: read() takes no other
 }
 
-} // namespace verification
+} // namespace latcon::verification

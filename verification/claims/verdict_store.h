@@ -11,7 +11,7 @@
 #include "verification/input/case.h"
 #include "verification/output/results.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// Everything that verdicts depend on, in one text, and its hash.
@@ -83,4 +83,4 @@ private:
   std::string folder_;
 };
 
-} // namespace verification
+} // namespace latcon::verification

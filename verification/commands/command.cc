@@ -14,7 +14,7 @@
 #include "verification/output/output_list.h"
 #include "verification/output/sha256.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -40,10 +40,8 @@ void print_dry_run(const Options &options, const std::string &text)
     std::cout << text << std::flush;
 }
 
-std::unique_ptr<latcon::support::FolderLock> lock_directory(const std::string &directory,
-                                                            std::chrono::milliseconds patience)
+std::unique_ptr<support::FolderLock> lock_directory(const std::string &directory, std::chrono::milliseconds patience)
 {
-  namespace support = latcon::support;
   try
   {
     auto lock = std::make_unique<support::FolderLock>(directory, patience);
@@ -54,19 +52,19 @@ std::unique_ptr<latcon::support::FolderLock> lock_directory(const std::string &d
   }
   catch (const support::FolderInUse &error)
   {
-    throw latcon::support::InputError(std::string(error.what()) +
-                                      "; wait until it has ended, or choose another folder (--output-dir)");
+    throw support::InputError(std::string(error.what()) +
+                              "; wait until it has ended, or choose another folder (--output-dir)");
   }
 }
 
 std::shared_ptr<Run::Record> Run::last;
 
-void Run::Record::write(std::optional<latcon::support::ExitCode> with) const
+void Run::Record::write(std::optional<support::ExitCode> with) const
 {
   info.write(directory + "/run.json", with, verdict);
 }
 
-void record_exit_code(latcon::support::ExitCode exit_code)
+void record_exit_code(support::ExitCode exit_code)
 {
   const std::shared_ptr<Run::Record> record = std::exchange(Run::last, nullptr);
   if (record && record->exit_code != exit_code)
@@ -86,7 +84,7 @@ Run::Run(const Options &options, const Parameters *parameters)
     std::error_code error;
     std::filesystem::create_directories(directory_, error);
     if (error)
-      throw latcon::support::OutputError(directory_, error.message());
+      throw support::OutputError(directory_, error.message());
     record_->lock = lock_directory(directory_);
     clear(options, parameters != nullptr);
     if (parameters != nullptr)
@@ -94,7 +92,7 @@ Run::Run(const Options &options, const Parameters *parameters)
     const SignalDeferral deferral; // a run.json that is there gets the exit code
     record_->write(std::nullopt);
     last = record_;
-    on_interruption([record = record_] { record->write(latcon::support::ExitCode::interrupted); });
+    on_interruption([record = record_] { record->write(support::ExitCode::interrupted); });
   }
   // No rank writes beside rank 0 before the directory is there.
   MPI_Barrier(MPI_COMM_WORLD);
@@ -105,8 +103,8 @@ void Run::clear(const Options &options, bool has_case) const
   const std::filesystem::path own = directory_ + "/case.prm";
   std::error_code none;
   if (has_case && std::filesystem::equivalent(own, options.case_file, none) && !is_listed_output(own))
-    throw latcon::support::InputError("the run would overwrite its own case " + options.case_file +
-                                      "; give another --output-dir, or move the case out of it");
+    throw support::InputError("the run would overwrite its own case " + options.case_file +
+                              "; give another --output-dir, or move the case out of it");
   if (!resumes_)
   {
     const std::filesystem::path aside = set_earlier_output_aside(directory_, options.case_file);
@@ -138,7 +136,7 @@ void Run::note(const Checkpoints &checkpoints)
     std::cout << "Another program wrote it, of commit " << found->commit << "; run.json names both\n";
 }
 
-latcon::support::ExitCode Run::end(const Results &results, latcon::support::ExitCode exit_code)
+support::ExitCode Run::end(const Results &results, support::ExitCode exit_code)
 {
   if (is_root_)
   {
@@ -151,10 +149,9 @@ latcon::support::ExitCode Run::end(const Results &results, latcon::support::Exit
   return exit_code;
 }
 
-latcon::support::ExitCode exit_code_of(const Results &results)
+support::ExitCode exit_code_of(const Results &results)
 {
-  return results.verdict() == Verdict::fails ? latcon::support::ExitCode::claim_failed
-                                             : latcon::support::ExitCode::done;
+  return results.verdict() == Verdict::fails ? support::ExitCode::claim_failed : support::ExitCode::done;
 }
 
 void Run::print(const Results &results) const
@@ -168,18 +165,18 @@ void Run::print(const Results &results) const
     std::cout << "\n" << results.verdict_text(most_failing_rows);
 }
 
-latcon::support::ExitCode Run::finish(const Results &results)
+support::ExitCode Run::finish(const Results &results)
 {
-  const latcon::support::ExitCode exit_code = end(results, exit_code_of(results));
+  const support::ExitCode exit_code = end(results, exit_code_of(results));
   print(results);
   return exit_code;
 }
 
-latcon::support::ExitCode Run::interrupted(const Results &results)
+support::ExitCode Run::interrupted(const Results &results)
 {
-  end(results, latcon::support::ExitCode::interrupted);
+  end(results, support::ExitCode::interrupted);
   print(results);
-  return latcon::support::ExitCode::interrupted;
+  return support::ExitCode::interrupted;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -15,7 +15,7 @@
 #include "verification/output/results.h"
 #include "verification/output/run_info.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// What `latcon compare` was asked. Times are texts, with a unit or in s, or load factors; empty: the last frame.
@@ -36,18 +36,18 @@ const std::vector<std::string> &claim_names();
 const std::vector<std::string> &claims_before_fracture();
 
 // The commands. Each runs on every MPI rank and returns what the program should exit with, or throws.
-latcon::support::ExitCode verify(const Options &options);                                       ///< `latcon verify`
-latcon::support::ExitCode run_lattice(const Options &options);                                  ///< `latcon lattice`
-latcon::support::ExitCode run_continuum(const Options &options);                                ///< `latcon continuum`
-latcon::support::ExitCode run_fracture(const Options &options);                                 ///< `latcon fracture`
-latcon::support::ExitCode compare_frames(const Options &options, const CompareOptions &chosen); ///< `latcon compare`
-latcon::support::ExitCode report(const Options &options, const std::string &directory);         ///< `latcon report`
-latcon::support::ExitCode run_study(const Options &options, const std::string &study);          ///< `latcon study`
-latcon::support::ExitCode print_schema(const Options &options);                                 ///< `latcon schema`
+support::ExitCode verify(const Options &options);                                       ///< `latcon verify`
+support::ExitCode run_lattice(const Options &options);                                  ///< `latcon lattice`
+support::ExitCode run_continuum(const Options &options);                                ///< `latcon continuum`
+support::ExitCode run_fracture(const Options &options);                                 ///< `latcon fracture`
+support::ExitCode compare_frames(const Options &options, const CompareOptions &chosen); ///< `latcon compare`
+support::ExitCode report(const Options &options, const std::string &directory);         ///< `latcon report`
+support::ExitCode run_study(const Options &options, const std::string &study);          ///< `latcon study`
+support::ExitCode print_schema(const Options &options);                                 ///< `latcon schema`
 
 /// Draws pictures and report.html of a run, or of a folder of several, in a directory that this process has locked. On
 /// rank 0. @return the exit code of the script @throws OutputError
-latcon::support::ExitCode draw_report(const std::string &directory, bool quiet);
+support::ExitCode draw_report(const std::string &directory, bool quiet);
 
 /// Draws the page of a study, study.html, from the files in its output directory. @throws OutputError
 void study_page(const std::string &directory);
@@ -62,9 +62,9 @@ void print_dry_run(const Options &options, const std::string &text);
 
 /// Locks an existing directory, and removes the unfinished files that killed runs left in it and in its checkpoints.
 /// Waits up to `patience` for another process to end.
-/// @throws InputError if another process writes there @throws latcon::support::OutputError
-std::unique_ptr<latcon::support::FolderLock>
-lock_directory(const std::string &directory, std::chrono::milliseconds patience = std::chrono::seconds(1));
+/// @throws InputError if another process writes there @throws support::OutputError
+std::unique_ptr<support::FolderLock> lock_directory(const std::string &directory,
+                                                    std::chrono::milliseconds patience = std::chrono::seconds(1));
 
 /// The output directory of a run, locked until the run has ended, and the record of how it came about. Rank 0 alone
 /// writes.
@@ -94,13 +94,13 @@ public:
 
   /// Writes results.json, results.csv, the final run.json, prints the table and then the rows that fail, and says how
   /// the run ended.
-  latcon::support::ExitCode finish(const Results &results);
+  support::ExitCode finish(const Results &results);
 
   /// The same for a run that was stopped by a signal: what is known is written.
-  latcon::support::ExitCode interrupted(const Results &results);
+  support::ExitCode interrupted(const Results &results);
 
   /// Writes results.json, results.csv and the final run.json, prints nothing. @return `exit_code`
-  latcon::support::ExitCode end(const Results &results, latcon::support::ExitCode exit_code);
+  support::ExitCode end(const Results &results, support::ExitCode exit_code);
 
 private:
   Run(const Options &options, const Parameters *parameters);
@@ -111,15 +111,15 @@ private:
   struct Record
   {
     explicit Record(const Options &options) : directory(options.output_dir), info(options.arguments) {}
-    void write(std::optional<latcon::support::ExitCode> with) const;
+    void write(std::optional<support::ExitCode> with) const;
 
     std::string directory;
-    std::unique_ptr<latcon::support::FolderLock> lock; // on rank 0
+    std::unique_ptr<support::FolderLock> lock; // on rank 0
     RunInfo info;
     std::string verdict;
-    std::optional<latcon::support::ExitCode> exit_code; // the one written last
+    std::optional<support::ExitCode> exit_code; // the one written last
   };
-  friend void record_exit_code(latcon::support::ExitCode exit_code);
+  friend void record_exit_code(support::ExitCode exit_code);
   static std::shared_ptr<Record> last; // on rank 0, the record of the last run that began
 
   std::shared_ptr<Record> record_;
@@ -129,10 +129,10 @@ private:
 
 /// Writes what the program ends with into the run.json of the run that began, if any, and forgets the run. To be called
 /// once signals have no effect. @throws OutputError
-void record_exit_code(latcon::support::ExitCode exit_code);
+void record_exit_code(support::ExitCode exit_code);
 
 /// What the program ends with if nothing but the results decides.
-latcon::support::ExitCode exit_code_of(const Results &results);
+support::ExitCode exit_code_of(const Results &results);
 
 /// On which lattices claims are checked.
 enum class Shells
@@ -154,4 +154,4 @@ ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names
 /// @throws ClaimFailed that names the rows which fail, if any; results.json and run.json are then written
 Results require_verified(const Case &input, Run &run);
 
-} // namespace verification
+} // namespace latcon::verification

@@ -25,42 +25,41 @@
 #include "verification/input/data_folder.h"
 #include "verification/study/study_file.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
 
 struct Failure
 {
-  latcon::support::ExitCode exit_code;
+  support::ExitCode exit_code;
   std::string message;
 };
 
 // What an exception means to the user. The libraries throw their own types; this is where they get their exit codes.
 Failure describe(const std::exception &error)
 {
-  if (const auto *known = dynamic_cast<const latcon::support::Error *>(&error))
+  if (const auto *known = dynamic_cast<const support::Error *>(&error))
     return {known->exit_code(), error.what()};
   if (dynamic_cast<const continuum::SolverFailed *>(&error) != nullptr ||
       dynamic_cast<const continuum::LinearSolverFailed *>(&error) != nullptr)
-    return {latcon::support::ExitCode::solver_failed, error.what()};
+    return {support::ExitCode::solver_failed, error.what()};
   if (dynamic_cast<const continuum::InvalidInput *>(&error) != nullptr ||
       dynamic_cast<const continuum::InvalidMaterial *>(&error) != nullptr ||
       dynamic_cast<const continuum::NonPhysicalState *>(&error) != nullptr)
-    return {latcon::support::ExitCode::bad_input, error.what()};
+    return {support::ExitCode::bad_input, error.what()};
   if (dynamic_cast<const continuum::OutputFailed *>(&error) != nullptr ||
       dynamic_cast<const std::filesystem::filesystem_error *>(&error) != nullptr)
-    return {latcon::support::ExitCode::output_failed, error.what()};
+    return {support::ExitCode::output_failed, error.what()};
   if (dynamic_cast<const std::bad_alloc *>(&error) != nullptr)
-    return {latcon::support::ExitCode::bad_input,
-            "out of memory: the run takes more than this machine gives; see --dry-run"};
-  return {latcon::support::ExitCode::internal_error, std::string("internal error: ") + error.what()};
+    return {support::ExitCode::bad_input, "out of memory: the run takes more than this machine gives; see --dry-run"};
+  return {support::ExitCode::internal_error, std::string("internal error: ") + error.what()};
 }
 
 // As many threads on each rank as said, or as there are cores for it.
 void set_threads(unsigned int threads)
 {
-  const unsigned int wanted = threads > 0 ? threads : latcon::support::available_cores_per_rank();
+  const unsigned int wanted = threads > 0 ? threads : support::available_cores_per_rank();
   omp_set_num_threads(static_cast<int>(wanted));
   dealii::MultithreadInfo::set_thread_limit(1);
   // A threaded BLAS sums in an order that depends on the number of threads. OpenBLAS is asked if it is the one in use.
@@ -75,16 +74,16 @@ void require_printed()
     return;
   pollfd output{STDOUT_FILENO, 0, 0};
   if (poll(&output, 1, 0) != 1 || (output.revents & POLLERR) == 0)
-    throw latcon::support::OutputError("standard output", "it is closed or full");
+    throw support::OutputError("standard output", "it is closed or full");
 }
 
 // Runs a command, and sees to it that the exit code is the same wherever it is read.
-latcon::support::ExitCode run_command(const std::function<latcon::support::ExitCode()> &command)
+support::ExitCode run_command(const std::function<support::ExitCode()> &command)
 {
   try
   {
-    const latcon::support::ExitCode exit_code = command();
-    if (exit_code == latcon::support::ExitCode::done)
+    const support::ExitCode exit_code = command();
+    if (exit_code == support::ExitCode::done)
       require_printed();
     disregard_signals();
     record_exit_code(exit_code);
@@ -119,11 +118,11 @@ latcon::support::ExitCode run_command(const std::function<latcon::support::ExitC
 
 } // namespace
 
-latcon::support::ExitCode run_program(int argc, char **argv)
+support::ExitCode run_program(int argc, char **argv)
 {
   Options options;
   options.arguments.assign(argv, argv + argc);
-  std::function<latcon::support::ExitCode()> command;
+  std::function<support::ExitCode()> command;
 
   CLI::App app("latcon: dynamic fracture of rubber on a triangular lattice, and the continuum beside it", "latcon");
   app.set_version_flag("--version", "latcon " + program_version() + " (" + git_commit() + ")");
@@ -162,7 +161,7 @@ latcon::support::ExitCode run_program(int argc, char **argv)
     });
 
   const auto add_case_command =
-    [&](const std::string &name, const std::string &help, latcon::support::ExitCode (*run)(const Options &))
+    [&](const std::string &name, const std::string &help, support::ExitCode (*run)(const Options &))
   {
     CLI::App *subcommand = app.add_subcommand(name, help);
     subcommand->add_option("CASE", options.case_file, "case file, .prm or .json")->required()->type_name("");
@@ -241,11 +240,11 @@ latcon::support::ExitCode run_program(int argc, char **argv)
         // Help and version are exceptions of CLI11 as well, with exit code 0.
         if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
           app.exit(error);
-        return error.get_exit_code() == 0 ? latcon::support::ExitCode::done : latcon::support::ExitCode::bad_input;
+        return error.get_exit_code() == 0 ? support::ExitCode::done : support::ExitCode::bad_input;
       }
       set_threads(options.threads);
       return command();
     });
 }
 
-} // namespace verification
+} // namespace latcon::verification

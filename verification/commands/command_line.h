@@ -2,11 +2,11 @@
 
 #include "support/errors.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// The program `latcon`: reads the command line, runs the command on every MPI rank, and reports what went wrong.
 /// MPI must be initialised. @return the status to exit with
-latcon::support::ExitCode run_program(int argc, char **argv);
+support::ExitCode run_program(int argc, char **argv);
 
-} // namespace verification
+} // namespace latcon::verification

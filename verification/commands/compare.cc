@@ -10,7 +10,7 @@
 #include "verification/compare/difference_writer.h"
 #include "verification/input/units.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -22,7 +22,7 @@ std::optional<double> time_option(const std::string &name, const std::string &te
     return {};
   const ParsedNumber quantity = read_quantity(text, "s");
   if (!quantity.wrong.empty())
-    throw latcon::support::InputError(name + " " + text + ": " + quantity.wrong);
+    throw support::InputError(name + " " + text + ": " + quantity.wrong);
   return quantity.value;
 }
 
@@ -52,7 +52,7 @@ std::map<std::string, double> read_tolerances(const std::vector<std::string> &te
     tolerances[field] = quantity.value;
   }
   if (!problems.empty())
-    throw latcon::support::InputError(problems);
+    throw support::InputError(problems);
   return tolerances;
 }
 
@@ -80,7 +80,7 @@ std::vector<Circle> read_circles(const std::vector<std::string> &texts)
       circles.push_back({{{numbers[0], numbers[1]}}, numbers[2]});
   }
   if (!problems.empty())
-    throw latcon::support::InputError(problems);
+    throw support::InputError(problems);
   return circles;
 }
 
@@ -90,18 +90,18 @@ void require_own_directory(const std::string &directory, const Frame &frame)
   std::error_code ignored;
   const std::filesystem::path folder = frame.file.path.parent_path();
   if (std::filesystem::equivalent(directory, folder.empty() ? "." : folder, ignored))
-    throw latcon::support::InputError("--output-dir " + directory + " is where " + frame.file.path.filename().string() +
-                                      " is from, whose run.json and results.json would be lost: give another");
+    throw support::InputError("--output-dir " + directory + " is where " + frame.file.path.filename().string() +
+                              " is from, whose run.json and results.json would be lost: give another");
 }
 
 } // namespace
 
-latcon::support::ExitCode compare_frames(const Options &options, const CompareOptions &chosen)
+support::ExitCode compare_frames(const Options &options, const CompareOptions &chosen)
 {
   if (!options.overrides.empty())
-    throw latcon::support::InputError("latcon compare has no case that --set could change");
+    throw support::InputError("latcon compare has no case that --set could change");
   if (!chosen.time.empty() && !(chosen.lattice_time.empty() && chosen.continuum_time.empty()))
-    throw latcon::support::InputError("--time is for both sides: give it, or --lattice-time and --continuum-time");
+    throw support::InputError("--time is for both sides: give it, or --lattice-time and --continuum-time");
   const std::map<std::string, double> tolerances = read_tolerances(chosen.tolerances);
   const Scope scope{chosen.overlap, read_circles(chosen.excluded)};
   const auto lattice_time = time_option(chosen.time.empty() ? "--lattice-time" : "--time",
@@ -132,7 +132,7 @@ latcon::support::ExitCode compare_frames(const Options &options, const CompareOp
     print_dry_run(options, "# lattice: " + lattice.file.path.string() + ", " + std::to_string(lattice.points.size()) +
                              " sites\n# continuum: " + continuum.file.path.string() + ", " +
                              std::to_string(continuum.cells.size()) + " cells\n");
-    return latcon::support::ExitCode::done;
+    return support::ExitCode::done;
   }
 
   Run run(options);
@@ -148,4 +148,4 @@ latcon::support::ExitCode compare_frames(const Options &options, const CompareOp
   return run.finish(results);
 }
 
-} // namespace verification
+} // namespace latcon::verification

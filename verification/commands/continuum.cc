@@ -18,7 +18,7 @@
 #include "verification/output/progress.h"
 #include "verification/resources/resources.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -253,7 +253,7 @@ Results move(const Case &input, const ContinuumModel &model, Motion &motion, Che
   ContinuumRecord record;
   continuum::FieldWriter fields(MPI_COMM_WORLD, run.directory());
   double next_frame = input.frame_interval;
-  std::size_t step = 0; // done
+  std::size_t step = 0;                     // done
   std::uint64_t n_newton = 0, n_linear = 0; // iterations of this run, without those before a checkpoint
   const auto n_steps = static_cast<std::size_t>(std::ceil(input.end_time / settings.time_step * (1. - 1e-12)));
   const auto parts = [&](auto &archive)
@@ -271,11 +271,11 @@ Results move(const Case &input, const ContinuumModel &model, Motion &motion, Che
                      4. * epsilon * solver.time());
       const bool has_series = input.frame_interval > 0.;
       if (step > n_steps || !(record.last_time() <= solver.time() && fields.last_time() <= solver.time()))
-        throw latcon::support::InputError("what was recorded is of later times");
+        throw support::InputError("what was recorded is of later times");
       if (has_series &&
           !(frames_so_far >= 1. && frames_so_far <= done + 1. &&
             std::abs(next_frame - frames_so_far * input.frame_interval) <= frames_so_far * epsilon * next_frame))
-        throw latcon::support::InputError("`next_frame` does not follow the frames that there are");
+        throw support::InputError("`next_frame` does not follow the frames that there are");
     }
   };
   const auto write_frame = [&]
@@ -353,7 +353,7 @@ Results move(const Case &input, const ContinuumModel &model, Motion &motion, Che
     {
       message += std::string("\nthe state before it could not be written: ") + other.what();
     }
-    throw latcon::support::SolverError(message);
+    throw support::SolverError(message);
   }
   write_last_state();
   run.info().add("divided_steps", static_cast<std::uint64_t>(solver.n_divided_steps()));
@@ -364,7 +364,7 @@ Results move(const Case &input, const ContinuumModel &model, Motion &motion, Che
 
 } // namespace
 
-latcon::support::ExitCode run_continuum(const Options &options)
+support::ExitCode run_continuum(const Options &options)
 {
   Case input;
   Parameters parameters;
@@ -408,7 +408,7 @@ latcon::support::ExitCode run_continuum(const Options &options)
     }
     text << "# time: about " << std::ceil(continuum_seconds(input, size, steps, frames)) << " s\n";
     print_dry_run(options, text.str());
-    return latcon::support::ExitCode::done;
+    return support::ExitCode::done;
   }
   Checkpoints checkpoints(options, parameters, input, "continuum");
   Run run(options, parameters);
@@ -426,12 +426,12 @@ latcon::support::ExitCode run_continuum(const Options &options)
   // The input was good as far as it could be tried, so it is the computed state that is not.
   catch (const continuum::NonPhysicalState &failure)
   {
-    throw latcon::support::SolverError(failure.what());
+    throw support::SolverError(failure.what());
   }
-  catch (const latcon::support::InputError &failure)
+  catch (const support::InputError &failure)
   {
-    throw latcon::support::SolverError(failure.what());
+    throw support::SolverError(failure.what());
   }
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -9,7 +9,7 @@
 #include "support/text_wrap.h"
 #include "verification/study/study_table.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -20,11 +20,11 @@ constexpr std::size_t most_failing_rows = 4;
 
 std::string padded(const std::string &text, std::size_t width)
 {
-  return text + std::string(width - std::min(width, latcon::support::width_of(text)), ' ');
+  return text + std::string(width - std::min(width, support::width_of(text)), ' ');
 }
 
 // One quantity: "  wavelength, undeformed   2.359 ± 0.026 cm    reference 2.3 cm, +2.6 %".
-std::string line_of(const std::string &name, const std::optional<lattice::Measured> &measured, const std::string &unit,
+std::string line_of(const std::string &name, const std::optional<Measured> &measured, const std::string &unit,
                     const std::optional<double> &reference)
 {
   if (!measured && !reference)
@@ -45,14 +45,14 @@ std::string line_of(const std::string &name, const std::optional<lattice::Measur
 
 } // namespace
 
-std::string crack_summary(const Case &input, const lattice::CrackMeasurement &crack, const Results &results)
+std::string crack_summary(const Case &input, const CrackMeasurement &crack, const Results &results)
 {
-  const std::string pattern = lattice::to_string(crack.pattern);
+  const std::string pattern = to_string(crack.pattern);
   std::string text;
-  for (const std::string &line : latcon::support::wrapped(
-         (crack.pattern == lattice::CrackPattern::undecided ? "The pattern of the crack is " : "The crack is ") +
-           pattern + ": " + crack.reason,
-         columns))
+  for (const std::string &line :
+       support::wrapped((crack.pattern == CrackPattern::undecided ? "The pattern of the crack is " : "The crack is ") +
+                          pattern + ": " + crack.reason,
+                        columns))
     text += line + "\n";
   text += line_of("Lagrangian crack speed", crack.speed_lagrangian, "m/s", input.reference_speed);
   text += line_of("laboratory crack speed", crack.speed_laboratory, "m/s", {});
@@ -61,4 +61,4 @@ std::string crack_summary(const Case &input, const lattice::CrackMeasurement &cr
   return text + results.verdict_text(most_failing_rows);
 }
 
-} // namespace verification
+} // namespace latcon::verification

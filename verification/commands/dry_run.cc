@@ -7,7 +7,7 @@
 
 #include "verification/bridge/lattice_sheet.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -76,4 +76,4 @@ std::string lattice_text(const Case &input, const lattice::TimeStepping &steppin
   return out.str();
 }
 
-} // namespace verification
+} // namespace latcon::verification

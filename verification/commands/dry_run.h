@@ -5,7 +5,7 @@
 #include "verification/input/case.h"
 #include "verification/resources/resources.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// What `--dry-run` says of the lattice of a case beside memory: sites, bonds, time step, stages, steps and time it
@@ -14,4 +14,4 @@ namespace verification
 std::string lattice_text(const Case &input, const lattice::TimeStepping &stepping, RunKind run, bool claims = false,
                          bool report = false);
 
-} // namespace verification
+} // namespace latcon::verification

@@ -11,7 +11,7 @@
 #include "verification/output/crack_film.h"
 #include "verification/output/near_tip_record.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -36,11 +36,11 @@ double allowed_imbalance(const Case &input)
   return input.integrator == Case::Integrator::velocity_verlet ? 1e-4 : 1e-3;
 }
 
-Results measured_results(const Case &input, const CrackRecord &record, const lattice::CrackMeasurement &crack)
+Results measured_results(const Case &input, const CrackRecord &record, const CrackMeasurement &crack)
 {
   Results results;
-  const auto add = [&](const std::string &quantity, const std::string &unit,
-                       const std::optional<lattice::Measured> &measured, const std::optional<double> &published)
+  const auto add = [&](const std::string &quantity, const std::string &unit, const std::optional<Measured> &measured,
+                       const std::optional<double> &published)
   {
     Result row{"fracture", quantity, unit, {}, {}, published, {}, {}};
     if (measured)
@@ -49,8 +49,8 @@ Results measured_results(const Case &input, const CrackRecord &record, const lat
     {
       row.tolerance = input.reference_tolerance;
       // A quantity that was published but could not be measured does not agree.
-      row.error = measured ? latcon::support::relative_error(measured->value, *published)
-                           : std::numeric_limits<double>::quiet_NaN();
+      row.error =
+        measured ? support::relative_error(measured->value, *published) : std::numeric_limits<double>::quiet_NaN();
     }
     results.add(row);
   };
@@ -80,7 +80,7 @@ std::string progress_text(const lattice::Simulation &simulation, const CrackReco
 
 struct Crack
 {
-  lattice::CrackMeasurement measurement;
+  CrackMeasurement measurement;
   Results results;
 };
 
@@ -128,7 +128,7 @@ Crack run_crack(const Case &input, const lattice::TriangularLattice &sheet, cons
               archive("film", film);
             });
   film.end();
-  const lattice::CrackMeasurement crack = record.measure(seed_tip);
+  const CrackMeasurement crack = record.measure(seed_tip);
   record.write_measurement(run.directory(), crack, seed_tip, *input.breaking_stretch, skip_verification);
   if (run.is_root())
     near_tip.write(run.directory(), crack);
@@ -137,15 +137,15 @@ Crack run_crack(const Case &input, const lattice::TriangularLattice &sheet, cons
 
 // Pictures and page of a run, and where the page is. Collective: an exception on one rank would end the others, rank 0
 // as it draws. @return whether they could be made, on rank 0
-latcon::support::ExitCode draw_page(const Run &run)
+support::ExitCode draw_page(const Run &run)
 {
-  latcon::support::ExitCode exit_code = latcon::support::ExitCode::done;
+  support::ExitCode exit_code = support::ExitCode::done;
   if (run.is_root())
   {
-    const latcon::support::ExitCode drawn = draw_report(run.directory(), true);
-    if (drawn != latcon::support::ExitCode::claim_failed)
+    const support::ExitCode drawn = draw_report(run.directory(), true);
+    if (drawn != support::ExitCode::claim_failed)
       exit_code = drawn;
-    if (run.is_verbose() && exit_code == latcon::support::ExitCode::done)
+    if (run.is_verbose() && exit_code == support::ExitCode::done)
       std::cout << run.directory() << "/report.html" << std::endl;
   }
   MPI_Barrier(MPI_COMM_WORLD);
@@ -159,14 +159,14 @@ Results passed_or_reported(const Case &input, const Options &options, Run &run)
   {
     return require_verified(input, run);
   }
-  catch (const latcon::support::ClaimFailed &)
+  catch (const support::ClaimFailed &)
   {
     if (!options.no_report)
       try
       {
         draw_page(run);
       }
-      catch (const latcon::support::OutputError &error) // what the claims say weighs more
+      catch (const support::OutputError &error) // what the claims say weighs more
       {
         std::cerr << "latcon: " << error.what() << std::endl;
       }
@@ -176,7 +176,7 @@ Results passed_or_reported(const Case &input, const Options &options, Run &run)
 
 } // namespace
 
-latcon::support::ExitCode run_fracture(const Options &options)
+support::ExitCode run_fracture(const Options &options)
 {
   Case input;
   Parameters parameters;
@@ -197,7 +197,7 @@ latcon::support::ExitCode run_fracture(const Options &options)
     if (!options.quiet)
       print_dry_run(options,
                     lattice_text(input, input.fracture_time_stepping(), RunKind::fracture, claims, !options.no_report));
-    return latcon::support::ExitCode::done;
+    return support::ExitCode::done;
   }
   require_memory(memory);
 
@@ -210,19 +210,19 @@ latcon::support::ExitCode run_fracture(const Options &options)
     results = passed_or_reported(input, options, run);
   const Crack crack = run_crack(input, sheet, material, options.skip_verification, checkpoints, run);
   results.add(crack.results);
-  const latcon::support::ExitCode exit_code =
-    run.end(results, interrupted() ? latcon::support::ExitCode::interrupted : exit_code_of(results));
+  const support::ExitCode exit_code =
+    run.end(results, interrupted() ? support::ExitCode::interrupted : exit_code_of(results));
   if (run.is_verbose())
   {
     if (options.verbose)
       results.print(std::cout);
     std::cout << crack_summary(input, crack.measurement, results) << std::flush;
   }
-  if (options.no_report || exit_code == latcon::support::ExitCode::interrupted)
+  if (options.no_report || exit_code == support::ExitCode::interrupted)
     return exit_code;
   // The verdict in the page is the one returned here; a crack without its page did not end well.
-  const latcon::support::ExitCode drawn = draw_page(run);
-  return exit_code == latcon::support::ExitCode::done ? drawn : exit_code;
+  const support::ExitCode drawn = draw_page(run);
+  return exit_code == support::ExitCode::done ? drawn : exit_code;
 }
 
-} // namespace verification
+} // namespace latcon::verification

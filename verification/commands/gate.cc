@@ -9,7 +9,7 @@
 #include "verification/claims/verdict_store.h"
 #include "verification/commands/command.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -108,7 +108,7 @@ Results require_verified(const Case &input, Run &run)
         VerdictStore(*folder).write(key, verdicts_text(key, *verdicts));
         kept = true;
       }
-      catch (const latcon::support::OutputError &error)
+      catch (const support::OutputError &error)
       {
         append(stored.note, std::string("the verdicts are not kept: ") + error.what());
       }
@@ -131,15 +131,15 @@ Results require_verified(const Case &input, Run &run)
     verdicts->write_tables(run.directory());
   if (!verdicts->results.all_hold())
   {
-    run.end(verdicts->results, latcon::support::ExitCode::claim_failed);
+    run.end(verdicts->results, support::ExitCode::claim_failed);
     constexpr std::size_t most_failing_rows = 8;
     std::string rows = verdicts->results.verdict_text(most_failing_rows);
     rows.pop_back(); // the end of its last line
-    throw latcon::support::ClaimFailed(
-      "no crack was run: the material and pre-stretch of this case fail their verification" +
-      (reused ? " (" + origin + "; to have them checked again, delete " + path + ")" : "") + "\n" + rows);
+    throw support::ClaimFailed("no crack was run: the material and pre-stretch of this case fail their verification" +
+                               (reused ? " (" + origin + "; to have them checked again, delete " + path + ")" : "") +
+                               "\n" + rows);
   }
   return verdicts->results;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -10,7 +10,7 @@
 #include "verification/commands/signals.h"
 #include "verification/output/field_writer.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -19,7 +19,7 @@ namespace
 Results relaxed(const Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
                 lattice::State state, Run &run)
 {
-  lattice::FieldWriter fields(sheet, material, run.directory());
+  FieldWriter fields(sheet, material, run.directory());
   fields.add_frame(state);
   lattice::Relaxation relaxation{};
   try
@@ -30,7 +30,7 @@ Results relaxed(const Case &input, const lattice::TriangularLattice &sheet, cons
   }
   catch (const std::runtime_error &error)
   {
-    throw latcon::support::SolverError(error.what());
+    throw support::SolverError(error.what());
   }
   state.time = 1.; // load factor, as for the continuum
   fields.add_frame(state);
@@ -77,7 +77,7 @@ Results moved(const Case &input, const lattice::RowPartition &band, const lattic
 
 } // namespace
 
-latcon::support::ExitCode run_lattice(const Options &options)
+support::ExitCode run_lattice(const Options &options)
 {
   Case input;
   Parameters parameters;
@@ -100,7 +100,7 @@ latcon::support::ExitCode run_lattice(const Options &options)
     require_memory(memory);
     if (!options.quiet)
       print_dry_run(options, lattice_text(input, input.lattice_time_stepping(), kind));
-    return latcon::support::ExitCode::done;
+    return support::ExitCode::done;
   }
   Checkpoints checkpoints(options, parameters, input, "lattice");
   require_memory(memory);
@@ -123,4 +123,4 @@ latcon::support::ExitCode run_lattice(const Options &options)
   return interrupted() ? run.interrupted(results) : run.finish(results);
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -6,7 +6,7 @@
 #include "verification/commands/signals.h"
 #include "verification/output/progress.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 LatticeMotion::LatticeMotion(const Case &input, lattice::Simulation &simulation, Checkpoints &checkpoints, Run &run)
@@ -99,7 +99,7 @@ void LatticeMotion::go(const StepCallbacks &callbacks, bool resumed, const std::
     record_.energies();
     run_.info().add("divided_steps", static_cast<std::uint64_t>(simulation_.n_divided_steps()));
   }
-  catch (const latcon::support::SolverError &)
+  catch (const support::SolverError &)
   {
     // The last sound state, and what was noted until then.
     add_frame();
@@ -110,4 +110,4 @@ void LatticeMotion::go(const StepCallbacks &callbacks, bool resumed, const std::
   write_tables();
 }
 
-} // namespace verification
+} // namespace latcon::verification

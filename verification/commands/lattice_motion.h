@@ -12,7 +12,7 @@
 #include "verification/output/crack_record.h"
 #include "verification/output/field_writer.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// What every motion of a lattice does as it goes, with a crack or without: frames, tables, the energy ledger,
@@ -74,9 +74,9 @@ private:
   Checkpoints &checkpoints_;
   Run &run_;
   CrackRecord record_;
-  lattice::FieldWriter frames_;
+  FieldWriter frames_;
   double next_frame_; // [s]
   std::size_t step_ = 0;
 };
 
-} // namespace verification
+} // namespace latcon::verification

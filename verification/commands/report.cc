@@ -10,7 +10,7 @@
 #include "verification/commands/command.h"
 #include "verification/input/data_folder.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 namespace
@@ -37,42 +37,40 @@ int run_script(const std::string &script, const std::string &directory, const st
   std::vector<std::string> command{python, "-s", data_folder() + "/report/" + script, directory};
   if (quiet)
     command.emplace_back("--quiet");
-  const int status =
-    latcon::support::wait_for_child(latcon::support::start_child({command, environment_of_scripts(), ""}));
-  if (status == latcon::support::not_started)
-    throw latcon::support::OutputError(directory + "/" + page, "cannot start " + python);
+  const int status = support::wait_for_child(support::start_child({command, environment_of_scripts(), ""}));
+  if (status == support::not_started)
+    throw support::OutputError(directory + "/" + page, "cannot start " + python);
   if (status > 128)
-    throw latcon::support::OutputError(directory + "/" + page, "the report script was killed");
-  for (const latcon::support::ExitCode known :
-       {latcon::support::ExitCode::done, latcon::support::ExitCode::bad_input, latcon::support::ExitCode::claim_failed,
-        latcon::support::ExitCode::output_failed})
+    throw support::OutputError(directory + "/" + page, "the report script was killed");
+  for (const support::ExitCode known : {support::ExitCode::done, support::ExitCode::bad_input,
+                                        support::ExitCode::claim_failed, support::ExitCode::output_failed})
     if (status == static_cast<int>(known))
       return status;
-  throw latcon::support::OutputError(directory + "/" + page, "the report script failed");
+  throw support::OutputError(directory + "/" + page, "the report script failed");
 }
 
 } // namespace
 
-latcon::support::ExitCode report(const Options &options, const std::string &directory)
+support::ExitCode report(const Options &options, const std::string &directory)
 {
   if (!std::filesystem::is_directory(directory))
-    throw latcon::support::InputError(directory + " is not a directory");
+    throw support::InputError(directory + " is not a directory");
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) != 0)
-    return latcon::support::ExitCode::done;
+    return support::ExitCode::done;
   const auto lock = lock_directory(directory);
   return draw_report(directory, options.quiet);
 }
 
-latcon::support::ExitCode draw_report(const std::string &directory, bool quiet)
+support::ExitCode draw_report(const std::string &directory, bool quiet)
 {
   // The script uses the exit codes of this program.
-  return static_cast<latcon::support::ExitCode>(run_script("report.py", directory, "report.html", quiet));
+  return static_cast<support::ExitCode>(run_script("report.py", directory, "report.html", quiet));
 }
 
 void study_page(const std::string &directory)
 {
   if (run_script("study.py", directory, "study.html", true) != 0)
-    throw latcon::support::OutputError(directory + "/study.html", "the report script failed");
+    throw support::OutputError(directory + "/study.html", "the report script failed");
 }
 
-} // namespace verification
+} // namespace latcon::verification

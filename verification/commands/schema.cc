@@ -11,7 +11,7 @@
 #include "verification/input/data_folder.h"
 #include "verification/study/quantities.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -136,7 +136,7 @@ Json shipped_cases()
 
 } // namespace
 
-latcon::support::ExitCode print_schema(const Options &options)
+support::ExitCode print_schema(const Options &options)
 {
   Case input;
   Parameters parameters;
@@ -145,7 +145,7 @@ latcon::support::ExitCode print_schema(const Options &options)
   else if (options.overrides.empty())
     input.declare(parameters);
   else
-    throw latcon::support::InputError("--set replaces entries of a case; give one: latcon schema CASE --set ...");
+    throw support::InputError("--set replaces entries of a case; give one: latcon schema CASE --set ...");
   const std::vector<Declaration> entries = parameters.declarations();
   Json document;
   document["format"] = "latcon-schema";
@@ -168,7 +168,7 @@ latcon::support::ExitCode print_schema(const Options &options)
   }
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
     std::cout << document.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
-  return latcon::support::ExitCode::done;
+  return support::ExitCode::done;
 }
 
-} // namespace verification
+} // namespace latcon::verification

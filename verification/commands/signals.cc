@@ -19,7 +19,7 @@
 
 #include "support/errors.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -53,7 +53,7 @@ void say(const std::string &text)
 
 [[noreturn]] void end_process()
 {
-  constexpr int status = static_cast<int>(latcon::support::ExitCode::interrupted);
+  constexpr int status = static_cast<int>(support::ExitCode::interrupted);
   try
   {
     if (final_action)
@@ -150,4 +150,4 @@ void disregard_signals()
   deferral_ended.notify_one();
 }
 
-} // namespace verification
+} // namespace latcon::verification

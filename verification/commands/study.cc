@@ -19,7 +19,7 @@
 #include "verification/study/process_pool.h"
 #include "verification/study/study_output.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -147,7 +147,7 @@ bool run_children(StudyResults &results, const Options &options, bool skip_verif
   {
     const PlannedRun &planned = results.plan[jobs[job]];
     const std::string folder = folders_of(run, planned).part;
-    latcon::support::require_in_place(folder);
+    support::require_in_place(folder);
     if (fs::exists(folder))
       lock_directory(folder, patience_with_orphans); // released at once: the run locks it for itself
     const bool goes_on = options.resume && is_begun(planned, folder, skip_verification);
@@ -160,7 +160,7 @@ bool run_children(StudyResults &results, const Options &options, bool skip_verif
   {
     const PlannedRun &planned = results.plan[jobs[job]];
     const Folders folders = folders_of(run, planned);
-    latcon::support::require_in_place(folders.whole);
+    support::require_in_place(folders.whole);
     replace(folders);
     results.outcomes[jobs[job]] = read_outcome(planned, folders.whole, status);
     progress.ended(jobs[job], results.outcomes[jobs[job]]);
@@ -206,13 +206,13 @@ MemoryNeed memory_of(const std::vector<PlannedRun> &plan, std::size_t n_cores)
 {
   std::vector<double> needs;
   for (const PlannedRun &run : plan)
-    needs.push_back(run.memory + latcon::support::held_memory());
+    needs.push_back(run.memory + support::held_memory());
   std::sort(needs.rbegin(), needs.rend());
   needs.resize(std::min(needs.size(), n_cores));
   return {std::accumulate(needs.begin(), needs.end(), 0.), 0.};
 }
 
-latcon::support::ExitCode exit_code_of(const StudyResults &results, const Results &rows)
+support::ExitCode exit_code_of(const StudyResults &results, const Results &rows)
 {
   const auto any = [&](RunState state)
   {
@@ -220,24 +220,24 @@ latcon::support::ExitCode exit_code_of(const StudyResults &results, const Result
                        [state](const RunOutcome &outcome) { return outcome.state == state; });
   };
   if (any(RunState::failed))
-    return latcon::support::ExitCode::solver_failed;
-  return any(RunState::refused) || rows.verdict() == Verdict::fails ? latcon::support::ExitCode::claim_failed
-                                                                    : latcon::support::ExitCode::done;
+    return support::ExitCode::solver_failed;
+  return any(RunState::refused) || rows.verdict() == Verdict::fails ? support::ExitCode::claim_failed
+                                                                    : support::ExitCode::done;
 }
 
 } // namespace
 
-latcon::support::ExitCode run_study(const Options &options, const std::string &name)
+support::ExitCode run_study(const Options &options, const std::string &name)
 {
   if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
-    throw latcon::support::InputError("`latcon study` starts its own processes, one a core; run it without mpirun");
+    throw support::InputError("`latcon study` starts its own processes, one a core; run it without mpirun");
   StudyResults results;
   results.study = read_study_file(study_path(name), options.quick);
   const InputFile base = read_input_file(results.study.base);
   results.plan = plan_runs(results.study, base, options.overrides);
   results.outcomes.resize(results.plan.size());
   results.quick = options.quick;
-  const std::size_t n_cores = options.threads > 0 ? options.threads : latcon::support::available_cores();
+  const std::size_t n_cores = options.threads > 0 ? options.threads : support::available_cores();
   const MemoryNeed memory = memory_of(results.plan, n_cores);
   if (options.dry_run)
   {
@@ -247,7 +247,7 @@ latcon::support::ExitCode run_study(const Options &options, const std::string &n
       std::cout << memory_text(memory);
     }
     require_memory(memory);
-    return latcon::support::ExitCode::done;
+    return support::ExitCode::done;
   }
   require_memory(memory);
 
@@ -277,8 +277,8 @@ latcon::support::ExitCode run_study(const Options &options, const std::string &n
   const Results rows = study_rows(results);
   if (run.is_verbose())
     print_table(std::cout, results);
-  const latcon::support::ExitCode exit_code =
-    run.end(rows, complete ? exit_code_of(results, rows) : latcon::support::ExitCode::interrupted);
+  const support::ExitCode exit_code =
+    run.end(rows, complete ? exit_code_of(results, rows) : support::ExitCode::interrupted);
   if (complete)
   {
     study_page(run.directory());
@@ -288,4 +288,4 @@ latcon::support::ExitCode run_study(const Options &options, const std::string &n
   return exit_code;
 }
 
-} // namespace verification
+} // namespace latcon::verification

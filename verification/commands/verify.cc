@@ -16,7 +16,7 @@
 #include "verification/claims/wave_speeds/wave_speeds_claim.h"
 #include "verification/commands/command.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -149,7 +149,7 @@ const std::vector<std::string> &claims_before_fracture()
 ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names, bool quick, Shells shells,
                         const Laws &laws, const std::string &frames)
 {
-  std::optional<latcon::support::OneThread> one_thread;
+  std::optional<support::OneThread> one_thread;
   if (quick)
     one_thread.emplace();
   const Case read = claim_inputs(input);
@@ -169,7 +169,7 @@ ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names
   return outcome;
 }
 
-latcon::support::ExitCode verify(const Options &options)
+support::ExitCode verify(const Options &options)
 {
   Case input;
   Parameters parameters;
@@ -178,7 +178,7 @@ latcon::support::ExitCode verify(const Options &options)
   if (options.dry_run)
   {
     print_dry_run(options, parameters.resolved_text());
-    return latcon::support::ExitCode::done;
+    return support::ExitCode::done;
   }
   Run run(options, parameters);
   ClaimOutcome outcome;
@@ -203,4 +203,4 @@ latcon::support::ExitCode verify(const Options &options)
   return run.finish(outcome.results);
 }
 
-} // namespace verification
+} // namespace latcon::verification

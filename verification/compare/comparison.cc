@@ -14,7 +14,7 @@
 #include "support/full_precision.h"
 #include "support/largest_error.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -40,7 +40,7 @@ struct Bounds
 
 Bounds bounds(const std::vector<Position> &points)
 {
-  std::array<latcon::support::Extremes, 2> extremes;
+  std::array<support::Extremes, 2> extremes;
   for (const Position &point : points)
     for (std::size_t k = 0; k < 2; ++k)
       extremes[k].add(point[k]);
@@ -83,7 +83,7 @@ struct Norms
 template <typename Value>
 Norms norms_of(const std::vector<std::size_t> &sites, std::size_t n_components, const Value &value)
 {
-  latcon::support::Extremes sizes;
+  support::Extremes sizes;
   sizes.add(0.);
   double sum = 0.;
   for (const std::size_t site : sites)
@@ -99,7 +99,7 @@ Norms norms_of(const std::vector<std::size_t> &sites, std::size_t n_components, 
 
 double relative(double difference, double lattice, double continuum)
 {
-  return difference == 0. ? 0. : difference / latcon::support::largest_of({lattice, continuum});
+  return difference == 0. ? 0. : difference / support::largest_of({lattice, continuum});
 }
 
 // A site at the rim of a curved hole may be outside for the rounding of the rim, but then some of its neighbours are
@@ -114,7 +114,7 @@ void require_no_missing_part(const LatticeFrame &lattice, const ContinuumFrame &
   }
   for (std::size_t i = 0; i < lattice.points.size(); ++i)
     if (at_sites.outside[i] != 0 && has_neighbour_inside[i] == 0 && lattice.n_bonds[i] > 0)
-      throw latcon::support::InputError(
+      throw support::InputError(
         both_files(lattice, continuum) + ": not the same sheet: the continuum has nothing at the site (" +
         short_number(lattice.points[i][0]) + ", " + short_number(lattice.points[i][1]) + ") m, nor at its neighbours");
 
@@ -130,7 +130,7 @@ void require_no_missing_part(const LatticeFrame &lattice, const ContinuumFrame &
     const std::array<double, 3> x{{point[0], point[1], 0.}};
     double squared = 0.;
     if (locator->FindClosestPointWithinRadius(far, x.data(), squared) < 0)
-      throw latcon::support::InputError(
+      throw support::InputError(
         both_files(lattice, continuum) + ": not the same sheet: the lattice has no site within " + short_number(far) +
         " m of the continuum's node (" + short_number(point[0]) + ", " + short_number(point[1]) + ") m");
   }
@@ -156,7 +156,7 @@ void require_same_units(const LatticeFrame &lattice, const ContinuumFrame &conti
     const bool alike = product > 0.95 * std::sqrt(squares_here * squares_there);
     const double ratio = std::sqrt(squares_there / squares_here);
     if (alike && squares_here > 0. && is_ratio_of_units(ratio))
-      throw latcon::support::InputError(
+      throw support::InputError(
         both_files(lattice, continuum) + ": '" + there.field->name + "' of the continuum is " + short_number(ratio) +
         " times that of the lattice: not in the same units? Both are to be in " + there.field->unit);
   }
@@ -167,7 +167,7 @@ void require_same_units(const LatticeFrame &lattice, const ContinuumFrame &conti
 double position_tolerance(const ContinuumFrame &frame)
 {
   const Bounds box = bounds(frame.points);
-  return 1e-6 * latcon::support::largest_of({box.side(0), box.side(1)});
+  return 1e-6 * support::largest_of({box.side(0), box.side(1)});
 }
 
 void require_same_time(const LatticeFrame &lattice, const ContinuumFrame &continuum)
@@ -180,14 +180,14 @@ void require_same_time(const LatticeFrame &lattice, const ContinuumFrame &contin
       (lattice.kind == TimeKind::equilibrium && continuum.kind == TimeKind::motion))
   {
     const bool lattice_moves = lattice.kind == TimeKind::motion;
-    throw latcon::support::InputError(both_files(lattice, continuum) + ": the " +
-                                      (lattice_moves ? "lattice" : "continuum") + " is in motion and the " +
-                                      (lattice_moves ? "continuum" : "lattice") + " in equilibrium" + advice);
+    throw support::InputError(both_files(lattice, continuum) + ": the " + (lattice_moves ? "lattice" : "continuum") +
+                              " is in motion and the " + (lattice_moves ? "continuum" : "lattice") + " in equilibrium" +
+                              advice);
   }
   if (!same_time(lattice.time, continuum.time))
-    throw latcon::support::InputError(
-      both_files(lattice, continuum) + ": the times differ: " + latcon::support::full_precision(lattice.time) +
-      " of the lattice, " + latcon::support::full_precision(continuum.time) + " of the continuum" + advice);
+    throw support::InputError(both_files(lattice, continuum) +
+                              ": the times differ: " + support::full_precision(lattice.time) + " of the lattice, " +
+                              support::full_precision(continuum.time) + " of the continuum" + advice);
 }
 
 void require_same_bounds(const LatticeFrame &lattice, const ContinuumFrame &continuum)
@@ -197,7 +197,7 @@ void require_same_bounds(const LatticeFrame &lattice, const ContinuumFrame &cont
     here = {{{(*given)[0], (*given)[2]}}, {{(*given)[1], (*given)[3]}}};
   const Bounds there = bounds(continuum.points);
   const double tolerance = position_tolerance(continuum);
-  latcon::support::LargestError distance;
+  support::LargestError distance;
   for (std::size_t k = 0; k < 2; ++k)
   {
     distance.add_difference(here.low[k], there.low[k]);
@@ -211,8 +211,8 @@ void require_same_bounds(const LatticeFrame &lattice, const ContinuumFrame &cont
     why = ": " + short_number(ratio[0]) + " times as large both ways, so one of them is not in metres";
   else if (std::abs(there.side(0) - here.side(1)) <= tolerance && std::abs(there.side(1) - here.side(0)) <= tolerance)
     why = ": x and y are exchanged";
-  throw latcon::support::InputError(both_files(lattice, continuum) + ": not the same sheet: the lattice spans " +
-                                    here.text() + ", the continuum " + there.text() + why);
+  throw support::InputError(both_files(lattice, continuum) + ": not the same sheet: the lattice spans " + here.text() +
+                            ", the continuum " + there.text() + why);
 }
 
 std::vector<std::size_t> Comparison::compared(const LatticeFrame &lattice, const CommonField &field) const
@@ -252,7 +252,7 @@ Comparison compare(const LatticeFrame &lattice, const ContinuumFrame &continuum,
       difference.values[i] -= there.values[i];
     comparison.differences.push_back(std::move(difference));
     if (comparison.compared(lattice, *there.field).empty())
-      throw latcon::support::InputError(
+      throw support::InputError(
         both_files(lattice, continuum) + ": '" + there.field->name +
         "' cannot be compared: no free site inside the continuum, and in no excluded circle, has all "
         "its bonds");
@@ -266,7 +266,7 @@ Results norms(const LatticeFrame &lattice, const ContinuumFrame &continuum, cons
 {
   for (const auto &[name, tolerance] : tolerances)
     if (continuum.find(name) == nullptr)
-      throw latcon::support::InputError("--tolerance: '" + name + "' is not in " + continuum.file.path.string());
+      throw support::InputError("--tolerance: '" + name + "' is not in " + continuum.file.path.string());
 
   Results results;
   const auto count = [&results](const std::string &what, std::size_t n) {
@@ -324,4 +324,4 @@ Results norms(const LatticeFrame &lattice, const ContinuumFrame &continuum, cons
   return results;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -12,7 +12,7 @@
 #include "verification/compare/site_probe.h"
 #include "verification/output/results.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// How far a point may be off [m]: 1e-6 of the larger side of the sheet. vtu files hold positions in single precision
@@ -70,4 +70,4 @@ Comparison compare(const LatticeFrame &lattice, const ContinuumFrame &continuum,
 Results norms(const LatticeFrame &lattice, const ContinuumFrame &continuum, const Comparison &comparison,
               const std::map<std::string, double> &tolerances);
 
-} // namespace verification
+} // namespace latcon::verification

@@ -12,7 +12,7 @@
 #include "verification/compare/quiet_vtk.h"
 #include "verification/output/output_file.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -58,7 +58,7 @@ void write_data(const std::string &path, Data *data)
   writer->SetCompressorTypeToZLib();
   writer->WriteToOutputStringOn();
   if (writer->Write() != 1 || !quiet.error().empty())
-    throw latcon::support::OutputError(path, quiet.error().empty() ? "VTK could not format it" : quiet.error());
+    throw support::OutputError(path, quiet.error().empty() ? "VTK could not format it" : quiet.error());
   write_file(path, writer->GetOutputString());
 }
 
@@ -84,9 +84,9 @@ void write_difference(const std::string &directory, const LatticeFrame &lattice,
                        "byte_order=\"LittleEndian\">\n  <Collection>\n";
   int part = 0;
   for (const char *file : {sites_file, continuum_file})
-    series += "    <DataSet timestep=\"" + latcon::support::full_precision(lattice.time) + "\" part=\"" +
+    series += "    <DataSet timestep=\"" + support::full_precision(lattice.time) + "\" part=\"" +
               std::to_string(part++) + "\" file=\"" + file + "\"/>\n";
   write_file(directory + "/difference.pvd", series + "  </Collection>\n</VTKFile>\n");
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -18,14 +18,14 @@
 #include "support/full_precision.h"
 #include "verification/compare/quiet_vtk.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
 
 [[noreturn]] void fail(const FrameFile &file, const std::string &problem)
 {
-  throw latcon::support::InputError(file.path.string() + ": " + problem);
+  throw support::InputError(file.path.string() + ": " + problem);
 }
 
 // What a reader of VTK makes of a file.
@@ -114,8 +114,7 @@ double frame_time(const FrameFile &file, vtkDataSet &data, const char *name, std
     fail(file, std::string("has no field data '") + name + "', so its time is not known");
   const double found = time->GetComponent(0, 0);
   if (wanted && !same_time(found, *wanted))
-    fail(file, "is at the time " + latcon::support::full_precision(found) + ", not at " +
-                 latcon::support::full_precision(*wanted));
+    fail(file, "is at the time " + support::full_precision(found) + ", not at " + support::full_precision(*wanted));
   return found;
 }
 
@@ -223,4 +222,4 @@ ContinuumFrame read_continuum_frame(const FrameFile &file, std::optional<double>
   return frame;
 }
 
-} // namespace verification
+} // namespace latcon::verification

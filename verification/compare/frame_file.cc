@@ -10,7 +10,7 @@
 #include "support/full_precision.h"
 #include "verification/compare/quiet_vtk.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -39,7 +39,7 @@ std::string kinds_of(Side side)
 
 [[noreturn]] void fail(const fs::path &path, const std::string &problem)
 {
-  throw latcon::support::InputError(path.string() + ": " + problem);
+  throw support::InputError(path.string() + ": " + problem);
 }
 
 void require_side(const fs::path &path, Side side)
@@ -101,12 +101,11 @@ FrameFile pick(const fs::path &series, Side side, std::optional<double> time)
                      [&](double a, double b) { return std::abs(a - wanted) < std::abs(b - wanted); });
     nearest.resize(std::min<std::size_t>(nearest.size(), 3));
     std::sort(nearest.begin(), nearest.end());
-    fail(series,
-         "no frame at " + latcon::support::full_precision(wanted) + "; the nearest are at " + list_of_times(nearest));
+    fail(series, "no frame at " + support::full_precision(wanted) + "; the nearest are at " + list_of_times(nearest));
   }
   if (found.size() > 1)
-    fail(series, std::to_string(found.size()) + " files at the time " + latcon::support::full_precision(wanted) +
-                   ": give one of them");
+    fail(series,
+         std::to_string(found.size()) + " files at the time " + support::full_precision(wanted) + ": give one of them");
   frame.path = found.front().path;
   frame.time = found.front().time;
   frame.chosen = time.has_value();
@@ -163,9 +162,9 @@ std::string list_of_times(const std::vector<double> &times)
       text += ", ...";
       i = times.size() - ends;
     }
-    text += (i == 0 ? "" : ", ") + latcon::support::full_precision(times[i]);
+    text += (i == 0 ? "" : ", ") + support::full_precision(times[i]);
   }
   return text;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -2,7 +2,7 @@
 
 #include <vtkLogger.h>
 
-namespace verification
+namespace latcon::verification
 {
 
 // VTK tells both its window and its log.
@@ -46,4 +46,4 @@ std::string QuietVtk::error() const
   return text;
 }
 
-} // namespace verification
+} // namespace latcon::verification

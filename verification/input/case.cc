@@ -11,7 +11,7 @@
 #include "lattice/seed.h"
 #include "support/full_precision.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -45,14 +45,12 @@ void check_size(const Case &input, Parameters &p)
   {
     const std::string spacings = way;
     if (extent < 8. * input.spacing)
-      p.error(key,
-              "the sheet must be at least 8" + spacings + latcon::support::full_precision(8. * input.spacing) + " m",
+      p.error(key, "the sheet must be at least 8" + spacings + support::full_precision(8. * input.spacing) + " m",
               {"Sheet/spacing"});
     if (extent > most_spacings * input.spacing)
-      p.error(key,
-              "the sheet must be at most 1e6" + spacings +
-                latcon::support::full_precision(most_spacings * input.spacing) + " m",
-              {"Sheet/spacing"});
+      p.error(
+        key, "the sheet must be at most 1e6" + spacings + support::full_precision(most_spacings * input.spacing) + " m",
+        {"Sheet/spacing"});
   }
 }
 
@@ -63,17 +61,16 @@ void check_cutout(const Case &input, Parameters &p)
   const double widest = 0.45 * std::min(input.length, input.height);
   if (input.hole_radius >= widest)
     p.error("Sheet/hole radius",
-            "it must be less than 0.45 of the sheet's length and height, " + latcon::support::full_precision(widest) +
-              " m",
+            "it must be less than 0.45 of the sheet's length and height, " + support::full_precision(widest) + " m",
             {"Sheet/length", "Sheet/height"});
   if (input.notch_length >= input.length && input.notch_length > 0.)
     p.error("Sheet/notch length",
-            "it must be less than the sheet's length, " + latcon::support::full_precision(input.length) + " m",
+            "it must be less than the sheet's length, " + support::full_precision(input.length) + " m",
             {"Sheet/length"});
   for (const auto &[key, extent] :
        {std::pair("Sheet/hole radius", input.hole_radius), std::pair("Sheet/notch length", input.notch_length)})
     if (extent > 0. && extent < input.spacing)
-      p.error(key, "it must be at least a spacing, " + latcon::support::full_precision(input.spacing) + " m, or 0",
+      p.error(key, "it must be at least a spacing, " + support::full_precision(input.spacing) + " m, or 0",
               {"Sheet/spacing"});
 }
 
@@ -101,7 +98,7 @@ void check_breaking_stretch(const Case &input, Parameters &p, const lattice::Tri
   p.error("Fracture/breaking stretch",
           std::string(lattice::TriangularLattice::is_nearest(of_kind) ? "nearest" : "next-nearest") +
             "-neighbour bonds at " + std::to_string(std::lround(std::atan2(R.y(), R.x()) * 180. / M_PI)) +
-            " degrees to x are stretched to " + latcon::support::full_precision(longest) +
+            " degrees to x are stretched to " + support::full_precision(longest) +
             " by the loading alone and would all break; give more than that, or less strain",
           {"Loading/strain x", "Loading/strain y", "Loading/shear"});
 }
@@ -117,9 +114,8 @@ void check_stages(const Case &input, Parameters &p)
   const double step = input.time_step ? *input.time_step : input.chebyshev_step(breaks);
   if (!(step <= longest))
     p.error("Time/step",
-            "the dashpots allow runge-kutta-chebyshev no more than " + latcon::support::full_precision(longest) +
-              " s in " + std::to_string(most_stages) + " stages, and this step is one of " +
-              latcon::support::full_precision(step) + " s",
+            "the dashpots allow runge-kutta-chebyshev no more than " + support::full_precision(longest) + " s in " +
+              std::to_string(most_stages) + " stages, and this step is one of " + support::full_precision(step) + " s",
             {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity", "Contact/viscosity", "Sheet/spacing",
              "Time/integrator"});
 }
@@ -146,8 +142,7 @@ void check_time_step(const Case &input, Parameters &p)
     limit = 2. * lattice::ChebyshevStages(input.stages).real_limit() * limits.viscous;
   }
   if (*input.time_step > limit)
-    p.error("Time/step",
-            "beyond " + latcon::support::full_precision(limit) + " s the time stepping is unstable; auto is safe",
+    p.error("Time/step", "beyond " + support::full_precision(limit) + " s the time stepping is unstable; auto is safe",
             {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity", "Sheet/spacing", "Time/integrator",
              "Time/stages"});
 }
@@ -464,4 +459,4 @@ std::string case_lines(const Parameters &parameters)
   return parameters.lines("Checkpoints");
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -11,12 +11,12 @@
 #include "verification/input/continuum_case.h"
 #include "verification/input/parameters.h"
 
-namespace lattice
+namespace latcon::lattice
 {
 struct ContactLaw;
 }
 
-namespace verification
+namespace latcon::verification
 {
 
 /// One shell of bonds as a case states it.
@@ -191,4 +191,4 @@ inline constexpr double smallest_chebyshev_stretch = 0.45;
 /// it is saved. Its SHA-256 is `case_hash` in run.json and in checkpoints.
 [[nodiscard]] std::string case_lines(const Parameters &parameters);
 
-} // namespace verification
+} // namespace latcon::verification

@@ -6,7 +6,7 @@
 #include <cctype>
 #include <cstddef>
 
-namespace verification
+namespace latcon::verification
 {
 
 namespace
@@ -408,4 +408,4 @@ CaseText read_json(const std::string &text, const std::string &name)
   return result;
 }
 
-} // namespace verification
+} // namespace latcon::verification

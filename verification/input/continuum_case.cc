@@ -10,7 +10,7 @@
 #include "support/full_precision.h"
 #include "verification/input/case_text.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -61,9 +61,9 @@ public:
   {
     const double value = dealii::FunctionParser<2>::value(X, component);
     if (!std::isfinite(value))
-      throw latcon::support::InputError("the expression '" + printable(get_expressions()[component]) +
-                                        "' is no finite number at x = " + latcon::support::full_precision(X[0]) +
-                                        " m, y = " + latcon::support::full_precision(X[1]) + " m");
+      throw support::InputError("the expression '" + printable(get_expressions()[component]) +
+                                "' is no finite number at x = " + support::full_precision(X[0]) +
+                                " m, y = " + support::full_precision(X[1]) + " m");
     return value;
   }
 
@@ -125,7 +125,7 @@ void check_values_at(Parameters &parameters, const std::string &key, const std::
     for (const dealii::Point<2> &X : points)
       (void)function->value(X, 0);
   }
-  catch (const latcon::support::InputError &problem)
+  catch (const support::InputError &problem)
   {
     parameters.error(key, problem.what());
   }
@@ -158,7 +158,7 @@ std::string problem_with(const std::string &expression)
     field.field(1.)->value(dealii::Point<2>(0.0123, 0.0045), 0);
     return "";
   }
-  catch (const latcon::support::InputError &)
+  catch (const support::InputError &)
   {
     return ""; // it can be parsed; its values are looked at where the sheet is
   }
@@ -413,4 +413,4 @@ void ContinuumCase::check_values(Parameters &p, const Outline &outline) const
   check_field("Initial state/velocity", initial_velocity, inside);
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -9,7 +9,7 @@
 
 #include "verification/input/parameters.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// Which constitutive law the finite element sheet is made of.
@@ -139,4 +139,4 @@ struct ContinuumCase
   void check_values(Parameters &parameters, const Outline &outline) const;
 };
 
-} // namespace verification
+} // namespace latcon::verification

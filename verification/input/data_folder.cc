@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-namespace verification
+namespace latcon::verification
 {
 
 std::string data_folder()
@@ -16,4 +16,4 @@ std::string data_folder()
   return program.parent_path().parent_path() / "share" / "latcon";
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -5,7 +5,7 @@
 #include <fstream>
 #include <system_error>
 
-namespace verification
+namespace latcon::verification
 {
 
 InputFile read_input_file(const std::string &path)
@@ -29,4 +29,4 @@ InputFile read_input_file(const std::string &path)
   return input;
 }
 
-} // namespace verification
+} // namespace latcon::verification

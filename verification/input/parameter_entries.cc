@@ -13,7 +13,7 @@
 #include <system_error>
 #include <type_traits>
 
-namespace verification
+namespace latcon::verification
 {
 
 namespace
@@ -51,10 +51,10 @@ std::string Range::text() const
 {
   std::string text;
   if (std::isfinite(lower_.value))
-    text = (lower_.included ? ">= " : "> ") + latcon::support::full_precision(lower_.value);
+    text = (lower_.included ? ">= " : "> ") + support::full_precision(lower_.value);
   if (std::isfinite(upper_.value))
     text += (text.empty() ? "" : " and ") + std::string(upper_.included ? "<= " : "< ") +
-            latcon::support::full_precision(upper_.value);
+            support::full_precision(upper_.value);
   return text;
 }
 
@@ -92,7 +92,7 @@ void Parameters::add(const std::string &section, const std::string &name, double
       member = quantity.value;
     return quantity.wrong;
   };
-  entry.write = [&member] { return latcon::support::full_precision(member); };
+  entry.write = [&member] { return support::full_precision(member); };
   declare(std::move(entry));
 }
 
@@ -116,7 +116,7 @@ void Parameters::add(const std::string &section, const std::string &name, std::o
       member = quantity.value;
     return quantity.wrong;
   };
-  entry.write = [&member] { return member ? latcon::support::full_precision(*member) : "auto"; };
+  entry.write = [&member] { return member ? support::full_precision(*member) : "auto"; };
   declare(std::move(entry));
 }
 
@@ -155,7 +155,7 @@ void Parameters::add(const std::string &section, const std::string &name, std::v
     std::vector<std::string> texts;
     texts.reserve(member.size());
     for (const double value : member)
-      texts.push_back(latcon::support::full_precision(value));
+      texts.push_back(support::full_precision(value));
     return comma_separated(texts);
   };
   declare(std::move(entry));
@@ -276,4 +276,4 @@ void Parameters::add(const std::string &section, const std::string &name, std::s
   declare(std::move(entry));
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -11,7 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace verification
+namespace latcon::verification
 {
 
 namespace
@@ -210,7 +210,7 @@ void Parameters::finish()
   std::vector<std::string> problems = problems_;
   if (n_problems_ > problems.size())
     problems.push_back("... and " + std::to_string(n_problems_ - problems.size()) + " more problems");
-  throw latcon::support::InputError(std::move(problems));
+  throw support::InputError(std::move(problems));
 }
 
 bool Parameters::has_section(const std::string &section) const
@@ -318,4 +318,4 @@ std::string Parameters::lines(const std::string &section_left_out) const
   return text;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -27,7 +27,7 @@
 
 #include "verification/output/hdf5_file.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace archive_detail
 {
@@ -328,4 +328,4 @@ private:
   const Hdf5File &file_;
 };
 
-} // namespace verification
+} // namespace latcon::verification

@@ -19,7 +19,7 @@
 #include "verification/output/run_info.h"
 #include "verification/output/sha256.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -127,8 +127,8 @@ Checkpoints::Checkpoints(const Options &options, const Parameters &parameters, c
     last_step_asked_ = best.step;
   }
   else if (!problems.empty())
-    throw latcon::support::InputError(
-      "there is no checkpoint to go on from; to start from the beginning leave out --resume\n" + problems);
+    throw support::InputError("there is no checkpoint to go on from; to start from the beginning leave out --resume\n" +
+                              problems);
   if (first_rank_ && !problems.empty())
     std::fprintf(stderr, "latcon: %s\n", problems.c_str());
 }
@@ -231,10 +231,10 @@ void Checkpoints::save(std::size_t step, double time, const std::function<void(C
     const std::string head = first_words + sha256(std::string_view(bytes).substr(Hdf5Image::user_block)) + "\n";
     bytes.replace(0, head.size(), head);
     std::error_code error;
-    latcon::support::require_in_place(folder_);
+    support::require_in_place(folder_);
     fs::create_directory(folder_, error); // not the folder above: if that was removed, so was the run
     if (error)
-      throw latcon::support::OutputError(folder_.string(), error.message());
+      throw support::OutputError(folder_.string(), error.message());
     write_file((folder_ / name_of(step)).string(), bytes);
     // By now the last one is whole, so that the older ones can go; those of later steps were left by a run that this
     // one has gone back behind.
@@ -257,7 +257,7 @@ void Checkpoints::archive_stale_checkpoints() const
   fs::remove_all(aside, error);
   fs::rename(folder_, aside, error);
   if (error)
-    throw latcon::support::OutputError(aside.string(), error.message());
+    throw support::OutputError(aside.string(), error.message());
 }
 
-} // namespace verification
+} // namespace latcon::verification

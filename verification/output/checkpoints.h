@@ -10,7 +10,7 @@
 #include "support/errors.h"
 #include "verification/output/archive.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 struct Case;
@@ -28,10 +28,10 @@ struct CheckpointPlace
 };
 
 /// A checkpoint whose bytes are those that were written, but whose contents are none that this run can have left.
-class UnusableCheckpoint : public latcon::support::InputError
+class UnusableCheckpoint : public support::InputError
 {
 public:
-  using latcon::support::InputError::InputError;
+  using support::InputError::InputError;
 };
 
 /// Refuses steps done and a time [s] that are not those of the checkpoint, or do not belong together: the time is to be
@@ -104,4 +104,4 @@ private:
   std::size_t last_step_asked_ = 0;
 };
 
-} // namespace verification
+} // namespace latcon::verification

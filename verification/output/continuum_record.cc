@@ -10,14 +10,14 @@
 #include "support/largest_error.h"
 #include "verification/output/output_file.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
 
 double largest(const std::map<dealii::types::boundary_id, dealii::Tensor<1, 2>> &reactions)
 {
-  latcon::support::Extremes sizes;
+  support::Extremes sizes;
   sizes.add(0.);
   for (const auto &[id, force] : reactions)
     sizes.add(force.norm());
@@ -34,7 +34,7 @@ void print_names(std::ostream &out, const std::map<dealii::types::boundary_id, d
 void print(std::ostream &out, const std::map<dealii::types::boundary_id, dealii::Tensor<1, 2>> &reactions)
 {
   for (const auto &[id, force] : reactions)
-    out << "," << latcon::support::full_precision(force[0]) << "," << latcon::support::full_precision(force[1]);
+    out << "," << support::full_precision(force[0]) << "," << support::full_precision(force[1]);
   out << "\n";
 }
 
@@ -112,7 +112,7 @@ void ContinuumRecord::write(const std::string &directory) const
                    for (const double value : {time, ledger.stored, ledger.kinetic, ledger.micro_kinetic,
                                               ledger.dissipated, ledger.work, ledger.imbalance})
                    {
-                     out << separator << latcon::support::full_precision(value);
+                     out << separator << support::full_precision(value);
                      separator = ",";
                    }
                    out << "\n";
@@ -125,8 +125,8 @@ void ContinuumRecord::write(const std::string &directory) const
              {
                out << "load_factor,elastic\n";
                for (const Equilibrium &state : equilibria_)
-                 out << latcon::support::full_precision(state.load_factor) << ","
-                     << latcon::support::full_precision(state.energy) << "\n";
+                 out << support::full_precision(state.load_factor) << "," << support::full_precision(state.energy)
+                     << "\n";
              });
   if (!equilibria_.empty())
     write_file(directory + "/reactions.csv",
@@ -136,7 +136,7 @@ void ContinuumRecord::write(const std::string &directory) const
                  print_names(out, equilibria_.front().reactions);
                  for (const Equilibrium &state : equilibria_)
                  {
-                   out << latcon::support::full_precision(state.load_factor);
+                   out << support::full_precision(state.load_factor);
                    print(out, state.reactions);
                  }
                });
@@ -146,11 +146,9 @@ void ContinuumRecord::write(const std::string &directory) const
                out << "mesh,load_step,iteration,load_factor,residual,tolerance,energy,step_length,linear_iterations\n";
                for (const auto &[mesh, row] : iterations_)
                  out << mesh << "," << row.load_step << "," << row.iteration << ","
-                     << latcon::support::full_precision(row.load_factor) << ","
-                     << latcon::support::full_precision(row.residual) << ","
-                     << latcon::support::full_precision(row.tolerance) << ","
-                     << latcon::support::full_precision(row.energy) << ","
-                     << latcon::support::full_precision(row.step_length) << "," << row.linear_iterations << "\n";
+                     << support::full_precision(row.load_factor) << "," << support::full_precision(row.residual) << ","
+                     << support::full_precision(row.tolerance) << "," << support::full_precision(row.energy) << ","
+                     << support::full_precision(row.step_length) << "," << row.linear_iterations << "\n";
              });
   if (meshes_.size() > 1)
     write_file(directory + "/meshes.csv",
@@ -160,10 +158,10 @@ void ContinuumRecord::write(const std::string &directory) const
                  print_names(out, meshes_.front().reactions);
                  for (const MeshRow &row : meshes_)
                  {
-                   out << row.n_cells << "," << row.n_unknowns << "," << latcon::support::full_precision(row.energy);
+                   out << row.n_cells << "," << row.n_unknowns << "," << support::full_precision(row.energy);
                    print(out, row.reactions);
                  }
                });
 }
 
-} // namespace verification
+} // namespace latcon::verification

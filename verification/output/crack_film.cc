@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <vector>
 
-namespace verification
+namespace latcon::verification
 {
 
 CrackFilm::CrackFilm(const Case &input, lattice::Simulation &simulation, const CrackRecord &record, double seed_tip_X,
@@ -48,7 +48,7 @@ void CrackFilm::check_loaded(double first) const
 {
   std::vector<double> times{0.};
   double next = first;
-  for (const lattice::TipRecord &tip : record_.tip())
+  for (const TipRecord &tip : record_.tip())
     if (tip.X >= next)
     {
       if (tip.t > 0.)
@@ -69,4 +69,4 @@ void CrackFilm::add_frame()
     frames_.add_frame(whole);
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -7,7 +7,7 @@
 #include "verification/output/crack_record.h"
 #include "verification/output/motion_writer.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// Light frames of a crack for animations, evenly spread over the way of its tip. On every rank alike; the first
@@ -21,7 +21,7 @@ public:
             std::filesystem::path directory);
 
   /// Writes the first frame, or, of a run that goes on from a checkpoint, takes back what was written after that.
-  /// Collective. @throws latcon::support::OutputError if a file cannot be written, as the others do
+  /// Collective. @throws support::OutputError if a file cannot be written, as the others do
   void begin(bool resumed);
 
   /// Adds a frame if the tip has come to where the next one is due. Collective.
@@ -49,10 +49,10 @@ private:
 
   lattice::Simulation &simulation_;
   const CrackRecord &record_;
-  lattice::MotionWriter frames_;
+  MotionWriter frames_;
   bool wanted_;
   double pitch_;      // of the tip between frames [m]
   double next_frame_; // X of the tip [m]
 };
 
-} // namespace verification
+} // namespace latcon::verification

@@ -16,7 +16,7 @@
 #include "verification/analysis/fragments.h"
 #include "verification/output/output_file.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -29,7 +29,7 @@ void write_row(std::ostream &out, std::initializer_list<double> values)
   const char *separator = "";
   for (const double value : values)
   {
-    out << separator << latcon::support::full_precision(value);
+    out << separator << support::full_precision(value);
     separator = ",";
   }
 }
@@ -127,7 +127,7 @@ lattice::EnergyBalance CrackRecord::sound_energies()
           << " m/s; the last frame shows the sheet at " << last_sound_.time()
           << " s, when it was sound; a smaller Time/safety factor may help";
   simulation_.show_snapshot(last_sound_);
-  throw latcon::support::SolverError(message.str());
+  throw support::SolverError(message.str());
 }
 
 void CrackRecord::check_loaded() const
@@ -148,7 +148,7 @@ void CrackRecord::check_loaded() const
     require_archived(time >= before && time <= now, "times of `" + what + "` do not grow up to now");
     before = time;
   };
-  for (const lattice::TipRecord &tip : tip_)
+  for (const TipRecord &tip : tip_)
   {
     require_order(tip.t, "tip");
     require_archived(std::abs(tip.X) <= sheet.length() + sheet.spacing(), "`tip` is beyond the sheet");
@@ -167,7 +167,7 @@ void CrackRecord::check_loaded() const
 
 double CrackRecord::largest_imbalance() const
 {
-  latcon::support::LargestError largest;
+  support::LargestError largest;
   for (const EnergyRow &row : energies_)
   {
     const double imbalance = std::abs(row.balance.imbalance());
@@ -177,17 +177,17 @@ double CrackRecord::largest_imbalance() const
   return largest.error();
 }
 
-lattice::CrackMeasurement CrackRecord::measure(double seed_tip_X) const
+CrackMeasurement CrackRecord::measure(double seed_tip_X) const
 {
-  std::vector<lattice::BreakRecord> breaks;
+  std::vector<BreakRecord> breaks;
   for (const lattice::BrokenBond &bond : broken_)
     breaks.push_back({bond.time, bond.midpoint.x(), bond.midpoint.y()});
-  lattice::CrackMeasurementOptions options;
+  CrackMeasurementOptions options;
   options.strip_length = simulation_.lattice().length();
   options.lattice_spacing = simulation_.lattice().spacing();
   options.end_time = simulation_.state().time;
   options.seed_tip_X = seed_tip_X;
-  return lattice::measure_crack(tip_, breaks, options);
+  return measure_crack(tip_, breaks, options);
 }
 
 void CrackRecord::write_tables(const std::filesystem::path &directory) const
@@ -209,7 +209,7 @@ void CrackRecord::write_tables(const std::filesystem::path &directory) const
                const lattice::TriangularLattice &sheet = simulation_.lattice();
                for (const lattice::BrokenBond &bond : broken_)
                {
-                 out << latcon::support::full_precision(bond.time) << ',' << sheet.site_number(bond.near) << ','
+                 out << support::full_precision(bond.time) << ',' << sheet.site_number(bond.near) << ','
                      << sheet.site_number(bond.far) << ',';
                  write_row(out, {bond.midpoint.x(), bond.midpoint.y(), bond.stretch});
                  out << '\n';
@@ -228,17 +228,16 @@ void CrackRecord::write_tables(const std::filesystem::path &directory) const
     });
 }
 
-void CrackRecord::write_measurement(const std::filesystem::path &directory,
-                                    const lattice::CrackMeasurement &measurement, double seed_tip_X,
-                                    double breaking_stretch, bool skip_verification)
+void CrackRecord::write_measurement(const std::filesystem::path &directory, const CrackMeasurement &measurement,
+                                    double seed_tip_X, double breaking_stretch, bool skip_verification)
 {
   const lattice::State &state = simulation_.gather();
   if (!simulation_.band().is_first())
     return;
   nlohmann::ordered_json json;
-  json["pattern"] = lattice::to_string(measurement.pattern);
+  json["pattern"] = to_string(measurement.pattern);
   json["reason"] = measurement.reason;
-  const auto put = [&json](const std::string &name, const std::optional<lattice::Measured> &measured)
+  const auto put = [&json](const std::string &name, const std::optional<Measured> &measured)
   {
     json[name] = measured ? nlohmann::ordered_json(measured->value) : nlohmann::ordered_json(nullptr);
     json[name + "_uncertainty"] =
@@ -253,16 +252,16 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory,
   json["window_begin"] = measurement.X_begin;
   json["window_end"] = measurement.X_end;
   json["branched_fraction"] = measurement.branched_fraction;
-  const auto put_flanks = [&](const std::string &name, double lattice::FlankDamage::*number)
+  const auto put_flanks = [&](const std::string &name, double FlankDamage::*number)
   { json[name] = measurement.flanks ? nlohmann::ordered_json((*measurement.flanks).*number) : nullptr; };
-  put_flanks("flank_damage_depth", &lattice::FlankDamage::depth);
-  put_flanks("flank_damage_share", &lattice::FlankDamage::share);
+  put_flanks("flank_damage_depth", &FlankDamage::depth);
+  put_flanks("flank_damage_share", &FlankDamage::share);
   json["bonds_broken"] = simulation_.n_broken();
-  const lattice::Fragments fragments = lattice::find_fragments(state, simulation_.lattice());
+  const Fragments fragments = find_fragments(state, simulation_.lattice());
   json["detached_sites"] = std::accumulate(fragments.sizes.begin(), fragments.sizes.end(), std::size_t{0});
   json["detached_fragments"] = fragments.sizes.size();
   json["largest_fragment"] = fragments.sizes.empty() ? 0 : fragments.sizes.front();
-  json["overstretched_bonds"] = lattice::n_overstretched_bonds(state, simulation_.lattice(), breaking_stretch);
+  json["overstretched_bonds"] = n_overstretched_bonds(state, simulation_.lattice(), breaking_stretch);
   if (const auto bond = lattice::nearest_to_breaking(state, simulation_.lattice()))
   {
     const lattice::TriangularLattice &sheet = simulation_.lattice();
@@ -274,7 +273,7 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory,
                                    {"stretch", bond->stretch},
                                    {"limit", bond->limit}};
   }
-  json["bridged_length"] = lattice::bridged_length(state, simulation_.lattice(), seed_tip_X, tip_X());
+  json["bridged_length"] = bridged_length(state, simulation_.lattice(), seed_tip_X, tip_X());
   json["end_time"] = state.time;
   json["energy_imbalance"] = largest_imbalance();
   json["skip_verification"] = skip_verification;
@@ -282,4 +281,4 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory,
   write_file(directory / "crack.json", json.dump(2) + "\n");
 }
 
-} // namespace verification
+} // namespace latcon::verification

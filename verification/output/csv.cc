@@ -4,7 +4,7 @@
 
 #include "support/full_precision.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 std::string csv_field(const std::string &text)
@@ -42,7 +42,7 @@ std::string Table::csv() const
   for (const std::vector<Cell> &row : rows_)
   {
     for (const Cell &cell : row)
-      text += (std::holds_alternative<double>(cell) ? latcon::support::full_precision(std::get<double>(cell))
+      text += (std::holds_alternative<double>(cell) ? support::full_precision(std::get<double>(cell))
                                                     : csv_field(std::get<std::string>(cell))) +
               ',';
     end_line();
@@ -50,4 +50,4 @@ std::string Table::csv() const
   return text;
 }
 
-} // namespace verification
+} // namespace latcon::verification

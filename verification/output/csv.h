@@ -5,7 +5,7 @@
 #include <variant>
 #include <vector>
 
-namespace verification
+namespace latcon::verification
 {
 
 /// A field that holds `text`: quoted where commas, quotes or line breaks ask for it.
@@ -36,4 +36,4 @@ private:
   std::vector<std::vector<Cell>> rows_;
 };
 
-} // namespace verification
+} // namespace latcon::verification

@@ -19,7 +19,7 @@
 #include "verification/analysis/fragments.h"
 #include "verification/output/field_units.h"
 
-namespace lattice
+namespace latcon::verification
 {
 namespace
 {
@@ -47,13 +47,13 @@ void set_tensor(vtkDoubleArray &values, vtkIdType id, const Eigen::Matrix2d &t)
 
 } // namespace
 
-FieldWriter::FieldWriter(const TriangularLattice &lattice, const Material &material, std::filesystem::path directory,
-                         std::string name)
+FieldWriter::FieldWriter(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                         std::filesystem::path directory, std::string name)
   : lattice_(lattice), material_(material), series_(std::move(directory), std::move(name))
 {
 }
 
-void FieldWriter::add_frame(const State &state)
+void FieldWriter::add_frame(const lattice::State &state)
 {
   std::vector<std::size_t> places; // of the points, in their order
   std::vector<vtkIdType> point_of_place(lattice_.n_places(), -1);
@@ -68,7 +68,7 @@ void FieldWriter::add_frame(const State &state)
     }
   const auto n_points = static_cast<vtkIdType>(places.size());
 
-  const SiteFields fields = site_fields(state, lattice_, material_);
+  const lattice::SiteFields fields = site_fields(state, lattice_, material_);
   vtkNew<vtkPoints> points;
   points->SetDataTypeToDouble();
   points->SetNumberOfPoints(n_points);
@@ -80,7 +80,7 @@ void FieldWriter::add_frame(const State &state)
   const auto cauchy_stress = array("cauchy_stress", 9, n_points);
   const auto strain_gradient_x = array("strain_gradient_x", 9, n_points);
   const auto strain_gradient_y = array("strain_gradient_y", 9, n_points);
-  StrainGradientFit gradient_fit(lattice_);
+  lattice::StrainGradientFit gradient_fit(lattice_);
   const Eigen::Matrix2d unknown = Eigen::Matrix2d::Constant(std::numeric_limits<double>::quiet_NaN());
   const auto strain_energy_density = array("strain_energy_density", 1, n_points);
   const auto damage = array("damage", 1, n_points);
@@ -105,7 +105,7 @@ void FieldWriter::add_frame(const State &state)
     set_tensor(*deformation_gradient, id, fields.deformation_gradient[place]);
     set_tensor(*first_piola_stress, id, fields.first_piola_stress[place]);
     set_tensor(*cauchy_stress, id, fields.cauchy_stress[place]);
-    const std::optional<StrainGradient> gradient = gradient_fit.at(state, place);
+    const std::optional<lattice::StrainGradient> gradient = gradient_fit.at(state, place);
     set_tensor(*strain_gradient_x, id, gradient ? gradient->x : unknown);
     set_tensor(*strain_gradient_y, id, gradient ? gradient->y : unknown);
     strain_energy_density->SetValue(id, fields.strain_energy_density[place]);
@@ -143,7 +143,7 @@ void FieldWriter::add_frame(const State &state)
                     bond_stretch->SetValue(end, bond_stretch->GetValue(end) + value);
                     ++bonds_of_point[static_cast<std::size_t>(end)];
                   }
-                  shell->InsertNextValue(TriangularLattice::is_nearest(kind) ? 1 : 2);
+                  shell->InsertNextValue(lattice::TriangularLattice::is_nearest(kind) ? 1 : 2);
                   toughened->InsertNextValue(state.bonds.toughened(near, kind) ? 1 : 0);
                 });
 
@@ -179,4 +179,4 @@ void FieldWriter::add_frame(const State &state)
   series_.add(*sheet, state.time);
 }
 
-} // namespace lattice
+} // namespace latcon::verification

@@ -3,7 +3,7 @@
 #include "lattice/state.h"
 #include "verification/output/frame_series.h"
 
-namespace lattice
+namespace latcon::verification
 {
 
 /// Writes frames of a lattice for ParaView: `NAME.pvd` and a file `NAME-NNNN.vtp` per frame, in one directory.
@@ -21,12 +21,12 @@ class FieldWriter
 {
 public:
   /// The lattice must outlive this object.
-  FieldWriter(const TriangularLattice &lattice, const Material &material, std::filesystem::path directory,
-              std::string name = "lattice");
+  FieldWriter(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+              std::filesystem::path directory, std::string name = "lattice");
 
   /// Adds the state as the next frame, in the place of the last one if that is of the same time. @throws
-  /// latcon::support::OutputError if a file cannot be written
-  void add_frame(const State &state);
+  /// support::OutputError if a file cannot be written
+  void add_frame(const lattice::State &state);
 
   std::size_t n_frames() const { return series_.n_frames(); }
 
@@ -37,13 +37,13 @@ public:
     series_.archive(archive);
   }
 
-  /// Writes `NAME.pvd`, so that it names the frames there are. @throws latcon::support::OutputError
+  /// Writes `NAME.pvd`, so that it names the frames there are. @throws support::OutputError
   void write_collection() const { series_.write_collection(); }
 
 private:
-  const TriangularLattice &lattice_;
-  Material material_;
+  const lattice::TriangularLattice &lattice_;
+  lattice::Material material_;
   FrameSeries series_;
 };
 
-} // namespace lattice
+} // namespace latcon::verification

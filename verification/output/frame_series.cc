@@ -13,7 +13,7 @@
 #include "verification/output/field_units.h"
 #include "verification/output/vtk_file.h"
 
-namespace lattice
+namespace latcon::verification
 {
 namespace
 {
@@ -66,7 +66,7 @@ void FrameSeries::write_collection() const
     text +=
       "    <DataSet timestep=\"" + shortest(times_[frame]) + "\" part=\"0\" file=\"" + file_name(frame) + "\"/>\n";
   text += "  </Collection>\n</VTKFile>\n";
-  latcon::support::write_atomically(directory_ / (name_ + ".pvd"), text, latcon::support::Sync::no);
+  support::write_atomically(directory_ / (name_ + ".pvd"), text, support::Sync::no);
 }
 
-} // namespace lattice
+} // namespace latcon::verification

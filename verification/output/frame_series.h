@@ -11,7 +11,7 @@
 
 class vtkPolyData;
 
-namespace lattice
+namespace latcon::verification
 {
 
 /// Frames of one sheet over time, for ParaView: `NAME.pvd` and a file `NAME-NNNN.vtp` a frame, in one directory. Every
@@ -22,10 +22,10 @@ public:
   FrameSeries(std::filesystem::path directory, std::string name);
 
   /// Adds a frame, in the place of the last one if that is of the same time, and notes the time in it (TimeValue).
-  /// @param time [s] @throws latcon::support::OutputError if a file cannot be written
+  /// @param time [s] @throws support::OutputError if a file cannot be written
   void add(vtkPolyData &frame, double time);
 
-  /// Writes `NAME.pvd`, so that it names the frames there are. @throws latcon::support::OutputError
+  /// Writes `NAME.pvd`, so that it names the frames there are. @throws support::OutputError
   void write_collection() const;
 
   std::size_t n_frames() const { return times_.size(); }
@@ -39,9 +39,10 @@ public:
   {
     archive("times", times_);
     if constexpr (Archive::loads)
-      require_archived(std::adjacent_find(times_.begin(), times_.end(), std::greater_equal<>()) == times_.end() &&
-                         (times_.empty() || times_.front() >= 0.),
-                       "`times` of frames do not grow from 0 on");
+      lattice::require_archived(std::adjacent_find(times_.begin(), times_.end(), std::greater_equal<>()) ==
+                                    times_.end() &&
+                                  (times_.empty() || times_.front() >= 0.),
+                                "`times` of frames do not grow from 0 on");
   }
 
 private:
@@ -52,4 +53,4 @@ private:
   std::vector<double> times_; // of the frames [s]
 };
 
-} // namespace lattice
+} // namespace latcon::verification

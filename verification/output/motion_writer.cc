@@ -9,15 +9,15 @@
 
 #include "verification/output/field_units.h"
 
-namespace lattice
+namespace latcon::verification
 {
 
-MotionWriter::MotionWriter(const TriangularLattice &lattice, std::filesystem::path directory)
+MotionWriter::MotionWriter(const lattice::TriangularLattice &lattice, std::filesystem::path directory)
   : lattice_(lattice), series_(std::move(directory), "motion")
 {
 }
 
-void MotionWriter::add_frame(const State &state)
+void MotionWriter::add_frame(const lattice::State &state)
 {
   vtkNew<vtkPoints> points; // of single precision
   vtkNew<vtkCellArray> vertices;
@@ -52,4 +52,4 @@ void MotionWriter::add_frame(const State &state)
   series_.add(*sheet, state.time);
 }
 
-} // namespace lattice
+} // namespace latcon::verification

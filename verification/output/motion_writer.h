@@ -3,7 +3,7 @@
 #include "lattice/state.h"
 #include "verification/output/frame_series.h"
 
-namespace lattice
+namespace latcon::verification
 {
 
 /// Writes where the sites are and how they move, and nothing else: frames of a tenth of the size of FieldWriter's, for
@@ -15,13 +15,13 @@ class MotionWriter
 {
 public:
   /// The lattice must outlive this object.
-  MotionWriter(const TriangularLattice &lattice, std::filesystem::path directory);
+  MotionWriter(const lattice::TriangularLattice &lattice, std::filesystem::path directory);
 
   /// Adds the state as the next frame, in the place of the last one if that is of the same time. @throws
-  /// latcon::support::OutputError if a file cannot be written
-  void add_frame(const State &state);
+  /// support::OutputError if a file cannot be written
+  void add_frame(const lattice::State &state);
 
-  /// Writes `motion.pvd`, so that it names the frames there are. @throws latcon::support::OutputError
+  /// Writes `motion.pvd`, so that it names the frames there are. @throws support::OutputError
   void write_collection() const { series_.write_collection(); }
 
   /// Of the frames, in their order [s].
@@ -35,8 +35,8 @@ public:
   }
 
 private:
-  const TriangularLattice &lattice_;
+  const lattice::TriangularLattice &lattice_;
   FrameSeries series_;
 };
 
-} // namespace lattice
+} // namespace latcon::verification

@@ -10,7 +10,7 @@
 #include "verification/analysis/near_tip_measurement.h"
 #include "verification/input/case.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// Speeds of long waves along x in the loaded sheet, dashpots left out (theory-comparison.md, eq. (W.2)).
@@ -45,8 +45,8 @@ public:
 
   /// Writes near_tip.json and, if there are samples, near_tip.vti and near_tip_folded.vti; nothing if no samples were
   /// asked for. To be called once, at the end, on the first rank. @throws OutputError,
-  /// latcon::support::OutputError
-  void write(const std::filesystem::path &directory, const lattice::CrackMeasurement &crack);
+  /// support::OutputError
+  void write(const std::filesystem::path &directory, const CrackMeasurement &crack);
 
   /// Saves or loads what the samples said; see lattice::Simulation. The first rank's is the whole.
   /// @throws std::invalid_argument if it is not of as many samples as were taken
@@ -83,8 +83,8 @@ private:
     Sum asymmetry, negative_zone_depth, wedge_angle;
     // Of each sample; which of them count is known at the end, with the speed of the crack.
     std::vector<std::vector<double>> vortices;         ///< their speeds [m/s]
-    std::vector<std::vector<double>> backward_speeds;  ///< see lattice::backward_speeds()
-    std::vector<std::vector<double>> following_speeds; ///< see lattice::speeds_behind_tip()
+    std::vector<std::vector<double>> backward_speeds;  ///< see backward_speeds()
+    std::vector<std::vector<double>> following_speeds; ///< see speeds_behind_tip()
 
     template <class Archive>
     void archive(Archive &archive)
@@ -98,7 +98,7 @@ private:
     }
   };
   void check_loaded() const;
-  std::string measurements(const lattice::CrackMeasurement &crack) const;
+  std::string measurements(const CrackMeasurement &crack) const;
 
   lattice::Simulation &simulation_;
   double interval_;       // [s], 0: no samples
@@ -107,8 +107,8 @@ private:
   double far_opening_stress_; // Cauchy sigma_yy of the loaded sheet [Pa]
   WaveSpeeds waves_;
   double X_begin_, X_end_;
-  lattice::NearTipSampler sampler_;
-  std::array<Block, lattice::NearTipSampler::n_blocks> blocks_;
+  NearTipSampler sampler_;
+  std::array<Block, NearTipSampler::n_blocks> blocks_;
 };
 
-} // namespace verification
+} // namespace latcon::verification

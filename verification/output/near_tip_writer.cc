@@ -12,7 +12,7 @@
 #include "verification/output/field_units.h"
 #include "verification/output/vtk_file.h"
 
-namespace lattice
+namespace latcon::verification
 {
 namespace
 {
@@ -38,7 +38,7 @@ void add(vtkImageData &image, const char *name, const std::vector<Eigen::Vector2
       { array.SetTuple3(id, vectors[point].x(), vectors[point].y(), 0.); });
 }
 
-void add(vtkImageData &image, const char *name, const TensorField &tensors)
+void add(vtkImageData &image, const char *name, const lattice::TensorField &tensors)
 {
   add(image, name, 9, tensors.size(),
       [&](vtkDoubleArray &array, vtkIdType id, std::size_t point)
@@ -77,4 +77,4 @@ void write_near_tip_field(const NearTipField &field, const std::filesystem::path
   write_vtk_file(*writer, path);
 }
 
-} // namespace lattice
+} // namespace latcon::verification

@@ -4,7 +4,7 @@
 
 #include "verification/analysis/near_tip_fields.h"
 
-namespace lattice
+namespace latcon::verification
 {
 
 /// Writes the means around a tip as an image for ParaView (.vti), beside `path` and renamed.
@@ -13,7 +13,7 @@ namespace lattice
 /// current one. Arrays, units and index order are those of FieldWriter, and: excess_displacement [m],
 /// strain_gradient_x, strain_gradient_y [1/m], occupancy [-]; not-a-number where there was no site. The field data
 /// array Samples holds the number of samples.
-/// @throws latcon::support::OutputError if the file cannot be written
+/// @throws support::OutputError if the file cannot be written
 void write_near_tip_field(const NearTipField &field, const std::filesystem::path &path);
 
-} // namespace lattice
+} // namespace latcon::verification

@@ -7,13 +7,13 @@
 #include "support/errors.h"
 #include "verification/output/output_list.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 void write_file(const std::string &path, const std::string &text)
 {
   list_output(path);
-  latcon::support::write_atomically(path, text, latcon::support::Sync::yes);
+  support::write_atomically(path, text, support::Sync::yes);
 }
 
 void write_file(const std::string &path, const std::function<void(std::ostream &)> &writer)
@@ -21,8 +21,8 @@ void write_file(const std::string &path, const std::function<void(std::ostream &
   std::ostringstream text;
   writer(text);
   if (!text)
-    throw latcon::support::OutputError(path, "its content could not be formatted");
+    throw support::OutputError(path, "its content could not be formatted");
   write_file(path, text.str());
 }
 
-} // namespace verification
+} // namespace latcon::verification

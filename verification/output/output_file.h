@@ -5,10 +5,10 @@
 #include <iosfwd>
 #include <string>
 
-namespace verification
+namespace latcon::verification
 {
 
-/// Replaces the file `path` by `text`, forced to the disk; see latcon::support::AtomicFile. The file is listed in its
+/// Replaces the file `path` by `text`, forced to the disk; see support::AtomicFile. The file is listed in its
 /// folder first (output_list.h).
 /// @throws OutputError naming `path` and the system's reason; the old file is untouched.
 void write_file(const std::string &path, const std::string &text);
@@ -19,4 +19,4 @@ void write_file(const std::string &path, const std::string &text);
 /// @throws OutputError as above, and if `writer` leaves the stream in a failed state.
 void write_file(const std::string &path, const std::function<void(std::ostream &)> &writer);
 
-} // namespace verification
+} // namespace latcon::verification

@@ -10,7 +10,7 @@
 #include "support/atomic_file.h"
 #include "support/errors.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -42,7 +42,7 @@ void write_names(const fs::path &folder, const Names &names)
   std::string text;
   for (const std::string &name : names)
     text += name + "\n";
-  latcon::support::write_atomically(folder / output_list_name, text, latcon::support::Sync::yes);
+  support::write_atomically(folder / output_list_name, text, support::Sync::yes);
 }
 
 bool fits(const std::string &file, const std::string &name)
@@ -139,9 +139,9 @@ fs::path set_earlier_output_aside(const fs::path &folder, const fs::path &keep)
   }
   catch (const fs::filesystem_error &error)
   {
-    throw latcon::support::OutputError(folder.string(),
-                                       std::string("the files of the run before cannot be moved: ") + error.what());
+    throw support::OutputError(folder.string(),
+                               std::string("the files of the run before cannot be moved: ") + error.what());
   }
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -5,7 +5,7 @@
 
 #include <unistd.h>
 
-namespace verification
+namespace latcon::verification
 {
 
 Progress::Progress(bool wanted, std::chrono::milliseconds log_interval)
@@ -39,4 +39,4 @@ void Progress::show(const std::string &text, double fraction_done)
   std::fflush(stderr);
 }
 
-} // namespace verification
+} // namespace latcon::verification

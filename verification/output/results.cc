@@ -18,7 +18,7 @@
 #include <ostream>
 #include <system_error>
 
-namespace verification
+namespace latcon::verification
 {
 
 namespace
@@ -32,13 +32,13 @@ nlohmann::ordered_json json_of(const Value &value)
     return nullptr;
   // JSON knows no such numbers, and null would say that there is no value.
   if (!std::isfinite(*value))
-    return latcon::support::full_precision(*value);
+    return support::full_precision(*value);
   return *value;
 }
 
 std::string csv_of(const Value &value)
 {
-  return value ? latcon::support::full_precision(*value) : "";
+  return value ? support::full_precision(*value) : "";
 }
 
 std::string table_number(const Value &value, const int digits)
@@ -99,7 +99,7 @@ bool Results::attempt(const std::string &claim, const std::string &quantity, con
     compute();
     return true;
   }
-  catch (const latcon::support::Error &)
+  catch (const support::Error &)
   {
     throw;
   }
@@ -213,7 +213,7 @@ void Results::print(std::ostream &out) const
   std::array<std::size_t, n_columns> width{};
   for (const Cells &cells : table)
     for (std::size_t i = 0; i < n_columns; ++i)
-      width[i] = std::max(width[i], latcon::support::width_of(cells[i]));
+      width[i] = std::max(width[i], support::width_of(cells[i]));
   // Numbers are never cut, so the words share what is left: the claim has a fixed limit, the quantity takes the rest.
   width[0] = std::min<std::size_t>(width[0], 20);
   std::size_t others = 0;
@@ -223,7 +223,7 @@ void Results::print(std::ostream &out) const
 
   const auto padded = [](const std::string &text, const std::size_t columns, const bool right)
   {
-    const std::string fill(columns - std::min(columns, latcon::support::width_of(text)), ' ');
+    const std::string fill(columns - std::min(columns, support::width_of(text)), ' ');
     return right ? fill + text : text + fill;
   };
   for (std::size_t r = 0; r < table.size(); ++r)
@@ -232,7 +232,7 @@ void Results::print(std::ostream &out) const
     std::size_t n_lines = 1;
     for (std::size_t i = 0; i < n_words; ++i)
     {
-      words[i] = latcon::support::wrapped(table[r][i], width[i]);
+      words[i] = support::wrapped(table[r][i], width[i]);
       n_lines = std::max(n_lines, words[i].size());
     }
     for (std::size_t l = 0; l < n_lines; ++l)
@@ -259,4 +259,4 @@ void Results::print(std::ostream &out) const
   }
 }
 
-} // namespace verification
+} // namespace latcon::verification

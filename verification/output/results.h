@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace verification
+namespace latcon::verification
 {
 
 /// Outcome of one checked quantity.
@@ -93,4 +93,4 @@ private:
   std::vector<Result> rows_;
 };
 
-} // namespace verification
+} // namespace latcon::verification

@@ -23,7 +23,7 @@
 #include <sys/resource.h>
 #include <thread>
 
-namespace verification
+namespace latcon::verification
 {
 
 namespace
@@ -71,7 +71,7 @@ std::string dotted(const int major, const int minor, const int third)
 // JSON has no number for what is not finite.
 Json number(const double value)
 {
-  return std::isfinite(value) ? Json(value) : Json(latcon::support::full_precision(value));
+  return std::isfinite(value) ? Json(value) : Json(support::full_precision(value));
 }
 
 Json json_of(const RunInfo::Scalar &value)
@@ -82,8 +82,8 @@ Json json_of(const RunInfo::Scalar &value)
 }
 
 Json common_facts(const std::vector<std::string> &command_line, const int n_threads, const int n_ranks,
-                  const Stopwatch &stopwatch, const double total,
-                  const std::optional<latcon::support::ExitCode> exit_code, const std::string &verdict)
+                  const Stopwatch &stopwatch, const double total, const std::optional<support::ExitCode> exit_code,
+                  const std::string &verdict)
 {
   Json document;
   document["program"] = "latcon";
@@ -230,7 +230,7 @@ void RunInfo::add_value(const std::string &key, Value value)
     found->second = std::move(value);
 }
 
-std::string RunInfo::json(const std::optional<latcon::support::ExitCode> exit_code, const std::string &verdict) const
+std::string RunInfo::json(const std::optional<support::ExitCode> exit_code, const std::string &verdict) const
 {
   const std::chrono::duration<double> total = std::chrono::steady_clock::now() - start_;
   Json document = common_facts(command_line_, n_threads_, n_ranks_, stopwatch_, total.count(), exit_code, verdict);
@@ -248,10 +248,10 @@ std::string RunInfo::json(const std::optional<latcon::support::ExitCode> exit_co
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
-void RunInfo::write(const std::string &path, const std::optional<latcon::support::ExitCode> exit_code,
+void RunInfo::write(const std::string &path, const std::optional<support::ExitCode> exit_code,
                     const std::string &verdict) const
 {
   write_file(path, json(exit_code, verdict));
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-namespace verification
+namespace latcon::verification
 {
 
 /// Wall time spent in named phases. A phase may be entered again: its times add up. Phases may overlap. Threads may
@@ -97,11 +97,10 @@ public:
   /// @param exit_code what the run ended with; empty while it is under way (null in the file)
   /// @param verdict   verdict on the claims, if any were checked
   /// @return JSON with a line break at its end; wall times [s], memory [byte] of the calling process.
-  [[nodiscard]] std::string json(std::optional<latcon::support::ExitCode> exit_code,
-                                 const std::string &verdict = "") const;
+  [[nodiscard]] std::string json(std::optional<support::ExitCode> exit_code, const std::string &verdict = "") const;
 
   /// Writes json() to `path`; of several ranks, one should call it. @throws OutputError
-  void write(const std::string &path, std::optional<latcon::support::ExitCode> exit_code,
+  void write(const std::string &path, std::optional<support::ExitCode> exit_code,
              const std::string &verdict = "") const;
 
 private:
@@ -116,4 +115,4 @@ private:
   std::vector<std::pair<std::string, Value>> facts_;
 };
 
-} // namespace verification
+} // namespace latcon::verification

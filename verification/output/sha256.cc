@@ -8,7 +8,7 @@
 
 #include <openssl/evp.h>
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -73,4 +73,4 @@ std::string sha256_of_file(const std::filesystem::path &path, std::size_t skippe
   return in.eof() ? digest.text() : "";
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -8,7 +8,7 @@
 
 #include "support/atomic_file.h"
 
-namespace lattice
+namespace latcon::verification
 {
 namespace
 {
@@ -26,14 +26,14 @@ std::string reason(unsigned long code)
 
 void write_vtk_file(vtkXMLWriter &writer, const std::filesystem::path &path)
 {
-  latcon::support::AtomicFile file(path);
+  support::AtomicFile file(path);
   writer.SetFileName(file.name().c_str());
   writer.SetDataModeToAppended();
   writer.EncodeAppendedDataOff();
   writer.SetCompressorTypeToZLib();
   if (writer.Write() != 1 || writer.GetErrorCode() != 0)
-    throw latcon::support::OutputError(path, reason(writer.GetErrorCode()));
-  file.commit(latcon::support::Sync::no);
+    throw support::OutputError(path, reason(writer.GetErrorCode()));
+  file.commit(support::Sync::no);
 }
 
-} // namespace lattice
+} // namespace latcon::verification

@@ -4,11 +4,11 @@
 
 class vtkXMLWriter;
 
-namespace lattice
+namespace latcon::verification
 {
 
 /// Writes the input of a VTK writer as compressed, appended binary data, whole at any moment.
-/// @throws latcon::support::OutputError
+/// @throws support::OutputError
 void write_vtk_file(vtkXMLWriter &writer, const std::filesystem::path &path);
 
-} // namespace lattice
+} // namespace latcon::verification

@@ -18,7 +18,7 @@
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/output/near_tip_record.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -93,8 +93,7 @@ struct OnMachine
 OnMachine on_machine(const MemoryNeed &need)
 {
   const double ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
-  std::array<double, 2> sums{latcon::support::held_memory(),
-                             need.shared / ranks + (is_first_rank() ? need.first_rank : 0.)};
+  std::array<double, 2> sums{support::held_memory(), need.shared / ranks + (is_first_rank() ? need.first_rank : 0.)};
   MPI_Comm machine = MPI_COMM_NULL;
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), 2, MPI_DOUBLE, MPI_SUM, machine);
@@ -208,7 +207,7 @@ ContinuumSize continuum_size(const Case &input)
     std::ostringstream text;
     text << "the finite element mesh would have about " << size.final_unknowns
          << " unknowns, and no more than 2147483647 can be numbered; give fewer cells, refinements or adaptive cycles";
-    throw latcon::support::InputError(text.str());
+    throw support::InputError(text.str());
   }
   return size;
 }
@@ -232,7 +231,7 @@ MemoryNeed continuum_memory(const Case &input, const ContinuumSize &size)
 void require_memory(const MemoryNeed &need)
 {
   const OnMachine machine = on_machine(need);
-  const double available = latcon::support::available_memory();
+  const double available = support::available_memory();
   // All ranks say the same, that of the machine that is worst off.
   const int rank = static_cast<int>(dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD));
   struct
@@ -248,10 +247,10 @@ void require_memory(const MemoryNeed &need)
   std::ostringstream text;
   text.precision(0);
   text << std::fixed << "refused for want of memory: the run would take about " << numbers[0] << " bytes ("
-       << latcon::support::readable_bytes(numbers[0]) << ") more than latcon has now, and this machine has "
-       << numbers[1] << " bytes (" << latcon::support::readable_bytes(numbers[1])
+       << support::readable_bytes(numbers[0]) << ") more than latcon has now, and this machine has " << numbers[1]
+       << " bytes (" << support::readable_bytes(numbers[1])
        << ") available; make the sheet smaller or coarser, or share it among more machines";
-  throw latcon::support::InputError(text.str());
+  throw support::InputError(text.str());
 }
 
 std::string memory_text(const MemoryNeed &need)
@@ -260,8 +259,8 @@ std::string memory_text(const MemoryNeed &need)
   std::ostringstream text;
   text.precision(0);
   text << std::fixed << "# memory: about " << machine.held + machine.needed << " bytes ("
-       << latcon::support::readable_bytes(machine.held + machine.needed) << ") at the peak, of which latcon itself "
-       << machine.held << " bytes; available are " << latcon::support::available_memory() << " bytes\n";
+       << support::readable_bytes(machine.held + machine.needed) << ") at the peak, of which latcon itself "
+       << machine.held << " bytes; available are " << support::available_memory() << " bytes\n";
   return text.str();
 }
 
@@ -353,4 +352,4 @@ void check_steps(const Case &input, const double step, Parameters &parameters)
   parameters.error("Time/end", text.str());
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -7,7 +7,7 @@
 
 #include "verification/input/case.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// What is computed with a lattice.
@@ -81,4 +81,4 @@ inline constexpr double seconds_of_claims = 8., seconds_of_report = 9.; ///< see
 /// Reports `Time/end` if a motion would have more steps than can be counted. @param step [s], > 0
 void check_steps(const Case &input, double step, Parameters &parameters);
 
-} // namespace verification
+} // namespace latcon::verification

@@ -12,7 +12,7 @@
 
 extern char **environ;
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -26,7 +26,7 @@ std::vector<std::string> environment_of_children()
   for (char **variable = environ; *variable != nullptr; ++variable)
   {
     const std::string text = *variable;
-    if (text.rfind("OMPI_", 0) != 0 && text.rfind("PMIX_", 0) != 0 && !latcon::support::is_launcher_variable(text))
+    if (text.rfind("OMPI_", 0) != 0 && text.rfind("PMIX_", 0) != 0 && !support::is_launcher_variable(text))
       kept.push_back(text);
   }
   return kept;
@@ -53,8 +53,7 @@ public:
     {
       if (std::chrono::steady_clock::now() > last_moment)
         tell(SIGKILL);
-      erase(std::remove_if(begin(), end(),
-                           [](const Child &child) { return latcon::support::poll_child(child.process) >= 0; }),
+      erase(std::remove_if(begin(), end(), [](const Child &child) { return support::poll_child(child.process) >= 0; }),
             end());
       std::this_thread::sleep_for(poll_interval);
     }
@@ -81,7 +80,7 @@ bool run_processes(const ProcessPool &pool)
     for (; next < pool.n_jobs && running.size() < pool.limit; ++next)
     {
       const ProcessPool::Job job = pool.start(next);
-      running.push_back({next, latcon::support::start_child({job.command, environment_of_children(), job.log})});
+      running.push_back({next, support::start_child({job.command, environment_of_children(), job.log})});
     }
     std::vector<std::size_t> jobs;
     for (const Child &child : running)
@@ -90,7 +89,7 @@ bool run_processes(const ProcessPool &pool)
     std::this_thread::sleep_for(poll_interval);
     for (auto child = running.begin(); child != running.end();)
     {
-      const int status = latcon::support::poll_child(child->process);
+      const int status = support::poll_child(child->process);
       if (status < 0)
       {
         ++child;
@@ -107,4 +106,4 @@ bool run_processes(const ProcessPool &pool)
   return true;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace verification
+namespace latcon::verification
 {
 
 /// Number that a study records of each run.
@@ -44,4 +44,4 @@ using Values = std::map<std::string, double>;
 /// Adds what follows from a run's numbers and its lattice spacing d [m].
 void add_derived(Values &values, double spacing);
 
-} // namespace verification
+} // namespace latcon::verification

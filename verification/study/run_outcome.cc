@@ -10,7 +10,7 @@
 #include "verification/input/case_text.h"
 #include "verification/output/run_info.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -92,8 +92,8 @@ RunOutcome read_outcome(const PlannedRun &run, const std::string &folder, const 
   outcome.exit_code = exit_code.value_or(value_or(info, "exit_code", -1));
   outcome.wall_time = value_or(info, "wall_time_total_s", 0.);
   const Json crack = object_in(folder + "/crack.json");
-  const bool ended = outcome.exit_code == static_cast<int>(latcon::support::ExitCode::done) ||
-                     outcome.exit_code == static_cast<int>(latcon::support::ExitCode::claim_failed);
+  const bool ended = outcome.exit_code == static_cast<int>(support::ExitCode::done) ||
+                     outcome.exit_code == static_cast<int>(support::ExitCode::claim_failed);
   outcome.pattern = value_or(crack, "pattern", std::string());
   // A crack that differs from its published values ends with the same exit code as a refused one, but was measured.
   if (ended && !outcome.pattern.empty())
@@ -106,8 +106,8 @@ RunOutcome read_outcome(const PlannedRun &run, const std::string &folder, const 
     return outcome;
   }
   outcome.pattern.clear();
-  outcome.state = outcome.exit_code == static_cast<int>(latcon::support::ExitCode::claim_failed) ? RunState::refused
-                                                                                                 : RunState::failed;
+  outcome.state =
+    outcome.exit_code == static_cast<int>(support::ExitCode::claim_failed) ? RunState::refused : RunState::failed;
   outcome.problem = last_words(content(folder + "/log.txt"));
   return outcome;
 }
@@ -125,4 +125,4 @@ bool is_finished(const PlannedRun &run, const std::string &folder, const bool sk
   return is_begun(run, folder, skip_verification) && read_outcome(run, folder).state == RunState::measured;
 }
 
-} // namespace verification
+} // namespace latcon::verification

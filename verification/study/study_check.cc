@@ -6,7 +6,7 @@
 #include "support/one_thread.h"
 #include "verification/claims/steady_crack/steady_crack_study.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 const std::vector<StudyCheck> &study_checks()
@@ -27,10 +27,10 @@ CheckResult run_check(const std::string &name, const bool quick, const std::stri
                                   [&name](const StudyCheck &known) { return known.name == name; });
   if (check == study_checks().end())
     throw std::logic_error("study: '" + name + "' is no check");
-  const latcon::support::OneThread one_thread;
+  const support::OneThread one_thread;
   const ClaimOutcome outcome = check->run(quick);
   outcome.write_tables(folder);
   return {check->name, check->about, outcome.results};
 }
 
-} // namespace verification
+} // namespace latcon::verification

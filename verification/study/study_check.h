@@ -6,7 +6,7 @@
 
 #include "verification/claims/claim_outcome.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// A check that a study file can ask for.
@@ -32,4 +32,4 @@ struct CheckResult
 /// @throws std::logic_error for a name that is none; OutputError
 [[nodiscard]] CheckResult run_check(const std::string &name, bool quick, const std::string &folder);
 
-} // namespace verification
+} // namespace latcon::verification

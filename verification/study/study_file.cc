@@ -16,7 +16,7 @@
 #include "verification/study/study_check.h"
 #include "verification/study/study_json.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -92,7 +92,7 @@ public:
       for (const JsonPlace &place : top.at("pictures").list())
         study_.pictures.push_back(known_run(place));
     if (!problems_.empty())
-      throw latcon::support::InputError(problems_);
+      throw support::InputError(problems_);
     return std::move(study_);
   }
 
@@ -398,9 +398,9 @@ Study read_study_file(const std::string &path, const bool quick)
 {
   const InputFile file = read_input_file(path);
   if (!file.problem.empty())
-    throw latcon::support::InputError(printable(path) + ": cannot read the study: " + file.problem + "; give a " +
-                                      study_choices());
+    throw support::InputError(printable(path) + ": cannot read the study: " + file.problem + "; give a " +
+                              study_choices());
   return read_study(file.text, path, quick);
 }
 
-} // namespace verification
+} // namespace latcon::verification

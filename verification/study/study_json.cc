@@ -7,7 +7,7 @@
 #include "verification/input/case_text.h"
 #include "verification/input/spelling.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 namespace
@@ -31,14 +31,14 @@ nlohmann::ordered_json parse_json(const std::string &text, const std::string &fi
 {
   using Json = nlohmann::ordered_json;
   if (const auto problem = zero_byte(text, file)) // where the parser would end
-    throw latcon::support::InputError(problem->place + ": " + problem->text);
+    throw support::InputError(problem->place + ": " + problem->text);
   std::vector<std::set<std::string>> open; // keys of the objects around the place being parsed
   std::vector<std::string> problems;
   const auto check = [&](int depth, Json::parse_event_t event, Json &value)
   {
     if (depth > deepest)
-      throw latcon::support::InputError(file + ": not a study: objects and lists in each other deeper than " +
-                                        std::to_string(deepest));
+      throw support::InputError(file + ": not a study: objects and lists in each other deeper than " +
+                                std::to_string(deepest));
     if (event == Json::parse_event_t::object_start)
       open.emplace_back();
     else if (event == Json::parse_event_t::object_end)
@@ -56,13 +56,13 @@ nlohmann::ordered_json parse_json(const std::string &text, const std::string &fi
   {
     // "[json.exception.parse_error.101] parse error at line 1, column 2: ...": the words after the bracket.
     const std::string what = error.what();
-    throw latcon::support::InputError(
-      file + ": not JSON: " + printable(what.substr(std::min(what.size(), what.find(']') + 2)), 200));
+    throw support::InputError(file +
+                              ": not JSON: " + printable(what.substr(std::min(what.size(), what.find(']') + 2)), 200));
   }
   if (!document.is_object())
     problems.push_back(file + ": a study is a JSON object");
   if (!problems.empty())
-    throw latcon::support::InputError(problems);
+    throw support::InputError(problems);
   return document;
 }
 
@@ -155,4 +155,4 @@ std::string JsonPlace::word(const std::vector<std::string> &known, const std::st
   return {};
 }
 
-} // namespace verification
+} // namespace latcon::verification

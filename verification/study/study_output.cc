@@ -12,7 +12,7 @@
 #include "verification/output/run_info.h"
 #include "verification/resources/resources.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -216,7 +216,7 @@ void print_table(std::ostream &out, const StudyResults &results)
   const auto paragraph = [&out](const std::string &text, const std::string &first, const std::string &indent)
   {
     std::string lead = first;
-    for (const std::string &line : latcon::support::wrapped(text, width - latcon::support::width_of(indent)))
+    for (const std::string &line : support::wrapped(text, width - support::width_of(indent)))
     {
       out << lead << line << '\n';
       lead = indent;
@@ -275,4 +275,4 @@ void print_plan(std::ostream &out, const Study &study, const std::vector<Planned
     out << "check " << check << ", after the runs\n";
 }
 
-} // namespace verification
+} // namespace latcon::verification

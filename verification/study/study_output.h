@@ -8,7 +8,7 @@
 #include "verification/study/study_check.h"
 #include "verification/study/study_table.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// A study that was run.
@@ -40,4 +40,4 @@ void print_table(std::ostream &out, const StudyResults &results);
 /// Prints the runs with their sizes and the estimated time on so many cores, and the checks beside them.
 void print_plan(std::ostream &out, const Study &study, const std::vector<PlannedRun> &plan, std::size_t n_cores);
 
-} // namespace verification
+} // namespace latcon::verification

@@ -12,7 +12,7 @@
 #include "verification/input/case_text.h"
 #include "verification/resources/resources.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -99,13 +99,12 @@ Settings parsed(const std::vector<std::string> &texts)
   {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos)
-      throw latcon::support::InputError("--set: not understood: '" + printable(text) +
-                                        "'; allowed: --set Section/Name=value");
+      throw support::InputError("--set: not understood: '" + printable(text) + "'; allowed: --set Section/Name=value");
     override_settings(settings, {{trimmed(text.substr(0, equals)), trimmed(text.substr(equals + 1))}});
   }
   for (const auto &[key, value] : settings)
     if (key == seed_entry)
-      throw latcon::support::InputError("--set: " + key + " is what the seeds of the study stand for");
+      throw support::InputError("--set: " + key + " is what the seeds of the study stand for");
   return settings;
 }
 
@@ -138,7 +137,7 @@ std::vector<PlannedRun> plan_runs(const Study &study, const InputFile &base, con
       for (const std::uint64_t seed : run.seeds)
         runs.push_back(plan_run(study, base, run, seed, overrides));
     }
-    catch (const latcon::support::InputError &error)
+    catch (const support::InputError &error)
     {
       // What is wrong with the base case is wrong in every run: told once.
       for (const std::string &problem : error.problems())
@@ -153,7 +152,7 @@ std::vector<PlannedRun> plan_runs(const Study &study, const InputFile &base, con
   if (problems.empty())
     check_abscissas(study, runs, problems);
   if (!problems.empty())
-    throw latcon::support::InputError(problems);
+    throw support::InputError(problems);
   return runs;
 }
 
@@ -166,4 +165,4 @@ std::vector<std::size_t> longest_first(const std::vector<PlannedRun> &runs)
   return order;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -12,7 +12,7 @@
 #include "verification/study/quantities.h"
 #include "verification/study/study_file.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// One fracture run: a case with one seed.
@@ -51,4 +51,4 @@ struct Case;
 /// Indices of the runs, the most expensive first; equal ones in their order.
 [[nodiscard]] std::vector<std::size_t> longest_first(const std::vector<PlannedRun> &runs);
 
-} // namespace verification
+} // namespace latcon::verification

@@ -6,7 +6,7 @@
 
 #include "support/largest_error.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -65,7 +65,7 @@ constexpr const char *no_scatter = "how much seeds scatter is unknown: it takes 
 // Each run against another: all of them must lie on the side of it that the rule says, clearly.
 void judge_beside(RowOutcome &outcome, const SeedStatistics &other)
 {
-  latcon::support::LargestError worst;
+  support::LargestError worst;
   for (const SeedStatistics &run : outcome.runs)
   {
     if (!run.is_measured())
@@ -90,7 +90,7 @@ void judge_each(RowOutcome &outcome)
   const StudyRow &row = outcome.row;
   if (has_bound(row) && !outcome.bound)
     return;
-  latcon::support::LargestError worst;
+  support::LargestError worst;
   for (const SeedStatistics &run : outcome.runs)
   {
     if (!run.is_measured())
@@ -360,7 +360,7 @@ std::optional<Result> RowOutcome::result(const std::string &claim) const
   if (verdict != RowVerdict::reported)
   {
     // Beyond the bound; not how far inside.
-    result.error = misfit ? latcon::support::one_sided(*misfit) : std::numeric_limits<double>::quiet_NaN();
+    result.error = misfit ? support::one_sided(*misfit) : std::numeric_limits<double>::quiet_NaN();
     result.tolerance = allowed();
   }
   return result;
@@ -378,4 +378,4 @@ RowVerdict ClaimResult::verdict() const
   return any(RowVerdict::holds) ? RowVerdict::holds : RowVerdict::reported;
 }
 
-} // namespace verification
+} // namespace latcon::verification

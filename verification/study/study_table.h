@@ -12,7 +12,7 @@
 #include "verification/study/statistical_tests.h"
 #include "verification/study/study_file.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// Verdict of a row, or of a claim.
@@ -108,4 +108,4 @@ struct ClaimResult
 /// @param deviation standard deviation in the same unit, or none
 [[nodiscard]] std::string quantity_text(double value, std::optional<double> deviation, const std::string &unit);
 
-} // namespace verification
+} // namespace latcon::verification

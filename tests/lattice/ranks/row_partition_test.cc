@@ -7,6 +7,8 @@
 
 #include "lattice/row_partition.h"
 
+using namespace latcon;
+
 namespace
 {
 

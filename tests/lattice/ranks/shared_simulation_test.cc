@@ -7,6 +7,8 @@
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
 
+using namespace latcon;
+
 namespace
 {
 

@@ -12,6 +12,8 @@
 
 #include "tests/verification/analysis/synthetic_crack.h"
 
+using namespace latcon;
+
 namespace
 {
 
@@ -432,11 +434,11 @@ TEST(CrackMeasurement, RefusesBadOptions)
 
 TEST(CrackMeasurement, PatternsHaveTheNamesOfTheOutputs)
 {
-  EXPECT_STREQ(lattice::to_string(CrackPattern::straight), "straight");
-  EXPECT_STREQ(lattice::to_string(CrackPattern::oscillating), "oscillating");
-  EXPECT_STREQ(lattice::to_string(CrackPattern::branching), "branching");
-  EXPECT_STREQ(lattice::to_string(CrackPattern::arrested), "arrested");
-  EXPECT_STREQ(lattice::to_string(CrackPattern::undecided), "undecided");
+  EXPECT_STREQ(verification::to_string(CrackPattern::straight), "straight");
+  EXPECT_STREQ(verification::to_string(CrackPattern::oscillating), "oscillating");
+  EXPECT_STREQ(verification::to_string(CrackPattern::branching), "branching");
+  EXPECT_STREQ(verification::to_string(CrackPattern::arrested), "arrested");
+  EXPECT_STREQ(verification::to_string(CrackPattern::undecided), "undecided");
 }
 
 } // namespace

@@ -7,10 +7,13 @@
 #include "lattice/simulation.h"
 #include "tests/lattice/sheets.h"
 
+using namespace latcon;
+
 namespace
 {
 
 using namespace lattice;
+using namespace verification;
 
 class Cut : public testing::Test
 {

@@ -8,10 +8,13 @@
 #include "tests/lattice/sheets.h"
 #include "verification/analysis/near_tip_measurement.h"
 
+using namespace latcon;
+
 namespace
 {
 
 using namespace lattice;
+using namespace verification;
 
 constexpr double d = sheets::spacing;
 const Eigen::Matrix2d loading = sheets::stretched(2.3, 2.8);

@@ -10,10 +10,13 @@
 
 #include <gtest/gtest.h>
 
+using namespace latcon;
+
 namespace
 {
 
 using namespace lattice;
+using namespace verification;
 
 constexpr double d = 1e-3;
 constexpr double speed = 50.; // of the crack [m/s]

@@ -18,12 +18,12 @@
 namespace synthetic_crack
 {
 
-using lattice::BreakRecord;
-using lattice::CrackMeasurement;
-using lattice::CrackMeasurementOptions;
-using lattice::CrackPattern;
-using lattice::measure_crack;
-using lattice::TipRecord;
+using latcon::verification::BreakRecord;
+using latcon::verification::CrackMeasurement;
+using latcon::verification::CrackMeasurementOptions;
+using latcon::verification::CrackPattern;
+using latcon::verification::measure_crack;
+using latcon::verification::TipRecord;
 
 inline constexpr double pi = 3.14159265358979323846;
 inline constexpr double length = 0.15;

@@ -10,6 +10,8 @@
 #include "tests/verification/claims/subjects.h"
 #include "verification/bridge/homogenisation.h"
 
+using namespace latcon;
+
 namespace
 {
 

@@ -7,6 +7,8 @@
 #include "tests/verification/claims/subjects.h"
 #include "verification/claims/intrinsic_length/dispersion.h"
 
+using namespace latcon;
+
 namespace
 {
 

@@ -8,6 +8,7 @@
 
 #include "support/errors.h"
 
+using namespace latcon;
 using namespace verification;
 
 namespace

@@ -9,6 +9,8 @@
 #include "verification/bridge/bloch.h"
 #include "verification/claims/stability_row.h"
 
+using namespace latcon;
+
 namespace
 {
 

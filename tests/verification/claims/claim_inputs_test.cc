@@ -17,6 +17,7 @@
 #include <variant>
 #include <vector>
 
+using namespace latcon;
 using verification::Case;
 using verification::Parameters;
 

@@ -4,6 +4,8 @@
 #include "verification/claims/energy/energy_claim.h"
 #include "verification/claims/prestretch/prestretch_claim.h"
 
+using namespace latcon;
+
 namespace
 {
 

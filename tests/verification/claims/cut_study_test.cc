@@ -8,6 +8,8 @@
 
 #include "tests/verification/claims/faults.h"
 
+using namespace latcon;
+
 namespace
 {
 

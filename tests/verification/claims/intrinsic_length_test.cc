@@ -8,6 +8,8 @@
 #include "verification/claims/intrinsic_length/edge_layer.h"
 #include "verification/claims/intrinsic_length/gradient_positivity.h"
 
+using namespace latcon;
+
 namespace
 {
 

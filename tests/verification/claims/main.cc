@@ -2,6 +2,8 @@
 
 #include "continuum/parallel_session.h"
 
+using namespace latcon;
+
 int main(int argc, char **argv)
 {
   const continuum::ParallelSession session;

@@ -16,6 +16,8 @@
 #include "verification/claims/steady_crack/steady_crack_study.h"
 #include "verification/claims/wave_speeds/wave_speeds_claim.h"
 
+using namespace latcon;
+
 namespace
 {
 

@@ -7,6 +7,7 @@
 
 #include "tests/verification/claims/faults.h"
 
+using namespace latcon;
 using namespace verification;
 
 namespace

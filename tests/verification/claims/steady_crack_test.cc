@@ -12,6 +12,8 @@
 #include "verification/claims/steady_crack/steady_crack_study.h"
 #include "verification/claims/steady_crack/steady_fields.h"
 
+using namespace latcon;
+
 namespace
 {
 

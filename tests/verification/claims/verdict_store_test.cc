@@ -13,6 +13,7 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+using namespace latcon;
 using verification::Case;
 using verification::sha256;
 using verification::UnusableVerdicts;

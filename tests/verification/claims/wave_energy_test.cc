@@ -6,6 +6,8 @@
 #include "tests/verification/claims/faults.h"
 #include "verification/claims/energy/energy_claim.h"
 
+using namespace latcon;
+
 namespace
 {
 

@@ -8,6 +8,8 @@
 #include "verification/bridge/bloch.h"
 #include "verification/claims/lattice_waves.h"
 
+using namespace latcon;
+
 namespace
 {
 

@@ -5,6 +5,8 @@
 
 #include <gtest/gtest.h>
 
+using namespace latcon;
+
 namespace
 {
 
@@ -17,14 +19,14 @@ Result checked(const std::string &quantity, double error)
   return {"energy", quantity, "1", {}, {}, {}, error, 0.01};
 }
 
-lattice::CrackMeasurement oscillating()
+verification::CrackMeasurement oscillating()
 {
-  lattice::CrackMeasurement crack;
-  crack.pattern = lattice::CrackPattern::oscillating;
+  verification::CrackMeasurement crack;
+  crack.pattern = verification::CrackPattern::oscillating;
   crack.reason = "it winds";
-  crack.speed_lagrangian = lattice::Measured{20.2, 0.84};
-  crack.wavelength = lattice::Measured{0.02359, 0.00026};
-  crack.amplitude = lattice::Measured{0.00154, 0.00014};
+  crack.speed_lagrangian = verification::Measured{20.2, 0.84};
+  crack.wavelength = verification::Measured{0.02359, 0.00026};
+  crack.amplitude = verification::Measured{0.00154, 0.00014};
   return crack;
 }
 
@@ -51,7 +53,7 @@ TEST(CrackSummary, SaysWhatCouldNotBeMeasured)
 {
   Case input;
   input.reference_amplitude = 0.0017;
-  lattice::CrackMeasurement crack;
+  verification::CrackMeasurement crack;
   crack.reason = "too short";
   const std::string text = crack_summary(input, crack, {});
   EXPECT_HAS(text, "The pattern of the crack is undecided: too short\n");
@@ -64,8 +66,8 @@ TEST(CrackSummary, NamesRowsThatFailAndStaysShort)
   Case input;
   input.reference_wavelength = input.reference_amplitude = 0.023;
   input.reference_speed = 20.9;
-  lattice::CrackMeasurement crack = oscillating();
-  crack.speed_laboratory = lattice::Measured{40., 1.};
+  verification::CrackMeasurement crack = oscillating();
+  crack.speed_laboratory = verification::Measured{40., 1.};
   crack.reason = std::string(200, 'x') + " " + std::string(80, 'y');
   Results results;
   for (int i = 0; i < 30; ++i)

@@ -9,6 +9,8 @@
 #include "support/errors.h"
 #include "tests/support/temporary_folder.h"
 
+using namespace latcon;
+
 namespace
 {
 

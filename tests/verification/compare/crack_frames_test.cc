@@ -7,6 +7,7 @@
 #include "tests/verification/claims/faults.h"
 #include "verification/compare/comparison.h"
 
+using namespace latcon;
 using namespace verification;
 
 // The frames of both sides show the same moment in common coordinates.

@@ -2,6 +2,8 @@
 
 #include "continuum/parallel_session.h"
 
+using namespace latcon;
+
 // Sites are shared over ranks, of which there is one here.
 int main(int argc, char **argv)
 {

@@ -7,6 +7,8 @@
 #include "frames.h"
 #include "tests/support/temporary_folder.h"
 
+using namespace latcon;
+
 namespace
 {
 

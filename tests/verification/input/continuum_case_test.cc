@@ -7,6 +7,7 @@
 
 #include <cmath>
 
+using namespace latcon;
 using namespace verification;
 
 namespace

@@ -17,7 +17,7 @@
 namespace sample_case
 {
 
-using namespace verification;
+using namespace latcon::verification;
 
 enum class Rule
 {

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+using namespace latcon;
 using verification::could_mean;
 using verification::nearest_word;
 using verification::typing_errors;

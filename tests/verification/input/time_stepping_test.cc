@@ -8,6 +8,7 @@
 #include "support/errors.h"
 #include "verification/input/case.h"
 
+using namespace latcon;
 using namespace verification;
 
 namespace

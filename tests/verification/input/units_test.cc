@@ -5,6 +5,7 @@
 
 #include <string>
 
+using namespace latcon;
 using verification::parse_unit;
 using verification::ParsedNumber;
 using verification::read_quantity;

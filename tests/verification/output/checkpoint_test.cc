@@ -10,6 +10,8 @@
 #include "tests/support/temporary_folder.h"
 #include "verification/output/archive.h"
 
+using namespace latcon;
+
 namespace
 {
 

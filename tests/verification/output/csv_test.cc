@@ -5,6 +5,7 @@
 
 #include <gtest/gtest.h>
 
+using namespace latcon;
 using verification::ClaimOutcome;
 using verification::Table;
 

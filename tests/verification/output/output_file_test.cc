@@ -8,6 +8,7 @@
 
 #include <ostream>
 
+using namespace latcon;
 using latcon::support::ExitCode;
 using latcon::support::OutputError;
 using verification::write_file;

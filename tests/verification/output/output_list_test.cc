@@ -7,6 +7,8 @@
 #include "tests/support/temporary_folder.h"
 #include "verification/output/output_file.h"
 
+using namespace latcon;
+
 namespace
 {
 

@@ -13,6 +13,7 @@
 #include <sstream>
 #include <stdexcept>
 
+using namespace latcon;
 using verification::Result;
 using verification::Results;
 using verification::to_string;

@@ -13,6 +13,7 @@
 #include <thread>
 #include <unistd.h>
 
+using namespace latcon;
 using latcon::support::ExitCode;
 using verification::RunInfo;
 using verification::Stopwatch;

@@ -7,6 +7,7 @@
 
 #include "support/errors.h"
 
+using namespace latcon;
 using namespace verification;
 
 namespace

@@ -12,6 +12,7 @@
 
 #include "verification/study/study_table.h"
 
+using namespace latcon;
 using namespace verification;
 
 namespace

@@ -9,6 +9,7 @@
 #include "verification/study/study_file.h"
 #include "verification/study/study_plan.h"
 
+using namespace latcon;
 using namespace verification;
 
 namespace

@@ -11,6 +11,7 @@
 #include "tests/support/temporary_folder.h"
 #include "verification/study/process_pool.h"
 
+using namespace latcon;
 using namespace verification;
 
 namespace

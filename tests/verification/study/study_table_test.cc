@@ -8,6 +8,7 @@
 
 #include "verification/study/study_output.h"
 
+using namespace latcon;
 using namespace verification;
 
 namespace

@@ -10,7 +10,7 @@
 #include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/network_comparison.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -109,8 +109,8 @@ void moduli_rows(const Subject &subject, const Moduli &lattice_side, Law law, co
   const auto row = [&](const std::string &quantity, const std::string &unit, double Moduli::*value, double theory)
   {
     const double on_lattice = lattice_side.*value, on_continuum = law_side.*value;
-    const double error = latcon::support::largest_of(
-      {latcon::support::relative_error(on_lattice, theory), latcon::support::relative_error(on_continuum, theory)});
+    const double error =
+      support::largest_of({support::relative_error(on_lattice, theory), support::relative_error(on_continuum, theory)});
     rows.add(quantity + " at F = I, " + law_name, unit, on_lattice, on_continuum, theory, error,
              subject.tolerance(law, small_strain_tolerance));
   };
@@ -148,7 +148,7 @@ Optimum optimum(const Subject &subject, const lattice::TriangularLattice &sheet)
   const double below = residual(ratio - step), above = residual(ratio + step);
   if (below < none && above < none)
     return {std::abs(above - below) / (2. * step), false};
-  return {latcon::support::one_sided((residual(ratio) - (below < above ? below : above)) / step), true};
+  return {support::one_sided((residual(ratio) - (below < above ? below : above)) / step), true};
 }
 
 // The law fitted along the loading path. At finite strain the difference is what the fit leaves, and is reported; but
@@ -171,7 +171,7 @@ void mooney_rivlin_rows(const Subject &subject, const lattice::TriangularLattice
   const double on_lattice = homogeneous_response(sheet, subject.material, subject.deformation).energy_density;
   const double on_continuum = law.energy(to_continuum(subject.deformation));
   rows.add("energy density of the loaded sheet, plane-stress Mooney-Rivlin", "J/m^3", on_lattice, on_continuum, {},
-           latcon::support::relative_error(on_continuum, on_lattice), {});
+           support::relative_error(on_continuum, on_lattice), {});
   rows.add("rms energy residual of plane-stress Mooney-Rivlin along the loading path", "1", {}, fit.energy_residual, {},
            fit.energy_residual, {});
   if (subject.ratio_is_calibrated)
@@ -190,14 +190,14 @@ void mooney_rivlin_rows(const Subject &subject, const lattice::TriangularLattice
   const double slowest = fit.smallest_acoustic_eigenvalue;
   rows.add(std::string("slowest rho c^2 / mu on the path, plane-stress Mooney-Rivlin") +
              (slowest < 0. ? ": the law loses ellipticity" : ""),
-           "1", {}, slowest, {}, latcon::support::one_sided(-slowest), judged(0.));
+           "1", {}, slowest, {}, support::one_sided(-slowest), judged(0.));
 }
 
 // The lattice against its own law of the continuum.
 void random_deformations(const Subject &subject, const lattice::TriangularLattice &sheet, unsigned int samples,
                          Rows &rows)
 {
-  latcon::support::LargestError energy_error, stress_error;
+  support::LargestError energy_error, stress_error;
   std::mt19937_64 generator(20061111);
   for (unsigned int sample = 0; sample < samples; ++sample)
   {
@@ -223,7 +223,7 @@ void network_rows(const Subject &subject, const lattice::TriangularLattice &shee
   const auto judged = [&](double tolerance) { return subject.tolerance(Law::mooney_rivlin_network, tolerance); };
   moduli_rows(subject, lattice_side, Law::mooney_rivlin_network, "network", continuum_moduli(subject, subject.network),
               rows);
-  latcon::support::LargestError energy_from_mean, stress_from_mean, energy_share, stress_share;
+  support::LargestError energy_from_mean, stress_from_mean, energy_share, stress_share;
   std::mt19937_64 generator(20061111);
   for (unsigned int sample = 0; sample < samples; ++sample)
   {
@@ -233,7 +233,7 @@ void network_rows(const Subject &subject, const lattice::TriangularLattice &shee
     energy_share.add(both.energy_error() / both.energy_bound());
     stress_share.add(both.stress_error() / both.stress_bound());
   }
-  const auto add = [&](const std::string &quantity, const latcon::support::LargestError &error, double tolerance)
+  const auto add = [&](const std::string &quantity, const support::LargestError &error, double tolerance)
   {
     rows.add(quantity + ", " + std::to_string(samples) + " random F", "1", {}, {}, {}, error.error(),
              judged(tolerance));
@@ -280,4 +280,4 @@ Results energy_claim(const Subject &subject, unsigned int samples)
   return results;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -3,7 +3,7 @@
 #include "verification/bridge/subject.h"
 #include "verification/output/results.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// Claim `energy`: in homogeneous deformation the lattice and its Cauchy-Born law hold the same energy density and the
@@ -16,4 +16,4 @@ namespace verification
 /// @param samples number of random F, rotations times stretches between 0.7 and 3.5
 Results energy_claim(const Subject &subject, unsigned int samples);
 
-} // namespace verification
+} // namespace latcon::verification

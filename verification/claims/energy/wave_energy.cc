@@ -12,7 +12,7 @@
 #include "verification/claims/order_fit.h"
 #include "verification/claims/state_name.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -95,7 +95,7 @@ void sinusoidal(const Subject &subject, const Eigen::Matrix2d &F, const WaveEner
   const double d = subject.spacing, l_d = subject.lengths.lattice;
   Table &table = outcome.table("sinusoidal_energy", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d", "lattice",
                                                      "local", "gradient", "filtered", "fem"});
-  latcon::support::LargestError lattice_error, element_error, excess_error;
+  support::LargestError lattice_error, element_error, excess_error;
   CommonOrder local_order(order_kd), gradient_order(order_kd), filtered_order(order_kd);
   for (const WaveDirection &direction : {WaveDirection{1, 0}, WaveDirection{1, 2}})
   {
@@ -194,7 +194,7 @@ Densities travelling_lattice(const WaveCell &cell, const lattice::Material &mate
   // The wave itself shortens bonds a little more.
   const double limit = lattice::time_step_limits(sheet, material, 0.99 * smallest_stretch(sheet, F)).combined;
   const double eighth = 0.25 * M_PI / wave.frequency;
-  const auto steps = static_cast<int>(std::ceil(eighth / latcon::support::smallest_of({0.5 * limit, eighth / 40.})));
+  const auto steps = static_cast<int>(std::ceil(eighth / support::smallest_of({0.5 * limit, eighth / 40.})));
   lattice::Simulation simulation(sheet, material, std::move(state), eighth / steps);
   for (int step = 0; step < steps; ++step)
     simulation.step();
@@ -250,23 +250,21 @@ void travelling(const Subject &subject, const Eigen::Matrix2d &F, double wanted_
     // of a radian a step, the elements with a fortieth.
     constexpr double tolerance = 2e-4;
     add("elastic against kinetic energy, lattice and finite elements", run.elastic, elements.elastic, 0.5 * theory,
-        latcon::support::largest_of({latcon::support::relative_error(run.elastic, run.kinetic),
-                                     latcon::support::relative_error(elements.elastic, elements.kinetic)}),
+        support::largest_of({support::relative_error(run.elastic, run.kinetic),
+                             support::relative_error(elements.elastic, elements.kinetic)}),
         tolerance);
     add("energy, lattice and finite elements each against its theory", total, element_total, theory,
-        latcon::support::largest_of({latcon::support::relative_error(total, theory),
-                                     latcon::support::relative_error(element_total, continuum_theory)}),
+        support::largest_of(
+          {support::relative_error(total, theory), support::relative_error(element_total, continuum_theory)}),
         tolerance);
     // The speeds differ by 1e-4 at most here (claim wave-speeds), energies by twice that and the time stepping.
     add("energy of the finite elements over 1 + l_d^2 k^2, against the lattice", total, element_total / inertia, theory,
-        latcon::support::relative_error(element_total / inertia, total),
-        subject.gradient_tolerance(F, 2e-4 + tolerance));
+        support::relative_error(element_total / inertia, total), subject.gradient_tolerance(F, 2e-4 + tolerance));
     // Sixteen times the square of the second harmonic's amplitude.
     constexpr double harmonic_tolerance = 1e-4;
     add("micro-inertia's share of the kinetic energy, l_d^2 k^2 / (1 + l_d^2 k^2)", {}, elements.micro_inertia,
         elements.kinetic * (1. - 1. / inertia),
-        latcon::support::relative_error(elements.micro_inertia, elements.kinetic * (1. - 1. / inertia)),
-        harmonic_tolerance);
+        support::relative_error(elements.micro_inertia, elements.kinetic * (1. - 1. / inertia)), harmonic_tolerance);
   }
 }
 
@@ -289,4 +287,4 @@ ClaimOutcome wave_energy_claim(const Subject &subject, const WaveEnergyOptions &
   return outcome;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -6,7 +6,7 @@
 
 #include "verification/bridge/bloch.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -120,4 +120,4 @@ Alpha continuum_alpha(const WaveContinuum &medium, const Eigen::Matrix2d &F, con
   return alpha;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -7,7 +7,7 @@
 
 #include "verification/bridge/homogenisation.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -127,4 +127,4 @@ std::optional<double> critical_length(const lattice::TriangularLattice &lattice,
   return std::sqrt(Eigen::SelfAdjointEigenSolver<Matrix6>(scaled * parts.negative * scaled).eigenvalues()[5]);
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -8,7 +8,7 @@
 #include "verification/claims/intrinsic_length/edge_layer.h"
 #include "verification/claims/intrinsic_length/gradient_positivity.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -67,10 +67,10 @@ void dispersion(const Subject &subject, const IntrinsicLengthOptions &options, C
   // All directions.
   Table &table = outcome.table("dispersion", {"shells", "angle [deg]", "alpha_L", "alpha_S", "nearest_L", "nearest_S",
                                               "isotropic_L", "isotropic_S"});
-  latcon::support::LargestError bloch_error, continuum_error;
-  latcon::support::Extremes alphas;
-  std::array<latcon::support::LargestError, 2> isotropic_loss;
-  std::array<latcon::support::LargestError, 2> network_loss;
+  support::LargestError bloch_error, continuum_error;
+  support::Extremes alphas;
+  std::array<support::LargestError, 2> isotropic_loss;
+  std::array<support::LargestError, 2> network_loss;
   std::vector<Alpha> of_network;
   Alpha mean{}, isotropic_alpha{}, nearest_mean{};
   const auto n_angles = static_cast<int>(std::lround(180. / options.angle_step));
@@ -122,7 +122,7 @@ void dispersion(const Subject &subject, const IntrinsicLengthOptions &options, C
            equal_formulas);
   // A positive alpha softens; the claim is the sign.
   rows.add("softening: smallest alpha of any wave", "1", alphas.smallest(), {}, {},
-           latcon::support::one_sided(-alphas.smallest()), 0.);
+           support::one_sided(-alphas.smallest()), 0.);
   rows.add("largest alpha of any wave", "1", alphas.largest(), {}, {}, {}, {});
   for (std::size_t w = 0; w < 2; ++w)
   {
@@ -134,7 +134,7 @@ void dispersion(const Subject &subject, const IntrinsicLengthOptions &options, C
              isotropic_loss[w].error(), {});
     // At F = I its moduli are the lattice's, so the mean of its gradient energy gives the mean of alpha, in all
     // directions.
-    latcon::support::LargestError from_mean;
+    support::LargestError from_mean;
     for (const Alpha &alpha : of_network)
       from_mean.add_difference(alpha[w], mean[w]);
     rows.add(name + "network in all directions against the lattice's mean over directions", "1", mean[w],
@@ -147,9 +147,9 @@ void dispersion(const Subject &subject, const IntrinsicLengthOptions &options, C
   const WaveContinuum no_inertia{{subject.cauchy_born, *subject.isotropic_gradient}, {rho, 0.}};
   const Alpha hardening = continuum_alpha(no_inertia, I, Eigen::Vector2d(1., 0.), d);
   // Not a fault of the code: a positive gradient energy alone cannot soften.
-  const double least_hardening = latcon::support::largest_of({hardening[0], hardening[1]});
+  const double least_hardening = support::largest_of({hardening[0], hardening[1]});
   rows.add("hardening: alpha of a positive gradient energy without micro-inertia is negative", "1", {}, least_hardening,
-           {}, latcon::support::one_sided(least_hardening), subject.tolerance(Law::isotropic_gradient, 0.));
+           {}, support::one_sided(least_hardening), subject.tolerance(Law::isotropic_gradient, 0.));
 }
 
 // The length that keeps the gradient energy positive.
@@ -162,7 +162,7 @@ void positivity(const Subject &subject, ClaimOutcome &outcome)
   const double longest = subject.material.next_nearest ? std::sqrt(3.) * d : d;
   rows.add("intrinsic length l_d, the longest bond over sqrt(12)", "m", longest / std::sqrt(12.),
            subject.lengths.lattice, longest / std::sqrt(12.),
-           latcon::support::relative_error(subject.lengths.lattice, longest / std::sqrt(12.)), equal_formulas);
+           support::relative_error(subject.lengths.lattice, longest / std::sqrt(12.)), equal_formulas);
 
   struct State
   {
@@ -177,22 +177,22 @@ void positivity(const Subject &subject, ClaimOutcome &outcome)
     const std::string shortest = "shortest length with a positive gradient energy, against l_d" + where;
     if (critical)
       rows.add(shortest, "m", critical, subject.lengths.lattice, {},
-               latcon::support::one_sided(*critical / subject.lengths.lattice - 1.),
+               support::one_sided(*critical / subject.lengths.lattice - 1.),
                subject.gradient_tolerance(F, equal_formulas));
     else
       // What gradient_tolerance() says of such states: the law leaves out what makes it negative.
       rows.add(shortest + ": there is none, bonds are compressed", "m", {}, subject.lengths.lattice, {}, {}, {});
     const double at_length = smallest_eigenvalue(*subject.lattice_gradient, F) / unit;
     rows.add("smallest eigenvalue of the gradient energy over mu d^2 at l_d" + where, "1", {}, at_length, {},
-             latcon::support::one_sided(-at_length), 1e-12);
+             support::one_sided(-at_length), 1e-12);
     const double of_network = smallest_eigenvalue(*subject.network_gradient, F) / unit;
     rows.add("smallest eigenvalue of the network's gradient energy over mu d^2 at l_d" + where, "1", {}, of_network, {},
-             latcon::support::one_sided(-of_network), subject.tolerance(Law::mooney_rivlin_network, 1e-12));
+             support::one_sided(-of_network), subject.tolerance(Law::mooney_rivlin_network, 1e-12));
     if (!critical)
       continue;
     const double below = smallest_lattice_eigenvalue(sheet, subject.material, F, 0.99 * *critical) / unit;
-    rows.add("the same 1 % below the shortest length: negative" + where, "1", below, {}, {},
-             latcon::support::one_sided(below), 0.);
+    rows.add("the same 1 % below the shortest length: negative" + where, "1", below, {}, {}, support::one_sided(below),
+             0.);
   }
 }
 
@@ -217,7 +217,7 @@ void edge_layer(const Subject &subject, const IntrinsicLengthOptions &options, C
            layer.residual / (subject.theory.shear_modulus * subject.spacing), {}, {}, {}, {});
   if (!subject.material.next_nearest)
   {
-    latcon::support::LargestError largest;
+    support::LargestError largest;
     for (const double deviation : layer.deviations)
       largest.add_difference(deviation, 0.);
     // Statics of nearest neighbours know no length: every row feels the next one alone.
@@ -233,7 +233,7 @@ void edge_layer(const Subject &subject, const IntrinsicLengthOptions &options, C
   const double decay = -std::pow(std::abs(layer.deviations[last] / layer.deviations[first]), 1. / (last - first));
   const bool alternates = layer.deviations[first] * layer.deviations[first + 1] < 0.;
   rows.add("edge layer: decay from row to row, against its characteristic equation", "1", alternates ? decay : -decay,
-           {}, root, latcon::support::relative_error(alternates ? decay : -decay, root), 0.01);
+           {}, root, support::relative_error(alternates ? decay : -decay, root), 0.01);
   // What a continuum with that gradient energy can have: exp(-Y / l), of one sign.
   const WaveContinuum gradient{{subject.cauchy_born, *subject.lattice_gradient}, {subject.material.density, 0.}};
   Eigen::Matrix2d F = Eigen::Matrix2d::Identity();
@@ -256,4 +256,4 @@ ClaimOutcome intrinsic_length_claim(const Subject &subject, const IntrinsicLengt
   return outcome;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -3,7 +3,7 @@
 #include "verification/bridge/subject.h"
 #include "verification/claims/claim_outcome.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// Claim `intrinsic-length`: what length the bonds bring, in dynamics and in statics.
@@ -23,4 +23,4 @@ struct IntrinsicLengthOptions
 /// Runs the claim. Collective.
 ClaimOutcome intrinsic_length_claim(const Subject &subject, const IntrinsicLengthOptions &options);
 
-} // namespace verification
+} // namespace latcon::verification

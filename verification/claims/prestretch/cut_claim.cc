@@ -8,7 +8,7 @@
 #include "support/largest_error.h"
 #include "verification/claims/prestretch/cut_study.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -109,7 +109,7 @@ public:
     if (is_hole_)
     {
       order.theory = 1.;
-      order.error = latcon::support::one_sided(1. - all.order());
+      order.error = support::one_sided(1. - all.order());
       order.tolerance = all.order_uncertainty();
     }
     rows.add(order);
@@ -333,4 +333,4 @@ ClaimOutcome cut_claim(const Subject &subject, const CutStudy &study)
   return outcome;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -11,7 +11,7 @@
 #include "support/largest_error.h"
 #include "verification/bridge/affine_displacement.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -149,7 +149,7 @@ CutSolution solution(const CutLattice &cut, const CutSheet &sheet, const Equival
     found.F.push_back(to_lattice(state.F));
     found.P.push_back(to_lattice(state.P));
   }
-  latcon::support::LargestError displacement_max;
+  support::LargestError displacement_max;
   const double scale = displacement_scale(sheet);
   std::vector<Eigen::Vector2d> of_lattice;
   double stress = 0., stress_norm = 0., cauchy = 0., cauchy_norm = 0., product = 0., inside = 0., n_inside = 0.;
@@ -261,4 +261,4 @@ std::optional<CutSolution> compare(const CutLattice &cut, const CutSheet &sheet,
   return std::nullopt;
 }
 
-} // namespace verification
+} // namespace latcon::verification

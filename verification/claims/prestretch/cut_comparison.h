@@ -9,7 +9,7 @@
 #include "verification/bridge/equivalent_sheet.h"
 #include "verification/claims/prestretch/cut_lattice.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// A law of the continuum that a claim sets beside the lattice.
@@ -71,4 +71,4 @@ CutDistance distance(const CutLattice &lattice, const CutSheet &sheet, const Cut
 std::optional<CutSolution> compare(const CutLattice &lattice, const CutSheet &sheet, const EquivalentSheet &domain,
                                    const continuum::Constitution &law, const CutMesh &mesh, std::string &failure);
 
-} // namespace verification
+} // namespace latcon::verification

@@ -10,7 +10,7 @@
 #include "support/largest_error.h"
 #include "verification/bridge/equivalent_sheet.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -31,7 +31,7 @@ Eigen::Vector2d reactions(const lattice::TriangularLattice &sheet, const lattice
       const double right = distance(held.right, sheet.length() - X.x());
       const double top = distance(held.top, 0.5 * sheet.height() - X.y());
       const double others =
-        latcon::support::smallest_of({distance(held.left, X.x()), distance(held.bottom, 0.5 * sheet.height() + X.y())});
+        support::smallest_of({distance(held.left, X.x()), distance(held.bottom, 0.5 * sheet.height() + X.y())});
       if (right < top && right < others)
         reaction.x() -= forces.fx()[place];
       if (top <= right && top < others)
@@ -58,7 +58,7 @@ double roundest_radius(const Subject &subject, double R, double length, double h
                          {
                            const lattice::Shell &shell = *subject.material.shell(kind);
                            const Eigen::Vector2d bond = lattice.bond_vector(kind), X = lattice.reference(near) - middle;
-                           const double distance = latcon::support::smallest_of({X.norm(), (X + bond).norm()});
+                           const double distance = support::smallest_of({X.norm(), (X + bond).norm()});
                            const Eigen::Vector2d centre = X + 0.5 * bond;
                            const double step = (distance - first) / d * (n_radii - 1);
                            if (step >= n_radii - 1 || centre.norm() < 0.1 * d)
@@ -99,7 +99,7 @@ CutSheet sheet_with_hole(const Subject &subject, double R, const Eigen::Matrix2d
 CutSheet sheet_with_notch(const Subject &subject, double a, const Eigen::Matrix2d &F)
 {
   const lattice::TriangularLattice lattice(subject.spacing, 4. * a, 4. * a, subject.orientation);
-  latcon::support::Extremes inside;
+  support::Extremes inside;
   inside.add(0.);
   for (std::size_t place = 0; place < lattice.n_places(); ++place)
   {
@@ -157,4 +157,4 @@ CutLattice relaxed_lattice(const Subject &subject, const CutSheet &sheet)
   return cut;
 }
 
-} // namespace verification
+} // namespace latcon::verification

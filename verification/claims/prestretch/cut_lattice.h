@@ -7,7 +7,7 @@
 #include "lattice/site_fields.h"
 #include "verification/bridge/subject.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// A sheet with something cut out, between edges that are held at a homogeneous deformation.
@@ -64,4 +64,4 @@ inline constexpr double cut_lattice_residual = 1e-8;
 /// @throws std::runtime_error if the lattice does not come to rest
 CutLattice relaxed_lattice(const Subject &subject, const CutSheet &sheet);
 
-} // namespace verification
+} // namespace latcon::verification

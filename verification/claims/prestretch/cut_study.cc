@@ -10,7 +10,7 @@
 #include "support/largest_error.h"
 #include "verification/bridge/anisotropy.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -36,7 +36,7 @@ double network_bound(const Subject &subject, const CutSolution &network, const C
   std::vector<continuum::CauchyBorn> rotated;
   for (int k = 0; k < n_lattice_rotations; ++k)
     rotated.push_back(turned(subject.cauchy_born, lattice_rotation(k)));
-  latcon::support::Extremes bounds;
+  support::Extremes bounds;
   for (const CutSolution *solution : {&network, &local})
   {
     double difference = 0., energy = 0.;
@@ -197,4 +197,4 @@ std::vector<CutResult> compare_sizes(const Subject &subject, const CutStudy &stu
   return results;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -8,7 +8,7 @@
 #include "verification/claims/claim_outcome.h"
 #include "verification/claims/prestretch/cut_comparison.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// Which sheets with a hole or a notch the claim `prestretch` compares, and how.
@@ -67,4 +67,4 @@ std::vector<CutResult> compare_sizes(const Subject &subject, const CutStudy &stu
 /// that is judged finds no equilibrium. Collective.
 ClaimOutcome cut_claim(const Subject &subject, const CutStudy &study);
 
-} // namespace verification
+} // namespace latcon::verification

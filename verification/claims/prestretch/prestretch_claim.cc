@@ -15,7 +15,7 @@
 #include "verification/bridge/network_comparison.h"
 #include "verification/claims/stability_row.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -111,8 +111,8 @@ std::vector<Row> compare(const Subject &subject, const lattice::TriangularLattic
     points.emplace_back(sheet.reference(place).x(), sheet.reference(place).y());
   const std::vector<continuum::PointState> continuum_states = solver.evaluate(points);
 
-  latcon::support::LargestError displacement_error, gradient_error, stress_error;
-  latcon::support::Extremes stress_scale;
+  support::LargestError displacement_error, gradient_error, stress_error;
+  support::Extremes stress_scale;
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     const std::size_t place = side.interior[i];
@@ -254,4 +254,4 @@ Results prestretch_claim(const Subject &subject, const PrestretchOptions &option
   return results;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -5,7 +5,7 @@
 #include "verification/bridge/subject.h"
 #include "verification/output/results.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// Claim `prestretch`: a lattice sheet between held edges, relaxed from noise, and a finite element sheet of the same
@@ -24,4 +24,4 @@ struct PrestretchOptions
 /// equilibrium, a row fails; an equilibrium that the Mooney-Rivlin law lacks is reported.
 Results prestretch_claim(const Subject &subject, const PrestretchOptions &options);
 
-} // namespace verification
+} // namespace latcon::verification

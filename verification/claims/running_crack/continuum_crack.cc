@@ -10,7 +10,7 @@
 #include "verification/bridge/anisotropy.h"
 #include "verification/bridge/homogenisation.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -201,4 +201,4 @@ TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, con
   return run;
 }
 
-} // namespace verification
+} // namespace latcon::verification

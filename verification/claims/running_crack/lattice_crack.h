@@ -6,7 +6,7 @@
 #include "lattice/material.h"
 #include "verification/claims/running_crack/tip_field.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// Energies that a sheet lost while its tip advanced, per reference length of crack and thickness [J/m^2].
@@ -36,8 +36,8 @@ struct CrackFrame
 
 /// Drives the crack through a lattice, whose bonds break in no other way.
 /// @param reach of the field around the tip [m]
-/// @param frame none is written if empty @throws latcon::support::OutputError
+/// @param frame none is written if empty @throws support::OutputError
 TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &material, const Eigen::Matrix2d &F,
                            double reach, const std::optional<CrackFrame> &frame = {});
 
-} // namespace verification
+} // namespace latcon::verification

@@ -10,7 +10,7 @@
 #include "verification/claims/stability_row.h"
 #include "verification/claims/state_name.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -198,10 +198,8 @@ private:
       add(where + "mesh against one of twice the size", "1", {}, {}, near_.distance(fine.field, coarse.field, quantity),
           {});
     }
-    const auto pair = [&](const std::string &what, const std::string &unit, double lattice, double continuum)
-    {
-      add(what + ", " + name + " continuum", unit, lattice, continuum,
-          latcon::support::relative_error(continuum, lattice), {});
+    const auto pair = [&](const std::string &what, const std::string &unit, double lattice, double continuum) {
+      add(what + ", " + name + " continuum", unit, lattice, continuum, support::relative_error(continuum, lattice), {});
     };
     const double limit = 0.01 * sides_.drive.speed * subject_.deformation(0, 0), reach = options_.far * d;
     const BackwardZone of_lattice = backward_zone(lattice_.field, limit, reach);
@@ -281,7 +279,7 @@ CrackSides crack_sides(const Subject &subject, const RunningCrackOptions &option
   const WaveContinuum medium{{subject.network}, {subject.material.density}};
   const auto waves =
     plane_waves(continuum_matrices(medium, subject.deformation, K), wave_normal(subject.deformation, K));
-  drive.speed = 0.5 * latcon::support::smallest_of({waves[0].frequency, waves[1].frequency}) / K.norm();
+  drive.speed = 0.5 * support::smallest_of({waves[0].frequency, waves[1].frequency}) / K.norm();
 
   const lattice::TriangularLattice sheet(d, drive.length, drive.height, drive.orientation);
   const double end_depth = held_depth(sheet, subject.material, {1., 0.});
@@ -333,4 +331,4 @@ ClaimOutcome running_crack_claim(const Subject &subject, const CrackSides &sides
   return comparison.outcome;
 }
 
-} // namespace verification
+} // namespace latcon::verification

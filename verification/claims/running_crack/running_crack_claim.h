@@ -7,7 +7,7 @@
 #include "verification/claims/claim_outcome.h"
 #include "verification/claims/running_crack/continuum_crack.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// Sizes in spacings d, and resolutions. The default is the quick version.
@@ -52,4 +52,4 @@ ClaimOutcome running_crack_claim(const Subject &subject, const RunningCrackOptio
 /// The same for sides that a test has changed.
 ClaimOutcome running_crack_claim(const Subject &subject, const CrackSides &sides, const RunningCrackOptions &options);
 
-} // namespace verification
+} // namespace latcon::verification

@@ -11,7 +11,7 @@
 #include "lattice/time_step.h"
 #include "support/largest_error.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -116,7 +116,7 @@ void Run::cut(lattice::State &state, double length) const
 double Run::largest_elsewhere(const lattice::State &state, std::size_t tip) const
 {
   const std::size_t reach = std::min<std::size_t>(4, options_.strip.free_rows);
-  latcon::support::Extremes elongations;
+  support::Extremes elongations;
   for (std::size_t row = row_below_crack() - reach; row <= row_below_crack() + reach; ++row)
     for (std::size_t column = sheet_.column_of(tip) - 2 * reach; column <= sheet_.column_of(tip) + 2 * reach; ++column)
       for (std::size_t kind = 0; kind < lattice::n_nearest_kinds; ++kind)
@@ -158,7 +158,7 @@ CrackRun Run::measure()
                                                    lattice::GivenToughening{lattice::unbreakable}, F));
 
   CrackRun run{};
-  latcon::support::Extremes elsewhere;
+  support::Extremes elsewhere;
   Slope line;
   std::optional<lattice::EnergyBalance> begin;
   std::optional<std::size_t> tip;
@@ -216,4 +216,4 @@ CrackRun run_crack(const CrackRunOptions &options)
   return Run(options).measure();
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -12,7 +12,7 @@
 #include "verification/claims/steady_crack/steady_crack.h"
 #include "verification/claims/steady_crack/steady_fields.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -90,7 +90,7 @@ void add_run(ClaimOutcome &outcome, const CrackRunOptions &options, const Compar
   const CrackRun &run = comparison.run;
   const SteadyFields fields = steady_fields(options.strip, comparison.speed, record_duration, record_samples);
   const std::string where = place(options.strip.viscosity, options.driving);
-  const double speed_error = latcon::support::relative_error(run.speed, comparison.speed);
+  const double speed_error = support::relative_error(run.speed, comparison.speed);
   const double speed_tolerance = tolerance[0] * std::abs(sensitivity(options.strip, comparison.speed));
   const double released = options.driving * options.driving;
   const double c_S = shear_speed();
@@ -127,7 +127,7 @@ void add_run(ClaimOutcome &outcome, const CrackRunOptions &options, const Compar
                elsewhere,
                {},
                fields.largest_elsewhere,
-               latcon::support::relative_error(elsewhere, fields.largest_elsewhere),
+               support::relative_error(elsewhere, fields.largest_elsewhere),
                {}});
   const double off_line = static_cast<double>(run.off_line);
   results.add({claim, "bonds broken off the crack" + where, "1", off_line, {}, 0., off_line, 0.});
@@ -172,7 +172,7 @@ void add_quasi_static(ClaimOutcome &outcome)
                        {},
                        {},
                        product,
-                       latcon::support::relative_error(product, 1.),
+                       support::relative_error(product, 1.),
                        2. * truncation});
   constexpr double creeping = 0.01;
   const double slow = steady_driving(strip, creeping), slower = steady_driving(strip, 0.5 * creeping);
@@ -182,7 +182,7 @@ void add_quasi_static(ClaimOutcome &outcome)
                        {},
                        {},
                        slower / window.starts,
-                       latcon::support::relative_error(slower, window.starts),
+                       support::relative_error(slower, window.starts),
                        2. * std::abs(slower - slow) + truncation});
 }
 
@@ -248,4 +248,4 @@ ClaimOutcome steady_crack_study(bool quick)
   return outcome;
 }
 
-} // namespace verification
+} // namespace latcon::verification

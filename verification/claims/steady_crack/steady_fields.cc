@@ -8,7 +8,7 @@
 #include "support/largest_error.h"
 #include "verification/claims/steady_crack/steady_crack.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -110,7 +110,7 @@ Spectrum factor_before(const HalfStrip &half, Record &record)
 
 double largest(const std::vector<double> &values, double base)
 {
-  latcon::support::Extremes extremes;
+  support::Extremes extremes;
   for (const double value : values)
     extremes.add(base + value);
   return extremes.largest();
@@ -146,7 +146,7 @@ SteadyFields steady_fields(const CrackStrip &strip, double speed, double duratio
     return rate;
   };
 
-  latcon::support::Extremes elsewhere, before;
+  support::Extremes elsewhere, before;
   const auto visit_whole_bond = [&](std::size_t layer, Complex HalfStrip::Layer::*bond, double base)
   {
     const Spectrum rate = spectrum(layer, bond);
@@ -189,4 +189,4 @@ SteadyFields steady_fields(const CrackStrip &strip, double speed, double duratio
   return fields;
 }
 
-} // namespace verification
+} // namespace latcon::verification

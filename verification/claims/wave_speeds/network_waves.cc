@@ -8,7 +8,7 @@
 #include "verification/claims/order_fit.h"
 #include "verification/claims/state_name.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -40,7 +40,7 @@ void network_waves(const Subject &subject, const Eigen::Matrix2d &F, const WaveM
     return matrices;
   };
 
-  latcon::support::LargestError from_mean, share, elements_error;
+  support::LargestError from_mean, share, elements_error;
   CommonOrder local_order(order_kd), gradient_order(order_kd);
   for (const double degrees : {0., 15., 40., 75.})
   {
@@ -91,4 +91,4 @@ void network_waves(const Subject &subject, const Eigen::Matrix2d &F, const WaveM
       {}, elements_error.error(), subject.tolerance(Law::mooney_rivlin_network, discretisation_bound(mesh)));
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -4,7 +4,7 @@
 #include "verification/claims/claim_outcome.h"
 #include "verification/claims/continuum_waves.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// Rows of the claim `wave-speeds` on the network law with its gradient energy about the homogeneous state F.
@@ -17,4 +17,4 @@ namespace verification
 /// @param mesh of the finite elements, which have to have the frequencies of their continuum
 void network_waves(const Subject &subject, const Eigen::Matrix2d &F, const WaveMesh &mesh, ClaimOutcome &outcome);
 
-} // namespace verification
+} // namespace latcon::verification

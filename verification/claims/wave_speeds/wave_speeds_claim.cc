@@ -12,7 +12,7 @@
 #include "verification/claims/state_name.h"
 #include "verification/claims/wave_speeds/network_waves.h"
 
-namespace verification
+namespace latcon::verification
 {
 namespace
 {
@@ -91,9 +91,9 @@ void speeds_at(const Subject &subject, const Eigen::Matrix2d &F, const WaveSpeed
   Table &table =
     outcome.table("wave_speeds", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d", "local [m/s]", "bloch [m/s]",
                                   "lattice [m/s]", "gradient [m/s]", "isotropic [m/s]", "fem [m/s]"});
-  latcon::support::LargestError run_against_bloch, elements_against_closed, gradient_against_bloch;
+  support::LargestError run_against_bloch, elements_against_closed, gradient_against_bloch;
   CommonOrder local_order(order_kd), gradient_order(order_kd);
-  std::array<latcon::support::LargestError, 2> long_waves;
+  std::array<support::LargestError, 2> long_waves;
   for (const WaveDirection &direction : wave_directions(subject.orientation))
   {
     std::array<std::array<double, 2>, 2> longest{}; // speeds of the two longest waves run, by wave
@@ -167,11 +167,11 @@ void speeds_at(const Subject &subject, const Eigen::Matrix2d &F, const WaveSpeed
   for (std::size_t w = 0; w < 2; ++w)
     add(std::string("long-wave speed, ") + wave_names[w] + ", lattice run against closed form, worst of 4 directions",
         "m/s", long_waves[w].value(), {}, long_waves[w].reference(), long_waves[w].error(),
-        latcon::support::largest_of({remainder, lattice_tolerance}));
+        support::largest_of({remainder, lattice_tolerance}));
   add("phase velocity, lattice run against Bloch, worst of all waves", "m/s", run_against_bloch.value(), {},
       run_against_bloch.reference(), run_against_bloch.error(), lattice_tolerance);
   const auto add_continuum =
-    [&](const std::string &quantity, const latcon::support::LargestError &error, std::optional<double> tolerance)
+    [&](const std::string &quantity, const support::LargestError &error, std::optional<double> tolerance)
   { add(quantity + ", worst of all waves", "m/s", {}, error.value(), error.reference(), error.error(), tolerance); };
   add_continuum("phase velocity, finite elements against their continuum", elements_against_closed,
                 discretisation_bound(options.mesh));
@@ -253,8 +253,8 @@ void attenuation_at(const Subject &subject, const Eigen::Matrix2d &F, ClaimOutco
     {
       outcome.results.add({"wave-speeds", name + quantity + ", lattice and finite elements each against its theory",
                            unit, lattice_value, element_value, bloch,
-                           latcon::support::largest_of({latcon::support::relative_error(lattice_value, bloch),
-                                                        latcon::support::relative_error(element_value, closed)}),
+                           support::largest_of({support::relative_error(lattice_value, bloch),
+                                                support::relative_error(element_value, closed)}),
                            tolerance});
     };
     add("damped frequency", "rad/s", run[w].frequency, elements[w].frequency, theory[w].frequency, kelvin[w].frequency);
@@ -266,7 +266,7 @@ void attenuation_at(const Subject &subject, const Eigen::Matrix2d &F, ClaimOutco
                          {},
                          kelvin[w].decay,
                          theory[w].decay,
-                         latcon::support::relative_error(kelvin[w].decay, theory[w].decay),
+                         support::relative_error(kelvin[w].decay, theory[w].decay),
                          std::pow(subject.lengths.lattice * k, 2)});
   }
 }
@@ -292,4 +292,4 @@ ClaimOutcome wave_speeds_claim(const Subject &subject, const WaveSpeedsOptions &
   return outcome;
 }
 
-} // namespace verification
+} // namespace latcon::verification

@@ -6,7 +6,7 @@
 #include "verification/claims/claim_outcome.h"
 #include "verification/claims/continuum_waves.h"
 
-namespace verification
+namespace latcon::verification
 {
 
 /// Claim `wave-speeds`: plane waves about a homogeneous state run as fast on the lattice as Bloch's analysis of it
@@ -26,4 +26,4 @@ struct WaveSpeedsOptions
 /// Runs the claim. Collective.
 ClaimOutcome wave_speeds_claim(const Subject &subject, const WaveSpeedsOptions &options);
 
-} // namespace verification
+} // namespace latcon::verification
