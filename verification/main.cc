@@ -4,7 +4,7 @@
 
 int main(int argc, char **argv)
 {
-  latcon::verification::install_signal_handlers();
+  latcon::commands::install_signal_handlers();
   const latcon::continuum::ParallelSession session;
-  return static_cast<int>(latcon::verification::run_program(argc, argv));
+  return static_cast<int>(latcon::commands::run_program(argc, argv));
 }

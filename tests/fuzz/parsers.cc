@@ -20,7 +20,10 @@ using namespace latcon;
 namespace
 {
 
-using namespace verification;
+using namespace bridge;
+using namespace commands;
+using namespace input;
+using namespace study;
 
 // A good case, short; the sheet of quick.prm.
 const std::string good = R"(

@@ -56,7 +56,7 @@ void redirect(int descriptor, const std::string &path)
   for (std::string &argument : arguments)
     argv.push_back(argument.data());
   argv.push_back(nullptr);
-  const auto code = verification::run_program(static_cast<int>(arguments.size()), argv.data());
+  const auto code = commands::run_program(static_cast<int>(arguments.size()), argv.data());
   std::cout.flush();
   std::fflush(nullptr);
   _exit(static_cast<int>(code));

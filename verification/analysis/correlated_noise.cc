@@ -7,7 +7,7 @@
 #include <Eigen/Cholesky>
 #include <Eigen/QR>
 
-namespace latcon::verification
+namespace latcon::analysis
 {
 namespace
 {
@@ -118,4 +118,4 @@ Eigen::MatrixXd least_squares_covariance(const CorrelatedNoise &noise, const Eig
   return solve * covariance(noise, position) * solve.transpose();
 }
 
-} // namespace latcon::verification
+} // namespace latcon::analysis

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace latcon::verification
+namespace latcon::analysis
 {
 
 /// Stationary noise along a coordinate s (reference X [m], or time [s]): a part that is new at every sample, such as a
@@ -50,4 +50,4 @@ Eigen::MatrixXd covariance(const CorrelatedNoise &noise, const Eigen::VectorXd &
 Eigen::MatrixXd least_squares_covariance(const CorrelatedNoise &noise, const Eigen::VectorXd &position,
                                          const Eigen::MatrixXd &design);
 
-} // namespace latcon::verification
+} // namespace latcon::analysis

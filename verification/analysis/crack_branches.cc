@@ -5,7 +5,7 @@
 #include <cstddef>
 #include <stdexcept>
 
-namespace latcon::verification
+namespace latcon::analysis
 {
 namespace
 {
@@ -73,4 +73,4 @@ double branched_fraction(const std::vector<BreakRecord> &breaks, double X_begin,
   return static_cast<double>(n_branched) / static_cast<double>(n_columns);
 }
 
-} // namespace latcon::verification
+} // namespace latcon::analysis

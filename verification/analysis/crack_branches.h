@@ -4,7 +4,7 @@
 
 #include "verification/analysis/crack_records.h"
 
-namespace latcon::verification
+namespace latcon::analysis
 {
 
 /// When the broken bonds of a sheet count as two cracks. Lengths in lattice spacings d.
@@ -39,4 +39,4 @@ struct BranchRule
 double branched_fraction(const std::vector<BreakRecord> &breaks, double X_begin, double X_end, double lattice_spacing,
                          const BranchRule &rule = {});
 
-} // namespace latcon::verification
+} // namespace latcon::analysis

@@ -6,7 +6,7 @@
 
 #include <Eigen/Core>
 
-namespace latcon::verification
+namespace latcon::analysis
 {
 namespace
 {
@@ -64,4 +64,4 @@ std::optional<FlankDamage> flank_damage(const std::vector<TipRecord> &tip, const
   return damage;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::analysis

@@ -5,7 +5,7 @@
 
 #include "verification/analysis/crack_records.h"
 
-namespace latcon::verification
+namespace latcon::analysis
 {
 
 /// Damage beside the path of a crack.
@@ -29,4 +29,4 @@ struct FlankDamage
 std::optional<FlankDamage> flank_damage(const std::vector<TipRecord> &tip, const std::vector<BreakRecord> &breaks,
                                         double X_begin, double X_end, double spacing);
 
-} // namespace latcon::verification
+} // namespace latcon::analysis

@@ -7,7 +7,7 @@
 
 #include "verification/analysis/crack_steady_part.h"
 
-namespace latcon::verification
+namespace latcon::analysis
 {
 namespace
 {
@@ -71,8 +71,8 @@ void check(const std::vector<BreakRecord> &breaks)
             "crack measurement: broken bond " + std::to_string(i) + " is not finite");
 }
 
-template <typename... Values>
-std::string text(const char *format, Values... values)
+template <typename... study::Values>
+std::string text(const char *format, study::Values... values)
 {
   char buffer[512];
   std::snprintf(buffer, sizeof(buffer), format, values...);
@@ -264,4 +264,4 @@ CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vec
   return m;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::analysis

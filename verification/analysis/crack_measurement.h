@@ -10,7 +10,7 @@
 #include "verification/analysis/crack_records.h"
 #include "verification/analysis/path_fit.h"
 
-namespace latcon::verification
+namespace latcon::analysis
 {
 
 /// What the path of a crack is like.
@@ -124,4 +124,4 @@ struct CrackMeasurement
 CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vector<BreakRecord> &breaks,
                                const CrackMeasurementOptions &options);
 
-} // namespace latcon::verification
+} // namespace latcon::analysis

@@ -1,6 +1,6 @@
 #pragma once
 
-namespace latcon::verification
+namespace latcon::analysis
 {
 
 /// Where the crack tip was. One record each time the tip moves; between records it rests.
@@ -29,4 +29,4 @@ struct BreakRecord
   double Y; ///< reference midpoint [m]
 };
 
-} // namespace latcon::verification
+} // namespace latcon::analysis

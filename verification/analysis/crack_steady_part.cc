@@ -8,7 +8,7 @@
 
 #include <Eigen/QR>
 
-namespace latcon::verification
+namespace latcon::analysis
 {
 namespace
 {
@@ -182,4 +182,4 @@ std::optional<Measured> steady_speed(const std::vector<TipRecord> &tip, double s
   return fit_slope(time, position, 1e-3 * spacing);
 }
 
-} // namespace latcon::verification
+} // namespace latcon::analysis

@@ -6,7 +6,7 @@
 #include "verification/analysis/crack_records.h"
 #include "verification/analysis/path_fit.h"
 
-namespace latcon::verification
+namespace latcon::analysis
 {
 
 /// How the steady part of an oscillating path is told.
@@ -52,4 +52,4 @@ std::optional<Measured> crest_amplitude(const std::vector<TipRecord> &tip, doubl
 /// @return none for fewer than ten records, or if the tip or time does not advance
 std::optional<Measured> steady_speed(const std::vector<TipRecord> &tip, double spacing, double TipRecord::*coordinate);
 
-} // namespace latcon::verification
+} // namespace latcon::analysis

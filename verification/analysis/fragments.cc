@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
-namespace latcon::verification
+namespace latcon::analysis
 {
 namespace
 {
@@ -122,4 +122,4 @@ double bridged_length(const lattice::State &state, const lattice::TriangularLatt
   return width * static_cast<double>(std::count(bridged.begin(), bridged.end(), 1));
 }
 
-} // namespace latcon::verification
+} // namespace latcon::analysis

@@ -5,7 +5,7 @@
 
 #include "lattice/state.h"
 
-namespace latcon::verification
+namespace latcon::analysis
 {
 
 /// The pieces of a broken sheet: its sites, connected through the bonds that are present.
@@ -34,4 +34,4 @@ std::size_t n_overstretched_bonds(const lattice::State &state, const lattice::Tr
 double bridged_length(const lattice::State &state, const lattice::TriangularLattice &lattice, double X_from,
                       double X_to);
 
-} // namespace latcon::verification
+} // namespace latcon::analysis

@@ -8,7 +8,7 @@
 #include "lattice/site_fields.h"
 #include "lattice/strain_gradient.h"
 
-namespace latcon::verification
+namespace latcon::analysis
 {
 
 /// A regular grid in the reference configuration that moves with the tip: points at (X, Y) - (X_tip, Y_tip), the tip
@@ -98,15 +98,15 @@ private:
   template <int n>
   struct Sum
   {
-    using Values = Eigen::Array<double, n, 1>;
+    using study::Values = Eigen::Array<double, n, 1>;
     Eigen::Array<double, n, Eigen::Dynamic> values;
     Eigen::ArrayXd weights;
 
     void make_room(const NearTipGrid &grid);
-    void add(std::size_t point, double weight, const Values &site);
+    void add(std::size_t point, double weight, const study::Values &site);
     /// @param signs of the components in a mirror image in Y; null: `other` is added as it is
-    void add(const Sum &other, const NearTipGrid &grid, const Values *signs);
-    std::optional<Values> mean(std::size_t point) const;
+    void add(const Sum &other, const NearTipGrid &grid, const study::Values *signs);
+    std::optional<study::Values> mean(std::size_t point) const;
     /// Whether it has values at all points, or at none.
     bool fits(const NearTipGrid &grid) const
     {
@@ -265,4 +265,4 @@ private:
   std::size_t taken_ = 0;
 };
 
-} // namespace latcon::verification
+} // namespace latcon::analysis

@@ -8,7 +8,7 @@
 
 #include <Eigen/LU>
 
-namespace latcon::verification
+namespace latcon::analysis
 {
 namespace
 {
@@ -364,4 +364,4 @@ std::optional<double> wedge_angle(const std::vector<Eigen::Vector2d> &sites, con
   return std::atan(slope_of(lower)) - std::atan(slope_of(upper));
 }
 
-} // namespace latcon::verification
+} // namespace latcon::analysis

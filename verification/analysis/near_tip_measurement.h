@@ -6,7 +6,7 @@
 
 #include "verification/analysis/near_tip_fields.h"
 
-namespace latcon::verification
+namespace latcon::analysis
 {
 
 /// Material ahead of the tip that moves against the crack, v_x < -fraction * crack speed. In a steady field that is
@@ -105,4 +105,4 @@ std::optional<OpeningStress> opening_stress(const NearTipField &field, double ra
 std::optional<double> wedge_angle(const std::vector<Eigen::Vector2d> &sites, const Eigen::Vector2d &pitch, double from,
                                   double to);
 
-} // namespace latcon::verification
+} // namespace latcon::analysis

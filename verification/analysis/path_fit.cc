@@ -6,7 +6,7 @@
 
 #include <Eigen/QR>
 
-namespace latcon::verification
+namespace latcon::analysis
 {
 namespace
 {
@@ -205,4 +205,4 @@ Measured fit_slope(const Eigen::VectorXd &position, const Eigen::VectorXd &sampl
   return {weight.dot(slope), std::sqrt(weight.dot(covariance(noise, middle) * weight))};
 }
 
-} // namespace latcon::verification
+} // namespace latcon::analysis

@@ -8,7 +8,7 @@
 
 #include "verification/analysis/correlated_noise.h"
 
-namespace latcon::verification
+namespace latcon::analysis
 {
 
 /// A measured value and one standard deviation of its error, both in the unit of the quantity.
@@ -112,4 +112,4 @@ std::optional<SinusoidFit> fit_sinusoid(const ColumnMeans &path, double shortest
 /// @throws std::invalid_argument for fewer than four samples
 Measured fit_slope(const Eigen::VectorXd &position, const Eigen::VectorXd &samples, double resolution);
 
-} // namespace latcon::verification
+} // namespace latcon::analysis

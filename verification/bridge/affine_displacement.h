@@ -9,7 +9,7 @@
 #include "continuum/rectangle.h"
 #include "continuum/static_solver.h"
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 
 /// u(X) = (F - I) X [m].
@@ -37,4 +37,4 @@ inline std::vector<continuum::PrescribedDisplacement> affine_boundary(const Eige
   return conditions;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

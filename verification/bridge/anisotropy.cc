@@ -5,7 +5,7 @@
 
 #include <Eigen/Geometry>
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 
 Eigen::Matrix2d lattice_rotation(int k)
@@ -31,4 +31,4 @@ RotationMean rotation_mean(const Eigen::MatrixXd &values)
   return {mean, bound};
 }
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

@@ -2,7 +2,7 @@
 
 #include <Eigen/Core>
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 
 /// Rotations of a triangular lattice over which means are taken, equispaced over 60 degrees, after which it coincides
@@ -25,4 +25,4 @@ struct RotationMean
 /// belong to the rotations 0, 1 ... n_lattice_rotations - 1.
 RotationMean rotation_mean(const Eigen::MatrixXd &values);
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

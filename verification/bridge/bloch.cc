@@ -2,7 +2,7 @@
 
 #include <cmath>
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 
 WaveMatrices bloch_matrices(const lattice::TriangularLattice &lattice, const lattice::Material &material,
@@ -39,4 +39,4 @@ std::array<PlaneWave, 2> bloch_waves(const lattice::TriangularLattice &lattice, 
   return plane_waves(matrices, wave_normal(F, K));
 }
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

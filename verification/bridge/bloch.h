@@ -3,7 +3,7 @@
 #include "lattice/material.h"
 #include "verification/bridge/plane_waves.h"
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 
 /// Dynamical matrix of an endless lattice at the homogeneous deformation F, over the mass of a site
@@ -16,4 +16,4 @@ WaveMatrices bloch_matrices(const lattice::TriangularLattice &lattice, const lat
 std::array<PlaneWave, 2> bloch_waves(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                                      const Eigen::Matrix2d &F, const Eigen::Vector2d &K);
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

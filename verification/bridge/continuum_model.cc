@@ -9,7 +9,7 @@
 #include "support/errors.h"
 #include "verification/bridge/affine_displacement.h"
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 namespace
 {
@@ -18,12 +18,12 @@ namespace
 class EdgeDisplacement : public dealii::Function<2>
 {
 public:
-  EdgeDisplacement(const EdgeCase &edge, const Eigen::Matrix2d &F, double extent)
+  EdgeDisplacement(const input::EdgeCase &edge, const Eigen::Matrix2d &F, double extent)
     : dealii::Function<2>(2),
       loading_(F), is_loading_{edge.displacement_x == "loading", edge.displacement_y == "loading"}
   {
     const auto expression = [](const std::string &text) { return text == "loading" || text == "free" ? "0" : text; };
-    FieldCase given;
+    input::FieldCase given;
     given.x = expression(edge.displacement_x);
     given.y = expression(edge.displacement_y);
     given_ = given.field(extent);
@@ -42,11 +42,10 @@ private:
 
 } // namespace
 
-ContinuumModel::ContinuumModel(const Case &input)
-  : subject_(verification::subject(input)), law_(input.continuum.law), penalty_(input.continuum.penalty),
-    mesh_(MPI_COMM_WORLD)
+ContinuumModel::ContinuumModel(const input::Case &input)
+  : subject_(subject(input)), law_(input.continuum.law), penalty_(input.continuum.penalty), mesh_(MPI_COMM_WORLD)
 {
-  if (input.continuum.law == ContinuumLaw::mooney_rivlin)
+  if (input.continuum.law == input::ContinuumLaw::mooney_rivlin)
   {
     if (!subject_.mooney_rivlin)
       throw support::InputError(
@@ -60,20 +59,20 @@ ContinuumModel::ContinuumModel(const Case &input)
   const GradientLengths lengths = gradient_lengths(sheet, subject_.material);
   switch (input.continuum.gradient)
   {
-  case ContinuumGradient::isotropic:
+  case input::ContinuumGradient::isotropic:
     static_length_ = input.continuum.static_length.value_or(lengths.isotropic_static);
     inertia_length_ = input.continuum.inertia_length.value_or(lengths.isotropic_inertia);
     gradient_ = std::make_unique<continuum::IsotropicGradient>(subject_.theory.shear_modulus, static_length_);
     break;
-  case ContinuumGradient::lattice:
+  case input::ContinuumGradient::lattice:
     inertia_length_ = input.continuum.inertia_length.value_or(lengths.lattice);
     gradient_ = std::make_unique<continuum::LatticeGradient>(bond_families(sheet, subject_.material), inertia_length_);
     break;
-  case ContinuumGradient::network:
+  case input::ContinuumGradient::network:
     inertia_length_ = input.continuum.inertia_length.value_or(lengths.lattice);
     gradient_ = std::make_unique<continuum::NetworkGradient>(bond_families(sheet, subject_.material), inertia_length_);
     break;
-  case ContinuumGradient::none:
+  case input::ContinuumGradient::none:
     inertia_length_ = input.continuum.inertia_length.value_or(0.);
     break;
   }
@@ -81,12 +80,13 @@ ContinuumModel::ContinuumModel(const Case &input)
   make_conditions(input);
 }
 
-void ContinuumModel::make_mesh(const Case &input)
+void ContinuumModel::make_mesh(const input::Case &input)
 {
   // The size of the lattice after rounding to whole rows, so that both sides are the same sheet.
   const lattice::TriangularLattice sheet = input.lattice();
-  const ContinuumCase &c = input.continuum;
-  const auto periodic = [&c](std::size_t edge) { return c.edges[edge].condition == EdgeCase::Condition::periodic; };
+  const input::ContinuumCase &c = input.continuum;
+  const auto periodic = [&c](std::size_t edge)
+  { return c.edges[edge].condition == input::EdgeCase::Condition::periodic; };
   if (!c.mesh_file.empty())
     continuum::read_gmsh(mesh_, c.mesh_file, c.refinements);
   else if (input.hole_radius > 0.)
@@ -97,30 +97,30 @@ void ContinuumModel::make_mesh(const Case &input)
     continuum::make_rectangle(mesh_, {sheet.length(), sheet.height(), c.cells_x, c.cells_y, periodic(0), periodic(2)});
 }
 
-void ContinuumModel::make_conditions(const Case &input)
+void ContinuumModel::make_conditions(const input::Case &input)
 {
-  const ContinuumCase &c = input.continuum;
+  const input::ContinuumCase &c = input.continuum;
   const auto ids = mesh_.get_boundary_ids();
   const Eigen::Matrix2d F = input.deformation();
   for (dealii::types::boundary_id id = 0; id < c.edges.size(); ++id)
   {
-    const EdgeCase &edge = c.edges[id];
+    const input::EdgeCase &edge = c.edges[id];
     // A mesh from a file may lack edges; the inner edge is there with a hole or a notch alone.
     if (std::find(ids.begin(), ids.end(), id) == ids.end())
       continue;
-    if (edge.condition == EdgeCase::Condition::held)
+    if (edge.condition == input::EdgeCase::Condition::held)
       conditions_.displacements.push_back(
         {id, std::make_shared<EdgeDisplacement>(edge, F, extent_),
          dealii::ComponentMask(std::vector<bool>{edge.displacement_x != "free", edge.displacement_y != "free"})});
-    if (edge.condition == EdgeCase::Condition::periodic)
+    if (edge.condition == input::EdgeCase::Condition::periodic)
     {
       if (id % 2 == 0)
         conditions_.periodic.push_back({id, id + 1u, id / 2u});
       continue;
     }
-    if (edge.normal_gradient == EdgeCase::NormalGradient::clamped)
+    if (edge.normal_gradient == input::EdgeCase::NormalGradient::clamped)
       conditions_.normal_gradients.push_back({id, std::make_shared<dealii::Functions::ZeroFunction<2>>(2)});
-    if (edge.normal_gradient == EdgeCase::NormalGradient::loading)
+    if (edge.normal_gradient == input::EdgeCase::NormalGradient::loading)
     {
       // (F - I) N with the outward normal of an outer edge; rims of holes have no such single normal.
       const Eigen::Vector2d normals[4] = {{-1., 0.}, {1., 0.}, {0., -1.}, {0., 1.}};
@@ -133,7 +133,7 @@ void ContinuumModel::make_conditions(const Case &input)
     if (!edge.double_traction.is_zero())
       conditions_.double_tractions.push_back({id, edge.double_traction.field(extent_)});
   }
-  if (c.solution == ContinuumCase::Solution::equilibrium && conditions_.displacements.empty())
+  if (c.solution == input::ContinuumCase::Solution::equilibrium && conditions_.displacements.empty())
     throw support::InputError("the mesh file " + c.mesh_file +
                               " has no edge that the case holds, and equilibrium needs one");
   if (!c.body_force.is_zero())
@@ -146,13 +146,13 @@ continuum::Constitution ContinuumModel::constitution() const
   const continuum::Material *law = nullptr;
   switch (law_)
   {
-  case ContinuumLaw::cauchy_born:
+  case input::ContinuumLaw::cauchy_born:
     law = &subject_.cauchy_born;
     break;
-  case ContinuumLaw::mooney_rivlin_network:
+  case input::ContinuumLaw::mooney_rivlin_network:
     law = &subject_.network;
     break;
-  case ContinuumLaw::mooney_rivlin:
+  case input::ContinuumLaw::mooney_rivlin:
     law = &*mooney_rivlin_;
     break;
   }
@@ -162,4 +162,4 @@ continuum::Constitution ContinuumModel::constitution() const
   return constitution;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

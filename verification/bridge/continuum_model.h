@@ -9,7 +9,7 @@
 #include "verification/bridge/subject.h"
 #include "verification/input/case.h"
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 
 /// The finite element sheet of a case: laws, mesh and conditions, handed to the continuum as constants and functions.
@@ -18,7 +18,7 @@ class ContinuumModel
 {
 public:
   /// @throws InputError if the mesh file cannot be used, or no Mooney-Rivlin law is known for the loading path.
-  explicit ContinuumModel(const Case &input);
+  explicit ContinuumModel(const input::Case &input);
 
   continuum::Sheet::Mesh &mesh() { return mesh_; }
   continuum::Constitution constitution() const;
@@ -30,11 +30,11 @@ public:
   double inertia_length() const { return inertia_length_; } ///< l_d [m]; 0 without a gradient energy
 
 private:
-  void make_mesh(const Case &input);
-  void make_conditions(const Case &input);
+  void make_mesh(const input::Case &input);
+  void make_conditions(const input::Case &input);
 
   Subject subject_;
-  ContinuumLaw law_;
+  input::ContinuumLaw law_;
   std::optional<continuum::MooneyRivlin> mooney_rivlin_; // if it is the case's law
   double penalty_;
   double extent_ = 0.;
@@ -45,4 +45,4 @@ private:
   continuum::BoundaryConditions conditions_;
 };
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

@@ -8,7 +8,7 @@
 
 #include "support/largest_error.h"
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 namespace
 {
@@ -145,4 +145,4 @@ EquivalentSheet nominal_sheet(const lattice::TriangularLattice &lattice, const l
           hole != nullptr ? hole->radius : std::get<lattice::Notch>(cutout).length};
 }
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

@@ -3,7 +3,7 @@
 #include "lattice/cutout.h"
 #include "lattice/material.h"
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 
 // Where the edges of a lattice sheet are, as a continuum feels them (theory-comparison.md, section "Edges of the
@@ -43,4 +43,4 @@ EquivalentSheet equivalent_sheet(const lattice::TriangularLattice &lattice, cons
 /// The sheet as a case describes it: edges through the outermost sites, hole and notch of their nominal size.
 EquivalentSheet nominal_sheet(const lattice::TriangularLattice &lattice, const lattice::Cutout &cutout);
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

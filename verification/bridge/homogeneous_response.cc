@@ -5,7 +5,7 @@
 #include "lattice/forces.h"
 #include "lattice/site_fields.h"
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 
 LatticeResponse homogeneous_response(const lattice::TriangularLattice &sheet, const lattice::Material &material,
@@ -35,4 +35,4 @@ LatticeResponse homogeneous_response(const lattice::TriangularLattice &sheet, co
   return {fields.strain_energy_density[sheet.index(row, column)], P};
 }
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

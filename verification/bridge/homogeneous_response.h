@@ -2,7 +2,7 @@
 
 #include "lattice/material.h"
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 
 /// Energy density [J/m^3] and first Piola stress [Pa] of a lattice in homogeneous deformation, by its simulator.
@@ -17,4 +17,4 @@ struct LatticeResponse
 LatticeResponse homogeneous_response(const lattice::TriangularLattice &sheet, const lattice::Material &material,
                                      const Eigen::Matrix2d &F);
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

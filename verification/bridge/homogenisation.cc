@@ -8,7 +8,7 @@
 #include "continuum/errors.h"
 #include "support/largest_error.h"
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 namespace
 {
@@ -206,4 +206,4 @@ Calibration with_ratio(const lattice::TriangularLattice &lattice, const lattice:
   return calibration;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

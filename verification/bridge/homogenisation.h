@@ -10,7 +10,7 @@
 #include "continuum/viscosity.h"
 #include "lattice/material.h"
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 
 /// Small-strain constants of a lattice's continuum (theory-comparison.md, eqs. (H.2) and (H.3)): isotropic, lambda =
@@ -90,4 +90,4 @@ dealii::Tensor<2, 2> to_continuum(const Eigen::Matrix2d &F);
 /// Likewise, the other way.
 Eigen::Matrix2d to_lattice(const dealii::Tensor<2, 2> &F);
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

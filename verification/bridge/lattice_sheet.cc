@@ -3,14 +3,14 @@
 #include "lattice/cutout.h"
 #include "lattice/end_loads.h"
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 namespace
 {
 
-using Condition = EdgeCase::Condition;
+using Condition = input::EdgeCase::Condition;
 
-void check_edge(const EdgeCase &edge, Parameters &p, const std::string &command)
+void check_edge(const input::EdgeCase &edge, input::Parameters &p, const std::string &command)
 {
   if (edge.condition == Condition::held && (edge.displacement_x != "loading" || edge.displacement_y != "loading"))
     p.error(edge.name + (edge.displacement_x != "loading" ? "/displacement x" : "/displacement y"),
@@ -23,15 +23,15 @@ void check_edge(const EdgeCase &edge, Parameters &p, const std::string &command)
     p.error(edge.name + "/double traction " + edge.double_traction.given(),
             command + " has no double tractions; give 0");
   // Sites held at the loading in a layer have its normal gradient, whatever the edge of a gradient continuum is told.
-  if (edge.normal_gradient == EdgeCase::NormalGradient::clamped)
+  if (edge.normal_gradient == input::EdgeCase::NormalGradient::clamped)
     p.error(edge.name + "/normal gradient", command + " cannot clamp it; give free or loading");
 }
 
 // A pair of periodic edges moves as a whole in a motion, which starts at the loading; in equilibrium the finite
 // elements keep its period as it is undeformed.
-void check_period(const Case &input, Parameters &p, const std::string &command)
+void check_period(const input::Case &input, input::Parameters &p, const std::string &command)
 {
-  if (input.solution != Case::Solution::relaxed)
+  if (input.solution != input::Case::Solution::relaxed)
     return;
   const lattice::Periodic periodic = input.lattice().periodic();
   if (periodic.x && input.strain_x != 0.)
@@ -44,10 +44,10 @@ void check_period(const Case &input, Parameters &p, const std::string &command)
 
 } // namespace
 
-void require_lattice_sheet(const Case &input, Parameters &p, const std::string &command)
+void require_lattice_sheet(const input::Case &input, input::Parameters &p, const std::string &command)
 {
-  const ContinuumCase &c = input.continuum;
-  for (const EdgeCase &edge : c.edges)
+  const input::ContinuumCase &c = input.continuum;
+  for (const input::EdgeCase &edge : c.edges)
     check_edge(edge, p, command);
   if (input.has_inner_edge() && c.edges[4].condition == Condition::held)
     p.error("Inner edge/condition", command + " leaves the rim of a hole or notch free; give free");
@@ -58,7 +58,7 @@ void require_lattice_sheet(const Case &input, Parameters &p, const std::string &
             command + " has no body force; give 0");
   if (input.has_sheet())
     check_period(input, p, command);
-  if (input.solution == Case::Solution::relaxed)
+  if (input.solution == input::Case::Solution::relaxed)
   {
     bool held = false;
     for (std::size_t id = 0; id < 4; ++id)
@@ -68,7 +68,7 @@ void require_lattice_sheet(const Case &input, Parameters &p, const std::string &
               {"Right edge/condition", "Bottom edge/condition", "Top edge/condition"});
     return;
   }
-  if (c.initial_base != ContinuumCase::Base::loading)
+  if (c.initial_base != input::ContinuumCase::Base::loading)
     p.error("Initial state/base", command + " starts a motion from the homogeneous loading; give loading");
   for (const auto &[field, name] : {std::pair(&c.initial_displacement, std::string("Initial state/displacement")),
                                     std::pair(&c.initial_velocity, std::string("Initial state/velocity"))})
@@ -76,7 +76,7 @@ void require_lattice_sheet(const Case &input, Parameters &p, const std::string &
       p.error(name + (field->x != "0" ? " x" : " y"), command + " starts a motion at rest, but for the noise; give 0");
 }
 
-void require_whole_held_sheet(const Case &input, Parameters &p, const std::string &command)
+void require_whole_held_sheet(const input::Case &input, input::Parameters &p, const std::string &command)
 {
   if (input.hole_radius > 0.)
     p.error("Sheet/hole radius", command + " has no use for a hole; give 0");
@@ -85,26 +85,26 @@ void require_whole_held_sheet(const Case &input, Parameters &p, const std::strin
   for (std::size_t id = 0; id < 4; ++id)
     if (input.continuum.edges[id].condition != Condition::held)
       p.error(input.continuum.edges[id].name + "/condition", command + " holds every edge of the sheet; give held");
-  for (const EdgeCase &edge : input.continuum.edges)
+  for (const input::EdgeCase &edge : input.continuum.edges)
     check_edge(edge, p, command);
 }
 
-void require_fracture_case(const Case &input, Parameters &p)
+void require_fracture_case(const input::Case &input, input::Parameters &p)
 {
   require_whole_held_sheet(input, p, "`latcon fracture`");
   if (!input.breaking_stretch)
     p.error("Fracture/breaking stretch", "fracture needs a breaking stretch");
   if (!(input.end_time > 0.))
     p.error("Time/end", "fracture needs an end time larger than 0");
-  const bool absorbs = input.left_end == Case::End::absorbing || input.right_end == Case::End::absorbing;
+  const bool absorbs = input.left_end == input::Case::End::absorbing || input.right_end == input::Case::End::absorbing;
   if (p.good() && absorbs && !lattice::waves_run_along_x(input.lattice(), input.material(), input.deformation()))
-    p.error(input.left_end == Case::End::absorbing ? "Fracture/left end" : "Fracture/right end",
+    p.error(input.left_end == input::Case::End::absorbing ? "Fracture/left end" : "Fracture/right end",
             "no waves run along x in the sheet as it is loaded, which buckles there, so that an end cannot absorb "
             "them; give held or free",
             {"Loading/strain x", "Loading/strain y"});
 }
 
-lattice::State lattice_state(const Case &input, const lattice::RowPartition &band)
+lattice::State lattice_state(const input::Case &input, const lattice::RowPartition &band)
 {
   const auto held = [&](std::size_t id) { return input.continuum.edges[id].condition == Condition::held; };
   lattice::State state =
@@ -116,4 +116,4 @@ lattice::State lattice_state(const Case &input, const lattice::RowPartition &ban
   return state;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

@@ -4,7 +4,7 @@
 
 #include "verification/input/case.h"
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 
 /// Laws of the continuum that claims set beside a lattice.
@@ -34,16 +34,16 @@ inline Laws laws_of_lattice()
 }
 
 /// Laws of the runs of a case: those of its lattice, and those that its finite elements ask for.
-inline Laws laws_of(const Case &input)
+inline Laws laws_of(const input::Case &input)
 {
   Laws laws = laws_of_lattice();
-  if (input.continuum.law == ContinuumLaw::mooney_rivlin)
+  if (input.continuum.law == input::ContinuumLaw::mooney_rivlin)
     laws.insert(Law::mooney_rivlin);
-  if (input.continuum.law == ContinuumLaw::mooney_rivlin_network)
+  if (input.continuum.law == input::ContinuumLaw::mooney_rivlin_network)
     laws.insert(Law::mooney_rivlin_network);
-  if (input.continuum.gradient == ContinuumGradient::isotropic)
+  if (input.continuum.gradient == input::ContinuumGradient::isotropic)
     laws.insert(Law::isotropic_gradient);
   return laws;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

@@ -2,7 +2,7 @@
 
 #include "verification/bridge/homogeneous_response.h"
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 
 NetworkComparison::NetworkComparison(const Subject &subject, const lattice::TriangularLattice &sheet,
@@ -28,4 +28,4 @@ NetworkComparison::NetworkComparison(const Subject &subject, const lattice::Tria
   stress = rotation_mean(stresses);
 }
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

@@ -3,7 +3,7 @@
 #include "verification/bridge/anisotropy.h"
 #include "verification/bridge/subject.h"
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 
 /// Network law and lattice in one homogeneous deformation. The law leaves out the lattice's dependence on direction and
@@ -34,4 +34,4 @@ public:
   double stress_bound() const { return stress.bound / lattice_stress.norm() + equal_formulas; }
 };
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

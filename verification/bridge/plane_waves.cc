@@ -11,7 +11,7 @@
 
 #include "support/largest_error.h"
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 namespace
 {
@@ -83,4 +83,4 @@ Eigen::Vector2d wave_normal(const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
   return (F.inverse().transpose() * K).normalized();
 }
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

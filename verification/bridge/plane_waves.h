@@ -4,7 +4,7 @@
 
 #include <Eigen/Core>
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 
 /// What a plane wave u = p exp(i K.X) meets in a homogeneous sheet, per unit of the mass that moves with it, so that
@@ -44,4 +44,4 @@ double fastest_frequency(const std::array<PlaneWave, 2> &waves);
 /// Direction of the wave fronts of K in the deformed sheet, F^-T K normalised.
 Eigen::Vector2d wave_normal(const Eigen::Matrix2d &F, const Eigen::Vector2d &K);
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

@@ -7,7 +7,7 @@
 
 #include "verification/bridge/bloch.h"
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 
 SlowestWave slowest_wave(const lattice::TriangularLattice &lattice, const lattice::Material &material,
@@ -37,4 +37,4 @@ SlowestWave slowest_wave(const lattice::TriangularLattice &lattice, const lattic
   return slowest;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

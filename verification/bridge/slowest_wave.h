@@ -2,7 +2,7 @@
 
 #include "lattice/material.h"
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 
 /// The wave of an endless lattice that comes nearest to standing still, or grows.
@@ -19,4 +19,4 @@ struct SlowestWave
 SlowestWave slowest_wave(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                          const Eigen::Matrix2d &F);
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

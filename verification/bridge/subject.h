@@ -16,7 +16,7 @@
 #include "verification/bridge/slowest_wave.h"
 #include "verification/input/case.h"
 
-namespace latcon::verification
+namespace latcon::bridge
 {
 
 /// What rows call a lattice with one shell or two: "NN" or "NN+NNN".
@@ -79,7 +79,7 @@ struct Subject
 };
 
 /// The subject of a case; `material` may differ from the case's own.
-inline Subject subject(const Case &input, const lattice::Material &material, const Laws &laws = all_laws())
+inline Subject subject(const input::Case &input, const lattice::Material &material, const Laws &laws = all_laws())
 {
   const lattice::TriangularLattice sheet = input.lattice();
   const std::optional<double> given = input.continuum.mooney_rivlin_ratio;
@@ -114,9 +114,9 @@ inline Subject subject(const Case &input, const lattice::Material &material, con
 }
 
 /// The subject of a case as it stands, all laws judged.
-inline Subject subject(const Case &input)
+inline Subject subject(const input::Case &input)
 {
   return subject(input, input.material());
 }
 
-} // namespace latcon::verification
+} // namespace latcon::bridge

@@ -8,7 +8,7 @@
 #include "support/full_precision.h"
 #include "verification/input/case_text.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -41,14 +41,14 @@ constexpr std::array read_by_claims{
 constexpr double sheet_size = 12.; // spacings
 
 // Lines `Section/Name=value` of the entries that claims may read.
-std::vector<std::string> assignments(const Case &input)
+std::vector<std::string> assignments(const input::Case &input)
 {
-  Case copy = input; // declaring binds entries to members that may be written
-  Parameters parameters;
+  input::Case copy = input; // declaring binds entries to members that may be written
+  input::Parameters parameters;
   copy.declare(parameters);
   std::vector<std::string> lines;
-  for (const auto &item : read_prm(parameters.resolved_text(), "case"))
-    if (const auto *entry = std::get_if<Assignment>(&item))
+  for (const auto &item : input::read_prm(parameters.resolved_text(), "case"))
+    if (const auto *entry = std::get_if<input::Assignment>(&item))
     {
       const std::string key = entry->section + "/" + entry->name;
       if (std::find(read_by_claims.begin(), read_by_claims.end(), key) != read_by_claims.end())
@@ -59,7 +59,7 @@ std::vector<std::string> assignments(const Case &input)
 
 } // namespace
 
-std::string claim_inputs_text(const Case &input)
+std::string claim_inputs_text(const input::Case &input)
 {
   std::string text;
   for (const std::string &line : assignments(input))
@@ -67,17 +67,17 @@ std::string claim_inputs_text(const Case &input)
   return text;
 }
 
-Case claim_inputs(const Case &input)
+input::Case claim_inputs(const input::Case &input)
 {
   std::vector<std::string> lines = assignments(input);
   for (const char *extent : {"length", "height"})
     lines.push_back(std::string("Sheet/") + extent + "=" + support::full_precision(sheet_size * input.spacing));
-  Case read;
-  Parameters parameters;
+  input::Case read;
+  input::Parameters parameters;
   read.declare(parameters);
   parameters.read_overrides(lines);
   parameters.finish();
   return read;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

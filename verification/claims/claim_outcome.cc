@@ -4,13 +4,13 @@
 
 #include "verification/output/output_file.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 void ClaimOutcome::write_tables(const std::string &folder) const
 {
   for (const auto &[name, rows] : tables)
-    write_file((std::filesystem::path(folder) / (name + ".csv")).string(), rows.csv());
+    output::write_file((std::filesystem::path(folder) / (name + ".csv")).string(), rows.csv());
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

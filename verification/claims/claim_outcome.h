@@ -6,17 +6,17 @@
 #include "verification/output/csv.h"
 #include "verification/output/results.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// What a claim found: a row for each thing checked, and the numbers behind them for plots and readers.
 struct ClaimOutcome
 {
-  Results results;
-  std::map<std::string, Table> tables; ///< by file name without ".csv"
+  output::Results results;
+  std::map<std::string, output::Table> tables; ///< by file name without ".csv"
 
   /// The table of that name, made with these columns if it is not there yet.
-  Table &table(const std::string &name, const std::vector<std::string> &columns)
+  output::Table &table(const std::string &name, const std::vector<std::string> &columns)
   {
     return tables.try_emplace(name, columns).first->second;
   }
@@ -33,4 +33,4 @@ struct ClaimOutcome
   void write_tables(const std::string &folder) const;
 };
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -12,7 +12,7 @@
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/homogenisation.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -78,11 +78,11 @@ class WaveSheet
 public:
   WaveSheet(const WaveContinuum &medium, const continuum::Sheet &sheet, const Eigen::Matrix2d &F,
             const Eigen::Vector2d &K)
-    : sheet_(sheet), waves_(plane_waves(elastic(continuum_matrices(medium, F, K)), wave_normal(F, K)))
+    : sheet_(sheet), waves_(bridge::plane_waves(elastic(continuum_matrices(medium, F, K)), bridge::wave_normal(F, K)))
   {
     sheet.make_matrix(sheet.conformity_constraints(), mass_);
     sheet.mass(medium.inertia.density, medium.inertia.length, sheet.conformity_constraints(), mass_);
-    base_ = interpolated(sheet, AffineDisplacement(F));
+    base_ = interpolated(sheet, bridge::AffineDisplacement(F));
     for (std::size_t w = 0; w < 2; ++w)
       shapes_[w] = interpolated(sheet, CosineWave(K, waves_[w].polarisation));
   }
@@ -90,7 +90,7 @@ public:
   const continuum::Sheet::Matrix &mass() const { return mass_; }
   const Vector &base() const { return base_; } ///< displacement of the homogeneous state [m]
   const Vector &shape(std::size_t w) const { return shapes_[w]; }
-  const PlaneWave &wave(std::size_t w) const { return waves_[w]; }
+  const bridge::PlaneWave &wave(std::size_t w) const { return waves_[w]; }
 
   /// x.A y over the independent unknowns.
   double form(const continuum::Sheet::Matrix &A, const Vector &x, const Vector &y) const
@@ -114,14 +114,14 @@ public:
   }
 
 private:
-  static WaveMatrices elastic(WaveMatrices matrices)
+  static bridge::WaveMatrices elastic(bridge::WaveMatrices matrices)
   {
     matrices.damping.setZero();
     return matrices;
   }
 
   const continuum::Sheet &sheet_;
-  std::array<PlaneWave, 2> waves_;
+  std::array<bridge::PlaneWave, 2> waves_;
   continuum::Sheet::Matrix mass_;
   Vector base_;
   std::array<Vector, 2> shapes_;
@@ -181,9 +181,9 @@ std::array<Oscillation, 2> measure(const WaveContinuum &medium, const Eigen::Mat
 
 } // namespace
 
-WaveMatrices continuum_matrices(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
+bridge::WaveMatrices continuum_matrices(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
 {
-  const dealii::Tensor<2, 2> state = to_continuum(F);
+  const dealii::Tensor<2, 2> state = bridge::to_continuum(F);
   const dealii::Tensor<4, 2> T = medium.constitution.local->tangent(state);
   dealii::Tensor<6, 2> C;
   if (medium.constitution.gradient != nullptr)
@@ -191,7 +191,7 @@ WaveMatrices continuum_matrices(const WaveContinuum &medium, const Eigen::Matrix
   dealii::Tensor<4, 2> viscous;
   if (medium.viscosity != nullptr)
     viscous = medium.viscosity->stress_by_rate(state, dealii::Tensor<2, 2>());
-  WaveMatrices matrices{Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero()};
+  bridge::WaveMatrices matrices{Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Zero()};
   for (unsigned int i = 0; i < 2; ++i)
     for (unsigned int k = 0; k < 2; ++k)
       for (unsigned int J = 0; J < 2; ++J)
@@ -269,9 +269,10 @@ std::array<double, 2> discrete_frequencies(const WaveContinuum &medium, const Ei
 std::array<Oscillation, 2> finite_element_waves(const WaveContinuum &medium, const Eigen::Matrix2d &F,
                                                 const Eigen::Vector2d &K, const WaveMesh &mesh)
 {
-  const std::array<PlaneWave, 2> waves = plane_waves(continuum_matrices(medium, F, K), wave_normal(F, K));
+  const std::array<bridge::PlaneWave, 2> waves =
+    bridge::plane_waves(continuum_matrices(medium, F, K), bridge::wave_normal(F, K));
   // The error of average acceleration is (w h)^2 / 12 before extrapolation, which leaves some (w h)^4 / 300 of it.
-  const double time_step = 2. * M_PI / 28. / fastest_frequency(waves);
+  const double time_step = 2. * M_PI / 28. / bridge::fastest_frequency(waves);
   const std::array<Oscillation, 2> coarse = measure(medium, F, K, mesh, time_step);
   std::array<Oscillation, 2> result = measure(medium, F, K, mesh, 0.5 * time_step);
   for (std::size_t w = 0; w < 2; ++w)
@@ -289,7 +290,7 @@ double sinusoidal_energy(const WaveContinuum &medium, const Eigen::Matrix2d &F, 
   const continuum::Rectangle rectangle = one_wavelength(K, resolution.cells);
   continuum::make_rectangle(mesh, rectangle);
   const continuum::Sheet sheet(mesh, medium.constitution, resolution.degree, periodic_edges());
-  const Vector base = interpolated(sheet, AffineDisplacement(F)), shape = interpolated(sheet, CosineWave(K, p));
+  const Vector base = interpolated(sheet, bridge::AffineDisplacement(F)), shape = interpolated(sheet, CosineWave(K, p));
   Vector u = sheet.make_ghosted(), sum = sheet.make_owned();
   const auto energy = [&](double size)
   {
@@ -309,7 +310,8 @@ TravellingEnergy travelling_energy(const WaveContinuum &medium, const Eigen::Mat
   continuum::Sheet::Mesh mesh(MPI_COMM_SELF);
   const continuum::Rectangle rectangle = one_wavelength(K, resolution.cells);
   continuum::make_rectangle(mesh, rectangle);
-  const PlaneWave found = plane_waves(continuum_matrices(medium, F, K), wave_normal(F, K))[wave];
+  const bridge::PlaneWave found =
+    bridge::plane_waves(continuum_matrices(medium, F, K), bridge::wave_normal(F, K))[wave];
   constexpr int steps = 10;
   continuum::DynamicSettings settings;
   settings.time_step = 0.25 * M_PI / found.frequency / steps;
@@ -317,7 +319,7 @@ TravellingEnergy travelling_energy(const WaveContinuum &medium, const Eigen::Mat
   settings.relative_tolerance = 1e-9;
   continuum::DynamicSolver solver(mesh, medium.constitution, periodic_edges(), medium.inertia, settings);
   const continuum::Sheet &sheet = solver.sheet();
-  const Vector base = interpolated(sheet, AffineDisplacement(F));
+  const Vector base = interpolated(sheet, bridge::AffineDisplacement(F));
   Vector ghosted = sheet.make_ghosted();
   ghosted = base;
   const double at_rest = sheet.energy(ghosted);
@@ -332,4 +334,4 @@ TravellingEnergy travelling_energy(const WaveContinuum &medium, const Eigen::Mat
   return {(ledger.stored - at_rest) / area, ledger.kinetic / area, ledger.micro_kinetic / area};
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

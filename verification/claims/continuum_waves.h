@@ -6,7 +6,7 @@
 #include "verification/bridge/plane_waves.h"
 #include "verification/claims/oscillation.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// A continuum in which waves travel. The laws must outlive it.
@@ -19,7 +19,8 @@ struct WaveContinuum
 
 /// What a plane wave meets at the homogeneous state F, in closed form from the tangents of the laws
 /// (theory-comparison.md, eq. (W.3)). @param K referential wave vector [1/m]
-WaveMatrices continuum_matrices(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K);
+bridge::WaveMatrices continuum_matrices(const WaveContinuum &medium, const Eigen::Matrix2d &F,
+                                        const Eigen::Vector2d &K);
 
 /// Elements of a periodic sheet as long as the wave, along x and along y (two across where K has no component).
 struct WaveMesh
@@ -63,4 +64,4 @@ struct TravellingEnergy
 TravellingEnergy travelling_energy(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
                                    std::size_t wave, double amplitude, const WaveMesh &mesh);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -5,7 +5,7 @@
 #include <set>
 #include <vector>
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -52,10 +52,10 @@ const std::map<std::string, std::vector<std::string>> &required_rows()
 
 } // namespace
 
-std::string row_problem(const Results &results, const std::string &shells)
+std::string row_problem(const output::Results &results, const std::string &shells)
 {
   std::set<std::pair<std::string, std::string>> decided;
-  for (const Result &row : results.rows())
+  for (const output::Result &row : results.rows())
   {
     const bool is_own = required_rows().count(row.claim) > 0 && row.quantity.size() > shells.size() &&
                         row.quantity.compare(0, shells.size(), shells) == 0 &&
@@ -72,4 +72,4 @@ std::string row_problem(const Results &results, const std::string &shells)
   return "";
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

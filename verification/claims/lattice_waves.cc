@@ -9,7 +9,7 @@
 #include "support/largest_error.h"
 #include "verification/bridge/bloch.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -23,7 +23,7 @@ constexpr double strain = 1e-5;
 constexpr double phase_per_step = 0.12;
 
 std::array<Oscillation, 2> measure(const WaveCell &cell, const lattice::Material &material, const Eigen::Matrix2d &F,
-                                   const std::array<PlaneWave, 2> &waves, double time_step, std::size_t stride)
+                                   const std::array<bridge::PlaneWave, 2> &waves, double time_step, std::size_t stride)
 {
   const lattice::TriangularLattice &sheet = cell.sheet;
   lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::free);
@@ -37,7 +37,7 @@ std::array<Oscillation, 2> measure(const WaveCell &cell, const lattice::Material
       const std::size_t place = sheet.index(row, column);
       places.push_back(place);
       shapes.push_back(std::cos(cell.K.dot(sheet.reference(place))));
-      for (const PlaneWave &wave : waves)
+      for (const bridge::PlaneWave &wave : waves)
       {
         state.x[place] += amplitude * shapes.back() * wave.polarisation.x();
         state.y[place] += amplitude * shapes.back() * wave.polarisation.y();
@@ -153,9 +153,9 @@ double smallest_stretch(const lattice::TriangularLattice &lattice, const Eigen::
 std::array<Oscillation, 2> lattice_waves(const WaveCell &cell, const lattice::Material &material,
                                          const Eigen::Matrix2d &F)
 {
-  const std::array<PlaneWave, 2> waves = bloch_waves(cell.sheet, material, F, cell.K);
+  const std::array<bridge::PlaneWave, 2> waves = bridge::bloch_waves(cell.sheet, material, F, cell.K);
   const double limit = 0.9 * lattice::time_step_limits(cell.sheet, material, smallest_stretch(cell.sheet, F)).combined;
-  const double fastest = fastest_frequency(waves);
+  const double fastest = bridge::fastest_frequency(waves);
   const double time_step = support::smallest_of({limit, phase_per_step / fastest});
   // Dashpots can ask for steps so short that there is no error to extrapolate, and no news in every step.
   const double phase = fastest * time_step;
@@ -174,4 +174,4 @@ std::array<Oscillation, 2> lattice_waves(const WaveCell &cell, const lattice::Ma
   return result;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

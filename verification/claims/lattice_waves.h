@@ -5,7 +5,7 @@
 #include "lattice/material.h"
 #include "verification/claims/oscillation.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// A periodic lattice sheet into which a plane wave fits.
@@ -47,4 +47,4 @@ double smallest_stretch(const lattice::TriangularLattice &lattice, const Eigen::
 std::array<Oscillation, 2> lattice_waves(const WaveCell &cell, const lattice::Material &material,
                                          const Eigen::Matrix2d &F);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// Order p of an error that behaves as e = C h^p: slope of the least-squares line through (log h, log e).
@@ -57,4 +57,4 @@ private:
   std::vector<double> sizes_, squares_;
 };
 
-} // namespace latcon::verification
+} // namespace latcon::claims

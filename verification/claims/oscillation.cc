@@ -6,7 +6,7 @@
 
 #include <Eigen/Dense>
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -84,4 +84,4 @@ Oscillation fit_oscillation(const std::vector<double> &values, double step)
   throw std::runtime_error("no oscillation fits the wave's amplitude");
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

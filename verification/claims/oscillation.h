@@ -2,7 +2,7 @@
 
 #include <vector>
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// A damped oscillation a(t) = exp(-g t) (A cos w t + B sin w t) + residual.
@@ -19,4 +19,4 @@ struct Oscillation
 /// @throws std::runtime_error if the values do not oscillate, or the fit does not converge
 Oscillation fit_oscillation(const std::vector<double> &values, double step);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -7,12 +7,12 @@
 #include "verification/bridge/subject.h"
 #include "verification/output/results.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// The row by which a claim says whether the loaded lattice is stable against waves of every length, which all that is
 /// compared about the loaded sheet takes for granted. The error is how far below zero the smallest w^2 / k^2 falls.
-inline Result stability_row(const Subject &subject, const std::string &claim)
+inline output::Result stability_row(const bridge::Subject &subject, const std::string &claim)
 {
   std::ostringstream quantity;
   quantity << subject.name << ": stability of the loaded lattice, smallest w^2/k^2 of all waves over c_S^2 at F = I";
@@ -28,4 +28,4 @@ inline Result stability_row(const Subject &subject, const std::string &claim)
   return {claim, quantity.str(), "1", smallest, {}, {}, error, 0.};
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -5,7 +5,7 @@
 
 #include <Eigen/Core>
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// What rows and plots call a homogeneous state: "F = I", "F = (2.3, 2.8)", "F = (1, 1, shear 0.5)".
@@ -21,4 +21,4 @@ inline std::string state_name(const Eigen::Matrix2d &F)
   return text.str();
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -26,7 +26,7 @@
 #include "verification/output/run_info.h"
 #include "verification/output/sha256.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -99,7 +99,7 @@ std::string hash_of_libraries()
         return 0; // the program itself, and what the kernel brings
       const std::string id = build_id(*library);
       static_cast<std::vector<std::string> *>(list)->push_back(file.filename().string() + ' ' +
-                                                               (id.empty() ? sha256_of_file(file) : id) + '\n');
+                                                               (id.empty() ? output::sha256_of_file(file) : id) + '\n');
       return 0;
     },
     &libraries);
@@ -107,7 +107,7 @@ std::string hash_of_libraries()
   std::string text;
   for (const std::string &library : libraries)
     text += library;
-  return sha256(text);
+  return output::sha256(text);
 }
 
 std::string now()
@@ -123,7 +123,7 @@ std::string now()
 std::string checksum(Json document)
 {
   document.erase("checksum");
-  return sha256(document.dump());
+  return output::sha256(document.dump());
 }
 
 // A number as results.json holds it.
@@ -138,11 +138,11 @@ std::optional<double> number(const Json &value)
   return value.get<double>();
 }
 
-Result row(const Json &entry)
+output::Result row(const Json &entry)
 {
-  Result result{entry.at("claim"),           entry.at("quantity"),          entry.at("unit"),
-                number(entry.at("lattice")), number(entry.at("continuum")), number(entry.at("theory")),
-                number(entry.at("error")),   number(entry.at("tolerance"))};
+  output::Result result{entry.at("claim"),           entry.at("quantity"),          entry.at("unit"),
+                        number(entry.at("lattice")), number(entry.at("continuum")), number(entry.at("theory")),
+                        number(entry.at("error")),   number(entry.at("tolerance"))};
   if (entry.at("verdict") != to_string(result.verdict()))
     throw UnusableVerdicts("a verdict in it is not that of its numbers");
   return result;
@@ -150,11 +150,12 @@ Result row(const Json &entry)
 
 } // namespace
 
-VerdictKey::VerdictKey(std::string inputs) : text(std::move(inputs)), hash(sha256(text)) {}
+VerdictKey::VerdictKey(std::string inputs) : text(std::move(inputs)), hash(output::sha256(text)) {}
 
-VerdictKey verdict_key(const Case &input, const std::vector<std::string> &claims, bool quick, unsigned int n_ranks)
+VerdictKey verdict_key(const input::Case &input, const std::vector<std::string> &claims, bool quick,
+                       unsigned int n_ranks)
 {
-  std::string text = "program=" + program_hash() + "\nlibraries=" + hash_of_libraries() + "\n";
+  std::string text = "program=" + output::program_hash() + "\nlibraries=" + hash_of_libraries() + "\n";
   for (const std::string &claim : claims)
     text += "claim=" + claim + "\n";
   text += std::string("quick=") + (quick ? "true" : "false") + "\nranks=" + std::to_string(n_ranks) + "\n";
@@ -170,7 +171,7 @@ Verdicts::Verdicts(const ClaimOutcome &outcome) : results(outcome.results), chec
 void Verdicts::write_tables(const std::string &folder) const
 {
   for (const auto &[name, csv] : tables)
-    write_file((std::filesystem::path(folder) / (name + ".csv")).string(), csv);
+    output::write_file((std::filesystem::path(folder) / (name + ".csv")).string(), csv);
 }
 
 std::string verdicts_text(const VerdictKey &key, const Verdicts &verdicts)
@@ -180,8 +181,8 @@ std::string verdicts_text(const VerdictKey &key, const Verdicts &verdicts)
   document["hash"] = key.hash;
   document["inputs"] = key.text;
   document["checked_at"] = verdicts.checked_at;
-  document["version"] = program_version();
-  document["git_commit"] = git_commit();
+  document["version"] = output::program_version();
+  document["git_commit"] = output::git_commit();
   document["hardware_threads"] = std::thread::hardware_concurrency();
   document["results"] = Json::parse(verdicts.results.json());
   document["tables"] = verdicts.tables;
@@ -257,8 +258,8 @@ void VerdictStore::write(const VerdictKey &key, const std::string &text) const
     throw support::OutputError(folder_, error.message());
   // Other runs may write here now, in milliseconds: what is older was left by killed ones.
   support::remove_stale_parts(folder_, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
-  write_file(path(key), text);
+  output::write_file(path(key), text);
   chmod(path(key).c_str(), S_IRUSR | S_IWUSR); // whatever the umask: read() takes no other
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -11,7 +11,7 @@
 #include "verification/input/case.h"
 #include "verification/output/results.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// Everything that verdicts depend on, in one text, and its hash.
@@ -26,13 +26,13 @@ struct VerdictKey
 /// The key of a check: the bytes of the running program, the shared libraries it has loaded (name, size, time of
 /// change), which claims in which size, the number of MPI ranks, and the entries that the claims read.
 /// @throws std::runtime_error if the program cannot read itself
-[[nodiscard]] VerdictKey verdict_key(const Case &input, const std::vector<std::string> &claims, bool quick,
+[[nodiscard]] VerdictKey verdict_key(const input::Case &input, const std::vector<std::string> &claims, bool quick,
                                      unsigned int n_ranks);
 
 /// A complete check.
 struct Verdicts
 {
-  Results results;
+  output::Results results;
   std::map<std::string, std::string> tables; ///< CSV texts by file name without ".csv"
   std::string checked_at;                    ///< when: UTC, ISO 8601, "2026-11-21T16:20:05Z"
 
@@ -83,4 +83,4 @@ private:
   std::string folder_;
 };
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -14,7 +14,7 @@
 #include "verification/output/output_list.h"
 #include "verification/output/sha256.h"
 
-namespace latcon::verification
+namespace latcon::commands
 {
 namespace
 {
@@ -26,7 +26,7 @@ bool first_rank()
 
 } // namespace
 
-void read_case(const Options &options, Case &input, Parameters &parameters)
+void read_case(const input::Options &options, input::Case &input, input::Parameters &parameters)
 {
   input.declare(parameters);
   parameters.read_file(options.case_file);
@@ -34,7 +34,7 @@ void read_case(const Options &options, Case &input, Parameters &parameters)
   input.check(parameters);
 }
 
-void print_dry_run(const Options &options, const std::string &text)
+void print_dry_run(const input::Options &options, const std::string &text)
 {
   if (first_rank() && !options.quiet)
     std::cout << text << std::flush;
@@ -71,14 +71,14 @@ void record_exit_code(support::ExitCode exit_code)
     record->write(exit_code);
 }
 
-Run::Run(const Options &options, const Parameters &parameters) : Run(options, &parameters) {}
+Run::Run(const input::Options &options, const input::Parameters &parameters) : Run(options, &parameters) {}
 
-Run::Run(const Options &options, const Parameters *parameters)
+Run::Run(const input::Options &options, const input::Parameters *parameters)
   : record_(std::make_shared<Record>(options)), directory_(options.output_dir), is_root_(first_rank()),
     is_verbose_(is_root_ && !options.quiet), resumes_(options.resume)
 {
   if (parameters != nullptr)
-    info().add("case_hash", sha256(case_lines(*parameters)));
+    info().add("case_hash", output::sha256(input::case_lines(*parameters)));
   if (is_root_)
   {
     std::error_code error;
@@ -88,7 +88,7 @@ Run::Run(const Options &options, const Parameters *parameters)
     record_->lock = lock_directory(directory_);
     clear(options, parameters != nullptr);
     if (parameters != nullptr)
-      write_file(directory_ + "/case.prm", parameters->resolved_text());
+      output::write_file(directory_ + "/case.prm", parameters->resolved_text());
     const SignalDeferral deferral; // a run.json that is there gets the exit code
     record_->write(std::nullopt);
     last = record_;
@@ -98,31 +98,31 @@ Run::Run(const Options &options, const Parameters *parameters)
   MPI_Barrier(MPI_COMM_WORLD);
 }
 
-void Run::clear(const Options &options, bool has_case) const
+void Run::clear(const input::Options &options, bool has_case) const
 {
   const std::filesystem::path own = directory_ + "/case.prm";
   std::error_code none;
-  if (has_case && std::filesystem::equivalent(own, options.case_file, none) && !is_listed_output(own))
+  if (has_case && std::filesystem::equivalent(own, options.case_file, none) && !output::is_listed_output(own))
     throw support::InputError("the run would overwrite its own case " + options.case_file +
                               "; give another --output-dir, or move the case out of it");
   if (!resumes_)
   {
-    const std::filesystem::path aside = set_earlier_output_aside(directory_, options.case_file);
+    const std::filesystem::path aside = output::set_earlier_output_aside(directory_, options.case_file);
     if (is_verbose_ && !aside.empty())
       std::cout << "The files of the run before in " << directory_ << " are now in " << aside.string() << std::endl;
   }
-  begin_output_list(directory_);
+  output::begin_output_list(directory_);
 }
 
-void Run::note(const Checkpoints &checkpoints)
+void Run::note(const output::Checkpoints &checkpoints)
 {
-  const std::optional<CheckpointPlace> &found = checkpoints.found();
+  const std::optional<output::CheckpointPlace> &found = checkpoints.found();
   if (found)
-    info().add("resumed_from", RunInfo::Object{{"checkpoint", found->file.filename().string()},
-                                               {"step", static_cast<std::uint64_t>(found->step)},
-                                               {"time", found->time},
-                                               {"git_commit", found->commit},
-                                               {"program_hash", found->program_hash}});
+    info().add("resumed_from", output::RunInfo::Object{{"checkpoint", found->file.filename().string()},
+                                                       {"step", static_cast<std::uint64_t>(found->step)},
+                                                       {"time", found->time},
+                                                       {"git_commit", found->commit},
+                                                       {"program_hash", found->program_hash}});
   if (!is_verbose_ || !resumes_)
     return;
   if (!found)
@@ -132,11 +132,11 @@ void Run::note(const Checkpoints &checkpoints)
   }
   std::cout << "Going on from " << found->file.string() << ": step " << found->step << ", t = " << found->time
             << " s\n";
-  if (found->program_hash != program_hash())
+  if (found->program_hash != output::program_hash())
     std::cout << "Another program wrote it, of commit " << found->commit << "; run.json names both\n";
 }
 
-support::ExitCode Run::end(const Results &results, support::ExitCode exit_code)
+support::ExitCode Run::end(const output::Results &results, support::ExitCode exit_code)
 {
   if (is_root_)
   {
@@ -149,34 +149,34 @@ support::ExitCode Run::end(const Results &results, support::ExitCode exit_code)
   return exit_code;
 }
 
-support::ExitCode exit_code_of(const Results &results)
+support::ExitCode exit_code_of(const output::Results &results)
 {
-  return results.verdict() == Verdict::fails ? support::ExitCode::claim_failed : support::ExitCode::done;
+  return results.verdict() == output::Verdict::fails ? support::ExitCode::claim_failed : support::ExitCode::done;
 }
 
-void Run::print(const Results &results) const
+void Run::print(const output::Results &results) const
 {
   if (!is_verbose_)
     return;
   results.print(std::cout);
   // What fails is said last as well, where a reader looks first.
   constexpr std::size_t most_failing_rows = 20;
-  if (results.count(Verdict::fails) > 0)
+  if (results.count(output::Verdict::fails) > 0)
     std::cout << "\n" << results.verdict_text(most_failing_rows);
 }
 
-support::ExitCode Run::finish(const Results &results)
+support::ExitCode Run::finish(const output::Results &results)
 {
   const support::ExitCode exit_code = end(results, exit_code_of(results));
   print(results);
   return exit_code;
 }
 
-support::ExitCode Run::interrupted(const Results &results)
+support::ExitCode Run::interrupted(const output::Results &results)
 {
   end(results, support::ExitCode::interrupted);
   print(results);
   return support::ExitCode::interrupted;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::commands

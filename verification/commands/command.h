@@ -15,7 +15,7 @@
 #include "verification/output/results.h"
 #include "verification/output/run_info.h"
 
-namespace latcon::verification
+namespace latcon::commands
 {
 
 /// What `latcon compare` was asked. Times are texts, with a unit or in s, or load factors; empty: the last frame.
@@ -36,14 +36,14 @@ const std::vector<std::string> &claim_names();
 const std::vector<std::string> &claims_before_fracture();
 
 // The commands. Each runs on every MPI rank and returns what the program should exit with, or throws.
-support::ExitCode verify(const Options &options);                                       ///< `latcon verify`
-support::ExitCode run_lattice(const Options &options);                                  ///< `latcon lattice`
-support::ExitCode run_continuum(const Options &options);                                ///< `latcon continuum`
-support::ExitCode run_fracture(const Options &options);                                 ///< `latcon fracture`
-support::ExitCode compare_frames(const Options &options, const CompareOptions &chosen); ///< `latcon compare`
-support::ExitCode report(const Options &options, const std::string &directory);         ///< `latcon report`
-support::ExitCode run_study(const Options &options, const std::string &study);          ///< `latcon study`
-support::ExitCode print_schema(const Options &options);                                 ///< `latcon schema`
+support::ExitCode verify(const input::Options &options);                                       ///< `latcon verify`
+support::ExitCode run_lattice(const input::Options &options);                                  ///< `latcon lattice`
+support::ExitCode run_continuum(const input::Options &options);                                ///< `latcon continuum`
+support::ExitCode run_fracture(const input::Options &options);                                 ///< `latcon fracture`
+support::ExitCode compare_frames(const input::Options &options, const CompareOptions &chosen); ///< `latcon compare`
+support::ExitCode report(const input::Options &options, const std::string &directory);         ///< `latcon report`
+support::ExitCode run_study(const input::Options &options, const std::string &study);          ///< `latcon study`
+support::ExitCode print_schema(const input::Options &options);                                 ///< `latcon schema`
 
 /// Draws pictures and report.html of a run, or of a folder of several, in a directory that this process has locked. On
 /// rank 0. @return the exit code of the script @throws OutputError
@@ -53,12 +53,12 @@ support::ExitCode draw_report(const std::string &directory, bool quiet);
 void study_page(const std::string &directory);
 
 /// Reads and checks the case that the options name. @throws InputError
-void read_case(const Options &options, Case &input, Parameters &parameters);
+void read_case(const input::Options &options, input::Case &input, input::Parameters &parameters);
 
-class Checkpoints;
+class output::Checkpoints;
 
 /// Prints a part of what --dry-run says, on the first rank, unless --quiet.
-void print_dry_run(const Options &options, const std::string &text);
+void print_dry_run(const input::Options &options, const std::string &text);
 
 /// Locks an existing directory, and removes the unfinished files that killed runs left in it and in its checkpoints.
 /// Waits up to `patience` for another process to end.
@@ -78,44 +78,44 @@ public:
   /// resumes, and writes case.prm and run.json. To be made once the input is known to be good.
   /// @throws InputError if another process writes to the directory, or case.prm would replace the user's own case:
   /// nothing is written then @throws OutputError
-  Run(const Options &options, const Parameters &parameters);
+  Run(const input::Options &options, const input::Parameters &parameters);
 
   /// The same for a run without a case: run.json alone.
-  explicit Run(const Options &options) : Run(options, nullptr) {}
+  explicit Run(const input::Options &options) : Run(options, nullptr) {}
 
   /// Says from which checkpoint the run goes on, in words and in run.json.
-  void note(const Checkpoints &checkpoints);
+  void note(const output::Checkpoints &checkpoints);
 
   const std::string &directory() const { return directory_; }
-  RunInfo &info() { return record_->info; }
+  output::RunInfo &info() { return record_->info; }
   bool is_root() const { return is_root_; } ///< true on rank 0
   /// Whether to print: on rank 0, unless --quiet.
   bool is_verbose() const { return is_verbose_; }
 
   /// Writes results.json, results.csv, the final run.json, prints the table and then the rows that fail, and says how
   /// the run ended.
-  support::ExitCode finish(const Results &results);
+  support::ExitCode finish(const output::Results &results);
 
   /// The same for a run that was stopped by a signal: what is known is written.
-  support::ExitCode interrupted(const Results &results);
+  support::ExitCode interrupted(const output::Results &results);
 
   /// Writes results.json, results.csv and the final run.json, prints nothing. @return `exit_code`
-  support::ExitCode end(const Results &results, support::ExitCode exit_code);
+  support::ExitCode end(const output::Results &results, support::ExitCode exit_code);
 
 private:
-  Run(const Options &options, const Parameters *parameters);
+  Run(const input::Options &options, const input::Parameters *parameters);
   // Makes room in the directory: the files of a run before are moved aside, unless this run resumes.
-  void clear(const Options &options, bool has_case) const;
-  void print(const Results &results) const;
+  void clear(const input::Options &options, bool has_case) const;
+  void print(const output::Results &results) const;
 
   struct Record
   {
-    explicit Record(const Options &options) : directory(options.output_dir), info(options.arguments) {}
+    explicit Record(const input::Options &options) : directory(options.output_dir), info(options.arguments) {}
     void write(std::optional<support::ExitCode> with) const;
 
     std::string directory;
     std::unique_ptr<support::FolderLock> lock; // on rank 0
-    RunInfo info;
+    output::RunInfo info;
     std::string verdict;
     std::optional<support::ExitCode> exit_code; // the one written last
   };
@@ -132,7 +132,7 @@ private:
 void record_exit_code(support::ExitCode exit_code);
 
 /// What the program ends with if nothing but the results decides.
-support::ExitCode exit_code_of(const Results &results);
+support::ExitCode exit_code_of(const output::Results &results);
 
 /// On which lattices claims are checked.
 enum class Shells
@@ -144,14 +144,14 @@ enum class Shells
 /// Runs the claims named, or all of them, on the subject of a case, small versions if `quick`. Collective.
 /// @param laws those that are judged; what is found about others is reported
 /// @param frames folder for frames of sheets in motion, on one rank; empty: none are written
-ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names, bool quick, Shells shells,
-                        const Laws &laws, const std::string &frames = {});
+claims::ClaimOutcome run_claims(const input::Case &input, const std::vector<std::string> &names, bool quick,
+                                Shells shells, const bridge::Laws &laws, const std::string &frames = {});
 
 /// Checks the claims, in their small versions, on the case's own material, shells and pre-stretch, or takes the
 /// verdicts that are stored for exactly these inputs and this program. Says which of the two, in words and in run.json,
 /// and writes the tables. Collective; all ranks return the same.
 /// @return the rows, at least one of them checked and none failing
 /// @throws ClaimFailed that names the rows which fail, if any; results.json and run.json are then written
-Results require_verified(const Case &input, Run &run);
+output::Results require_verified(const input::Case &input, Run &run);
 
-} // namespace latcon::verification
+} // namespace latcon::commands

@@ -25,7 +25,7 @@
 #include "verification/input/data_folder.h"
 #include "verification/study/study_file.h"
 
-namespace latcon::verification
+namespace latcon::commands
 {
 namespace
 {
@@ -120,12 +120,12 @@ support::ExitCode run_command(const std::function<support::ExitCode()> &command)
 
 support::ExitCode run_program(int argc, char **argv)
 {
-  Options options;
+  input::Options options;
   options.arguments.assign(argv, argv + argc);
   std::function<support::ExitCode()> command;
 
   CLI::App app("latcon: dynamic fracture of rubber on a triangular lattice, and the continuum beside it", "latcon");
-  app.set_version_flag("--version", "latcon " + program_version() + " (" + git_commit() + ")");
+  app.set_version_flag("--version", "latcon " + output::program_version() + " (" + output::git_commit() + ")");
   app.require_subcommand(1);
   app.fallthrough();
   app.footer("Exit codes: 0 done, every claim holds; 1 internal error; 2 bad input; 3 a claim does not hold;\n"
@@ -143,7 +143,7 @@ support::ExitCode run_program(int argc, char **argv)
                "go on from the last checkpoint, or keep the runs of a study that are there");
   app.add_flag("--dry-run", options.dry_run, "check the input, print the resolved case and its cost, run nothing");
 
-  options.case_file = data_folder() + "/cases/fig1.prm";
+  options.case_file = input::data_folder() + "/cases/fig1.prm";
   CLI::App *verify_command = app.add_subcommand("verify", "check that lattice and continuum agree, claim by claim");
   verify_command->add_option("CLAIM", options.claims, "claims to check; default: all but running-crack")
     ->check(CLI::IsMember(claim_names()))
@@ -161,7 +161,7 @@ support::ExitCode run_program(int argc, char **argv)
     });
 
   const auto add_case_command =
-    [&](const std::string &name, const std::string &help, support::ExitCode (*run)(const Options &))
+    [&](const std::string &name, const std::string &help, support::ExitCode (*run)(const input::Options &))
   {
     CLI::App *subcommand = app.add_subcommand(name, help);
     subcommand->add_option("CASE", options.case_file, "case file, .prm or .json")->required()->type_name("");
@@ -176,7 +176,7 @@ support::ExitCode run_program(int argc, char **argv)
 
   std::string study;
   CLI::App *study_command = app.add_subcommand("study", "a sweep of cracks, set beside what a source states");
-  study_command->add_option("STUDY", study, study_choices())->required()->type_name("");
+  study_command->add_option("STUDY", study, study::study_choices())->required()->type_name("");
   study_command->add_flag("--quick", options.quick, "small version");
   study_command->add_flag("--skip-verification", options.skip_verification,
                           "run the cracks unverified; noted in every output");
@@ -247,4 +247,4 @@ support::ExitCode run_program(int argc, char **argv)
     });
 }
 
-} // namespace latcon::verification
+} // namespace latcon::commands

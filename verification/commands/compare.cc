@@ -10,7 +10,7 @@
 #include "verification/compare/difference_writer.h"
 #include "verification/input/units.h"
 
-namespace latcon::verification
+namespace latcon::commands
 {
 namespace
 {
@@ -20,7 +20,7 @@ std::optional<double> time_option(const std::string &name, const std::string &te
 {
   if (text.empty())
     return {};
-  const ParsedNumber quantity = read_quantity(text, "s");
+  const input::ParsedNumber quantity = input::read_quantity(text, "s");
   if (!quantity.wrong.empty())
     throw support::InputError(name + " " + text + ": " + quantity.wrong);
   return quantity.value;
@@ -29,7 +29,7 @@ std::optional<double> time_option(const std::string &name, const std::string &te
 std::map<std::string, double> read_tolerances(const std::vector<std::string> &texts)
 {
   std::string names;
-  for (const CommonField &field : common_fields)
+  for (const compare::CommonField &field : compare::common_fields)
     names += (names.empty() ? "" : ", ") + std::string(field.name);
   std::map<std::string, double> tolerances;
   std::vector<std::string> problems;
@@ -38,14 +38,14 @@ std::map<std::string, double> read_tolerances(const std::vector<std::string> &te
     const std::size_t equals = text.find('=');
     const std::string field = text.substr(0, equals);
     bool known = false;
-    for (const CommonField &common : common_fields)
+    for (const compare::CommonField &common : compare::common_fields)
       known = known || field == common.name;
     if (equals == std::string::npos || !known)
     {
       problems.push_back("--tolerance " + text + ": FIELD=VALUE is wanted, FIELD one of " + names);
       continue;
     }
-    const ParsedNumber quantity = read_quantity(text.substr(equals + 1), "1");
+    const input::ParsedNumber quantity = input::read_quantity(text.substr(equals + 1), "1");
     if (!quantity.wrong.empty() || !(quantity.value > 0.))
       problems.push_back("--tolerance " + text + ": " +
                          (quantity.wrong.empty() ? "must be larger than 0" : quantity.wrong));
@@ -56,9 +56,9 @@ std::map<std::string, double> read_tolerances(const std::vector<std::string> &te
   return tolerances;
 }
 
-std::vector<Circle> read_circles(const std::vector<std::string> &texts)
+std::vector<compare::Circle> read_circles(const std::vector<std::string> &texts)
 {
-  std::vector<Circle> circles;
+  std::vector<compare::Circle> circles;
   std::vector<std::string> problems;
   for (const std::string &text : texts)
   {
@@ -67,7 +67,7 @@ std::vector<Circle> read_circles(const std::vector<std::string> &texts)
     std::istringstream parts(text + ",");
     for (std::string part; std::getline(parts, part, ',');)
     {
-      const ParsedNumber quantity = read_quantity(part, "m");
+      const input::ParsedNumber quantity = input::read_quantity(part, "m");
       if (!quantity.wrong.empty())
         wrong(quantity.wrong);
       numbers.push_back(quantity.value);
@@ -85,7 +85,7 @@ std::vector<Circle> read_circles(const std::vector<std::string> &texts)
 }
 
 // A run's results.json and run.json would be replaced by those of the comparison.
-void require_own_directory(const std::string &directory, const Frame &frame)
+void require_own_directory(const std::string &directory, const compare::Frame &frame)
 {
   std::error_code ignored;
   const std::filesystem::path folder = frame.file.path.parent_path();
@@ -96,36 +96,36 @@ void require_own_directory(const std::string &directory, const Frame &frame)
 
 } // namespace
 
-support::ExitCode compare_frames(const Options &options, const CompareOptions &chosen)
+support::ExitCode compare_frames(const input::Options &options, const CompareOptions &chosen)
 {
   if (!options.overrides.empty())
     throw support::InputError("latcon compare has no case that --set could change");
   if (!chosen.time.empty() && !(chosen.lattice_time.empty() && chosen.continuum_time.empty()))
     throw support::InputError("--time is for both sides: give it, or --lattice-time and --continuum-time");
   const std::map<std::string, double> tolerances = read_tolerances(chosen.tolerances);
-  const Scope scope{chosen.overlap, read_circles(chosen.excluded)};
+  const compare::Scope scope{chosen.overlap, read_circles(chosen.excluded)};
   const auto lattice_time = time_option(chosen.time.empty() ? "--lattice-time" : "--time",
                                         chosen.time.empty() ? chosen.lattice_time : chosen.time);
   const auto continuum_time = time_option(chosen.time.empty() ? "--continuum-time" : "--time",
                                           chosen.time.empty() ? chosen.continuum_time : chosen.time);
-  Stopwatch stopwatch;
-  auto reading = std::make_unique<Stopwatch::Phase>(stopwatch, "reading");
-  FrameFile lattice_file = find_frame(chosen.lattice, Side::lattice, lattice_time);
-  FrameFile continuum_file = find_frame(chosen.continuum, Side::continuum, continuum_time);
+  output::Stopwatch stopwatch;
+  auto reading = std::make_unique<output::Stopwatch::Phase>(stopwatch, "reading");
+  compare::FrameFile lattice_file = compare::find_frame(chosen.lattice, compare::Side::lattice, lattice_time);
+  compare::FrameFile continuum_file = compare::find_frame(chosen.continuum, compare::Side::continuum, continuum_time);
   // Only times given for each side by itself may differ.
   if (!chosen.time.empty())
     lattice_file.chosen = continuum_file.chosen = false;
-  const LatticeFrame lattice = read_lattice_frame(lattice_file, lattice_time);
-  const ContinuumFrame continuum = read_continuum_frame(continuum_file, continuum_time);
+  const compare::LatticeFrame lattice = compare::read_lattice_frame(lattice_file, lattice_time);
+  const compare::ContinuumFrame continuum = compare::read_continuum_frame(continuum_file, continuum_time);
   reading.reset();
-  require_same_time(lattice, continuum);
+  compare::require_same_time(lattice, continuum);
   if (!scope.is_overlap)
-    require_same_bounds(lattice, continuum);
+    compare::require_same_bounds(lattice, continuum);
   require_own_directory(options.output_dir, lattice);
   require_own_directory(options.output_dir, continuum);
-  auto comparing = std::make_unique<Stopwatch::Phase>(stopwatch, "comparing");
-  const Comparison comparison = compare(lattice, continuum, scope, MPI_COMM_WORLD);
-  const Results results = norms(lattice, continuum, comparison, tolerances);
+  auto comparing = std::make_unique<output::Stopwatch::Phase>(stopwatch, "comparing");
+  const compare::Comparison comparison = compare::compare(lattice, continuum, scope, MPI_COMM_WORLD);
+  const output::Results results = compare::norms(lattice, continuum, comparison, tolerances);
   comparing.reset();
   if (options.dry_run)
   {
@@ -143,9 +143,9 @@ support::ExitCode compare_frames(const Options &options, const CompareOptions &c
   if (run.is_root())
   {
     const auto phase = run.info().stopwatch().phase("output");
-    write_difference(run.directory(), lattice, continuum, comparison);
+    compare::write_difference(run.directory(), lattice, continuum, comparison);
   }
   return run.finish(results);
 }
 
-} // namespace latcon::verification
+} // namespace latcon::commands

@@ -18,12 +18,12 @@
 #include "verification/output/progress.h"
 #include "verification/resources/resources.h"
 
-namespace latcon::verification
+namespace latcon::commands
 {
 namespace
 {
 
-continuum::StaticSettings static_settings(const Case &input)
+continuum::StaticSettings static_settings(const input::Case &input)
 {
   continuum::StaticSettings settings;
   settings.degree = input.continuum.degree;
@@ -37,7 +37,7 @@ continuum::StaticSettings static_settings(const Case &input)
 // Newton iterations and conjugate-gradient iterations in them, for people, and times for the record.
 void note(Run &run, const continuum::SolverReport &report)
 {
-  Stopwatch &stopwatch = run.info().stopwatch();
+  output::Stopwatch &stopwatch = run.info().stopwatch();
   stopwatch.add("assembly", report.times.assembly);
   stopwatch.add("preconditioner", report.times.preconditioner);
   stopwatch.add("linear solve", report.times.linear_solve);
@@ -46,12 +46,13 @@ void note(Run &run, const continuum::SolverReport &report)
 }
 
 // An equilibrium leaves no checkpoints, so there are none to go on from.
-Results equilibrium(const Case &input, ContinuumModel &model, Checkpoints &checkpoints, Run &run)
+output::Results equilibrium(const input::Case &input, bridge::ContinuumModel &model, output::Checkpoints &checkpoints,
+                            Run &run)
 {
   checkpoints.resume([](auto &) {});
-  ContinuumRecord record;
+  output::ContinuumRecord record;
   continuum::FieldWriter fields(MPI_COMM_WORLD, run.directory());
-  auto set_up = std::make_unique<Stopwatch::Phase>(run.info().stopwatch(), "set-up");
+  auto set_up = std::make_unique<output::Stopwatch::Phase>(run.info().stopwatch(), "set-up");
   continuum::StaticSolver solver(model.mesh(), model.constitution(), model.conditions(), static_settings(input));
   set_up.reset();
   const auto write_frame = [&](double load_factor)
@@ -111,7 +112,7 @@ Results equilibrium(const Case &input, ContinuumModel &model, Checkpoints &check
   }
   write_frame(1.);
 
-  Results results;
+  output::Results results;
   const auto add = [&results](const std::string &quantity, const std::string &unit, double value) {
     results.add({"continuum", quantity, unit, {}, value, {}, {}, {}});
   };
@@ -119,7 +120,7 @@ Results equilibrium(const Case &input, ContinuumModel &model, Checkpoints &check
   add("elastic energy per thickness", "J/m", solver.total_energy());
   for (const auto &[id, force] : solver.reactions())
     for (const unsigned int i : {0u, 1u})
-      add("force on the " + edge_name(id) + " edge per thickness, " + (i == 0 ? "x" : "y"), "N/m", force[i]);
+      add("force on the " + output::edge_name(id) + " edge per thickness, " + (i == 0 ? "x" : "y"), "N/m", force[i]);
   const continuum::DeterminantRange range = solver.determinant_range();
   add("smallest area ratio", "1", range.smallest);
   add("largest area ratio", "1", range.largest);
@@ -138,7 +139,7 @@ Results equilibrium(const Case &input, ContinuumModel &model, Checkpoints &check
 }
 
 // Nodal displacement of the equilibrium under the conditions of the case.
-continuum::Sheet::Vector equilibrium_displacement(const Case &input, const ContinuumModel &model,
+continuum::Sheet::Vector equilibrium_displacement(const input::Case &input, const bridge::ContinuumModel &model,
                                                   const continuum::Sheet &sheet, Run &run)
 {
   const auto phase = run.info().stopwatch().phase("equilibrium");
@@ -149,7 +150,7 @@ continuum::Sheet::Vector equilibrium_displacement(const Case &input, const Conti
   return u;
 }
 
-double motion_time_step(const Case &input, ContinuumModel &model)
+double motion_time_step(const input::Case &input, bridge::ContinuumModel &model)
 {
   if (input.continuum.time_step)
     return *input.continuum.time_step;
@@ -161,15 +162,15 @@ double motion_time_step(const Case &input, ContinuumModel &model)
   return input.end_time / std::ceil(input.end_time / longest); // so that the last step ends at the end
 }
 
-continuum::DynamicSettings dynamic_settings(const Case &input, ContinuumModel &model)
+continuum::DynamicSettings dynamic_settings(const input::Case &input, bridge::ContinuumModel &model)
 {
-  const ContinuumCase &c = input.continuum;
+  const input::ContinuumCase &c = input.continuum;
   continuum::DynamicSettings settings;
   settings.time_step = motion_time_step(input, model);
   settings.degree = c.degree;
   settings.relative_tolerance = c.relative_tolerance;
   settings.linear.direct_limit = c.direct_limit;
-  if (c.rule == ContinuumCase::Rule::generalised_alpha)
+  if (c.rule == input::ContinuumCase::Rule::generalised_alpha)
     settings.rule = continuum::NewmarkParameters::generalised_alpha(c.spectral_radius);
   return settings;
 }
@@ -183,16 +184,16 @@ struct Motion
   continuum::Sheet::Vector added, velocity; // nodal fields that are added to the base state
 
   // @throws InputError, continuum::InvalidInput for what start() would refuse
-  Motion(const Case &input, ContinuumModel &model)
+  Motion(const input::Case &input, bridge::ContinuumModel &model)
     : settings(dynamic_settings(input, model)),
-      viscosity(homogenised_viscosity(input.lattice(), model.subject().material)),
+      viscosity(bridge::homogenised_viscosity(input.lattice(), model.subject().material)),
       solver(model.mesh(), model.constitution(), model.conditions(), {input.density, model.inertia_length()}, settings,
              viscosity.get()),
       added(interpolated(*input.continuum.initial_displacement.field(model.extent()))),
       velocity(interpolated(*input.continuum.initial_velocity.field(model.extent())))
   {
     continuum::Sheet::Vector u = solver.sheet().make_owned();
-    if (input.continuum.initial_base == ContinuumCase::Base::equilibrium)
+    if (input.continuum.initial_base == input::ContinuumCase::Base::equilibrium)
       u = solver.prescribed_displacement(); // which an equilibrium has
     else
       add_loading(input, u);
@@ -200,10 +201,10 @@ struct Motion
     solver.check_start(u, velocity);
   }
 
-  void start(const Case &input, const ContinuumModel &model, Run &run)
+  void start(const input::Case &input, const bridge::ContinuumModel &model, Run &run)
   {
     continuum::Sheet::Vector u = solver.sheet().make_owned();
-    if (input.continuum.initial_base == ContinuumCase::Base::equilibrium)
+    if (input.continuum.initial_base == input::ContinuumCase::Base::equilibrium)
       u = equilibrium_displacement(input, model, solver.sheet(), run);
     else
       add_loading(input, u);
@@ -220,17 +221,17 @@ private:
     return values;
   }
 
-  void add_loading(const Case &input, continuum::Sheet::Vector &u) const
+  void add_loading(const input::Case &input, continuum::Sheet::Vector &u) const
   {
-    if (input.continuum.initial_base == ContinuumCase::Base::loading)
-      u += interpolated(AffineDisplacement(input.deformation()));
+    if (input.continuum.initial_base == input::ContinuumCase::Base::loading)
+      u += interpolated(bridge::AffineDisplacement(input.deformation()));
   }
 };
 
 // What a motion that has come to its end, or as far as it came, is known by.
-Results motion_results(const continuum::DynamicSolver &solver, double time_step)
+output::Results motion_results(const continuum::DynamicSolver &solver, double time_step)
 {
-  Results results;
+  output::Results results;
   const continuum::EnergyLedger &ledger = solver.ledger();
   const auto add = [&results](const std::string &quantity, const std::string &unit, double value) {
     results.add({"continuum", quantity, unit, {}, value, {}, {}, {}});
@@ -246,11 +247,12 @@ Results motion_results(const continuum::DynamicSolver &solver, double time_step)
   return results;
 }
 
-Results move(const Case &input, const ContinuumModel &model, Motion &motion, Checkpoints &checkpoints, Run &run)
+output::Results move(const input::Case &input, const bridge::ContinuumModel &model, Motion &motion,
+                     output::Checkpoints &checkpoints, Run &run)
 {
   const continuum::DynamicSettings &settings = motion.settings;
   continuum::DynamicSolver &solver = motion.solver;
-  ContinuumRecord record;
+  output::ContinuumRecord record;
   continuum::FieldWriter fields(MPI_COMM_WORLD, run.directory());
   double next_frame = input.frame_interval;
   std::size_t step = 0;                     // done
@@ -267,8 +269,8 @@ Results move(const Case &input, const ContinuumModel &model, Motion &motion, Che
     {
       const double done = static_cast<double>(step), frames_so_far = static_cast<double>(fields.n_frames());
       constexpr double epsilon = std::numeric_limits<double>::epsilon();
-      require_course(*checkpoints.found(), step, solver.time(), done * settings.time_step,
-                     4. * epsilon * solver.time());
+      output::require_course(*checkpoints.found(), step, solver.time(), done * settings.time_step,
+                             4. * epsilon * solver.time());
       const bool has_series = input.frame_interval > 0.;
       if (step > n_steps || !(record.last_time() <= solver.time() && fields.last_time() <= solver.time()))
         throw support::InputError("what was recorded is of later times");
@@ -311,7 +313,7 @@ Results move(const Case &input, const ContinuumModel &model, Motion &motion, Che
     if (solver.time() > fields.last_time())
       write_frame();
   };
-  Progress progress(run.is_verbose());
+  output::Progress progress(run.is_verbose());
   try
   {
     const auto phase = run.info().stopwatch().phase("motion");
@@ -364,27 +366,27 @@ Results move(const Case &input, const ContinuumModel &model, Motion &motion, Che
 
 } // namespace
 
-support::ExitCode run_continuum(const Options &options)
+support::ExitCode run_continuum(const input::Options &options)
 {
-  Case input;
-  Parameters parameters;
+  input::Case input;
+  input::Parameters parameters;
   read_case(options, input, parameters);
-  const bool moves = input.continuum.solution == ContinuumCase::Solution::motion;
+  const bool moves = input.continuum.solution == input::ContinuumCase::Solution::motion;
   if (moves && !(input.end_time > 0.))
     parameters.error("Time/end", "motion needs an end time larger than 0", {"Continuum/solution"});
   if (moves && input.continuum.time_step && parameters.good())
-    check_steps(input, *input.continuum.time_step, parameters);
+    resources::check_steps(input, *input.continuum.time_step, parameters);
   parameters.finish();
 
-  const ContinuumSize size = continuum_size(input);
-  const MemoryNeed memory = continuum_memory(input, size);
+  const resources::ContinuumSize size = resources::continuum_size(input);
+  const resources::MemoryNeed memory = resources::continuum_memory(input, size);
   if (options.dry_run)
-    print_dry_run(options, parameters.resolved_text() + memory_text(memory));
-  require_memory(memory);
-  ContinuumModel model(input);
+    print_dry_run(options, parameters.resolved_text() + resources::memory_text(memory));
+  resources::require_memory(memory);
+  bridge::ContinuumModel model(input);
   if (moves && !input.continuum.time_step)
   {
-    check_steps(input, motion_time_step(input, model), parameters);
+    resources::check_steps(input, motion_time_step(input, model), parameters);
     parameters.finish();
   }
   std::optional<Motion> motion;
@@ -396,7 +398,7 @@ support::ExitCode run_continuum(const Options &options)
     std::ostringstream text;
     text << "# continuum: " << model.mesh().n_global_active_cells() << " cells, " << sheet.dof_handler().n_dofs()
          << " unknowns\n";
-    if (input.continuum.gradient != ContinuumGradient::none)
+    if (input.continuum.gradient != input::ContinuumGradient::none)
       text << "# lengths: static " << model.static_length() << " m, inertia " << model.inertia_length() << " m\n";
     double steps = 0., frames = 2.;
     if (moves)
@@ -406,20 +408,20 @@ support::ExitCode run_continuum(const Options &options)
       frames += input.frame_interval > 0. ? std::floor(input.end_time / input.frame_interval) : 0.;
       text << "# motion: time step " << step << " s, " << steps << " steps\n";
     }
-    text << "# time: about " << std::ceil(continuum_seconds(input, size, steps, frames)) << " s\n";
+    text << "# time: about " << std::ceil(resources::continuum_seconds(input, size, steps, frames)) << " s\n";
     print_dry_run(options, text.str());
     return support::ExitCode::done;
   }
-  Checkpoints checkpoints(options, parameters, input, "continuum");
+  output::Checkpoints checkpoints(options, parameters, input, "continuum");
   Run run(options, parameters);
   run.note(checkpoints);
   try
   {
-    const Results results =
+    const output::Results results =
       moves ? move(input, model, *motion, checkpoints, run) : equilibrium(input, model, checkpoints, run);
     return interrupted() ? run.interrupted(results) : run.finish(results);
   }
-  catch (const UnusableCheckpoint &)
+  catch (const output::UnusableCheckpoint &)
   {
     throw;
   }
@@ -434,4 +436,4 @@ support::ExitCode run_continuum(const Options &options)
   }
 }
 
-} // namespace latcon::verification
+} // namespace latcon::commands

@@ -9,7 +9,7 @@
 #include "support/text_wrap.h"
 #include "verification/study/study_table.h"
 
-namespace latcon::verification
+namespace latcon::commands
 {
 namespace
 {
@@ -24,16 +24,16 @@ std::string padded(const std::string &text, std::size_t width)
 }
 
 // One quantity: "  wavelength, undeformed   2.359 ± 0.026 cm    reference 2.3 cm, +2.6 %".
-std::string line_of(const std::string &name, const std::optional<Measured> &measured, const std::string &unit,
+std::string line_of(const std::string &name, const std::optional<analysis::Measured> &measured, const std::string &unit,
                     const std::optional<double> &reference)
 {
   if (!measured && !reference)
     return "";
   std::string line = "  " + padded(name, 26);
-  line += measured ? quantity_text(measured->value, measured->uncertainty, unit) : "not measured";
+  line += measured ? study::quantity_text(measured->value, measured->uncertainty, unit) : "not measured";
   if (!reference)
     return line + "\n";
-  line = padded(line, 52) + "reference " + quantity_text(*reference, {}, unit);
+  line = padded(line, 52) + "reference " + study::quantity_text(*reference, {}, unit);
   if (measured)
   {
     std::array<char, 32> percent{};
@@ -45,14 +45,15 @@ std::string line_of(const std::string &name, const std::optional<Measured> &meas
 
 } // namespace
 
-std::string crack_summary(const Case &input, const CrackMeasurement &crack, const Results &results)
+std::string crack_summary(const input::Case &input, const analysis::CrackMeasurement &crack,
+                          const output::Results &results)
 {
   const std::string pattern = to_string(crack.pattern);
   std::string text;
-  for (const std::string &line :
-       support::wrapped((crack.pattern == CrackPattern::undecided ? "The pattern of the crack is " : "The crack is ") +
-                          pattern + ": " + crack.reason,
-                        columns))
+  for (const std::string &line : support::wrapped(
+         (crack.pattern == analysis::CrackPattern::undecided ? "The pattern of the crack is " : "The crack is ") +
+           pattern + ": " + crack.reason,
+         columns))
     text += line + "\n";
   text += line_of("Lagrangian crack speed", crack.speed_lagrangian, "m/s", input.reference_speed);
   text += line_of("laboratory crack speed", crack.speed_laboratory, "m/s", {});
@@ -61,4 +62,4 @@ std::string crack_summary(const Case &input, const CrackMeasurement &crack, cons
   return text + results.verdict_text(most_failing_rows);
 }
 
-} // namespace latcon::verification
+} // namespace latcon::commands

@@ -7,7 +7,7 @@
 
 #include "verification/bridge/lattice_sheet.h"
 
-namespace latcon::verification
+namespace latcon::commands
 {
 namespace
 {
@@ -16,7 +16,7 @@ namespace
 constexpr double cost_of_motion_frame = 0.1;
 
 // Frames of a run that moves: the first, the last, and those between.
-double frames_of(const Case &input, double duration)
+double frames_of(const input::Case &input, double duration)
 {
   return 2. + (input.frame_interval > 0. ? std::floor(duration / input.frame_interval) : 0.);
 }
@@ -30,11 +30,11 @@ std::string seconds_text(double seconds)
 
 } // namespace
 
-std::string lattice_text(const Case &input, const lattice::TimeStepping &stepping, const RunKind run, const bool claims,
-                         const bool report)
+std::string lattice_text(const input::Case &input, const lattice::TimeStepping &stepping, const resources::RunKind run,
+                         const bool claims, const bool report)
 {
   const lattice::TriangularLattice sheet = input.lattice();
-  const lattice::State state = lattice_state(input, sheet);
+  const lattice::State state = bridge::lattice_state(input, sheet);
   std::size_t sites = 0;
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
     sites += sheet.is_site(place) && state.removed[place] == 0;
@@ -44,36 +44,37 @@ std::string lattice_text(const Case &input, const lattice::TimeStepping &steppin
   out << "# lattice: " << sites << " sites, " << bonds << " bonds, " << 2 * sites << " unknowns, " << sheet.length()
       << " m x " << sheet.height() << " m\n";
   double steps = 0., frames = 2., at_most = 1.; // the last: all steps, over those that are expected
-  if (run != RunKind::equilibrium)
+  if (run != resources::RunKind::equilibrium)
   {
     steps = std::ceil(input.end_time / stepping.step);
     out << "# time step: " << stepping.step << " s, " << steps << " steps at most"
         << (stepping.stages > 0 ? " of " + std::to_string(stepping.stages) + " stages each" : "");
-    if (run == RunKind::fracture)
+    if (run == resources::RunKind::fracture)
     {
       at_most = steps;
-      steps = expected_steps(input, stepping);
+      steps = resources::expected_steps(input, stepping);
       at_most /= steps;
       out << ", " << steps << " if the crack is as fast as shear waves of the unloaded sheet";
     }
     out << "\n";
     frames = frames_of(input, steps * stepping.step);
-    if (const double parts = parts_of_first_step(input, stepping, run); parts > 1.)
+    if (const double parts = resources::parts_of_first_step(input, stepping, run); parts > 1.)
       out << "# bonds of the loaded sheet are so short that the first step is made in " << parts
           << " parts; the time below is that of all steps likewise\n";
-    if (run == RunKind::fracture)
+    if (run == resources::RunKind::fracture)
       frames += cost_of_motion_frame * input.motion_frames;
   }
-  const double seconds = lattice_seconds(input, stepping, run, steps, frames);
+  const double seconds = resources::lattice_seconds(input, stepping, run, steps, frames);
   out << "# time: about " << seconds_text(seconds) << " on " << omp_get_max_threads() << " threads of each rank";
   if (at_most > 1.)
     out << ", at most " << seconds_text(at_most * seconds) << " if the crack is slower or does not run";
   if (claims)
-    out << ", and " << seconds_text(seconds_of_claims) << " for the claims, unless their verdicts are stored";
+    out << ", and " << seconds_text(resources::seconds_of_claims)
+        << " for the claims, unless their verdicts are stored";
   if (report)
     out << ", and " << seconds_text(seconds_of_report) << " for pictures and page";
   out << "\n";
   return out.str();
 }
 
-} // namespace latcon::verification
+} // namespace latcon::commands

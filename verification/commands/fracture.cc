@@ -11,18 +11,18 @@
 #include "verification/output/crack_film.h"
 #include "verification/output/near_tip_record.h"
 
-namespace latcon::verification
+namespace latcon::commands
 {
 namespace
 {
 
-lattice::EndLoads::End end_load(Case::End end)
+lattice::EndLoads::End end_load(input::Case::End end)
 {
   switch (end)
   {
-  case Case::End::free:
+  case input::Case::End::free:
     return lattice::EndLoads::End::free;
-  case Case::End::absorbing:
+  case input::Case::End::absorbing:
     return lattice::EndLoads::End::absorbing;
   default:
     return lattice::EndLoads::End::held;
@@ -31,18 +31,19 @@ lattice::EndLoads::End end_load(Case::End end)
 
 // The imbalance of the energy ledger that a run may end with, over the energy it was given. Powers are taken at the
 // ends of steps: long ones pass over what breaking bonds set off.
-double allowed_imbalance(const Case &input)
+double allowed_imbalance(const input::Case &input)
 {
-  return input.integrator == Case::Integrator::velocity_verlet ? 1e-4 : 1e-3;
+  return input.integrator == input::Case::Integrator::velocity_verlet ? 1e-4 : 1e-3;
 }
 
-Results measured_results(const Case &input, const CrackRecord &record, const CrackMeasurement &crack)
+output::Results measured_results(const input::Case &input, const output::CrackRecord &record,
+                                 const analysis::CrackMeasurement &crack)
 {
-  Results results;
-  const auto add = [&](const std::string &quantity, const std::string &unit, const std::optional<Measured> &measured,
-                       const std::optional<double> &published)
+  output::Results results;
+  const auto add = [&](const std::string &quantity, const std::string &unit,
+                       const std::optional<analysis::Measured> &measured, const std::optional<double> &published)
   {
-    Result row{"fracture", quantity, unit, {}, {}, published, {}, {}};
+    output::Result row{"fracture", quantity, unit, {}, {}, published, {}, {}};
     if (measured)
       row.lattice = measured->value;
     if (published)
@@ -69,7 +70,7 @@ Results measured_results(const Case &input, const CrackRecord &record, const Cra
   return results;
 }
 
-std::string progress_text(const lattice::Simulation &simulation, const CrackRecord &record)
+std::string progress_text(const lattice::Simulation &simulation, const output::CrackRecord &record)
 {
   std::ostringstream text;
   text.precision(3);
@@ -80,15 +81,16 @@ std::string progress_text(const lattice::Simulation &simulation, const CrackReco
 
 struct Crack
 {
-  CrackMeasurement measurement;
-  Results results;
+  analysis::CrackMeasurement measurement;
+  output::Results results;
 };
 
 // Moves the sheet until the crack is through or the time is up. On every rank, with the same results.
-Crack run_crack(const Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
-                bool skip_verification, Checkpoints &checkpoints, Run &run)
+Crack run_crack(const input::Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
+                bool skip_verification, output::Checkpoints &checkpoints, Run &run)
 {
-  const lattice::Edges edges{input.left_end == Case::End::held, input.right_end == Case::End::held, true, true};
+  const lattice::Edges edges{input.left_end == input::Case::End::held, input.right_end == input::Case::End::held, true,
+                             true};
   const lattice::RowPartition band(sheet, MPI_COMM_WORLD);
   lattice::State state = lattice::homogeneous_state(band, material, input.deformation(), edges);
   lattice::add_noise(state, band, input.noise_amplitude * input.spacing, input.noise_seed);
@@ -103,11 +105,11 @@ Crack run_crack(const Case &input, const lattice::TriangularLattice &sheet, cons
   simulation.cut(seed);
 
   LatticeMotion motion(input, simulation, checkpoints, run);
-  CrackRecord &record = motion.record();
+  output::CrackRecord &record = motion.record();
   const double stop = input.stop_position * sheet.length();
   const double seed_tip = sheet.reference(seed.back()).x();
-  NearTipRecord near_tip(input, simulation, seed_tip);
-  CrackFilm film(input, simulation, record, seed_tip, run.directory());
+  output::NearTipRecord near_tip(input, simulation, seed_tip);
+  output::CrackFilm film(input, simulation, record, seed_tip, run.directory());
   motion.go({"fracture", [&] { return simulation.state().time < input.end_time && record.tip_X() < stop; },
              [&](const std::vector<lattice::BrokenBond> &broken)
              {
@@ -128,7 +130,7 @@ Crack run_crack(const Case &input, const lattice::TriangularLattice &sheet, cons
               archive("film", film);
             });
   film.end();
-  const CrackMeasurement crack = record.measure(seed_tip);
+  const analysis::CrackMeasurement crack = record.measure(seed_tip);
   record.write_measurement(run.directory(), crack, seed_tip, *input.breaking_stretch, skip_verification);
   if (run.is_root())
     near_tip.write(run.directory(), crack);
@@ -153,7 +155,7 @@ support::ExitCode draw_page(const Run &run)
 }
 
 // The claims on the case's own material and pre-stretch. A crack that they refuse leaves its page all the same.
-Results passed_or_reported(const Case &input, const Options &options, Run &run)
+output::Results passed_or_reported(const input::Case &input, const input::Options &options, Run &run)
 {
   try
   {
@@ -176,36 +178,36 @@ Results passed_or_reported(const Case &input, const Options &options, Run &run)
 
 } // namespace
 
-support::ExitCode run_fracture(const Options &options)
+support::ExitCode run_fracture(const input::Options &options)
 {
-  Case input;
-  Parameters parameters;
+  input::Case input;
+  input::Parameters parameters;
   read_case(options, input, parameters);
-  require_fracture_case(input, parameters);
+  bridge::require_fracture_case(input, parameters);
   if (parameters.good())
-    check_steps(input, input.fracture_time_stepping().step, parameters);
+    resources::check_steps(input, input.fracture_time_stepping().step, parameters);
   parameters.finish();
 
   const lattice::TriangularLattice sheet = input.lattice();
   const lattice::Material material = input.material();
   const bool claims = !options.skip_verification;
-  const MemoryNeed memory = lattice_memory(input, RunKind::fracture, claims);
+  const resources::MemoryNeed memory = resources::lattice_memory(input, resources::RunKind::fracture, claims);
   if (options.dry_run)
   {
-    print_dry_run(options, parameters.resolved_text() + memory_text(memory));
-    require_memory(memory);
+    print_dry_run(options, parameters.resolved_text() + resources::memory_text(memory));
+    resources::require_memory(memory);
     if (!options.quiet)
-      print_dry_run(options,
-                    lattice_text(input, input.fracture_time_stepping(), RunKind::fracture, claims, !options.no_report));
+      print_dry_run(options, lattice_text(input, input.fracture_time_stepping(), resources::RunKind::fracture, claims,
+                                          !options.no_report));
     return support::ExitCode::done;
   }
-  require_memory(memory);
+  resources::require_memory(memory);
 
-  Checkpoints checkpoints(options, parameters, input, "fracture");
+  output::Checkpoints checkpoints(options, parameters, input, "fracture");
   Run run(options, parameters);
   run.note(checkpoints);
   run.info().add("skip_verification", options.skip_verification);
-  Results results;
+  output::Results results;
   if (claims)
     results = passed_or_reported(input, options, run);
   const Crack crack = run_crack(input, sheet, material, options.skip_verification, checkpoints, run);
@@ -225,4 +227,4 @@ support::ExitCode run_fracture(const Options &options)
   return exit_code == support::ExitCode::done ? drawn : exit_code;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::commands

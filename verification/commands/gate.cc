@@ -9,7 +9,7 @@
 #include "verification/claims/verdict_store.h"
 #include "verification/commands/command.h"
 
-namespace latcon::verification
+namespace latcon::commands
 {
 namespace
 {
@@ -29,24 +29,24 @@ std::string unused(const std::string &path, const std::string &reason)
   return path + " is not used: " + reason;
 }
 
-Stored look_up(const Case &input, const std::optional<std::string> &folder)
+Stored look_up(const input::Case &input, const std::optional<std::string> &folder)
 {
   Stored stored;
   try
   {
-    const VerdictKey key =
-      verdict_key(input, claims_before_fracture(), quick, dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD));
+    const claims::VerdictKey key = claims::verdict_key(input, claims_before_fracture(), quick,
+                                                       dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD));
     stored.key = key.text;
     if (!folder)
       stored.note = "neither XDG_CACHE_HOME nor HOME is set: no verdicts are kept";
     else
       try
       {
-        stored.text = VerdictStore(*folder).read(key).value_or("");
+        stored.text = claims::VerdictStore(*folder).read(key).value_or("");
       }
-      catch (const UnusableVerdicts &error)
+      catch (const claims::UnusableVerdicts &error)
       {
-        stored.note = unused(VerdictStore(*folder).path(key), error.what());
+        stored.note = unused(claims::VerdictStore(*folder).path(key), error.what());
       }
   }
   catch (const std::exception &error)
@@ -57,7 +57,7 @@ Stored look_up(const Case &input, const std::optional<std::string> &folder)
 }
 
 // The same on all ranks.
-Stored look_up_on_first_rank(const Case &input, const Run &run, const std::optional<std::string> &folder)
+Stored look_up_on_first_rank(const input::Case &input, const Run &run, const std::optional<std::string> &folder)
 {
   const Stored stored = run.is_root() ? look_up(input, folder) : Stored();
   const auto shared = [](const std::string &text) { return dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, text); };
@@ -71,28 +71,28 @@ void append(std::string &note, const std::string &more)
 
 } // namespace
 
-Results require_verified(const Case &input, Run &run)
+output::Results require_verified(const input::Case &input, Run &run)
 {
   const auto phase = run.info().stopwatch().phase("claims");
-  const std::optional<std::string> folder = VerdictStore::folder_of_user();
+  const std::optional<std::string> folder = claims::VerdictStore::folder_of_user();
   Stored stored = look_up_on_first_rank(input, run, folder);
-  const VerdictKey key(stored.key);
-  const std::string path = folder ? VerdictStore(*folder).path(key) : "";
+  const claims::VerdictKey key(stored.key);
+  const std::string path = folder ? claims::VerdictStore(*folder).path(key) : "";
 
-  std::optional<Verdicts> verdicts;
+  std::optional<claims::Verdicts> verdicts;
   if (!stored.text.empty())
     try
     {
-      verdicts = read_verdicts(key, stored.text);
+      verdicts = claims::read_verdicts(key, stored.text);
       // What refuses a crack needs no rows but its own.
-      if (const std::string problem = row_problem(verdicts->results, shells_name(input.material()));
+      if (const std::string problem = claims::row_problem(verdicts->results, bridge::shells_name(input.material()));
           verdicts->results.all_hold() && !problem.empty())
       {
         verdicts.reset();
-        throw UnusableVerdicts("its rows are not those of the claims: " + problem);
+        throw claims::UnusableVerdicts("its rows are not those of the claims: " + problem);
       }
     }
-    catch (const UnusableVerdicts &error)
+    catch (const claims::UnusableVerdicts &error)
     {
       append(stored.note, unused(path, error.what()));
     }
@@ -101,11 +101,11 @@ Results require_verified(const Case &input, Run &run)
   if (!reused)
   {
     verdicts.emplace(run_claims(input, claims_before_fracture(), quick, Shells::own,
-                                laws_of_lattice())); // bonds break, no finite elements
+                                bridge::laws_of_lattice())); // bonds break, no finite elements
     if (run.is_root() && folder && !key.text.empty())
       try
       {
-        VerdictStore(*folder).write(key, verdicts_text(key, *verdicts));
+        claims::VerdictStore(*folder).write(key, claims::verdicts_text(key, *verdicts));
         kept = true;
       }
       catch (const support::OutputError &error)
@@ -114,7 +114,7 @@ Results require_verified(const Case &input, Run &run)
       }
   }
 
-  RunInfo::Object record{
+  output::RunInfo::Object record{
     {"hash", key.text.empty() ? "" : key.hash}, {"reused", reused}, {"checked_at", verdicts->checked_at}};
   if (!stored.note.empty())
     record.emplace_back("note", stored.note);
@@ -142,4 +142,4 @@ Results require_verified(const Case &input, Run &run)
   return verdicts->results;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::commands

@@ -10,23 +10,23 @@
 #include "verification/commands/signals.h"
 #include "verification/output/field_writer.h"
 
-namespace latcon::verification
+namespace latcon::commands
 {
 namespace
 {
 
 // Static equilibrium. @return its energy and residual
-Results relaxed(const Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
-                lattice::State state, Run &run)
+output::Results relaxed(const input::Case &input, const lattice::TriangularLattice &sheet,
+                        const lattice::Material &material, lattice::State state, Run &run)
 {
-  FieldWriter fields(sheet, material, run.directory());
+  output::FieldWriter fields(sheet, material, run.directory());
   fields.add_frame(state);
   lattice::Relaxation relaxation{};
   try
   {
     const auto phase = run.info().stopwatch().phase("relaxation");
-    relaxation =
-      lattice::relax(state, sheet, material, 1e-12 * small_strain(sheet, material).shear_modulus * input.spacing);
+    relaxation = lattice::relax(state, sheet, material,
+                                1e-12 * bridge::small_strain(sheet, material).shear_modulus * input.spacing);
   }
   catch (const std::runtime_error &error)
   {
@@ -34,7 +34,7 @@ Results relaxed(const Case &input, const lattice::TriangularLattice &sheet, cons
   }
   state.time = 1.; // load factor, as for the continuum
   fields.add_frame(state);
-  Results results;
+  output::Results results;
   results.add({"lattice",
                "elastic energy per thickness",
                "J/m",
@@ -48,8 +48,8 @@ Results relaxed(const Case &input, const lattice::TriangularLattice &sheet, cons
 }
 
 // On every rank, with the same results.
-Results moved(const Case &input, const lattice::RowPartition &band, const lattice::Material &material,
-              lattice::State state, Checkpoints &checkpoints, Run &run)
+output::Results moved(const input::Case &input, const lattice::RowPartition &band, const lattice::Material &material,
+                      lattice::State state, output::Checkpoints &checkpoints, Run &run)
 {
   lattice::TimeStepping stepping = input.lattice_time_stepping();
   if (!input.time_step)
@@ -60,7 +60,7 @@ Results moved(const Case &input, const lattice::RowPartition &band, const lattic
   motion.go({"motion", [&] { return motion.step() < steps; }, [](const auto &) {},
              [&] { return std::pair("/" + std::to_string(steps), static_cast<double>(motion.step()) / steps); }},
             [](auto &) {});
-  Results results;
+  output::Results results;
   const lattice::EnergyBalance energies = simulation.energies();
   results.add({"lattice", "elastic energy per thickness", "J/m", energies.elastic, {}, {}, {}, {}});
   results.add({"lattice", "kinetic energy per thickness", "J/m", energies.kinetic, {}, {}, {}, {}});
@@ -77,39 +77,39 @@ Results moved(const Case &input, const lattice::RowPartition &band, const lattic
 
 } // namespace
 
-support::ExitCode run_lattice(const Options &options)
+support::ExitCode run_lattice(const input::Options &options)
 {
-  Case input;
-  Parameters parameters;
+  input::Case input;
+  input::Parameters parameters;
   read_case(options, input, parameters);
-  require_lattice_sheet(input, parameters, "`latcon lattice`");
-  if (input.solution == Case::Solution::motion && !(input.end_time > 0.))
+  bridge::require_lattice_sheet(input, parameters, "`latcon lattice`");
+  if (input.solution == input::Case::Solution::motion && !(input.end_time > 0.))
     parameters.error("Time/end", "motion needs an end time larger than 0", {"Lattice/solution"});
-  const bool moves = input.solution == Case::Solution::motion;
+  const bool moves = input.solution == input::Case::Solution::motion;
   if (moves && parameters.good())
-    check_steps(input, input.lattice_time_stepping().step, parameters);
+    resources::check_steps(input, input.lattice_time_stepping().step, parameters);
   parameters.finish();
 
   const lattice::TriangularLattice sheet = input.lattice();
   const lattice::Material material = input.material();
-  const RunKind kind = moves ? RunKind::dynamics : RunKind::equilibrium;
-  const MemoryNeed memory = lattice_memory(input, kind);
+  const resources::RunKind kind = moves ? resources::RunKind::dynamics : resources::RunKind::equilibrium;
+  const resources::MemoryNeed memory = resources::lattice_memory(input, kind);
   if (options.dry_run)
   {
-    print_dry_run(options, parameters.resolved_text() + memory_text(memory));
-    require_memory(memory);
+    print_dry_run(options, parameters.resolved_text() + resources::memory_text(memory));
+    resources::require_memory(memory);
     if (!options.quiet)
       print_dry_run(options, lattice_text(input, input.lattice_time_stepping(), kind));
     return support::ExitCode::done;
   }
-  Checkpoints checkpoints(options, parameters, input, "lattice");
-  require_memory(memory);
+  output::Checkpoints checkpoints(options, parameters, input, "lattice");
+  resources::require_memory(memory);
   Run run(options, parameters);
   run.note(checkpoints);
-  Results results;
+  output::Results results;
   const auto state_of = [&](const lattice::RowPartition &band)
   {
-    lattice::State state = lattice_state(input, band);
+    lattice::State state = bridge::lattice_state(input, band);
     lattice::add_noise(state, band, input.noise_amplitude * input.spacing, input.noise_seed);
     return state;
   };
@@ -123,4 +123,4 @@ support::ExitCode run_lattice(const Options &options)
   return interrupted() ? run.interrupted(results) : run.finish(results);
 }
 
-} // namespace latcon::verification
+} // namespace latcon::commands

@@ -6,10 +6,11 @@
 #include "verification/commands/signals.h"
 #include "verification/output/progress.h"
 
-namespace latcon::verification
+namespace latcon::commands
 {
 
-LatticeMotion::LatticeMotion(const Case &input, lattice::Simulation &simulation, Checkpoints &checkpoints, Run &run)
+LatticeMotion::LatticeMotion(const input::Case &input, lattice::Simulation &simulation,
+                             output::Checkpoints &checkpoints, Run &run)
   : input_(input), simulation_(simulation), checkpoints_(checkpoints), run_(run), record_(simulation),
     frames_(simulation.lattice(), simulation.material(), run.directory()), next_frame_(input.frame_interval)
 {
@@ -33,7 +34,8 @@ void LatticeMotion::check_loaded()
 {
   const double time = simulation_.state().time, step = simulation_.time_step(), done = static_cast<double>(step_);
   // Steps were added up one by one.
-  require_course(*checkpoints_.found(), step_, time, done * step, done * std::numeric_limits<double>::epsilon() * time);
+  output::require_course(*checkpoints_.found(), step_, time, done * step,
+                         done * std::numeric_limits<double>::epsilon() * time);
   lattice::require_archived(time <= input_.end_time + step, "`time` is after the end");
   // A frame at the start, and one an interval, but no more than one a step.
   if (run_.is_root() && input_.frame_interval > 0.)
@@ -63,7 +65,7 @@ void LatticeMotion::go(const StepCallbacks &callbacks, bool resumed, const std::
   }
   if (callbacks.begin)
     callbacks.begin(resumed);
-  Progress progress(run_.is_verbose());
+  output::Progress progress(run_.is_verbose());
   try
   {
     const auto phase = run_.info().stopwatch().phase(callbacks.phase);
@@ -110,4 +112,4 @@ void LatticeMotion::go(const StepCallbacks &callbacks, bool resumed, const std::
   write_tables();
 }
 
-} // namespace latcon::verification
+} // namespace latcon::commands

@@ -12,7 +12,7 @@
 #include "verification/output/crack_record.h"
 #include "verification/output/field_writer.h"
 
-namespace latcon::verification
+namespace latcon::commands
 {
 
 /// What every motion of a lattice does as it goes, with a crack or without: frames, tables, the energy ledger,
@@ -21,7 +21,7 @@ class LatticeMotion
 {
 public:
   /// @param simulation at its first step; must outlive the motion
-  LatticeMotion(const Case &input, lattice::Simulation &simulation, Checkpoints &checkpoints, Run &run);
+  LatticeMotion(const input::Case &input, lattice::Simulation &simulation, output::Checkpoints &checkpoints, Run &run);
 
   /// What a motion calls, and asks, at each step.
   struct StepCallbacks
@@ -60,7 +60,7 @@ public:
        });
   }
 
-  CrackRecord &record() { return record_; }
+  output::CrackRecord &record() { return record_; }
   std::size_t step() const { return step_; } ///< steps done
 
 private:
@@ -69,14 +69,14 @@ private:
   void add_frame();
   void write_tables() const;
 
-  const Case &input_;
+  const input::Case &input_;
   lattice::Simulation &simulation_;
-  Checkpoints &checkpoints_;
+  output::Checkpoints &checkpoints_;
   Run &run_;
-  CrackRecord record_;
-  FieldWriter frames_;
+  output::CrackRecord record_;
+  output::FieldWriter frames_;
   double next_frame_; // [s]
   std::size_t step_ = 0;
 };
 
-} // namespace latcon::verification
+} // namespace latcon::commands

@@ -10,7 +10,7 @@
 #include "verification/commands/command.h"
 #include "verification/input/data_folder.h"
 
-namespace latcon::verification
+namespace latcon::commands
 {
 
 namespace
@@ -34,7 +34,7 @@ int run_script(const std::string &script, const std::string &directory, const st
 {
   // Debian's interpreter, the one that sees the packages the script needs, and no packages of the user.
   const std::string python = "/usr/bin/python3";
-  std::vector<std::string> command{python, "-s", data_folder() + "/report/" + script, directory};
+  std::vector<std::string> command{python, "-s", input::data_folder() + "/report/" + script, directory};
   if (quiet)
     command.emplace_back("--quiet");
   const int status = support::wait_for_child(support::start_child({command, environment_of_scripts(), ""}));
@@ -51,7 +51,7 @@ int run_script(const std::string &script, const std::string &directory, const st
 
 } // namespace
 
-support::ExitCode report(const Options &options, const std::string &directory)
+support::ExitCode report(const input::Options &options, const std::string &directory)
 {
   if (!std::filesystem::is_directory(directory))
     throw support::InputError(directory + " is not a directory");
@@ -73,4 +73,4 @@ void study_page(const std::string &directory)
     throw support::OutputError(directory + "/study.html", "the report script failed");
 }
 
-} // namespace latcon::verification
+} // namespace latcon::commands

@@ -11,7 +11,7 @@
 #include "verification/input/data_folder.h"
 #include "verification/study/quantities.h"
 
-namespace latcon::verification
+namespace latcon::commands
 {
 namespace
 {
@@ -21,21 +21,21 @@ using Json = nlohmann::ordered_json;
 // Increases with each change that a reader of the previous document would misunderstand.
 constexpr int format_version = 1;
 
-const char *name_of(ValueType type)
+const char *name_of(input::ValueType type)
 {
   switch (type)
   {
-  case ValueType::number:
+  case input::ValueType::number:
     return "number";
-  case ValueType::whole_number:
+  case input::ValueType::whole_number:
     return "integer";
-  case ValueType::numbers:
+  case input::ValueType::numbers:
     return "numbers";
-  case ValueType::boolean:
+  case input::ValueType::boolean:
     return "boolean";
-  case ValueType::word:
+  case input::ValueType::word:
     return "word";
-  case ValueType::text:
+  case input::ValueType::text:
     return "text";
   }
   return "";
@@ -52,25 +52,25 @@ Number parse_number(const std::string &text)
 }
 
 // Value of an entry in the type of JSON that corresponds to its own; `auto` is null.
-Json value_of(const Declaration &entry, const std::string &text)
+Json value_of(const input::Declaration &entry, const std::string &text)
 {
   if (entry.may_be_auto && text == "auto")
     return nullptr;
   switch (entry.type)
   {
-  case ValueType::number:
+  case input::ValueType::number:
     return parse_number<double>(text);
-  case ValueType::whole_number:
+  case input::ValueType::whole_number:
     return text[0] == '-' ? Json(parse_number<std::int64_t>(text)) : Json(parse_number<std::uint64_t>(text));
-  case ValueType::boolean:
+  case input::ValueType::boolean:
     return text == "true";
-  case ValueType::numbers:
+  case input::ValueType::numbers:
   {
     Json list = Json::array();
     for (std::size_t at = 0; !text.empty() && at <= text.size();)
     {
       const std::size_t end = std::min(text.find(',', at), text.size());
-      list.push_back(parse_number<double>(trimmed(text.substr(at, end - at))));
+      list.push_back(parse_number<double>(input::trimmed(text.substr(at, end - at))));
       at = end + 1;
     }
     return list;
@@ -81,15 +81,15 @@ Json value_of(const Declaration &entry, const std::string &text)
 }
 
 // The bounds that exist, under the keywords of JSON Schema.
-Json range_of(const Declaration &entry)
+Json range_of(const input::Declaration &entry)
 {
   Json range = Json::object();
-  const auto put = [&](const Range::Bound &bound, const char *included, const char *excluded)
+  const auto put = [&](const input::Range::Bound &bound, const char *included, const char *excluded)
   {
     if (!std::isfinite(bound.value))
       return;
     Json &place = range[bound.included ? included : excluded];
-    if (entry.type == ValueType::whole_number)
+    if (entry.type == input::ValueType::whole_number)
       place = static_cast<std::int64_t>(bound.value);
     else
       place = bound.value;
@@ -101,9 +101,9 @@ Json range_of(const Declaration &entry)
   return range;
 }
 
-Json describe(const Declaration &entry)
+Json describe(const input::Declaration &entry)
 {
-  const bool required = entry.presence == Presence::required;
+  const bool required = entry.presence == input::Presence::required;
   Json item{{"section", entry.section},
             {"name", entry.name},
             {"type", name_of(entry.type)},
@@ -113,7 +113,7 @@ Json describe(const Declaration &entry)
     item["range"] = range_of(entry);
   if (entry.may_be_auto)
     item["auto"] = true;
-  if (entry.type == ValueType::word)
+  if (entry.type == input::ValueType::word)
     item["words"] = entry.words;
   if (!required)
     item["default"] = value_of(entry, entry.default_text);
@@ -126,7 +126,7 @@ Json describe(const Declaration &entry)
 Json shipped_cases()
 {
   Json cases = Json::object();
-  const std::filesystem::path folder = data_folder() + "/cases";
+  const std::filesystem::path folder = input::data_folder() + "/cases";
   std::error_code none;
   for (const auto &file : std::filesystem::directory_iterator(folder, none))
     if (file.path().extension() == ".prm")
@@ -136,32 +136,32 @@ Json shipped_cases()
 
 } // namespace
 
-support::ExitCode print_schema(const Options &options)
+support::ExitCode print_schema(const input::Options &options)
 {
-  Case input;
-  Parameters parameters;
+  input::Case input;
+  input::Parameters parameters;
   if (options.case_is_given)
     read_case(options, input, parameters);
   else if (options.overrides.empty())
     input.declare(parameters);
   else
     throw support::InputError("--set replaces entries of a case; give one: latcon schema CASE --set ...");
-  const std::vector<Declaration> entries = parameters.declarations();
+  const std::vector<input::Declaration> entries = parameters.declarations();
   Json document;
   document["format"] = "latcon-schema";
   document["format_version"] = format_version;
-  document["version"] = program_version();
-  document["git_commit"] = git_commit();
+  document["version"] = output::program_version();
+  document["git_commit"] = output::git_commit();
   document["cases"] = shipped_cases();
-  for (const StudyQuantity &quantity : quantities())
+  for (const study::StudyQuantity &quantity : study::quantities())
     document["quantities"][quantity.name] = quantity.unit;
-  for (const Declaration &entry : entries)
+  for (const input::Declaration &entry : entries)
     document["entries"].push_back(describe(entry));
   if (options.case_is_given)
   {
     parameters.finish();
     Json values = Json::object();
-    for (const Declaration &entry : entries)
+    for (const input::Declaration &entry : entries)
       values[entry.section + "/" + entry.name] = value_of(entry, parameters.value(entry.section + "/" + entry.name));
     document["case"] = {
       {"file", options.case_file}, {"values", std::move(values)}, {"resolved", parameters.resolved_text()}};
@@ -171,4 +171,4 @@ support::ExitCode print_schema(const Options &options)
   return support::ExitCode::done;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::commands

@@ -19,7 +19,7 @@
 
 #include "support/errors.h"
 
-namespace latcon::verification
+namespace latcon::commands
 {
 namespace
 {
@@ -150,4 +150,4 @@ void disregard_signals()
   deferral_ended.notify_one();
 }
 
-} // namespace latcon::verification
+} // namespace latcon::commands

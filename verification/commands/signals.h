@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <functional>
 
-namespace latcon::verification
+namespace latcon::commands
 {
 
 /// From here on SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGALRM and SIGXCPU end the process with
@@ -42,4 +42,4 @@ void disregard_signals();
 /// a large sheet.
 inline constexpr std::size_t steps_between_signals = 16;
 
-} // namespace latcon::verification
+} // namespace latcon::commands

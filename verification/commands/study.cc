@@ -19,7 +19,7 @@
 #include "verification/study/process_pool.h"
 #include "verification/study/study_output.h"
 
-namespace latcon::verification
+namespace latcon::commands
 {
 namespace
 {
@@ -35,7 +35,7 @@ struct Folders
   std::string whole, part;
 };
 
-Folders folders_of(const Run &run, const PlannedRun &planned)
+Folders folders_of(const Run &run, const study::PlannedRun &planned)
 {
   const std::string whole = run.directory() + "/runs/" + planned.folder();
   return {whole, whole + ".part"};
@@ -48,7 +48,7 @@ void replace(const Folders &folders)
 }
 
 // The resolved case of a run, which the study wrote before its first run started.
-std::string case_file_of(const Run &run, const PlannedRun &planned)
+std::string case_file_of(const Run &run, const study::PlannedRun &planned)
 {
   return run.directory() + "/cases/" + planned.folder() + ".prm";
 }
@@ -66,9 +66,9 @@ std::vector<std::string> command_of(const std::string &case_file, const std::str
   return command;
 }
 
-std::string result_line(const RunOutcome &outcome)
+std::string result_line(const study::RunOutcome &outcome)
 {
-  if (outcome.state != RunState::measured)
+  if (outcome.state != study::RunState::measured)
     return to_string(outcome.state) + ": " + outcome.problem;
   return outcome.pattern;
 }
@@ -77,14 +77,14 @@ std::string result_line(const RunOutcome &outcome)
 class PoolProgress
 {
 public:
-  PoolProgress(const std::vector<PlannedRun> &plan, const std::vector<std::size_t> &jobs, bool wanted)
+  PoolProgress(const std::vector<study::PlannedRun> &plan, const std::vector<std::size_t> &jobs, bool wanted)
     : plan_(plan), jobs_(jobs), line_(wanted), is_verbose_(wanted), start_(std::chrono::steady_clock::now())
   {
     for (const std::size_t run : jobs)
       total_ += plan[run].cost();
   }
 
-  void ended(std::size_t run, const RunOutcome &outcome)
+  void ended(std::size_t run, const study::RunOutcome &outcome)
   {
     ++n_ended_;
     done_ += plan_[run].cost();
@@ -107,9 +107,9 @@ public:
   }
 
 private:
-  const std::vector<PlannedRun> &plan_;
+  const std::vector<study::PlannedRun> &plan_;
   const std::vector<std::size_t> &jobs_;
-  Progress line_;
+  output::Progress line_;
   bool is_verbose_;
   std::chrono::steady_clock::time_point start_;
   std::size_t n_ended_ = 0;
@@ -117,18 +117,19 @@ private:
 };
 
 // Runs what is not there yet. @return whether all of it ended
-bool run_children(StudyResults &results, const Options &options, bool skip_verification, std::size_t n_cores, Run &run)
+bool run_children(study::StudyResults &results, const input::Options &options, bool skip_verification,
+                  std::size_t n_cores, Run &run)
 {
   const auto phase = run.info().stopwatch().phase("runs");
   std::vector<std::size_t> jobs;
-  for (const std::size_t i : longest_first(results.plan))
+  for (const std::size_t i : study::longest_first(results.plan))
   {
-    const PlannedRun &planned = results.plan[i];
+    const study::PlannedRun &planned = results.plan[i];
     const std::string folder = folders_of(run, planned).whole;
     results.outcomes[i].run = planned.run;
     results.outcomes[i].seed = planned.seed;
-    if (options.resume && is_finished(planned, folder, skip_verification))
-      results.outcomes[i] = read_outcome(planned, folder);
+    if (options.resume && study::is_finished(planned, folder, skip_verification))
+      results.outcomes[i] = study::read_outcome(planned, folder);
     else
       jobs.push_back(i);
   }
@@ -137,20 +138,20 @@ bool run_children(StudyResults &results, const Options &options, bool skip_verif
 
   for (const char *folder : {"/cases", "/runs"})
     fs::create_directory(run.directory() + folder);
-  for (const PlannedRun &planned : results.plan)
-    write_file(case_file_of(run, planned), planned.case_text);
+  for (const study::PlannedRun &planned : results.plan)
+    output::write_file(case_file_of(run, planned), planned.case_text);
   PoolProgress progress(results.plan, jobs, run.is_verbose());
-  ProcessPool pool;
+  study::ProcessPool pool;
   pool.n_jobs = jobs.size();
   pool.limit = n_cores;
-  pool.start = [&](std::size_t job) -> ProcessPool::Job
+  pool.start = [&](std::size_t job) -> study::ProcessPool::Job
   {
-    const PlannedRun &planned = results.plan[jobs[job]];
+    const study::PlannedRun &planned = results.plan[jobs[job]];
     const std::string folder = folders_of(run, planned).part;
     support::require_in_place(folder);
     if (fs::exists(folder))
       lock_directory(folder, patience_with_orphans); // released at once: the run locks it for itself
-    const bool goes_on = options.resume && is_begun(planned, folder, skip_verification);
+    const bool goes_on = options.resume && study::is_begun(planned, folder, skip_verification);
     if (!goes_on)
       fs::remove_all(folder);
     fs::create_directory(folder);
@@ -158,41 +159,42 @@ bool run_children(StudyResults &results, const Options &options, bool skip_verif
   };
   pool.ended = [&](std::size_t job, int status)
   {
-    const PlannedRun &planned = results.plan[jobs[job]];
+    const study::PlannedRun &planned = results.plan[jobs[job]];
     const Folders folders = folders_of(run, planned);
     support::require_in_place(folders.whole);
     replace(folders);
-    results.outcomes[jobs[job]] = read_outcome(planned, folders.whole, status);
+    results.outcomes[jobs[job]] = study::read_outcome(planned, folders.whole, status);
     progress.ended(jobs[job], results.outcomes[jobs[job]]);
   };
   pool.waiting = [&](const std::vector<std::size_t> &running) { progress.show(running); };
   pool.stop = any_rank_interrupted;
   const SignalDeferral deferral;
-  return run_processes(pool);
+  return study::run_processes(pool);
 }
 
-void run_checks(StudyResults &results, bool quick, Run &run)
+void run_checks(study::StudyResults &results, bool quick, Run &run)
 {
   const auto phase = run.info().stopwatch().phase("checks");
   for (const std::string &name : results.study.checks)
   {
     if (run.is_verbose())
       std::cout << "check " << name << std::endl;
-    results.checks.push_back(run_check(name, quick, run.directory()));
+    results.checks.push_back(study::run_check(name, quick, run.directory()));
   }
 }
 
 // Checks the claims on the base case, small version, in the place of the runs. @throws ClaimFailed
-void verify_base(const Study &study, const InputFile &base, const std::vector<std::string> &settings, Run &run)
+void verify_base(const study::Study &study, const input::InputFile &base, const std::vector<std::string> &settings,
+                 Run &run)
 {
-  Settings all = study.settings;
+  study::Settings all = study.settings;
   for (const std::string &setting : settings)
-    override_settings(all, {{setting.substr(0, setting.find('=')), setting.substr(setting.find('=') + 1)}});
+    study::override_settings(all, {{setting.substr(0, setting.find('=')), setting.substr(setting.find('=') + 1)}});
   std::vector<std::string> changes;
   for (const auto &[key, value] : all)
     changes.push_back(key + "=" + value);
-  Case input;
-  Parameters parameters;
+  input::Case input;
+  input::Parameters parameters;
   input.declare(parameters);
   parameters.read_text(base.text, study.base);
   parameters.read_overrides(changes);
@@ -202,54 +204,54 @@ void verify_base(const Study &study, const InputFile &base, const std::vector<st
 }
 
 // Of as many of the largest runs as go at once, each a program of its own.
-MemoryNeed memory_of(const std::vector<PlannedRun> &plan, std::size_t n_cores)
+resources::MemoryNeed memory_of(const std::vector<study::PlannedRun> &plan, std::size_t n_cores)
 {
   std::vector<double> needs;
-  for (const PlannedRun &run : plan)
+  for (const study::PlannedRun &run : plan)
     needs.push_back(run.memory + support::held_memory());
   std::sort(needs.rbegin(), needs.rend());
   needs.resize(std::min(needs.size(), n_cores));
   return {std::accumulate(needs.begin(), needs.end(), 0.), 0.};
 }
 
-support::ExitCode exit_code_of(const StudyResults &results, const Results &rows)
+support::ExitCode exit_code_of(const study::StudyResults &results, const output::Results &rows)
 {
-  const auto any = [&](RunState state)
+  const auto any = [&](study::RunState state)
   {
     return std::any_of(results.outcomes.begin(), results.outcomes.end(),
-                       [state](const RunOutcome &outcome) { return outcome.state == state; });
+                       [state](const study::RunOutcome &outcome) { return outcome.state == state; });
   };
-  if (any(RunState::failed))
+  if (any(study::RunState::failed))
     return support::ExitCode::solver_failed;
-  return any(RunState::refused) || rows.verdict() == Verdict::fails ? support::ExitCode::claim_failed
-                                                                    : support::ExitCode::done;
+  return any(study::RunState::refused) || rows.verdict() == output::Verdict::fails ? support::ExitCode::claim_failed
+                                                                                   : support::ExitCode::done;
 }
 
 } // namespace
 
-support::ExitCode run_study(const Options &options, const std::string &name)
+support::ExitCode run_study(const input::Options &options, const std::string &name)
 {
   if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
     throw support::InputError("`latcon study` starts its own processes, one a core; run it without mpirun");
-  StudyResults results;
-  results.study = read_study_file(study_path(name), options.quick);
-  const InputFile base = read_input_file(results.study.base);
-  results.plan = plan_runs(results.study, base, options.overrides);
+  study::StudyResults results;
+  results.study = study::read_study_file(study::study_path(name), options.quick);
+  const input::InputFile base = input::read_input_file(results.study.base);
+  results.plan = study::plan_runs(results.study, base, options.overrides);
   results.outcomes.resize(results.plan.size());
   results.quick = options.quick;
   const std::size_t n_cores = options.threads > 0 ? options.threads : support::available_cores();
-  const MemoryNeed memory = memory_of(results.plan, n_cores);
+  const resources::MemoryNeed memory = memory_of(results.plan, n_cores);
   if (options.dry_run)
   {
     if (!options.quiet)
     {
-      print_plan(std::cout, results.study, results.plan, n_cores);
-      std::cout << memory_text(memory);
+      study::print_plan(std::cout, results.study, results.plan, n_cores);
+      std::cout << resources::memory_text(memory);
     }
-    require_memory(memory);
+    resources::require_memory(memory);
     return support::ExitCode::done;
   }
-  require_memory(memory);
+  resources::require_memory(memory);
 
   Run run(options);
   run.info().add("skip_verification", options.skip_verification);
@@ -263,20 +265,20 @@ support::ExitCode run_study(const Options &options, const std::string &name)
     verify_base(results.study, base, options.overrides, run);
   const auto write_tables = [&]
   {
-    write_file(run.directory() + "/study.json", study_json(results));
-    write_file(run.directory() + "/study.csv", study_csv(results));
+    output::write_file(run.directory() + "/study.json", study::study_json(results));
+    output::write_file(run.directory() + "/study.csv", study::study_csv(results));
   };
   const bool complete = run_children(results, options, skip_verification, n_cores, run);
-  results.claims = judge(results.study, results.plan, results.outcomes);
+  results.claims = study::judge(results.study, results.plan, results.outcomes);
   write_tables();
   if (complete && !results.study.checks.empty())
   {
     run_checks(results, options.quick, run);
     write_tables();
   }
-  const Results rows = study_rows(results);
+  const output::Results rows = study::study_rows(results);
   if (run.is_verbose())
-    print_table(std::cout, results);
+    study::print_table(std::cout, results);
   const support::ExitCode exit_code =
     run.end(rows, complete ? exit_code_of(results, rows) : support::ExitCode::interrupted);
   if (complete)
@@ -288,4 +290,4 @@ support::ExitCode run_study(const Options &options, const std::string &name)
   return exit_code;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::commands

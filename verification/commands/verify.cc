@@ -16,14 +16,14 @@
 #include "verification/claims/wave_speeds/wave_speeds_claim.h"
 #include "verification/commands/command.h"
 
-namespace latcon::verification
+namespace latcon::commands
 {
 namespace
 {
 
 // The states about which waves are evaluated: at rest, stretched alike along both axes, and as the case is loaded,
 // unless the lattice buckles there and has no waves.
-std::vector<Eigen::Matrix2d> states(const Subject &subject, bool quick)
+std::vector<Eigen::Matrix2d> states(const bridge::Subject &subject, bool quick)
 {
   const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
   std::vector<Eigen::Matrix2d> list{I};
@@ -34,22 +34,22 @@ std::vector<Eigen::Matrix2d> states(const Subject &subject, bool quick)
   return list;
 }
 
-ClaimOutcome energy(const Subject &subject, bool quick)
+claims::ClaimOutcome energy(const bridge::Subject &subject, bool quick)
 {
-  ClaimOutcome outcome{energy_claim(subject, quick ? 200 : 2000), {}};
+  claims::ClaimOutcome outcome{claims::energy_claim(subject, quick ? 200 : 2000), {}};
   if (!subject.is_stable())
-    outcome.results.add(stability_row(subject, "energy"));
-  WaveEnergyOptions options;
+    outcome.results.add(claims::stability_row(subject, "energy"));
+  claims::WaveEnergyOptions options;
   options.states = states(subject, true);
   if (quick)
     options.kd = {0.25, 0.5};
-  outcome.add(wave_energy_claim(subject, options));
+  outcome.add(claims::wave_energy_claim(subject, options));
   return outcome;
 }
 
-ClaimOutcome wave_speeds(const Subject &subject, bool quick)
+claims::ClaimOutcome wave_speeds(const bridge::Subject &subject, bool quick)
 {
-  WaveSpeedsOptions options;
+  claims::WaveSpeedsOptions options;
   options.states = states(subject, quick);
   options.damped_states = states(subject, true);
   if (quick)
@@ -58,22 +58,22 @@ ClaimOutcome wave_speeds(const Subject &subject, bool quick)
     options.mesh.cells = 4;
     options.damped_states = {options.states.back()};
   }
-  ClaimOutcome outcome = wave_speeds_claim(subject, options);
+  claims::ClaimOutcome outcome = claims::wave_speeds_claim(subject, options);
   if (!subject.is_stable())
-    outcome.results.add(stability_row(subject, "wave-speeds"));
+    outcome.results.add(claims::stability_row(subject, "wave-speeds"));
   return outcome;
 }
 
-ClaimOutcome intrinsic_length(const Subject &subject, bool quick)
+claims::ClaimOutcome intrinsic_length(const bridge::Subject &subject, bool quick)
 {
-  IntrinsicLengthOptions options;
+  claims::IntrinsicLengthOptions options;
   options.angle_step = quick ? 15. : 3.;
-  return intrinsic_length_claim(subject, options);
+  return claims::intrinsic_length_claim(subject, options);
 }
 
-ClaimOutcome prestretch(const Subject &subject, bool quick)
+claims::ClaimOutcome prestretch(const bridge::Subject &subject, bool quick)
 {
-  PrestretchOptions options;
+  claims::PrestretchOptions options;
   if (!quick)
   {
     options.length = 120.;
@@ -81,38 +81,39 @@ ClaimOutcome prestretch(const Subject &subject, bool quick)
     options.cells_x = 24;
     options.cells_y = 16;
   }
-  ClaimOutcome outcome{prestretch_claim(subject, options), {}};
+  claims::ClaimOutcome outcome{claims::prestretch_claim(subject, options), {}};
   if (!subject.material.next_nearest)
   {
-    outcome.add(cut_claim(subject, nearest_hole_study(quick)));
+    outcome.add(claims::cut_claim(subject, claims::nearest_hole_study(quick)));
     if (!quick)
-      outcome.add(cut_claim(subject, notch_study(false)));
+      outcome.add(claims::cut_claim(subject, claims::notch_study(false)));
     return outcome;
   }
-  outcome.add(cut_claim(subject, hole_study(quick)));
-  outcome.add(cut_claim(subject, notch_study(quick)));
+  outcome.add(claims::cut_claim(subject, claims::hole_study(quick)));
+  outcome.add(claims::cut_claim(subject, claims::notch_study(quick)));
   if (!quick && subject.is_stable() && (subject.deformation - Eigen::Matrix2d::Identity()).norm() > 0.01)
-    outcome.add(cut_claim(subject, loaded_hole_study(subject.deformation)));
+    outcome.add(claims::cut_claim(subject, claims::loaded_hole_study(subject.deformation)));
   return outcome;
 }
 
-ClaimOutcome running_crack(const Subject &subject, bool quick, const std::string &frames)
+claims::ClaimOutcome running_crack(const bridge::Subject &subject, bool quick, const std::string &frames)
 {
-  RunningCrackOptions options = quick ? RunningCrackOptions() : full_running_crack();
+  claims::RunningCrackOptions options = quick ? claims::RunningCrackOptions() : claims::full_running_crack();
   options.frames = frames;
-  return running_crack_claim(subject, options);
+  return claims::running_crack_claim(subject, options);
 }
 
 struct Claim
 {
   std::string name;
-  std::function<ClaimOutcome(const Subject &, bool quick, const std::string &frames)> check;
+  std::function<claims::ClaimOutcome(const bridge::Subject &, bool quick, const std::string &frames)> check;
   bool is_slow = false; ///< the quick version takes the shells of the case alone
 };
 
-Claim without_frames(const std::string &name, ClaimOutcome (*check)(const Subject &, bool))
+Claim without_frames(const std::string &name, claims::ClaimOutcome (*check)(const bridge::Subject &, bool))
 {
-  return {name, [check](const Subject &subject, bool quick, const std::string &) { return check(subject, quick); }};
+  return {name,
+          [check](const bridge::Subject &subject, bool quick, const std::string &) { return check(subject, quick); }};
 }
 
 // A further claim is a further line here.
@@ -146,33 +147,33 @@ const std::vector<std::string> &claims_before_fracture()
   return names;
 }
 
-ClaimOutcome run_claims(const Case &input, const std::vector<std::string> &names, bool quick, Shells shells,
-                        const Laws &laws, const std::string &frames)
+claims::ClaimOutcome run_claims(const input::Case &input, const std::vector<std::string> &names, bool quick,
+                                Shells shells, const bridge::Laws &laws, const std::string &frames)
 {
   std::optional<support::OneThread> one_thread;
   if (quick)
     one_thread.emplace();
-  const Case read = claim_inputs(input);
-  std::vector<Subject> subjects{subject(read, read.material(), laws)};
+  const input::Case read = claims::claim_inputs(input);
+  std::vector<bridge::Subject> subjects{subject(read, read.material(), laws)};
   if (read.has_next_nearest && shells == Shells::own_and_nearest)
   {
     lattice::Material nearest_only = read.material();
     nearest_only.next_nearest.reset();
     subjects.push_back(subject(read, nearest_only, laws));
   }
-  ClaimOutcome outcome;
+  claims::ClaimOutcome outcome;
   for (const Claim &claim : claims())
     if (names.empty() || std::find(names.begin(), names.end(), claim.name) != names.end())
-      for (const Subject &one : subjects)
+      for (const bridge::Subject &one : subjects)
         if (&one == &subjects.front() || !quick || !claim.is_slow)
           outcome.results.attempt(claim.name, one.name, [&] { outcome.add(claim.check(one, quick, frames)); });
   return outcome;
 }
 
-support::ExitCode verify(const Options &options)
+support::ExitCode verify(const input::Options &options)
 {
-  Case input;
-  Parameters parameters;
+  input::Case input;
+  input::Parameters parameters;
   read_case(options, input, parameters);
   parameters.finish();
   if (options.dry_run)
@@ -181,7 +182,7 @@ support::ExitCode verify(const Options &options)
     return support::ExitCode::done;
   }
   Run run(options, parameters);
-  ClaimOutcome outcome;
+  claims::ClaimOutcome outcome;
   {
     const auto phase = run.info().stopwatch().phase("claims");
     for (const std::string &name : claim_names())
@@ -190,7 +191,7 @@ support::ExitCode verify(const Options &options)
       if (std::find(asked.begin(), asked.end(), name) == asked.end())
         continue;
       outcome.add(run_claims(input, {name}, options.quick, Shells::own_and_nearest,
-                             options.case_is_given ? laws_of(input) : all_laws(),
+                             options.case_is_given ? bridge::laws_of(input) : bridge::all_laws(),
                              run.is_root() ? run.directory() : std::string()));
       // What is known if a signal ends the claims that follow.
       if (run.is_root())
@@ -203,4 +204,4 @@ support::ExitCode verify(const Options &options)
   return run.finish(outcome.results);
 }
 
-} // namespace latcon::verification
+} // namespace latcon::commands

@@ -14,7 +14,7 @@
 #include "support/full_precision.h"
 #include "support/largest_error.h"
 
-namespace latcon::verification
+namespace latcon::compare
 {
 namespace
 {
@@ -261,14 +261,14 @@ Comparison compare(const LatticeFrame &lattice, const ContinuumFrame &continuum,
   return comparison;
 }
 
-Results norms(const LatticeFrame &lattice, const ContinuumFrame &continuum, const Comparison &comparison,
-              const std::map<std::string, double> &tolerances)
+output::Results norms(const LatticeFrame &lattice, const ContinuumFrame &continuum, const Comparison &comparison,
+                      const std::map<std::string, double> &tolerances)
 {
   for (const auto &[name, tolerance] : tolerances)
     if (continuum.find(name) == nullptr)
       throw support::InputError("--tolerance: '" + name + "' is not in " + continuum.file.path.string());
 
-  Results results;
+  output::Results results;
   const auto count = [&results](const std::string &what, std::size_t n) {
     results.add({"compare", what, "1", static_cast<double>(n), {}, {}, {}, {}});
   };
@@ -324,4 +324,4 @@ Results norms(const LatticeFrame &lattice, const ContinuumFrame &continuum, cons
   return results;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::compare

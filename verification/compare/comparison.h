@@ -12,7 +12,7 @@
 #include "verification/compare/site_probe.h"
 #include "verification/output/results.h"
 
-namespace latcon::verification
+namespace latcon::compare
 {
 
 /// How far a point may be off [m]: 1e-6 of the larger side of the sheet. vtu files hold positions in single precision
@@ -67,7 +67,7 @@ Comparison compare(const LatticeFrame &lattice, const ContinuumFrame &continuum,
 /// compared come first.
 /// @param tolerances of the root-mean-square differences, by field; the fields without one are reported
 /// @throws InputError if a tolerance is for a field that is not compared
-Results norms(const LatticeFrame &lattice, const ContinuumFrame &continuum, const Comparison &comparison,
-              const std::map<std::string, double> &tolerances);
+output::Results norms(const LatticeFrame &lattice, const ContinuumFrame &continuum, const Comparison &comparison,
+                      const std::map<std::string, double> &tolerances);
 
-} // namespace latcon::verification
+} // namespace latcon::compare

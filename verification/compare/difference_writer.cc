@@ -12,7 +12,7 @@
 #include "verification/compare/quiet_vtk.h"
 #include "verification/output/output_file.h"
 
-namespace latcon::verification
+namespace latcon::compare
 {
 namespace
 {
@@ -59,7 +59,7 @@ void write_data(const std::string &path, Data *data)
   writer->WriteToOutputStringOn();
   if (writer->Write() != 1 || !quiet.error().empty())
     throw support::OutputError(path, quiet.error().empty() ? "VTK could not format it" : quiet.error());
-  write_file(path, writer->GetOutputString());
+  output::write_file(path, writer->GetOutputString());
 }
 
 } // namespace
@@ -86,7 +86,7 @@ void write_difference(const std::string &directory, const LatticeFrame &lattice,
   for (const char *file : {sites_file, continuum_file})
     series += "    <DataSet timestep=\"" + support::full_precision(lattice.time) + "\" part=\"" +
               std::to_string(part++) + "\" file=\"" + file + "\"/>\n";
-  write_file(directory + "/difference.pvd", series + "  </Collection>\n</VTKFile>\n");
+  output::write_file(directory + "/difference.pvd", series + "  </Collection>\n</VTKFile>\n");
 }
 
-} // namespace latcon::verification
+} // namespace latcon::compare

@@ -4,7 +4,7 @@
 
 #include "verification/compare/comparison.h"
 
-namespace latcon::verification
+namespace latcon::compare
 {
 
 /// Writes for ParaView what was compared: `difference.pvd` with two parts at the time of the lattice frame.
@@ -18,4 +18,4 @@ namespace latcon::verification
 void write_difference(const std::string &directory, const LatticeFrame &lattice, const ContinuumFrame &continuum,
                       const Comparison &comparison);
 
-} // namespace latcon::verification
+} // namespace latcon::compare

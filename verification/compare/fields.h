@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace latcon::verification
+namespace latcon::compare
 {
 
 /// What lattice and continuum files say under the same name.
@@ -39,4 +39,4 @@ struct FieldValues
 /// Position in the plane [m].
 using Position = std::array<double, 2>;
 
-} // namespace latcon::verification
+} // namespace latcon::compare

@@ -18,7 +18,7 @@
 #include "support/full_precision.h"
 #include "verification/compare/quiet_vtk.h"
 
-namespace latcon::verification
+namespace latcon::compare
 {
 namespace
 {
@@ -222,4 +222,4 @@ ContinuumFrame read_continuum_frame(const FrameFile &file, std::optional<double>
   return frame;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::compare

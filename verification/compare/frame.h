@@ -13,7 +13,7 @@
 #include "verification/compare/fields.h"
 #include "verification/compare/frame_file.h"
 
-namespace latcon::verification
+namespace latcon::compare
 {
 
 /// What a frame's time means.
@@ -73,4 +73,4 @@ LatticeFrame read_lattice_frame(const FrameFile &file, std::optional<double> tim
 /// @throws InputError as above, and for cells other than quadrilaterals, linear or Lagrange's
 ContinuumFrame read_continuum_frame(const FrameFile &file, std::optional<double> time = {});
 
-} // namespace latcon::verification
+} // namespace latcon::compare

@@ -10,7 +10,7 @@
 #include "support/full_precision.h"
 #include "verification/compare/quiet_vtk.h"
 
-namespace latcon::verification
+namespace latcon::compare
 {
 namespace
 {
@@ -167,4 +167,4 @@ std::string list_of_times(const std::vector<double> &times)
   return text;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::compare

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace latcon::verification
+namespace latcon::compare
 {
 
 /// Whose frame it is.
@@ -47,4 +47,4 @@ FrameFile find_frame(const std::string &name, Side side, std::optional<double> t
 /// Times for a message: "0, 0.5, 1", the middle left out of long lists.
 std::string list_of_times(const std::vector<double> &times);
 
-} // namespace latcon::verification
+} // namespace latcon::compare

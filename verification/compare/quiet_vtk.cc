@@ -2,7 +2,7 @@
 
 #include <vtkLogger.h>
 
-namespace latcon::verification
+namespace latcon::compare
 {
 
 // VTK tells both its window and its log.
@@ -46,4 +46,4 @@ std::string QuietVtk::error() const
   return text;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::compare

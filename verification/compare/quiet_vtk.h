@@ -6,7 +6,7 @@
 #include <vtkOutputWindow.h>
 #include <vtkSmartPointer.h>
 
-namespace latcon::verification
+namespace latcon::compare
 {
 
 /// While it lives, what VTK has to say about files goes here and not to the terminal. One thread at a time.
@@ -36,4 +36,4 @@ private:
   vtkNew<Kept> kept_;
 };
 
-} // namespace latcon::verification
+} // namespace latcon::compare

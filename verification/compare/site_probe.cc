@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-namespace latcon::verification
+namespace latcon::compare
 {
 namespace
 {
@@ -222,4 +222,4 @@ SiteValues probe(const ContinuumFrame &frame, const std::vector<Position> &point
   return found;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::compare

@@ -8,7 +8,7 @@
 
 #include "verification/compare/frame.h"
 
-namespace latcon::verification
+namespace latcon::compare
 {
 
 /// Finds the cells at a point and interpolates between their nodes. Positions of curved cells are inverted by Newton's
@@ -59,4 +59,4 @@ struct SiteValues
 SiteValues probe(const ContinuumFrame &frame, const std::vector<Position> &points, double tolerance,
                  MPI_Comm communicator);
 
-} // namespace latcon::verification
+} // namespace latcon::compare

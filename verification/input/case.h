@@ -16,19 +16,19 @@ namespace latcon::lattice
 struct ContactLaw;
 }
 
-namespace latcon::verification
+namespace latcon::input
 {
 
 /// One shell of bonds as a case states it.
 struct ShellCase
 {
-  enum class Law
+  enum class bridge::Law
   {
     mooney_rivlin,
     linear
   };
 
-  Law law = Law::mooney_rivlin;
+  bridge::Law law = bridge::Law::mooney_rivlin;
   double a = 1e5;       ///< [Pa]
   double b = 1.5e5;     ///< [Pa]
   double modulus = 1e5; ///< e [Pa]
@@ -38,7 +38,7 @@ struct ShellCase
   void declare(Parameters &parameters, const std::string &section);
   void check(Parameters &parameters, const std::string &section) const;
   /// Whether shell() has a law to make.
-  bool has_stiffness() const { return law == Law::linear || a + b > 0.; }
+  bool has_stiffness() const { return law == bridge::Law::linear || a + b > 0.; }
   lattice::Shell shell() const;
 };
 
@@ -191,4 +191,4 @@ inline constexpr double smallest_chebyshev_stretch = 0.45;
 /// it is saved. Its SHA-256 is `case_hash` in run.json and in checkpoints.
 [[nodiscard]] std::string case_lines(const Parameters &parameters);
 
-} // namespace latcon::verification
+} // namespace latcon::input

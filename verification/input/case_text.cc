@@ -6,7 +6,7 @@
 #include <cctype>
 #include <cstddef>
 
-namespace latcon::verification
+namespace latcon::input
 {
 
 namespace
@@ -408,4 +408,4 @@ CaseText read_json(const std::string &text, const std::string &name)
   return result;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::input

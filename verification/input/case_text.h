@@ -7,7 +7,7 @@
 #include <variant>
 #include <vector>
 
-namespace latcon::verification
+namespace latcon::input
 {
 
 /// One value given to one entry; what the words mean is not known here.
@@ -64,4 +64,4 @@ using CaseText = std::vector<std::variant<SectionStart, Assignment, SyntaxProble
 /// more than `longest` bytes.
 [[nodiscard]] std::string printable(const std::string &text, std::size_t longest = 80);
 
-} // namespace latcon::verification
+} // namespace latcon::input

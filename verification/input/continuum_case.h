@@ -9,7 +9,7 @@
 
 #include "verification/input/parameters.h"
 
-namespace latcon::verification
+namespace latcon::input
 {
 
 /// Which constitutive law the finite element sheet is made of.
@@ -111,24 +111,24 @@ struct ContinuumCase
   };
   Solution solution = Solution::equilibrium;
   std::optional<double> time_step; ///< [s]; none: a tenth of what a shear wave needs across a cell
-  enum class Rule
+  enum class study::Rule
   {
     average_acceleration,
     generalised_alpha
   };
-  Rule rule = Rule::average_acceleration;
+  study::Rule rule = study::Rule::average_acceleration;
   double spectral_radius = 0.9; ///< of generalised-alpha at high frequencies [-]
 
   std::array<EdgeCase, 5> edges; ///< indexed by continuum::edge: left, right, bottom, top, inner
   FieldCase body_force;          ///< [N/m^3]
   bool body_force_corrected = false;
-  enum class Base
+  enum class output::Base
   {
     undeformed,
     loading,    ///< homogeneously deformed
     equilibrium ///< under the conditions of the case
   };
-  Base initial_base = Base::loading;
+  output::Base initial_base = output::Base::loading;
   FieldCase initial_displacement; ///< [m], added to the base
   FieldCase initial_velocity;     ///< [m/s]
 
@@ -139,4 +139,4 @@ struct ContinuumCase
   void check_values(Parameters &parameters, const Outline &outline) const;
 };
 
-} // namespace latcon::verification
+} // namespace latcon::input

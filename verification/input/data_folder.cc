@@ -2,7 +2,7 @@
 
 #include <filesystem>
 
-namespace latcon::verification
+namespace latcon::input
 {
 
 std::string data_folder()
@@ -16,4 +16,4 @@ std::string data_folder()
   return program.parent_path().parent_path() / "share" / "latcon";
 }
 
-} // namespace latcon::verification
+} // namespace latcon::input

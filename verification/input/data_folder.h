@@ -2,7 +2,7 @@
 
 #include <string>
 
-namespace latcon::verification
+namespace latcon::input
 {
 
 /// The folder that holds what latcon reads: cases/, studies/, report/, paraview/. It is the nearest share/latcon above
@@ -10,4 +10,4 @@ namespace latcon::verification
 /// is none, the place where an installation would have it.
 std::string data_folder();
 
-} // namespace latcon::verification
+} // namespace latcon::input

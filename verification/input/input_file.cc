@@ -5,7 +5,7 @@
 #include <fstream>
 #include <system_error>
 
-namespace latcon::verification
+namespace latcon::input
 {
 
 InputFile read_input_file(const std::string &path)
@@ -29,4 +29,4 @@ InputFile read_input_file(const std::string &path)
   return input;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::input

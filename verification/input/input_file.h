@@ -3,7 +3,7 @@
 
 #include <string>
 
-namespace latcon::verification
+namespace latcon::input
 {
 
 /// Content of a file, or why it could not be read.
@@ -16,4 +16,4 @@ struct InputFile
 /// Reads a file of at most 16 MiB; of a longer one, also of a device without end, no more than that is read.
 [[nodiscard]] InputFile read_input_file(const std::string &path);
 
-} // namespace latcon::verification
+} // namespace latcon::input

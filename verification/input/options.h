@@ -3,7 +3,7 @@
 #include <string>
 #include <vector>
 
-namespace latcon::verification
+namespace latcon::input
 {
 
 /// What the command line said, whatever the command.
@@ -25,4 +25,4 @@ struct Options
   bool resume = false;    ///< go on from the last checkpoint; of a study: take the runs that are there
 };
 
-} // namespace latcon::verification
+} // namespace latcon::input

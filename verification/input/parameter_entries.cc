@@ -13,7 +13,7 @@
 #include <system_error>
 #include <type_traits>
 
-namespace latcon::verification
+namespace latcon::input
 {
 
 namespace
@@ -276,4 +276,4 @@ void Parameters::add(const std::string &section, const std::string &name, std::s
   declare(std::move(entry));
 }
 
-} // namespace latcon::verification
+} // namespace latcon::input

@@ -11,7 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
-namespace latcon::verification
+namespace latcon::input
 {
 
 namespace
@@ -318,4 +318,4 @@ std::string Parameters::lines(const std::string &section_left_out) const
   return text;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::input

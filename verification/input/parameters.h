@@ -17,7 +17,7 @@ namespace dealii
 class ParameterHandler;
 }
 
-namespace latcon::verification
+namespace latcon::input
 {
 
 struct Assignment;
@@ -326,4 +326,4 @@ void Parameters::add(const std::string &section, const std::string &name, Enumer
     documentation, presence);
 }
 
-} // namespace latcon::verification
+} // namespace latcon::input

@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-namespace latcon::verification
+namespace latcon::input
 {
 
 std::size_t typing_errors(std::string a, std::string b)
@@ -51,4 +51,4 @@ std::string nearest_word(const std::string &given, const std::vector<std::string
   return nearest;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::input

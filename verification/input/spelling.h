@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace latcon::verification
+namespace latcon::input
 {
 
 /// How many letters were inserted, lost, wrong, or swapped with their neighbour between one word and the other (optimal
@@ -19,4 +19,4 @@ namespace latcon::verification
 /// The known word nearest to the given one; the first of several; empty if none could be meant.
 [[nodiscard]] std::string nearest_word(const std::string &given, const std::vector<std::string> &known);
 
-} // namespace latcon::verification
+} // namespace latcon::input

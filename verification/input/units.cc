@@ -6,7 +6,7 @@
 #include <string_view>
 #include <system_error>
 
-namespace latcon::verification
+namespace latcon::input
 {
 
 namespace
@@ -233,4 +233,4 @@ ParsedNumber read_quantity(const std::string &text, const std::string &unit)
   return quantity;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::input

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace latcon::verification
+namespace latcon::input
 {
 
 /// A unit, as what one of it is in SI: factor * 10^power m^dimension[0] kg^dimension[1] s^dimension[2]
@@ -40,4 +40,4 @@ struct ParsedNumber
 /// @param unit the SI unit wanted, one that parse_unit() understands as having power 0 and factor 1
 [[nodiscard]] ParsedNumber read_quantity(const std::string &text, const std::string &unit);
 
-} // namespace latcon::verification
+} // namespace latcon::input

@@ -19,7 +19,7 @@
 #include "verification/output/run_info.h"
 #include "verification/output/sha256.h"
 
-namespace latcon::verification
+namespace latcon::output
 {
 namespace
 {
@@ -86,9 +86,10 @@ void require_course(const CheckpointPlace &place, std::size_t step, double time,
     throw std::invalid_argument("`time` is not that of its steps");
 }
 
-Checkpoints::Checkpoints(const Options &options, const Parameters &parameters, const Case &input, std::string command)
+Checkpoints::Checkpoints(const input::Options &options, const input::Parameters &parameters, const input::Case &input,
+                         std::string command)
   : folder_(fs::path(options.output_dir) / "checkpoints"), command_(std::move(command)),
-    case_text_(case_lines(parameters)), case_hash_(sha256(case_text_)), step_interval_(input.checkpoint_steps),
+    case_text_(input::case_lines(parameters)), case_hash_(sha256(case_text_)), step_interval_(input.checkpoint_steps),
     wall_interval_(input.checkpoint_interval),
     first_rank_(dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
 {
@@ -260,4 +261,4 @@ void Checkpoints::archive_stale_checkpoints() const
     throw support::OutputError(aside.string(), error.message());
 }
 
-} // namespace latcon::verification
+} // namespace latcon::output

@@ -10,12 +10,12 @@
 #include "support/errors.h"
 #include "verification/output/archive.h"
 
-namespace latcon::verification
+namespace latcon::output
 {
 
-struct Case;
-struct Options;
-class Parameters;
+struct input::Case;
+struct input::Options;
+class input::Parameters;
 
 /// Where a run was when it left a checkpoint.
 struct CheckpointPlace
@@ -51,7 +51,8 @@ public:
   /// Looks for a checkpoint to go on from, if the options ask for that. To be made before anything is written.
   /// Collective. @param command name of the command @throws InputError if there are checkpoints and none can be used:
   /// each with the reason
-  Checkpoints(const Options &options, const Parameters &parameters, const Case &input, std::string command);
+  Checkpoints(const input::Options &options, const input::Parameters &parameters, const input::Case &input,
+              std::string command);
 
   /// The checkpoint that the run goes on from; none where it starts from the beginning.
   const std::optional<CheckpointPlace> &found() const { return found_; }
@@ -85,7 +86,7 @@ public:
   }
 
 private:
-  void find(const Parameters &parameters);
+  void find(const input::Parameters &parameters);
   std::string problem_of(const std::filesystem::path &path, CheckpointPlace &place) const;
   void load(const std::function<void(CheckpointReader &)> &parts) const;
   void save(std::size_t step, double time, const std::function<void(CheckpointWriter &)> &parts);
@@ -104,4 +105,4 @@ private:
   std::size_t last_step_asked_ = 0;
 };
 
-} // namespace latcon::verification
+} // namespace latcon::output

@@ -10,7 +10,7 @@
 #include "support/largest_error.h"
 #include "verification/output/output_file.h"
 
-namespace latcon::verification
+namespace latcon::output
 {
 namespace
 {
@@ -164,4 +164,4 @@ void ContinuumRecord::write(const std::string &directory) const
                });
 }
 
-} // namespace latcon::verification
+} // namespace latcon::output

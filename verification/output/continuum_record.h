@@ -6,7 +6,7 @@
 #include "continuum/dynamic_solver.h"
 #include "continuum/static_solver.h"
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 /// The tables that a run of the finite element sheet leaves behind besides fields. All ranks note, one writes.
@@ -87,4 +87,4 @@ private:
 /// "left", "right", "bottom", "top", "inner", or the number of another edge.
 std::string edge_name(dealii::types::boundary_id id);
 
-} // namespace latcon::verification
+} // namespace latcon::output

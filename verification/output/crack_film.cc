@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <vector>
 
-namespace latcon::verification
+namespace latcon::output
 {
 
-CrackFilm::CrackFilm(const Case &input, lattice::Simulation &simulation, const CrackRecord &record, double seed_tip_X,
-                     std::filesystem::path directory)
+CrackFilm::CrackFilm(const input::Case &input, lattice::Simulation &simulation, const CrackRecord &record,
+                     double seed_tip_X, std::filesystem::path directory)
   : simulation_(simulation), record_(record), frames_(simulation.lattice(), std::move(directory)),
     wanted_(input.motion_frames > 0),
     pitch_((input.stop_position * simulation.lattice().length() - seed_tip_X) / std::max(1u, input.motion_frames)),
@@ -48,7 +48,7 @@ void CrackFilm::check_loaded(double first) const
 {
   std::vector<double> times{0.};
   double next = first;
-  for (const TipRecord &tip : record_.tip())
+  for (const analysis::TipRecord &tip : record_.tip())
     if (tip.X >= next)
     {
       if (tip.t > 0.)
@@ -69,4 +69,4 @@ void CrackFilm::add_frame()
     frames_.add_frame(whole);
 }
 
-} // namespace latcon::verification
+} // namespace latcon::output

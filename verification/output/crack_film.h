@@ -7,7 +7,7 @@
 #include "verification/output/crack_record.h"
 #include "verification/output/motion_writer.h"
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 /// Light frames of a crack for animations, evenly spread over the way of its tip. On every rank alike; the first
@@ -17,7 +17,7 @@ class CrackFilm
 public:
   /// The simulation and the record of its crack must outlive this object.
   /// @param seed_tip_X where the crack starts [m]; its way ends at the stop position
-  CrackFilm(const Case &input, lattice::Simulation &simulation, const CrackRecord &record, double seed_tip_X,
+  CrackFilm(const input::Case &input, lattice::Simulation &simulation, const CrackRecord &record, double seed_tip_X,
             std::filesystem::path directory);
 
   /// Writes the first frame, or, of a run that goes on from a checkpoint, takes back what was written after that.
@@ -55,4 +55,4 @@ private:
   double next_frame_; // X of the tip [m]
 };
 
-} // namespace latcon::verification
+} // namespace latcon::output

@@ -16,7 +16,7 @@
 #include "verification/analysis/fragments.h"
 #include "verification/output/output_file.h"
 
-namespace latcon::verification
+namespace latcon::output
 {
 namespace
 {
@@ -148,7 +148,7 @@ void CrackRecord::check_loaded() const
     require_archived(time >= before && time <= now, "times of `" + what + "` do not grow up to now");
     before = time;
   };
-  for (const TipRecord &tip : tip_)
+  for (const analysis::TipRecord &tip : tip_)
   {
     require_order(tip.t, "tip");
     require_archived(std::abs(tip.X) <= sheet.length() + sheet.spacing(), "`tip` is beyond the sheet");
@@ -177,17 +177,17 @@ double CrackRecord::largest_imbalance() const
   return largest.error();
 }
 
-CrackMeasurement CrackRecord::measure(double seed_tip_X) const
+analysis::CrackMeasurement CrackRecord::measure(double seed_tip_X) const
 {
-  std::vector<BreakRecord> breaks;
+  std::vector<analysis::BreakRecord> breaks;
   for (const lattice::BrokenBond &bond : broken_)
     breaks.push_back({bond.time, bond.midpoint.x(), bond.midpoint.y()});
-  CrackMeasurementOptions options;
+  analysis::CrackMeasurementOptions options;
   options.strip_length = simulation_.lattice().length();
   options.lattice_spacing = simulation_.lattice().spacing();
   options.end_time = simulation_.state().time;
   options.seed_tip_X = seed_tip_X;
-  return measure_crack(tip_, breaks, options);
+  return analysis::measure_crack(tip_, breaks, options);
 }
 
 void CrackRecord::write_tables(const std::filesystem::path &directory) const
@@ -228,8 +228,9 @@ void CrackRecord::write_tables(const std::filesystem::path &directory) const
     });
 }
 
-void CrackRecord::write_measurement(const std::filesystem::path &directory, const CrackMeasurement &measurement,
-                                    double seed_tip_X, double breaking_stretch, bool skip_verification)
+void CrackRecord::write_measurement(const std::filesystem::path &directory,
+                                    const analysis::CrackMeasurement &measurement, double seed_tip_X,
+                                    double breaking_stretch, bool skip_verification)
 {
   const lattice::State &state = simulation_.gather();
   if (!simulation_.band().is_first())
@@ -237,7 +238,7 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory, cons
   nlohmann::ordered_json json;
   json["pattern"] = to_string(measurement.pattern);
   json["reason"] = measurement.reason;
-  const auto put = [&json](const std::string &name, const std::optional<Measured> &measured)
+  const auto put = [&json](const std::string &name, const std::optional<analysis::Measured> &measured)
   {
     json[name] = measured ? nlohmann::ordered_json(measured->value) : nlohmann::ordered_json(nullptr);
     json[name + "_uncertainty"] =
@@ -252,16 +253,16 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory, cons
   json["window_begin"] = measurement.X_begin;
   json["window_end"] = measurement.X_end;
   json["branched_fraction"] = measurement.branched_fraction;
-  const auto put_flanks = [&](const std::string &name, double FlankDamage::*number)
+  const auto put_flanks = [&](const std::string &name, double analysis::FlankDamage::*number)
   { json[name] = measurement.flanks ? nlohmann::ordered_json((*measurement.flanks).*number) : nullptr; };
-  put_flanks("flank_damage_depth", &FlankDamage::depth);
-  put_flanks("flank_damage_share", &FlankDamage::share);
+  put_flanks("flank_damage_depth", &analysis::FlankDamage::depth);
+  put_flanks("flank_damage_share", &analysis::FlankDamage::share);
   json["bonds_broken"] = simulation_.n_broken();
-  const Fragments fragments = find_fragments(state, simulation_.lattice());
+  const analysis::Fragments fragments = analysis::find_fragments(state, simulation_.lattice());
   json["detached_sites"] = std::accumulate(fragments.sizes.begin(), fragments.sizes.end(), std::size_t{0});
   json["detached_fragments"] = fragments.sizes.size();
   json["largest_fragment"] = fragments.sizes.empty() ? 0 : fragments.sizes.front();
-  json["overstretched_bonds"] = n_overstretched_bonds(state, simulation_.lattice(), breaking_stretch);
+  json["overstretched_bonds"] = analysis::n_overstretched_bonds(state, simulation_.lattice(), breaking_stretch);
   if (const auto bond = lattice::nearest_to_breaking(state, simulation_.lattice()))
   {
     const lattice::TriangularLattice &sheet = simulation_.lattice();
@@ -273,7 +274,7 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory, cons
                                    {"stretch", bond->stretch},
                                    {"limit", bond->limit}};
   }
-  json["bridged_length"] = bridged_length(state, simulation_.lattice(), seed_tip_X, tip_X());
+  json["bridged_length"] = analysis::bridged_length(state, simulation_.lattice(), seed_tip_X, tip_X());
   json["end_time"] = state.time;
   json["energy_imbalance"] = largest_imbalance();
   json["skip_verification"] = skip_verification;
@@ -281,4 +282,4 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory, cons
   write_file(directory / "crack.json", json.dump(2) + "\n");
 }
 
-} // namespace latcon::verification
+} // namespace latcon::output

@@ -6,7 +6,7 @@
 #include "lattice/simulation.h"
 #include "verification/analysis/crack_measurement.h"
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 /// What a fracture run leaves behind besides fields: the crack, the bonds that broke, the energies over time. All ranks
@@ -31,7 +31,7 @@ public:
   void check() { (void)sound_energies(); }
 
   /// Each site at which the tip was, and when.
-  const std::vector<TipRecord> &tip() const { return tip_; }
+  const std::vector<analysis::TipRecord> &tip() const { return tip_; }
   /// Reference X of the tip [m]; 0 without one.
   double tip_X() const { return tip_.empty() ? 0. : tip_.back().X; }
   /// Lagrangian speed over the last few spacings [m/s]; 0 while there is none.
@@ -40,7 +40,7 @@ public:
   /// is not finite or none is recorded.
   double largest_imbalance() const;
 
-  CrackMeasurement measure(double seed_tip_X) const;
+  analysis::CrackMeasurement measure(double seed_tip_X) const;
 
   /// Writes crack.csv, broken_bonds.csv and energy.csv, on one rank. @throws OutputError
   void write_tables(const std::filesystem::path &directory) const;
@@ -49,8 +49,8 @@ public:
   /// @param seed_tip_X where the crack started [m]
   /// @param breaking_stretch lam_f of a bond that has not been toughened [-]
   /// @param skip_verification whether the material went unverified @throws OutputError
-  void write_measurement(const std::filesystem::path &directory, const CrackMeasurement &measurement, double seed_tip_X,
-                         double breaking_stretch, bool skip_verification);
+  void write_measurement(const std::filesystem::path &directory, const analysis::CrackMeasurement &measurement,
+                         double seed_tip_X, double breaking_stretch, bool skip_verification);
 
   /// Saves or loads what was noted; see lattice::Simulation. The state now, which is loaded before, counts as sound:
   /// checkpoints are made of sound states alone. @throws std::invalid_argument for records that cannot be of this sheet
@@ -88,7 +88,7 @@ private:
 
   lattice::Simulation &simulation_;
   std::optional<std::size_t> last_tip_;
-  std::vector<TipRecord> tip_;
+  std::vector<analysis::TipRecord> tip_;
   std::vector<double> speeds_;             // a value for each tip record [m/s]
   std::vector<std::size_t> broken_at_tip_; // bonds broken so far, likewise
   std::vector<lattice::BrokenBond> broken_;
@@ -96,4 +96,4 @@ private:
   lattice::Snapshot last_sound_;
 };
 
-} // namespace latcon::verification
+} // namespace latcon::output

@@ -4,7 +4,7 @@
 
 #include "support/full_precision.h"
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 std::string csv_field(const std::string &text)
@@ -17,7 +17,7 @@ std::string csv_field(const std::string &text)
   return quoted + "\"";
 }
 
-void Table::add(std::vector<Cell> row)
+void Table::add(std::vector<compare::Cell> row)
 {
   if (row.size() != columns_.size())
     throw std::invalid_argument("a row of " + std::to_string(row.size()) + " cells in a table of " +
@@ -39,9 +39,9 @@ std::string Table::csv() const
   for (const std::string &column : columns_)
     text += csv_field(column) + ',';
   end_line();
-  for (const std::vector<Cell> &row : rows_)
+  for (const std::vector<compare::Cell> &row : rows_)
   {
-    for (const Cell &cell : row)
+    for (const compare::Cell &cell : row)
       text += (std::holds_alternative<double>(cell) ? support::full_precision(std::get<double>(cell))
                                                     : csv_field(std::get<std::string>(cell))) +
               ',';
@@ -50,4 +50,4 @@ std::string Table::csv() const
   return text;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::output

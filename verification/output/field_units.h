@@ -9,7 +9,7 @@
 #include <vtkInformation.h>
 #include <vtkInformationStringKey.h>
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 /// Gives a field the unit that belongs to its name, as VTK keeps units (`UNITS_LABEL`). Names that are not quantities
@@ -35,4 +35,4 @@ inline void set_unit(vtkDataArray &field)
       field.GetInformation()->Set(vtkDataArray::UNITS_LABEL(), unit);
 }
 
-} // namespace latcon::verification
+} // namespace latcon::output

@@ -19,7 +19,7 @@
 #include "verification/analysis/fragments.h"
 #include "verification/output/field_units.h"
 
-namespace latcon::verification
+namespace latcon::output
 {
 namespace
 {
@@ -93,7 +93,7 @@ void FieldWriter::add_frame(const lattice::State &state)
   vtkNew<vtkIdTypeArray> fragment;
   fragment->SetName("fragment");
   fragment->SetNumberOfTuples(n_points);
-  const Fragments fragments = find_fragments(state, lattice_);
+  const analysis::Fragments fragments = analysis::find_fragments(state, lattice_);
   for (vtkIdType id = 0; id < n_points; ++id)
   {
     const std::size_t place = places[static_cast<std::size_t>(id)];
@@ -179,4 +179,4 @@ void FieldWriter::add_frame(const lattice::State &state)
   series_.add(*sheet, state.time);
 }
 
-} // namespace latcon::verification
+} // namespace latcon::output

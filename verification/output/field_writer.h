@@ -3,7 +3,7 @@
 #include "lattice/state.h"
 #include "verification/output/frame_series.h"
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 /// Writes frames of a lattice for ParaView: `NAME.pvd` and a file `NAME-NNNN.vtp` per frame, in one directory.
@@ -46,4 +46,4 @@ private:
   FrameSeries series_;
 };
 
-} // namespace latcon::verification
+} // namespace latcon::output

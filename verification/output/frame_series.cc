@@ -13,7 +13,7 @@
 #include "verification/output/field_units.h"
 #include "verification/output/vtk_file.h"
 
-namespace latcon::verification
+namespace latcon::output
 {
 namespace
 {
@@ -69,4 +69,4 @@ void FrameSeries::write_collection() const
   support::write_atomically(directory_ / (name_ + ".pvd"), text, support::Sync::no);
 }
 
-} // namespace latcon::verification
+} // namespace latcon::output

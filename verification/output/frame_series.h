@@ -11,7 +11,7 @@
 
 class vtkPolyData;
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 /// Frames of one sheet over time, for ParaView: `NAME.pvd` and a file `NAME-NNNN.vtp` a frame, in one directory. Every
@@ -53,4 +53,4 @@ private:
   std::vector<double> times_; // of the frames [s]
 };
 
-} // namespace latcon::verification
+} // namespace latcon::output

@@ -4,7 +4,7 @@
 
 #include <hdf5.h>
 
-namespace latcon::verification
+namespace latcon::output
 {
 namespace
 {
@@ -230,4 +230,4 @@ std::string Hdf5File::read_text(const std::string &path) const
   return text;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::output

@@ -7,7 +7,7 @@
 #include <string>
 #include <type_traits>
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 /// What a file cannot give: no such path, another type or size, or no HDF5 file at all.
@@ -94,4 +94,4 @@ private:
   std::int64_t file_;
 };
 
-} // namespace latcon::verification
+} // namespace latcon::output

@@ -9,7 +9,7 @@
 
 #include "verification/output/field_units.h"
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 MotionWriter::MotionWriter(const lattice::TriangularLattice &lattice, std::filesystem::path directory)
@@ -52,4 +52,4 @@ void MotionWriter::add_frame(const lattice::State &state)
   series_.add(*sheet, state.time);
 }
 
-} // namespace latcon::verification
+} // namespace latcon::output

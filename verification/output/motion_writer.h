@@ -3,7 +3,7 @@
 #include "lattice/state.h"
 #include "verification/output/frame_series.h"
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 /// Writes where the sites are and how they move, and nothing else: frames of a tenth of the size of FieldWriter's, for
@@ -39,4 +39,4 @@ private:
   FrameSeries series_;
 };
 
-} // namespace latcon::verification
+} // namespace latcon::output

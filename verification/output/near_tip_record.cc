@@ -11,7 +11,7 @@
 #include "verification/output/near_tip_writer.h"
 #include "verification/output/output_file.h"
 
-namespace latcon::verification
+namespace latcon::output
 {
 namespace
 {
@@ -35,7 +35,7 @@ constexpr double vortices_within = 16.;
 // motion is rapid, for the length of the process zone and for its share.
 constexpr double process_zone_part = 0.5;
 
-NearTipOptions sampler_options(const Case &input, double X_begin, double X_end)
+analysis::NearTipOptions sampler_options(const input::Case &input, double X_begin, double X_end)
 {
   const auto extent = [&](double stated, double spacings) { return stated > 0. ? stated : spacings * input.spacing; };
   return {extent(input.near_tip_behind, default_behind),
@@ -69,18 +69,18 @@ using Number = std::pair<std::string, std::optional<double>>;
 
 // What a mean field says. Numbers that need the speed of the crack have no value without it; the list is always of the
 // same names.
-std::vector<Number> field_numbers(const NearTipField &field, std::optional<double> laboratory_speed,
+std::vector<Number> field_numbers(const analysis::NearTipField &field, std::optional<double> laboratory_speed,
                                   std::optional<double> process_zone_speed, double far_opening_stress, double spacing)
 {
   std::vector<Number> numbers;
   const auto add = [&](const std::string &name, const std::optional<double> &value)
   { numbers.emplace_back(name, value); };
-  std::optional<NegativeZone> negative;
-  std::optional<std::vector<Vortex>> vortices;
+  std::optional<analysis::NegativeZone> negative;
+  std::optional<std::vector<analysis::Vortex>> vortices;
   if (laboratory_speed)
   {
-    negative = negative_zone(field, *laboratory_speed);
-    vortices = vortices(field, vortex_limit * *laboratory_speed);
+    negative = analysis::negative_zone(field, *laboratory_speed);
+    vortices = analysis::vortices(field, vortex_limit * *laboratory_speed);
   }
   const auto of_zone = [&](auto value) { return negative ? std::optional<double>(value(*negative)) : std::nullopt; };
   add("negative_zone_area", of_zone([](const auto &zone) { return zone.area; }));
@@ -89,22 +89,22 @@ std::vector<Number> field_numbers(const NearTipField &field, std::optional<doubl
   add("negative_zone_depth", of_zone([](const auto &zone) { return zone.depth; }));
   add("negative_zone_depth_X", of_zone([](const auto &zone) { return zone.deepest.x(); }));
   add("negative_zone_depth_Y", of_zone([](const auto &zone) { return zone.deepest.y(); }));
-  add("velocity_asymmetry", velocity_asymmetry(field));
+  add("velocity_asymmetry", analysis::velocity_asymmetry(field));
   add("vortices", vortices ? std::optional<double>(vortices->size()) : std::nullopt);
   const bool any = vortices && !vortices->empty();
   add("vortex_distance", any ? std::optional<double>(vortices->front().position.norm()) : std::nullopt);
   add("vortex_circulation", any ? std::optional<double>(vortices->front().circulation) : std::nullopt);
-  add("tip_circulation", circulation(field, Eigen::Vector2d::Zero(), tip_loop * spacing, true));
-  std::optional<FollowingZone> process;
+  add("tip_circulation", analysis::circulation(field, Eigen::Vector2d::Zero(), tip_loop * spacing, true));
+  std::optional<analysis::FollowingZone> process;
   if (process_zone_speed)
-    process = following_zone(field, *process_zone_speed);
+    process = analysis::following_zone(field, *process_zone_speed);
   add("process_zone_length", process ? std::optional<double>(process->length) : std::nullopt);
   add("process_zone_fastest", process ? std::optional<double>(process->fastest) : std::nullopt);
   add("process_zone_share",
-      process_zone_speed ? share_above(speeds_behind_tip(field), *process_zone_speed) : std::nullopt);
+      process_zone_speed ? share_above(analysis::speeds_behind_tip(field), *process_zone_speed) : std::nullopt);
   for (const int radius : {4, 8})
   {
-    const std::optional<OpeningStress> stress = opening_stress(field, radius * spacing);
+    const std::optional<analysis::OpeningStress> stress = analysis::opening_stress(field, radius * spacing);
     const auto of_stress = [&](auto value) { return stress ? std::optional<double>(value(*stress)) : std::nullopt; };
     const std::string at = "_" + std::to_string(radius) + "d";
     add("opening_stress_angle" + at, of_stress([](const auto &s) { return s.angle; }));
@@ -117,7 +117,7 @@ std::vector<Number> field_numbers(const NearTipField &field, std::optional<doubl
 }
 
 // Cauchy stress of the loaded sheet [Pa]: of a site in the middle of one, all of whose bonds are stretched alike.
-Eigen::Matrix2d stress_of_loaded_sheet(const Case &input)
+Eigen::Matrix2d stress_of_loaded_sheet(const input::Case &input)
 {
   const double side = 12. * input.spacing;
   const lattice::TriangularLattice sheet(input.spacing, side, side, input.orientation);
@@ -150,27 +150,27 @@ std::optional<double> uncertainty(const std::vector<std::optional<double>> &bloc
 
 } // namespace
 
-WaveSpeeds wave_speeds_along_crack(const Case &input)
+WaveSpeeds wave_speeds_along_crack(const input::Case &input)
 {
   constexpr double kd = 1e-3; // the error is of its square, times a tenth
   const double k = kd / input.spacing;
-  const auto waves = bloch_waves(input.lattice(), input.material(), input.deformation(), {k, 0.});
+  const auto waves = bridge::bloch_waves(input.lattice(), input.material(), input.deformation(), {k, 0.});
   return {waves[0].frequency / k, waves[1].frequency / k};
 }
 
-double near_tip_interval(const Case &input)
+double near_tip_interval(const input::Case &input)
 {
   return input.near_tip_interval.value_or(sampled_advance * input.spacing /
-                                          small_strain(input.lattice(), input.material()).shear_speed);
+                                          bridge::small_strain(input.lattice(), input.material()).shear_speed);
 }
 
-double near_tip_window(const Case &input)
+double near_tip_window(const input::Case &input)
 {
-  const NearTipOptions window = sampler_options(input, 0., 0.);
+  const analysis::NearTipOptions window = sampler_options(input, 0., 0.);
   return (window.behind + window.ahead) * 2. * window.half_height;
 }
 
-NearTipRecord::NearTipRecord(const Case &input, lattice::Simulation &simulation, double seed_tip_X)
+NearTipRecord::NearTipRecord(const input::Case &input, lattice::Simulation &simulation, double seed_tip_X)
   : simulation_(simulation), interval_(near_tip_interval(input)), deformation_(input.deformation()),
     far_opening_stress_(stress_of_loaded_sheet(input)(1, 1)), waves_(wave_speeds_along_crack(input)),
     X_begin_(seed_tip_X + sampled_from * (input.stop_position * simulation.lattice().length() - seed_tip_X)),
@@ -209,29 +209,30 @@ void NearTipRecord::step()
     simulation_.gather(sampler_.rows_around(tip));
   if (!simulation_.band().is_first())
     return;
-  const NearTipSample *sample = sampler_.sample(simulation_.state(), tip);
+  const analysis::NearTipSample *sample = sampler_.sample(simulation_.state(), tip);
   if (sample == nullptr)
     return;
   const double d = simulation_.lattice().spacing();
   Block &block = blocks_[sample->block];
-  const NearTipField field = sample->sums.mean();
-  if (const auto asymmetry = velocity_asymmetry(field))
+  const analysis::NearTipField field = sample->sums.mean();
+  if (const auto asymmetry = analysis::velocity_asymmetry(field))
     block.asymmetry.add(*asymmetry);
-  block.backward_speeds.push_back(backward_speeds(field));
+  block.backward_speeds.push_back(analysis::backward_speeds(field));
   const std::vector<double> &backward = block.backward_speeds.back();
   block.negative_zone_depth.add(backward.empty() ? 0. : *std::min_element(backward.begin(), backward.end()));
-  block.following_speeds.push_back(speeds_behind_tip(field));
+  block.following_speeds.push_back(analysis::speeds_behind_tip(field));
   block.vortices.emplace_back();
-  for (const Vortex &vortex : vortices(field, 0., vortices_within * d))
+  for (const analysis::Vortex &vortex : analysis::vortices(field, 0., vortices_within * d))
     block.vortices.back().push_back(vortex.speed);
   const Eigen::Vector2d pitch(deformation_(0, 0) * sampler_.grid().pitch_X,
                               deformation_(1, 1) * sampler_.grid().pitch_Y);
   const double stretch = deformation_(0, 0);
-  if (const auto angle = wedge_angle(sample->sites, pitch, flanks_from * d * stretch, flanks_to * d * stretch))
+  if (const auto angle =
+        analysis::wedge_angle(sample->sites, pitch, flanks_from * d * stretch, flanks_to * d * stretch))
     block.wedge_angle.add(*angle * 180. / M_PI);
 }
 
-void NearTipRecord::write(const std::filesystem::path &directory, const CrackMeasurement &crack)
+void NearTipRecord::write(const std::filesystem::path &directory, const analysis::CrackMeasurement &crack)
 {
   if (interval_ == 0.)
     return;
@@ -244,7 +245,7 @@ void NearTipRecord::write(const std::filesystem::path &directory, const CrackMea
   write_file(directory / "near_tip.json", measurements(crack));
 }
 
-std::string NearTipRecord::measurements(const CrackMeasurement &crack) const
+std::string NearTipRecord::measurements(const analysis::CrackMeasurement &crack) const
 {
   nlohmann::ordered_json json;
   const auto put = [&json](const std::string &name, const std::optional<double> &value)
@@ -327,7 +328,7 @@ std::string NearTipRecord::measurements(const CrackMeasurement &crack) const
   const double site_area = sampler_.grid().pitch_X * sampler_.grid().pitch_Y;
   put_speeds("negative_zone_area_of_samples", &Block::backward_speeds, laboratory_speed,
              [&](const auto &speeds)
-             { return site_area * number_below(speeds, -negative_zone_limit * *laboratory_speed); });
+             { return site_area * number_below(speeds, -analysis::negative_zone_limit * *laboratory_speed); });
   put_speeds("process_zone_share_of_samples", &Block::following_speeds, process_zone_speed,
              [&](const auto &speeds) { return share_above(speeds, *process_zone_speed); });
   put_sums("wedge_angle", [](const Block &block) { return block.wedge_angle; });
@@ -348,4 +349,4 @@ std::string NearTipRecord::measurements(const CrackMeasurement &crack) const
   return json.dump(2) + "\n";
 }
 
-} // namespace latcon::verification
+} // namespace latcon::output

@@ -10,7 +10,7 @@
 #include "verification/analysis/near_tip_measurement.h"
 #include "verification/input/case.h"
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 /// Speeds of long waves along x in the loaded sheet, dashpots left out (theory-comparison.md, eq. (W.2)).
@@ -20,14 +20,14 @@ struct WaveSpeeds
 };
 
 /// Of the sheet of a case in its loaded state.
-WaveSpeeds wave_speeds_along_crack(const Case &input);
+WaveSpeeds wave_speeds_along_crack(const input::Case &input);
 
 /// Time between samples [s]; 0: none are taken. The default is d / (2 c_S), c_S the speed of long shear waves in the
 /// undeformed sheet: at about that speed a crack advances half a spacing between two samples, with any time step.
-double near_tip_interval(const Case &input);
+double near_tip_interval(const input::Case &input);
 
 /// Area of the window around the tip, undeformed [m^2].
-double near_tip_window(const Case &input);
+double near_tip_window(const input::Case &input);
 
 /// The fields around the tip of a fracture run, and what is measured of them.
 ///
@@ -37,7 +37,7 @@ class NearTipRecord
 {
 public:
   /// @param seed_tip_X of the seed crack, reference [m]
-  NearTipRecord(const Case &input, lattice::Simulation &simulation, double seed_tip_X);
+  NearTipRecord(const input::Case &input, lattice::Simulation &simulation, double seed_tip_X);
 
   /// To be called after every step; takes a sample after the first step that ends in another interval of time than the
   /// one before. Collective; the first rank takes the samples.
@@ -46,7 +46,7 @@ public:
   /// Writes near_tip.json and, if there are samples, near_tip.vti and near_tip_folded.vti; nothing if no samples were
   /// asked for. To be called once, at the end, on the first rank. @throws OutputError,
   /// support::OutputError
-  void write(const std::filesystem::path &directory, const CrackMeasurement &crack);
+  void write(const std::filesystem::path &directory, const analysis::CrackMeasurement &crack);
 
   /// Saves or loads what the samples said; see lattice::Simulation. The first rank's is the whole.
   /// @throws std::invalid_argument if it is not of as many samples as were taken
@@ -98,7 +98,7 @@ private:
     }
   };
   void check_loaded() const;
-  std::string measurements(const CrackMeasurement &crack) const;
+  std::string measurements(const analysis::CrackMeasurement &crack) const;
 
   lattice::Simulation &simulation_;
   double interval_;       // [s], 0: no samples
@@ -107,8 +107,8 @@ private:
   double far_opening_stress_; // Cauchy sigma_yy of the loaded sheet [Pa]
   WaveSpeeds waves_;
   double X_begin_, X_end_;
-  NearTipSampler sampler_;
-  std::array<Block, NearTipSampler::n_blocks> blocks_;
+  analysis::NearTipSampler sampler_;
+  std::array<Block, analysis::NearTipSampler::n_blocks> blocks_;
 };
 
-} // namespace latcon::verification
+} // namespace latcon::output

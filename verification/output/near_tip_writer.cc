@@ -12,7 +12,7 @@
 #include "verification/output/field_units.h"
 #include "verification/output/vtk_file.h"
 
-namespace latcon::verification
+namespace latcon::output
 {
 namespace
 {
@@ -50,9 +50,9 @@ void add(vtkImageData &image, const char *name, const lattice::TensorField &tens
 
 } // namespace
 
-void write_near_tip_field(const NearTipField &field, const std::filesystem::path &path)
+void write_near_tip_field(const analysis::NearTipField &field, const std::filesystem::path &path)
 {
-  const NearTipGrid &grid = field.grid;
+  const analysis::NearTipGrid &grid = field.grid;
   vtkNew<vtkImageData> image;
   image->SetDimensions(grid.columns(), grid.rows(), 1);
   image->SetSpacing(grid.pitch_X, grid.pitch_Y, 1.);
@@ -77,4 +77,4 @@ void write_near_tip_field(const NearTipField &field, const std::filesystem::path
   write_vtk_file(*writer, path);
 }
 
-} // namespace latcon::verification
+} // namespace latcon::output

@@ -4,7 +4,7 @@
 
 #include "verification/analysis/near_tip_fields.h"
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 /// Writes the means around a tip as an image for ParaView (.vti), beside `path` and renamed.
@@ -14,6 +14,6 @@ namespace latcon::verification
 /// strain_gradient_x, strain_gradient_y [1/m], occupancy [-]; not-a-number where there was no site. The field data
 /// array Samples holds the number of samples.
 /// @throws support::OutputError if the file cannot be written
-void write_near_tip_field(const NearTipField &field, const std::filesystem::path &path);
+void write_near_tip_field(const analysis::NearTipField &field, const std::filesystem::path &path);
 
-} // namespace latcon::verification
+} // namespace latcon::output

@@ -7,7 +7,7 @@
 #include "support/errors.h"
 #include "verification/output/output_list.h"
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 void write_file(const std::string &path, const std::string &text)
@@ -25,4 +25,4 @@ void write_file(const std::string &path, const std::function<void(std::ostream &
   write_file(path, text.str());
 }
 
-} // namespace latcon::verification
+} // namespace latcon::output

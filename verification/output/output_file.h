@@ -5,7 +5,7 @@
 #include <iosfwd>
 #include <string>
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 /// Replaces the file `path` by `text`, forced to the disk; see support::AtomicFile. The file is listed in its
@@ -19,4 +19,4 @@ void write_file(const std::string &path, const std::string &text);
 /// @throws OutputError as above, and if `writer` leaves the stream in a failed state.
 void write_file(const std::string &path, const std::function<void(std::ostream &)> &writer);
 
-} // namespace latcon::verification
+} // namespace latcon::output

@@ -10,7 +10,7 @@
 #include "support/atomic_file.h"
 #include "support/errors.h"
 
-namespace latcon::verification
+namespace latcon::output
 {
 namespace
 {
@@ -144,4 +144,4 @@ fs::path set_earlier_output_aside(const fs::path &folder, const fs::path &keep)
   }
 }
 
-} // namespace latcon::verification
+} // namespace latcon::output

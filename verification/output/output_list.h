@@ -4,7 +4,7 @@
 #include <filesystem>
 #include <string>
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 /// Name of the list in an output directory: a line for each file that latcon wrote, sorted. A `*` represents the digits
@@ -29,4 +29,4 @@ void list_output(const std::filesystem::path &file);
 /// @throws OutputError
 std::filesystem::path set_earlier_output_aside(const std::filesystem::path &folder, const std::filesystem::path &keep);
 
-} // namespace latcon::verification
+} // namespace latcon::output

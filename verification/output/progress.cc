@@ -5,7 +5,7 @@
 
 #include <unistd.h>
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 Progress::Progress(bool wanted, std::chrono::milliseconds log_interval)
@@ -39,4 +39,4 @@ void Progress::show(const std::string &text, double fraction_done)
   std::fflush(stderr);
 }
 
-} // namespace latcon::verification
+} // namespace latcon::output

@@ -3,7 +3,7 @@
 #include <chrono>
 #include <string>
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 /// Says on standard error how far a run is: on a terminal in one line that is replaced a few times a second, elsewhere,
@@ -33,4 +33,4 @@ private:
   Clock::time_point last_;
 };
 
-} // namespace latcon::verification
+} // namespace latcon::output

@@ -18,7 +18,7 @@
 #include <ostream>
 #include <system_error>
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 namespace
@@ -259,4 +259,4 @@ void Results::print(std::ostream &out) const
   }
 }
 
-} // namespace latcon::verification
+} // namespace latcon::output

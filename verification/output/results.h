@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 /// Outcome of one checked quantity.
@@ -93,4 +93,4 @@ private:
   std::vector<Result> rows_;
 };
 
-} // namespace latcon::verification
+} // namespace latcon::output

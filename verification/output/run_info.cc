@@ -23,7 +23,7 @@
 #include <sys/resource.h>
 #include <thread>
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 namespace
@@ -254,4 +254,4 @@ void RunInfo::write(const std::string &path, const std::optional<support::ExitCo
   write_file(path, json(exit_code, verdict));
 }
 
-} // namespace latcon::verification
+} // namespace latcon::output

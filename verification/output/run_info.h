@@ -12,7 +12,7 @@
 #include <variant>
 #include <vector>
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 /// Wall time spent in named phases. A phase may be entered again: its times add up. Phases may overlap. Threads may
@@ -115,4 +115,4 @@ private:
   std::vector<std::pair<std::string, Value>> facts_;
 };
 
-} // namespace latcon::verification
+} // namespace latcon::output

@@ -8,7 +8,7 @@
 
 #include <openssl/evp.h>
 
-namespace latcon::verification
+namespace latcon::output
 {
 namespace
 {
@@ -73,4 +73,4 @@ std::string sha256_of_file(const std::filesystem::path &path, std::size_t skippe
   return in.eof() ? digest.text() : "";
 }
 
-} // namespace latcon::verification
+} // namespace latcon::output

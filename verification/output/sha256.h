@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 /// SHA-256 (FIPS 180-4) of some bytes, as 64 hexadecimal digits.
@@ -14,4 +14,4 @@ namespace latcon::verification
 /// The same of the bytes of a file, the first `skipped` left out; empty if it cannot be read.
 [[nodiscard]] std::string sha256_of_file(const std::filesystem::path &path, std::size_t skipped = 0);
 
-} // namespace latcon::verification
+} // namespace latcon::output

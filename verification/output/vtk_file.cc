@@ -8,7 +8,7 @@
 
 #include "support/atomic_file.h"
 
-namespace latcon::verification
+namespace latcon::output
 {
 namespace
 {
@@ -36,4 +36,4 @@ void write_vtk_file(vtkXMLWriter &writer, const std::filesystem::path &path)
   file.commit(support::Sync::no);
 }
 
-} // namespace latcon::verification
+} // namespace latcon::output

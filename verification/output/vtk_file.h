@@ -4,11 +4,11 @@
 
 class vtkXMLWriter;
 
-namespace latcon::verification
+namespace latcon::output
 {
 
 /// Writes the input of a VTK writer as compressed, appended binary data, whole at any moment.
 /// @throws support::OutputError
 void write_vtk_file(vtkXMLWriter &writer, const std::filesystem::path &path);
 
-} // namespace latcon::verification
+} // namespace latcon::output

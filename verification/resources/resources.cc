@@ -18,7 +18,7 @@
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/output/near_tip_record.h"
 
-namespace latcon::verification
+namespace latcon::resources
 {
 namespace
 {
@@ -59,23 +59,23 @@ double entries_per_row(const unsigned int degree, const bool has_face_terms)
          (p * p);
 }
 
-bool is_direct(const Case &input, const double unknowns)
+bool is_direct(const input::Case &input, const double unknowns)
 {
   const auto &edges = input.continuum.edges;
-  return unknowns <= input.continuum.direct_limit || edges[0].condition == EdgeCase::Condition::periodic ||
-         edges[2].condition == EdgeCase::Condition::periodic;
+  return unknowns <= input.continuum.direct_limit || edges[0].condition == input::EdgeCase::Condition::periodic ||
+         edges[2].condition == input::EdgeCase::Condition::periodic;
 }
 
-bool is_homogeneous(const Case &input)
+bool is_homogeneous(const input::Case &input)
 {
-  const ContinuumCase &c = input.continuum;
+  const input::ContinuumCase &c = input.continuum;
   return !input.has_inner_edge() && c.mesh_file.empty() && c.body_force.is_zero() &&
          std::all_of(c.edges.begin(), c.edges.begin() + 4,
-                     [](const EdgeCase &edge)
+                     [](const input::EdgeCase &edge)
                      {
-                       return edge.condition == EdgeCase::Condition::held && edge.displacement_x == "loading" &&
+                       return edge.condition == input::EdgeCase::Condition::held && edge.displacement_x == "loading" &&
                               edge.displacement_y == "loading" &&
-                              edge.normal_gradient != EdgeCase::NormalGradient::clamped;
+                              edge.normal_gradient != input::EdgeCase::NormalGradient::clamped;
                      });
 }
 
@@ -102,10 +102,10 @@ OnMachine on_machine(const MemoryNeed &need)
 }
 
 // A piece of the sheet of a case that takes no time to make, and as many threads as the sheet.
-Case small_piece(const Case &input)
+input::Case small_piece(const input::Case &input)
 {
   constexpr double rows = 120., sites = 28000.;
-  Case piece = input;
+  input::Case piece = input;
   piece.hole_radius = piece.notch_length = 0.;
   piece.height = std::min(input.height, rows * input.spacing);
   piece.length =
@@ -114,14 +114,15 @@ Case small_piece(const Case &input)
 }
 
 // Time of a step over the number of sites [s].
-double measured_seconds_per_site_step(const Case &input, const lattice::TimeStepping &stepping, const bool breaks)
+double measured_seconds_per_site_step(const input::Case &input, const lattice::TimeStepping &stepping,
+                                      const bool breaks)
 {
   using Clock = std::chrono::steady_clock;
   constexpr double long_enough = 0.2; // [s]
-  const Case piece = small_piece(input);
+  const input::Case piece = small_piece(input);
   const lattice::TriangularLattice sheet = piece.lattice();
   const lattice::Material material = piece.material();
-  lattice::State state = lattice_state(piece, sheet);
+  lattice::State state = bridge::lattice_state(piece, sheet);
   lattice::add_noise(state, sheet, input.noise_amplitude * input.spacing, input.noise_seed);
   std::optional<lattice::Fracture> fracture;
   if (breaks)
@@ -143,11 +144,12 @@ double measured_seconds_per_site_step(const Case &input, const lattice::TimeStep
 
 } // namespace
 
-MemoryNeed lattice_memory(const Case &input, const RunKind run, const bool claims)
+MemoryNeed lattice_memory(const input::Case &input, const RunKind run, const bool claims)
 {
   const lattice::TriangularLattice sheet = input.lattice();
   const double places = static_cast<double>(sheet.n_places()), sites = static_cast<double>(sheet.n_sites());
-  const bool is_chebyshev = run != RunKind::equilibrium && input.integrator == Case::Integrator::runge_kutta_chebyshev;
+  const bool is_chebyshev =
+    run != RunKind::equilibrium && input.integrator == input::Case::Integrator::runge_kutta_chebyshev;
   const double bonds = input.has_next_nearest ? 6. : 3.;
   const double frame = sites * (bytes_of_site_in_frame + bonds * bytes_of_bond_in_frame);
   const double checkpoint = run != RunKind::equilibrium ? sites * bytes_of_site_in_checkpoint : 0.;
@@ -156,16 +158,16 @@ MemoryNeed lattice_memory(const Case &input, const RunKind run, const bool claim
   // Equilibrium is a matter of the first rank.
   (run == RunKind::equilibrium ? need.first_rank : need.shared) = fields;
   need.first_rank += std::max(frame, checkpoint);
-  if (run == RunKind::fracture && near_tip_interval(input) > 0.)
-    need.first_rank += near_tip_window(input) / sheet.site_area() * bytes_of_site_near_tip;
+  if (run == RunKind::fracture && output::near_tip_interval(input) > 0.)
+    need.first_rank += output::near_tip_window(input) / sheet.site_area() * bytes_of_site_near_tip;
   if (claims && need.shared + need.first_rank < bytes_of_claims)
     need.shared = bytes_of_claims - need.first_rank;
   return need;
 }
 
-ContinuumSize continuum_size(const Case &input)
+ContinuumSize continuum_size(const input::Case &input)
 {
-  const ContinuumCase &c = input.continuum;
+  const input::ContinuumCase &c = input.continuum;
   const lattice::TriangularLattice sheet = input.lattice();
   const double p = c.degree;
   double coarse_cells = 0., halvings = c.refinements;
@@ -212,16 +214,16 @@ ContinuumSize continuum_size(const Case &input)
   return size;
 }
 
-MemoryNeed continuum_memory(const Case &input, const ContinuumSize &size)
+MemoryNeed continuum_memory(const input::Case &input, const ContinuumSize &size)
 {
-  const ContinuumCase &c = input.continuum;
-  const bool has_face_terms = c.gradient != ContinuumGradient::none;
+  const input::ContinuumCase &c = input.continuum;
+  const bool has_face_terms = c.gradient != input::ContinuumGradient::none;
   const double entries = entries_per_row(c.degree, has_face_terms);
   // Bytes that the peak of runs of one rank grows by: cells and points with all that is kept of them, entries of
   // matrices and of what is set up from them, of factors.
   const double of_unknown = 700. + 1000. / (c.degree * c.degree);
-  const double of_entry =
-    (is_direct(input, size.final_unknowns) ? 0. : 30.) + (c.solution == ContinuumCase::Solution::motion ? 30. : 0.);
+  const double of_entry = (is_direct(input, size.final_unknowns) ? 0. : 30.) +
+                          (c.solution == input::ContinuumCase::Solution::motion ? 30. : 0.);
   const double of_factor = has_face_terms ? 85. : 50.;
   const double fill = 1. + 0.15 * std::max(0., std::log2(size.coarse_unknowns / 2e4));
   return {size.final_unknowns * (of_unknown + entries * of_entry) + size.coarse_unknowns * entries * of_factor * fill,
@@ -264,8 +266,8 @@ std::string memory_text(const MemoryNeed &need)
   return text.str();
 }
 
-double lattice_seconds(const Case &input, const lattice::TimeStepping &stepping, const RunKind run, const double steps,
-                       const double frames)
+double lattice_seconds(const input::Case &input, const lattice::TimeStepping &stepping, const RunKind run,
+                       const double steps, const double frames)
 {
   // One part of a step is measured: a whole one may take longer than anybody waits for an estimate.
   const double parts = parts_of_first_step(input, stepping, run);
@@ -283,15 +285,15 @@ double lattice_seconds(const Case &input, const lattice::TimeStepping &stepping,
   return written + (run == RunKind::fracture ? beside_kernel : 1.) * per_site_step * sites * steps * parts / ranks;
 }
 
-double expected_steps(const Case &input, const lattice::TimeStepping &stepping)
+double expected_steps(const input::Case &input, const lattice::TimeStepping &stepping)
 {
   const lattice::TriangularLattice sheet = input.lattice();
   const double way = (input.stop_position - input.seed_position) * sheet.length();
-  const double passage = way / small_strain(sheet, input.material()).shear_speed;
+  const double passage = way / bridge::small_strain(sheet, input.material()).shear_speed;
   return std::ceil(std::min(input.end_time, passage) / stepping.step);
 }
 
-double parts_of_first_step(const Case &input, const lattice::TimeStepping &stepping, const RunKind run)
+double parts_of_first_step(const input::Case &input, const lattice::TimeStepping &stepping, const RunKind run)
 {
   const lattice::TriangularLattice sheet = input.lattice();
   const lattice::Material material = input.material();
@@ -314,16 +316,17 @@ double parts_of_first_step(const Case &input, const lattice::TimeStepping &stepp
   return std::min(parts, static_cast<double>(lattice::Simulation::most_parts));
 }
 
-double continuum_seconds(const Case &input, const ContinuumSize &size, const double steps, const double frames)
+double continuum_seconds(const input::Case &input, const ContinuumSize &size, const double steps, const double frames)
 {
-  const ContinuumCase &c = input.continuum;
-  const double entries = entries_per_row(c.degree, c.gradient != ContinuumGradient::none);
+  const input::ContinuumCase &c = input.continuum;
+  const double entries = entries_per_row(c.degree, c.gradient != input::ContinuumGradient::none);
   constexpr double seconds_of_unknown = 8e-6, seconds_of_entry = 2e-7; // in a Newton iteration
   // Newton iterations of the loading, of an adaptive cycle, of a time step. A homogeneous sheet starts as it ends.
   const double of_loading = is_homogeneous(input) ? 2. : 8.;
   constexpr double of_cycle = 4., of_step = 2.;
-  double work = c.solution == ContinuumCase::Solution::motion ? of_step * steps * size.unknowns : 0.;
-  if (c.solution == ContinuumCase::Solution::equilibrium || c.initial_base == ContinuumCase::Base::equilibrium)
+  double work = c.solution == input::ContinuumCase::Solution::motion ? of_step * steps * size.unknowns : 0.;
+  if (c.solution == input::ContinuumCase::Solution::equilibrium ||
+      c.initial_base == input::ContinuumCase::Base::equilibrium)
     work += of_loading * size.unknowns;
   double unknowns = size.unknowns;
   for (unsigned int cycle = 0; cycle < c.adaptive_cycles; ++cycle)
@@ -342,7 +345,7 @@ double core_seconds(const double site_evaluations)
   return site_evaluations * nanoseconds_per_site_evaluation * 1e-9;
 }
 
-void check_steps(const Case &input, const double step, Parameters &parameters)
+void check_steps(const input::Case &input, const double step, input::Parameters &parameters)
 {
   if (input.end_time / step <= most_steps)
     return;
@@ -352,4 +355,4 @@ void check_steps(const Case &input, const double step, Parameters &parameters)
   parameters.error("Time/end", text.str());
 }
 
-} // namespace latcon::verification
+} // namespace latcon::resources

@@ -12,7 +12,7 @@
 
 extern char **environ;
 
-namespace latcon::verification
+namespace latcon::study
 {
 namespace
 {
@@ -106,4 +106,4 @@ bool run_processes(const ProcessPool &pool)
   return true;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::study

@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-namespace latcon::verification
+namespace latcon::study
 {
 
 /// What a pool runs and whom it tells. All functions are called by the thread that called run_processes().
@@ -37,4 +37,4 @@ struct ProcessPool
 /// @return whether all jobs ended by themselves; `ended` was called for these alone
 bool run_processes(const ProcessPool &pool);
 
-} // namespace latcon::verification
+} // namespace latcon::study

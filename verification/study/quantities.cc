@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <stdexcept>
 
-namespace latcon::verification
+namespace latcon::study
 {
 namespace
 {
@@ -106,4 +106,4 @@ void add_derived(Values &values, const double spacing)
         values[name + "_over_d" + suffix] = found->second / spacing;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::study

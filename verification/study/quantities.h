@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-namespace latcon::verification
+namespace latcon::study
 {
 
 /// Number that a study records of each run.
@@ -14,9 +14,9 @@ struct StudyQuantity
   /// Where the number is read.
   enum class Source
   {
-    crack,    ///< crack.json, under its own name
-    near_tip, ///< near_tip.json, under its own name
-    derived   ///< computed from others and from the case
+    crack,            ///< crack.json, under its own name
+    claims::near_tip, ///< near_tip.json, under its own name
+    derived           ///< computed from others and from the case
   };
 
   std::string name;
@@ -44,4 +44,4 @@ using Values = std::map<std::string, double>;
 /// Adds what follows from a run's numbers and its lattice spacing d [m].
 void add_derived(Values &values, double spacing);
 
-} // namespace latcon::verification
+} // namespace latcon::study

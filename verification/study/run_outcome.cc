@@ -10,7 +10,7 @@
 #include "verification/input/case_text.h"
 #include "verification/output/run_info.h"
 
-namespace latcon::verification
+namespace latcon::study
 {
 namespace
 {
@@ -54,14 +54,14 @@ void read_numbers(const Json &object, const StudyQuantity::Source source, Values
 // line.
 std::string last_words(const std::string &text)
 {
-  const std::string all = "\n" + trimmed(text);
+  const std::string all = "\n" + input::trimmed(text);
   std::size_t begin = all.rfind("\nlatcon: ");
   if (begin == std::string::npos)
     begin = all.find_last_of("\r\n");
   std::string words = all.substr(begin + 1);
   for (std::size_t at = 0; (at = words.find('\n', at)) != std::string::npos;)
     words.replace(at, 1, "; ");
-  return printable(words, 300);
+  return input::printable(words, 300);
 }
 
 } // namespace
@@ -116,7 +116,7 @@ bool is_begun(const PlannedRun &run, const std::string &folder, const bool skip_
 {
   const Json info = object_in(folder + "/run.json");
   return content(folder + "/case.prm") == run.case_text &&
-         value_or(info, "program_hash", std::string()) == program_hash() &&
+         value_or(info, "program_hash", std::string()) == output::program_hash() &&
          value_or(info, "skip_verification", !skip_verification) == skip_verification;
 }
 
@@ -125,4 +125,4 @@ bool is_finished(const PlannedRun &run, const std::string &folder, const bool sk
   return is_begun(run, folder, skip_verification) && read_outcome(run, folder).state == RunState::measured;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::study

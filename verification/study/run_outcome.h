@@ -9,7 +9,7 @@
 #include "verification/study/quantities.h"
 #include "verification/study/study_plan.h"
 
-namespace latcon::verification
+namespace latcon::study
 {
 
 /// How a run of a study came out.
@@ -52,4 +52,4 @@ struct RunOutcome
 /// asked.
 [[nodiscard]] bool is_finished(const PlannedRun &run, const std::string &folder, bool skip_verification);
 
-} // namespace latcon::verification
+} // namespace latcon::study

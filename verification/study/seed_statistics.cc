@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-namespace latcon::verification
+namespace latcon::study
 {
 namespace
 {
@@ -144,4 +144,4 @@ std::string quantity_text(const double value, const std::optional<double> deviat
   return formatted("%.*f", digits, shown.scale * value) + " ± " + formatted("%.*f", digits, spread) + shown.unit;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::study

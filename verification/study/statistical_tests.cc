@@ -8,7 +8,7 @@
 #include <boost/math/distributions/normal.hpp>
 #include <boost/math/distributions/students_t.hpp>
 
-namespace latcon::verification
+namespace latcon::study
 {
 namespace
 {
@@ -174,4 +174,4 @@ std::optional<TrendTest> isotonic_test(const std::vector<SampleMean> &samples)
   return isotonic_test(samples, level_probabilities(weights_of(samples)));
 }
 
-} // namespace latcon::verification
+} // namespace latcon::study

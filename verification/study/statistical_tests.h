@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-namespace latcon::verification
+namespace latcon::study
 {
 
 /// Probability with which a test finds a difference where there is none.
@@ -67,4 +67,4 @@ std::optional<TrendTest> isotonic_test(const std::vector<SampleMean> &samples, c
 /// Isotonic test with the level probabilities of these samples.
 std::optional<TrendTest> isotonic_test(const std::vector<SampleMean> &samples);
 
-} // namespace latcon::verification
+} // namespace latcon::study

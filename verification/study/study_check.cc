@@ -6,7 +6,7 @@
 #include "support/one_thread.h"
 #include "verification/claims/steady_crack/steady_crack_study.h"
 
-namespace latcon::verification
+namespace latcon::study
 {
 
 const std::vector<StudyCheck> &study_checks()
@@ -28,9 +28,9 @@ CheckResult run_check(const std::string &name, const bool quick, const std::stri
   if (check == study_checks().end())
     throw std::logic_error("study: '" + name + "' is no check");
   const support::OneThread one_thread;
-  const ClaimOutcome outcome = check->run(quick);
+  const claims::ClaimOutcome outcome = check->run(quick);
   outcome.write_tables(folder);
   return {check->name, check->about, outcome.results};
 }
 
-} // namespace latcon::verification
+} // namespace latcon::study

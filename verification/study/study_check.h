@@ -6,7 +6,7 @@
 
 #include "verification/claims/claim_outcome.h"
 
-namespace latcon::verification
+namespace latcon::study
 {
 
 /// A check that a study file can ask for.
@@ -14,7 +14,7 @@ struct StudyCheck
 {
   std::string name;
   std::string about; ///< what is held against what, in a few sentences
-  ClaimOutcome (*run)(bool quick);
+  claims::ClaimOutcome (*run)(bool quick);
 };
 
 /// All of them.
@@ -25,11 +25,11 @@ struct CheckResult
 {
   std::string name;
   std::string about;
-  Results rows;
+  output::Results rows;
 };
 
 /// Runs a check on one thread and writes its tables into `folder`.
 /// @throws std::logic_error for a name that is none; OutputError
 [[nodiscard]] CheckResult run_check(const std::string &name, bool quick, const std::string &folder);
 
-} // namespace latcon::verification
+} // namespace latcon::study

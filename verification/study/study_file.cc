@@ -16,7 +16,7 @@
 #include "verification/study/study_check.h"
 #include "verification/study/study_json.h"
 
-namespace latcon::verification
+namespace latcon::study
 {
 namespace
 {
@@ -29,8 +29,8 @@ struct CaseEntry
 
 std::vector<CaseEntry> case_entries()
 {
-  Case input;
-  Parameters parameters;
+  input::Case input;
+  input::Parameters parameters;
   input.declare(parameters);
   std::vector<CaseEntry> entries;
   for (const auto &[key, value] : parameters.values())
@@ -369,7 +369,7 @@ std::vector<std::string> shipped_studies()
 {
   std::vector<std::string> names;
   std::error_code status;
-  for (const auto &file : std::filesystem::directory_iterator(data_folder() + "/studies", status))
+  for (const auto &file : std::filesystem::directory_iterator(input::data_folder() + "/studies", status))
     if (file.path().extension() == ".json")
       names.push_back(file.path().stem());
   std::sort(names.begin(), names.end());
@@ -379,14 +379,15 @@ std::vector<std::string> shipped_studies()
 std::string study_choices()
 {
   const std::vector<std::string> names = shipped_studies();
-  return "study file (.json)" + (names.empty() ? std::string() : ", or a shipped one: " + comma_separated(names));
+  return "study file (.json)" +
+         (names.empty() ? std::string() : ", or a shipped one: " + input::comma_separated(names));
 }
 
 std::string study_path(const std::string &name)
 {
   const std::vector<std::string> names = shipped_studies();
   const bool is_shipped = std::find(names.begin(), names.end(), name) != names.end();
-  return is_shipped && !std::filesystem::exists(name) ? data_folder() + "/studies/" + name + ".json" : name;
+  return is_shipped && !std::filesystem::exists(name) ? input::data_folder() + "/studies/" + name + ".json" : name;
 }
 
 Study read_study(const std::string &text, const std::string &path, const bool quick)
@@ -396,11 +397,11 @@ Study read_study(const std::string &text, const std::string &path, const bool qu
 
 Study read_study_file(const std::string &path, const bool quick)
 {
-  const InputFile file = read_input_file(path);
+  const input::InputFile file = input::read_input_file(path);
   if (!file.problem.empty())
-    throw support::InputError(printable(path) + ": cannot read the study: " + file.problem + "; give a " +
+    throw support::InputError(input::printable(path) + ": cannot read the study: " + file.problem + "; give a " +
                               study_choices());
   return read_study(file.text, path, quick);
 }
 
-} // namespace latcon::verification
+} // namespace latcon::study

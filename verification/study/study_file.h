@@ -6,7 +6,7 @@
 #include <utility>
 #include <vector>
 
-namespace latcon::verification
+namespace latcon::study
 {
 
 /// Entries of a case and their values, in the order in which they were first given.
@@ -104,4 +104,4 @@ struct Study
 /// The same from the file. @throws InputError also if it cannot be read
 [[nodiscard]] Study read_study_file(const std::string &path, bool quick);
 
-} // namespace latcon::verification
+} // namespace latcon::study

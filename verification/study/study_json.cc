@@ -7,7 +7,7 @@
 #include "verification/input/case_text.h"
 #include "verification/input/spelling.h"
 
-namespace latcon::verification
+namespace latcon::study
 {
 
 namespace
@@ -21,8 +21,9 @@ std::string listed(const std::vector<std::string> &names)
 {
   constexpr std::ptrdiff_t most = 60;
   if (names.size() <= most)
-    return comma_separated(names);
-  return comma_separated({names.begin(), names.begin() + most}) + ", ... (" + std::to_string(names.size()) + " in all)";
+    return input::comma_separated(names);
+  return input::comma_separated({names.begin(), names.begin() + most}) + ", ... (" + std::to_string(names.size()) +
+         " in all)";
 }
 
 } // namespace
@@ -30,7 +31,7 @@ std::string listed(const std::vector<std::string> &names)
 nlohmann::ordered_json parse_json(const std::string &text, const std::string &file)
 {
   using Json = nlohmann::ordered_json;
-  if (const auto problem = zero_byte(text, file)) // where the parser would end
+  if (const auto problem = input::zero_byte(text, file)) // where the parser would end
     throw support::InputError(problem->place + ": " + problem->text);
   std::vector<std::set<std::string>> open; // keys of the objects around the place being parsed
   std::vector<std::string> problems;
@@ -44,7 +45,8 @@ nlohmann::ordered_json parse_json(const std::string &text, const std::string &fi
     else if (event == Json::parse_event_t::object_end)
       open.pop_back();
     else if (event == Json::parse_event_t::key && !open.back().insert(value.get<std::string>()).second)
-      problems.push_back(file + ": the key '" + printable(value.get<std::string>()) + "' is there twice in one object");
+      problems.push_back(file + ": the key '" + input::printable(value.get<std::string>()) +
+                         "' is there twice in one object");
     return true;
   };
   Json document;
@@ -56,8 +58,8 @@ nlohmann::ordered_json parse_json(const std::string &text, const std::string &fi
   {
     // "[json.exception.parse_error.101] parse error at line 1, column 2: ...": the words after the bracket.
     const std::string what = error.what();
-    throw support::InputError(file +
-                              ": not JSON: " + printable(what.substr(std::min(what.size(), what.find(']') + 2)), 200));
+    throw support::InputError(
+      file + ": not JSON: " + input::printable(what.substr(std::min(what.size(), what.find(']') + 2)), 200));
   }
   if (!document.is_object())
     problems.push_back(file + ": a study is a JSON object");
@@ -68,7 +70,7 @@ nlohmann::ordered_json parse_json(const std::string &text, const std::string &fi
 
 std::string nearest_hint(const std::string &given, const std::vector<std::string> &known)
 {
-  const std::string nearest = nearest_word(given, known);
+  const std::string nearest = input::nearest_word(given, known);
   return nearest.empty() ? "" : "; nearest: " + nearest;
 }
 
@@ -76,12 +78,13 @@ bool JsonPlace::is_object(const std::vector<std::string> &known) const
 {
   if (!value_->is_object())
   {
-    problem("must be an object with the keys " + comma_separated(known));
+    problem("must be an object with the keys " + input::comma_separated(known));
     return false;
   }
   for (const auto &[key, member] : value_->items())
     if (std::find(known.begin(), known.end(), key) == known.end())
-      problem("unknown key '" + printable(key) + "'" + nearest_hint(key, known) + "; known: " + comma_separated(known));
+      problem("unknown key '" + input::printable(key) + "'" + nearest_hint(key, known) +
+              "; known: " + input::comma_separated(known));
   return true;
 }
 
@@ -97,7 +100,7 @@ std::string JsonPlace::text() const
 {
   if (value_->is_string() && !value_->get_ref<const std::string &>().empty())
     return value_->get<std::string>();
-  problem("must be a text that is not empty, not " + printable(value_->dump()));
+  problem("must be a text that is not empty, not " + input::printable(value_->dump()));
   return {};
 }
 
@@ -112,7 +115,7 @@ double JsonPlace::number() const
 {
   if (value_->is_number())
     return value_->get<double>();
-  problem("must be a number, not " + printable(value_->dump()));
+  problem("must be a number, not " + input::printable(value_->dump()));
   return 0.;
 }
 
@@ -120,7 +123,7 @@ bool JsonPlace::boolean() const
 {
   if (value_->is_boolean())
     return value_->get<bool>();
-  problem("must be true or false, not " + printable(value_->dump()));
+  problem("must be true or false, not " + input::printable(value_->dump()));
   return false;
 }
 
@@ -131,7 +134,7 @@ std::vector<JsonPlace> JsonPlace::list() const
     for (std::size_t i = 0; i < value_->size(); ++i)
       places.push_back(child((*value_)[i], std::to_string(i + 1)));
   else
-    problem("must be a list that is not empty, not " + printable(value_->dump()));
+    problem("must be a list that is not empty, not " + input::printable(value_->dump()));
   return places;
 }
 
@@ -142,7 +145,7 @@ std::vector<std::pair<std::string, JsonPlace>> JsonPlace::members() const
     for (const auto &[key, member] : value_->items())
       all.emplace_back(key, child(member, key));
   else
-    problem("must be an object, not " + printable(value_->dump()));
+    problem("must be an object, not " + input::printable(value_->dump()));
   return all;
 }
 
@@ -151,8 +154,8 @@ std::string JsonPlace::word(const std::vector<std::string> &known, const std::st
   const std::string given = text();
   if (given.empty() || std::find(known.begin(), known.end(), given) != known.end())
     return given;
-  problem("'" + printable(given) + "' is no " + what + nearest_hint(given, known) + "; known: " + listed(known));
+  problem("'" + input::printable(given) + "' is no " + what + nearest_hint(given, known) + "; known: " + listed(known));
   return {};
 }
 
-} // namespace latcon::verification
+} // namespace latcon::study

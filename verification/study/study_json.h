@@ -7,7 +7,7 @@
 
 #include <nlohmann/json.hpp>
 
-namespace latcon::verification
+namespace latcon::study
 {
 
 /// A place in a JSON document, and the list of problems that all places of the document share.
@@ -63,4 +63,4 @@ private:
 /// "; nearest: WORD" for a word that was mistyped; empty if none could be meant.
 [[nodiscard]] std::string nearest_hint(const std::string &given, const std::vector<std::string> &known);
 
-} // namespace latcon::verification
+} // namespace latcon::study

@@ -12,7 +12,7 @@
 #include "verification/output/run_info.h"
 #include "verification/resources/resources.h"
 
-namespace latcon::verification
+namespace latcon::study
 {
 namespace
 {
@@ -88,15 +88,15 @@ Json json_of(const RowOutcome &outcome)
 }
 
 // The words of the table for rows of checks.
-RowVerdict row_verdict(const Verdict verdict)
+RowVerdict row_verdict(const output::Verdict verdict)
 {
-  return verdict == Verdict::holds   ? RowVerdict::holds
-         : verdict == Verdict::fails ? RowVerdict::does_not_hold
-                                     : RowVerdict::reported;
+  return verdict == output::Verdict::holds   ? RowVerdict::holds
+         : verdict == output::Verdict::fails ? RowVerdict::does_not_hold
+                                             : RowVerdict::reported;
 }
 
 // "0.5321, exact 0.533, error 0.0017 [at most 0.01]"
-std::string values_text(const Result &row)
+std::string values_text(const output::Result &row)
 {
   std::string text;
   const auto append = [&text](const std::string &name, const std::optional<double> &value, const std::string &unit)
@@ -115,7 +115,7 @@ std::string values_text(const Result &row)
 Json json_of(const CheckResult &check)
 {
   Json rows = Json::array();
-  for (const Result &row : check.rows.rows())
+  for (const output::Result &row : check.rows.rows())
     rows.push_back({{"quantity", row.quantity},
                     {"unit", row.unit},
                     {"lattice", json_of(row.lattice)},
@@ -140,8 +140,8 @@ std::string study_json(const StudyResults &results)
 {
   Json document;
   document["title"] = results.study.title;
-  document["version"] = program_version();
-  document["git_commit"] = git_commit();
+  document["version"] = output::program_version();
+  document["git_commit"] = output::git_commit();
   document["quick"] = results.quick;
   document["verification"] = results.verification;
   document["verified"] = results.is_verified;
@@ -180,27 +180,28 @@ std::string study_csv(const StudyResults &results)
   std::vector<std::string> columns{"run", "seed", "set", "state", "pattern"};
   for (const StudyQuantity &quantity : quantities())
     columns.push_back(quantity.name + " [" + quantity.unit + "]");
-  Table table(columns);
+  output::Table table(columns);
   for (const RunOutcome &outcome : results.outcomes)
   {
     std::string set;
     for (const auto &[key, value] : results.study.run(outcome.run).own)
       set += (set.empty() ? "" : "; ") + key + "=" + value;
-    std::vector<Table::Cell> row{outcome.run, std::to_string(outcome.seed), set, to_string(outcome.state),
-                                 outcome.pattern};
+    std::vector<output::Table::Cell> row{outcome.run, std::to_string(outcome.seed), set, to_string(outcome.state),
+                                         outcome.pattern};
     for (const StudyQuantity &quantity : quantities())
     {
       const auto found = outcome.values.find(quantity.name);
-      row.push_back(found == outcome.values.end() ? Table::Cell(std::string()) : Table::Cell(found->second));
+      row.push_back(found == outcome.values.end() ? output::Table::Cell(std::string())
+                                                  : output::Table::Cell(found->second));
     }
     table.add(row);
   }
   return table.csv();
 }
 
-Results study_rows(const StudyResults &results)
+output::Results study_rows(const StudyResults &results)
 {
-  Results rows;
+  output::Results rows;
   for (const ClaimResult &claim : results.claims)
     for (const RowOutcome &row : claim.rows)
       if (const auto result = row.result(claim.claim.claim))
@@ -244,7 +245,7 @@ void print_table(std::ostream &out, const StudyResults &results)
   for (const CheckResult &check : results.checks)
   {
     paragraph("Check " + check.name + ": " + to_string(row_verdict(check.rows.verdict())), "", "");
-    for (const Result &row : check.rows.rows())
+    for (const output::Result &row : check.rows.rows())
       judged(row_verdict(row.verdict()), row.quantity + ": " + values_text(row));
   }
   for (const RunOutcome &outcome : results.outcomes)
@@ -264,7 +265,7 @@ void print_plan(std::ostream &out, const Study &study, const std::vector<Planned
   double total = 0.;
   for (const PlannedRun &run : plan)
   {
-    const double seconds = core_seconds(run.cost());
+    const double seconds = resources::core_seconds(run.cost());
     total += seconds;
     out << std::left << std::setw(static_cast<int>(widest)) << run.folder() << std::right << std::setw(10) << run.sites
         << std::setw(10) << std::llround(run.steps) << std::setw(10) << std::llround(std::ceil(seconds)) << " s\n";
@@ -275,4 +276,4 @@ void print_plan(std::ostream &out, const Study &study, const std::vector<Planned
     out << "check " << check << ", after the runs\n";
 }
 
-} // namespace latcon::verification
+} // namespace latcon::study

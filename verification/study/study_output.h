@@ -8,7 +8,7 @@
 #include "verification/study/study_check.h"
 #include "verification/study/study_table.h"
 
-namespace latcon::verification
+namespace latcon::study
 {
 
 /// A study that was run.
@@ -32,7 +32,7 @@ struct StudyResults
 
 /// The rows that have a number or a rule, in the form that all commands have, then those of the checks. A row holds
 /// here if it does in the table; one that was to be judged and was not measured fails.
-[[nodiscard]] Results study_rows(const StudyResults &results);
+[[nodiscard]] output::Results study_rows(const StudyResults &results);
 
 /// Prints the table, at most 120 columns wide.
 void print_table(std::ostream &out, const StudyResults &results);
@@ -40,4 +40,4 @@ void print_table(std::ostream &out, const StudyResults &results);
 /// Prints the runs with their sizes and the estimated time on so many cores, and the checks beside them.
 void print_plan(std::ostream &out, const Study &study, const std::vector<PlannedRun> &plan, std::size_t n_cores);
 
-} // namespace latcon::verification
+} // namespace latcon::study

@@ -12,7 +12,7 @@
 #include "verification/input/case_text.h"
 #include "verification/resources/resources.h"
 
-namespace latcon::verification
+namespace latcon::study
 {
 namespace
 {
@@ -20,8 +20,8 @@ namespace
 std::map<std::string, double> numbers_in(const std::string &case_text)
 {
   std::map<std::string, double> numbers;
-  for (const auto &item : read_prm(case_text, "case"))
-    if (const auto *assignment = std::get_if<Assignment>(&item))
+  for (const auto &item : input::read_prm(case_text, "case"))
+    if (const auto *assignment = std::get_if<input::Assignment>(&item))
     {
       char *end = nullptr;
       const double value = std::strtod(assignment->value.c_str(), &end);
@@ -31,7 +31,7 @@ std::map<std::string, double> numbers_in(const std::string &case_text)
   return numbers;
 }
 
-PlannedRun plan_run(const Study &study, const InputFile &base, const StudyRun &run, const std::uint64_t seed,
+PlannedRun plan_run(const Study &study, const input::InputFile &base, const StudyRun &run, const std::uint64_t seed,
                     const Settings &settings)
 {
   PlannedRun planned;
@@ -45,8 +45,8 @@ PlannedRun plan_run(const Study &study, const InputFile &base, const StudyRun &r
   for (const auto &[key, value] : all)
     changes.push_back(key + "=" + value);
 
-  Case input;
-  Parameters parameters;
+  input::Case input;
+  input::Parameters parameters;
   input.declare(parameters);
   if (base.problem.empty())
     parameters.read_text(base.text, study.base);
@@ -54,7 +54,7 @@ PlannedRun plan_run(const Study &study, const InputFile &base, const StudyRun &r
     parameters.read_file(study.base); // which says the same
   parameters.read_overrides(changes);
   input.check(parameters);
-  require_fracture_case(input, parameters);
+  bridge::require_fracture_case(input, parameters);
   parameters.finish();
 
   const lattice::TriangularLattice sheet = input.lattice();
@@ -63,10 +63,10 @@ PlannedRun plan_run(const Study &study, const InputFile &base, const StudyRun &r
   planned.zeta = zeta(input);
   planned.entries = numbers_in(planned.case_text);
   planned.sites = sheet.n_sites();
-  const MemoryNeed memory = lattice_memory(input, RunKind::fracture, true);
+  const resources::MemoryNeed memory = resources::lattice_memory(input, resources::RunKind::fracture, true);
   planned.memory = memory.shared + memory.first_rank;
   const lattice::TimeStepping stepping = input.fracture_time_stepping();
-  planned.steps = expected_steps(input, stepping) * stepping.evaluations();
+  planned.steps = resources::expected_steps(input, stepping) * stepping.evaluations();
   return planned;
 }
 
@@ -99,8 +99,9 @@ Settings parsed(const std::vector<std::string> &texts)
   {
     const std::size_t equals = text.find('=');
     if (equals == std::string::npos)
-      throw support::InputError("--set: not understood: '" + printable(text) + "'; allowed: --set Section/Name=value");
-    override_settings(settings, {{trimmed(text.substr(0, equals)), trimmed(text.substr(equals + 1))}});
+      throw support::InputError("--set: not understood: '" + input::printable(text) +
+                                "'; allowed: --set Section/Name=value");
+    override_settings(settings, {{input::trimmed(text.substr(0, equals)), input::trimmed(text.substr(equals + 1))}});
   }
   for (const auto &[key, value] : settings)
     if (key == seed_entry)
@@ -110,10 +111,10 @@ Settings parsed(const std::vector<std::string> &texts)
 
 } // namespace
 
-std::optional<double> zeta(const Case &input)
+std::optional<double> zeta(const input::Case &input)
 {
-  const ShellCase &bond = input.nearest;
-  if (bond.law != ShellCase::Law::mooney_rivlin || !(bond.a > 0.))
+  const input::ShellCase &bond = input.nearest;
+  if (bond.law != input::ShellCase::Law::mooney_rivlin || !(bond.a > 0.))
     return {};
   return bond.viscosity / bond.a * std::sqrt(bond.a / input.density) / input.spacing;
 }
@@ -126,7 +127,8 @@ std::optional<double> PlannedRun::value(const std::string &against) const
   return found == entries.end() ? std::nullopt : std::optional<double>(found->second);
 }
 
-std::vector<PlannedRun> plan_runs(const Study &study, const InputFile &base, const std::vector<std::string> &settings)
+std::vector<PlannedRun> plan_runs(const Study &study, const input::InputFile &base,
+                                  const std::vector<std::string> &settings)
 {
   const Settings overrides = parsed(settings);
   std::vector<PlannedRun> runs;
@@ -165,4 +167,4 @@ std::vector<std::size_t> longest_first(const std::vector<PlannedRun> &runs)
   return order;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::study

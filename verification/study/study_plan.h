@@ -12,7 +12,7 @@
 #include "verification/study/quantities.h"
 #include "verification/study/study_file.h"
 
-namespace latcon::verification
+namespace latcon::study
 {
 
 /// One fracture run: a case with one seed.
@@ -34,21 +34,21 @@ struct PlannedRun
   std::optional<double> value(const std::string &against) const;
 };
 
-struct Case;
+struct input::Case;
 
 /// zeta = (eta / a) / (d / sqrt(a / rho)) of the nearest-neighbour bonds [-]: the retardation time over the time in
 /// which a wave passes one spacing (theory.md, eq. (L.5)). None for linear bonds, which have no a.
-[[nodiscard]] std::optional<double> zeta(const Case &input);
+[[nodiscard]] std::optional<double> zeta(const input::Case &input);
 
 /// All runs of a study with all their seeds, in the order of the file. The noise seed is set here, and that there are
 /// no frames but the first and the last.
 /// @param base the file of the base case, read once: all runs are of the same
 /// @param settings `Section/Name=value` for all runs, over those of the study
 /// @throws InputError with the problems of every case, and of rows whose `against` has no number in any of their runs
-[[nodiscard]] std::vector<PlannedRun> plan_runs(const Study &study, const InputFile &base,
+[[nodiscard]] std::vector<PlannedRun> plan_runs(const Study &study, const input::InputFile &base,
                                                 const std::vector<std::string> &settings);
 
 /// Indices of the runs, the most expensive first; equal ones in their order.
 [[nodiscard]] std::vector<std::size_t> longest_first(const std::vector<PlannedRun> &runs);
 
-} // namespace latcon::verification
+} // namespace latcon::study

@@ -6,7 +6,7 @@
 
 #include "support/largest_error.h"
 
-namespace latcon::verification
+namespace latcon::study
 {
 namespace
 {
@@ -340,14 +340,14 @@ double RowOutcome::allowed() const
   return row.rule == Rule::is_near ? row.tolerance : is_test() ? significance : 0.;
 }
 
-std::optional<Result> RowOutcome::result(const std::string &claim) const
+std::optional<output::Result> RowOutcome::result(const std::string &claim) const
 {
   if (!number && verdict == RowVerdict::reported)
     return {};
   std::string names;
   for (const std::string &run : row.runs)
     append(names, run, ", ");
-  Result result{claim, names + ": " + row.quantity, row.unit(), number, {}, {}, {}, {}};
+  output::Result result{claim, names + ": " + row.quantity, row.unit(), number, {}, {}, {}, {}};
   if (bound)
     result.theory = bound;
   if (row.rule == Rule::is)
@@ -378,4 +378,4 @@ RowVerdict ClaimResult::verdict() const
   return any(RowVerdict::holds) ? RowVerdict::holds : RowVerdict::reported;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::study

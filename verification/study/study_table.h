@@ -12,7 +12,7 @@
 #include "verification/study/statistical_tests.h"
 #include "verification/study/study_file.h"
 
-namespace latcon::verification
+namespace latcon::study
 {
 
 /// Verdict of a row, or of a claim.
@@ -76,7 +76,7 @@ struct RowOutcome
 
   /// As a row of results.json, which fails if it was to be judged and was not measured; none if the row has no number
   /// and no rule.
-  std::optional<Result> result(const std::string &claim) const;
+  std::optional<output::Result> result(const std::string &claim) const;
 };
 
 /// A claim, judged.
@@ -108,4 +108,4 @@ struct ClaimResult
 /// @param deviation standard deviation in the same unit, or none
 [[nodiscard]] std::string quantity_text(double value, std::optional<double> deviation, const std::string &unit);
 
-} // namespace latcon::verification
+} // namespace latcon::study

@@ -30,8 +30,7 @@ struct Ensemble
   unsigned int wavelength_within_1 = 0, wavelength_within_2 = 0, amplitude_within_1 = 0, amplitude_within_2 = 0;
   unsigned int speed_within_1 = 0, speed_within_2 = 0;
 
-  static void count(const verification::Measured &measured, double truth, unsigned int &within_1,
-                    unsigned int &within_2)
+  static void count(const analysis::Measured &measured, double truth, unsigned int &within_1, unsigned int &within_2)
   {
     const double deviation = std::abs(measured.value - truth) / measured.uncertainty;
     within_1 += deviation < 1.;

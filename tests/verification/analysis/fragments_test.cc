@@ -13,7 +13,7 @@ namespace
 {
 
 using namespace lattice;
-using namespace verification;
+using namespace analysis;
 
 class Cut : public testing::Test
 {

@@ -16,7 +16,8 @@ namespace
 {
 
 using namespace lattice;
-using namespace verification;
+using namespace analysis;
+using namespace claims;
 
 constexpr double d = 1e-3;
 constexpr double speed = 50.; // of the crack [m/s]

@@ -26,7 +26,7 @@ TEST(CorrelatedNoise, IndependentNoiseGivesTheTextbookCovariance)
   Eigen::VectorXd s = Eigen::VectorXd::LinSpaced(21, -1., 1.);
   Eigen::MatrixXd line(21, 2);
   line << Eigen::VectorXd::Ones(21), s;
-  const Eigen::MatrixXd covariance = verification::least_squares_covariance({4., 0., 1.}, s, line);
+  const Eigen::MatrixXd covariance = analysis::least_squares_covariance({4., 0., 1.}, s, line);
   EXPECT_NEAR(covariance(0, 0), 4. / 21., 1e-12);
   EXPECT_NEAR(covariance(1, 1), 4. / s.squaredNorm(), 1e-12);
   EXPECT_NEAR(covariance(0, 1), 0., 1e-12);
@@ -47,9 +47,9 @@ TEST(CorrelatedNoise, LikelihoodIsThatOfTheDenseMatrix)
   }
   Eigen::MatrixXd line(n, 2);
   line << Eigen::VectorXd::Ones(n), s;
-  const verification::NoiseFit fit = verification::fit_noise(s, line, y, 1e-9);
+  const analysis::NoiseFit fit = analysis::fit_noise(s, line, y, 1e-9);
   ASSERT_GT(fit.noise.correlated_fraction, 0.) << "the filter would not be tested";
-  const Eigen::MatrixXd C = verification::covariance(fit.noise, s);
+  const Eigen::MatrixXd C = analysis::covariance(fit.noise, s);
   const Eigen::MatrixXd information = line.transpose() * C.inverse() * line;
   const Eigen::VectorXd residual = y - line * information.inverse() * line.transpose() * C.inverse() * y;
   const double freedom = static_cast<double>(n - 2);
@@ -77,7 +77,7 @@ TEST(CorrelatedNoise, FindsFractionAndLength)
       s(i) = static_cast<double>(i);
       y(i) = 3. + std::sqrt(0.6) * remembered + std::sqrt(0.4) * normal(generator);
     }
-    const verification::NoiseFit fit = verification::fit_noise(s, Eigen::MatrixXd::Ones(n, 1), y, 1e-6);
+    const analysis::NoiseFit fit = analysis::fit_noise(s, Eigen::MatrixXd::Ones(n, 1), y, 1e-6);
     lengths.push_back(fit.noise.correlation_length);
     fractions.push_back(fit.noise.correlated_fraction);
     EXPECT_NEAR(fit.noise.variance, 1., 0.5);
@@ -92,8 +92,8 @@ TEST(CorrelatedNoise, FindsFractionAndLength)
 TEST(CorrelatedNoise, RefusesTooFewOrUnorderedSamples)
 {
   const Eigen::VectorXd s = Eigen::Vector3d(0., 1., 2.);
-  EXPECT_THROW(verification::fit_noise(s, Eigen::MatrixXd::Ones(3, 3), s, 1e-3), std::invalid_argument);
-  EXPECT_THROW(verification::fit_noise(Eigen::Vector3d(0., 1., 1.), Eigen::MatrixXd::Ones(3, 1), s, 1e-3),
+  EXPECT_THROW(analysis::fit_noise(s, Eigen::MatrixXd::Ones(3, 3), s, 1e-3), std::invalid_argument);
+  EXPECT_THROW(analysis::fit_noise(Eigen::Vector3d(0., 1., 1.), Eigen::MatrixXd::Ones(3, 1), s, 1e-3),
                std::invalid_argument);
 }
 
@@ -101,10 +101,10 @@ TEST(FitSlope, IsTheLeastSquaresSlope)
 {
   // Mean position 1.75: sum of centred positions times samples -1.75 - 0.75 + 0.25 * 4 + 2.25 * 5 = 9.75, of their
   // squares 3.0625 + 0.5625 + 0.0625 + 5.0625 = 8.75.
-  const verification::Measured slope =
-    verification::fit_slope(Eigen::Vector4d(0., 1., 2., 4.), Eigen::Vector4d(1., 1., 4., 5.), 1e-6);
+  const analysis::Measured slope =
+    analysis::fit_slope(Eigen::Vector4d(0., 1., 2., 4.), Eigen::Vector4d(1., 1., 4., 5.), 1e-6);
   EXPECT_NEAR(slope.value, 9.75 / 8.75, 1e-12);
-  EXPECT_THROW(verification::fit_slope(Eigen::Vector3d(0., 1., 2.), Eigen::Vector3d(0., 1., 2.), 1e-6),
+  EXPECT_THROW(analysis::fit_slope(Eigen::Vector3d(0., 1., 2.), Eigen::Vector3d(0., 1., 2.), 1e-6),
                std::invalid_argument);
 }
 

@@ -18,12 +18,12 @@
 namespace synthetic_crack
 {
 
-using latcon::verification::BreakRecord;
-using latcon::verification::CrackMeasurement;
-using latcon::verification::CrackMeasurementOptions;
-using latcon::verification::CrackPattern;
-using latcon::verification::measure_crack;
-using latcon::verification::TipRecord;
+using latcon::analysis::BreakRecord;
+using latcon::analysis::CrackMeasurement;
+using latcon::analysis::CrackMeasurementOptions;
+using latcon::analysis::CrackPattern;
+using latcon::analysis::measure_crack;
+using latcon::analysis::TipRecord;
 
 inline constexpr double pi = 3.14159265358979323846;
 inline constexpr double length = 0.15;

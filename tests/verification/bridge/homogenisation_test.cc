@@ -12,7 +12,9 @@ using namespace latcon;
 namespace
 {
 
-using namespace verification;
+using namespace bridge;
+using namespace claims;
+using namespace input;
 
 // Worked out apart from the code: theory-comparison.md, eqs. (H.2) and (H.3).
 TEST(Homogenisation, HasTheKnownSmallStrainConstants)

@@ -9,7 +9,8 @@
 #include "support/errors.h"
 
 using namespace latcon;
-using namespace verification;
+using namespace bridge;
+using namespace input;
 
 namespace
 {

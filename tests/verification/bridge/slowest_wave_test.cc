@@ -14,7 +14,10 @@ using namespace latcon;
 namespace
 {
 
-using namespace verification;
+using namespace bridge;
+using namespace claims;
+using namespace input;
+using namespace output;
 
 double squared_speed(const lattice::TriangularLattice &sheet, const lattice::Material &material,
                      const Eigen::Matrix2d &F, const Eigen::Vector2d &K)

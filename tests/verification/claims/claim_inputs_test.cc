@@ -18,8 +18,8 @@
 #include <vector>
 
 using namespace latcon;
-using verification::Case;
-using verification::Parameters;
+using input::Case;
+using input::Parameters;
 
 namespace
 {
@@ -90,8 +90,8 @@ std::map<std::string, std::string> entries(Case input)
   Parameters parameters;
   input.declare(parameters);
   std::map<std::string, std::string> values;
-  for (const auto &item : verification::read_prm(parameters.resolved_text(), "case"))
-    if (const auto *entry = std::get_if<verification::Assignment>(&item))
+  for (const auto &item : input::read_prm(parameters.resolved_text(), "case"))
+    if (const auto *entry = std::get_if<input::Assignment>(&item))
       values[entry->section + "/" + entry->name] = entry->value;
   return values;
 }
@@ -188,8 +188,8 @@ TEST(ClaimInputs, MakeTheSubjectOfTheCase)
   input.nearest.a = 1. / 3.;
   input.shear = 0.1;
   input.continuum.mooney_rivlin_ratio = 0.2;
-  const verification::Subject whole = verification::subject(input);
-  const verification::Subject read = verification::subject(verification::claim_inputs(input));
+  const bridge::Subject whole = bridge::subject(input);
+  const bridge::Subject read = bridge::subject(claims::claim_inputs(input));
   EXPECT_EQ(read.spacing, whole.spacing);
   EXPECT_EQ(read.orientation, whole.orientation);
   EXPECT_EQ(read.deformation, whole.deformation);
@@ -205,7 +205,7 @@ TEST(ClaimInputs, HideWhatIsNotListed)
   Case input = some_case();
   input.continuum.penalty = 7.;
   input.noise_seed = 42;
-  const Case read = verification::claim_inputs(input);
+  const Case read = claims::claim_inputs(input);
   EXPECT_EQ(read.continuum.penalty, Case().continuum.penalty);
   EXPECT_EQ(read.noise_seed, Case().noise_seed);
   EXPECT_NE(read.length, input.length);

@@ -9,7 +9,11 @@ using namespace latcon;
 namespace
 {
 
-using namespace verification;
+using namespace bridge;
+using namespace claims;
+using namespace input;
+using namespace output;
+using namespace study;
 
 constexpr unsigned int samples = 200;
 

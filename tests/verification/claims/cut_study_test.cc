@@ -13,7 +13,12 @@ using namespace latcon;
 namespace
 {
 
-using namespace verification;
+using namespace bridge;
+using namespace claims;
+using namespace compare;
+using namespace input;
+using namespace output;
+using namespace study;
 
 constexpr lattice::Orientation orientations[] = {lattice::Orientation::rows_along_crack,
                                                  lattice::Orientation::rows_across_crack};

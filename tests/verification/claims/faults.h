@@ -15,7 +15,7 @@ namespace faults
 struct Fault
 {
   const char *name;
-  std::function<void(latcon::verification::Subject &)> plant;
+  std::function<void(latcon::bridge::Subject &)> plant;
 };
 
 inline std::ostream &operator<<(std::ostream &out, const Fault &fault)
@@ -63,35 +63,35 @@ private:
 };
 
 /// The gradient energy l_d^2 A - B of the lattice with its k^4 term the wrong way round, l_d^2 A + B.
-inline void turn_sign_of_fourth_order(latcon::verification::Subject &subject)
+inline void turn_sign_of_fourth_order(latcon::bridge::Subject &subject)
 {
   const latcon::lattice::TriangularLattice sheet(subject.spacing, 10. * subject.spacing, 10. * subject.spacing,
                                                  subject.orientation);
   // With twice the square of the length it is 2 l_d^2 A - B, and twice that less three times the right one is wanted.
   const auto longer = std::make_shared<latcon::continuum::LatticeGradient>(
-    latcon::verification::bond_families(sheet, subject.material), std::sqrt(2.) * subject.lengths.lattice);
+    latcon::bridge::bond_families(sheet, subject.material), std::sqrt(2.) * subject.lengths.lattice);
   subject.lattice_gradient = std::make_shared<Combination>(2., longer, -3., subject.lattice_gradient);
 }
 
 /// The length of micro-inertia that nearest neighbours alone would ask for.
-inline void length_of_nearest_neighbours(latcon::verification::Subject &subject)
+inline void length_of_nearest_neighbours(latcon::bridge::Subject &subject)
 {
   subject.lengths.lattice = subject.spacing / std::sqrt(12.);
 }
 
 /// Bonds of the next-nearest shell stiffer by 1 % on the lattice side.
-inline void stiffer_next_nearest(latcon::verification::Subject &subject)
+inline void stiffer_next_nearest(latcon::bridge::Subject &subject)
 {
   subject.material.next_nearest.value().area_factor *= 1.01;
 }
 
-inline void heavier(latcon::verification::Subject &subject)
+inline void heavier(latcon::bridge::Subject &subject)
 {
   subject.material.density *= 1.01;
 }
 
 /// The square of the spacing in place of a site's Voronoi cell, (sqrt3 / 2) d^2.
-inline void square_voronoi_cell(latcon::verification::Subject &subject)
+inline void square_voronoi_cell(latcon::bridge::Subject &subject)
 {
   std::vector<latcon::continuum::FibreFamily> families = subject.cauchy_born.families();
   for (latcon::continuum::FibreFamily &family : families)
@@ -100,7 +100,7 @@ inline void square_voronoi_cell(latcon::verification::Subject &subject)
 }
 
 /// The network with weights of its fibres that are 1 % too large.
-inline void heavier_network(latcon::verification::Subject &subject)
+inline void heavier_network(latcon::bridge::Subject &subject)
 {
   std::vector<latcon::continuum::FibreFamily> families = subject.cauchy_born.families();
   for (latcon::continuum::FibreFamily &family : families)
@@ -109,17 +109,17 @@ inline void heavier_network(latcon::verification::Subject &subject)
 }
 
 /// A gradient energy of the network of the wrong sign.
-inline void turn_sign_of_network_gradient(latcon::verification::Subject &subject)
+inline void turn_sign_of_network_gradient(latcon::bridge::Subject &subject)
 {
   subject.network_gradient = std::make_shared<Combination>(-1., subject.network_gradient, 0., subject.network_gradient);
 }
 
 /// Rows of an outcome that fail and whose name contains a text; any text: "".
-inline std::size_t failing(const latcon::verification::Results &results, const std::string &text = "")
+inline std::size_t failing(const latcon::output::Results &results, const std::string &text = "")
 {
   std::size_t count = 0;
-  for (const latcon::verification::Result &row : results.rows())
-    count += row.verdict() == latcon::verification::Verdict::fails && row.quantity.find(text) != std::string::npos;
+  for (const latcon::output::Result &row : results.rows())
+    count += row.verdict() == latcon::output::Verdict::fails && row.quantity.find(text) != std::string::npos;
   return count;
 }
 

@@ -11,9 +11,9 @@ using namespace latcon;
 namespace
 {
 
-using verification::Result;
-using verification::Results;
-using verification::row_problem;
+using claims::row_problem;
+using output::Result;
+using output::Results;
 
 // Rows as a claim leaves them, all with the same numbers.
 class GateRows : public testing::Test

@@ -13,7 +13,11 @@ using namespace latcon;
 namespace
 {
 
-using namespace verification;
+using namespace bridge;
+using namespace claims;
+using namespace input;
+using namespace output;
+using namespace study;
 
 IntrinsicLengthOptions small_version()
 {
@@ -113,7 +117,7 @@ TEST(GradientPositivity, HasNoLengthWhereBondsAreCompressed)
   EXPECT_FALSE(critical_length(input.lattice(), subjects::nearest_only(input), compressed).has_value());
   EXPECT_LT(smallest_lattice_eigenvalue(input.lattice(), subjects::nearest_only(input), compressed, input.spacing), 0.);
 
-  Subject subject = verification::subject(input, subjects::nearest_only(input));
+  Subject subject = bridge::subject(input, subjects::nearest_only(input));
   subject.deformation = compressed;
   const ClaimOutcome outcome = intrinsic_length_claim(subject, small_version());
   EXPECT_EQ(faults::failing(outcome.results, ""), 0u);

@@ -21,7 +21,10 @@ using namespace latcon;
 namespace
 {
 
-using namespace verification;
+using namespace bridge;
+using namespace claims;
+using namespace output;
+using namespace study;
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 

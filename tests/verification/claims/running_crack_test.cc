@@ -8,7 +8,11 @@
 #include "tests/verification/claims/faults.h"
 
 using namespace latcon;
-using namespace verification;
+using namespace analysis;
+using namespace bridge;
+using namespace claims;
+using namespace input;
+using namespace output;
 
 namespace
 {
@@ -28,7 +32,7 @@ RunningCrackOptions small()
 
 const Subject &rubber()
 {
-  static const Subject subject = verification::subject(subjects::paper_case());
+  static const Subject subject = bridge::subject(subjects::paper_case());
   return subject;
 }
 

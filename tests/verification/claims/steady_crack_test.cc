@@ -17,7 +17,9 @@ using namespace latcon;
 namespace
 {
 
-using namespace verification;
+using namespace analysis;
+using namespace claims;
+using namespace output;
 
 // A uniform strip pulled open: springs of one gap in series with those of 2 N more. Its energy for one bond is then
 // (1 + L(0)) / 2 of the elongation squared, which gives Griffith's threshold.

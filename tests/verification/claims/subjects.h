@@ -7,21 +7,21 @@ namespace subjects
 {
 
 /// The rubber of the source paper's Fig. 1 with s = 2/3, at strains (1.3, 1.8).
-inline latcon::verification::Case paper_case()
+inline latcon::input::Case paper_case()
 {
-  latcon::verification::Case input;
+  latcon::input::Case input;
   input.spacing = 0.625e-3;
   input.length = 0.03;
   input.height = 0.02;
   input.density = 944.;
-  input.nearest = {latcon::verification::ShellCase::Law::mooney_rivlin, 1e5, 1.5e5, 1., 2. / 3., 65.625};
-  input.next_nearest = {latcon::verification::ShellCase::Law::mooney_rivlin, 1e5, 1.5e5, 1., 2. / 3., 196.875};
+  input.nearest = {latcon::input::ShellCase::Law::mooney_rivlin, 1e5, 1.5e5, 1., 2. / 3., 65.625};
+  input.next_nearest = {latcon::input::ShellCase::Law::mooney_rivlin, 1e5, 1.5e5, 1., 2. / 3., 196.875};
   input.strain_x = 1.3;
   input.strain_y = 1.8;
   return input;
 }
 
-inline latcon::lattice::Material nearest_only(const latcon::verification::Case &input)
+inline latcon::lattice::Material nearest_only(const latcon::input::Case &input)
 {
   latcon::lattice::Material material = input.material();
   material.next_nearest.reset();

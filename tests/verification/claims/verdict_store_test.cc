@@ -14,12 +14,12 @@
 #include <unistd.h>
 
 using namespace latcon;
-using verification::Case;
-using verification::sha256;
-using verification::UnusableVerdicts;
-using verification::VerdictKey;
-using verification::Verdicts;
-using verification::VerdictStore;
+using claims::UnusableVerdicts;
+using claims::VerdictKey;
+using claims::Verdicts;
+using claims::VerdictStore;
+using input::Case;
+using output::sha256;
 
 namespace
 {
@@ -36,7 +36,7 @@ Case some_case()
 
 Verdicts some_verdicts()
 {
-  verification::ClaimOutcome outcome;
+  claims::ClaimOutcome outcome;
   outcome.results.add({"energy", "W, \"loaded\"", "J/m^3", 1. / 3., -0.0, {}, 1e-12, 1e-10});
   outcome.results.add({"energy", "reported", "1", {}, std::numeric_limits<double>::infinity(), {}, 0.5, {}});
   outcome.table("speeds", {"wave", "k d"}).add({std::string("L"), 0.1});
@@ -117,7 +117,7 @@ TEST(Verdicts, DoNotBelieveAWordAgainstItsNumbers)
   document["results"]["claims"][0]["verdict"] = "fails";
   document.erase("checksum");
   document["checksum"] = sha256(document.dump());
-  EXPECT_EQ(read_verdicts(key, document.dump()).results.verdict(), verification::Verdict::fails);
+  EXPECT_EQ(read_verdicts(key, document.dump()).results.verdict(), output::Verdict::fails);
 }
 
 TEST(VerdictStore, KeepsOneFileAKey)

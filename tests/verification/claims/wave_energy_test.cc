@@ -11,7 +11,11 @@ using namespace latcon;
 namespace
 {
 
-using namespace verification;
+using namespace bridge;
+using namespace claims;
+using namespace input;
+using namespace output;
+using namespace study;
 
 WaveEnergyOptions small_version(const Case &input)
 {

@@ -13,7 +13,11 @@ using namespace latcon;
 namespace
 {
 
-using namespace verification;
+using namespace bridge;
+using namespace claims;
+using namespace input;
+using namespace output;
+using namespace study;
 
 lattice::TriangularLattice sheet_of(const Case &input)
 {

@@ -10,7 +10,12 @@ using namespace latcon;
 namespace
 {
 
-using namespace verification;
+using namespace analysis;
+using namespace commands;
+using namespace compare;
+using namespace input;
+using namespace output;
+using namespace study;
 
 #define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 
@@ -19,14 +24,14 @@ Result checked(const std::string &quantity, double error)
   return {"energy", quantity, "1", {}, {}, {}, error, 0.01};
 }
 
-verification::CrackMeasurement oscillating()
+analysis::CrackMeasurement oscillating()
 {
-  verification::CrackMeasurement crack;
-  crack.pattern = verification::CrackPattern::oscillating;
+  analysis::CrackMeasurement crack;
+  crack.pattern = analysis::CrackPattern::oscillating;
   crack.reason = "it winds";
-  crack.speed_lagrangian = verification::Measured{20.2, 0.84};
-  crack.wavelength = verification::Measured{0.02359, 0.00026};
-  crack.amplitude = verification::Measured{0.00154, 0.00014};
+  crack.speed_lagrangian = analysis::Measured{20.2, 0.84};
+  crack.wavelength = analysis::Measured{0.02359, 0.00026};
+  crack.amplitude = analysis::Measured{0.00154, 0.00014};
   return crack;
 }
 
@@ -53,7 +58,7 @@ TEST(CrackSummary, SaysWhatCouldNotBeMeasured)
 {
   Case input;
   input.reference_amplitude = 0.0017;
-  verification::CrackMeasurement crack;
+  analysis::CrackMeasurement crack;
   crack.reason = "too short";
   const std::string text = crack_summary(input, crack, {});
   EXPECT_HAS(text, "The pattern of the crack is undecided: too short\n");
@@ -66,8 +71,8 @@ TEST(CrackSummary, NamesRowsThatFailAndStaysShort)
   Case input;
   input.reference_wavelength = input.reference_amplitude = 0.023;
   input.reference_speed = 20.9;
-  verification::CrackMeasurement crack = oscillating();
-  crack.speed_laboratory = verification::Measured{40., 1.};
+  analysis::CrackMeasurement crack = oscillating();
+  crack.speed_laboratory = analysis::Measured{40., 1.};
   crack.reason = std::string(200, 'x') + " " + std::string(80, 'y');
   Results results;
   for (int i = 0; i < 30; ++i)

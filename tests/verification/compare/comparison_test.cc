@@ -14,7 +14,11 @@ using namespace latcon;
 namespace
 {
 
-using namespace verification;
+using namespace analysis;
+using namespace claims;
+using namespace compare;
+using namespace output;
+using namespace study;
 
 class Comparing : public testing::Test
 {

@@ -8,7 +8,10 @@
 #include "verification/compare/comparison.h"
 
 using namespace latcon;
-using namespace verification;
+using namespace bridge;
+using namespace claims;
+using namespace compare;
+using namespace output;
 
 // The frames of both sides show the same moment in common coordinates.
 TEST(RunningCrack, LeavesFramesThatCanBeCompared)

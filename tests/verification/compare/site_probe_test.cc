@@ -12,7 +12,8 @@ using namespace latcon;
 namespace
 {
 
-using namespace verification;
+using namespace claims;
+using namespace compare;
 
 ContinuumFrame read(const std::string &path)
 {

@@ -8,7 +8,7 @@
 #include <cmath>
 
 using namespace latcon;
-using namespace verification;
+using namespace input;
 
 namespace
 {

@@ -4,9 +4,9 @@
 #include <gtest/gtest.h>
 
 using namespace latcon;
-using verification::could_mean;
-using verification::nearest_word;
-using verification::typing_errors;
+using input::could_mean;
+using input::nearest_word;
+using input::typing_errors;
 
 TEST(Spelling, CountsTypingErrors)
 {

@@ -9,7 +9,7 @@
 #include "verification/input/case.h"
 
 using namespace latcon;
-using namespace verification;
+using namespace input;
 
 namespace
 {

@@ -6,9 +6,9 @@
 #include <string>
 
 using namespace latcon;
-using verification::parse_unit;
-using verification::ParsedNumber;
-using verification::read_quantity;
+using input::parse_unit;
+using input::ParsedNumber;
+using input::read_quantity;
 
 namespace
 {

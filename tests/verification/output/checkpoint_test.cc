@@ -15,7 +15,7 @@ using namespace latcon;
 namespace
 {
 
-using namespace verification;
+using namespace output;
 
 struct Inner
 {

@@ -6,8 +6,8 @@
 #include <gtest/gtest.h>
 
 using namespace latcon;
-using verification::ClaimOutcome;
-using verification::Table;
+using claims::ClaimOutcome;
+using output::Table;
 
 namespace
 {

@@ -11,7 +11,7 @@
 using namespace latcon;
 using latcon::support::ExitCode;
 using latcon::support::OutputError;
-using verification::write_file;
+using output::write_file;
 
 namespace
 {

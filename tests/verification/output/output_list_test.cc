@@ -12,7 +12,7 @@ using namespace latcon;
 namespace
 {
 
-using namespace verification;
+using namespace output;
 namespace fs = std::filesystem;
 
 std::string content(const fs::path &path)

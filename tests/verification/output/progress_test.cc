@@ -9,7 +9,7 @@ using namespace latcon;
 namespace
 {
 
-using verification::Progress;
+using output::Progress;
 using namespace std::chrono_literals;
 
 // What is written to standard error, which is no terminal here.

@@ -14,10 +14,10 @@
 #include <stdexcept>
 
 using namespace latcon;
-using verification::Result;
-using verification::Results;
-using verification::to_string;
-using verification::Verdict;
+using output::Result;
+using output::Results;
+using analysis / compare / output / study::to_string;
+using output::Verdict;
 
 namespace
 {

@@ -15,8 +15,8 @@
 
 using namespace latcon;
 using latcon::support::ExitCode;
-using verification::RunInfo;
-using verification::Stopwatch;
+using output::RunInfo;
+using output::Stopwatch;
 
 namespace
 {
@@ -125,10 +125,10 @@ TEST(RunInfo, DoesNotNameTheMachine)
 
 TEST(RunInfo, PeakMemoryGrowsWithWhatIsUsed)
 {
-  const std::uint64_t before = verification::peak_memory();
+  const std::uint64_t before = output::peak_memory();
   EXPECT_GT(before, 1u << 20);
   std::vector<char> block(std::size_t(256) << 20, 1);
-  EXPECT_GE(verification::peak_memory(), before + (std::uint64_t(100) << 20));
+  EXPECT_GE(output::peak_memory(), before + (std::uint64_t(100) << 20));
   EXPECT_EQ(block.back(), 1);
 }
 

@@ -8,7 +8,8 @@
 #include "support/errors.h"
 
 using namespace latcon;
-using namespace verification;
+using namespace input;
+using namespace resources;
 
 namespace
 {

@@ -13,7 +13,7 @@
 #include "verification/study/study_table.h"
 
 using namespace latcon;
-using namespace verification;
+using namespace study;
 
 namespace
 {

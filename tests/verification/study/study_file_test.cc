@@ -10,7 +10,11 @@
 #include "verification/study/study_plan.h"
 
 using namespace latcon;
-using namespace verification;
+using namespace analysis;
+using namespace compare;
+using namespace input;
+using namespace output;
+using namespace study;
 
 namespace
 {

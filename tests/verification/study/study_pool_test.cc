@@ -12,7 +12,10 @@
 #include "verification/study/process_pool.h"
 
 using namespace latcon;
-using namespace verification;
+using namespace analysis;
+using namespace compare;
+using namespace output;
+using namespace study;
 
 namespace
 {

@@ -9,7 +9,11 @@
 #include "verification/study/study_output.h"
 
 using namespace latcon;
-using namespace verification;
+using namespace analysis;
+using namespace claims;
+using namespace compare;
+using namespace output;
+using namespace study;
 
 namespace
 {

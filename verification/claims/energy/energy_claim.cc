@@ -10,21 +10,21 @@
 #include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/network_comparison.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
 
 // Sums over some ten bonds of terms that the subtraction of constants in psi makes larger than the sum: a few hundred
 // round-offs of the largest term. The smallest W here is some 1e-2 of the moduli.
-constexpr double equal_formulas = NetworkComparison::equal_formulas;
+constexpr double equal_formulas = bridge::NetworkComparison::equal_formulas;
 
 // Fourth-order differences of the stress at +-h and +-2h, exact but for h^4 times higher moduli and round-off over h.
 constexpr double strain_step = 1e-3;
 constexpr double small_strain_tolerance = 1e-9;
 
 // Lattice of 12 by 12 sites: the two outer rows and columns lack neighbours, the middle ones do not.
-lattice::TriangularLattice small_sheet(const Subject &subject)
+lattice::TriangularLattice small_sheet(const bridge::Subject &subject)
 {
   return {subject.spacing, 12. * subject.spacing, 12. * subject.spacing, subject.orientation};
 }
@@ -61,7 +61,7 @@ Eigen::Matrix2d stress_derivative(const Stress &stress, int k, int L)
 class Rows
 {
 public:
-  Rows(const Subject &subject, Results &results) : subject_(subject), results_(results) {}
+  Rows(const bridge::Subject &subject, output::Results &results) : subject_(subject), results_(results) {}
 
   void add(const std::string &quantity, const std::string &unit, std::optional<double> lattice_value,
            std::optional<double> continuum_value, std::optional<double> theory, std::optional<double> error,
@@ -72,8 +72,8 @@ public:
   }
 
 private:
-  const Subject &subject_;
-  Results &results_;
+  const bridge::Subject &subject_;
+  output::Results &results_;
 };
 
 // Moduli [Pa] and long-wave speeds [m/s] at F = I.
@@ -89,22 +89,22 @@ struct Moduli
 };
 
 // mu = dP_xy/dF_xy, lambda = dP_xx/dF_yy.
-Moduli lattice_moduli(const Subject &subject, const lattice::TriangularLattice &sheet)
+Moduli lattice_moduli(const bridge::Subject &subject, const lattice::TriangularLattice &sheet)
 {
   const auto stress = [&](const Eigen::Matrix2d &F)
-  { return homogeneous_response(sheet, subject.material, F).first_piola_stress; };
+  { return bridge::homogeneous_response(sheet, subject.material, F).first_piola_stress; };
   return {stress_derivative(stress, 0, 1)(0, 1), stress_derivative(stress, 1, 1)(0, 0), subject.material.density};
 }
 
-Moduli continuum_moduli(const Subject &subject, const continuum::Material &law)
+Moduli continuum_moduli(const bridge::Subject &subject, const continuum::Material &law)
 {
-  const auto tangent = law.tangent(to_continuum(Eigen::Matrix2d::Identity()));
+  const auto tangent = law.tangent(bridge::to_continuum(Eigen::Matrix2d::Identity()));
   return {tangent[0][1][0][1], tangent[0][0][1][1], subject.material.density};
 }
 
 // Moduli and speeds on the lattice, in a law of the continuum, and in closed form.
-void moduli_rows(const Subject &subject, const Moduli &lattice_side, Law law, const std::string &law_name,
-                 const Moduli &law_side, Rows &rows)
+void moduli_rows(const bridge::Subject &subject, const Moduli &lattice_side, bridge::Law law,
+                 const std::string &law_name, const Moduli &law_side, Rows &rows)
 {
   const auto row = [&](const std::string &quantity, const std::string &unit, double Moduli::*value, double theory)
   {
@@ -114,7 +114,7 @@ void moduli_rows(const Subject &subject, const Moduli &lattice_side, Law law, co
     rows.add(quantity + " at F = I, " + law_name, unit, on_lattice, on_continuum, theory, error,
              subject.tolerance(law, small_strain_tolerance));
   };
-  const SmallStrain &theory = subject.theory;
+  const bridge::SmallStrain &theory = subject.theory;
   row("mu", "Pa", &Moduli::mu, theory.shear_modulus);
   row("lambda", "Pa", &Moduli::lambda, theory.shear_modulus);
   row("c_S", "m/s", &Moduli::shear_speed, theory.shear_speed);
@@ -129,7 +129,7 @@ struct Optimum
   bool is_end;
 };
 
-Optimum optimum(const Subject &subject, const lattice::TriangularLattice &sheet)
+Optimum optimum(const bridge::Subject &subject, const lattice::TriangularLattice &sheet)
 {
   const double ratio = subject.mooney_rivlin->ratio;
   constexpr double step = 1e-4, none = std::numeric_limits<double>::infinity();
@@ -137,8 +137,9 @@ Optimum optimum(const Subject &subject, const lattice::TriangularLattice &sheet)
   {
     try
     {
-      return std::abs(r) > largest_ratio ? none
-                                         : with_ratio(sheet, subject.material, subject.deformation, r).energy_residual;
+      return std::abs(r) > bridge::largest_ratio
+               ? none
+               : bridge::with_ratio(sheet, subject.material, subject.deformation, r).energy_residual;
     }
     catch (const continuum::NonPhysicalState &)
     {
@@ -153,23 +154,23 @@ Optimum optimum(const Subject &subject, const lattice::TriangularLattice &sheet)
 
 // The law fitted along the loading path. At finite strain the difference is what the fit leaves, and is reported; but
 // the law must be the best there is, and one that finite elements can solve.
-void mooney_rivlin_rows(const Subject &subject, const lattice::TriangularLattice &sheet, const Moduli &lattice_side,
-                        Rows &rows)
+void mooney_rivlin_rows(const bridge::Subject &subject, const lattice::TriangularLattice &sheet,
+                        const Moduli &lattice_side, Rows &rows)
 {
-  const auto judged = [&](double tolerance) { return subject.tolerance(Law::mooney_rivlin, tolerance); };
+  const auto judged = [&](double tolerance) { return subject.tolerance(bridge::Law::mooney_rivlin, tolerance); };
   if (!subject.mooney_rivlin)
   {
     rows.add("plane-stress Mooney-Rivlin: no ratio gives a law that has a thickness all along the loading path", "1",
              {}, {}, {}, std::numeric_limits<double>::infinity(), judged(0.));
     return;
   }
-  const Calibration &fit = *subject.mooney_rivlin;
+  const bridge::Calibration &fit = *subject.mooney_rivlin;
   const continuum::MooneyRivlin law(fit.law);
-  moduli_rows(subject, lattice_side, Law::mooney_rivlin, "plane-stress Mooney-Rivlin", continuum_moduli(subject, law),
-              rows);
+  moduli_rows(subject, lattice_side, bridge::Law::mooney_rivlin, "plane-stress Mooney-Rivlin",
+              continuum_moduli(subject, law), rows);
 
-  const double on_lattice = homogeneous_response(sheet, subject.material, subject.deformation).energy_density;
-  const double on_continuum = law.energy(to_continuum(subject.deformation));
+  const double on_lattice = bridge::homogeneous_response(sheet, subject.material, subject.deformation).energy_density;
+  const double on_continuum = law.energy(bridge::to_continuum(subject.deformation));
   rows.add("energy density of the loaded sheet, plane-stress Mooney-Rivlin", "J/m^3", on_lattice, on_continuum, {},
            support::relative_error(on_continuum, on_lattice), {});
   rows.add("rms energy residual of plane-stress Mooney-Rivlin along the loading path", "1", {}, fit.energy_residual, {},
@@ -194,7 +195,7 @@ void mooney_rivlin_rows(const Subject &subject, const lattice::TriangularLattice
 }
 
 // The lattice against its own law of the continuum.
-void random_deformations(const Subject &subject, const lattice::TriangularLattice &sheet, unsigned int samples,
+void random_deformations(const bridge::Subject &subject, const lattice::TriangularLattice &sheet, unsigned int samples,
                          Rows &rows)
 {
   support::LargestError energy_error, stress_error;
@@ -202,9 +203,9 @@ void random_deformations(const Subject &subject, const lattice::TriangularLattic
   for (unsigned int sample = 0; sample < samples; ++sample)
   {
     Eigen::Matrix2d F = random_deformation(generator);
-    const LatticeResponse measured = homogeneous_response(sheet, subject.material, F);
-    const double energy = subject.cauchy_born.energy(to_continuum(F));
-    const Eigen::Matrix2d stress = to_lattice(subject.cauchy_born.first_piola_stress(to_continuum(F)));
+    const bridge::LatticeResponse measured = bridge::homogeneous_response(sheet, subject.material, F);
+    const double energy = subject.cauchy_born.energy(bridge::to_continuum(F));
+    const Eigen::Matrix2d stress = bridge::to_lattice(subject.cauchy_born.first_piola_stress(bridge::to_continuum(F)));
     energy_error.add_relative(measured.energy_density, energy);
     stress_error.add((measured.first_piola_stress - stress).norm() / stress.norm());
   }
@@ -217,17 +218,18 @@ void random_deformations(const Subject &subject, const lattice::TriangularLattic
 
 // The network law leaves out the lattice's dependence on direction and nothing else: it is the mean over rotations of
 // the lattice, and no farther from the lattice than that dependence goes (theory-comparison.md, eq. (H.15)).
-void network_rows(const Subject &subject, const lattice::TriangularLattice &sheet, const Moduli &lattice_side,
+void network_rows(const bridge::Subject &subject, const lattice::TriangularLattice &sheet, const Moduli &lattice_side,
                   unsigned int samples, Rows &rows)
 {
-  const auto judged = [&](double tolerance) { return subject.tolerance(Law::mooney_rivlin_network, tolerance); };
-  moduli_rows(subject, lattice_side, Law::mooney_rivlin_network, "network", continuum_moduli(subject, subject.network),
-              rows);
+  const auto judged = [&](double tolerance)
+  { return subject.tolerance(bridge::Law::mooney_rivlin_network, tolerance); };
+  moduli_rows(subject, lattice_side, bridge::Law::mooney_rivlin_network, "network",
+              continuum_moduli(subject, subject.network), rows);
   support::LargestError energy_from_mean, stress_from_mean, energy_share, stress_share;
   std::mt19937_64 generator(20061111);
   for (unsigned int sample = 0; sample < samples; ++sample)
   {
-    const NetworkComparison both(subject, sheet, random_deformation(generator));
+    const bridge::NetworkComparison both(subject, sheet, random_deformation(generator));
     energy_from_mean.add(both.energy_from_mean());
     stress_from_mean.add(both.stress_from_mean());
     energy_share.add(both.energy_error() / both.energy_bound());
@@ -246,7 +248,7 @@ void network_rows(const Subject &subject, const lattice::TriangularLattice &shee
   add("first Piola stress, network, largest error over the bound of anisotropy", stress_share, 1.);
   if (subject.deformation.isIdentity(1e-12))
     return; // neither stress nor a part of the energy that depends on the direction
-  const NetworkComparison stretched(subject, sheet, subject.deformation);
+  const bridge::NetworkComparison stretched(subject, sheet, subject.deformation);
   rows.add("energy density of the loaded sheet, network", "J/m^3", stretched.lattice_energy, stretched.network_energy,
            stretched.energy.mean(0), stretched.energy_error(), judged(stretched.energy_bound()));
   rows.add("first Piola stress of the loaded sheet, network, Frobenius norm", "Pa", stretched.lattice_stress.norm(),
@@ -256,10 +258,10 @@ void network_rows(const Subject &subject, const lattice::TriangularLattice &shee
 
 } // namespace
 
-Results energy_claim(const Subject &subject, unsigned int samples)
+output::Results energy_claim(const bridge::Subject &subject, unsigned int samples)
 {
   const lattice::TriangularLattice sheet = small_sheet(subject);
-  Results results;
+  output::Results results;
   Rows rows(subject, results);
   const auto attempt = [&](const std::string &part, const std::function<void()> &compute)
   { return results.attempt("energy", subject.name + ": " + part, compute); };
@@ -269,7 +271,7 @@ Results energy_claim(const Subject &subject, unsigned int samples)
           [&]
           {
             on_lattice = lattice_moduli(subject, sheet);
-            moduli_rows(subject, *on_lattice, Law::cauchy_born, "Cauchy-Born",
+            moduli_rows(subject, *on_lattice, bridge::Law::cauchy_born, "Cauchy-Born",
                         continuum_moduli(subject, subject.cauchy_born), rows);
           });
   if (!on_lattice)
@@ -280,4 +282,4 @@ Results energy_claim(const Subject &subject, unsigned int samples)
   return results;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

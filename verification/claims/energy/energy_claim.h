@@ -3,7 +3,7 @@
 #include "verification/bridge/subject.h"
 #include "verification/output/results.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// Claim `energy`: in homogeneous deformation the lattice and its Cauchy-Born law hold the same energy density and the
@@ -14,6 +14,6 @@ namespace latcon::verification
 /// The lattice's stress is the force that its simulator finds on the edge of a sheet, its energy the sum over the bonds
 /// of that sheet: nothing of the continuum's formulas is used.
 /// @param samples number of random F, rotations times stretches between 0.7 and 3.5
-Results energy_claim(const Subject &subject, unsigned int samples);
+output::Results energy_claim(const bridge::Subject &subject, unsigned int samples);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

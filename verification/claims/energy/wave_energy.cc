@@ -12,7 +12,7 @@
 #include "verification/claims/order_fit.h"
 #include "verification/claims/state_name.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -64,7 +64,7 @@ double lattice_stiffness(const WaveCell &cell, const lattice::Material &material
 
 struct Media
 {
-  Media(const Subject &subject)
+  Media(const bridge::Subject &subject)
     : local{{subject.cauchy_born}, {subject.material.density}}, gradient{
                                                                   {subject.cauchy_born, *subject.lattice_gradient},
                                                                   {subject.material.density, subject.lengths.lattice}}
@@ -84,17 +84,17 @@ double closed_stiffness(const WaveContinuum &medium, const Eigen::Matrix2d &F, c
 double bloch_stiffness(const lattice::TriangularLattice &sheet, const lattice::Material &material,
                        const Eigen::Matrix2d &F, const Eigen::Vector2d &K, const Eigen::Vector2d &p)
 {
-  return 0.25 * material.density * p.dot(bloch_matrices(sheet, material, F, K).stiffness * p);
+  return 0.25 * material.density * p.dot(bridge::bloch_matrices(sheet, material, F, K).stiffness * p);
 }
 
-void sinusoidal(const Subject &subject, const Eigen::Matrix2d &F, const WaveEnergyOptions &options,
+void sinusoidal(const bridge::Subject &subject, const Eigen::Matrix2d &F, const WaveEnergyOptions &options,
                 ClaimOutcome &outcome)
 {
   const Media media(subject);
   const lattice::Material material = lattice::without_dashpots(subject.material);
   const double d = subject.spacing, l_d = subject.lengths.lattice;
-  Table &table = outcome.table("sinusoidal_energy", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d", "lattice",
-                                                     "local", "gradient", "filtered", "fem"});
+  output::Table &table = outcome.table("sinusoidal_energy", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d",
+                                                             "lattice", "local", "gradient", "filtered", "fem"});
   support::LargestError lattice_error, element_error, excess_error;
   CommonOrder local_order(order_kd), gradient_order(order_kd), filtered_order(order_kd);
   for (const WaveDirection &direction : {WaveDirection{1, 0}, WaveDirection{1, 2}})
@@ -105,7 +105,8 @@ void sinusoidal(const Subject &subject, const Eigen::Matrix2d &F, const WaveEner
       const WaveCell cell = wave_cell(d, subject.orientation, direction, kd);
       const double inertia = 1. + std::pow(l_d, 2) * cell.K.squaredNorm();
       // One field for all: polarised as the waves of the local continuum.
-      const auto waves = plane_waves(continuum_matrices(media.local, F, cell.K), wave_normal(F, cell.K));
+      const auto waves =
+        bridge::plane_waves(continuum_matrices(media.local, F, cell.K), bridge::wave_normal(F, cell.K));
       for (std::size_t w = 0; w < 2; ++w)
       {
         const Eigen::Vector2d &p = waves[w].polarisation;
@@ -127,7 +128,8 @@ void sinusoidal(const Subject &subject, const Eigen::Matrix2d &F, const WaveEner
       for (const double kd : order_kd)
       {
         const Eigen::Vector2d K = kd / d * N;
-        const Eigen::Vector2d p = plane_waves(continuum_matrices(media.local, F, K), wave_normal(F, K))[w].polarisation;
+        const Eigen::Vector2d p =
+          bridge::plane_waves(continuum_matrices(media.local, F, K), bridge::wave_normal(F, K))[w].polarisation;
         const double exact = bloch_stiffness({d, 10. * d, 10. * d, subject.orientation}, material, F, K, p),
                      gradient = closed_stiffness(media.gradient, F, K, p);
         local_errors.push_back(std::abs(closed_stiffness(media.local, F, K, p) / exact - 1.));
@@ -174,7 +176,7 @@ struct Densities
 
 // A wave amplitude * p cos(K.X - w t) on its way through the lattice for an eighth of a period.
 Densities travelling_lattice(const WaveCell &cell, const lattice::Material &material, const Eigen::Matrix2d &F,
-                             const PlaneWave &wave, double amplitude)
+                             const bridge::PlaneWave &wave, double amplitude)
 {
   const lattice::TriangularLattice &sheet = cell.sheet;
   lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::free);
@@ -203,7 +205,7 @@ Densities travelling_lattice(const WaveCell &cell, const lattice::Material &mate
   return {(energies.elastic - at_rest) / area, energies.kinetic / area};
 }
 
-void travelling(const Subject &subject, const Eigen::Matrix2d &F, double wanted_kd, const WaveMesh &mesh,
+void travelling(const bridge::Subject &subject, const Eigen::Matrix2d &F, double wanted_kd, const WaveMesh &mesh,
                 ClaimOutcome &outcome)
 {
   const Media media(subject);
@@ -216,12 +218,13 @@ void travelling(const Subject &subject, const Eigen::Matrix2d &F, double wanted_
   constexpr double travelling_strain = 1e-4;
   const double kd = cell.K.norm() * d, amplitude = travelling_strain / cell.K.norm();
   const double inertia = 1. + std::pow(subject.lengths.lattice / d * kd, 2);
-  const auto bloch = bloch_waves(cell.sheet, material, F, cell.K),
-             closed = plane_waves(continuum_matrices(media.gradient, F, cell.K), wave_normal(F, cell.K));
+  const auto bloch = bridge::bloch_waves(cell.sheet, material, F, cell.K),
+             closed =
+               bridge::plane_waves(continuum_matrices(media.gradient, F, cell.K), bridge::wave_normal(F, cell.K));
   // Both sides are followed for an eighth of a period, if there is one.
   for (const auto &waves : {bloch, closed})
-    static_cast<void>(fastest_frequency(waves));
-  Table &table =
+    static_cast<void>(bridge::fastest_frequency(waves));
+  output::Table &table =
     outcome.table("travelling_waves", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d",
                                        "lattice_elastic [J/m^3]", "lattice_kinetic [J/m^3]", "fem_elastic [J/m^3]",
                                        "fem_kinetic [J/m^3]", "fem_micro_inertia [J/m^3]", "theory [J/m^3]"});
@@ -270,7 +273,7 @@ void travelling(const Subject &subject, const Eigen::Matrix2d &F, double wanted_
 
 } // namespace
 
-ClaimOutcome wave_energy_claim(const Subject &subject, const WaveEnergyOptions &options)
+ClaimOutcome wave_energy_claim(const bridge::Subject &subject, const WaveEnergyOptions &options)
 {
   ClaimOutcome outcome;
   const auto attempt = [&](const std::string &part, const std::function<void()> &compute)
@@ -287,4 +290,4 @@ ClaimOutcome wave_energy_claim(const Subject &subject, const WaveEnergyOptions &
   return outcome;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -6,7 +6,7 @@
 #include "verification/claims/claim_outcome.h"
 #include "verification/claims/continuum_waves.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// The part of the claim `energy` about fields that vary: the energy that a sinusoidal displacement adds to a
@@ -30,6 +30,6 @@ struct WaveEnergyOptions
 };
 
 /// The part of the claim `energy` on waves. Collective.
-ClaimOutcome wave_energy_claim(const Subject &subject, const WaveEnergyOptions &options);
+ClaimOutcome wave_energy_claim(const bridge::Subject &subject, const WaveEnergyOptions &options);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -6,7 +6,7 @@
 
 #include "verification/bridge/bloch.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -46,8 +46,8 @@ Alpha lattice_alpha(const lattice::TriangularLattice &lattice, const lattice::Ma
                     const Eigen::Matrix2d &F, const Eigen::Vector2d &N, Alpha *nearest_part)
 {
   const auto [nearest, next] = series_by_shell(lattice, material, F, N);
-  const std::array<PlaneWave, 2> long_waves =
-    plane_waves({nearest.A2 + next.A2, Eigen::Matrix2d::Zero()}, wave_normal(F, N));
+  const std::array<bridge::PlaneWave, 2> long_waves =
+    bridge::plane_waves({nearest.A2 + next.A2, Eigen::Matrix2d::Zero()}, bridge::wave_normal(F, N));
   const double d2 = std::pow(lattice.spacing(), 2);
   Alpha alpha{};
   for (std::size_t w = 0; w < 2; ++w)
@@ -67,7 +67,7 @@ Alpha bloch_alpha(const lattice::TriangularLattice &lattice, const lattice::Mate
   // With x = (kd)^2, w^2/x = c2 (1 - alpha x + beta x^2); three values give c2 and alpha, beta is in the way.
   const auto squares = [&](double kd) -> Eigen::Array2d
   {
-    const auto waves = bloch_waves(lattice, material, F, kd / lattice.spacing() * N);
+    const auto waves = bridge::bloch_waves(lattice, material, F, kd / lattice.spacing() * N);
     return Eigen::Array2d(waves[0].frequency, waves[1].frequency).square() / (kd * kd);
   };
   constexpr double kd = 0.02;
@@ -110,7 +110,8 @@ Alpha continuum_alpha(const WaveContinuum &medium, const Eigen::Matrix2d &F, con
   };
   const Eigen::Matrix2d one = stiffness(1.), two = stiffness(2.);
   const Eigen::Matrix2d H = (two - one) / 3., A2 = one - H;
-  const std::array<PlaneWave, 2> long_waves = plane_waves({A2, Eigen::Matrix2d::Zero()}, wave_normal(F, N));
+  const std::array<bridge::PlaneWave, 2> long_waves =
+    bridge::plane_waves({A2, Eigen::Matrix2d::Zero()}, bridge::wave_normal(F, N));
   Alpha alpha{};
   for (std::size_t w = 0; w < 2; ++w)
   {
@@ -120,4 +121,4 @@ Alpha continuum_alpha(const WaveContinuum &medium, const Eigen::Matrix2d &F, con
   return alpha;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -6,7 +6,7 @@
 #include "verification/claims/continuum_waves.h"
 #include "verification/claims/lattice_waves.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// alpha [-] of w^2 = c^2 k^2 (1 - alpha d^2 k^2 + ...), of the longitudinal and the shear wave: how a wave softens as
@@ -32,4 +32,4 @@ Alpha running_alpha(double spacing, lattice::Orientation orientation, const Wave
 /// Of a continuum, in closed form. @param spacing d [m], the unit of length of alpha
 Alpha continuum_alpha(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &N, double spacing);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

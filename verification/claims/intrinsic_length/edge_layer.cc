@@ -4,7 +4,7 @@
 
 #include "lattice/relaxation.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 EdgeLayer relaxed_edge(double spacing, const lattice::Material &material, double stretch, std::size_t rows)
@@ -66,4 +66,4 @@ double edge_decay(double spacing, const lattice::Material &material, double stre
   return -2. / (b + std::sqrt(b * b - 4.));
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

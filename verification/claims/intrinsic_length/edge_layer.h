@@ -4,7 +4,7 @@
 
 #include "lattice/material.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// Spacings of the rows of a sheet that ends in a free row, stretched along its rows and free across them.
@@ -26,4 +26,4 @@ EdgeLayer relaxed_edge(double spacing, const lattice::Material &material, double
 /// @param stretch,stretch_across of the bulk [-]
 double edge_decay(double spacing, const lattice::Material &material, double stretch, double stretch_across);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -7,7 +7,7 @@
 
 #include "verification/bridge/homogenisation.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -85,7 +85,7 @@ double smallest(const Matrix6 &matrix)
 
 double smallest_eigenvalue(const continuum::GradientLaw &law, const Eigen::Matrix2d &F)
 {
-  const auto C = law.double_stress_by_G(to_continuum(F));
+  const auto C = law.double_stress_by_G(bridge::to_continuum(F));
   const auto basis = units();
   Matrix6 matrix = Matrix6::Zero();
   for (int a = 0; a < 6; ++a)
@@ -127,4 +127,4 @@ std::optional<double> critical_length(const lattice::TriangularLattice &lattice,
   return std::sqrt(Eigen::SelfAdjointEigenSolver<Matrix6>(scaled * parts.negative * scaled).eigenvalues()[5]);
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

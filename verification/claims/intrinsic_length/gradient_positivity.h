@@ -5,7 +5,7 @@
 #include "continuum/gradient_law.h"
 #include "lattice/material.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// Smallest eigenvalue of the gradient energy at F over all gradients G_iJK of unit size, |G| = 1, symmetric in J and K
@@ -23,4 +23,4 @@ double smallest_lattice_eigenvalue(const lattice::TriangularLattice &lattice, co
 std::optional<double> critical_length(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                                       const Eigen::Matrix2d &F);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -8,7 +8,7 @@
 #include "verification/claims/intrinsic_length/edge_layer.h"
 #include "verification/claims/intrinsic_length/gradient_positivity.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -26,7 +26,7 @@ constexpr const char *wave_names[] = {"L", "S"};
 class Rows
 {
 public:
-  Rows(const Subject &subject, ClaimOutcome &outcome) : subject_(subject), outcome_(outcome) {}
+  Rows(const bridge::Subject &subject, ClaimOutcome &outcome) : subject_(subject), outcome_(outcome) {}
 
   void add(const std::string &quantity, const std::string &unit, std::optional<double> lattice_value,
            std::optional<double> continuum_value, std::optional<double> theory, std::optional<double> error,
@@ -42,17 +42,17 @@ public:
   }
 
 private:
-  const Subject &subject_;
+  const bridge::Subject &subject_;
   ClaimOutcome &outcome_;
 };
 
-lattice::TriangularLattice any_sheet(const Subject &subject)
+lattice::TriangularLattice any_sheet(const bridge::Subject &subject)
 {
   return {subject.spacing, 10. * subject.spacing, 10. * subject.spacing, subject.orientation};
 }
 
 // alpha at F = I: its dependence on direction, from Bloch, from runs, in the continua.
-void dispersion(const Subject &subject, const IntrinsicLengthOptions &options, ClaimOutcome &outcome)
+void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &options, ClaimOutcome &outcome)
 {
   const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
   const lattice::TriangularLattice sheet = any_sheet(subject);
@@ -65,8 +65,8 @@ void dispersion(const Subject &subject, const IntrinsicLengthOptions &options, C
   Rows rows(subject, outcome);
 
   // All directions.
-  Table &table = outcome.table("dispersion", {"shells", "angle [deg]", "alpha_L", "alpha_S", "nearest_L", "nearest_S",
-                                              "isotropic_L", "isotropic_S"});
+  output::Table &table = outcome.table("dispersion", {"shells", "angle [deg]", "alpha_L", "alpha_S", "nearest_L",
+                                                      "nearest_S", "isotropic_L", "isotropic_S"});
   support::LargestError bloch_error, continuum_error;
   support::Extremes alphas;
   std::array<support::LargestError, 2> isotropic_loss;
@@ -101,7 +101,7 @@ void dispersion(const Subject &subject, const IntrinsicLengthOptions &options, C
   }
 
   // Directions in which waves are run.
-  Table &runs = outcome.table("dispersion_runs", {"shells", "angle [deg]", "alpha_L", "alpha_S"});
+  output::Table &runs = outcome.table("dispersion_runs", {"shells", "angle [deg]", "alpha_L", "alpha_S"});
   for (const WaveDirection &direction : wave_directions(subject.orientation))
   {
     const Eigen::Vector2d N = unit_vector(direction, subject.orientation);
@@ -129,7 +129,7 @@ void dispersion(const Subject &subject, const IntrinsicLengthOptions &options, C
     const std::string name = std::string("alpha of ") + wave_names[w] + " waves, ";
     rows.add(name + "mean over directions, isotropic gradient continuum against lattice", "1", mean[w],
              isotropic_alpha[w], {}, std::abs(isotropic_alpha[w] - mean[w]),
-             subject.tolerance(Law::isotropic_gradient, equal_formulas));
+             subject.tolerance(bridge::Law::isotropic_gradient, equal_formulas));
     rows.add(name + "largest difference of the isotropic continuum from the lattice", "1", {}, {}, {},
              isotropic_loss[w].error(), {});
     // At F = I its moduli are the lattice's, so the mean of its gradient energy gives the mean of alpha, in all
@@ -138,7 +138,8 @@ void dispersion(const Subject &subject, const IntrinsicLengthOptions &options, C
     for (const Alpha &alpha : of_network)
       from_mean.add_difference(alpha[w], mean[w]);
     rows.add(name + "network in all directions against the lattice's mean over directions", "1", mean[w],
-             from_mean.value(), {}, from_mean.error(), subject.tolerance(Law::mooney_rivlin_network, equal_formulas));
+             from_mean.value(), {}, from_mean.error(),
+             subject.tolerance(bridge::Law::mooney_rivlin_network, equal_formulas));
     rows.add(name + "largest difference of the network from the lattice", "1", {}, {}, {}, network_loss[w].error(), {});
     if (subject.material.next_nearest)
       rows.add(name + "mean over directions, the part of the next-nearest bonds", "1", mean[w] - nearest_mean[w], {},
@@ -149,11 +150,11 @@ void dispersion(const Subject &subject, const IntrinsicLengthOptions &options, C
   // Not a fault of the code: a positive gradient energy alone cannot soften.
   const double least_hardening = support::largest_of({hardening[0], hardening[1]});
   rows.add("hardening: alpha of a positive gradient energy without micro-inertia is negative", "1", {}, least_hardening,
-           {}, support::one_sided(least_hardening), subject.tolerance(Law::isotropic_gradient, 0.));
+           {}, support::one_sided(least_hardening), subject.tolerance(bridge::Law::isotropic_gradient, 0.));
 }
 
 // The length that keeps the gradient energy positive.
-void positivity(const Subject &subject, ClaimOutcome &outcome)
+void positivity(const bridge::Subject &subject, ClaimOutcome &outcome)
 {
   const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
   const lattice::TriangularLattice sheet = any_sheet(subject);
@@ -187,7 +188,7 @@ void positivity(const Subject &subject, ClaimOutcome &outcome)
              support::one_sided(-at_length), 1e-12);
     const double of_network = smallest_eigenvalue(*subject.network_gradient, F) / unit;
     rows.add("smallest eigenvalue of the network's gradient energy over mu d^2 at l_d" + where, "1", {}, of_network, {},
-             support::one_sided(-of_network), subject.tolerance(Law::mooney_rivlin_network, 1e-12));
+             support::one_sided(-of_network), subject.tolerance(bridge::Law::mooney_rivlin_network, 1e-12));
     if (!critical)
       continue;
     const double below = smallest_lattice_eigenvalue(sheet, subject.material, F, 0.99 * *critical) / unit;
@@ -197,7 +198,7 @@ void positivity(const Subject &subject, ClaimOutcome &outcome)
 }
 
 // A free edge, its rows along x.
-void edge_layer(const Subject &subject, const IntrinsicLengthOptions &options, ClaimOutcome &outcome)
+void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &options, ClaimOutcome &outcome)
 {
   Rows rows(subject, outcome);
   const lattice::Material material = lattice::without_dashpots(subject.material);
@@ -208,7 +209,7 @@ void edge_layer(const Subject &subject, const IntrinsicLengthOptions &options, C
   const double root = edge_decay(subject.spacing, material, options.edge_stretch, layer.stretch_across);
   // Linear from the third spacing on, where the deviation is below 1e-3; anchored there.
   constexpr std::size_t anchor = 2;
-  Table &table = outcome.table("edge_layer", {"shells", "row", "deviation", "theory"});
+  output::Table &table = outcome.table("edge_layer", {"shells", "row", "deviation", "theory"});
   for (std::size_t j = 0; j < layer.deviations.size(); ++j)
     table.add({subject.name, static_cast<double>(j + 1), layer.deviations[j],
                root == 0. ? 0. : layer.deviations[anchor] * std::pow(root, static_cast<double>(j) - anchor)});
@@ -246,7 +247,7 @@ void edge_layer(const Subject &subject, const IntrinsicLengthOptions &options, C
 
 } // namespace
 
-ClaimOutcome intrinsic_length_claim(const Subject &subject, const IntrinsicLengthOptions &options)
+ClaimOutcome intrinsic_length_claim(const bridge::Subject &subject, const IntrinsicLengthOptions &options)
 {
   ClaimOutcome outcome;
   Rows rows(subject, outcome);
@@ -256,4 +257,4 @@ ClaimOutcome intrinsic_length_claim(const Subject &subject, const IntrinsicLengt
   return outcome;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -3,7 +3,7 @@
 #include "verification/bridge/subject.h"
 #include "verification/claims/claim_outcome.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// Claim `intrinsic-length`: what length the bonds bring, in dynamics and in statics.
@@ -21,6 +21,6 @@ struct IntrinsicLengthOptions
 };
 
 /// Runs the claim. Collective.
-ClaimOutcome intrinsic_length_claim(const Subject &subject, const IntrinsicLengthOptions &options);
+ClaimOutcome intrinsic_length_claim(const bridge::Subject &subject, const IntrinsicLengthOptions &options);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -8,7 +8,7 @@
 #include "support/largest_error.h"
 #include "verification/claims/prestretch/cut_study.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -84,28 +84,30 @@ std::string in_words(const Eigen::Matrix2d &F)
 class Judge
 {
 public:
-  Judge(const Subject &subject, const CutStudy &study, const Eigen::Matrix2d &F, const std::vector<CutResult> &results)
+  Judge(const bridge::Subject &subject, const CutStudy &study, const Eigen::Matrix2d &F,
+        const std::vector<CutResult> &results)
     : subject_(subject), study_(study), results_(results), is_hole_(study.name == "hole"),
       where_(subject.name + ": " + study.name + ", F = " + in_words(F) + ", ")
   {
     largest_ = size_text(study.sizes.back());
   }
 
-  Results judged() const
+  output::Results judged() const
   {
-    Results rows;
+    output::Results rows;
     // Without an equilibrium of the local law there is no number, and the rows fail.
     for (const CutResult &result : results_)
       if (!result.errors && result.law.rfind("local", 0) == 0 && result.law != "local-nominal")
-        rows.add(not_computed("prestretch", where_ + "local law at " + size_text(result.size), result.failure));
+        rows.add(output::not_computed("prestretch", where_ + "local law at " + size_text(result.size), result.failure));
     const std::vector<double> displacement = series("local", &CutErrors::displacement);
     const PowerLaw all(study_.sizes, displacement);
     // At a rim the lattice differs from the continuum by O(d), which is the least order there. About the tip of a
     // notch, where the local law has no bounded stretch, no order is known beforehand.
-    Result order{"prestretch", where_ + "order of the displacement's error in " + (is_hole_ ? "d/R" : "d/length"),
-                 "1",          all.order(),
-                 {},           {},
-                 {},           {}};
+    output::Result order{
+      "prestretch", where_ + "order of the displacement's error in " + (is_hole_ ? "d/R" : "d/length"),
+      "1",          all.order(),
+      {},           {},
+      {},           {}};
     if (is_hole_)
     {
       order.theory = 1.;
@@ -121,19 +123,19 @@ public:
       add(rows, scalar.name, scalar_error("local", scalar), place_allowance(scalar));
     add_network(rows, allowed, allowed_stress);
 
-    for (const auto &[law, kind] : {std::pair(std::string("lattice"), Law::lattice_gradient),
-                                    std::pair(std::string("isotropic"), Law::isotropic_gradient),
-                                    std::pair(std::string("mooney-rivlin"), Law::mooney_rivlin)})
+    for (const auto &[law, kind] : {std::pair(std::string("lattice"), bridge::Law::lattice_gradient),
+                                    std::pair(std::string("isotropic"), bridge::Law::isotropic_gradient),
+                                    std::pair(std::string("mooney-rivlin"), bridge::Law::mooney_rivlin)})
       if (const CutResult *other = find(law, study_.sizes.back()))
       {
         const std::string name =
           law == "mooney-rivlin" ? "plane-stress Mooney-Rivlin" : "with the " + law + " gradient energy";
         const std::optional<double> tolerance =
-          kind == Law::mooney_rivlin || !is_hole_ ? std::nullopt : subject_.tolerance(kind, allowed);
+          kind == bridge::Law::mooney_rivlin || !is_hole_ ? std::nullopt : subject_.tolerance(kind, allowed);
         if (other->errors)
           add(rows, name + ": displacement", other->errors->displacement, tolerance);
         else if (tolerance)
-          rows.add(not_computed("prestretch", where_ + name, other->failure));
+          rows.add(output::not_computed("prestretch", where_ + name, other->failure));
         else
           add(rows, name + ": no equilibrium: " + other->failure, {}, {});
       }
@@ -141,9 +143,9 @@ public:
   }
 
   // Says which laws have an equilibrium, and how far off they are.
-  Results reported() const
+  output::Results reported() const
   {
-    Results rows;
+    output::Results rows;
     for (const CutResult &result : results_)
       if (result.size == study_.sizes.back() && result.law != "local-nominal")
         add(rows, result.law + (result.errors ? ": displacement" : ": no equilibrium: " + result.failure),
@@ -186,10 +188,13 @@ private:
 
   // The network beside the lattice: what the local law is allowed, and what the lattice's dependence on direction may
   // leave (theory-comparison.md, eqs. (H.17) and (H.18)).
-  void add_network(Results &rows, double allowed, double allowed_stress) const
+  void add_network(output::Results &rows, double allowed, double allowed_stress) const
   {
     const auto judged = [&](double CutDistance::*part, double of_local)
-    { return subject_.tolerance(Law::mooney_rivlin_network, of_local + distance_from_local("local-turned", part)); };
+    {
+      return subject_.tolerance(bridge::Law::mooney_rivlin_network,
+                                of_local + distance_from_local("local-turned", part));
+    };
     const CutResult *network = find("network", study_.sizes.back());
     if (network != nullptr && network->errors)
     {
@@ -200,7 +205,7 @@ private:
       for (const Scalar &scalar : scalars)
         add(rows, std::string("network: ") + scalar.name, scalar_error("network", scalar),
             scalar.error == &CutErrors::energy
-              ? subject_.tolerance(Law::mooney_rivlin_network, place_allowance(scalar) + network->network_bound)
+              ? subject_.tolerance(bridge::Law::mooney_rivlin_network, place_allowance(scalar) + network->network_bound)
               : judged(scalar.distance, place_allowance(scalar) + square));
     }
     else
@@ -216,11 +221,11 @@ private:
       add_missing(rows, name, gradient);
   }
 
-  void add_missing(Results &rows, const std::string &name, const CutResult *result) const
+  void add_missing(output::Results &rows, const std::string &name, const CutResult *result) const
   {
     const std::string failure = result != nullptr ? result->failure : "not computed";
-    if (subject_.tolerance(Law::mooney_rivlin_network, 0.))
-      rows.add(not_computed("prestretch", where_ + name, failure));
+    if (subject_.tolerance(bridge::Law::mooney_rivlin_network, 0.))
+      rows.add(output::not_computed("prestretch", where_ + name, failure));
     else
       add(rows, name + ": no equilibrium: " + failure, {}, {});
   }
@@ -232,7 +237,7 @@ private:
     return text.str();
   }
 
-  void add(Results &rows, const std::string &quantity, std::optional<double> error,
+  void add(output::Results &rows, const std::string &quantity, std::optional<double> error,
            std::optional<double> tolerance) const
   {
     rows.add({"prestretch", where_ + quantity, "1", {}, {}, {}, error, tolerance});
@@ -250,7 +255,7 @@ private:
   // The errors at the largest sizes beside what the others let one expect there, as far as their scatter makes it
   // uncertain.
   // @return what is allowed at the largest size alone
-  double add_expected(Results &rows, const std::string &quantity, const std::vector<double> &errors,
+  double add_expected(output::Results &rows, const std::string &quantity, const std::vector<double> &errors,
                       bool checked = true) const
   {
     const auto n = static_cast<std::ptrdiff_t>(errors.size() - study_.n_judged);
@@ -293,7 +298,7 @@ private:
     return values;
   }
 
-  const Subject &subject_;
+  const bridge::Subject &subject_;
   const CutStudy &study_;
   const std::vector<CutResult> &results_;
   bool is_hole_;
@@ -302,13 +307,13 @@ private:
 
 } // namespace
 
-ClaimOutcome cut_claim(const Subject &subject, const CutStudy &study)
+ClaimOutcome cut_claim(const bridge::Subject &subject, const CutStudy &study)
 {
   ClaimOutcome outcome;
-  Table &table = outcome.table(study.name, {"shells", "F_xx", "F_yy", "law", study.name == "hole" ? "R/d" : "length/d",
-                                            "displacement", "stress", "energy", "reaction", "shape", "displacement_all",
-                                            "displacement_max", "cauchy_stress", "stress_scale", "residual", "unknowns",
-                                            "fem_error"});
+  output::Table &table = outcome.table(
+    study.name, {"shells", "F_xx", "F_yy", "law", study.name == "hole" ? "R/d" : "length/d", "displacement", "stress",
+                 "energy", "reaction", "shape", "displacement_all", "displacement_max", "cauchy_stress", "stress_scale",
+                 "residual", "unknowns", "fem_error"});
   const auto compare_at = [&](const Eigen::Matrix2d &F)
   {
     const std::vector<CutResult> results = compare_sizes(subject, study, F);
@@ -333,4 +338,4 @@ ClaimOutcome cut_claim(const Subject &subject, const CutStudy &study)
   return outcome;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -11,14 +11,14 @@
 #include "support/largest_error.h"
 #include "verification/bridge/affine_displacement.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
 
 using Mesh = dealii::parallel::distributed::Triangulation<2>;
 
-void make_mesh(Mesh &mesh, const CutSheet &sheet, const EquivalentSheet &domain, const CutMesh &settings)
+void make_mesh(Mesh &mesh, const CutSheet &sheet, const bridge::EquivalentSheet &domain, const CutMesh &settings)
 {
   if (std::holds_alternative<lattice::Notch>(sheet.cutout))
   {
@@ -38,7 +38,7 @@ void make_mesh(Mesh &mesh, const CutSheet &sheet, const EquivalentSheet &domain,
 
 continuum::BoundaryConditions conditions(const CutSheet &sheet)
 {
-  const auto displacement = std::make_shared<AffineDisplacement>(sheet.F);
+  const auto displacement = std::make_shared<bridge::AffineDisplacement>(sheet.F);
   const bool held[] = {sheet.held.left, sheet.held.right, sheet.held.bottom, sheet.held.top};
   std::vector<continuum::PrescribedDisplacement> list;
   for (dealii::types::boundary_id id = 0; id < 4; ++id)
@@ -52,7 +52,7 @@ continuum::BoundaryConditions conditions(const CutSheet &sheet)
 class Points
 {
 public:
-  Points(const CutLattice &cut, const CutSheet &sheet, const EquivalentSheet &domain) : origin_(domain.left, 0.)
+  Points(const CutLattice &cut, const CutSheet &sheet, const bridge::EquivalentSheet &domain) : origin_(domain.left, 0.)
   {
     // A little off the boundary, which a mesh has to the accuracy of its polynomials.
     const double inside = 1e-4 * domain.cut;
@@ -81,7 +81,7 @@ public:
     std::vector<Eigen::Vector2d> u;
     for (std::size_t i = 0; i < states.size(); ++i)
       u.emplace_back(Eigen::Vector2d(states[i].displacement[0], states[i].displacement[1]) + (F - I) * origin_ +
-                     (to_lattice(states[i].F) - I) * offsets_[i]);
+                     (bridge::to_lattice(states[i].F) - I) * offsets_[i]);
     return u;
   }
 
@@ -138,7 +138,7 @@ double displacement_scale(const CutSheet &sheet)
   return sheet.size * (sheet.F - Eigen::Matrix2d::Identity()).norm();
 }
 
-CutSolution solution(const CutLattice &cut, const CutSheet &sheet, const EquivalentSheet &domain,
+CutSolution solution(const CutLattice &cut, const CutSheet &sheet, const bridge::EquivalentSheet &domain,
                      const continuum::StaticSolver &solver, const std::vector<continuum::PointState> &states,
                      const std::vector<Eigen::Vector2d> &of_continuum)
 {
@@ -146,8 +146,8 @@ CutSolution solution(const CutLattice &cut, const CutSheet &sheet, const Equival
   CutErrors &e = found.errors;
   for (const continuum::PointState &state : states)
   {
-    found.F.push_back(to_lattice(state.F));
-    found.P.push_back(to_lattice(state.P));
+    found.F.push_back(bridge::to_lattice(state.F));
+    found.P.push_back(bridge::to_lattice(state.P));
   }
   support::LargestError displacement_max;
   const double scale = displacement_scale(sheet);
@@ -215,7 +215,7 @@ CutDistance distance(const CutLattice &lattice, const CutSheet &sheet, const Cut
           relative(a.opening, b.opening)};
 }
 
-std::optional<CutSolution> compare(const CutLattice &cut, const CutSheet &sheet, const EquivalentSheet &domain,
+std::optional<CutSolution> compare(const CutLattice &cut, const CutSheet &sheet, const bridge::EquivalentSheet &domain,
                                    const continuum::Constitution &law, const CutMesh &mesh_settings,
                                    std::string &failure)
 {
@@ -261,4 +261,4 @@ std::optional<CutSolution> compare(const CutLattice &cut, const CutSheet &sheet,
   return std::nullopt;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -9,7 +9,7 @@
 #include "verification/bridge/equivalent_sheet.h"
 #include "verification/claims/prestretch/cut_lattice.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// A law of the continuum that a claim sets beside the lattice.
@@ -68,7 +68,8 @@ CutDistance distance(const CutLattice &lattice, const CutSheet &sheet, const Cut
 
 /// The finite element sheet of a law beside a lattice; empty if it finds no equilibrium, with the reason in `failure`.
 /// Collective.
-std::optional<CutSolution> compare(const CutLattice &lattice, const CutSheet &sheet, const EquivalentSheet &domain,
-                                   const continuum::Constitution &law, const CutMesh &mesh, std::string &failure);
+std::optional<CutSolution> compare(const CutLattice &lattice, const CutSheet &sheet,
+                                   const bridge::EquivalentSheet &domain, const continuum::Constitution &law,
+                                   const CutMesh &mesh, std::string &failure);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

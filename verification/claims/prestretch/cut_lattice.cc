@@ -10,7 +10,7 @@
 #include "support/largest_error.h"
 #include "verification/bridge/equivalent_sheet.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -42,7 +42,7 @@ Eigen::Vector2d reactions(const lattice::TriangularLattice &sheet, const lattice
 
 // Of the radii within half a spacing of R the one at which missing bonds, with the energy that they would have in
 // tension along the rim, have the smallest sixth moment about the middle.
-double roundest_radius(const Subject &subject, double R, double length, double height)
+double roundest_radius(const bridge::Subject &subject, double R, double length, double height)
 {
   constexpr std::size_t n_radii = 21;
   const double d = subject.spacing;
@@ -86,7 +86,7 @@ double roundest_radius(const Subject &subject, double R, double length, double h
 
 } // namespace
 
-CutSheet sheet_with_hole(const Subject &subject, double R, const Eigen::Matrix2d &F)
+CutSheet sheet_with_hole(const bridge::Subject &subject, double R, const Eigen::Matrix2d &F)
 {
   const bool rows_along_x = subject.orientation == lattice::Orientation::rows_along_crack;
   const double along = 2. * subject.spacing, across = 2. * std::sqrt(3.) * subject.spacing;
@@ -96,7 +96,7 @@ CutSheet sheet_with_hole(const Subject &subject, double R, const Eigen::Matrix2d
   return {lattice::RoundHole{radius}, radius, length, height, lattice::Edges::held, F};
 }
 
-CutSheet sheet_with_notch(const Subject &subject, double a, const Eigen::Matrix2d &F)
+CutSheet sheet_with_notch(const bridge::Subject &subject, double a, const Eigen::Matrix2d &F)
 {
   const lattice::TriangularLattice lattice(subject.spacing, 4. * a, 4. * a, subject.orientation);
   support::Extremes inside;
@@ -110,7 +110,7 @@ CutSheet sheet_with_notch(const Subject &subject, double a, const Eigen::Matrix2
   return {lattice::Notch{inside.largest() + 0.25 * subject.spacing}, a, 4. * a, 4. * a, {false, true, true, true}, F};
 }
 
-CutLattice relaxed_lattice(const Subject &subject, const CutSheet &sheet)
+CutLattice relaxed_lattice(const bridge::Subject &subject, const CutSheet &sheet)
 {
   const lattice::TriangularLattice lattice(subject.spacing, sheet.length, sheet.height, subject.orientation);
   const lattice::State whole = lattice::homogeneous_state(lattice, subject.material, sheet.F, sheet.held);
@@ -143,7 +143,7 @@ CutLattice relaxed_lattice(const Subject &subject, const CutSheet &sheet)
       energy_missing += of_energy * 0.5 * std::abs(R.x());
       force_missing += of_force * 0.5 * std::abs(R.x());
     }
-  const double overhang = cell_overhang(lattice, {1., 0.});
+  const double overhang = bridge::cell_overhang(lattice, {1., 0.});
   cut.left_of_energy = energy_missing / energy - overhang;
   cut.left_of_force = force_missing / force - overhang;
 
@@ -157,4 +157,4 @@ CutLattice relaxed_lattice(const Subject &subject, const CutSheet &sheet)
   return cut;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

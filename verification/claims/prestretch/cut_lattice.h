@@ -7,7 +7,7 @@
 #include "lattice/site_fields.h"
 #include "verification/bridge/subject.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// A sheet with something cut out, between edges that are held at a homogeneous deformation.
@@ -24,11 +24,11 @@ struct CutSheet
 /// Sheet of about 5 R by 4 R with a hole in its middle, all edges held. The middle is a site, so that the staircase of
 /// the rim has the sixfold symmetry of the lattice and no oval in it; the radius is R [m] to half a spacing, the one
 /// whose rim is the least hexagonal (theory-comparison.md, section "Edges of the continuum").
-CutSheet sheet_with_hole(const Subject &subject, double R, const Eigen::Matrix2d &F);
+CutSheet sheet_with_hole(const bridge::Subject &subject, double R, const Eigen::Matrix2d &F);
 
 /// Sheet of 4 a by 4 a, cut along y = 0 by about a [m] from its left edge, which is free; the others are held. The cut
 /// ends a little behind a site, so that all lattices have the same tip.
-CutSheet sheet_with_notch(const Subject &subject, double a, const Eigen::Matrix2d &F);
+CutSheet sheet_with_notch(const bridge::Subject &subject, double a, const Eigen::Matrix2d &F);
 
 /// The lattice of a CutSheet in equilibrium, and what of it is compared.
 struct CutLattice
@@ -62,6 +62,6 @@ struct CutLattice
 inline constexpr double cut_lattice_residual = 1e-8;
 
 /// @throws std::runtime_error if the lattice does not come to rest
-CutLattice relaxed_lattice(const Subject &subject, const CutSheet &sheet);
+CutLattice relaxed_lattice(const bridge::Subject &subject, const CutSheet &sheet);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

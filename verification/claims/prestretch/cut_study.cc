@@ -10,7 +10,7 @@
 #include "support/largest_error.h"
 #include "verification/bridge/anisotropy.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -24,28 +24,28 @@ Eigen::Matrix2d stretched(double x, double y)
 continuum::CauchyBorn turned(const continuum::CauchyBorn &law, const Eigen::Matrix2d &rotation)
 {
   std::vector<continuum::FibreFamily> families = law.families();
-  const dealii::Tensor<2, 2> R = to_continuum(rotation);
+  const dealii::Tensor<2, 2> R = bridge::to_continuum(rotation);
   for (continuum::FibreFamily &family : families)
     family.direction = R * family.direction;
   return continuum::CauchyBorn(std::move(families));
 }
 
 // Bound (H.18) of the difference between the energies of the two equilibria over the energy, both sums over the sites.
-double network_bound(const Subject &subject, const CutSolution &network, const CutSolution &local)
+double network_bound(const bridge::Subject &subject, const CutSolution &network, const CutSolution &local)
 {
   std::vector<continuum::CauchyBorn> rotated;
-  for (int k = 0; k < n_lattice_rotations; ++k)
-    rotated.push_back(turned(subject.cauchy_born, lattice_rotation(k)));
+  for (int k = 0; k < bridge::n_lattice_rotations; ++k)
+    rotated.push_back(turned(subject.cauchy_born, bridge::lattice_rotation(k)));
   support::Extremes bounds;
   for (const CutSolution *solution : {&network, &local})
   {
     double difference = 0., energy = 0.;
-    Eigen::MatrixXd energies(1, n_lattice_rotations);
+    Eigen::MatrixXd energies(1, bridge::n_lattice_rotations);
     for (const Eigen::Matrix2d &F : solution->F)
     {
-      for (int k = 0; k < n_lattice_rotations; ++k)
-        energies(0, k) = rotated[k].energy(to_continuum(F));
-      const double mean = rotation_mean(energies).mean(0);
+      for (int k = 0; k < bridge::n_lattice_rotations; ++k)
+        energies(0, k) = rotated[k].energy(bridge::to_continuum(F));
+      const double mean = bridge::rotation_mean(energies).mean(0);
       difference += energies(0, 0) - mean;
       energy += mean;
     }
@@ -125,7 +125,7 @@ CutStudy loaded_hole_study(const Eigen::Matrix2d &F)
   return study;
 }
 
-std::vector<CutResult> compare_sizes(const Subject &subject, const CutStudy &study, const Eigen::Matrix2d &F)
+std::vector<CutResult> compare_sizes(const bridge::Subject &subject, const CutStudy &study, const Eigen::Matrix2d &F)
 {
   const double d = subject.spacing;
   std::optional<continuum::MooneyRivlin> mooney_rivlin;
@@ -151,10 +151,11 @@ std::vector<CutResult> compare_sizes(const Subject &subject, const CutStudy &stu
     CutLattice &lattice = *relaxed;
     if (study.spoil)
       study.spoil(lattice);
-    const EquivalentSheet domain =
-      equivalent_sheet(lattice.lattice, subject.material, lattice.state, sheet.held, sheet.cutout);
+    const bridge::EquivalentSheet domain =
+      bridge::equivalent_sheet(lattice.lattice, subject.material, lattice.state, sheet.held, sheet.cutout);
     std::optional<CutSolution> of_local;
-    const auto add = [&](const std::string &law, const continuum::Constitution &constitution, const EquivalentSheet &at)
+    const auto add =
+      [&](const std::string &law, const continuum::Constitution &constitution, const bridge::EquivalentSheet &at)
     {
       CutResult result{size, law, {}, {}, lattice.relaxation.residual / (subject.theory.shear_modulus * d), {}, {}};
       std::optional<CutSolution> found = compare(lattice, sheet, at, constitution, study.mesh, result.failure);
@@ -174,11 +175,12 @@ std::vector<CutResult> compare_sizes(const Subject &subject, const CutStudy &stu
       std::find(study.other_sizes.begin(), study.other_sizes.end(), size) != study.other_sizes.end();
     if (is_largest && !study.is_reported)
     {
-      EquivalentSheet moved = domain;
+      bridge::EquivalentSheet moved = domain;
       const bool is_hole = std::holds_alternative<lattice::RoundHole>(sheet.cutout);
-      moved.cut -= is_hole ? rim_recession(lattice.lattice, subject.material) : 0.5 * d;
+      moved.cut -= is_hole ? bridge::rim_recession(lattice.lattice, subject.material) : 0.5 * d;
       add("local-moved", local, moved);
-      const continuum::CauchyBorn turned_law = turned(subject.cauchy_born, lattice_rotation(n_lattice_rotations / 2));
+      const continuum::CauchyBorn turned_law =
+        turned(subject.cauchy_born, bridge::lattice_rotation(bridge::n_lattice_rotations / 2));
       add("local-turned", {turned_law}, domain);
     }
     if (is_largest || has_others)
@@ -188,7 +190,7 @@ std::vector<CutResult> compare_sizes(const Subject &subject, const CutStudy &stu
     }
     if (!has_others)
       continue;
-    add("local-nominal", local, nominal_sheet(lattice.lattice, sheet.cutout));
+    add("local-nominal", local, bridge::nominal_sheet(lattice.lattice, sheet.cutout));
     add("lattice", {subject.cauchy_born, *subject.lattice_gradient}, domain);
     add("isotropic", {subject.cauchy_born, *subject.isotropic_gradient}, domain);
     if (mooney_rivlin)
@@ -197,4 +199,4 @@ std::vector<CutResult> compare_sizes(const Subject &subject, const CutStudy &stu
   return results;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -8,7 +8,7 @@
 #include "verification/claims/claim_outcome.h"
 #include "verification/claims/prestretch/cut_comparison.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// Which sheets with a hole or a notch the claim `prestretch` compares, and how.
@@ -16,7 +16,7 @@ struct CutStudy
 {
   std::string name; ///< "hole" or "notch", also of the table
   /// The sheet for a size of the cut [m] and F of the held edges.
-  std::function<CutSheet(const Subject &, double size, const Eigen::Matrix2d &F)> sheet;
+  std::function<CutSheet(const bridge::Subject &, double size, const Eigen::Matrix2d &F)> sheet;
   std::vector<Eigen::Matrix2d> states; ///< F of the held edges, not I; several biaxial ones
   std::vector<double> sizes;           ///< R/d or length/d of the local law, ascending, at least four
   std::vector<double> other_sizes;     ///< those of them at which the other laws are solved
@@ -60,11 +60,11 @@ struct CutResult
 /// (H.17)), "network" and "network-gradient" (at the largest size and those of `other_sizes`), "lattice", "isotropic",
 /// "mooney-rivlin". Collective.
 /// @throws std::runtime_error if a lattice does not come to rest, unless the study is only reported
-std::vector<CutResult> compare_sizes(const Subject &subject, const CutStudy &study, const Eigen::Matrix2d &F);
+std::vector<CutResult> compare_sizes(const bridge::Subject &subject, const CutStudy &study, const Eigen::Matrix2d &F);
 
 /// The part of the claim `prestretch` on fields that are not homogeneous: rows for each state, and a table named after
 /// the study with a row for each size and law (reference.md). Rows fail where a lattice does not come to rest, or a law
 /// that is judged finds no equilibrium. Collective.
-ClaimOutcome cut_claim(const Subject &subject, const CutStudy &study);
+ClaimOutcome cut_claim(const bridge::Subject &subject, const CutStudy &study);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

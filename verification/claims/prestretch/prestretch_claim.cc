@@ -15,7 +15,7 @@
 #include "verification/bridge/network_comparison.h"
 #include "verification/claims/stability_row.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -61,7 +61,7 @@ Eigen::Vector2d edge_traction(const lattice::TriangularLattice &sheet, const lat
   return force / (to - from);
 }
 
-LatticeSide relaxed_lattice(const Subject &subject, const lattice::TriangularLattice &sheet, double noise)
+LatticeSide relaxed_lattice(const bridge::Subject &subject, const lattice::TriangularLattice &sheet, double noise)
 {
   LatticeSide side;
   side.state = lattice::homogeneous_state(sheet, subject.material, subject.deformation, lattice::Edges::held);
@@ -94,15 +94,15 @@ struct Row
   std::optional<double> error;
 };
 
-std::vector<Row> compare(const Subject &subject, const lattice::TriangularLattice &sheet, const LatticeSide &side,
-                         const continuum::Material &law, const PrestretchOptions &options)
+std::vector<Row> compare(const bridge::Subject &subject, const lattice::TriangularLattice &sheet,
+                         const LatticeSide &side, const continuum::Material &law, const PrestretchOptions &options)
 {
   dealii::parallel::distributed::Triangulation<2> mesh(MPI_COMM_WORLD);
   continuum::make_rectangle(mesh, {sheet.length(), sheet.height(), options.cells_x, options.cells_y});
   continuum::StaticSettings settings;
   settings.degree = options.degree;
   settings.relative_tolerance = 1e-12;
-  continuum::StaticSolver solver(mesh, law, continuum::BoundaryConditions(affine_boundary(subject.deformation)),
+  continuum::StaticSolver solver(mesh, law, continuum::BoundaryConditions(bridge::affine_boundary(subject.deformation)),
                                  settings);
   solver.solve();
 
@@ -120,7 +120,7 @@ std::vector<Row> compare(const Subject &subject, const lattice::TriangularLattic
     const Eigen::Vector2d X = sheet.reference(place);
     const Eigen::Vector2d u(side.state.x[place] - X.x(), side.state.y[place] - X.y());
     displacement_error.add((u - Eigen::Vector2d(state.displacement[0], state.displacement[1])).norm());
-    const Eigen::Matrix2d F = to_lattice(state.F), P = to_lattice(state.P);
+    const Eigen::Matrix2d F = bridge::to_lattice(state.F), P = bridge::to_lattice(state.P);
     gradient_error.add((side.fields.deformation_gradient[place] - F).norm() / F.norm());
     stress_error.add((side.fields.first_piola_stress[place] - P).norm());
     stress_scale.add(P.norm());
@@ -144,12 +144,12 @@ std::vector<Row> compare(const Subject &subject, const lattice::TriangularLattic
 
 // The same with the network, whose energy and stress are off the lattice's by what the lattice depends on direction,
 // within its bound (theory-comparison.md, eq. (H.15)); whose fields are as homogeneous as the lattice's.
-Results network_rows(const Subject &subject, const lattice::TriangularLattice &sheet, const LatticeSide &side,
-                     const PrestretchOptions &options)
+output::Results network_rows(const bridge::Subject &subject, const lattice::TriangularLattice &sheet,
+                             const LatticeSide &side, const PrestretchOptions &options)
 {
   const lattice::TriangularLattice small(subject.spacing, 12. * subject.spacing, 12. * subject.spacing,
                                          subject.orientation);
-  const NetworkComparison loaded(subject, small, subject.deformation);
+  const bridge::NetworkComparison loaded(subject, small, subject.deformation);
   const double of_stress = loaded.stress.bound;
   const std::vector<Row> found = compare(subject, sheet, side, subject.network, options);
   // In the order in which compare() has them.
@@ -159,7 +159,7 @@ Results network_rows(const Subject &subject, const lattice::TriangularLattice &s
                                      0.,
                                      0.,
                                      of_stress / loaded.network_stress.norm()};
-  Results results;
+  output::Results results;
   for (std::size_t i = 0; i < bounds.size(); ++i)
     results.add({"prestretch",
                  subject.name + ": " + found[i].quantity + ", network",
@@ -168,16 +168,16 @@ Results network_rows(const Subject &subject, const lattice::TriangularLattice &s
                  found[i].continuum,
                  {},
                  found[i].error,
-                 subject.tolerance(Law::mooney_rivlin_network, bounds[i] + solver_tolerance)});
+                 subject.tolerance(bridge::Law::mooney_rivlin_network, bounds[i] + solver_tolerance)});
   return results;
 }
 
 // The same with the law that was fitted along the loading path, for information: it is not the lattice's, and need not
 // have an equilibrium.
-Results mooney_rivlin_rows(const Subject &subject, const lattice::TriangularLattice &sheet, const LatticeSide &side,
-                           const PrestretchOptions &options)
+output::Results mooney_rivlin_rows(const bridge::Subject &subject, const lattice::TriangularLattice &sheet,
+                                   const LatticeSide &side, const PrestretchOptions &options)
 {
-  Results results;
+  output::Results results;
   const auto add = [&](const std::string &quantity, const Row &row)
   {
     results.add({"prestretch",
@@ -216,9 +216,9 @@ Results mooney_rivlin_rows(const Subject &subject, const lattice::TriangularLatt
 
 } // namespace
 
-Results prestretch_claim(const Subject &subject, const PrestretchOptions &options)
+output::Results prestretch_claim(const bridge::Subject &subject, const PrestretchOptions &options)
 {
-  Results results;
+  output::Results results;
   results.add(stability_row(subject, "prestretch"));
   if (!subject.is_stable())
     return results; // nothing homogeneous to compare
@@ -254,4 +254,4 @@ Results prestretch_claim(const Subject &subject, const PrestretchOptions &option
   return results;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

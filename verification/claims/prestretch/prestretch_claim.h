@@ -5,7 +5,7 @@
 #include "verification/bridge/subject.h"
 #include "verification/output/results.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// Claim `prestretch`: a lattice sheet between held edges, relaxed from noise, and a finite element sheet of the same
@@ -22,6 +22,6 @@ struct PrestretchOptions
 
 /// Runs the claim. Where the lattice does not relax, or the finite elements with the Cauchy-Born law find no
 /// equilibrium, a row fails; an equilibrium that the Mooney-Rivlin law lacks is reported.
-Results prestretch_claim(const Subject &subject, const PrestretchOptions &options);
+output::Results prestretch_claim(const bridge::Subject &subject, const PrestretchOptions &options);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -10,7 +10,7 @@
 #include "verification/bridge/anisotropy.h"
 #include "verification/bridge/homogenisation.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -63,7 +63,7 @@ void make_mesh(Mesh &mesh, const CrackDrive &drive, const HalfSheet &half, const
 continuum::BoundaryConditions conditions(const Eigen::Matrix2d &F, bool has_gradient)
 {
   using continuum::edge::bottom;
-  const auto affine = std::make_shared<AffineDisplacement>(F);
+  const auto affine = std::make_shared<bridge::AffineDisplacement>(F);
   continuum::BoundaryConditions all;
   for (const auto edge : {continuum::edge::left, continuum::edge::right, continuum::edge::top})
     all.displacements.push_back({edge, affine});
@@ -88,10 +88,10 @@ void open(Mesh &mesh, double from, double to)
 double anisotropy(const continuum::Material &bonds, const dealii::Tensor<2, 2> &F)
 {
   dealii::Tensor<2, 2> mean;
-  for (int k = 0; k < n_lattice_rotations; ++k)
+  for (int k = 0; k < bridge::n_lattice_rotations; ++k)
   {
-    const dealii::Tensor<2, 2> R = to_continuum(lattice_rotation(k));
-    mean += bonds.first_piola_stress(F * R) * transpose(R) / n_lattice_rotations;
+    const dealii::Tensor<2, 2> R = bridge::to_continuum(bridge::lattice_rotation(k));
+    mean += bonds.first_piola_stress(F * R) * transpose(R) / bridge::n_lattice_rotations;
   }
   return (mean - bonds.first_piola_stress(F)).norm();
 }
@@ -126,7 +126,7 @@ double add_sample(const CrackDrive &drive, const lattice::TriangularLattice &she
     }
     values.opening_stress = states[n].P[1][1];
     const dealii::Tensor<2, 2> P = medium.constitution.local->first_piola_stress(states[n].F);
-    values.excess_stress = (P - medium.constitution.local->first_piola_stress(to_continuum(F))).norm();
+    values.excess_stress = (P - medium.constitution.local->first_piola_stress(bridge::to_continuum(F))).norm();
     if (medium.bonds != nullptr)
       values.anisotropy = anisotropy(*medium.bonds, states[n].F);
     if (medium.viscosity != nullptr)
@@ -162,7 +162,7 @@ TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, con
   settings.max_step_halvings = 9;
   continuum::DynamicSolver solver(mesh, medium.constitution, conditions(F, medium.constitution.has_gradient()),
                                   medium.inertia, settings, medium.viscosity);
-  solver.start(std::make_shared<AffineDisplacement>(F));
+  solver.start(std::make_shared<bridge::AffineDisplacement>(F));
 
   TipRun run{TipField(drive, reach), {}};
   continuum::EnergyLedger middle;
@@ -201,4 +201,4 @@ TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, con
   return run;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

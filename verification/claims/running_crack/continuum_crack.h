@@ -5,7 +5,7 @@
 #include "continuum/viscosity.h"
 #include "verification/claims/running_crack/lattice_crack.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// A continuum through which a crack is driven. The laws must outlive it.
@@ -46,4 +46,4 @@ TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, con
                              const Eigen::Matrix2d &F, const CrackMesh &resolution, double reach,
                              const std::optional<CrackFrame> &frame = {});
 
-} // namespace latcon::verification
+} // namespace latcon::claims

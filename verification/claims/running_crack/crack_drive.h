@@ -4,7 +4,7 @@
 
 #include "lattice/triangular_lattice.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// A straight crack driven through a sheet held at all edges: X_tip(t) = start + speed * t along the middle of the
@@ -42,4 +42,4 @@ struct CrackDrive
   static constexpr double first_phase = 0.25; ///< of the start, in strides from a site
 };
 
-} // namespace latcon::verification
+} // namespace latcon::claims

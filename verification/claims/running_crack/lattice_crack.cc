@@ -7,7 +7,7 @@
 #include "lattice/time_step.h"
 #include "verification/output/field_writer.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -127,7 +127,7 @@ TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &mat
   }
   if (frame)
   {
-    FieldWriter writer(sheet, material, frame->folder, frame->name);
+    output::FieldWriter writer(sheet, material, frame->folder, frame->name);
     writer.add_frame(simulation.state());
     writer.write_collection();
   }
@@ -138,4 +138,4 @@ TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &mat
   return run;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -6,7 +6,7 @@
 #include "lattice/material.h"
 #include "verification/claims/running_crack/tip_field.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// Energies that a sheet lost while its tip advanced, per reference length of crack and thickness [J/m^2].
@@ -40,4 +40,4 @@ struct CrackFrame
 TipRun drive_lattice_crack(const CrackDrive &drive, const lattice::Material &material, const Eigen::Matrix2d &F,
                            double reach, const std::optional<CrackFrame> &frame = {});
 
-} // namespace latcon::verification
+} // namespace latcon::claims

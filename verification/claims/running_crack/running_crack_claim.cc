@@ -10,7 +10,7 @@
 #include "verification/claims/stability_row.h"
 #include "verification/claims/state_name.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -116,7 +116,7 @@ CrackMesh mesh_of(const CrackDrive &drive, double size, unsigned int degree)
 class Comparison
 {
 public:
-  Comparison(const Subject &subject, const CrackSides &sides, const RunningCrackOptions &options)
+  Comparison(const bridge::Subject &subject, const CrackSides &sides, const RunningCrackOptions &options)
     : subject_(subject), sides_(sides), options_(options), far_(sides.drive, far_from, options.far),
       near_(sides.drive, near_from, near_to), reach_((options.far + 3.) * subject.spacing),
       lattice_(drive_lattice_crack(sides.drive, subject.material, subject.deformation, reach_, frame("lattice")))
@@ -175,7 +175,7 @@ private:
       const double tip = far_.distance(fine, fine, quantity, tip_resolution * d);
       const double error = far_.distance(lattice_.field, fine, quantity);
       add(quantity.name + ", " + annulus.str() + ", " + name + " continuum against lattice", "1", {}, {}, error,
-          subject_.tolerance(Law::mooney_rivlin_network, discretisation + tip + leaves_out));
+          subject_.tolerance(bridge::Law::mooney_rivlin_network, discretisation + tip + leaves_out));
       outcome.table("running_crack_far", {"shells", "law", "quantity", "error", "discretisation", "tip", "anisotropy"})
         .add({subject_.name, name, quantity.name, error, discretisation, tip, leaves_out});
     }
@@ -183,7 +183,7 @@ private:
     const double tip_of_coarse = effective_tip(lattice_.field, coarse, far_, d);
     add("effective tip of the lattice ahead of the cut, in d, from the far velocity of the " + name + " continuum", "1",
         tip, 0., std::abs(tip),
-        subject_.tolerance(Law::mooney_rivlin_network, tip_resolution + std::abs(tip - tip_of_coarse)));
+        subject_.tolerance(bridge::Law::mooney_rivlin_network, tip_resolution + std::abs(tip - tip_of_coarse)));
   }
 
   void report(const std::string &name, const TipRun &coarse, const TipRun &fine)
@@ -251,15 +251,15 @@ private:
 
   void add_fields(const std::string &side, const TipRun &run)
   {
-    Table &table = outcome.table("running_crack", {"shells", "side", "X/d", "Y/d", "v_x [m/s]", "v_y [m/s]",
-                                                   "opening_stress [Pa]", "excess_y [m]"});
+    output::Table &table = outcome.table("running_crack", {"shells", "side", "X/d", "Y/d", "v_x [m/s]", "v_y [m/s]",
+                                                           "opening_stress [Pa]", "excess_y [m]"});
     for (const TipField::Point &point : run.field.points())
       table.add({subject_.name, side, point.xi / subject_.spacing, point.eta / subject_.spacing,
                  point.values.velocity.x(), point.values.velocity.y(), point.values.opening_stress,
                  point.values.excess.y()});
   }
 
-  const Subject &subject_;
+  const bridge::Subject &subject_;
   const CrackSides &sides_;
   RunningCrackOptions options_;
   Region far_, near_;
@@ -269,7 +269,7 @@ private:
 
 } // namespace
 
-CrackSides crack_sides(const Subject &subject, const RunningCrackOptions &options)
+CrackSides crack_sides(const bridge::Subject &subject, const RunningCrackOptions &options)
 {
   const double d = subject.spacing;
   CrackDrive drive{d, subject.orientation, options.length * d, options.height * d, 0., 0., 0};
@@ -277,16 +277,17 @@ CrackSides crack_sides(const Subject &subject, const RunningCrackOptions &option
   drive.n_strides = static_cast<unsigned int>(std::lround(options.advance * d / drive.stride()));
   const Eigen::Vector2d K(1. / d, 0.);
   const WaveContinuum medium{{subject.network}, {subject.material.density}};
-  const auto waves =
-    plane_waves(continuum_matrices(medium, subject.deformation, K), wave_normal(subject.deformation, K));
+  const auto waves = bridge::plane_waves(continuum_matrices(medium, subject.deformation, K),
+                                         bridge::wave_normal(subject.deformation, K));
   drive.speed = 0.5 * support::smallest_of({waves[0].frequency, waves[1].frequency}) / K.norm();
 
   const lattice::TriangularLattice sheet(d, drive.length, drive.height, drive.orientation);
-  const double end_depth = held_depth(sheet, subject.material, {1., 0.});
-  const std::shared_ptr<const continuum::Viscosity> viscosity = homogenised_viscosity(sheet, subject.material);
+  const double end_depth = bridge::held_depth(sheet, subject.material, {1., 0.});
+  const std::shared_ptr<const continuum::Viscosity> viscosity = bridge::homogenised_viscosity(sheet, subject.material);
   const double density = subject.material.density;
   return {drive,
-          {end_depth, sheet.length() - end_depth, 0.5 * sheet.height() - held_depth(sheet, subject.material, {0., 1.})},
+          {end_depth, sheet.length() - end_depth,
+           0.5 * sheet.height() - bridge::held_depth(sheet, subject.material, {0., 1.})},
           viscosity,
           {{subject.network}, {density}, viscosity.get(), &subject.cauchy_born},
           {{subject.network, *subject.network_gradient},
@@ -295,7 +296,7 @@ CrackSides crack_sides(const Subject &subject, const RunningCrackOptions &option
            &subject.cauchy_born}};
 }
 
-ClaimOutcome running_crack_claim(const Subject &subject, const RunningCrackOptions &options)
+ClaimOutcome running_crack_claim(const bridge::Subject &subject, const RunningCrackOptions &options)
 {
   ClaimOutcome outcome;
   const Eigen::Matrix2d &F = subject.deformation;
@@ -317,7 +318,8 @@ ClaimOutcome running_crack_claim(const Subject &subject, const RunningCrackOptio
   return outcome;
 }
 
-ClaimOutcome running_crack_claim(const Subject &subject, const CrackSides &sides, const RunningCrackOptions &options)
+ClaimOutcome running_crack_claim(const bridge::Subject &subject, const CrackSides &sides,
+                                 const RunningCrackOptions &options)
 {
   Comparison comparison(subject, sides, options);
   const std::string prefix = subject.name + ", " + state_name(subject.deformation) + ": ";
@@ -331,4 +333,4 @@ ClaimOutcome running_crack_claim(const Subject &subject, const CrackSides &sides
   return comparison.outcome;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -7,7 +7,7 @@
 #include "verification/claims/claim_outcome.h"
 #include "verification/claims/running_crack/continuum_crack.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// Sizes in spacings d, and resolutions. The default is the quick version.
@@ -40,16 +40,17 @@ struct CrackSides
 };
 
 /// The crack runs at half the speed of the slower plane wave along it in the loaded sheet.
-CrackSides crack_sides(const Subject &subject, const RunningCrackOptions &options);
+CrackSides crack_sides(const bridge::Subject &subject, const RunningCrackOptions &options);
 
 /// Compares a straight crack that is driven at the same speed through the lattice and through the network continuum,
 /// without and with its gradient energy and micro-inertia (theory-comparison.md, section "A running crack"). The sheet
 /// must be loaded without shear, and open the crack. Frames of the sides are NAME-lattice.pvd, NAME-local.pvd and
 /// NAME-gradient.pvd, NAME being that of the subject in lower case ("crack-nn-nnn"); the table `running_crack_frames`
 /// has the position of the tip in them. Of other sheets the claim reports that there is no such crack.
-ClaimOutcome running_crack_claim(const Subject &subject, const RunningCrackOptions &options);
+ClaimOutcome running_crack_claim(const bridge::Subject &subject, const RunningCrackOptions &options);
 
 /// The same for sides that a test has changed.
-ClaimOutcome running_crack_claim(const Subject &subject, const CrackSides &sides, const RunningCrackOptions &options);
+ClaimOutcome running_crack_claim(const bridge::Subject &subject, const CrackSides &sides,
+                                 const RunningCrackOptions &options);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -4,7 +4,7 @@
 
 #include "support/largest_error.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 TipValues &TipValues::operator+=(const TipValues &other)
@@ -137,4 +137,4 @@ StressLobes stress_lobes(const TipField &field, double radius)
   return lobes;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

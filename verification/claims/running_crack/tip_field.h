@@ -6,7 +6,7 @@
 
 #include "verification/claims/running_crack/crack_drive.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// What is compared at a point near the tip, of the upper half of the sheet.
@@ -98,4 +98,4 @@ struct StressLobes
 /// The lobes on the circle of that radius [m], which must lie within the field.
 StressLobes stress_lobes(const TipField &field, double radius);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

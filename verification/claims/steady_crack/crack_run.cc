@@ -11,7 +11,7 @@
 #include "lattice/time_step.h"
 #include "support/largest_error.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -216,4 +216,4 @@ CrackRun run_crack(const CrackRunOptions &options)
   return Run(options).measure();
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

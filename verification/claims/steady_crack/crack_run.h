@@ -2,7 +2,7 @@
 
 #include "verification/claims/steady_crack/half_strip.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// A crack in a strip of the simulator's own lattice: linear bonds between nearest neighbours, no toughening, strains
@@ -43,4 +43,4 @@ struct CrackRun
 /// @throws std::runtime_error if the crack stops before
 CrackRun run_crack(const CrackRunOptions &options);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -5,7 +5,7 @@
 
 #include <Eigen/Dense>
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -103,4 +103,4 @@ std::vector<HalfStrip::Layer> HalfStrip::elongations(double omega) const
   return layers;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

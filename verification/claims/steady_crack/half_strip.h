@@ -4,7 +4,7 @@
 #include <cstddef>
 #include <vector>
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// A strip of the triangular lattice of nearest neighbours, linearised about its undeformed state, with rows along a
@@ -66,4 +66,4 @@ private:
   double speed_;
 };
 
-} // namespace latcon::verification
+} // namespace latcon::claims

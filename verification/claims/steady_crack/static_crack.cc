@@ -6,7 +6,7 @@
 
 #include <Eigen/SparseCholesky>
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -118,4 +118,4 @@ TrappingWindow trapping_window(const CrackStrip &strip, std::size_t columns)
   return {ahead / last / threshold, ahead / next / threshold};
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

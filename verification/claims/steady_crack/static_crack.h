@@ -2,7 +2,7 @@
 
 #include "verification/claims/steady_crack/half_strip.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// Drivings Delta / Delta_G between which a crack at rest neither opens nor heals: lattice trapping
@@ -20,4 +20,4 @@ struct TrappingWindow
 /// @throws std::runtime_error if the system cannot be solved
 TrappingWindow trapping_window(const CrackStrip &strip, std::size_t columns);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

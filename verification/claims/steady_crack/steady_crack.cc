@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -80,4 +80,4 @@ double steady_speed(const CrackStrip &strip, double driving, double fastest)
   return 0.5 * (low + high);
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -2,7 +2,7 @@
 
 #include "verification/claims/steady_crack/half_strip.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// Driving Delta / Delta_G at which a crack runs steadily at speed v: the displacement of the held rows over that of
@@ -19,4 +19,4 @@ double steady_driving(const CrackStrip &strip, double speed);
 /// @throws std::runtime_error if no speed of that branch up to `fastest` has this driving
 double steady_speed(const CrackStrip &strip, double driving, double fastest);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -12,7 +12,7 @@
 #include "verification/claims/steady_crack/steady_crack.h"
 #include "verification/claims/steady_crack/steady_fields.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -95,7 +95,7 @@ void add_run(ClaimOutcome &outcome, const CrackRunOptions &options, const Compar
   const double released = options.driving * options.driving;
   const double c_S = shear_speed();
 
-  Results &results = outcome.results;
+  output::Results &results = outcome.results;
   results.add({claim,
                "crack speed over c_S" + where,
                "1",
@@ -188,7 +188,7 @@ void add_quasi_static(ClaimOutcome &outcome)
 
 void add_curves(ClaimOutcome &outcome, const std::vector<SteadyCrackSeries> &series)
 {
-  Table &table =
+  output::Table &table =
     outcome.table("steady_crack_curve", {"beta", "speed", "driving", "largest before", "largest elsewhere", "exists"});
   for (const SteadyCrackSeries &s : series)
     for (int i = 4; i <= 36; ++i)
@@ -248,4 +248,4 @@ ClaimOutcome steady_crack_study(bool quick)
   return outcome;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

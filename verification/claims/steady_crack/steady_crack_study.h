@@ -4,7 +4,7 @@
 
 #include "verification/claims/claim_outcome.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// Cracks between dashpots of one viscosity under several drivings.
@@ -33,4 +33,4 @@ ClaimOutcome steady_crack_study(bool quick);
 /// The rows of one series: what every crack of it has, beside the exact solution, within tolerances from refined runs.
 ClaimOutcome steady_cracks(const SteadyCrackSeries &series);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -8,7 +8,7 @@
 #include "support/largest_error.h"
 #include "verification/claims/steady_crack/steady_crack.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -189,4 +189,4 @@ SteadyFields steady_fields(const CrackStrip &strip, double speed, double duratio
   return fields;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -4,7 +4,7 @@
 
 #include "verification/claims/steady_crack/half_strip.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// What happens around a crack that runs steadily, as functions of the time s since a bond across it broke.
@@ -28,4 +28,4 @@ struct SteadyFields
 /// @param samples of it, a power of 2; errors fall with the second power of the step
 SteadyFields steady_fields(const CrackStrip &strip, double speed, double duration, std::size_t samples);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

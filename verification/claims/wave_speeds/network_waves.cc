@@ -8,7 +8,7 @@
 #include "verification/claims/order_fit.h"
 #include "verification/claims/state_name.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -21,7 +21,8 @@ const std::vector<double> order_kd{0.05, 0.1, 0.2, 0.4};
 
 } // namespace
 
-void network_waves(const Subject &subject, const Eigen::Matrix2d &F, const WaveMesh &mesh, ClaimOutcome &outcome)
+void network_waves(const bridge::Subject &subject, const Eigen::Matrix2d &F, const WaveMesh &mesh,
+                   ClaimOutcome &outcome)
 {
   const double d = subject.spacing, rho = subject.material.density;
   const lattice::Material material = lattice::without_dashpots(subject.material);
@@ -31,11 +32,11 @@ void network_waves(const Subject &subject, const Eigen::Matrix2d &F, const WaveM
   // Of the lattice turned by its rotations: that of the lattice as it is at F R, for the wave R^T K.
   const auto on_lattice = [&](const Eigen::Vector2d &K)
   {
-    Eigen::MatrixXd matrices(4, n_lattice_rotations);
-    for (int k = 0; k < n_lattice_rotations; ++k)
+    Eigen::MatrixXd matrices(4, bridge::n_lattice_rotations);
+    for (int k = 0; k < bridge::n_lattice_rotations; ++k)
     {
-      const Eigen::Matrix2d R = lattice_rotation(k);
-      matrices.col(k) = bloch_matrices(sheet, material, F * R, R.transpose() * K).stiffness.reshaped();
+      const Eigen::Matrix2d R = bridge::lattice_rotation(k);
+      matrices.col(k) = bridge::bloch_matrices(sheet, material, F * R, R.transpose() * K).stiffness.reshaped();
     }
     return matrices;
   };
@@ -49,7 +50,7 @@ void network_waves(const Subject &subject, const Eigen::Matrix2d &F, const WaveM
     for (const double kd : order_kd)
     {
       const Eigen::Vector2d K = kd / d * N;
-      const Eigen::VectorXd mean = rotation_mean(on_lattice(K)).mean;
+      const Eigen::VectorXd mean = bridge::rotation_mean(on_lattice(K)).mean;
       const auto error = [&](const WaveContinuum &medium)
       { return (continuum_matrices(medium, F, K).stiffness.reshaped() - mean).norm() / mean.norm(); };
       local_errors.push_back(error(local));
@@ -60,12 +61,12 @@ void network_waves(const Subject &subject, const Eigen::Matrix2d &F, const WaveM
 
     const Eigen::Vector2d K = compared_kd / d * N;
     const Eigen::MatrixXd lattice_matrices = on_lattice(K);
-    const RotationMean mean = rotation_mean(lattice_matrices);
+    const bridge::RotationMean mean = bridge::rotation_mean(lattice_matrices);
     const Eigen::VectorXd network = continuum_matrices(gradient, F, K).stiffness.reshaped();
     from_mean.add((network - mean.mean).norm() / mean.mean.norm());
     share.add((network - lattice_matrices.col(0)).norm() / (mean.bound + matrix_tolerance * mean.mean.norm()));
 
-    const auto closed = plane_waves(continuum_matrices(gradient, F, K), wave_normal(F, K));
+    const auto closed = bridge::plane_waves(continuum_matrices(gradient, F, K), bridge::wave_normal(F, K));
     const auto elements = discrete_frequencies(gradient, F, K, mesh);
     for (std::size_t w = 0; w < 2; ++w)
       elements_error.add_relative(elements[w], closed[w].frequency);
@@ -84,11 +85,11 @@ void network_waves(const Subject &subject, const Eigen::Matrix2d &F, const WaveM
   add("matrix of waves at kd = 0.25, network with gradient energy, largest error over the bound of anisotropy", {}, {},
       share.error(), judged(1.));
   add("order in kd of the local network's error against that mean", local_order.order(), 2.,
-      std::abs(local_order.order() - 2.), subject.tolerance(Law::mooney_rivlin_network, order_tolerance));
+      std::abs(local_order.order() - 2.), subject.tolerance(bridge::Law::mooney_rivlin_network, order_tolerance));
   add("order in kd of the network's error with gradient energy against that mean", gradient_order.order(), 4.,
       std::abs(gradient_order.order() - 4.), judged(order_tolerance));
   add("frequency, finite elements of the network with gradient energy against their continuum, worst of all waves", {},
-      {}, elements_error.error(), subject.tolerance(Law::mooney_rivlin_network, discretisation_bound(mesh)));
+      {}, elements_error.error(), subject.tolerance(bridge::Law::mooney_rivlin_network, discretisation_bound(mesh)));
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -4,7 +4,7 @@
 #include "verification/claims/claim_outcome.h"
 #include "verification/claims/continuum_waves.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// Rows of the claim `wave-speeds` on the network law with its gradient energy about the homogeneous state F.
@@ -15,6 +15,7 @@ namespace latcon::verification
 /// than the lattice's dependence on direction, whose bound is (H.15). Nothing but Bloch's sums over bonds stands for
 /// the lattice. Every rank computes all of it.
 /// @param mesh of the finite elements, which have to have the frequencies of their continuum
-void network_waves(const Subject &subject, const Eigen::Matrix2d &F, const WaveMesh &mesh, ClaimOutcome &outcome);
+void network_waves(const bridge::Subject &subject, const Eigen::Matrix2d &F, const WaveMesh &mesh,
+                   ClaimOutcome &outcome);
 
-} // namespace latcon::verification
+} // namespace latcon::claims

@@ -12,7 +12,7 @@
 #include "verification/claims/state_name.h"
 #include "verification/claims/wave_speeds/network_waves.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 namespace
 {
@@ -30,7 +30,7 @@ const std::vector<double> order_kd{0.05, 0.1, 0.2, 0.4};
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr const char *wave_names[] = {"L", "S"};
 
-std::array<double, 2> frequencies(const std::array<PlaneWave, 2> &waves)
+std::array<double, 2> frequencies(const std::array<bridge::PlaneWave, 2> &waves)
 {
   return {waves[0].frequency, waves[1].frequency};
 }
@@ -39,7 +39,7 @@ std::array<double, 2> frequencies(const std::array<PlaneWave, 2> &waves)
 class Waves
 {
 public:
-  Waves(const Subject &subject, const Eigen::Matrix2d &F)
+  Waves(const bridge::Subject &subject, const Eigen::Matrix2d &F)
     : F_(F), material_(lattice::without_dashpots(subject.material)),
       sheet_(subject.spacing, 10. * subject.spacing, 10. * subject.spacing, subject.orientation),
       local_(std::make_unique<WaveContinuum>(WaveContinuum{{subject.cauchy_born}, {subject.material.density}})),
@@ -53,7 +53,7 @@ public:
 
   std::array<double, 2> bloch(const Eigen::Vector2d &K) const
   {
-    return frequencies(bloch_waves(sheet_, material_, F_, K));
+    return frequencies(bridge::bloch_waves(sheet_, material_, F_, K));
   }
   std::array<double, 2> local(const Eigen::Vector2d &K) const { return closed(*local_, K); }
   std::array<double, 2> gradient(const Eigen::Vector2d &K) const { return closed(*gradient_, K); }
@@ -73,7 +73,7 @@ public:
 private:
   std::array<double, 2> closed(const WaveContinuum &medium, const Eigen::Vector2d &K) const
   {
-    return frequencies(plane_waves(continuum_matrices(medium, F_, K), wave_normal(F_, K)));
+    return frequencies(bridge::plane_waves(continuum_matrices(medium, F_, K), bridge::wave_normal(F_, K)));
   }
 
   Eigen::Matrix2d F_;
@@ -82,13 +82,13 @@ private:
   std::unique_ptr<WaveContinuum> local_, gradient_, isotropic_;
 };
 
-void speeds_at(const Subject &subject, const Eigen::Matrix2d &F, const WaveSpeedsOptions &options,
+void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const WaveSpeedsOptions &options,
                ClaimOutcome &outcome)
 {
   const Waves waves(subject, F);
   const double d = subject.spacing;
   const std::string prefix = subject.name + ", " + state_name(F) + ": ";
-  Table &table =
+  output::Table &table =
     outcome.table("wave_speeds", {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d", "local [m/s]", "bloch [m/s]",
                                   "lattice [m/s]", "gradient [m/s]", "isotropic [m/s]", "fem [m/s]"});
   support::LargestError run_against_bloch, elements_against_closed, gradient_against_bloch;
@@ -187,17 +187,17 @@ void speeds_at(const Subject &subject, const Eigen::Matrix2d &F, const WaveSpeed
 }
 
 // Waves along x, whose two polarisations the dashpots keep apart by symmetry.
-void attenuation_at(const Subject &subject, const Eigen::Matrix2d &F, ClaimOutcome &outcome)
+void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, ClaimOutcome &outcome)
 {
   const lattice::TriangularLattice any(subject.spacing, 10. * subject.spacing, 10. * subject.spacing,
                                        subject.orientation);
   const auto damped = [&](const Eigen::Vector2d &K)
-  { return plane_waves(bloch_matrices(any, subject.material, F, K), wave_normal(F, K)); };
+  { return bridge::plane_waves(bridge::bloch_matrices(any, subject.material, F, K), bridge::wave_normal(F, K)); };
 
   // Damping grows with kd; a third of critical is seen well within one period.
   constexpr double probe = 0.01, wanted_ratio = 0.33;
   double ratio = 0.; // of decay and frequency, infinite if a wave is overdamped
-  for (const PlaneWave &wave : damped(Eigen::Vector2d(probe / subject.spacing, 0.)))
+  for (const bridge::PlaneWave &wave : damped(Eigen::Vector2d(probe / subject.spacing, 0.)))
   {
     if (!std::isfinite(wave.frequency) || !std::isfinite(wave.decay))
       throw std::runtime_error("long waves have no frequency and decay");
@@ -208,12 +208,13 @@ void attenuation_at(const Subject &subject, const Eigen::Matrix2d &F, ClaimOutco
   const WaveCell cell = wave_cell(subject.spacing, subject.orientation, {1, 0}, kd);
   const double k = cell.K.norm();
 
-  const auto viscosity = homogenised_viscosity(any, subject.material);
+  const auto viscosity = bridge::homogenised_viscosity(any, subject.material);
   const WaveContinuum medium{{subject.cauchy_born, *subject.lattice_gradient},
                              {subject.material.density, subject.lengths.lattice},
                              viscosity.get()};
-  const std::array<PlaneWave, 2> theory = damped(cell.K),
-                                 kelvin = plane_waves(continuum_matrices(medium, F, cell.K), wave_normal(F, cell.K));
+  const std::array<bridge::PlaneWave, 2> theory = damped(cell.K),
+                                         kelvin = bridge::plane_waves(continuum_matrices(medium, F, cell.K),
+                                                                      bridge::wave_normal(F, cell.K));
   std::ostringstream where;
   where << subject.name << ", " << state_name(F) << ", kd = " << std::round(1e4 * k * subject.spacing) / 1e4 << ": ";
   // Without a wave there is no number, and the rows that ask for one fail.
@@ -224,7 +225,7 @@ void attenuation_at(const Subject &subject, const Eigen::Matrix2d &F, ClaimOutco
   // Waves this long hardly feel the gradient energy: the error in space is below 1e-6.
   attempt("finite elements", [&] { elements = finite_element_waves(medium, F, cell.K, {4, 4}); });
 
-  Table &table =
+  output::Table &table =
     outcome.table("attenuation",
                   {"shells", "F_xx", "F_yy", "angle [deg]", "wave", "k d", "theory_frequency [rad/s]",
                    "theory_decay [1/s]", "lattice_frequency [rad/s]", "lattice_decay [1/s]",
@@ -233,7 +234,8 @@ void attenuation_at(const Subject &subject, const Eigen::Matrix2d &F, ClaimOutco
   for (double fraction = 0.1; fraction < 0.95; fraction *= std::pow(10., 0.1))
   {
     const Eigen::Vector2d K = fraction * cell.K;
-    const auto exact = damped(K), closed = plane_waves(continuum_matrices(medium, F, K), wave_normal(F, K));
+    const auto exact = damped(K),
+               closed = bridge::plane_waves(continuum_matrices(medium, F, K), bridge::wave_normal(F, K));
     for (std::size_t w = 0; w < 2; ++w)
       table.add({subject.name, F(0, 0), F(1, 1), 0., std::string(wave_names[w]), fraction * k * subject.spacing,
                  exact[w].frequency, exact[w].decay, nothing, nothing, closed[w].frequency, closed[w].decay, nothing,
@@ -273,7 +275,7 @@ void attenuation_at(const Subject &subject, const Eigen::Matrix2d &F, ClaimOutco
 
 } // namespace
 
-ClaimOutcome wave_speeds_claim(const Subject &subject, const WaveSpeedsOptions &options)
+ClaimOutcome wave_speeds_claim(const bridge::Subject &subject, const WaveSpeedsOptions &options)
 {
   ClaimOutcome outcome;
   const auto attempt = [&](const Eigen::Matrix2d &F, const std::string &part, const std::function<void()> &compute)
@@ -292,4 +294,4 @@ ClaimOutcome wave_speeds_claim(const Subject &subject, const WaveSpeedsOptions &
   return outcome;
 }
 
-} // namespace latcon::verification
+} // namespace latcon::claims

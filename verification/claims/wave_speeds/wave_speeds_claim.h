@@ -6,7 +6,7 @@
 #include "verification/claims/claim_outcome.h"
 #include "verification/claims/continuum_waves.h"
 
-namespace latcon::verification
+namespace latcon::claims
 {
 
 /// Claim `wave-speeds`: plane waves about a homogeneous state run as fast on the lattice as Bloch's analysis of it
@@ -24,6 +24,6 @@ struct WaveSpeedsOptions
 };
 
 /// Runs the claim. Collective.
-ClaimOutcome wave_speeds_claim(const Subject &subject, const WaveSpeedsOptions &options);
+ClaimOutcome wave_speeds_claim(const bridge::Subject &subject, const WaveSpeedsOptions &options);
 
-} // namespace latcon::verification
+} // namespace latcon::claims
