@@ -15,6 +15,11 @@
 #include "verification/output/results.h"
 #include "verification/output/run_info.h"
 
+namespace latcon::output
+{
+class Checkpoints;
+}
+
 namespace latcon::commands
 {
 
@@ -54,8 +59,6 @@ void study_page(const std::string &directory);
 
 /// Reads and checks the case that the options name. @throws InputError
 void read_case(const input::Options &options, input::Case &input, input::Parameters &parameters);
-
-class output::Checkpoints;
 
 /// Prints a part of what --dry-run says, on the first rank, unless --quiet.
 void print_dry_run(const input::Options &options, const std::string &text);

@@ -182,7 +182,7 @@ void check_time_stepping(const Case &input, Parameters &p)
 
 void ShellCase::declare(Parameters &parameters, const std::string &section)
 {
-  parameters.add(section, "law", law, {{"mooney-rivlin", bridge::Law::mooney_rivlin}, {"linear", bridge::Law::linear}},
+  parameters.add(section, "law", law, {{"mooney-rivlin", Law::mooney_rivlin}, {"linear", Law::linear}},
                  "law of a bond: rod of incompressible Mooney-Rivlin rubber with constants a and b, or linear spring");
   parameters.add(section, "a", a, MagnitudeOrZero{}, "Pa", "a = 2 C1 of a Mooney-Rivlin bond");
   parameters.add(section, "b", b, MagnitudeOrZero{}, "Pa", "b = 2 C2 of a Mooney-Rivlin bond");
@@ -201,7 +201,7 @@ void ShellCase::check(Parameters &parameters, const std::string &section) const
 
 lattice::Shell ShellCase::shell() const
 {
-  if (law == bridge::Law::linear)
+  if (law == Law::linear)
     return {lattice::LinearBond{modulus}, area_factor, viscosity};
   return {lattice::MooneyRivlinBond{a, b}, area_factor, viscosity};
 }

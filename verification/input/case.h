@@ -22,13 +22,13 @@ namespace latcon::input
 /// One shell of bonds as a case states it.
 struct ShellCase
 {
-  enum class bridge::Law
+  enum class Law
   {
     mooney_rivlin,
     linear
   };
 
-  bridge::Law law = bridge::Law::mooney_rivlin;
+  Law law = Law::mooney_rivlin;
   double a = 1e5;       ///< [Pa]
   double b = 1.5e5;     ///< [Pa]
   double modulus = 1e5; ///< e [Pa]
@@ -38,7 +38,7 @@ struct ShellCase
   void declare(Parameters &parameters, const std::string &section);
   void check(Parameters &parameters, const std::string &section) const;
   /// Whether shell() has a law to make.
-  bool has_stiffness() const { return law == bridge::Law::linear || a + b > 0.; }
+  bool has_stiffness() const { return law == Law::linear || a + b > 0.; }
   lattice::Shell shell() const;
 };
 

@@ -327,8 +327,7 @@ void ContinuumCase::declare(Parameters &p)
   p.add("Continuum", "time step", time_step, Magnitude{}, "s",
         "of the motion; auto: a tenth of the time that a shear wave takes across a cell");
   p.add("Continuum", "rule", rule,
-        {{"average-acceleration", study::Rule::average_acceleration},
-         {"generalised-alpha", study::Rule::generalised_alpha}},
+        {{"average-acceleration", Rule::average_acceleration}, {"generalised-alpha", Rule::generalised_alpha}},
         "of time integration");
   p.add("Continuum", "spectral radius", spectral_radius, Between{0., 1.}, "1",
         "of generalised-alpha at high frequencies: 1 keeps their energy, 0 removes it in a step");
@@ -338,9 +337,7 @@ void ContinuumCase::declare(Parameters &p)
   p.add("Body force", "corrected", body_force_corrected,
         "apply (1 - l_d^2 Laplace) of the force, as the lattice's continuum with micro-inertia needs");
   p.add("Initial state", "base", initial_base,
-        {{"undeformed", output::Base::undeformed},
-         {"loading", output::Base::loading},
-         {"equilibrium", output::Base::equilibrium}},
+        {{"undeformed", Base::undeformed}, {"loading", Base::loading}, {"equilibrium", Base::equilibrium}},
         "where a motion of the finite elements starts: undeformed, homogeneously loaded, or in equilibrium under the "
         "conditions of the case");
   initial_displacement.declare(p, "Initial state", "displacement", "m", "added to the base, zero where edges are held");

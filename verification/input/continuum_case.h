@@ -111,24 +111,24 @@ struct ContinuumCase
   };
   Solution solution = Solution::equilibrium;
   std::optional<double> time_step; ///< [s]; none: a tenth of what a shear wave needs across a cell
-  enum class study::Rule
+  enum class Rule
   {
     average_acceleration,
     generalised_alpha
   };
-  study::Rule rule = study::Rule::average_acceleration;
+  Rule rule = Rule::average_acceleration;
   double spectral_radius = 0.9; ///< of generalised-alpha at high frequencies [-]
 
   std::array<EdgeCase, 5> edges; ///< indexed by continuum::edge: left, right, bottom, top, inner
   FieldCase body_force;          ///< [N/m^3]
   bool body_force_corrected = false;
-  enum class output::Base
+  enum class Base
   {
     undeformed,
     loading,    ///< homogeneously deformed
     equilibrium ///< under the conditions of the case
   };
-  output::Base initial_base = output::Base::loading;
+  Base initial_base = Base::loading;
   FieldCase initial_displacement; ///< [m], added to the base
   FieldCase initial_velocity;     ///< [m/s]
 

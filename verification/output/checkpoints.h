@@ -10,12 +10,15 @@
 #include "support/errors.h"
 #include "verification/output/archive.h"
 
+namespace latcon::input
+{
+struct Case;
+struct Options;
+class Parameters;
+} // namespace latcon::input
+
 namespace latcon::output
 {
-
-struct input::Case;
-struct input::Options;
-class input::Parameters;
 
 /// Where a run was when it left a checkpoint.
 struct CheckpointPlace

@@ -12,6 +12,11 @@
 #include "verification/study/quantities.h"
 #include "verification/study/study_file.h"
 
+namespace latcon::input
+{
+struct Case;
+}
+
 namespace latcon::study
 {
 
@@ -33,8 +38,6 @@ struct PlannedRun
   /// Value of "zeta" or of an entry `Section/Name`; none if it has no number.
   std::optional<double> value(const std::string &against) const;
 };
-
-struct input::Case;
 
 /// zeta = (eta / a) / (d / sqrt(a / rho)) of the nearest-neighbour bonds [-]: the retardation time over the time in
 /// which a wave passes one spacing (theory.md, eq. (L.5)). None for linear bonds, which have no a.
