@@ -71,8 +71,8 @@ void check(const std::vector<BreakRecord> &breaks)
             "crack measurement: broken bond " + std::to_string(i) + " is not finite");
 }
 
-template <typename... study::Values>
-std::string text(const char *format, study::Values... values)
+template <typename... Values>
+std::string text(const char *format, Values... values)
 {
   char buffer[512];
   std::snprintf(buffer, sizeof(buffer), format, values...);

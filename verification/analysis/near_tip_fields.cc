@@ -102,7 +102,7 @@ void NearTipSums::Sum<n>::make_room(const NearTipGrid &grid)
 }
 
 template <int n>
-void NearTipSums::Sum<n>::add(std::size_t point, double weight, const study::Values &site)
+void NearTipSums::Sum<n>::add(std::size_t point, double weight, const Values &site)
 {
   const auto p = static_cast<Eigen::Index>(point);
   values.col(p) += weight * site;
@@ -110,7 +110,7 @@ void NearTipSums::Sum<n>::add(std::size_t point, double weight, const study::Val
 }
 
 template <int n>
-void NearTipSums::Sum<n>::add(const Sum &other, const NearTipGrid &grid, const study::Values *signs)
+void NearTipSums::Sum<n>::add(const Sum &other, const NearTipGrid &grid, const Values *signs)
 {
   if (other.weights.size() == 0)
     return;
@@ -132,12 +132,12 @@ void NearTipSums::Sum<n>::add(const Sum &other, const NearTipGrid &grid, const s
 }
 
 template <int n>
-auto NearTipSums::Sum<n>::mean(std::size_t point) const -> std::optional<study::Values>
+auto NearTipSums::Sum<n>::mean(std::size_t point) const -> std::optional<Values>
 {
   const auto p = static_cast<Eigen::Index>(point);
   if (weights.size() == 0 || !(weights[p] > 0.))
     return std::nullopt;
-  return study::Values(values.col(p) / weights[p]);
+  return Values(values.col(p) / weights[p]);
 }
 
 NearTipSums::NearTipSums(const NearTipGrid &grid) : grid_(grid) {}

@@ -98,15 +98,15 @@ private:
   template <int n>
   struct Sum
   {
-    using study::Values = Eigen::Array<double, n, 1>;
+    using Values = Eigen::Array<double, n, 1>;
     Eigen::Array<double, n, Eigen::Dynamic> values;
     Eigen::ArrayXd weights;
 
     void make_room(const NearTipGrid &grid);
-    void add(std::size_t point, double weight, const study::Values &site);
+    void add(std::size_t point, double weight, const Values &site);
     /// @param signs of the components in a mirror image in Y; null: `other` is added as it is
-    void add(const Sum &other, const NearTipGrid &grid, const study::Values *signs);
-    std::optional<study::Values> mean(std::size_t point) const;
+    void add(const Sum &other, const NearTipGrid &grid, const Values *signs);
+    std::optional<Values> mean(std::size_t point) const;
     /// Whether it has values at all points, or at none.
     bool fits(const NearTipGrid &grid) const
     {

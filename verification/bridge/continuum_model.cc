@@ -43,7 +43,8 @@ private:
 } // namespace
 
 ContinuumModel::ContinuumModel(const input::Case &input)
-  : subject_(subject(input)), law_(input.continuum.law), penalty_(input.continuum.penalty), mesh_(MPI_COMM_WORLD)
+  : subject_(bridge::subject(input)), law_(input.continuum.law), penalty_(input.continuum.penalty),
+    mesh_(MPI_COMM_WORLD)
 {
   if (input.continuum.law == input::ContinuumLaw::mooney_rivlin)
   {

@@ -17,7 +17,7 @@ std::string csv_field(const std::string &text)
   return quoted + "\"";
 }
 
-void Table::add(std::vector<compare::Cell> row)
+void Table::add(std::vector<Cell> row)
 {
   if (row.size() != columns_.size())
     throw std::invalid_argument("a row of " + std::to_string(row.size()) + " cells in a table of " +
@@ -39,9 +39,9 @@ std::string Table::csv() const
   for (const std::string &column : columns_)
     text += csv_field(column) + ',';
   end_line();
-  for (const std::vector<compare::Cell> &row : rows_)
+  for (const std::vector<Cell> &row : rows_)
   {
-    for (const compare::Cell &cell : row)
+    for (const Cell &cell : row)
       text += (std::holds_alternative<double>(cell) ? support::full_precision(std::get<double>(cell))
                                                     : csv_field(std::get<std::string>(cell))) +
               ',';
