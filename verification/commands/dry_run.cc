@@ -72,7 +72,7 @@ std::string lattice_text(const input::Case &input, const lattice::TimeStepping &
     out << ", and " << seconds_text(resources::seconds_of_claims)
         << " for the claims, unless their verdicts are stored";
   if (report)
-    out << ", and " << seconds_text(seconds_of_report) << " for pictures and page";
+    out << ", and " << seconds_text(resources::seconds_of_report) << " for pictures and page";
   out << "\n";
   return out.str();
 }

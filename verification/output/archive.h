@@ -241,17 +241,17 @@ private:
     require(next == values.end(), name + "/sizes", "are of fewer values than there are");
   }
 
-  template <class input::Range>
-  void several(const std::string &name, input::Range &range)
+  template <class Range>
+  void several(const std::string &name, Range &range)
   {
-    using T = typename input::Range::value_type;
-    if constexpr (IsVector<input::Range>::value && std::is_arithmetic_v<T>)
+    using T = typename Range::value_type;
+    if constexpr (IsVector<Range>::value && std::is_arithmetic_v<T>)
     {
       if constexpr (Archive::loads)
         range.resize(self().size(name));
       self().elements(name, range.data(), range.size());
     }
-    else if constexpr (IsVector<input::Range>::value && is_matrix<T>)
+    else if constexpr (IsVector<Range>::value && is_matrix<T>)
     {
       constexpr auto per_element = static_cast<std::size_t>(T::SizeAtCompileTime);
       static_assert(sizeof(T) == per_element * sizeof(double));
@@ -263,7 +263,7 @@ private:
       }
       self().elements(name, range.empty() ? nullptr : range.front().data(), per_element * range.size());
     }
-    else if constexpr (IsVector<input::Range>::value && IsVector<T>::value)
+    else if constexpr (IsVector<Range>::value && IsVector<T>::value)
       vectors(name, range);
     else
     {

@@ -14,9 +14,9 @@ struct StudyQuantity
   /// Where the number is read.
   enum class Source
   {
-    crack,            ///< crack.json, under its own name
-    claims::near_tip, ///< near_tip.json, under its own name
-    derived           ///< computed from others and from the case
+    crack,    ///< crack.json, under its own name
+    near_tip, ///< near_tip.json, under its own name
+    derived   ///< computed from others and from the case
   };
 
   std::string name;
