@@ -138,7 +138,7 @@ class EveryCommand(Interrupted):
             os.mkfifo(pipe)
         commands = {"verify": (case, "energy", "--quick", "--case", case), "lattice": (case, case),
                     "continuum": (case, case), "fracture": (case, case), "study": (study, study),
-                    "report": (film, self.out)}
+                    "report": (film, self.out), "schema": (case, case)}
         listed = latcon("--help").stdout.partition("Subcommands:")[2].partition("Exit codes")[0]
         self.assertEqual(set(re.findall(r"^  (\w+) ", listed, re.MULTILINE)), {*commands, "compare"})
         for name, (pipe, *arguments) in commands.items():
