@@ -17,7 +17,7 @@ const std::vector<StudyCheck> &study_checks()
      "dashpots at infinitesimal strain. In the same strip under the same load a crack of the simulator must have the "
      "speed of the solution, and release and dissipate the same energy for each broken bond. Tolerances come from runs "
      "with half the time step, half the strain and a longer strip.",
-     steady_crack_study}};
+     claims::steady_crack_study}};
   return all;
 }
 
