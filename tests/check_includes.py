@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Fails if an include goes against docs/architecture.md: if a folder includes one that ALLOWED does not give it, or a library
-that LIBRARIES keeps from it; if folders include each other in a circle; or if docs/pictures/includes.svg is not the graph
-of the sources.
+that LIBRARIES keeps from it; if folders include each other in a circle; if a source opens a namespace of another folder than
+its own; or if docs/pictures/includes.svg is not the graph of the sources.
 
 Usage: check_includes.py PROJECT_ROOT [--draw]     --draw: make the picture, with Graphviz
 The rules are tried on planted violations first, so that a rule which has stopped biting fails as well.
@@ -65,6 +65,9 @@ PLANTED = [
     ("tests/lattice", "#include <deal.II/base/tensor.h>"),
     ("tests/verification/analysis", '#include "tests/verification/claims/subjects.h"'),
 ]
+NAMESPACE = re.compile(r"^namespace latcon::(\w+)", re.MULTILINE)
+# Opened to declare names of another folder, whose header is not included.
+DECLARATION = re.compile(r"^namespace latcon::\w+\n\{\n(?:(?:class|struct) \w+;\n)+\}", re.MULTILINE)
 ROOTS = ("support", "lattice", "continuum", "verification", "tests")
 PICTURE = "docs/pictures/includes.svg"
 # Side of the comparison, by the start of a folder's name, and its colour.
@@ -93,6 +96,17 @@ def violations(folder, text):
         if any(name.startswith(library) and own in folders for library, folders in LIBRARIES.items()):
             found.append(name)
     return found
+
+
+def namespace(folder):
+    """The namespace, below latcon, of the sources in a folder."""
+    parts = folder.split("/")
+    return parts[1] if parts[0] == "verification" else parts[0]
+
+
+def wrong_namespaces(folder, text):
+    """Namespaces that a source opens besides its folder's."""
+    return [name for name in NAMESPACE.findall(DECLARATION.sub("", text)) if name != namespace(folder)]
 
 
 def sources(root):
@@ -163,6 +177,9 @@ def main():
     for folder, line in PLANTED:
         if len(violations(folder, line)) != 1:
             sys.exit(f"the rule for {folder}/ no longer catches: {line}")
+    for folder, name in (("lattice", "continuum"), ("verification/claims/energy", "energy"), ("verification/input", "claims")):
+        if wrong_namespaces(folder, f"namespace latcon::{name}\n{{\nstruct A\n{{\n}};\n}}\n") != [name]:
+            sys.exit(f"the namespace {name} is no longer caught in {folder}/")
     if circle({("a", "b"), ("b", "c"), ("d", "a"), ("c", "b")}) != ["b", "c"] or circle({("a", "b"), ("d", "b")}):
         sys.exit("circles are no longer found")
     if found := circle({(folder, other) for folder, others in ALLOWED.items() for other in others}):
@@ -177,6 +194,10 @@ def main():
     bad = [f"{path.relative_to(root)} includes {name}" for folder, path in checked for name in violations(folder, path.read_text())]
     if bad:
         sys.exit("forbidden includes:\n  " + "\n  ".join(bad))
+    strange = [f"{path.relative_to(root)} opens latcon::{name}" for folder, path in checked
+               if folder != "verification" and folder.split("/")[0] != "tests" for name in wrong_namespaces(folder, path.read_text())]
+    if strange:
+        sys.exit("namespaces follow folders, but:\n  " + "\n  ".join(strange))
     pairs = graph(root)
     if found := circle(pairs):
         sys.exit("folders include each other: " + " -> ".join([*found, found[0]]))
@@ -186,7 +207,7 @@ def main():
         (root / PICTURE).write_text(picture)
     if different := drawn((root / PICTURE).read_text()) ^ pairs:
         sys.exit(f"{PICTURE} is not the graph of the sources: {sorted(different)}; `--target include_graph` makes it")
-    print(f"{len(checked)} sources follow the include rules")
+    print(f"{len(checked)} sources follow the rules of includes and namespaces")
 
 
 if __name__ == "__main__":
