@@ -434,11 +434,11 @@ TEST(CrackMeasurement, RefusesBadOptions)
 
 TEST(CrackMeasurement, PatternsHaveTheNamesOfTheOutputs)
 {
-  EXPECT_STREQ(analysis / compare / output / study::to_string(CrackPattern::straight), "straight");
-  EXPECT_STREQ(analysis / compare / output / study::to_string(CrackPattern::oscillating), "oscillating");
-  EXPECT_STREQ(analysis / compare / output / study::to_string(CrackPattern::branching), "branching");
-  EXPECT_STREQ(analysis / compare / output / study::to_string(CrackPattern::arrested), "arrested");
-  EXPECT_STREQ(analysis / compare / output / study::to_string(CrackPattern::undecided), "undecided");
+  EXPECT_STREQ(to_string(CrackPattern::straight), "straight");
+  EXPECT_STREQ(to_string(CrackPattern::oscillating), "oscillating");
+  EXPECT_STREQ(to_string(CrackPattern::branching), "branching");
+  EXPECT_STREQ(to_string(CrackPattern::arrested), "arrested");
+  EXPECT_STREQ(to_string(CrackPattern::undecided), "undecided");
 }
 
 } // namespace

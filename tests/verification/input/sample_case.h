@@ -17,7 +17,7 @@
 namespace sample_case
 {
 
-using namespace latcon::verification;
+using namespace latcon::input;
 
 enum class Rule
 {

@@ -16,7 +16,7 @@
 using namespace latcon;
 using output::Result;
 using output::Results;
-using analysis / compare / output / study::to_string;
+using output::to_string;
 using output::Verdict;
 
 namespace
