@@ -16,7 +16,6 @@ namespace
 using namespace lattice;
 using namespace analysis;
 using namespace compare;
-using namespace study;
 
 constexpr double d = sheets::spacing;
 const Eigen::Matrix2d loading = sheets::stretched(2.3, 2.8);

@@ -13,7 +13,6 @@ using namespace bridge;
 using namespace claims;
 using namespace input;
 using namespace output;
-using namespace study;
 
 constexpr unsigned int samples = 200;
 

@@ -18,7 +18,6 @@ using namespace claims;
 using namespace compare;
 using namespace input;
 using namespace output;
-using namespace study;
 
 constexpr lattice::Orientation orientations[] = {lattice::Orientation::rows_along_crack,
                                                  lattice::Orientation::rows_across_crack};

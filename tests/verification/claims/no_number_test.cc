@@ -24,7 +24,6 @@ namespace
 using namespace bridge;
 using namespace claims;
 using namespace output;
-using namespace study;
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 

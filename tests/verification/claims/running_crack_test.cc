@@ -8,7 +8,6 @@
 #include "tests/verification/claims/faults.h"
 
 using namespace latcon;
-using namespace analysis;
 using namespace bridge;
 using namespace claims;
 using namespace input;

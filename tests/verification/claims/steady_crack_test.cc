@@ -17,7 +17,6 @@ using namespace latcon;
 namespace
 {
 
-using namespace analysis;
 using namespace claims;
 using namespace output;
 

@@ -15,7 +15,6 @@ using namespace bridge;
 using namespace claims;
 using namespace input;
 using namespace output;
-using namespace study;
 
 WaveEnergyOptions small_version(const Case &input)
 {

@@ -17,7 +17,6 @@ using namespace bridge;
 using namespace claims;
 using namespace input;
 using namespace output;
-using namespace study;
 
 lattice::TriangularLattice sheet_of(const Case &input)
 {

@@ -10,12 +10,9 @@ using namespace latcon;
 namespace
 {
 
-using namespace analysis;
 using namespace commands;
-using namespace compare;
 using namespace input;
 using namespace output;
-using namespace study;
 
 #define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
 

@@ -14,11 +14,9 @@ using namespace latcon;
 namespace
 {
 
-using namespace analysis;
 using namespace claims;
 using namespace compare;
 using namespace output;
-using namespace study;
 
 class Comparing : public testing::Test
 {

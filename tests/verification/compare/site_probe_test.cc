@@ -12,7 +12,6 @@ using namespace latcon;
 namespace
 {
 
-using namespace claims;
 using namespace compare;
 
 ContinuumFrame read(const std::string &path)

@@ -10,10 +10,7 @@
 #include "verification/study/study_plan.h"
 
 using namespace latcon;
-using namespace analysis;
-using namespace compare;
 using namespace input;
-using namespace output;
 using namespace study;
 
 namespace

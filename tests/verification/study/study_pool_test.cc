@@ -12,9 +12,6 @@
 #include "verification/study/process_pool.h"
 
 using namespace latcon;
-using namespace analysis;
-using namespace compare;
-using namespace output;
 using namespace study;
 
 namespace

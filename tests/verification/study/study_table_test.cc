@@ -9,9 +9,6 @@
 #include "verification/study/study_output.h"
 
 using namespace latcon;
-using namespace analysis;
-using namespace claims;
-using namespace compare;
 using namespace output;
 using namespace study;
 
