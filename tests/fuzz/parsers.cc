@@ -21,7 +21,6 @@ namespace
 {
 
 using namespace bridge;
-using namespace commands;
 using namespace input;
 using namespace study;
 

@@ -15,7 +15,6 @@ namespace
 
 using namespace lattice;
 using namespace analysis;
-using namespace compare;
 
 constexpr double d = sheets::spacing;
 const Eigen::Matrix2d loading = sheets::stretched(2.3, 2.8);

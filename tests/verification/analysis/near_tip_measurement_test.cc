@@ -17,7 +17,6 @@ namespace
 
 using namespace lattice;
 using namespace analysis;
-using namespace claims;
 
 constexpr double d = 1e-3;
 constexpr double speed = 50.; // of the crack [m/s]

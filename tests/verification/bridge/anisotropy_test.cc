@@ -16,9 +16,7 @@ namespace
 {
 
 using namespace bridge;
-using namespace claims;
 using namespace input;
-using namespace study;
 using Values = std::function<Eigen::VectorXd(const Eigen::Matrix2d &R)>;
 
 RotationMean over_rotations(const Values &values)

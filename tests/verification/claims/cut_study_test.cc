@@ -15,7 +15,6 @@ namespace
 
 using namespace bridge;
 using namespace claims;
-using namespace compare;
 using namespace input;
 using namespace output;
 

@@ -14,7 +14,6 @@ using namespace latcon;
 namespace
 {
 
-using namespace claims;
 using namespace compare;
 using namespace output;
 
