@@ -161,7 +161,7 @@ std::optional<Case> with_another(const std::string &key, const std::string &valu
 TEST(ClaimInputs, EveryEntryChangesThemOrIsReadByNoClaim)
 {
   const Case input = some_case();
-  const std::string text = claim_inputs_text(input);
+  const std::string text = claims::claim_inputs_text(input);
   std::size_t n_read = 0;
   for (const auto &[key, value] : entries(input))
   {
@@ -173,7 +173,7 @@ TEST(ClaimInputs, EveryEntryChangesThemOrIsReadByNoClaim)
                                  (section.size() > 5 && section.compare(section.size() - 5, 5, " edge") == 0) ||
                                  (section == "Continuum" && key != "Continuum/ratio");
     const bool unread = finite_elements || no_claim_reads.count(key) != 0;
-    EXPECT_EQ(claim_inputs_text(*changed) == text, unread) << key << " = " << entries(*changed).at(key);
+    EXPECT_EQ(claims::claim_inputs_text(*changed) == text, unread) << key << " = " << entries(*changed).at(key);
     n_read += unread ? 0 : 1;
   }
   EXPECT_EQ(n_read, 20u);
