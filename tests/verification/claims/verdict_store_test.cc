@@ -60,17 +60,17 @@ TEST(Sha256, HasTheKnownValues)
 TEST(VerdictKey, IsThatOfProgramClaimsSizeRanksAndInputs)
 {
   const Case input = some_case();
-  const std::string hash = verdict_key(input, {"energy"}, true, 1).hash;
+  const std::string hash = claims::verdict_key(input, {"energy"}, true, 1).hash;
   EXPECT_EQ(hash.size(), 64u);
-  EXPECT_EQ(verdict_key(input, {"energy"}, true, 1).hash, hash);
-  EXPECT_NE(verdict_key(input, {"energy", "prestretch"}, true, 1).hash, hash);
-  EXPECT_NE(verdict_key(input, {"energy"}, false, 1).hash, hash);
-  EXPECT_NE(verdict_key(input, {"energy"}, true, 2).hash, hash);
+  EXPECT_EQ(claims::verdict_key(input, {"energy"}, true, 1).hash, hash);
+  EXPECT_NE(claims::verdict_key(input, {"energy", "prestretch"}, true, 1).hash, hash);
+  EXPECT_NE(claims::verdict_key(input, {"energy"}, false, 1).hash, hash);
+  EXPECT_NE(claims::verdict_key(input, {"energy"}, true, 2).hash, hash);
   Case other = input;
   other.nearest.viscosity = 1e-300;
-  EXPECT_NE(verdict_key(other, {"energy"}, true, 1).hash, hash);
+  EXPECT_NE(claims::verdict_key(other, {"energy"}, true, 1).hash, hash);
   // The program is the one that runs.
-  EXPECT_NE(verdict_key(input, {}, true, 1).text.find("program=" + sha256(content_of("/proc/self/exe"))),
+  EXPECT_NE(claims::verdict_key(input, {}, true, 1).text.find("program=" + sha256(content_of("/proc/self/exe"))),
             std::string::npos);
 }
 
@@ -201,7 +201,7 @@ TEST_F(Environment, SaysWhereTheStoreIs)
 
 TEST(VerdictStore, TakesNoTableThatLeavesItsFolder)
 {
-  const VerdictKey key = verdict_key(some_case(), {"energy"}, true, 1);
+  const VerdictKey key = claims::verdict_key(some_case(), {"energy"}, true, 1);
   for (const char *name : {"../../planted", "/tmp/planted", ""})
   {
     Verdicts verdicts = some_verdicts();
