@@ -37,7 +37,7 @@ protected:
     const ContinuumFrame there = continuum();
     require_same_time(here, there);
     require_same_bounds(here, there);
-    return norms(here, there, compare(here, there, {}, MPI_COMM_SELF), tolerances);
+    return norms(here, there, compare::compare(here, there, {}, MPI_COMM_SELF), tolerances);
   }
 
   static Result row(const Results &results, const std::string &quantity)
@@ -122,7 +122,7 @@ TEST_F(Comparing, LeavesSitesThatLackBondsOutOfStressAndEnergy)
   write_lattice(folder_ / "a.vtp", {}, 12, 8, 0.06, 0.04, removed);
   write_continuum(folder_ / "a.vtu", {});
   const LatticeFrame here = lattice();
-  const Comparison comparison = compare(here, continuum(), {}, MPI_COMM_SELF);
+  const Comparison comparison = compare::compare(here, continuum(), {}, MPI_COMM_SELF);
   EXPECT_EQ(comparison.compared(here, common_fields.front()).size(), 11u * 7u - 1u);
   EXPECT_EQ(comparison.compared(here, common_fields.back()).size(), 11u * 7u - 9u);
 }

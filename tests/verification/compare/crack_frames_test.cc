@@ -41,7 +41,7 @@ TEST(RunningCrack, LeavesFramesThatCanBeCompared)
     const auto difference = [&](const Position &centre)
     {
       const Scope scope{true, {{centre, 5. * rubber.spacing}}};
-      const Results results = norms(lattice, continuum, compare(lattice, continuum, scope, MPI_COMM_WORLD), {});
+      const Results results = norms(lattice, continuum, compare::compare(lattice, continuum, scope, MPI_COMM_WORLD), {});
       for (const Result &row : results.rows())
         if (row.quantity == "velocity, largest difference")
           return row.error.value();
