@@ -2,6 +2,7 @@
 #include "continuum/dynamic_step.h"
 
 #include "continuum/errors.h"
+#include "continuum/newton_solver.h"
 
 #include <deal.II/base/mpi.h>
 
@@ -10,6 +11,7 @@
 #include <cmath>
 #include <limits>
 #include <sstream>
+#include <utility>
 
 using namespace dealii;
 
@@ -206,49 +208,28 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
       return rise;
     };
     Residual state = best_residual(step, predicted(1.), predicted(0.), u);
-    double length = 1.;
-    unsigned int linear_iterations = 0;
-    Vector change = sheet_.make_owned();
-    for (unsigned int iteration = 0;; ++iteration)
+    const auto solve = [&](const Residual &at, const Vector &, const double forcing, Vector &change)
     {
-      const double tolerance = std::max(settings_.relative_tolerance * state.reference, round_off(state, u));
-      report_.iterations.push_back(
-        {number, iteration, step.last_load_factor, state.free, tolerance, state.energy, length, linear_iterations});
-      if (state.free <= tolerance)
-        return "";
-      if (iteration == settings_.max_newton_iterations)
-        return "no convergence in " + std::to_string(iteration) + " Newton iterations, the largest residual is" +
-               place_of_largest(state.residual);
-
       const unsigned int set_ups = linear_solver_->n_set_ups();
       const double load_factor = step.mean_load_factor();
-      assemble(state.u_mean, state.v_mean, load_factor);
-      Vector rhs = state.residual;
+      assemble(at.u_mean, at.v_mean, load_factor);
+      Vector rhs = at.residual;
       rhs *= -1.;
       for (const types::global_dof_index i : sheet_.owned())
         if (homogeneous_.is_constrained(i))
           rhs(i) = 0.;
       rhs.compress(VectorOperation::insert);
-      linear_iterations = linear_solver_->solve(matrix_, change, rhs);
-      note_multigrid(set_ups, state.u_mean, load_factor);
+      const unsigned int iterations = linear_solver_->solve(matrix_, change, rhs, forcing);
+      note_multigrid(set_ups, at.u_mean, load_factor);
       homogeneous_.distribute(change);
-
-      length = 1.;
-      for (unsigned int halvings = 0;; ++halvings, length *= 0.5)
-        try
-        {
-          Vector trial = u;
-          trial.add(length, change);
-          state = evaluate(step, trial);
-          u = trial;
-          break;
-        }
-        catch (const NonPhysicalState &failure)
-        {
-          if (halvings == settings_.max_halvings)
-            return failure.what();
-        }
-    }
+      return NewtonStep{iterations, 0.};
+    };
+    const NewtonSolver<Residual> newton(
+      {settings_.relative_tolerance, settings_.max_newton_iterations, settings_.max_halvings},
+      {[&](const Vector &at) { return evaluate(step, at); },
+       [this](const Residual &at, const Vector &there) { return round_off(at, there); }, solve, nullptr,
+       [this](const Residual &at) { return ", the largest residual is" + place_of_largest(at.residual); }});
+    return newton.solve(u, std::move(state), number, step.last_load_factor, 0, report_.iterations);
   }
   catch (const NonPhysicalState &failure)
   {

@@ -3,6 +3,7 @@
 #include "continuum/collective.h"
 #include "continuum/error_indicator.h"
 #include "continuum/errors.h"
+#include "continuum/newton_solver.h"
 #include "continuum/reactions.h"
 
 #include <deal.II/base/mpi.h>
@@ -33,31 +34,17 @@ private:
   double &seconds_;
   std::chrono::steady_clock::time_point start_;
 };
-// Relative residual to which the next Newton step is solved, after Eisenstat and Walker (1996), choice 2 with its
-// safeguard: as the residual falls quadratically, by the square of its last reduction. `tolerance` is that of the
-// residual relative to what it is. A step that comes close to it anyway is made to reach it, and none goes far below
-// it.
-double next_forcing(const double largest, const double last, const double reduction, const double tolerance)
-{
-  constexpr double share = 0.9;
-  double forcing = share * reduction * reduction;
-  if (const double kept = share * last * last; kept > 0.1)
-    forcing = std::max(forcing, kept);
-  const double last_step = 0.1 * tolerance;
-  if (forcing < 1e3 * last_step)
-    forcing = last_step;
-  return std::min(largest, forcing);
-}
 } // namespace
 
-/// What Newton has to know of a state.
+/// Equilibrium at a displacement; see NewtonSolver.
 struct StaticSolver::Evaluation
 {
-  double potential; // [J/m]
-  double free;      // norm of the residual over the free unknowns [N/m]
-  double reference; // norm of the nodal reactions and dead loads [N/m]
-  Vector residual;  // of every unknown [N/m]
-  Vector magnitude; // sums of absolute values behind the residual [N/m]
+  Vector displacement; // with ghost entries [m]
+  double energy;       // less the work of the dead loads [J/m]
+  double free;         // norm of the residual over the free unknowns [N/m]
+  double reference;    // norm of the nodal reactions and dead loads [N/m]
+  Vector residual;     // of every unknown [N/m]
+  Vector magnitude;    // sums of absolute values behind the residual [N/m]
 };
 
 StaticSolver::StaticSolver(const Sheet::Mesh &mesh, const Constitution &constitution, BoundaryConditions conditions,
@@ -101,10 +88,10 @@ void StaticSolver::set_up()
 
 StaticSolver::Evaluation StaticSolver::evaluate(const Vector &u, const double load_factor) const
 {
-  Evaluation state{0., 0., 0., sheet_.make_owned(), sheet_.make_owned()};
-  Vector owned = sheet_.make_owned();
-  owned = u;
-  state.potential = sheet_.residual(u, state.residual, state.magnitude, load_factor) - load_factor * (loads_ * owned);
+  Evaluation state{sheet_.make_ghosted(), 0., 0., 0., sheet_.make_owned(), sheet_.make_owned()};
+  state.displacement = u;
+  state.energy =
+    sheet_.residual(state.displacement, state.residual, state.magnitude, load_factor) - load_factor * (loads_ * u);
   state.residual.add(-load_factor, loads_);
   double free = 0.;
   double given = 0.; // forces at work: reactions and dead loads
@@ -136,15 +123,12 @@ double StaticSolver::round_off(const Evaluation &state, const Vector &u) const
 std::string StaticSolver::attempt(const double target, SolverReport &report)
 {
   const unsigned int number = report.load_steps.size() + 1;
-  Vector u = sheet_.make_ghosted();   // accepted so far within this load step
-  Vector trial = sheet_.make_owned(); // being written
-  Vector step = sheet_.make_owned();  // Newton step, or predictor
   Vector rhs = sheet_.make_owned();
-  Vector lift = sheet_.make_ghosted(); // rise of the prescribed displacement
   Vector lift_forces = sheet_.make_owned();
 
-  const auto solve = [&](const Evaluation &state, const Vector &at, const Vector *rise, const double forcing)
+  const auto solve = [&](const Evaluation &state, const Vector *rise, const double forcing, Vector &step)
   {
+    const Vector &at = state.displacement;
     {
       const Clock clock(report.times.assembly);
       sheet_.tangent(at, homogeneous_, matrix_, target, rise, &lift_forces);
@@ -167,81 +151,44 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
     const Clock clock(report.times.linear_solve);
     const unsigned int iterations = linear_solver_->solve(matrix_, step, rhs, forcing);
     homogeneous_.distribute(step);
-    return iterations;
+    return NewtonStep{iterations, -(rhs * step)}; // rhs is minus the residual, zero where held
   };
-  const auto look = [&](const Vector &at)
+  const auto evaluate_at = [&](const Vector &at)
   {
     const Clock clock(report.times.assembly);
     return evaluate(at, target);
   };
+  // Energies closer than their round-off cannot be told apart: n terms summed, errors of random sign.
+  const auto energy_noise = [&](const Evaluation &state)
+  {
+    const double n_points =
+      static_cast<double>(sheet_.mesh().n_global_active_cells()) * Utilities::pow(sheet_.degree() + 1, 2);
+    return 4. * std::numeric_limits<double>::epsilon() * std::sqrt(n_points) * std::abs(state.energy);
+  };
+  const NewtonSolver<Evaluation> newton(
+    {settings_.relative_tolerance, settings_.max_newton_iterations, settings_.max_halvings, settings_.largest_forcing},
+    {evaluate_at, [this](const Evaluation &state, const Vector &u) { return round_off(state, u); },
+     [&](const Evaluation &state, const Vector &, const double forcing, Vector &step)
+     { return solve(state, nullptr, forcing, step); },
+     energy_noise, nullptr});
 
+  Vector u = sheet_.make_owned();
   try
   {
-    // Predictor: the linear response to the rise of load and boundary displacement.
+    // Predictor: the linear response to the rise of load and boundary displacement, solved to round-off, because its
+    // right-hand side is large from the cells along held edges alone.
+    Vector lift = sheet_.make_ghosted();
     lift = full_lift_;
     lift *= target - load_factor_;
-    // The predictor to the last: its right-hand side is large from the cells along held edges alone.
-    unsigned int linear_iterations = solve(look(displacement_), displacement_, &lift, 0.);
-    trial = displacement_;
-    trial += step;
+    Vector step = sheet_.make_owned();
+    u = displacement_;
+    const unsigned int linear_iterations = solve(evaluate_at(u), &lift, 0., step).linear_iterations;
+    u += step;
     step = lift;
-    trial += step;
-    u = trial;
-    double length = 1.;
-
-    Evaluation state = look(u);
-    double last_free = 0.; // before the last Newton step
-    double forcing = settings_.largest_forcing;
-    for (unsigned int iteration = 0;; ++iteration)
-    {
-      const double floor = round_off(state, u);
-      const double tolerance = std::max(settings_.relative_tolerance * state.reference, floor);
-      report.iterations.push_back(
-        {number, iteration, target, state.free, tolerance, state.potential, length, linear_iterations});
-      if (state.free <= tolerance)
-        break;
-      if (iteration == settings_.max_newton_iterations)
-        return "no convergence in " + std::to_string(iteration) + " Newton iterations";
-
-      forcing = next_forcing(settings_.largest_forcing, forcing, iteration == 0 ? 1. : state.free / last_free,
-                             tolerance / state.free);
-      last_free = state.free;
-      linear_iterations = solve(state, u, nullptr, forcing);
-      const double slope = -(rhs * step); // dE along the step; rhs is minus the residual, zero where held
-      if (!(slope < 0.))
-        return "the tangent is not positive definite along the Newton step";
-
-      // Energies closer than their round-off cannot be told apart: n terms summed, errors of random sign.
-      const double n_points =
-        static_cast<double>(sheet_.mesh().n_global_active_cells()) * Utilities::pow(sheet_.degree() + 1, 2);
-      const double noise =
-        4. * std::numeric_limits<double>::epsilon() * std::sqrt(n_points) * std::abs(state.potential);
-      const double start = state.potential;
-      length = 1.;
-      std::string reason;
-      for (unsigned int halvings = 0;; ++halvings, length *= 0.5)
-      {
-        if (halvings > settings_.max_halvings)
-          return "the line search found no decrease of energy" + reason;
-        trial = u;
-        trial.add(length, step);
-        Vector candidate = sheet_.make_ghosted();
-        candidate = trial;
-        try
-        {
-          state = look(candidate);
-          if (state.potential <= start + 1e-4 * length * slope + noise)
-          {
-            u = candidate;
-            break;
-          }
-        }
-        catch (const NonPhysicalState &failure)
-        {
-          reason = std::string("; last refused state: ") + failure.what();
-        }
-      }
-    }
+    u += step;
+    const std::string failure = newton.solve(u, evaluate_at(u), number, target, linear_iterations, report.iterations);
+    if (!failure.empty())
+      return failure;
   }
   catch (const NonPhysicalState &failure)
   {
