@@ -1,4 +1,5 @@
 """Kills the program, or lets the disk be full, at one after the other of the calls by which it changes files."""
+import functools
 import shutil
 
 import victims
@@ -6,8 +7,10 @@ import whole
 from kills import Failure, compare
 
 
-def counted(program, arguments, folder):
+@functools.lru_cache(maxsize=None)
+def counted(program, name, folder):
     """@return the contents of an undisturbed run, and how many such calls it makes"""
+    arguments = victims.VICTIMS[name]
     log = folder / "calls"
     out = folder / "counted"
     status, said = program.run([*arguments, "--threads", "1"], out,
@@ -23,7 +26,7 @@ def at_moments(program, name, folder, fault, moments):
     """Lets a fault happen at some of the calls, given as a function of their number. @return statistics"""
     arguments = victims.VICTIMS[name]
     folder.mkdir(parents=True, exist_ok=True)
-    expected, calls = counted(program, arguments, folder)
+    expected, calls = counted(program, name, folder)
     told = {"calls": calls, "faults": 0, "files_read": 0}
     out = folder / fault
     for call in moments(calls):

@@ -177,5 +177,5 @@ def test_other_commands(tmp_path):
     assert list(relaxed.frames.times) == [0, 1] and relaxed.info["threads"] == 3
     sheet = case.set("Continuum/cells x", 4).set("Continuum/cells y", 2).set("Continuum/refinements", 0)
     assert latcon.continuum(sheet, tmp_path / "continuum", progress=False).energy.attrs["units"]["elastic"] == "J/m"
-    verified = latcon.verify("energy", directory=tmp_path / "verify", case=case, quick=True, progress=False)
-    assert set(verified.results["claim"]) == {"energy"} and "fails" not in set(verified.results["verdict"])
+    verified = latcon.verify("intrinsic-length", directory=tmp_path / "verify", case=case, quick=True, progress=False)
+    assert set(verified.results["claim"]) == {"intrinsic-length"} and "fails" not in set(verified.results["verdict"])

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """The gate before a crack: claims are checked once for the same inputs, reuse is said, and what fails is refused.
 
-Usage: gate_test.py PATH_OF_LATCON
+Usage: gate_test.py PATH_OF_LATCON [--full]     --full: each test that checks the claims once more
 """
 import hashlib
 import json
@@ -21,6 +21,9 @@ TINY = ["--set", "Sheet/length=2.5 cm", "--set", "Sheet/height=1.5 cm", "--set",
         "Next-nearest neighbours/present=false"]
 # A sheet that is pushed together along x, and buckles.
 FAILING = ["--set", "Loading/strain x=-0.3"]
+FULL = "--full" in sys.argv
+# Seconds each. What they show is shown of the store and of its keys by verdict_store_test.cc, of the claims by claims_test.cc.
+in_full = unittest.skipUnless(FULL, "in full only")
 
 
 class WithStore(TemporaryFolder):
@@ -88,6 +91,7 @@ class Gate(WithStore):
         for key in ("version", "git_commit", "hardware_threads"):
             self.assertIn(key, document)
 
+    @in_full
     def test_constant_changed_in_its_last_digits_is_checked(self):
         text, run = self.fracture("--set", f"Material/density={944 * (1 + 1e-12)!r}")
         self.assertIn("claims: checked now", text)
@@ -98,6 +102,7 @@ class Gate(WithStore):
         text, _ = self.fracture("--set", "Lattice/noise seed=7", "--set", "Fracture/breaking stretch=3.1")
         self.assertIn("reused", text)
 
+    @in_full
     def test_another_program_checks_again(self):
         other = self.folder / "latcon"
         with open(LATCON, "rb") as file:
@@ -120,6 +125,7 @@ class Gate(WithStore):
         self.assertTrue(self.fracture()[1]["verification"]["reused"])
         self.assertEqual(self.stored(), [path])
 
+    @in_full
     def test_file_of_other_inputs_under_this_name_is_not_used(self):
         right = self.stored()[0]
         self.fracture("--set", "Material/density=950")
@@ -140,18 +146,20 @@ class Gate(WithStore):
         path = self.stored()[0]  # written anew
         self.assertEqual(path.stat().st_mode & 0o022, 0)
         self.assertTrue(self.fracture()[1]["verification"]["reused"])
-        if os.geteuid() == 0:
+        if FULL and os.geteuid() == 0:
             os.chown(path, 65534, 65534)
             printed, info = self.fracture()
             self.assertIn("is not used: it belongs to another user", printed)
             self.assertFalse(info["verification"]["reused"])
 
+    @in_full
     def test_link_in_place_of_a_file_is_not_used(self):
         path = self.stored()[0]
         path.rename(self.folder / "elsewhere.json")
         path.symlink_to(self.folder / "elsewhere.json")
         self.assertFalse(self.fracture()[1]["verification"]["reused"])
 
+    @in_full
     def test_laws_that_no_crack_uses_do_not_refuse_it(self):
         # The fitted law has its best ratio at the end of the interval, or a given one loses ellipticity on the way.
         for settings, word in ((["Loading/strain x=0", "Fracture/breaking stretch=3.2"], "at the end of the search interval"),
@@ -161,6 +169,7 @@ class Gate(WithStore):
             self.assertEqual([row["verdict"] for row in rows], ["reported"], word)
             self.assertGreater(sum(row["verdict"] == "holds" for row in self.claims()), 30)
 
+    @in_full
     def test_store_that_cannot_be_written_stops_nothing(self):
         shutil.rmtree(self.cache)
         self.cache.write_text("in the way")
@@ -169,6 +178,7 @@ class Gate(WithStore):
         self.assertIn("not kept", run["verification"]["note"])
         self.assertTrue((self.out / "crack.json").exists())
 
+    @in_full
     def test_without_a_home_nothing_is_kept(self):
         for name in ("XDG_CACHE_HOME", "HOME"):
             self.environment.pop(name, None)
@@ -176,6 +186,7 @@ class Gate(WithStore):
         self.assertIn("no verdicts are kept", text)
         self.assertFalse(run["verification"]["reused"])
 
+    @in_full
     def test_all_ranks_decide_alike(self):
         self.assertFalse(self.fracture(ranks=2)[1]["verification"]["reused"])  # one rank has another hash
         self.assertEqual(len(self.stored()), 2)
@@ -222,4 +233,4 @@ class Refused(WithStore):
 
 
 if __name__ == "__main__":
-    unittest.main(verbosity=2)
+    unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -38,12 +38,10 @@ MATERIALS = {
     "10 MPa, linear": (spring(1), both(law="linear", modulus=1e7)),
     "undamped": (rod(1e5, 1.5e5), both(viscosity=0)),
 }
-# Pure shear, as in the rubber test strip; uniaxial; far stretched; waves of which one is slow, or damped in many steps; pushed
-# together; at the border of stability. With the claims that are tried: those on the loaded sheet's waves differ most.
-SOME = [("rubber", 0.0, 0.3, "energy"), ("rubber", 0.0, 1.8, "energy wave-speeds intrinsic-length"), ("rubber", 2.0, 0.5, "energy"),
-        ("a = 0", 0.0, 3.0, "energy"), ("10 kPa", 1.3, 1.8, "wave-speeds"), ("undamped", 3.0, 0.03, "energy"),
-        ("rubber", -0.3, 0.03, "energy"), ("rubber", -0.3, 1.0, "wave-speeds"), ("linear", -0.15, 0.6, "energy"),
-        ("10 MPa", 0.3, 0.03, "energy")]
+# Far stretched; of nearest neighbours alone, pushed together until they buckle; both buckled; at the border of stability;
+# stiff. With the claims that are tried: those on the loaded sheet's waves differ most.
+SOME = [("a = 0", 0.0, 3.0, "energy"), ("rubber", -0.3, 0.03, "energy"), ("rubber", -0.3, 1.0, "wave-speeds"),
+        ("linear", -0.15, 0.6, "energy"), ("10 MPa", 0.3, 0.03, "energy")]
 # The row by which a state may be refused.
 REASON = "stability of the loaded lattice"
 

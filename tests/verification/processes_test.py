@@ -71,7 +71,7 @@ class Start(TemporaryFolder):
 
     def test_of_many_at_once(self):
         starts = [subprocess.Popen([LATCON, "--version"], stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True,
-                                   env=environment(TMPDIR=str(self.tmp))) for _ in range(24)]
+                                   env=environment(TMPDIR=str(self.tmp))) for _ in range(12)]
         for start in starts:
             said, _ = start.communicate(timeout=600)
             self.assertEqual(start.returncode, 0, said)

@@ -53,7 +53,7 @@ class WithoutSteps(Interrupted):
 
     def test_verify_keeps_the_claims_that_are_done(self):
         results = self.out / "results.json"
-        self.is_ended("verify", begun=results.exists, number=signal.SIGTERM)
+        self.is_ended("verify", "--quick", begun=results.exists, number=signal.SIGTERM)
         claims = {row["claim"] for row in json.loads(results.read_text())["claims"]}
         self.assertEqual(claims, {"energy"})
         self.assertIsNone(self.info()["verdict"])
@@ -177,7 +177,7 @@ class Motions(Interrupted):
                 shutil.rmtree(self.out)
 
     def test_the_limit_of_the_processor_time(self):
-        process = self.start(*self.motion(), preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (4, 60)))
+        process = self.start(*self.motion(), preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_CPU, (2, 60)))
         self.is_saved(process)
 
     def test_a_signal_to_one_of_two_ranks(self):

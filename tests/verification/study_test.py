@@ -289,8 +289,11 @@ class Study(TemporaryFolder):
         results = json.loads(self.text("results.json"))["claims"]
         self.assertEqual([row["lattice"] for row in results if row["claim"] == "steady-crack"],
                          [row["lattice"] for row in check["rows"]])
+        # What is compared is known to far better than a per cent.
+        self.assertLess(max(row["tolerance"] for row in check["rows"] if row["quantity"].startswith("crack speed")), 0.005)
         speeds = [float(line["lattice speed"]) for line in read_csv(self.out / "steady_crack.csv")]
         self.assertEqual(speeds, [row["lattice"] for row in check["rows"] if row["quantity"].startswith("crack speed")])
+        self.assertEqual(len(speeds), 6)
         self.assertTrue((self.out / "pictures" / "steady-crack.png").exists())
 
     def test_quick_study_of_a_refused_base_runs_nothing(self):
