@@ -35,7 +35,7 @@ EMPTY = """#include "lattice/bond_law.h"
 #include <gtest/gtest.h>
 TEST(BondLaw, IsCompiled)
 {
-  EXPECT_NE(lattice::LinearBond{1.}.energy(2.), -1.);
+  EXPECT_NE(latcon::lattice::LinearBond{1.}.energy(2.), -1.);
 }
 """
 
