@@ -7,14 +7,16 @@
 
 namespace latcon::continuum
 {
-/// A network of fibres that all follow the deformation gradient (theory-continuum.md, eqs. (C.11) to (C.14)):
+/// Hyperelastic law of a network of fibres that all follow the deformation gradient (Cauchy-Born rule;
+/// theory-continuum.md, eqs. (C.11) to (C.14)):
 ///   W(F) = sum over families of  c_k psi_k(l_k),   l_k = |F N_k|    [Pa]
-/// Exact for a periodic network whose unit cell has one point. It knows no thickness: thickness_stretch is 1.
+/// Exact for a periodic network whose unit cell has one point. The law does not model the thickness:
+/// thickness_stretch() returns 1.
 class CauchyBorn : public Material
 {
 public:
-  /// Throws InvalidMaterial if there is no family, a direction is not a unit vector to 1e-12, a weight is not
-  /// positive, or a potential has no positive stiffness at l = 1.
+  /// Creates the law from one or more families. Throws InvalidMaterial if there is no family, a direction is not a unit
+  /// vector to 1e-12, a weight is not positive, or a potential has no positive stiffness at l = 1.
   explicit CauchyBorn(std::vector<FibreFamily> families);
 
   double energy(const dealii::Tensor<2, 2> &F) const override;

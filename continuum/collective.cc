@@ -8,7 +8,7 @@ namespace latcon::continuum
 {
 namespace
 {
-// Larger is graver: a retry with a smaller step can cure a non-physical state, nothing cures the others.
+// In order of severity: a retry with a smaller step can recover from a non-physical state, but not from the others.
 enum FailureKind : int
 {
   none,
@@ -42,7 +42,7 @@ DeferredException::DeferredException(const std::function<void()> &work)
   const auto keep = [this](const int kind, const std::exception &failure)
   {
     kind_ = kind;
-    // cppcheck-suppress useInitializationList ; what fails is not known before
+    // cppcheck-suppress useInitializationList ; the message is known only here
     message_ = failure.what();
   };
   try

@@ -7,8 +7,8 @@
 
 namespace latcon::continuum
 {
-/// Work of one rank that may throw, kept from throwing until all ranks have agreed on it: an exception that left one
-/// rank alone would leave the others waiting in their next communication.
+/// Runs local work that may throw and defers its exception until all ranks can throw together. An exception thrown on
+/// one rank only would leave the other ranks waiting in their next communication.
 ///
 ///   DeferredException guarded([&] { ...loop over own cells... });
 ///   vector.compress(add);                 // collective, so on every rank, whatever happened
@@ -16,12 +16,12 @@ namespace latcon::continuum
 class DeferredException
 {
 public:
-  /// Runs `work` at once and keeps what it throws. `work` must not communicate.
+  /// Runs `work` immediately and stores its exception, if any. `work` must not communicate.
   explicit DeferredException(const std::function<void()> &work);
 
-  /// Collective. If the work failed on any rank, every rank throws the same exception, with the message of the lowest
-  /// rank among those with the gravest failure. Types kept, gravest first: std::runtime_error (which stands for every
-  /// type not named here), OutputFailed, LinearSolverFailed, InvalidInput, NonPhysicalState.
+  /// Throws the same exception on every rank if the work failed on any rank, with the message of the lowest rank that
+  /// has the most severe failure. Types that are preserved, most severe first: std::runtime_error (any type not listed
+  /// here becomes one), OutputFailed, LinearSolverFailed, InvalidInput, NonPhysicalState. Collective.
   void rethrow_collectively(MPI_Comm communicator) const;
 
 private:
@@ -29,6 +29,6 @@ private:
   std::string message_;
 };
 
-/// DeferredException and its agreement in one: for work that needs no communication before the agreement.
+/// Runs local `work` and rethrows its exception on every rank: a DeferredException with nothing in between. Collective.
 void collectively(MPI_Comm communicator, const std::function<void()> &work);
 } // namespace latcon::continuum

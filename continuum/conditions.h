@@ -11,36 +11,37 @@
 
 namespace latcon::continuum
 {
-/// A field of two components over the reference configuration.
+/// Vector field with two components over the reference configuration.
 using VectorField = std::shared_ptr<const dealii::Function<2>>;
 
-/// Displacement given on one part of the boundary: u_i(X) = load factor * displacement_i(X) [m].
+/// Prescribed displacement on one part of the boundary: u_i(X) = load factor * displacement_i(X) [m].
 struct PrescribedDisplacement
 {
   dealii::types::boundary_id boundary;
-  VectorField displacement;                                   ///< [m], of reference position [m]
-  dealii::ComponentMask components = dealii::ComponentMask(); ///< which of the two are held; default both
+  VectorField displacement;                                   ///< [m], function of the reference position [m]
+  dealii::ComponentMask components = dealii::ComponentMask(); ///< prescribed components; default both
 };
 
-/// Normal gradient of displacement given on one part of the boundary, weakly: N_J du_i/dX_J = load factor *
-/// gradient_i(X) [-], N the outward reference normal. Only a sheet with a gradient law can be held so. On a plane of
-/// symmetry it is the component along the plane that is held, at zero.
+/// Weakly prescribed normal gradient of displacement on one part of the boundary: N_J du_i/dX_J = load factor *
+/// gradient_i(X) [-], with the outward reference normal N. Requires a gradient law. On a plane of symmetry, the
+/// component along the plane is prescribed as zero.
 struct PrescribedNormalGradient
 {
   dealii::types::boundary_id boundary;
   VectorField gradient;                                       ///< [-]
-  dealii::ComponentMask components = dealii::ComponentMask(); ///< which of the two are held; default both
+  dealii::ComponentMask components = dealii::ComponentMask(); ///< prescribed components; default both
 };
 
 /// Dead load on one part of the boundary: load factor * traction_i(X) [Pa], force per reference length and thickness.
-/// With a gradient law it is what works on the displacement along the edge, eq. (C.31).
+/// With a gradient law it is the load conjugate to the displacement of the edge, eq. (C.31).
 struct Traction
 {
   dealii::types::boundary_id boundary;
   VectorField traction; ///< [Pa]
 };
 
-/// Dead double traction: load factor * traction_i(X) [Pa m], which works on the normal gradient of displacement.
+/// Dead double traction on one part of the boundary: load factor * traction_i(X) [Pa m], conjugate to the normal
+/// gradient of displacement. Requires a gradient law.
 struct DoubleTraction
 {
   dealii::types::boundary_id boundary;
@@ -51,12 +52,12 @@ struct DoubleTraction
 /// (C.32)).
 struct BodyForce
 {
-  VectorField force;  ///< [N/m^3]; with a length, its gradient is asked for as well
+  VectorField force;  ///< [N/m^3]; must implement its gradient if length > 0
   double length = 0.; ///< l_d [m] >= 0
 };
 
-/// Two opposite straight edges whose displacements follow each other, u(second) - u(first) = what it was at the start.
-/// The mesh must know of it too (see make_rectangle).
+/// Periodicity of two opposite straight edges: u(second) - u(first) keeps its initial value. The mesh must be periodic
+/// as well (see make_rectangle).
 struct PeriodicPair
 {
   dealii::types::boundary_id first;
@@ -64,8 +65,7 @@ struct PeriodicPair
   unsigned int direction; ///< 0: x, 1: y
 };
 
-/// Everything that acts on a sheet from outside. An edge without any condition is free of traction and of double
-/// traction.
+/// Boundary conditions and loads of a sheet. An edge without any condition is free of traction and of double traction.
 struct BoundaryConditions
 {
   BoundaryConditions() = default;

@@ -5,14 +5,14 @@
 
 namespace latcon::continuum
 {
-/// What a sheet is made of: W(F) + W_g(F, Grad F), and the inertia that goes with them. The laws must outlive all that
-/// is made with it.
+/// Constitutive model of a sheet: local law W(F), optional gradient law W_g(F, Grad F), and penalty of the gradient
+/// law. The laws must outlive every object that uses this one.
 struct Constitution
 {
   Constitution(const Material &law) : local(&law) {}
   Constitution(const Material &law, const GradientLaw &gradient_law) : local(&law), gradient(&gradient_law) {}
 
-  /// Whether there is a gradient energy: a gradient law that is not zero.
+  /// Returns true if there is a gradient law that is not identically zero.
   bool has_gradient() const { return gradient != nullptr && !gradient->is_zero(); }
 
   /// W(F) + W_g(F, G) [J/m^3].
@@ -37,13 +37,13 @@ struct Constitution
   }
 
   const Material *local;
-  const GradientLaw *gradient = nullptr; ///< none: the local theory
+  const GradientLaw *gradient = nullptr; ///< nullptr: local theory
 
-  /// gamma [-] of the interior penalty gamma p (p + 1) / h times the law's normal stiffness at F = I, which must be
-  /// positive. Coercivity needs
-  /// the penalty to outweigh the mean double traction on a face by an inverse estimate, which grows as p^2 / h and asks
-  /// for about 0.3; the rest is margin for a law that stiffens under deformation and a mesh that is not uniform. Less
-  /// than 2 makes quadratic elements reach their order on finer meshes only; more costs linear iterations.
+  /// Factor gamma > 0 [-] of the interior penalty, gamma p (p + 1) / h times the normal stiffness of the gradient law
+  /// at F = I. For coercivity the penalty must exceed the mean double traction on a face. By an inverse estimate that
+  /// traction grows as p^2 / h, which requires gamma of about 0.3; the rest is a margin for laws that stiffen under
+  /// deformation and for non-uniform meshes. With gamma < 2, quadratic elements converge at their full order only on
+  /// finer meshes; a larger gamma costs linear iterations.
   double penalty = 2.;
 };
 } // namespace latcon::continuum

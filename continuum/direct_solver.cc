@@ -21,7 +21,7 @@ namespace latcon::continuum
 {
 namespace
 {
-// Rows of a matrix that follow each other, the unknowns of columns as numbered on all ranks.
+// Consecutive rows of a matrix, with global column indices.
 struct MatrixRows
 {
   std::vector<int> lengths;
@@ -66,8 +66,8 @@ std::vector<T> concatenated(std::vector<std::vector<T>> &&parts)
   return all;
 }
 
-// Rows of all ranks, on the first; none on the others.
-MatrixRows gathered_rows(const Epetra_CrsMatrix &matrix, const MPI_Comm communicator)
+// Gathers the rows of all ranks on the root rank; returns none on other ranks.
+MatrixRows gather_rows(const Epetra_CrsMatrix &matrix, const MPI_Comm communicator)
 {
   MatrixRows own = own_rows(matrix);
   if (Utilities::MPI::n_mpi_processes(communicator) == 1)
@@ -78,7 +78,7 @@ MatrixRows gathered_rows(const Epetra_CrsMatrix &matrix, const MPI_Comm communic
 }
 } // namespace
 
-// A matrix on the first rank and its factors. Amesos looks at the matrix for as long as it has factors, hence a copy.
+// Matrix on the root rank and its factors. Amesos refers to the matrix as long as the factors exist, hence a copy.
 struct DirectSolver::Factors
 {
   Factors(MatrixRows &&rows, const Library library)
@@ -94,8 +94,8 @@ struct DirectSolver::Factors
     problem.SetLHS(&x);
     problem.SetRHS(&b);
     Amesos factory;
-    const bool takes_mumps = library == Library::mumps && factory.Query("Amesos_Mumps");
-    solver.reset(factory.Create(takes_mumps ? "Amesos_Mumps" : "Amesos_Klu", problem));
+    const bool uses_mumps = library == Library::mumps && factory.Query("Amesos_Mumps");
+    solver.reset(factory.Create(uses_mumps ? "Amesos_Mumps" : "Amesos_Klu", problem));
     require_success(solver->SymbolicFactorization(), "symbolic factorisation");
   }
 
@@ -108,7 +108,7 @@ struct DirectSolver::Factors
       matrix.ReplaceMyValues(static_cast<int>(row), lengths[row], rows.values.data() + at, columns.data() + at);
   }
 
-  std::vector<int> lengths; // of rows
+  std::vector<int> lengths; // number of entries per row
   std::vector<int> columns;
   Epetra_Map map;
   Epetra_CrsMatrix matrix;
@@ -124,13 +124,13 @@ void DirectSolver::factorise(const Sheet::Matrix &K)
 {
   communicator_ = K.get_mpi_communicator();
   n_own_ = K.trilinos_matrix().NumMyRows();
-  MatrixRows rows = gathered_rows(K.trilinos_matrix(), communicator_);
+  MatrixRows rows = gather_rows(K.trilinos_matrix(), communicator_);
   collectively(communicator_,
                [&]
                {
                  if (rows.lengths.empty())
                    return;
-                 // Factors that fail leave none behind.
+                 // After a failure there are no factors.
                  std::unique_ptr<Factors> factors = std::move(factors_);
                  if (factors && factors->has_sparsity_of(rows))
                    factors->replace_values(rows);
@@ -154,16 +154,16 @@ void DirectSolver::solve(double *x, const double *b)
                  double *to = factors_->b.Values();
                  for (const std::vector<double> &part : parts)
                    to = std::copy(part.begin(), part.end(), to);
-                 require_success(factors_->solver->Solve(), "solution by the factors");
+                 require_success(factors_->solver->Solve(), "forward and backward substitution");
                });
   std::vector<int> counts;
-  std::vector<int> places;
+  std::vector<int> offsets;
   for (const std::vector<double> &part : parts)
   {
-    places.push_back(counts.empty() ? 0 : places.back() + counts.back());
+    offsets.push_back(counts.empty() ? 0 : offsets.back() + counts.back());
     counts.push_back(static_cast<int>(part.size()));
   }
-  MPI_Scatterv(factors_ ? factors_->x.Values() : nullptr, counts.data(), places.data(), MPI_DOUBLE, x,
+  MPI_Scatterv(factors_ ? factors_->x.Values() : nullptr, counts.data(), offsets.data(), MPI_DOUBLE, x,
                static_cast<int>(n_own_), MPI_DOUBLE, 0, communicator_);
 }
 

@@ -8,21 +8,22 @@
 
 namespace latcon::continuum
 {
-/// LU factors of a matrix whose rows are spread over ranks. The first rank gathers it and factorises it alone: factors
-/// that ranks share are rounded as messages happen to arrive, and the same matrix has to give the same bits every time
-/// for a motion to be resumed. Sheets are plane, so their factors fit one rank.
+/// LU factorisation of a matrix whose rows are distributed over ranks. The root rank gathers the matrix and factorises
+/// it alone, because the rounding of a parallel factorisation depends on the order in which messages arrive, and a
+/// restart needs the same bits for the same matrix. Sheets are two-dimensional, so their factors fit on one rank.
 ///
-/// The analysis of a sparsity is kept for the matrices that follow, and changes no bit of what is solved.
+/// The symbolic factorisation is reused for matrices with the same sparsity; the reuse does not change the solution by
+/// a bit.
 ///
-/// All functions are collective, and throw LinearSolverFailed on every rank.
+/// All functions are collective and throw LinearSolverFailed on every rank.
 class DirectSolver
 {
 public:
-  /// Which library factorises.
+  /// Library that computes the factors.
   enum class Library
   {
-    mumps, ///< KLU where MUMPS is missing
-    klu    ///< slower for large matrices, faster to solve with small ones
+    mumps, ///< falls back to KLU if MUMPS is not available
+    klu    ///< slower for large matrices, faster solution for small ones
   };
 
   explicit DirectSolver(Library library = Library::mumps);
@@ -30,16 +31,16 @@ public:
   DirectSolver(const DirectSolver &) = delete;
   DirectSolver &operator=(const DirectSolver &) = delete;
 
-  /// Factorises a copy of `K`. Throws if it is singular.
+  /// Factorises a copy of `K`. Throws if `K` is singular.
   void factorise(const Sheet::Matrix &K);
 
-  /// Solves K x = b for the matrix factorised last; the vectors have no ghost entries.
+  /// Solves K x = b for the last factorised matrix; the vectors have no ghost entries.
   void solve(Sheet::Vector &x, const Sheet::Vector &b);
   void solve(dealii::LinearAlgebra::distributed::Vector<double> &x,
              const dealii::LinearAlgebra::distributed::Vector<double> &b);
 
 private:
-  struct Factors; // of the first rank
+  struct Factors; // on the root rank
 
   void solve(double *x, const double *b);
 

@@ -1,4 +1,4 @@
-// Energy and momentum of DynamicSolver.
+// Energy balance and momentum of DynamicSolver.
 #include "continuum/dynamic_step.h"
 
 #include <deal.II/base/mpi.h>
@@ -23,7 +23,7 @@ void DynamicSolver::update_energies(EnergyLedger &ledger, const Vector &u, const
   }
 }
 
-// The ledger after a step that ends with u and v.
+// Returns the ledger at the end of a step with displacement u and velocity v.
 EnergyLedger DynamicSolver::ledger_after(const Step &step, const Vector &u, const Vector &v) const
 {
   EnergyLedger ledger = ledger_;
@@ -47,7 +47,7 @@ EnergyLedger DynamicSolver::ledger_after(const Step &step, const Vector &u, cons
       ledger.work += sheet_.energy(middle, step.last_load_factor) - sheet_.energy(middle, step.first_load_factor);
     if (!sheet_.conditions().displacements.empty())
     {
-      // Reactions at the middle of the step, where the accelerations of the rule are not of second order.
+      // Reactions at the middle of the step; the accelerations of the time integrator are not of second order there.
       Vector forces = sheet_.make_owned();
       Vector inertial = sheet_.make_owned();
       Vector magnitude = sheet_.make_owned();

@@ -23,7 +23,7 @@ namespace latcon::continuum
 NewmarkParameters NewmarkParameters::generalised_alpha(const double rho_inf)
 {
   if (!(rho_inf >= 0. && rho_inf <= 1.))
-    throw InvalidInput("the amplification rho_inf of high frequencies must lie between 0 and 1");
+    throw InvalidInput("the high-frequency amplification rho_inf must be in [0, 1]");
   const double alpha_m = (2. * rho_inf - 1.) / (rho_inf + 1.);
   const double alpha_f = rho_inf / (rho_inf + 1.);
   const double gamma = 0.5 - alpha_m + alpha_f;
@@ -49,21 +49,20 @@ void DynamicSolver::check_input() const
       throw InvalidInput(rule);
   };
   require(inertia_.density > 0. && std::isfinite(inertia_.density), "the density must be positive and finite");
-  require(inertia_.length >= 0. && std::isfinite(inertia_.length),
-          "the length of micro-inertia must be finite and not negative");
+  require(inertia_.length >= 0. && std::isfinite(inertia_.length), "the micro-inertia length must be finite and >= 0");
   require(settings_.time_step > 0. && std::isfinite(settings_.time_step), "the time step must be positive and finite");
   require(settings_.relative_tolerance > 0. && settings_.relative_tolerance < 1.,
-          "the relative tolerance of the residual must lie between 0 and 1");
+          "the relative tolerance of the residual must be in (0, 1)");
   const NewmarkParameters &rule = settings_.rule;
   constexpr double rounding = 1e-12;
   require(rule.alpha_m <= rule.alpha_f + rounding && rule.alpha_f <= 0.5 + rounding && rule.alpha_f >= 0. &&
             rule.beta >= 0.25 + 0.5 * (rule.alpha_f - rule.alpha_m) - rounding && std::isfinite(rule.beta),
-          "a time rule is stable only with alpha_m <= alpha_f <= 1/2 and beta >= 1/4 + (alpha_f - alpha_m)/2");
+          "a time integrator is stable only with alpha_m <= alpha_f <= 1/2 and beta >= 1/4 + (alpha_f - alpha_m)/2");
   require(std::abs(rule.gamma - (0.5 - rule.alpha_m + rule.alpha_f)) <= rounding,
-          "a time rule is of second order only with gamma = 1/2 - alpha_m + alpha_f");
+          "a time integrator is of second order only with gamma = 1/2 - alpha_m + alpha_f");
 }
 
-// Everything that depends on the mesh.
+// Sets up everything that depends on the mesh.
 void DynamicSolver::set_up()
 {
   apply_conditions();
@@ -90,7 +89,7 @@ void DynamicSolver::set_up()
   release_forces_ = sheet_.make_owned();
 }
 
-// Everything that depends on which boundaries are held.
+// Sets up everything that depends on the boundaries with prescribed displacement.
 void DynamicSolver::apply_conditions()
 {
   full_lift_ = sheet_.lift();
@@ -106,14 +105,14 @@ void DynamicSolver::apply_conditions()
                                                   viscosity_ == nullptr ? Symmetry::symmetric : Symmetry::unsymmetric);
 }
 
-// Share of the release forces that still acts.
+// Returns the fraction of the release forces that acts at `time` [-].
 double DynamicSolver::release_share(const double time) const
 {
   const double passed = time - release_time_;
   return has_released_ && passed < release_duration_ ? 1. - std::max(passed, 0.) / release_duration_ : 0.;
 }
 
-// Forces that hold the held nodes, and what is left of the equation of motion at the others.
+// Returns the reactions at constrained nodes, and the residual of the equation of motion at free nodes [N/m].
 DynamicSolver::Vector DynamicSolver::reactions() const
 {
   Vector forces = sheet_.make_owned();
@@ -132,13 +131,13 @@ DynamicSolver::Vector DynamicSolver::reactions() const
 void DynamicSolver::release(const double duration)
 {
   if (!has_started_)
-    throw InvalidInput("a motion needs a start before nodes are let go");
+    throw InvalidInput("release() needs a state: call start() first");
   if (!(duration >= 0.) || !std::isfinite(duration))
-    throw InvalidInput("the duration in which forces on nodes let go fall to zero must be finite and not negative");
+    throw InvalidInput("the duration of a release must be finite and >= 0");
   if (release_share(time_) > 1e-9)
-    throw InvalidInput("nodes can be let go only when those before them are free of force");
+    throw InvalidInput("release() while the reactions of an earlier release still act is not supported");
   if (!linear_solver_->is_direct())
-    throw InvalidInput("nodes can be let go only in a sheet that the direct solver solves");
+    throw InvalidInput("release() is supported with the direct solver only");
   const Vector forces = reactions();
   AffineConstraints<double> before;
   before.copy_from(homogeneous_);
@@ -154,7 +153,7 @@ void DynamicSolver::release(const double duration)
     }
   release_forces_.compress(VectorOperation::insert);
   if (Utilities::MPI::max(holds_more ? 1 : 0, sheet_.communicator()) == 1)
-    throw InvalidInput("a node that is free cannot be held in the course of a motion");
+    throw InvalidInput("release() cannot prescribe the displacement of a free node");
   has_released_ = true;
   release_time_ = time_;
   release_duration_ = duration;
@@ -181,7 +180,8 @@ DynamicSolver::Vector DynamicSolver::ghosted(const Vector &owned) const
   return x;
 }
 
-// Nodal values, made one field across hanging nodes; not across periodic edges, for the field may be affine.
+// Interpolates a field and applies the constraints at hanging nodes; those at periodic edges are not applied, because
+// the field may be affine.
 DynamicSolver::Vector DynamicSolver::interpolate(const VectorField &field) const
 {
   Vector x = sheet_.make_owned();
@@ -191,7 +191,7 @@ DynamicSolver::Vector DynamicSolver::interpolate(const VectorField &field) const
       [&]
       {
         if (field->n_components != 2)
-          throw InvalidInput("an initial field needs a function of two components");
+          throw InvalidInput("an initial field must be a function with two components");
         sheet_.for_each_owned_dof([&](const auto dof, const unsigned int component, const Point<2> &X)
                                   { x(dof) = field->value(X, component); });
       });
@@ -205,7 +205,8 @@ DynamicSolver::Vector DynamicSolver::interpolate(const VectorField &field) const
   return x;
 }
 
-// Rows of dependent unknowns, which hold what AffineConstraints needs to keep the matrix regular, are left out.
+// Computes M x without the rows of constrained unknowns, whose entries AffineConstraints adds to keep the matrix
+// regular.
 void DynamicSolver::multiply_by_mass(const Sheet::Matrix &M, const Vector &x, Vector &product) const
 {
   M.vmult(product, x);
@@ -234,7 +235,7 @@ void DynamicSolver::start(const VectorField &displacement, const VectorField &ve
 void DynamicSolver::start(const Vector &displacement, const Vector &velocity, const double time)
 {
   if (displacement.size() != sheet_.dof_handler().n_dofs() || velocity.size() != sheet_.dof_handler().n_dofs())
-    throw InvalidInput("an initial nodal vector must be one of the sheet");
+    throw InvalidInput("an initial nodal vector must have the size of the sheet's vectors");
   Vector u = sheet_.make_owned();
   Vector v = sheet_.make_owned();
   u = displacement;
@@ -274,7 +275,7 @@ void DynamicSolver::check_start(const Vector &u, const Vector &v, const double t
     if (is_prescribed(i))
       off = std::max(off, std::abs(u(i) - prescribed(i)));
   if (!(Utilities::MPI::max(off, sheet_.communicator()) <= 1e-8 * extent))
-    throw InvalidInput("the initial displacement of a held boundary is not the prescribed one");
+    throw InvalidInput("the initial displacement of a boundary differs from the prescribed one");
 }
 
 void DynamicSolver::begin(Vector &u, Vector &v, const double time)
@@ -285,7 +286,7 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time)
   for (unsigned int k = 0; k < 4; ++k)
     factors[k] = load_factor_at(time + k * dt);
 
-  // Held unknowns follow the load factor; one-sided differences of second order, like the time rule.
+  // Prescribed unknowns follow the load factor: one-sided differences of second order, as the time integrator.
   const double rate = (-3. * factors[0] + 4. * factors[1] - factors[2]) / (2. * dt);
   const double second_rate = (2. * factors[0] - 5. * factors[1] + 4. * factors[2] - factors[3]) / (dt * dt);
   Vector a = sheet_.make_owned();
@@ -302,7 +303,7 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time)
   sheet_.conformity_constraints().distribute(v);
   sheet_.conformity_constraints().distribute(a);
 
-  // M a = lambda L - internal and viscous forces, with a given where held.
+  // Solve M a = lambda L - internal and viscous forces, with prescribed a where the displacement is prescribed.
   const Vector u_ghosted = ghosted(u);
   const Vector v_ghosted = ghosted(v);
   Vector rhs = sheet_.make_owned();
@@ -328,10 +329,10 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time)
   homogeneous_.distribute(free_acceleration);
   a += free_acceleration;
 
-  // The diagonals that the floor of the residual needs before the first Newton step.
+  // Diagonals for the round-off of the residual, needed before the first Newton step.
   const unsigned int set_ups = linear_solver_->n_set_ups();
   assemble(u_ghosted, v_ghosted, factors[0]);
-  note_multigrid(set_ups, u_ghosted, factors[0]);
+  record_multigrid_state(set_ups, u_ghosted, factors[0]);
 
   displacement_ = u_ghosted;
   velocity_ = v_ghosted;
@@ -352,13 +353,13 @@ void DynamicSolver::check_loaded() const
 {
   if (!(std::abs(time_ - (start_time_ + n_steps_ * settings_.time_step)) <=
         4. * std::numeric_limits<double>::epsilon() * std::max(std::abs(start_time_), std::abs(time_))))
-    throw InvalidInput("the stored time is not that of the steps stored with it");
+    throw InvalidInput("the stored time does not match the number of stored steps");
 }
 
 void DynamicSolver::step()
 {
   if (!has_started_)
-    throw InvalidInput("a motion needs a start before its first step");
+    throw InvalidInput("step() needs a state: call start() first");
   const double target = start_time_ + (n_steps_ + 1) * settings_.time_step;
   const auto restore = [this, time = time_, load_factor = load_factor_, u = displacement_, v = velocity_,
                         a = acceleration_, ledger = ledger_]
@@ -369,7 +370,7 @@ void DynamicSolver::step()
     velocity_ = v;
     acceleration_ = a;
     ledger_ = ledger;
-    linear_solver_->invalidate(); // a multigrid that may be of a state far off
+    linear_solver_->invalidate(); // multigrid may belong to a distant state
   };
   report_ = SolverReport();
   std::string failure;
@@ -390,7 +391,7 @@ void DynamicSolver::step()
   if (duration_ != settings_.time_step)
   {
     duration_ = settings_.time_step;
-    linear_solver_->invalidate(); // a multigrid of a shorter step
+    linear_solver_->invalidate(); // multigrid belongs to a shorter step
     n_divided_steps_ += failure.empty() ? 1 : 0;
   }
   report_.load_factor = load_factor_;
@@ -403,7 +404,7 @@ void DynamicSolver::step()
   }
 }
 
-// Advances to `end`, in halves where it must be. Returns why not, empty if it does.
+// Advances to `end`, dividing the step where necessary. Returns the reason of failure, empty on success.
 std::string DynamicSolver::advance_in_parts(const double duration, const double end, const unsigned int halvings)
 {
   const double middle = end - 0.5 * duration;
@@ -414,7 +415,8 @@ std::string DynamicSolver::advance_in_parts(const double duration, const double 
   return failure.empty() ? advance_in_parts(0.5 * duration, end, halvings - 1) : failure;
 }
 
-// Advances to `end` at once, if that can be solved; else the state stays. Returns why not.
+// Advances to `end` in one step. Returns the reason of failure, empty on success; after a failure the state is
+// unchanged.
 std::string DynamicSolver::advance(const double duration, const double end)
 {
   if (duration != duration_)
@@ -438,9 +440,9 @@ std::string DynamicSolver::advance(const double duration, const double end)
       v = step.last_velocity(a);
       ledger = ledger_after(step, u, v);
       if (!std::isfinite(ledger.imbalance) || !std::isfinite(a.l2_norm()))
-        failure = "its energy or acceleration is not finite";
+        failure = "the energy or the acceleration is not finite";
     }
-    catch (const NonPhysicalState &refusal) // the mean state may be one where that at the end is not
+    catch (const NonPhysicalState &refusal) // the mean state may be physical although the state at the end is not
     {
       failure = refusal.what();
     }
@@ -460,8 +462,8 @@ std::string DynamicSolver::advance(const double duration, const double end)
 void DynamicSolver::run_until(const double end, const Observer &observer)
 {
   if (!std::isfinite(end))
-    throw InvalidInput("the end of a motion must be finite");
-  // An end within rounding of a step is met by it.
+    throw InvalidInput("the end time must be finite");
+  // Within rounding of `end` the time counts as `end`.
   while (time_ < end - 1e-9 * settings_.time_step)
   {
     step();

@@ -42,14 +42,14 @@ DynamicSolver::Residual DynamicSolver::evaluate(const Step &step, const Vector &
   u_owned = state.u_mean;
   state.energy -= factor * (loads_ * u_owned);
   if (!std::isfinite(state.free) || !std::isfinite(state.reference))
-    throw NonPhysicalState("forces are not finite" + place_of_largest(state.residual));
+    throw NonPhysicalState("forces are not finite" + location_of_largest(state.residual));
   return state;
 }
 
-// Where the largest residual of a free unknown is, in words; one that is not a number is the largest.
-std::string DynamicSolver::place_of_largest(const Vector &residual) const
+// Describes the location of the largest residual of a free unknown; NaN counts as the largest.
+std::string DynamicSolver::location_of_largest(const Vector &residual) const
 {
-  using Candidate = std::array<double, 3>; // absolute value [N/m], place [m]
+  using Candidate = std::array<double, 3>; // absolute value [N/m], position [m]
   Candidate own{-1., 0., 0.};
   sheet_.for_each_owned_dof(
     [&](const auto dof, unsigned int, const Point<2> &X)
@@ -68,8 +68,9 @@ std::string DynamicSolver::place_of_largest(const Vector &residual) const
   return place.str();
 }
 
-// The better of two predictors, which `u` becomes. Constant acceleration is close to third order when the step resolves
-// the motion and far off when it is long; the second is looked at only where the first does not reduce the forces.
+// Evaluates two predictors, sets `u` to the better one and returns its residual. Constant acceleration is accurate to
+// third order if the step resolves the motion and inaccurate for long steps; the second predictor is evaluated only if
+// the first does not reduce the forces.
 DynamicSolver::Residual DynamicSolver::best_residual(const Step &step, const Vector &first, const Vector &second,
                                                      Vector &u) const
 {
@@ -101,7 +102,7 @@ DynamicSolver::Residual DynamicSolver::best_residual(const Step &step, const Vec
   return *state;
 }
 
-// The mass of a coarser mesh, assembled once.
+// Returns the mass of a coarser mesh, assembled on first use.
 const Sheet::Matrix &DynamicSolver::level_mass(const Sheet &level, const AffineConstraints<double> &constraints)
 {
   if (&level == &sheet_)
@@ -115,8 +116,8 @@ const Sheet::Matrix &DynamicSolver::level_mass(const Sheet &level, const AffineC
   return found->second;
 }
 
-// The derivative of the residual by the displacement at the end of the step, on a mesh of multigrid, for a sheet at
-// rest: without the part of viscosity that is not symmetric, which vanishes with the velocity.
+// Returns the assembler of the derivative of the residual by the displacement at the end of the step, on a multigrid
+// mesh. The sheet is taken at rest, which drops the unsymmetric part of viscosity: it vanishes with the velocity.
 Multigrid::Assembler DynamicSolver::level_assembler(const double load_factor)
 {
   const NewmarkParameters &rule = settings_.rule;
@@ -131,7 +132,7 @@ Multigrid::Assembler DynamicSolver::level_assembler(const double load_factor)
   };
 }
 
-// That derivative on the mesh itself, and its diagonals, at a mean state.
+// Assembles this derivative and its diagonals on the mesh of the sheet, at a mean state.
 void DynamicSolver::assemble_matrix(const Vector &u, const Vector &v, const double load_factor)
 {
   const auto take_diagonal = [&](Vector &diagonal)
@@ -156,8 +157,8 @@ void DynamicSolver::assemble(const Vector &u, const Vector &v, const double load
   linear_solver_->update(u, matrix_, level_assembler(load_factor));
 }
 
-// What the linear solver set multigrid up at, if it has since it had set up `before` of them.
-void DynamicSolver::note_multigrid(const unsigned int before, const Vector &u, const double load_factor)
+// Records the state at which the linear solver set up multigrid, if it has done so since the count `before`.
+void DynamicSolver::record_multigrid_state(const unsigned int before, const Vector &u, const double load_factor)
 {
   if (linear_solver_->n_set_ups() == before)
     return;
@@ -171,7 +172,7 @@ void DynamicSolver::restore_multigrid()
   linear_solver_->restore(multigrid_displacement_, matrix_, level_assembler(multigrid_load_factor_));
 }
 
-// The floor of eq. (C.45).
+// Returns the round-off of the residual, eq. (C.45) [N/m].
 double DynamicSolver::round_off(const Residual &state, const Vector &u) const
 {
   double sum = 0.;
@@ -180,21 +181,21 @@ double DynamicSolver::round_off(const Residual &state, const Vector &u) const
     {
       const double of_stress = state.magnitude(i);
       const double of_displacement = effective_diagonal_(i) * u(i);
-      // F = I + Grad u is rounded to epsilon even where u is small, as in a small wave.
+      // F = I + Grad u has a rounding error of epsilon even for small u, as in a wave of small amplitude.
       const double of_strain = elastic_diagonal_(i) * smallest_cell_;
       sum += of_stress * of_stress + of_displacement * of_displacement + of_strain * of_strain;
     }
-  // Four: a stress takes several roundings after those of the displacement.
+  // Factor 4: computing a stress adds several rounding errors to those of the displacement.
   return 4. * std::numeric_limits<double>::epsilon() * std::sqrt(Utilities::MPI::sum(sum, sheet_.communicator()));
 }
 
-// Solves a step for the displacement `u` at its end. Returns why not, empty if solved.
+// Solves a step for the displacement `u` at its end. Returns the reason of failure, empty on success.
 std::string DynamicSolver::attempt(Step &step, Vector &u)
 {
   const unsigned int number = n_steps_ + 1;
   try
   {
-    // Two predictors for the free unknowns: constant acceleration, and no motion.
+    // Predictors of the free unknowns: constant acceleration (share 1), and no motion.
     const auto predicted = [&](const double share)
     {
       Vector rise = sheet_.make_owned();
@@ -220,7 +221,7 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
           rhs(i) = 0.;
       rhs.compress(VectorOperation::insert);
       const unsigned int iterations = linear_solver_->solve(matrix_, change, rhs, forcing);
-      note_multigrid(set_ups, at.u_mean, load_factor);
+      record_multigrid_state(set_ups, at.u_mean, load_factor);
       homogeneous_.distribute(change);
       return NewtonStep{iterations, 0.};
     };
@@ -228,7 +229,7 @@ std::string DynamicSolver::attempt(Step &step, Vector &u)
       {settings_.relative_tolerance, settings_.max_newton_iterations, settings_.max_halvings},
       {[&](const Vector &at) { return evaluate(step, at); },
        [this](const Residual &at, const Vector &there) { return round_off(at, there); }, solve, nullptr,
-       [this](const Residual &at) { return ", the largest residual is" + place_of_largest(at.residual); }});
+       [this](const Residual &at) { return ", the largest residual is" + location_of_largest(at.residual); }});
     return newton.solve(u, std::move(state), number, step.last_load_factor, 0, report_.iterations);
   }
   catch (const NonPhysicalState &failure)

@@ -1,12 +1,12 @@
 #pragma once
 
-// One time step of DynamicSolver, for its sources alone.
+// One time step of DynamicSolver; private to its sources.
 
 #include "continuum/dynamic_solver.h"
 
 namespace latcon::continuum
 {
-/// What is known when a step begins, all without ghost entries, and Newmark's formulas from there.
+/// State at the beginning of a step (vectors without ghost entries), and Newmark's formulas for its end.
 struct DynamicSolver::Step
 {
   NewmarkParameters rule;
@@ -49,15 +49,15 @@ struct DynamicSolver::Step
   }
 };
 
-/// The equation of motion at a displacement of the end of a step.
+/// Residual of the equation of motion for a given displacement at the end of a step.
 struct DynamicSolver::Residual
 {
   Vector u_mean;    // with ghost entries [m]
   Vector v_mean;    // with ghost entries [m/s]
   Vector residual;  // [N/m]
-  Vector magnitude; // sums of absolute values behind it [N/m]
+  Vector magnitude; // sums of the absolute values of its terms [N/m]
   double free;      // norm of the residual over the free unknowns [N/m]
-  double reference; // norm of internal, viscous and inertial forces and of loads, of every unknown [N/m]
-  double energy;    // of the mean state, less the work of dead loads [J/m]
+  double reference; // norm of internal, viscous and inertial forces and loads over all unknowns [N/m]
+  double energy;    // of the mean state, minus the work of dead loads [J/m]
 };
 } // namespace latcon::continuum

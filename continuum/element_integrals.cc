@@ -22,7 +22,7 @@ using Contributions = std::vector<Contribution>;
 using Iterator = DoFHandler<2>::active_cell_iterator;
 using MeshIterator = Triangulation<2>::cell_iterator;
 
-// Entries of a vector with ghosts, the own ones without a search.
+// Read access to a ghosted vector, without a search for owned entries.
 class NodalValues
 {
 public:
@@ -40,10 +40,10 @@ private:
   const Sheet::Vector &u_;
   types::global_dof_index begin_;
   types::global_dof_index end_;
-  const double *own_; // a ghosted vector is sorted, so the own entries follow each other
+  const double *own_; // a ghosted vector is sorted, so the owned entries are contiguous
 };
 
-// Integrates densities over cells and faces for one state u.
+// Integrates densities over cells and faces at one state u.
 class Integrator
 {
 public:
@@ -59,13 +59,13 @@ public:
   {
     const ShapeTable &table = tables_.cell(MeshIterator(cell));
     begin(contributions);
-    take_nodes(cell, 0);
+    add_nodes(cell, 0);
     start(1);
     const Rows rows = {1, sheet_.has_gradient() ? n_derivatives : n_first};
     for (unsigned int q = 0; q < table.n_points; ++q)
     {
       const double *basis = table.row(q, 0);
-      take_derivatives(basis, rows);
+      evaluate_sides(basis, rows);
       cell_density(sheet_.constitution(), sheet_.has_gradient(), derivatives_[0], order_, density_);
       add_point(basis, rows, table.JxW[q], contributions.back());
     }
@@ -85,10 +85,10 @@ public:
           for (unsigned int i = 0; i < 2; ++i)
             prescribed[q][i] = load_factor_ * condition.gradient->value(points[q], i);
         begin(contributions);
-        take_nodes(cell, 0);
+        add_nodes(cell, 0);
         integrate_face(tables, 1, sheet_.penalty(extent(cell, face)), &prescribed,
                        {condition.components[0], condition.components[1]}, contributions.back());
-        return; // the first in the list holds, as for displacements
+        return; // the first condition in the list applies, as for displacements
       }
   }
 
@@ -99,14 +99,14 @@ public:
       &tables_.face(MeshIterator(cell), face, subface, 0),
       &tables_.face(MeshIterator(neighbor), neighbor_face, neighbor_subface, 1)};
     begin(contributions);
-    take_nodes(cell, 0);
-    take_nodes(neighbor, 1);
+    add_nodes(cell, 0);
+    add_nodes(neighbor, 1);
     const double penalty = sheet_.penalty(std::min(extent(cell, face), extent(neighbor, neighbor_face)));
     integrate_face(tables, 2, penalty, nullptr, {true, true}, contributions.back());
   }
 
 private:
-  // Of a cell across a face [m].
+  // Returns the extent of a cell normal to a face [m].
   static double extent(const Iterator &cell, const unsigned int face)
   {
     return cell->measure() / cell->face(face)->measure();
@@ -118,8 +118,8 @@ private:
     nodes_.clear();
   }
 
-  // Adds the shape functions of a cell; those that the other side has too are one and the same.
-  void take_nodes(const Iterator &cell, const unsigned int side)
+  // Adds the nodes of the cell on one side; nodes shared with the other side are added once.
+  void add_nodes(const Iterator &cell, const unsigned int side)
   {
     cell_dofs_.resize(sheet_.element().n_dofs_per_cell());
     cell->get_dof_indices(cell_dofs_);
@@ -140,7 +140,7 @@ private:
     }
   }
 
-  // Makes room for the nodes, zeros in the padding.
+  // Resizes the arrays to the nodes, with zeros in the padding.
   void start(const unsigned int n_sides)
   {
     const auto n = static_cast<unsigned int>(nodes_.size());
@@ -179,7 +179,7 @@ private:
           for (std::size_t n = 0; n < node_of_[s].size(); ++n)
             to[node_of_[s][n]] = from[n];
         }
-      take_derivatives(basis_.data(), rows);
+      evaluate_sides(basis_.data(), rows);
       face_density(*sheet_.constitution().gradient, derivatives_, n_sides, tables[0]->normals[q],
                    prescribed ? (*prescribed)[q] : Tensor<1, 2>(), held, penalty, order_, density_);
       add_point(basis_.data(), rows, tables[0]->JxW[q], contribution);
@@ -187,8 +187,8 @@ private:
     end(contribution);
   }
 
-  // Jets of u from the basis, and a blank density.
-  void take_derivatives(const double *basis, const Rows &rows)
+  // Computes the derivatives of u from the basis, and clears the density.
+  void evaluate_sides(const double *basis, const Rows &rows)
   {
     clear(density_, order_);
     double derivatives[2][2][n_derivatives] = {};
@@ -231,7 +231,8 @@ private:
     }
     if (order_ != Order::second)
       return;
-    // The second derivative is symmetric: of equal components one half was summed, of mixed ones one of the two.
+    // The second derivative is symmetric: only one triangle of the blocks of equal components was summed, and only one
+    // of the two mixed blocks.
     FullMatrix<double> &K = contribution.tangent;
     K.reinit(2 * n, 2 * n);
     for (std::size_t a = 0; a < n; ++a)
@@ -251,10 +252,10 @@ private:
   double load_factor_;
   Order order_;
   ShapeTables tables_;
-  std::array<std::vector<unsigned int>, 2> system_index_; // of the scalar shape functions, by component
+  std::array<std::vector<unsigned int>, 2> system_index_; // of the scalar shape functions, per component
 
   std::vector<std::array<types::global_dof_index, 2>> nodes_; // degrees of freedom of both components
-  std::array<std::vector<unsigned int>, 2> node_of_;          // of each shape function on each side
+  std::array<std::vector<unsigned int>, 2> node_of_;          // node of each shape function, per side
   std::vector<types::global_dof_index> cell_dofs_;
   unsigned int stride_ = 0;
   std::vector<double> basis_; // see element_kernels.h
@@ -263,11 +264,11 @@ private:
   std::vector<double> magnitude_;
   std::array<std::vector<double>, 3> second_; // [node][node]
   std::vector<double> work_;
-  std::array<FieldDerivatives, 2> derivatives_; // of u on each side
+  std::array<FieldDerivatives, 2> derivatives_; // of u, per side
   PointIntegrand density_{};
 };
 
-// Hands over what a cell and its faces contribute, in the order in which they are visited.
+// Passes the contributions of a cell and its faces to `add`, in the order of visits.
 struct AddingVisitor
 {
   Integrator &integrator;

@@ -11,19 +11,20 @@
 
 namespace latcon::continuum
 {
-/// What one cell or face adds to the functional of eq. (C.28) and its derivatives, up to the order asked for. Its
-/// unknowns are 2 a + i for scalar shape function a and component i.
+/// Contribution of one cell or face to the functional of eq. (C.28) and its derivatives up to the requested order.
+/// Local unknown 2 a + i belongs to scalar shape function a and component i.
 struct Contribution
 {
   double energy = 0.;
   std::vector<dealii::types::global_dof_index> dofs;
-  dealii::Vector<double> residual;  ///< from Order::first alone
-  dealii::Vector<double> magnitude; ///< likewise: sums of absolute values
+  dealii::Vector<double> residual;  ///< only with Order::first
+  dealii::Vector<double> magnitude; ///< only with Order::first: sums of absolute values
   dealii::FullMatrix<double> tangent;
 };
 
-/// Calls add(contribution) for every own cell and for every face that falls to this rank, at the state `u` [m] (with
-/// ghost entries). Order::second gives no first derivatives. Throws NonPhysicalState, on the rank where it happens.
+/// Calls add(contribution) for every locally owned cell and every face assigned to this rank, at the state `u` [m]
+/// (with ghost entries). Order::second omits the first derivatives. Throws NonPhysicalState, only on the rank where it
+/// occurs.
 void integrate(const Sheet &sheet, const Sheet::Vector &u, double load_factor, Order order,
                const std::function<void(const Contribution &)> &add);
 } // namespace latcon::continuum

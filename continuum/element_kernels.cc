@@ -60,7 +60,7 @@ LATCON_CLONES void add_second(const double *basis, const unsigned int stride, co
                               const double weight, const bool is_symmetric, const unsigned int n_nodes, double *work,
                               double *K)
 {
-  // second times basis, leaving out the zeros, of which laws have many.
+  // Products of `second` and basis, without the zeros of `second`, of which laws have many.
   unsigned int n_products = 0;
   unsigned int row_of[n_rows]; // of each product
   for (unsigned int s = 0; s < rows.n_sides; ++s)

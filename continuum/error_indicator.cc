@@ -23,7 +23,7 @@ struct FaceShare
 };
 using Iterator = DoFHandler<2>::active_cell_iterator;
 
-// Fields on one side of a face.
+// Values of the fields on one side of a face.
 struct Side
 {
   std::vector<Tensor<2, 2>> gradients;
@@ -115,7 +115,7 @@ struct IndicatorVisitor
 
 Vector<float> error_indicators(const Sheet &sheet, const Sheet::Vector &u)
 {
-  // Faces are looked at once, also those between ranks, and tell both their cells.
+  // Each face, also between ranks, is evaluated once and adds to both of its cells.
   LinearAlgebra::distributed::Vector<double> eta_squared(sheet.mesh().global_active_cell_index_partitioner().lock());
   const DeferredException guarded(
     [&]

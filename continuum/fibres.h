@@ -22,10 +22,10 @@ struct LinearPotential
   friend bool operator==(const LinearPotential &p, const LinearPotential &q) { return p.e == q.e; }
 };
 
-/// A further potential is a further alternative here.
+/// Potential of a fibre. To add a potential, add an alternative here and an overload in fibres.cc.
 using FibrePotential = std::variant<RodPotential, LinearPotential>;
 
-/// Fibres of one reference direction.
+/// Family of fibres with one reference direction.
 struct FibreFamily
 {
   dealii::Tensor<1, 2> direction; ///< unit vector N_J [-], reference configuration
@@ -33,7 +33,7 @@ struct FibreFamily
   FibrePotential potential;       ///< psi [Pa]
 };
 
-/// psi and its derivatives by the stretch [Pa].
+/// Value [Pa] of psi and its derivatives [Pa] by the stretch.
 struct PotentialDerivatives
 {
   double value;
@@ -43,10 +43,10 @@ struct PotentialDerivatives
   double fourth;
 };
 
-/// psi(l) with its first four derivatives (theory-continuum.md, eqs. (C.12), (C.13)), l > 0.
+/// Returns psi(l) and its first four derivatives at stretch l > 0 [-] (theory-continuum.md, eqs. (C.12), (C.13)).
 PotentialDerivatives derivatives(const FibrePotential &potential, double l);
 
-/// Throws InvalidMaterial, unless the direction is a unit vector to 1e-12, the weight is positive, and the stiffness
-/// psi''(1) is positive, all of them finite.
+/// Checks a family. Throws InvalidMaterial unless the direction is a unit vector to 1e-12, the weight is positive, the
+/// stiffness psi''(1) is positive, and all are finite.
 void check(const FibreFamily &family);
 } // namespace latcon::continuum

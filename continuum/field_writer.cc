@@ -19,7 +19,7 @@ namespace latcon::continuum
 {
 namespace
 {
-// Fields that follow from the derivatives of displacement.
+// Computes the fields that are functions of the derivatives of displacement.
 class LocalFields : public DataPostprocessor<2>
 {
 public:
@@ -98,7 +98,7 @@ void write_whole(const std::filesystem::path &path, const std::string &text)
   }
 }
 
-// deal.II tells the date in a comment whatever the flags; the same fields are to make the same file.
+// deal.II writes the date in a comment regardless of its flags; equal fields must give equal files.
 std::string without_comment(std::string text)
 {
   const std::size_t from = text.find("<!--");
@@ -113,13 +113,13 @@ std::string frame_name(const std::string &name, const std::size_t frame)
   return out.str();
 }
 
-// The time as field data. deal.II's own flag for it stores single precision.
+// Adds the time as field data; deal.II's flag for it writes single precision.
 std::string with_time(std::string vtu, const double time)
 {
   const std::string grid = "<UnstructuredGrid>";
   const std::size_t at = vtu.find(grid);
   if (at == std::string::npos)
-    throw OutputFailed("the vtu text holds no unstructured grid");
+    throw OutputFailed("the VTU text contains no unstructured grid");
   std::ostringstream field;
   field << std::setprecision(17)
         << "\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TIME\" NumberOfTuples=\"1\" format=\"ascii\">" << time
@@ -137,14 +137,14 @@ FieldWriter::FieldWriter(const MPI_Comm communicator, std::filesystem::path dire
                  std::error_code failure;
                  std::filesystem::create_directory(directory_, failure);
                  if (failure)
-                   throw OutputFailed("cannot make the folder " + directory_.string() + ": " + failure.message());
+                   throw OutputFailed("cannot create the folder " + directory_.string() + ": " + failure.message());
                });
 }
 
 void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::Vector &u, const Sheet::Vector *v)
 {
   if (!(time > last_time()))
-    throw InvalidInput("the time of a frame must be later than that of the frame before");
+    throw InvalidInput("the time of a frame must be larger than that of the previous frame");
 
   const std::string frame = frame_name(name_, frames_.size());
   const unsigned int n_ranks = Utilities::MPI::n_mpi_processes(communicator_);
@@ -163,11 +163,11 @@ void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::
                           {"cauchy_stress", "Pa"},       {"strain_energy_density", "J/m^3"},
                           {"strain_gradient_x", "1/m"},  {"strain_gradient_y", "1/m"},
                           {"double_stress_x", "Pa m"},   {"double_stress_y", "Pa m"}};
-  flags.print_date_and_time = false; // the same fields make the same file
+  flags.print_date_and_time = false; // equal fields give equal files
   flags.write_higher_order_cells = sheet.degree() > 1;
   output.set_flags(flags);
   const std::vector<std::string> names(2, "displacement");
-  output.add_data_vector(sheet.dof_handler(), u, names, vector); // communicates, so not in guarded work
+  output.add_data_vector(sheet.dof_handler(), u, names, vector); // communicates, so outside the deferred work
   if (v != nullptr)
     output.add_data_vector(sheet.dof_handler(), *v, std::vector<std::string>(2, "velocity"), vector);
   output.add_data_vector(sheet.dof_handler(), u, local_fields);
@@ -201,7 +201,7 @@ void FieldWriter::check_loaded() const
 {
   for (std::size_t frame = 0; frame < frames_.size(); ++frame)
     if (frames_[frame].n_pieces == 0 || (frame > 0 && !(frames_[frame].time > frames_[frame - 1].time)))
-      throw InvalidInput("the stored times of frames do not grow, or a frame has no pieces");
+      throw InvalidInput("the stored times of frames do not increase, or a frame has no pieces");
 }
 
 std::string FieldWriter::file_of(const std::size_t frame) const

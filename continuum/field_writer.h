@@ -11,26 +11,28 @@ namespace latcon::continuum
 /// Writes the fields of a sheet as a series that ParaView opens: NAME.pvd, and for each frame NAME_0000.vtu, or
 /// NAME_0000.pvtu with a piece for each rank. Fields, over the reference configuration: `displacement` [m],
 /// `deformation_gradient` [-], `first_piola_stress` [Pa], `cauchy_stress` [Pa] (per reference thickness, see
-/// continuum::cauchy_stress), `strain_energy_density` [J/m^3], and of the gradient G_iJK [1/m] and the double stress
-/// Q_iJK [Pa m] the tensors in J and K for i = x and i = y: `strain_gradient_x`, `strain_gradient_y`,
-/// `double_stress_x`, `double_stress_y`; in motion also `velocity` [m/s]. Tensors have nine components, index order row
-/// by row (current index first). Cells are Lagrange cells of the degree of the elements.
+/// continuum::cauchy_stress), `strain_energy_density` [J/m^3], `strain_gradient_x`, `strain_gradient_y` (G_iJK [1/m] as
+/// tensors in J and K for i = x and i = y), `double_stress_x`, `double_stress_y` (Q_iJK [Pa m] likewise), and in
+/// dynamics `velocity` [m/s]. Tensors have nine components in row-major order (current index first). Cells are Lagrange
+/// cells of the degree of the elements.
 ///
-/// Every file is written beside its place and renamed, pieces before the files that name them, so that what is there is
-/// whole at any moment. Times are written with 17 significant digits.
+/// Every file is replaced atomically, pieces before the files that refer to them, so that the series is readable at any
+/// moment. Times are written with 17 significant digits.
 class FieldWriter
 {
 public:
-  /// Makes `directory` if it does not exist; the folder above it has to. Collective. Throws OutputFailed on every rank.
+  /// Creates `directory` if it does not exist; its parent must exist. `name` is the NAME of the files. Collective.
+  /// Throws OutputFailed on every rank.
   FieldWriter(MPI_Comm communicator, std::filesystem::path directory, std::string name = "continuum");
 
-  /// Adds the state `u` (nodal displacement [m], with ghost entries), and its velocity `v` [m/s] if given, at `time`,
-  /// which must grow from frame to frame: the load factor [-] in statics, [s] in dynamics. Collective. Throws
-  /// OutputFailed on every rank, and NonPhysicalState if the law does; InvalidInput if the time does not grow.
+  /// Writes a frame with the state `u` (nodal displacement [m], with ghost entries) and, if given, the velocity `v`
+  /// [m/s]. `time` is the load factor [-] in statics and the time [s] in dynamics, and must increase from frame to
+  /// frame. Collective. Throws on every rank: OutputFailed, NonPhysicalState as the law does, InvalidInput if the time
+  /// does not increase.
   void add_frame(double time, const Sheet &sheet, const Sheet::Vector &u, const Sheet::Vector *v = nullptr);
 
-  /// Stores which frames there are, or takes that from there: those added later follow them. Throws InvalidInput if
-  /// their times do not grow.
+  /// Saves the list of frames to an archive, or loads it so that later frames are appended. Throws InvalidInput if the
+  /// loaded times do not increase.
   template <class Archive>
   void archive(Archive &archive)
   {
@@ -39,16 +41,16 @@ public:
       check_loaded();
   }
 
-  /// Writes the .pvd anew with the frames known, for one that names later frames as well. Collective. Throws
+  /// Rewrites the .pvd with the frames in the list, in case the file refers to later frames as well. Collective. Throws
   /// OutputFailed on every rank.
   void write_collection() const;
 
   std::size_t n_frames() const { return frames_.size(); }
 
-  /// Time of the last frame [s] or load factor [-]; minus infinity before the first.
+  /// Returns the time [s] or load factor [-] of the last frame; minus infinity before the first.
   double last_time() const;
 
-  /// Path of the .pvd.
+  /// Returns the path of the .pvd.
   std::filesystem::path collection() const;
 
 private:

@@ -28,7 +28,8 @@ double GradientLaw::normal_stiffness() const
 {
   const Tensor<2, 2> I(dealii::unit_symmetric_tensor<2>());
   const Tensor<6, 2> C = double_stress_by_G(I);
-  // The eigenvalues are trigonometric polynomials of degree 4 in the angle at most: a degree apart is as good as exact.
+  // The matrix entries are trigonometric polynomials of degree 4 or less in the angle: steps of one degree are
+  // practically exact.
   constexpr unsigned int n_angles = 180;
   double largest = 0.;
   for (unsigned int sample = 0; sample < n_angles; ++sample)

@@ -4,14 +4,14 @@
 
 namespace latcon::continuum
 {
-/// The energy that a sheet has from the gradient of its deformation, added to that of the local law:
+/// Law of the energy that depends on the gradient of deformation, added to the energy of the local law:
 ///   W_g(F, G) = B(F; G, G) / 2    [Pa = J/m^3],        G_iJK = dF_iJ/dX_K = d2x_i/dX_J dX_K  [1/m]
-/// with B(F; G, Z) symmetric and bilinear in G and Z, so that it vanishes with the gradient and leaves the local law
-/// (theory-continuum.md, eq. (C.20)). Const and stateless. F as in Material; densities per reference volume.
+/// with B(F; G, Z) symmetric and bilinear in G and Z, so that the energy vanishes with the gradient
+/// (theory-continuum.md, eq. (C.20)). Laws are const and stateless. F as in Material; densities per reference volume.
 ///
-/// A law states B and its derivatives; energy and stresses follow from it. B with two different arguments is what the
-/// discretisation needs where the normal derivative of displacement jumps (eq. (C.28)). All functions throw
-/// NonPhysicalState when F is not a deformation (det F <= 0, not finite) and the law depends on F.
+/// A subclass implements B and its derivatives, from which energy and stresses follow. The discretisation uses B with
+/// two different arguments where the normal derivative of the displacement jumps (eq. (C.28)). All functions throw
+/// NonPhysicalState if the law depends on F and F is invalid (det F <= 0 or not finite).
 class GradientLaw
 {
 public:
@@ -19,8 +19,8 @@ public:
 
   virtual ~GradientLaw() = default;
 
-  /// Returns whether B = 0 for every F, G and Z. Such a law is treated as absent: no gradient energy and no face terms.
-  /// A law that vanishes only for some F must return false.
+  /// Returns true if B = 0 for every F, G and Z. Such a law is ignored: no gradient energy, no face terms. A law that
+  /// vanishes only for some F must return false.
   virtual bool is_zero() const { return false; }
 
   /// B(F; G, Z) [Pa].
@@ -39,21 +39,20 @@ public:
   /// dQ_iJK/dF_lM [Pa m], index order [i][J][K][l][M].
   virtual dealii::Tensor<5, 2> double_stress_by_F(const dealii::Tensor<2, 2> &F, const Gradient &G) const = 0;
 
-  /// dQ_iJK/dG_lMN [Pa m^2], index order [i][J][K][l][M][N], symmetric in J and K and in M and N; it does
-  /// not depend on G.
+  /// dQ_iJK/dG_lMN [Pa m^2], index order [i][J][K][l][M][N], symmetric in J and K and in M and N; independent of G.
   virtual dealii::Tensor<6, 2> double_stress_by_G(const dealii::Tensor<2, 2> &F) const = 0;
 
   /// W_g [Pa].
   double energy(const dealii::Tensor<2, 2> &F, const Gradient &G) const;
 
-  /// dW_g/dF_iJ [Pa]: the part of the first Piola stress that the gradient brings.
+  /// dW_g/dF_iJ [Pa]: contribution of the gradient energy to the first Piola stress.
   dealii::Tensor<2, 2> first_piola_stress(const dealii::Tensor<2, 2> &F, const Gradient &G) const;
 
   /// d2W_g/dF_iJ dF_kL [Pa].
   dealii::Tensor<4, 2> tangent(const dealii::Tensor<2, 2> &F, const Gradient &G) const;
 
-  /// Largest stiffness against a second normal derivative at F = I: the largest eigenvalue over all unit vectors n
-  /// of n_J n_K (dQ_iJK/dG_lMN) n_M n_N [Pa m^2].
+  /// Returns the largest stiffness [Pa m^2] against a second normal derivative at F = I: the largest eigenvalue of n_J
+  /// n_K (dQ_iJK/dG_lMN) n_M n_N over all unit vectors n.
   double normal_stiffness() const;
 };
 } // namespace latcon::continuum

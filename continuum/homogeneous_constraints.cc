@@ -38,14 +38,14 @@ AffineConstraints<double> homogeneous_constraints(const Sheet &sheet, const Diri
   known.merge(sheet.conformity_constraints(), AffineConstraints<double>::no_conflicts_allowed, true);
   for (const auto &[boundary, components] : held)
     DoFTools::make_zero_boundary_constraints(sheet.dof_handler(), boundary, known, components);
-  known.close(); // before they travel: the receiver may know nothing of the degrees of freedom in between
+  known.close(); // before sending: the receiver may not have the constraints of intermediate degrees of freedom
   return shared_constraints(known, sheet.owned(), sheet.relevant(), sheet.communicator());
 }
 
 AffineConstraints<double> shared_constraints(const AffineConstraints<double> &known, const IndexSet &owned,
                                              const IndexSet &relevant, const MPI_Comm communicator)
 {
-  // Each owner tells its constraints to the ranks to which they are relevant.
+  // Each owner sends its constraints to the ranks on which they are relevant.
   using Line = std::pair<types::global_dof_index, std::vector<std::pair<types::global_dof_index, double>>>;
   const Utilities::MPI::Partitioner layout(owned, relevant, communicator);
   std::vector<Line> lines;
@@ -53,7 +53,7 @@ AffineConstraints<double> shared_constraints(const AffineConstraints<double> &kn
     if (layout.in_local_range(line.index))
       lines.emplace_back(line.index, line.entries);
 
-  std::vector<types::global_dof_index> wanted; // by the first rank, then by the next
+  std::vector<types::global_dof_index> wanted; // by rank 0, then rank 1, ...
   for (const auto &[begin, end] : layout.import_indices())
     for (unsigned int i = begin; i < end; ++i)
       wanted.push_back(layout.local_to_global(i));

@@ -13,21 +13,21 @@ namespace latcon::continuum
 {
 class Sheet;
 
-/// Which components are held at which boundary.
+/// Components with prescribed displacement, by boundary id.
 using DirichletBoundaries = std::map<dealii::types::boundary_id, dealii::ComponentMask>;
 
-/// What prescribed displacements hold.
+/// Returns the boundaries and components on which `conditions` prescribe the displacement.
 DirichletBoundaries dirichlet_boundaries(const BoundaryConditions &conditions);
 
-/// The closed constraints of every relevant degree of freedom as its owner knows them. `known` is what this rank found
-/// out by itself, which is short of constraints on the far side of its ghost cells; operators with face terms couple to
-/// those. A relevant degree of freedom may thus hang on one that is not: a matrix that is condensed needs to be
-/// writable, on each rank, in all rows of get_local_lines(). Inhomogeneities are dropped. Collective.
+/// Returns the closed constraints of every relevant degree of freedom as known to its owner. The constraints `known` to
+/// this rank lack those on the far side of its ghost cells, to which operators with face terms couple. A relevant
+/// degree of freedom may depend on one that is not relevant, so each rank must be able to write to all rows of
+/// get_local_lines() of a condensed matrix. Inhomogeneities are dropped. Collective.
 dealii::AffineConstraints<double> shared_constraints(const dealii::AffineConstraints<double> &known,
                                                      const dealii::IndexSet &owned, const dealii::IndexSet &relevant,
                                                      MPI_Comm communicator);
 
-/// What makes the displacement one field (Sheet::conformity_constraints), and the components that are `held` at its
-/// boundaries at zero, chains resolved and closed. Shared as above. Collective.
+/// Returns Sheet::conformity_constraints together with zero constraints for the components `held` at boundaries, closed
+/// and exchanged between ranks as in shared_constraints(). Collective.
 dealii::AffineConstraints<double> homogeneous_constraints(const Sheet &sheet, const DirichletBoundaries &held);
 } // namespace latcon::continuum

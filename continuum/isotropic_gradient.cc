@@ -47,7 +47,7 @@ Tensor<6, 2> IsotropicGradient::double_stress_by_G(const Tensor<2, 2> &) const
     for (unsigned int J = 0; J < 2; ++J)
       for (unsigned int K = 0; K < 2; ++K)
       {
-        // Unity on gradients that are symmetric in their last two indices.
+        // Identity on gradients that are symmetric in their last two indices.
         C[i][J][K][i][J][K] += 0.5 * modulus_;
         C[i][J][K][i][K][J] += 0.5 * modulus_;
       }

@@ -4,12 +4,13 @@
 
 namespace latcon::continuum
 {
-/// W_g = (c_g/2) |Grad F|^2 with one constant c_g = mu l_s^2 (theory-continuum.md, eq. (C.21)): isotropic, objective,
-/// positive. It resists gradients, so short waves travel faster than long ones.
+/// Isotropic gradient law W_g = (c_g/2) |Grad F|^2 with one constant c_g = mu l_s^2 (theory-continuum.md, eq. (C.21)):
+/// objective and positive. It stiffens short waves, which then travel faster than long ones.
 class IsotropicGradient : public GradientLaw
 {
 public:
-  /// `shear_modulus` mu [Pa] > 0 and `length` l_s [m] >= 0. Throws InvalidMaterial otherwise.
+  /// Creates the law from `shear_modulus` mu [Pa] > 0 and `length` l_s [m] >= 0. Throws InvalidMaterial if a value is
+  /// out of range.
   IsotropicGradient(double shear_modulus, double length);
 
   bool is_zero() const override { return modulus_ == 0.; }

@@ -40,7 +40,7 @@ InvariantFunction IsotropicNetwork::density(const Tensor<2, 2> &F) const
   const double J = checked_determinant(F);
   const double I = F.norm_square();
   const StretchMeans mean = stretch_means(I, J);
-  const double r = 1. / J; // the mean of l^-2; that of l^2 is I/2
+  const double r = 1. / J; // mean of l^-2; the mean of l^2 is I/2
   InvariantFunction W{};
   add(W, a_, {0.25 * I - 1.5, 0.25, 0., 0., 0., 0.});
   add(W, a_, mean.inverse);

@@ -8,17 +8,17 @@
 
 namespace latcon::continuum
 {
-/// A network of fibres with all directions alike: the mean of the law CauchyBorn over all rotations of its reference
-/// configuration, in closed form (theory-continuum.md, eqs. (C.50) to (C.56)). With Mooney-Rivlin rods it is the
-/// Mooney-Rivlin law of a network. Isotropic; what it leaves out of CauchyBorn is the dependence on direction. It knows
-/// no thickness: thickness_stretch is 1.
+/// Isotropic law of a fibre network: mean of CauchyBorn over all rotations of the reference configuration, in closed
+/// form (theory-continuum.md, eqs. (C.50) to (C.56)). With Mooney-Rivlin rods it is the Mooney-Rivlin law of a network.
+/// It differs from CauchyBorn only in the dependence on direction. The law does not model the thickness:
+/// thickness_stretch() returns 1.
 ///
-/// The mean depends on F^T F alone and is therefore even in det F. det F < 0 is refused as by every law: it is no state
-/// of a sheet, and the energy of rods with b >= 0 grows without bound as det F -> 0.
+/// The mean depends only on F^T F and is therefore even in det F. As every law it throws for det F < 0: such a state
+/// cannot be reached, because the energy of rods with b >= 0 grows without bound as det F -> 0.
 class IsotropicNetwork : public Material
 {
 public:
-  /// The directions of `families` do not matter. Throws InvalidMaterial as CauchyBorn does.
+  /// Creates the law from `families`, whose directions are ignored. Throws InvalidMaterial as CauchyBorn does.
   explicit IsotropicNetwork(const std::vector<FibreFamily> &families);
 
   double energy(const dealii::Tensor<2, 2> &F) const override;

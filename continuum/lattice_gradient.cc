@@ -14,8 +14,9 @@ namespace latcon::continuum
 {
 namespace
 {
-// How a bond with f = F N resists a gradient, h(a, b) = across a.b + coupling (f.a)(f.b), both with their first two
-// derivatives by s = |f|^2/2: in them the derivatives of h by the vector f have no quotients, eq. (C.24).
+// Stiffness of a bond with f = F N against a gradient, h(a, b) = across a.b + coupling (f.a)(f.b). Both coefficients
+// have their first two derivatives by s = |f|^2/2, by which the derivatives of h by the vector f contain no quotients,
+// eq. (C.24).
 struct BondStiffness
 {
   double across[3];
@@ -33,8 +34,8 @@ BondStiffness stiffness(const FibrePotential &potential, const double l)
   if (l >= LatticeGradient::full_stretch)
     return {{chi_1, chi_2, chi_3}, {chi_2, chi_3, chi_4}};
 
-  // The share 1 - w of the stiffness across the bond is taken away, eq. (C.27); that along it, across + 2 s coupling =
-  // psi'', is left.
+  // Remove the fraction 1 - w of the transverse stiffness, eq. (C.27), and keep the axial stiffness, across + 2 s
+  // coupling = psi''.
   constexpr double width = LatticeGradient::full_stretch - 1.;
   const double t = std::max(0., (l - 1.) / width);
   const double left[3] = {1. - t * t * t * (10. - t * (15. - 6. * t)), -30. * t * t * (1. - t) * (1. - t) / width,
@@ -51,8 +52,8 @@ BondStiffness stiffness(const FibrePotential &potential, const double l)
            chi_4 + r2 * (away_2 - 4. * r2 * (away_1 - 2. * r2 * away))}};
 }
 
-// Entries 00, 11 and 01 of a symmetric tensor, and which of them an entry is: sums over many bonds run over these
-// alone.
+// Independent entries 00, 11 and 01 of a symmetric tensor, over which the sums over bonds run, and the map from an
+// entry to them.
 constexpr unsigned int n_pairs = 3;
 constexpr unsigned int pair_of[2][2] = {{0, 2}, {2, 1}};
 std::array<double, n_pairs> pairs(const Tensor<2, 2> &A)
@@ -93,14 +94,14 @@ LatticeGradient::LatticeGradient(const std::vector<BondFamily> &families, const 
   for (const BondFamily &family : families)
   {
     check(family);
-    // At the smallest length the difference vanishes but for rounding, and must not come out negative.
+    // At the smallest length the difference is zero up to rounding and must not become negative.
     constexpr double rounding = 1e-14;
     double along = length * length - family.length * family.length / 12.;
     if (std::abs(along) <= rounding * length * length)
       along = 0.;
     if (along < 0.)
       throw InvalidMaterial("the micro-inertia length must be at least " + std::to_string(smallest_length(families)) +
-                            " m, the longest bond over sqrt(12), or the gradient energy is not positive");
+                            " m, the longest bond over sqrt(12), for the gradient energy to be positive");
     const Tensor<1, 2> &N = family.fibre.direction;
     const Tensor<1, 2> T({-N[1], N[0]});
     families_.push_back({family.fibre,

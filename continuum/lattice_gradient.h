@@ -7,33 +7,33 @@
 
 namespace latcon::continuum
 {
-/// Fibres of one direction that are not endless threads but bonds of one length.
+/// Family of bonds with one reference direction and one length.
 struct BondFamily
 {
   FibreFamily fibre;
   double length; ///< l [m] > 0, undeformed
 };
 
-/// Throws InvalidMaterial, unless the fibre is valid and the length positive and finite.
+/// Checks a family. Throws InvalidMaterial unless the fibre is valid and the length is positive and finite.
 void check(const BondFamily &family);
 
-/// The gradient energy that gives a network of bonds its long waves to fourth order, made positive by micro-inertia of
-/// the length l_d (theory-continuum.md, eqs. (C.22) to (C.26)):
+/// Gradient law of a network of bonds, derived from the dispersion of long lattice waves to fourth order; the
+/// micro-inertia length l_d makes it positive (theory-continuum.md, eqs. (C.22) to (C.26)):
 ///   W_g = (1/2) sum over families of c_k [ l_d^2 h_k(G N T, G N T) + (l_d^2 - l_k^2/12) h_k(G N N, G N N) ]
 /// where h_k(a, b) = a_i b_j d2psi_k(|f|)/df_i df_j at f = F N, T is normal to N, (G N T)_i = G_iJK N_J T_K. Objective;
-/// hexagonal for a triangular network; positive wherever the bonds are in tension.
+/// of hexagonal symmetry for a triangular network; positive where the bonds are in tension.
 class LatticeGradient : public GradientLaw
 {
 public:
-  /// `families` weighted as those of CauchyBorn; `length` l_d [m]. Throws InvalidMaterial if a family is not valid, a
-  /// bond has no positive length, or l_d^2 < l_k^2/12 for one of them: the energy would not be positive.
+  /// Creates the law from `families`, with weights as in CauchyBorn, and `length` l_d [m]. Throws InvalidMaterial if a
+  /// family is not valid, or if l_d^2 < l_k^2/12 for a family, which would make the energy indefinite.
   LatticeGradient(const std::vector<BondFamily> &families, double length);
 
-  /// Stretch [-] from which on a bond has all of its stiffness across itself, psi'/l; at stretch 1 and below it has
-  /// none, and h goes over with two continuous derivatives (theory-continuum.md, eq. (C.27)).
+  /// Stretch [-] above which a bond has its full transverse stiffness psi'/l. The transverse stiffness is zero at and
+  /// below stretch 1; in between, h is twice continuously differentiable (theory-continuum.md, eq. (C.27)).
   static constexpr double full_stretch = 1.02;
 
-  /// The shortest l_d [m] for which the energy is positive: the longest bond over sqrt(12).
+  /// Returns the smallest l_d [m] for which the energy is positive: the longest bond over sqrt(12).
   static double smallest_length(const std::vector<BondFamily> &families);
 
   double form(const dealii::Tensor<2, 2> &F, const Gradient &G, const Gradient &Z) const override;
@@ -44,7 +44,7 @@ public:
   dealii::Tensor<6, 2> double_stress_by_G(const dealii::Tensor<2, 2> &F) const override;
 
 private:
-  // A term (1/2) c h(a, a) with a_i = G_iJK S_JK. A family has two, which differ in S and its factor.
+  // A family contributes two terms (1/2) c h(a, a) with a_i = G_iJK S_JK, which differ in S and its factor.
   struct Family
   {
     FibreFamily fibre;

@@ -19,9 +19,9 @@ LinearSolver::LinearSolver(const Sheet &sheet, DirichletBoundaries held, const L
     symmetry_(symmetry)
 {
   if (!(settings.relative_tolerance > 0. && settings.relative_tolerance < 1.))
-    throw InvalidInput("the relative tolerance of the linear solver must lie between 0 and 1");
+    throw InvalidInput("the relative tolerance of the linear solver must be in (0, 1)");
   if (!(settings.rebuild_ratio >= 0. && std::isfinite(settings.rebuild_ratio)))
-    throw InvalidInput("the wear limit of multigrid must be finite and not negative");
+    throw InvalidInput("rebuild_ratio of the linear solver must be finite and >= 0");
 }
 
 void LinearSolver::update(const Sheet::Vector &u, const Sheet::Matrix &K, const Multigrid::Assembler &assemble)
@@ -40,17 +40,17 @@ void LinearSolver::set_up(const Sheet::Matrix &K)
 {
   if (!multigrid_)
     multigrid_ = std::make_unique<Multigrid>(
-      sheet_, [this](const Sheet::Mesh &mesh) { return sheet_.on(mesh); },
+      sheet_, [this](const Sheet::Mesh &mesh) { return sheet_.clone_on(mesh); },
       [](const Sheet &sheet, const AffineConstraints<double> &constraints, Sheet::Matrix &matrix)
       { sheet.make_matrix(constraints, matrix); },
       held_, settings_.multigrid);
-  is_stale_ = true; // until it is set up
+  is_stale_ = true; // also if the update throws
   if (symmetry_ == Symmetry::symmetric)
     multigrid_->update(state_, K, assemble_);
   else
   {
     Sheet::Matrix symmetric;
-    symmetric.reinit(K); // its sparsity
+    symmetric.reinit(K); // with the sparsity of K
     assemble_(sheet_, state_, multigrid_->constraints(), symmetric);
     multigrid_->update(state_, symmetric, assemble_);
   }
@@ -73,7 +73,7 @@ void LinearSolver::restore(const Sheet::Vector &u, const Sheet::Matrix &K, const
 unsigned int LinearSolver::solve(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b,
                                  const double relative_tolerance)
 {
-  // deal.II's and Trilinos' exceptions here follow from collective results, so all ranks take the same branch.
+  // The exceptions of deal.II and Trilinos depend on collective results, so all ranks take the same branch.
   unsigned int iterations = 0;
   x = 0.;
   if (b.l2_norm() == 0.)
@@ -98,7 +98,7 @@ unsigned int LinearSolver::solve(const Sheet::Matrix &K, Sheet::Vector &x, const
     throw LinearSolverFailed(std::string("the linear solver failed: ") + failure.what());
   }
   if (!std::isfinite(x.l2_norm()))
-    throw LinearSolverFailed("the linear solver gave an answer that is not finite");
+    throw LinearSolverFailed("the solution of the linear solver is not finite");
   return iterations;
 }
 
@@ -117,8 +117,8 @@ unsigned int LinearSolver::iterate(const Sheet::Matrix &K, Sheet::Vector &x, con
       SolverCG<Multigrid::Vector>(control).solve(K, to, from, *multigrid_);
     else
     {
-      // Preconditioned from the right, so that the residual that ends it is that of K. A multigrid that serves needs
-      // fewer iterations than there are vectors before a restart.
+      // Right preconditioning, so that the iteration stops on the residual of K. An up-to-date multigrid needs fewer
+      // iterations than the 50 vectors before a GMRES restart.
       const SolverGMRES<Multigrid::Vector>::AdditionalData data(50, true);
       SolverGMRES<Multigrid::Vector>(control, data).solve(K, to, from, *multigrid_);
     }
@@ -131,9 +131,9 @@ unsigned int LinearSolver::iterate(const Sheet::Matrix &K, Sheet::Vector &x, con
     return control.last_step() + iterate(K, x, b, relative_tolerance);
   }
   Multigrid::copy(to, x);
-  // The methods gain little at first: as if there were some digits more, however many are asked for.
-  constexpr double digits_at_first = 3.;
-  const double effort = control.last_step() / (digits_at_first - std::log10(relative_tolerance));
+  // Convergence is slow at first, which costs as much as these additional digits for any tolerance.
+  constexpr double initial_digits = 3.;
+  const double effort = control.last_step() / (initial_digits - std::log10(relative_tolerance));
   if (is_fresh_)
     baseline_iterations_ = std::max(baseline_iterations_, effort);
   is_stale_ = effort > settings_.rebuild_ratio * baseline_iterations_;

@@ -8,56 +8,57 @@
 
 namespace latcon::continuum
 {
-/// How linear systems are solved.
+/// Settings of LinearSolver.
 struct LinearSettings
 {
-  /// Largest number of unknowns for the direct solver; above it, Krylov methods with multigrid. Periodic edges are left
-  /// to the direct solver whatever the size.
+  /// Largest number of unknowns for the direct solver; larger systems use Krylov methods with multigrid. Sheets with
+  /// periodic edges always use the direct solver.
   dealii::types::global_dof_index direct_limit = 20000;
-  /// Smallest residual of a Krylov method relative to the right-hand side that is asked for [-], in (0, 1).
+  /// Tightest tolerance of a Krylov method, residual relative to the right-hand side [-], in (0, 1).
   double relative_tolerance = 1e-8;
-  /// Iterations for the digits of the residual, over those with a multigrid that is up to date [-], >= 0, beyond which
-  /// multigrid is set up anew; 0: for every tangent.
+  /// Krylov iterations per digit of the residual, relative to those with an up-to-date multigrid [-], >= 0, above which
+  /// multigrid is rebuilt; 0: rebuild for every tangent.
   double rebuild_ratio = 1.5;
-  /// Krylov iterations before giving up.
+  /// Maximum number of Krylov iterations.
   unsigned int max_iterations = 200;
   MultigridSettings multigrid;
 };
 
-/// Which matrices a LinearSolver is given.
+/// Symmetry of the matrices passed to a LinearSolver.
 enum class Symmetry
 {
   symmetric,  ///< and positive definite
-  unsymmetric ///< by little: Multigrid::Assembler makes a symmetric positive definite matrix that is close
+  unsymmetric ///< slightly; Multigrid::Assembler assembles a symmetric positive definite matrix close to it
 };
 
-/// Solves K x = b for the condensed tangent of a sheet. Directly: by DirectSolver.
-/// Iteratively: conjugate gradients for symmetric K, GMRES for others, preconditioned by Multigrid of the symmetric
-/// matrix. A multigrid is kept for the tangents that follow (of further Newton, load and time steps) until it is worn:
-/// until the iterations have grown beyond LinearSettings::rebuild_ratio, or fail. That changes the work and not what is
-/// solved.
+/// Solves K x = b for the condensed tangent of a sheet, with DirectSolver or iteratively. The iterative solver is
+/// conjugate gradients for symmetric K and GMRES for unsymmetric K, preconditioned by Multigrid of the symmetric
+/// matrix. Multigrid is reused for later tangents (of Newton, load and time steps) until the iterations exceed
+/// LinearSettings::rebuild_ratio or fail. Reuse changes the cost and not the tolerance of the solution.
 class LinearSolver
 {
 public:
-  /// `sheet` must outlive the solver, `held` says what is held besides. Throws InvalidInput for settings out of range.
+  /// Creates a solver for the tangents of `sheet`, which must outlive it, with the components `held` at boundaries.
+  /// Throws InvalidInput for settings out of range.
   LinearSolver(const Sheet &sheet, DirichletBoundaries held, const LinearSettings &settings,
                Symmetry symmetry = Symmetry::symmetric);
 
-  /// To be called when K has changed, before the next solve: takes note of the state `u` [m] (with ghost entries) and
-  /// sets up multigrid if there is none that serves. `assemble` makes the tangents of coarser meshes and, for
-  /// unsymmetric K, the symmetric one of the sheet itself; it is called in solve, too. Collective.
+  /// Updates the preconditioner for a changed K; to be called before the next solve(). Records the state `u` [m] (with
+  /// ghost entries) and sets up multigrid unless the existing one can be reused. `assemble` assembles the tangents of
+  /// coarser meshes and, for unsymmetric K, a symmetric one of the sheet itself; solve() may call it as well.
+  /// Collective.
   void update(const Sheet::Vector &u, const Sheet::Matrix &K, const Multigrid::Assembler &assemble);
 
-  /// The residual comes to at most `relative_tolerance` [-] times that of x = 0, but no smaller one is asked for than
-  /// LinearSettings::relative_tolerance; the direct solver ignores it. Collective. Returns the Krylov iterations, 0
-  /// when direct. Throws LinearSolverFailed on every rank if the factorisation fails, the tolerance is not met, or the
-  /// answer is not finite.
+  /// Solves K x = b until the residual is at most `relative_tolerance` [-] times that of x = 0, or
+  /// LinearSettings::relative_tolerance where that is larger; the direct solver ignores the tolerance. Collective.
+  /// Returns the number of Krylov iterations, 0 for the direct solver. Throws LinearSolverFailed on every rank if the
+  /// factorisation fails, the tolerance is not reached, or the solution is not finite.
   unsigned int solve(const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b, double relative_tolerance = 0.);
 
-  /// Has multigrid set up anew at the next update: the matrices that follow are of another kind.
+  /// Makes the next update() rebuild multigrid, because the matrices change substantially.
   void invalidate() { is_stale_ = true; }
 
-  /// Stores what is known of the multigrid that is kept, or takes it from there.
+  /// Saves the status of the reused multigrid to an archive or loads it from there.
   template <class Archive>
   void archive(Archive &archive)
   {
@@ -66,14 +67,14 @@ public:
     archive("set_ups", n_set_ups_);
   }
 
-  /// Whether the next update leaves multigrid as it is.
+  /// Returns true if the next update() will reuse multigrid.
   bool keeps_multigrid() const { return !is_direct_ && !is_stale_; }
 
-  /// Makes the multigrid that another solver kept when it was archived: set up at the state `u` [m] and its matrix `K`,
-  /// and as worn as it was. Collective. Throws as update.
+  /// Rebuilds the multigrid that an archived solver used, from the state `u` [m] and the matrix `K` at which it was set
+  /// up, with the archived iteration counts. Collective. Throws as update() does.
   void restore(const Sheet::Vector &u, const Sheet::Matrix &K, const Multigrid::Assembler &assemble);
 
-  /// How often multigrid was set up.
+  /// Returns how many times multigrid has been set up.
   unsigned int n_set_ups() const { return n_set_ups_; }
   bool is_direct() const { return is_direct_; }
 
@@ -87,12 +88,12 @@ private:
   bool is_direct_;
   Symmetry symmetry_;
   DirectSolver direct_;
-  std::unique_ptr<Multigrid> multigrid_; // made when first needed
+  std::unique_ptr<Multigrid> multigrid_; // created on first use
   unsigned int n_set_ups_ = 0;
   Sheet::Vector state_;
   Multigrid::Assembler assemble_;
-  bool is_fresh_ = false;           // whether multigrid is that of the last update
-  bool is_stale_ = true;            // whether it has to be set up anew
-  double baseline_iterations_ = 0.; // iterations for each digit with a fresh multigrid
+  bool is_fresh_ = false;           // set up in the last update
+  bool is_stale_ = true;            // to be rebuilt in the next update
+  double baseline_iterations_ = 0.; // iterations per digit with an up-to-date multigrid
 };
 } // namespace latcon::continuum

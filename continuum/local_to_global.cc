@@ -23,8 +23,8 @@ MatrixAssembly::MatrixAssembly(const AffineConstraints<double> &constraints, She
 {
 }
 
-// Whether a row has all columns of the element; their positions. Rows of one vertex, line or cell have the same ones,
-// so the last positions are tried first.
+// Finds the positions of the columns of the element in a row; returns false if one is missing. The rows of a vertex,
+// line or cell have the same columns, so the last positions are tried first.
 bool MatrixAssembly::find(const int *columns, const int n_columns)
 {
   const std::size_t n = order_.size();

@@ -12,13 +12,13 @@ class Epetra_CrsMatrix;
 
 namespace latcon::continuum
 {
-/// Adds what elements contribute to a matrix or a vector, condensed by constraints: the same as
-/// AffineConstraints::distribute_local_to_global, rounding apart, but written in place where no unknown of the element
-/// is constrained and the row is on this rank. The object written to is to be compressed afterwards.
+/// Adds element matrices to a global matrix, condensed by constraints. Equals
+/// AffineConstraints::distribute_local_to_global up to rounding, but is faster: it writes in place where no unknown of
+/// the element is constrained and the row is on this rank. The matrix must be compressed afterwards.
 class MatrixAssembly
 {
 public:
-  /// Both must outlive this. The sparsity of `K` [N/m^2] must hold all that is added.
+  /// `constraints` and `K` [N/m^2] must outlive this object. The sparsity of `K` must contain all added entries.
   MatrixAssembly(const dealii::AffineConstraints<double> &constraints, Sheet::Matrix &K);
 
   void add(const dealii::FullMatrix<double> &local, const std::vector<dealii::types::global_dof_index> &dofs);
@@ -29,13 +29,13 @@ private:
   const dealii::AffineConstraints<double> &constraints_;
   Sheet::Matrix &K_;
   const Epetra_CrsMatrix &rows_;
-  dealii::types::global_dof_index begin_; // of the own rows
+  dealii::types::global_dof_index begin_; // of the owned rows
   dealii::types::global_dof_index end_;
-  std::vector<std::pair<int, unsigned int>> order_; // columns of the present element, and where they are in it
-  std::vector<int> positions_;                      // of order_ in the row last searched
+  std::vector<std::pair<int, unsigned int>> order_; // columns of the current element, with their positions in it
+  std::vector<int> positions_;                      // of order_ in the last searched row
 };
 
-/// The same for a vector.
+/// Adds element vectors to a global vector; see MatrixAssembly.
 class VectorAssembly
 {
 public:

@@ -12,7 +12,7 @@ namespace latcon::continuum
 double checked_determinant(const Tensor<2, 2> &F)
 {
   const double J = F[0][0] * F[1][1] - F[0][1] * F[1][0];
-  // Written so that a NaN fails it too.
+  // In this form a NaN fails as well.
   if (!(J > 0. && std::isfinite(J)))
   {
     std::ostringstream message;
@@ -44,8 +44,9 @@ double minimum_acoustic_eigenvalue(const Material &law, const Tensor<2, 2> &F)
     return 0.5 * (Q[0][0] + Q[1][1]) - std::hypot(0.5 * (Q[0][0] - Q[1][1]), Q[0][1]);
   };
 
-  // Q is quadratic in n, so its eigenvalues have a few extrema at most over the half circle: a scan finds the valley,
-  // golden section its floor. Where the eigenvalues cross the smaller one has a ridge, never a valley.
+  // Q is quadratic in n, so its eigenvalues have few extrema over the half circle: a scan brackets the minimum,
+  // golden-section search refines it. Where the eigenvalues cross, the smaller one has a kink that is a maximum, never
+  // a minimum.
   const double pi = std::acos(-1.);
   const unsigned int n_samples = 360;
   double best = smallest_eigenvalue(0.);

@@ -4,14 +4,14 @@
 
 namespace latcon::continuum
 {
-/// A hyperelastic law of a sheet: energy, stress, tangent, and nothing else. Const and stateless.
+/// Hyperelastic law of a sheet: energy, stress and tangent. Laws are const and stateless.
 ///
-/// F_iJ = dx_i/dX_J is the in-plane deformation gradient (current index first, reference index second). Every
-/// density is per reference volume, so per reference area and unit reference thickness. All functions throw
-/// NonPhysicalState, naming F, when det F <= 0 or F is not finite.
+/// F_iJ = dx_i/dX_J is the in-plane deformation gradient (current index first, reference index second). Densities are
+/// per reference volume, that is, per reference area and unit reference thickness. All functions throw
+/// NonPhysicalState, with F in the message, if det F <= 0 or F is not finite.
 ///
-/// Symbols as in theory-continuum.md, eq. (C.1). A law with gradient terms is a second, additive one, W_g(F, Grad F):
-/// it stands beside this class, not below it.
+/// Symbols as in theory-continuum.md, eq. (C.1). For gradient terms see GradientLaw, whose energy W_g(F, Grad F) is
+/// added to this one.
 class Material
 {
 public:
@@ -26,21 +26,22 @@ public:
   /// dP_iJ/dF_kL [Pa], index order [i][J][k][L]; major symmetric.
   virtual dealii::Tensor<4, 2> tangent(const dealii::Tensor<2, 2> &F) const = 0;
 
-  /// Thickness stretch F_33 [-], current over reference thickness. A law that knows no thickness answers 1.
+  /// Thickness stretch F_33 [-], current over reference thickness; 1 for laws that do not model the thickness.
   virtual double thickness_stretch(const dealii::Tensor<2, 2> &F) const = 0;
 };
 
-/// det F [-] of the in-plane deformation gradient; throws NonPhysicalState unless it is finite and > 0.
-/// To be called before any logarithm or power of the state.
+/// Returns det F [-] of the in-plane deformation gradient. Throws NonPhysicalState unless it is finite and > 0. To be
+/// called before any logarithm or power of the state.
 double checked_determinant(const dealii::Tensor<2, 2> &F);
 
-/// sigma_ij = P_iJ F_jJ / det F [Pa], det F in-plane (theory-continuum.md, eq. (C.2)): force per current length and
-/// REFERENCE thickness. Thickness change is not in it, because a lattice has none to compare with; the true stress of
-/// a sheet with thickness stretch F_33 is this divided by F_33.
+/// Returns the Cauchy stress sigma_ij = P_iJ F_jJ / det F [Pa], det F in-plane (theory-continuum.md, eq. (C.2)): force
+/// per current length and REFERENCE thickness. The thickness change is excluded, because a lattice has no thickness to
+/// compare with; the true stress of a sheet with thickness stretch F_33 is this stress divided by F_33.
 dealii::Tensor<2, 2> cauchy_stress(const dealii::Tensor<2, 2> &P, const dealii::Tensor<2, 2> &F);
 
-/// Smallest eigenvalue [Pa] of the acoustic tensor Q_ik(n) = T_iJkL n_J n_L of the tangent T at F, over every
-/// reference direction n (theory-continuum.md, eq. (C.3)); rho c^2 of the slowest plane wave. The law is strongly
-/// elliptic at F if and only if it is positive. Relative accuracy 1e-10. Throws NonPhysicalState as the law does.
+/// Returns the smallest eigenvalue [Pa] of the acoustic tensor Q_ik(n) = T_iJkL n_J n_L of the tangent T at F over all
+/// reference directions n (theory-continuum.md, eq. (C.3)), which is rho c^2 of the slowest plane wave. The law is
+/// strongly elliptic at F if and only if this eigenvalue is positive. Relative accuracy 1e-10. Throws NonPhysicalState
+/// as the law does.
 double minimum_acoustic_eigenvalue(const Material &law, const dealii::Tensor<2, 2> &F);
 } // namespace latcon::continuum

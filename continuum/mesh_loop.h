@@ -5,15 +5,15 @@
 
 namespace latcon::continuum
 {
-/// Calls `visit.cell(cell)` with each active cell that this rank owns and then, for each of its faces in turn,
-///     visit.boundary(cell, face)     where nothing is beyond, nor a periodic edge;
-///     visit.interior(cell, face, subface, neighbor, neighbor_face, neighbor_subface)     else,
-/// and `visit.cell_end()` after the last of them. Over all ranks a face between cells is visited once: from the finer
-/// cell, of equal ones from that of the rank with the smaller number, on one rank from the first.
+/// Calls `visit.cell(cell)` for each locally owned active cell and then, for each of its faces in turn,
+///     visit.boundary(cell, face)     on the boundary, except on periodic edges;
+///     visit.interior(cell, face, subface, neighbor, neighbor_face, neighbor_subface)     otherwise,
+/// and `visit.cell_end()` after the last face. Each face between cells is visited once over all ranks: from the finer
+/// cell; between equally fine cells, from the cell of the lower rank or, on one rank, from the first cell.
 ///
 /// `subface` is numbers::invalid_unsigned_int, and so is `neighbor_subface` unless the neighbor is coarser. The order
-/// of calls is that of deal.II's MeshWorker::mesh_loop, which in version 9.4 fails an assertion of its own on periodic
-/// faces in debug mode.
+/// of calls is that of deal.II's MeshWorker::mesh_loop, which cannot be used: in debug mode of version 9.4 an internal
+/// assertion fails on periodic faces.
 template <class Visitor>
 void for_each_cell_and_face(const dealii::DoFHandler<2> &dofs, Visitor &visit)
 {

@@ -33,13 +33,13 @@ void require(const bool holds, const std::string &rule)
     throw InvalidInput(rule);
 }
 
-// Number of parts of about that size.
+// Returns the number of parts of about `size` between `from` and `to`.
 double n_parts(const double from, const double to, const double size)
 {
   return std::max(1., std::round((to - from) / size));
 }
 
-// Equal parts of [from, to], without the first end.
+// Divides the interval from the last line to `to` into equal parts of about `size`, and appends their ends.
 void append_parts(std::vector<double> &lines, const double to, const double size)
 {
   const double from = lines.back();
@@ -48,14 +48,15 @@ void append_parts(std::vector<double> &lines, const double to, const double size
     lines.push_back(k == n ? to : from + (to - from) * k / n);
 }
 
-// Half the side of the square of cells around a hole: twice as wide where there is room.
+// Returns half the side of the square of cells around a hole: twice the radius where the sheet is large enough.
 double half_box(const RectangleWithHole &shape)
 {
   return std::min(2. * shape.radius, 0.5 * (shape.radius + 0.5 * std::min(shape.length, shape.height)));
 }
 
-// A mesh as its file has it: deal.II drops z of nodes in the plane, and gives edges without a line the number 0.
-class AsWritten : public Triangulation<2, 3>
+// Mesh exactly as in its file: deal.II drops z of nodes of a plane mesh, and sets the boundary id 0 on edges without a
+// line.
+class FileMesh : public Triangulation<2, 3>
 {
 public:
   using Triangulation<2, 3>::create_triangulation;
@@ -68,12 +69,12 @@ public:
     Triangulation<2, 3>::create_triangulation(points, cells, SubCellData());
   }
 
-  // What is wrong with nodes or edges; empty if nothing.
+  // Returns a description of an error in nodes or edges; empty if there is none.
   std::string defect() const
   {
     std::ostringstream text;
     const BoundingBox<3> box(get_vertices());
-    constexpr double round_off = 1e-12; // of coordinates that were rotated or written in decimals
+    constexpr double round_off = 1e-12; // of coordinates that were rotated or converted to decimals
     if (!(box.side_length(2) <= round_off * (box.side_length(0) + box.side_length(1))))
     {
       text << "has nodes at z = " << box.lower_bound(2) << " and " << box.upper_bound(2)
@@ -93,7 +94,7 @@ public:
              << (found == numbers_.end() ? "no physical curve" : "the physical curve ");
         if (found != numbers_.end())
           text << static_cast<int>(found->second);
-        text << "; known are 0 left, 1 right, 2 bottom, 3 top, 4 inner";
+        text << "; expected 0 (left), 1 (right), 2 (bottom), 3 (top) or 4 (inner)";
         return text.str();
       }
     return "";
@@ -103,12 +104,12 @@ private:
   std::map<std::pair<unsigned int, unsigned int>, types::boundary_id> numbers_;
 };
 
-// Whether a line of the file is on no physical curve, which deal.II takes for the curve 0 as well. Format 2: elements
-// are "number kind tags...", the first tag the physical number. Format 4.1: elements stand in blocks of one entity
-// (Gmsh 4.8 manual, "MSH file format").
+// Returns true if a line element of the file is on no physical curve, which deal.II does not distinguish from curve 0.
+// Format 2: an element is "number type tags...", the first tag is the physical number. Format 4.1: elements are grouped
+// in blocks per entity (Gmsh 4.8 manual, "MSH file format").
 bool has_line_without_number(std::istream &file)
 {
-  constexpr int line = 1; // kind of element, and dimension of an entity
+  constexpr int line = 1; // element type, and dimension of an entity
   const auto seek = [&file](const std::string &section)
   {
     for (std::string word; file >> word && word != section;)
@@ -175,24 +176,25 @@ void read_msh(Triangulation<2, dimension> &mesh, const std::filesystem::path &fi
   catch (const std::exception &failure)
   {
     throw InvalidInput("the mesh file " + file.string() +
-                       " is no Gmsh mesh of quadrilaterals in the plane: " + failure.what());
+                       " is not a Gmsh mesh of quadrilaterals in the plane: " + failure.what());
   }
 }
 
-// Reads a mesh of quadrilaterals on this process alone.
+// Reads a mesh of quadrilaterals on this process.
 void read_serial(Triangulation<2> &mesh, const std::filesystem::path &file)
 {
   const std::string name = "the mesh file " + file.string();
   read_msh(mesh, file);
-  require(mesh.n_active_cells() > 0, name + " holds no cells");
+  require(mesh.n_active_cells() > 0, name + " contains no cells");
   require(mesh.all_reference_cells_are_hyper_cube(),
-          name + " holds cells other than quadrilaterals; Gmsh's `Recombine Surface` makes them");
-  AsWritten written;
+          name + " contains cells other than quadrilaterals; generate them with Gmsh's `Recombine Surface`");
+  FileMesh written;
   read_msh(written, file);
   const std::string defect = written.defect();
   require(defect.empty(), name + " " + defect);
   std::ifstream stream(file);
-  require(!has_line_without_number(stream), name + " has lines on no physical curve, which would be taken for 0, left");
+  require(!has_line_without_number(stream),
+          name + " has lines on no physical curve; assign every boundary line to a physical curve");
 }
 
 class CoarseMesh
@@ -204,7 +206,7 @@ public:
     return vertices_.size() - 1;
   }
 
-  // Corners in the order of reading: lower left, lower right, upper left, upper right.
+  // Adds a cell. Corners in lexicographic order: lower left, lower right, upper left, upper right.
   void cell(const unsigned int a, const unsigned int b, const unsigned int c, const unsigned int d)
   {
     CellData<2> data(4);
@@ -212,10 +214,10 @@ public:
     cells_.push_back(data);
   }
 
-  // Creates the mesh; outer edges get their ids by position, all else is inner boundary.
+  // Creates the mesh. Outer edges get their ids by position, all other boundary edges the id `inner`.
   void create(parallel::distributed::Triangulation<2> &mesh, const double length, const double height) const
   {
-    // Lines must run the same way in both their cells, or elements of degree 3 and more do not fit together.
+    // A line must have the same orientation in both of its cells, or elements of degree 3 and higher do not match.
     std::vector<CellData<2>> cells = cells_;
     GridTools::consistently_order_cells(cells);
     mesh.create_triangulation(vertices_, cells, SubCellData());
@@ -244,12 +246,12 @@ void make_rectangle_with_hole(parallel::distributed::Triangulation<2> &mesh, con
 {
   const auto &[length, height, radius, refinements] = shape;
   require(length > 0. && height > 0. && std::isfinite(length) && std::isfinite(height),
-          "a rectangle needs a positive and finite length and height");
+          "the length and height of a rectangle must be positive and finite");
   const double smaller = std::min(length, height);
   require(radius > 0. && radius < 0.45 * smaller,
-          "the radius of a hole must be positive and less than 0.45 of the sheet");
+          "the radius of a hole must be positive and less than 0.45 times the length and the height");
 
-  // A square of cells around the hole, and rows and columns of cells outside.
+  // A ring of cells around the hole within a square, and rows and columns of cells outside the square.
   const double half = half_box(shape);
   const double cx = 0.5 * length;
   std::vector<double> xs = {0.}, ys = {-0.5 * height};
@@ -267,7 +269,7 @@ void make_rectangle_with_hole(parallel::distributed::Triangulation<2> &mesh, con
   { return static_cast<unsigned int>(j * xs.size() + i); };
   for (const double y : ys)
     for (const double x : xs)
-      coarse.vertex(x, y); // the one in the middle of the hole is used by no cell
+      coarse.vertex(x, y); // the vertex at the centre of the hole belongs to no cell
   for (unsigned int j = 0; j + 1 < ys.size(); ++j)
     for (unsigned int i = 0; i + 1 < xs.size(); ++i)
       if (i < box_x || i > box_x + 1 || j < box_y || j > box_y + 1)
@@ -296,8 +298,8 @@ void make_notched_rectangle(parallel::distributed::Triangulation<2> &mesh, const
 {
   const auto &[length, height, notch, refinements] = shape;
   require(length > 0. && height > 0. && std::isfinite(length) && std::isfinite(height),
-          "a rectangle needs a positive and finite length and height");
-  require(notch > 0. && notch < length, "a notch must be longer than 0 and shorter than the sheet");
+          "the length and height of a rectangle must be positive and finite");
+  require(notch > 0. && notch < length, "the notch must be longer than 0 and shorter than the sheet");
 
   std::vector<double> xs = {0.};
   append_parts(xs, notch, 0.5 * height);
@@ -326,7 +328,7 @@ double n_coarse_cells(const RectangleWithHole &shape)
   const double half = half_box(shape), pitch = 1.5 * half;
   const double columns = 2. * n_parts(0., 0.5 * shape.length - half, pitch) + 2.;
   const double rows = 2. * n_parts(0., 0.5 * shape.height - half, pitch) + 2.;
-  return columns * rows - 4. + 8.; // eight around the hole stand for the four in the box
+  return columns * rows - 4. + 8.; // eight cells around the hole replace the four in the square
 }
 
 double n_coarse_cells(const NotchedRectangle &shape)
@@ -348,7 +350,8 @@ void read_gmsh(parallel::distributed::Triangulation<2> &mesh, const std::filesys
   collectively(mesh.get_communicator(),
                [&]
                {
-                 // Into a serial mesh first: what deal.II throws on one rank must not leave the others waiting.
+                 // Read into a serial mesh first: an exception of deal.II on one rank must not leave the others
+                 // waiting.
                  Triangulation<2> serial;
                  read_serial(serial, file);
                });

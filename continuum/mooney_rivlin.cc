@@ -12,7 +12,7 @@ namespace latcon::continuum
 {
 namespace
 {
-// State of the sheet in the two in-plane invariants: |F|^2 and j = det F, with the thickness stretch t they imply.
+// In-plane invariants |F|^2 and j = det F of the sheet, and the resulting thickness stretch t.
 struct Invariants
 {
   double F_squared;
@@ -26,13 +26,13 @@ struct Invariants
 {
   std::ostringstream message;
   message.precision(17);
-  message << "no thickness of the sheet is in stable equilibrium: F = [" << F[0][0] << " " << F[0][1] << "; " << F[1][0]
-          << " " << F[1][1] << "]";
+  message << "no stable equilibrium thickness exists: F = [" << F[0][0] << " " << F[0][1] << "; " << F[1][0] << " "
+          << F[1][1] << "]";
   throw NonPhysicalState(message.str());
 }
 
-// The thickness equation is quadratic, so the root is written down instead of iterated for. For A > 0 and B > 0 it is
-// the only positive one and no digits cancel. For B < 0 it is the larger of two, the local minimum of the energy.
+// Closed-form root of the quadratic thickness equation. For A > 0 and B > 0 it is the only positive root and no digits
+// cancel. For B < 0 it is the larger of two, the local minimum of the energy.
 Invariants invariants(const MooneyRivlin::Constants &m, const Tensor<2, 2> &F)
 {
   Invariants s;
@@ -63,7 +63,7 @@ MooneyRivlin::Constants MooneyRivlin::Constants::with_equal_lame_constants(const
                                                                            const double ratio)
 {
   if (!(shear_modulus > 0. && ratio > -1. && ratio < 1.))
-    throw InvalidMaterial("equal Lame constants need a shear modulus > 0 and a ratio c2/(c1+c2) between -1 and 1");
+    throw InvalidMaterial("equal Lame constants need a shear modulus > 0 and a ratio c2/(c1+c2) in (-1, 1)");
   return {0.5 * (1. - ratio) * shear_modulus, 0.5 * ratio * shear_modulus, 2. * (1. - ratio) * shear_modulus};
 }
 
@@ -76,9 +76,10 @@ MooneyRivlin::MooneyRivlin(const Constants &constants) : constants_(constants)
     throw InvalidMaterial("Mooney-Rivlin needs a positive shear modulus 2 (c1 + c2)");
   if (!(kappa > 0.))
     throw InvalidMaterial("Mooney-Rivlin needs kappa > 0");
-  // d2W/dF33^2 at F = I: the curvature that keeps the unloaded sheet at its thickness.
+  // d2W/dF33^2 at F = I: the thickness of the unloaded sheet is stable if it is positive.
   if (!(2. * (2. * c1 + 4. * c2) + kappa > 0.))
-    throw InvalidMaterial("Mooney-Rivlin needs 4 c1 + 8 c2 + kappa > 0, or the unloaded sheet has no stable thickness");
+    throw InvalidMaterial(
+      "Mooney-Rivlin needs 4 c1 + 8 c2 + kappa > 0 for the thickness of the unloaded sheet to be stable");
 }
 
 double MooneyRivlin::energy(const Tensor<2, 2> &F) const

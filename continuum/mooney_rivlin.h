@@ -8,9 +8,9 @@ namespace latcon::continuum
 ///   W(F) = min over F_33 of  c1 (I1 - 3 - 2 ln J) + c2 (I2 - 3 - 4 ln J) + (kappa/2) (J - 1)^2       [Pa]
 /// with the invariants of the three-dimensional C = F^T F and J = F_33 det F.
 ///
-/// c2 < 0 is allowed, as calibration may ask for it. Then no thickness is in equilibrium once
+/// c2 < 0 is allowed, because a calibration may need it. No equilibrium thickness exists then if
 ///   c1 + c2 |F|^2 + (kappa/2) (det F)^2 <= 0,
-/// and the law throws NonPhysicalState there; strong ellipticity may be lost earlier (minimum_acoustic_eigenvalue).
+/// for which the law throws NonPhysicalState; strong ellipticity may be lost earlier (minimum_acoustic_eigenvalue).
 class MooneyRivlin : public Material
 {
 public:
@@ -21,20 +21,22 @@ public:
     double c2;
     double kappa;
 
-    /// The constants whose small-strain limit in plane stress has shear modulus `shear_modulus` mu [Pa] > 0 and
-    /// lambda = mu, two-dimensional Poisson ratio 1/3: c1 = (1-r) mu/2, c2 = r mu/2, kappa = 2 mu (1-r), for the
-    /// ratio r = c2/(c1 + c2) [-], -1 < r < 1 (theory-continuum.md, eq. (C.10)).
+    /// Returns constants with equal Lame constants in the small-strain limit in plane stress: shear modulus
+    /// `shear_modulus` mu [Pa] > 0 and lambda = mu, that is, two-dimensional Poisson ratio 1/3. They are c1 = (1-r)
+    /// mu/2, c2 = r mu/2, kappa = 2 mu (1-r), for the ratio r = c2/(c1 + c2) [-], -1 < r < 1 (theory-continuum.md, eq.
+    /// (C.10)). Throws InvalidMaterial if an argument is out of range.
     static Constants with_equal_lame_constants(double shear_modulus, double ratio);
   };
 
-  /// Throws InvalidMaterial unless 2 (c1 + c2) > 0, kappa > 0 and the thickness is stable at F = I.
+  /// Creates the law. Throws InvalidMaterial unless 2 (c1 + c2) > 0, kappa > 0, and the thickness is stable at F = I: 4
+  /// c1 + 8 c2 + kappa > 0.
   explicit MooneyRivlin(const Constants &constants);
 
   double energy(const dealii::Tensor<2, 2> &F) const override;
   dealii::Tensor<2, 2> first_piola_stress(const dealii::Tensor<2, 2> &F) const override;
   dealii::Tensor<4, 2> tangent(const dealii::Tensor<2, 2> &F) const override;
 
-  /// F_33 [-], the stable root of S_33 = 0 (theory-continuum.md, eq. (C.6)).
+  /// Thickness stretch F_33 [-], the stable root of S_33 = 0 (theory-continuum.md, eq. (C.6)).
   double thickness_stretch(const dealii::Tensor<2, 2> &F) const override;
 
   const Constants &constants() const { return constants_; }

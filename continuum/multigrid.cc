@@ -23,28 +23,28 @@ struct Multigrid::Level
 {
   using Smoother = PreconditionChebyshev<SinglePrecisionMatrix, Vector, VertexPatches>;
 
-  std::shared_ptr<const Triangulation<2>> mesh; // empty on the finest level, as are own_sheet and tangent
+  std::shared_ptr<const Triangulation<2>> mesh; // null on the finest level, as are own_sheet and tangent
   std::unique_ptr<Sheet> own_sheet;
   const Sheet *sheet = nullptr;
   AffineConstraints<double> constraints;
   std::shared_ptr<const Utilities::MPI::Partitioner> layout;
   Sheet::Matrix tangent;
-  SinglePrecisionMatrix matrix;             // what the cycle sees of it; unused on the coarsest level
-  MGTwoLevelTransfer<2, Vector> to_coarser; // from here and on, unused on the coarsest level
+  SinglePrecisionMatrix matrix;             // tangent as used in the cycle; unused on the coarsest level
+  MGTwoLevelTransfer<2, Vector> to_coarser; // members from here on are unused on the coarsest level
   std::shared_ptr<VertexPatches> patches;
   Smoother smoother;
   Vector start; // of the eigenvalue estimate
   double largest_eigenvalue = 0.;
   double state_factor = 1.;
   mutable Vector residual;
-  mutable Vector coarse_residual; // two vectors of the next coarser level
+  mutable Vector coarse_residual; // and the next: vectors of the next coarser level
   mutable Vector coarse_correction;
 };
 
 namespace
 {
-// Waves in all directions, short and long against the cells, so that no eigenvector is missed; a function of place, so
-// that the partition of the mesh does not matter.
+// Fills the start vector with waves in all directions, short and long compared with the cells, so that it has a
+// component along every eigenvector. It is a function of position, so it does not depend on the partition of the mesh.
 void fill_start(const Sheet &sheet, const AffineConstraints<double> &constraints, Multigrid::Vector &start)
 {
   double own_size = std::numeric_limits<double>::max();
@@ -54,19 +54,18 @@ void fill_start(const Sheet &sheet, const AffineConstraints<double> &constraints
   const double size = Utilities::MPI::min(own_size, sheet.communicator());
 
   sheet.for_each_owned_dof(
-    [&](const auto dof, const unsigned int i, const Point<2> &place)
+    [&](const auto dof, const unsigned int i, const Point<2> &position)
     {
       if (constraints.is_constrained(dof))
         return;
-      const Point<2> X = place / size;
+      const Point<2> X = position / size;
       start(dof) = std::sin(11.3 * X[0] + 3.1 * i) * std::cos(9.7 * X[1]) + std::sin(4.9 * X[1] - 0.7 * i) +
                    std::cos(5.3 * X[0] + 0.2 * X[1]);
     });
 }
 
-// Estimate of the largest eigenvalue of B A from below, by `n_steps` steps of the Lanczos process that conjugate
-// gradients imply, from B `start`. Where A shows not to be positive definite there is no such process, and the bound
-// for positive cell energies stands in.
+// Estimates the largest eigenvalue of B A from below, by `n_steps` steps of the Lanczos process implied by conjugate
+// gradients from B `start`. If A turns out not to be positive definite, returns the bound for positive cell energies.
 double largest_eigenvalue(const SinglePrecisionMatrix &A, const VertexPatches &B, const Multigrid::Vector &start,
                           const unsigned int n_steps)
 {
@@ -101,9 +100,9 @@ double largest_eigenvalue(const SinglePrecisionMatrix &A, const VertexPatches &B
     p.sadd(beta, 1., z);
     rz = rz_next;
   }
-  constexpr double patches_over_one_place = 4.;
+  constexpr double max_patch_overlap = 4.;
   if (!is_definite || diagonal.empty())
-    return patches_over_one_place;
+    return max_patch_overlap;
   const Eigen::Index n = diagonal.size();
   off_diagonal.resize(n);
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigenvalues;
@@ -111,7 +110,7 @@ double largest_eigenvalue(const SinglePrecisionMatrix &A, const VertexPatches &B
                                      Eigen::Map<const Eigen::VectorXd>(off_diagonal.data(), n - 1),
                                      Eigen::EigenvaluesOnly);
   const double largest = eigenvalues.eigenvalues().maxCoeff();
-  return std::isfinite(largest) && largest > 0. ? largest : patches_over_one_place;
+  return std::isfinite(largest) && largest > 0. ? largest : max_patch_overlap;
 }
 } // namespace
 
@@ -120,13 +119,13 @@ Multigrid::Multigrid(const Sheet &fine, const SheetFactory &make_sheet, const Ma
   : settings_(settings)
 {
   if (settings.smoothing_degree == 0)
-    throw InvalidInput("the smoother needs a degree of at least 1");
+    throw InvalidInput("the smoothing degree must be at least 1");
   if (!(settings.smoothing_range > 1. && std::isfinite(settings.smoothing_range)))
     throw InvalidInput("the smoothing range must be finite and greater than 1");
   if (settings.eigenvalue_iterations < 2)
     throw InvalidInput("the eigenvalue estimate needs at least 2 iterations");
 
-  // From the finest level down, as far as is of use.
+  // From the finest level down to the first level that is small enough.
   const auto meshes = MGTransferGlobalCoarseningTools::create_geometric_coarsening_sequence(
     static_cast<const Triangulation<2> &>(fine.mesh()));
   for (std::size_t n = meshes.size(); n-- > 0;)
@@ -158,7 +157,7 @@ Multigrid::Multigrid(const Sheet &fine, const SheetFactory &make_sheet, const Ma
       break;
   }
   std::reverse(levels_.begin(), levels_.end());
-  constexpr types::global_dof_index small = 10000; // KLU takes too long beyond
+  constexpr types::global_dof_index small = 10000; // KLU is too slow for more unknowns
   const bool is_small = levels_.front()->sheet->dof_handler().n_dofs() <= small;
   coarsest_ = std::make_unique<DirectSolver>(is_small ? DirectSolver::Library::klu : DirectSolver::Library::mumps);
 
@@ -228,8 +227,8 @@ void Multigrid::update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix,
       level.largest_eigenvalue =
         largest_eigenvalue(level.matrix, *level.patches, level.start, settings_.eigenvalue_iterations);
       constexpr double safety = 1.1; // the estimate is from below
-      // Twice the degree on each coarser level, which is a small part of the work: see theory-continuum.md, "Linear
-      // solver". Beyond a few doublings nothing is gained.
+      // Double the degree on each coarser level, at a small part of the total cost: see theory-continuum.md, "Linear
+      // solver". More doublings do not reduce the iterations.
       const unsigned int doublings = std::min<unsigned int>(levels_.size() - 1 - l, 4);
       Level::Smoother::AdditionalData data(settings_.smoothing_degree << doublings, settings_.smoothing_range, 0, 0.,
                                            safety * level.largest_eigenvalue);

@@ -13,77 +13,78 @@ namespace latcon::continuum
 {
 class DirectSolver;
 
-/// How the multigrid cycle is set up.
+/// Settings of Multigrid.
 struct MultigridSettings
 {
-  /// Of the Chebyshev polynomial on the finest level, before and after the coarse correction, >= 1; it doubles from
-  /// level to level, up to 16 times.
+  /// Degree >= 1 of the Chebyshev smoother on the finest level, before and after the coarse-grid correction. The degree
+  /// doubles on each coarser level, up to 16 times this value.
   unsigned int smoothing_degree = 2;
-  double smoothing_range = 6.;             ///< largest eigenvalue over the smallest that is smoothed [-], > 1
-  unsigned int eigenvalue_iterations = 10; ///< of the Lanczos process that estimates the largest eigenvalue, >= 2
-  /// Number of unknowns below which a level is coarse enough to be solved directly. A mesh that cannot be coarsened
-  /// further is solved directly whatever its size.
+  double smoothing_range = 6.;             ///< largest over smallest eigenvalue of the smoothed range [-], > 1
+  unsigned int eigenvalue_iterations = 10; ///< Lanczos iterations for the estimate of the largest eigenvalue, >= 2
+  /// Number of unknowns below which a level is solved directly. A mesh that cannot be coarsened further is solved
+  /// directly as well.
   dealii::types::global_dof_index coarsest_size = 2000;
 };
 
-/// Preconditioner for the tangent of a sheet: one V-cycle of geometric multigrid. The levels are ever coarser meshes,
-/// each coarsened everywhere by one refinement (global coarsening), with a sheet of their own; so a level has hanging
-/// nodes where its mesh has, and no more cells than the work there needs. The tangent is assembled anew on each level
-/// at the interpolated state, the smoother is a Chebyshev polynomial over VertexPatches, and the coarsest level is
-/// solved directly. The cycle reads tangents in single precision (SinglePrecisionMatrix).
+/// Preconditioner for the tangent of a sheet: one V-cycle of geometric multigrid with global coarsening. Each level has
+/// a Sheet on a mesh that is coarsened everywhere by one refinement, including its hanging nodes. The tangent is
+/// assembled on each level at the interpolated state. The smoother is a Chebyshev polynomial over VertexPatches, and
+/// the coarsest level is solved directly. The cycle uses tangents in single precision (SinglePrecisionMatrix).
 ///
-/// The cycle is symmetric, and positive definite as long as the tangents are. Vectors vanish at constrained degrees of
-/// freedom: those at hanging nodes, and the held ones. Repeated runs on the same ranks give the same bits.
+/// The cycle is symmetric, and positive definite if the tangents are. Vectors vanish at constrained degrees of freedom,
+/// which are those at hanging nodes and those with prescribed displacement. Results are reproducible bit for bit on the
+/// same number of ranks.
 ///
-/// All functions are collective, and every exception reaches every rank.
+/// All functions are collective. Every exception is thrown on every rank.
 class Multigrid
 {
 public:
   using Vector = dealii::LinearAlgebra::distributed::Vector<double>;
-  /// Makes the sheet of a coarser mesh, of the same law and element. The mesh outlives the sheet.
+  /// Creates the sheet on a coarser mesh, with the same law and element. The mesh outlives the sheet.
   using SheetFactory = std::function<std::unique_ptr<Sheet>(const dealii::parallel::distributed::Triangulation<2> &)>;
-  /// Gives `K` the sparsity that the Assembler fills.
+  /// Initialises `K` with the sparsity that the Assembler fills.
   using MatrixFactory =
     std::function<void(const Sheet &, const dealii::AffineConstraints<double> &constraints, Sheet::Matrix &K)>;
-  /// Puts into `K` the tangent [N/m^2] at the nodal vector `u` [m] (with ghost entries), condensed by `constraints`.
-  /// Throws NonPhysicalState, on every rank, where there is none.
+  /// Assembles the tangent [N/m^2] at the nodal vector `u` [m] (with ghost entries), condensed by `constraints`, into
+  /// `K`. Throws NonPhysicalState on every rank if the state is non-physical.
   using Assembler = std::function<void(const Sheet &, const Sheet::Vector &u,
                                        const dealii::AffineConstraints<double> &constraints, Sheet::Matrix &K)>;
-  /// Builds all that depends on the mesh alone: levels, transfers, sparsity, patches. `fine` must outlive the
-  /// multigrid, and its mesh must not change. Throws InvalidInput for settings out of range.
+  /// Builds the parts that depend only on the mesh: levels, transfers, sparsity, patches. `fine` must outlive the
+  /// multigrid, and its mesh must not change. `held` are the components with prescribed displacement. Throws
+  /// InvalidInput for settings out of range.
   Multigrid(const Sheet &fine, const SheetFactory &make_sheet, const MatrixFactory &make_matrix,
             const DirichletBoundaries &held, const MultigridSettings &settings = MultigridSettings());
   ~Multigrid();
   Multigrid(const Multigrid &) = delete;
   Multigrid &operator=(const Multigrid &) = delete;
 
-  /// Takes over the state `u` [m] (with ghost entries) and its tangent on the finest mesh, condensed by constraints(),
-  /// of which a copy is kept. Where the interpolated state is non-physical on a coarser level, half of it is taken,
-  /// then a quarter and so on, and at last zero: that makes a worse preconditioner and no error. Throws
-  /// LinearSolverFailed if the coarsest tangent is singular.
+  /// Sets the state `u` [m] (with ghost entries) and copies its tangent on the finest mesh, condensed by constraints().
+  /// If the interpolated state is non-physical on a coarser level, it is halved repeatedly and finally set to zero,
+  /// which makes the preconditioner less effective without affecting the solution. Throws LinearSolverFailed if the
+  /// coarsest tangent is singular.
   void update(const Sheet::Vector &u, const Sheet::Matrix &fine_matrix, const Assembler &assemble);
 
-  /// z [m] from r [N/m], vectors of the layout that `initialize` gives.
+  /// Applies the preconditioner: computes z [m] from r [N/m], both with the layout set by initialize().
   void vmult(Vector &z, const Vector &r) const;
 
-  /// Makes `v` a zero vector of the layout that vmult takes.
+  /// Makes `v` a zero vector with the layout that vmult() expects.
   void initialize(Vector &v) const;
-  /// Copies owned entries, from and to vectors without ghost entries.
+  /// Copies the owned entries of vectors without ghost entries.
   static void copy(const Sheet::Vector &from, Vector &to);
   static void copy(const Vector &from, Sheet::Vector &to);
 
-  /// Of the finest mesh: hanging nodes, and held degrees of freedom at zero.
+  /// Returns the constraints of the finest mesh: hanging nodes, and prescribed degrees of freedom at zero.
   const dealii::AffineConstraints<double> &constraints() const;
 
-  /// What a level is like, for reports and tests.
+  /// Statistics of a level, for reports and tests.
   struct LevelFacts
   {
     dealii::types::global_dof_index n_unknowns;
     double largest_eigenvalue;       ///< estimate for patches times tangent [-]; 0 on the coarsest level
-    double state_factor;             ///< of the interpolated state at which the tangent was assembled [-]
-    unsigned int n_replaced_patches; ///< blocks that were not positive definite
+    double state_factor;             ///< fraction of the interpolated state at which the tangent was assembled [-]
+    unsigned int n_replaced_patches; ///< patches whose block was not positive definite
   };
-  /// From the coarsest to the finest, after update.
+  /// Returns the statistics of the last update(), from the coarsest to the finest level.
   std::vector<LevelFacts> levels() const;
 
 private:

@@ -7,7 +7,7 @@ namespace latcon::continuum
 {
 namespace
 {
-// Families with the same potential as one, of their mean squared length.
+// Merges families with the same potential into one with their mean squared length.
 std::vector<BondFamily> merged(const std::vector<BondFamily> &families)
 {
   std::vector<BondFamily> result;

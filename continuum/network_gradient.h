@@ -4,26 +4,27 @@
 
 namespace latcon::continuum
 {
-/// The gradient energy of a network with all directions alike: the mean of LatticeGradient over all rotations of its
-/// reference configuration (theory-continuum.md, eq. (C.57)), as a sum over equispaced directions. It goes with the law
-/// IsotropicNetwork as LatticeGradient goes with CauchyBorn.
+/// Isotropic gradient law of a network of bonds: mean of LatticeGradient over all rotations of the reference
+/// configuration (theory-continuum.md, eq. (C.57)), as a sum over equispaced directions. To be combined with
+/// IsotropicNetwork, as LatticeGradient with CauchyBorn.
 ///
-/// The sum is a law of its own, objective and with exact derivatives. With all fibres beyond full_stretch, what it
-/// lacks to isotropy falls as the n-th power of (l1 - l2)/(l1 + l2), l1 and l2 the principal stretches, with the number
-/// n of directions.
+/// The sum is itself an objective law with exact derivatives. If all fibres are stretched beyond full_stretch, its
+/// anisotropy decreases with the number n of directions as ((l1 - l2)/(l1 + l2))^n, with the principal stretches l1 and
+/// l2.
 class NetworkGradient : public LatticeGradient
 {
 public:
-  /// Directions in half a turn. The dependence on direction is below 1e-6 of the energy up to l1/l2 = 3 if all fibres
-  /// are stretched by 2 % or more, else below 1e-2 up to 6.
+  /// Number of directions in half a turn. The anisotropy is below 1e-6 of the energy up to l1/l2 = 3 if all fibres are
+  /// stretched by 2 % or more, and otherwise below 1e-2 up to l1/l2 = 6.
   static constexpr unsigned int n_directions = 32;
 
-  /// The directions of `families` do not matter; `length` l_d [m]. Throws InvalidMaterial as LatticeGradient does.
-  /// Families with the same potential act as one, of their mean squared length, and l_d has to satisfy (C.58) alone.
+  /// Creates the law from `families`, whose directions are ignored, and `length` l_d [m]. Families with the same
+  /// potential are merged into one with their mean squared length, so l_d only needs to satisfy eq. (C.58). Throws
+  /// InvalidMaterial as LatticeGradient does.
   NetworkGradient(const std::vector<BondFamily> &families, double length);
 
-  /// The shortest l_d [m] for which the energy is positive: the largest root mean squared length of bonds with the same
-  /// potential, over sqrt(12) (theory-continuum.md, eq. (C.58)).
+  /// Returns the smallest l_d [m] for which the energy is positive: the largest root-mean-square length of bonds with
+  /// the same potential, over sqrt(12) (theory-continuum.md, eq. (C.58)).
   static double smallest_length(const std::vector<BondFamily> &families);
 };
 } // namespace latcon::continuum

@@ -18,27 +18,27 @@ struct NewtonSettings
 {
   double relative_tolerance;   ///< residual over reference force [-], in (0, 1)
   unsigned int max_iterations; ///< Newton steps
-  unsigned int max_halvings;   ///< of one Newton step in the line search
-  /// Largest residual of a linear system relative to its right-hand side [-], in [0, 1); 0: each system is solved to
-  /// round-off.
+  unsigned int max_halvings;   ///< per Newton step in the line search
+  /// Loosest tolerance of a linear system, residual relative to the right-hand side [-], in [0, 1); 0: solve each
+  /// system to round-off.
   double largest_forcing = 0.;
 };
 
-/// Linear solution of a Newton step.
+/// Outcome of the linear solve for a Newton step.
 struct NewtonStep
 {
   unsigned int linear_iterations; ///< 0 if direct
-  double slope;                   ///< dE along the step [J/m]; used only if the energy has to fall
+  double slope; ///< directional derivative of the energy along the step [J/m]; used only if energy_noise is given
 };
 
-/// Newton's method with a line search that halves the step (theory-continuum.md, "Weak form and Newton"). Statics and
-/// dynamics state their equations as functions of the nodal displacement u [m]; the solver decides on tolerance,
+/// Newton's method with a line search that halves the step (theory-continuum.md, "Weak form and Newton"). StaticSolver
+/// and DynamicSolver pass their equations as functions of the nodal displacement u [m]; this class controls tolerance,
 /// forcing, step length and failure.
 ///
-/// `State` is what an evaluation of the residual leaves, with members
+/// `State` is the result of an evaluation of the residual, with members
 ///   free       norm of the residual over the free unknowns [N/m],
-///   reference  norm of the forces at work [N/m],
-///   energy     energy less the work of dead loads [J/m].
+///   reference  norm of the acting forces [N/m],
+///   energy     energy minus the work of dead loads [J/m].
 /// All functions are collective.
 template <class State>
 class NewtonSolver
@@ -46,19 +46,20 @@ class NewtonSolver
 public:
   using Vector = Sheet::Vector;
 
-  /// The equations. Those marked optional may be empty.
+  /// Equations to solve. Functions marked optional may be empty.
   struct Equations
   {
-    /// Evaluates the residual at u. @throws NonPhysicalState where the residual has no value: the step is halved
+    /// Evaluates the residual at u. @throws NonPhysicalState if the residual is undefined there; the step is then
+    /// halved
     std::function<State(const Vector &u)> evaluate;
-    /// Round-off of the residual at u [N/m]: the tolerance is not below it.
+    /// Returns the round-off of the residual at u [N/m], a lower bound of the tolerance.
     std::function<double(const State &state, const Vector &u)> round_off;
     /// Solves for the Newton step at u to the relative residual `forcing`. @throws LinearSolverFailed
     std::function<NewtonStep(const State &state, const Vector &u, double forcing, Vector &step)> solve;
-    /// Round-off of the energy of a state [J/m]. If given, the line search asks for a decrease of the energy, as a
-    /// minimum requires; if empty (optional), any state that can be evaluated is accepted.
+    /// Returns the round-off of the energy of a state [J/m] (optional). If given, the line search requires a decrease
+    /// of the energy, which leads to a minimum; if empty, it accepts any state that can be evaluated.
     std::function<double(const State &state)> energy_noise;
-    /// Words on a state that did not converge, appended to the reason (optional).
+    /// Returns a description of a state that did not converge, appended to the reason of failure (optional).
     std::function<std::string(const State &state)> describe;
   };
 
@@ -67,14 +68,14 @@ public:
   {
   }
 
-  /// Iterates from u, at which the residual is `state`, to a solution, which u becomes. Every evaluation is appended to
-  /// `history` with the step's `number` and `load_factor` and, for the first, the `linear_iterations` of the predictor.
-  /// @return why it failed, empty if it converged; u is then the last accepted iterate
+  /// Iterates from u, with residual `state`, and overwrites u with the solution. Appends every evaluation to `history`
+  /// with the `number` and `load_factor` of the step; the first gets the `linear_iterations` of the predictor.
+  /// @return reason of failure, empty if converged; after a failure u is the last accepted iterate
   std::string solve(Vector &u, State state, unsigned int number, double load_factor, unsigned int linear_iterations,
                     std::vector<NewtonIteration> &history) const;
 
 private:
-  /// Halves the step until its end is acceptable. Returns why none is, empty if one is.
+  /// Halves the step until its end is accepted. Returns the reason of failure, empty on success.
   std::string search(const Vector &step, double slope, Vector &u, State &state, double &length) const;
   double next_forcing(double last, double reduction, double tolerance) const;
 
@@ -115,7 +116,7 @@ template <class State>
 std::string NewtonSolver<State>::search(const Vector &step, const double slope, Vector &u, State &state,
                                         double &length) const
 {
-  constexpr double sufficient = 1e-4; // share of the linear decrease, after Armijo
+  constexpr double sufficient = 1e-4; // Armijo constant
   const double start = state.energy;
   const double noise = equations_.energy_noise ? equations_.energy_noise(state) : 0.;
   length = 1.;
@@ -144,9 +145,10 @@ std::string NewtonSolver<State>::search(const Vector &step, const double slope, 
   return "the line search found no decrease of energy" + (reason.empty() ? "" : "; last refused state: " + reason);
 }
 
-/// Relative residual to which the next Newton step is solved, after Eisenstat and Walker (1996), choice 2 with its
-/// safeguard: as the residual falls quadratically, by the square of its last reduction. `tolerance` is that of the
-/// residual relative to its value. A step that comes close to it anyway is made to reach it, and none goes far below.
+/// Returns the forcing term of the next Newton step after Eisenstat and Walker (1996), choice 2 with its safeguard:
+/// proportional to the square of the last reduction of the residual. `tolerance` is the tolerance of the residual
+/// relative to its value. A step that would almost reach the tolerance is solved accurately enough to reach it; no step
+/// is solved much more accurately.
 template <class State>
 double NewtonSolver<State>::next_forcing(const double last, const double reduction, const double tolerance) const
 {

@@ -21,10 +21,10 @@ bool is_first_rank(const Sheet &sheet)
   return Utilities::MPI::this_mpi_process(sheet.communicator()) == 0;
 }
 
-// Of each unknown by its number, from the cells of all ranks.
-std::vector<unsigned int> places(const std::vector<std::vector<unsigned int>> &names,
-                                 const std::vector<std::vector<types::global_dof_index>> &unknowns,
-                                 const unsigned int per_cell, const types::global_dof_index n_unknowns)
+// Returns the position of each unknown in the order, from the cells of all ranks.
+std::vector<unsigned int> positions(const std::vector<std::vector<unsigned int>> &names,
+                                    const std::vector<std::vector<types::global_dof_index>> &unknowns,
+                                    const unsigned int per_cell, const types::global_dof_index n_unknowns)
 {
   struct Cell
   {
@@ -42,13 +42,13 @@ std::vector<unsigned int> places(const std::vector<std::vector<unsigned int>> &n
   std::sort(cells.begin(), cells.end(), [](const Cell &one, const Cell &two) { return one.name < two.name; });
 
   constexpr unsigned int none = std::numeric_limits<unsigned int>::max();
-  std::vector<unsigned int> place(n_unknowns, none);
+  std::vector<unsigned int> position(n_unknowns, none);
   unsigned int next = 0;
   for (const Cell &cell : cells)
     for (unsigned int a = 0; a < per_cell; ++a)
-      if (unsigned int &here = place[cell.unknowns[a]]; here == none)
+      if (unsigned int &here = position[cell.unknowns[a]]; here == none)
         here = next++;
-  return place;
+  return position;
 }
 } // namespace
 
@@ -70,41 +70,41 @@ NodalOrder::NodalOrder(const Sheet &sheet) : sheet_(sheet)
   const auto all_names = Utilities::MPI::gather(communicator, names);
   const auto all_unknowns = Utilities::MPI::gather(communicator, unknowns);
   if (is_first_rank(sheet))
-    place_ = places(all_names, all_unknowns, per_cell, sheet.dof_handler().n_dofs());
-  std::vector<unsigned int> of_all = Utilities::MPI::broadcast(communicator, place_);
+    position_ = positions(all_names, all_unknowns, per_cell, sheet.dof_handler().n_dofs());
+  std::vector<unsigned int> of_all = Utilities::MPI::broadcast(communicator, position_);
   if (is_first_rank(sheet))
     return;
   for (const types::global_dof_index i : sheet.owned())
-    place_.push_back(of_all[i]);
+    position_.push_back(of_all[i]);
 }
 
-std::vector<double> NodalOrder::gathered(const Sheet::Vector &x) const
+std::vector<double> NodalOrder::gather(const Sheet::Vector &x) const
 {
   std::vector<double> own;
   for (const types::global_dof_index i : sheet_.owned())
     own.push_back(x(i));
-  // Ranks own unknowns that follow each other.
+  // Each rank owns a contiguous range of unknowns.
   std::vector<double> values;
-  auto place = place_.begin();
+  auto position = position_.begin();
   for (const std::vector<double> &of_rank : Utilities::MPI::gather(sheet_.communicator(), own))
   {
-    values.resize(place_.size());
+    values.resize(position_.size());
     for (const double value : of_rank)
-      values[*place++] = value;
+      values[*position++] = value;
   }
   return values;
 }
 
-void NodalOrder::spread(const std::vector<double> &values, Sheet::Vector &x) const
+void NodalOrder::scatter(const std::vector<double> &values, Sheet::Vector &x) const
 {
   const std::size_t n_unknowns = sheet_.dof_handler().n_dofs();
   if (values.size() != n_unknowns)
-    throw InvalidInput("a stored nodal field has " + std::to_string(values.size()) + " values, and the sheet " +
+    throw InvalidInput("a stored nodal field has " + std::to_string(values.size()) + " values, but the sheet has " +
                        std::to_string(n_unknowns) + " unknowns");
   Sheet::Vector owned = sheet_.make_owned();
-  auto place = place_.begin();
+  auto position = position_.begin();
   for (const types::global_dof_index i : sheet_.owned())
-    owned(i) = values[*place++]; // the first rank's own are the first of all
+    owned(i) = values[*position++]; // the unknowns of the root rank come first
   owned.compress(VectorOperation::insert);
   x = owned;
 }

@@ -7,36 +7,37 @@
 
 namespace latcon::continuum
 {
-/// The nodal values of a sheet in an order that does not depend on how ranks share the mesh: cell after cell by their
-/// places in the tree of refinements, every unknown where it is met first. So a state that some ranks store is one that
-/// any number of ranks takes up. Of use until the sheet numbers its unknowns anew.
+/// Order of the nodal values of a sheet that does not depend on the partition of the mesh: cells in the order of the
+/// refinement tree, each unknown at its first occurrence. A state saved on some number of ranks can thus be loaded on
+/// any other. Valid until the next Sheet::distribute().
 class NodalOrder
 {
 public:
   /// `sheet` must outlive the order. Collective.
   explicit NodalOrder(const Sheet &sheet);
 
-  /// The values of a nodal vector, with or without ghost entries: all on the first rank, none on others. Collective.
-  std::vector<double> gathered(const Sheet::Vector &x) const;
+  /// Gathers the values of a nodal vector, with or without ghost entries, on the root rank; returns an empty list on
+  /// other ranks. Collective.
+  std::vector<double> gather(const Sheet::Vector &x) const;
 
-  /// Gives the nodal vector `x` the values, all of which every rank has to know. Collective. Throws InvalidInput unless
-  /// there is one for every unknown.
-  void spread(const std::vector<double> &values, Sheet::Vector &x) const;
+  /// Sets the nodal vector `x` from the complete list of values, which must be the same on every rank. Collective.
+  /// Throws InvalidInput if the number of values is not the number of unknowns.
+  void scatter(const std::vector<double> &values, Sheet::Vector &x) const;
 
-  /// Stores a nodal vector in an archive, or takes it from there.
+  /// Saves a nodal vector to an archive or loads it from there.
   template <class Archive>
   void archive(Archive &archive, const std::string &name, Sheet::Vector &x) const
   {
     std::vector<double> values;
     if constexpr (!Archive::loads)
-      values = gathered(x);
+      values = gather(x);
     archive(name, values);
     if constexpr (Archive::loads)
-      spread(values, x);
+      scatter(values, x);
   }
 
 private:
   const Sheet &sheet_;
-  std::vector<unsigned int> place_; // of each owned unknown in the order; on the first rank of each unknown
+  std::vector<unsigned int> position_; // in the order, of each owned unknown; on the root rank of each unknown
 };
 } // namespace latcon::continuum

@@ -17,7 +17,8 @@ namespace latcon::continuum
 {
 namespace
 {
-// Vectors that deal.II keeps for later use. They free MPI's resources, so they go before MPI does.
+// Releases the vectors that deal.II pools for reuse. They hold MPI resources, so they must be freed before MPI is
+// finalised.
 template <class... Vectors>
 void release_kept_vectors()
 {

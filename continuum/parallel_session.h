@@ -4,12 +4,13 @@
 
 namespace latcon::continuum
 {
-/// MPI with the libraries that finite elements need, from construction to destruction: deal.II (one thread), p4est and
-/// Zoltan. To be made once, at the start of main, and destroyed after all objects of this library.
+/// Initialises MPI and the libraries of the finite element code on construction and finalises them on destruction:
+/// deal.II (one thread), p4est and Zoltan. To be created once, at the start of main, and destroyed after all objects of
+/// this library.
 ///
-/// The counterpart of deal.II's MPI_InitFinalize without PETSc and SLEPc, which latcon does not use. Those read options
-/// from the program's arguments, from PETSC_OPTIONS, and from `.petscrc` and `petscrc` in the home folder and the
-/// current folder; among them are options that start other programs and write files.
+/// Replaces deal.II's MPI_InitFinalize, which also initialises PETSc and SLEPc. latcon does not use these two. They
+/// would read options from the arguments of the program, from PETSC_OPTIONS, and from `.petscrc` and `petscrc` in the
+/// home folder and the current folder; some of these options start other programs and write files.
 class ParallelSession
 {
 public:

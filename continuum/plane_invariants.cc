@@ -9,14 +9,14 @@ namespace latcon::continuum
 {
 namespace
 {
-// P_{-1/2}(x) and the two quotients of (C.51), from which everything else follows without cancellation.
+// Legendre function P_{-1/2}(x) and the two quotients of (C.51), from which all means follow without cancellation.
 struct LegendreQuotients
 {
   double p, D, d;
 };
 
-// Gauss's arithmetic-geometric mean of sqrt((x + 1)/2) and 1. The squares c_n^2 of its halved differences are kept over
-// (x - 1)^2, so that nothing is lost where the principal stretches are equal.
+// Computes the arithmetic-geometric mean of sqrt((x + 1)/2) and 1. The squares c_n^2 of its halved differences are
+// divided by (x - 1)^2, which avoids cancellation where the principal stretches are equal.
 LegendreQuotients legendre_quotients(const double x)
 {
   const double y = x - 1.;
@@ -25,7 +25,7 @@ LegendreQuotients legendre_quotients(const double x)
   double square = 1. / (64. * a * a); // (c_2 / y)^2
   double weight = 2.;
   double d = weight * square;
-  // Each step squares the relative difference of a and b; from any x that is a number, fewer than 16 end it.
+  // Each step squares the relative difference of a and b; for every finite x, fewer than 16 steps suffice.
   for (int step = 0; step < 16 && a - b > std::numeric_limits<double>::epsilon() * a; ++step)
   {
     const double mean = 0.5 * (a + b);

@@ -4,7 +4,8 @@
 
 namespace latcon::continuum
 {
-/// A function of the invariants I = |F|^2 and J = det F of an in-plane deformation, with its partial derivatives.
+/// Value of a function of the invariants I = |F|^2 and J = det F of an in-plane deformation, with its partial
+/// derivatives.
 struct InvariantFunction
 {
   double value;
@@ -12,16 +13,17 @@ struct InvariantFunction
   double by_II, by_IJ, by_JJ;
 };
 
-/// Adds factor * term to sum.
+/// Adds factor * term to `sum`.
 void add(InvariantFunction &sum, double factor, const InvariantFunction &term);
 
-/// cof F_iJ = d det F / dF_iJ.
+/// Returns the cofactor cof F_iJ = d det F / dF_iJ [-].
 dealii::Tensor<2, 2> cofactor(const dealii::Tensor<2, 2> &F);
 
-/// First Piola stress P_iJ [Pa] of an energy W(I, J) [Pa] at F (theory-continuum.md, eq. (C.55)).
+/// Returns the first Piola stress P_iJ [Pa] of an energy W(I, J) [Pa] at F (theory-continuum.md, eq. (C.55)).
 dealii::Tensor<2, 2> first_piola_stress(const InvariantFunction &W, const dealii::Tensor<2, 2> &F);
 
-/// Its tangent dP_iJ/dF_kL [Pa], index order [i][J][k][L] (theory-continuum.md, eq. (C.56)).
+/// Returns the tangent dP_iJ/dF_kL [Pa] of an energy W(I, J) [Pa] at F, index order [i][J][k][L] (theory-continuum.md,
+/// eq. (C.56)).
 dealii::Tensor<4, 2> tangent(const InvariantFunction &W, const dealii::Tensor<2, 2> &F);
 
 /// Means over all directions N, for principal stretches l1 and l2 of F, of the stretch l = |F N|.
@@ -31,7 +33,8 @@ struct StretchMeans
   InvariantFunction inverse; ///< of 1/l [-]: one over Gauss's arithmetic-geometric mean of l1 and l2
 };
 
-/// The means of l and 1/l with their derivatives, each to a relative error of some roundings, whatever the ratio of the
-/// principal stretches (theory-continuum.md, eqs. (C.51) to (C.54)). J > 0 and I >= 2 J but for rounding, I/J finite.
+/// Returns the means of l and 1/l with their derivatives, each with a relative error of several machine epsilons for
+/// every ratio of the principal stretches (theory-continuum.md, eqs. (C.51) to (C.54)). Requires J > 0, I >= 2 J up to
+/// rounding, and finite I/J.
 StretchMeans stretch_means(double I, double J);
 } // namespace latcon::continuum

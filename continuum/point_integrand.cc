@@ -29,12 +29,12 @@ Tensor<3, 2> second_gradient(const FieldDerivatives &u)
   return G;
 }
 
-// Component c among the second derivatives stands for the entries (J, K) and (K, J).
+// Component c of the second derivatives represents the entries (J, K) and (K, J).
 constexpr unsigned int first_index[n_derivatives] = {0, 1, 0, 1, 0};
 constexpr unsigned int second_index[n_derivatives] = {0, 0, 0, 1, 1};
 constexpr double multiplicity[n_derivatives] = {1., 1., 1., 1., 2.};
 
-// Second derivatives += factor * tensor of a law, on side s.
+// Adds factor * tensor of a law to the second derivatives on side s.
 void add_F_F(PointIntegrand &d, const unsigned int s, const Tensor<4, 2> &T, const double factor)
 {
   for (unsigned int i = 0; i < 2; ++i)
@@ -152,7 +152,7 @@ void face_density(const GradientLaw &law, const std::array<FieldDerivatives, 2> 
 
     add_F_F(d, s, law.form_by_FF(F, G, Z), -share);
     add_G_F(d, s, law.double_stress_by_F(F, Z), -share);
-    // Derivative of by_z by the derivatives of this side; z itself depends on both sides.
+    // Derivative of by_z by the derivatives on this side; z depends on both sides.
     const Tensor<5, 2> Q_by_F = law.double_stress_by_F(F, G);
     const Tensor<6, 2> Q_by_G = law.double_stress_by_G(F);
     for (unsigned int i = 0; i < 2; ++i)

@@ -6,15 +6,15 @@
 
 namespace latcon::continuum
 {
-/// Derivatives of a scalar field at a point, by reference position: f_,1 f_,2 f_,11 f_,22 f_,12. Both components of the
-/// displacement have the same scalar shape functions, so all kernels work on these five numbers.
+/// Number of derivatives of a scalar field at a point by reference position: f_,1 f_,2 f_,11 f_,22 f_,12. Both
+/// components of the displacement have the same scalar shape functions, so all kernels work on these five derivatives.
 constexpr unsigned int n_derivatives = 5;
-constexpr unsigned int n_first = 2;                             ///< of them first derivatives
-using ComponentDerivatives = std::array<double, n_derivatives>; ///< of a component
+constexpr unsigned int n_first = 2;                             ///< number of first derivatives
+using ComponentDerivatives = std::array<double, n_derivatives>; ///< of one component
 using FieldDerivatives = std::array<ComponentDerivatives, 2>;   ///< one for each component
 
-/// A density at a point by the derivatives of u on one side (cells, boundary faces) or two sides (faces between cells),
-/// with its first and second derivatives by them.
+/// Density at a point as a function of the derivatives of u on one side (cells, boundary faces) or two sides (faces
+/// between cells), with its first and second partial derivatives.
 struct PointIntegrand
 {
   double value = 0.;
@@ -24,7 +24,7 @@ struct PointIntegrand
   double second[2][2][2][n_derivatives][2][n_derivatives];
 };
 
-/// How many derivatives are wanted.
+/// Highest derivative to compute.
 enum class Order
 {
   value = 0,
@@ -32,16 +32,17 @@ enum class Order
   second = 2
 };
 
-/// Zero, up to the derivatives of that order.
+/// Sets the density and its derivatives up to `order` to zero.
 void clear(PointIntegrand &density, Order order);
 
-/// W(F) + W_g(F, G) in a cell, on side 0, eq. (C.28). `density` must be clear.
+/// Computes W(F) + W_g(F, G) [J/m^3] in a cell, eq. (C.28), as a density of side 0. `density` must have been cleared.
 void cell_density(const Constitution &laws, bool has_gradient, const FieldDerivatives &u, Order order,
                   PointIntegrand &density);
 
-/// Mean over the sides of -B(F; G, z N N) plus (penalty/2) |z|^2 on a face with normal N, eq. (C.28), with z the jump
-/// of the normal gradient: that of the first side, less that of the second, or less the `prescribed` one on the
-/// boundary, where `n_sides` is 1. Components of z that are not `held` are zero. `density` must be clear.
+/// Computes the mean over the sides of -B(F; G, z N N), plus (penalty/2) |z|^2, on a face with normal N, eq. (C.28). z
+/// is the jump of the normal gradient: value on the first side minus value on the second side, or minus the
+/// `prescribed` gradient on the boundary, where `n_sides` is 1. Components of z that are not `held` are zero. `density`
+/// must have been cleared.
 void face_density(const GradientLaw &law, const std::array<FieldDerivatives, 2> &u, unsigned int n_sides,
                   const dealii::Tensor<1, 2> &N, const dealii::Tensor<1, 2> &prescribed,
                   const std::array<bool, 2> &held, double penalty, Order order, PointIntegrand &density);

@@ -1,4 +1,4 @@
-// Headers that every heavy translation unit of the continuum needs, compiled once.
+// Precompiled headers of the continuum library.
 #include <deal.II/base/function.h>
 #include <deal.II/base/quadrature_lib.h>
 #include <deal.II/base/tensor.h>

@@ -16,9 +16,9 @@ namespace
 struct HeldBoundary
 {
   types::boundary_id id;
-  IndexSet dofs;           // held unknowns that lie on it
+  IndexSet dofs;           // held unknowns on the boundary
   Sheet::Vector tractions; // integral of its traction against each shape function [N/m]
-  Tensor<1, 2> force;      // own share of the sum, then the sum [N/m]
+  Tensor<1, 2> force;      // contribution of this rank, then the sum [N/m]
 };
 
 void integrate_tractions(const Sheet &sheet, const Sheet::Vector &u, std::vector<HeldBoundary> &boundaries)

@@ -8,15 +8,14 @@
 
 namespace latcon::continuum
 {
-/// Forces [N/m] that boundaries exert on the sheet in the state `u` (nodal displacement [m], with ghost entries) at
-/// `load_factor` [-], per unit reference thickness: sums of the nodal residuals, dead loads taken off, of the unknowns
-/// that each boundary holds, so that over all boundaries they add up to the sum of the nodal reactions exactly. `held`
-/// says which components each boundary id holds.
+/// Returns the force [N/m] that each boundary exerts on the sheet in the state `u` (nodal displacement [m], with ghost
+/// entries) at `load_factor` [-], per unit reference thickness. A force is the sum of the nodal residuals minus dead
+/// loads over the unknowns held at the boundary, so the forces add up exactly to the sum of the nodal reactions. `held`
+/// are the components with prescribed displacement by boundary id.
 ///
-/// A node that several boundaries hold has one residual and no unique share: each gets the integral of its own traction
-/// P N against the shape function, and the rest, which vanishes under refinement, is shared equally
-/// (theory-continuum.md, eq. (C.18)).
-/// Collective. Throws NonPhysicalState on every rank if the state is non-physical.
+/// The residual of a node on several held boundaries is divided between them: each gets the integral of its own
+/// traction P N times the shape function, and an equal part of the remainder, which vanishes under refinement
+/// (theory-continuum.md, eq. (C.18)). Collective. Throws NonPhysicalState on every rank if the state is non-physical.
 std::map<dealii::types::boundary_id, dealii::Tensor<1, 2>>
 boundary_reactions(const Sheet &sheet, const Sheet::Vector &u, double load_factor,
                    const std::map<dealii::types::boundary_id, dealii::ComponentMask> &held);

@@ -14,14 +14,14 @@ void make_rectangle(dealii::parallel::distributed::Triangulation<2> &mesh, const
 {
   const auto is_size = [](const double size) { return size > 0. && std::isfinite(size); };
   if (!is_size(rectangle.length) || !is_size(rectangle.height))
-    throw InvalidInput("a rectangle needs a positive, finite length and height");
+    throw InvalidInput("the length and height of a rectangle must be positive and finite");
   if (rectangle.cells_x == 0 || rectangle.cells_y == 0)
     throw InvalidInput("a rectangle needs at least one cell in each direction");
-  // A cell that is its own neighbour would have no face between two cells.
+  // With a single cell across, the cell would be its own neighbour.
   if ((rectangle.periodic_x && rectangle.cells_x < 2) || (rectangle.periodic_y && rectangle.cells_y < 2))
     throw InvalidInput("a periodic rectangle needs at least two cells across");
 
-  // Refined rather than coarse cells: they are distributed, and they form the levels of a multigrid hierarchy.
+  // Prefer refined to coarse cells: refined cells are distributed and form the levels of multigrid.
   unsigned int halvings = 0;
   unsigned int coarse_x = rectangle.cells_x;
   unsigned int coarse_y = rectangle.cells_y;
@@ -33,7 +33,7 @@ void make_rectangle(dealii::parallel::distributed::Triangulation<2> &mesh, const
   }
   const dealii::Point<2> lower_left(0., -0.5 * rectangle.height);
   const dealii::Point<2> upper_right(rectangle.length, 0.5 * rectangle.height);
-  // Colourised, the generator numbers the edges as continuum::edge does.
+  // With `colorize` the generator numbers the edges as continuum::edge does.
   dealii::GridGenerator::subdivided_hyper_rectangle(mesh, {coarse_x, coarse_y}, lower_left, upper_right, true);
   std::vector<dealii::GridTools::PeriodicFacePair<dealii::parallel::distributed::Triangulation<2>::cell_iterator>>
     pairs;

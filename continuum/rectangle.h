@@ -13,20 +13,20 @@ constexpr dealii::types::boundary_id bottom = 2; ///< smallest Y
 constexpr dealii::types::boundary_id top = 3;    ///< largest Y
 } // namespace edge
 
-/// The reference rectangle [0, length] x [-height/2, height/2] in metres, cut into cells_x times cells_y equal cells.
+/// Reference rectangle [0, length] x [-height/2, height/2] [m], divided into cells_x times cells_y equal cells.
 struct Rectangle
 {
   double length;           ///< [m] > 0
   double height;           ///< [m] > 0
   unsigned int cells_x;    ///< >= 1
   unsigned int cells_y;    ///< >= 1
-  bool periodic_x = false; ///< the right edge is the left one; at least 2 cells across
-  bool periodic_y = false; ///< the top edge is the bottom one; at least 2 cells across
+  bool periodic_x = false; ///< identifies the right edge with the left one; needs at least 2 cells across
+  bool periodic_y = false; ///< identifies the top edge with the bottom one; needs at least 2 cells across
 };
 
-/// Meshes `rectangle` into the empty `mesh`, with the boundary ids of continuum::edge. Collective. As many halvings as
-/// cells_x and cells_y share are made by refinement, the rest is the coarse mesh, which every rank holds whole.
-/// A periodic mesh still has its four edges; what follows from it for the displacement is for PeriodicPair to say.
-/// Throws InvalidInput for a size that is not positive and finite, or too few cells.
+/// Generates the mesh of `rectangle` in the empty `mesh`, with the boundary ids of continuum::edge. Collective. Common
+/// factors of two of cells_x and cells_y become refinements of a coarse mesh, which is replicated on every rank. A
+/// periodic mesh still has its four edges; PeriodicPair constrains the displacement. Throws InvalidInput for a size
+/// that is not positive and finite, or too few cells.
 void make_rectangle(dealii::parallel::distributed::Triangulation<2> &mesh, const Rectangle &rectangle);
 } // namespace latcon::continuum

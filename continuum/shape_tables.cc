@@ -12,8 +12,8 @@ namespace latcon::continuum
 {
 namespace
 {
-// More than an adaptive mesh has; what is searched for a shape that is not there.
-constexpr std::size_t most_shapes = 32;
+// More shapes than an adaptive mesh has; bounds the cost of an unsuccessful search.
+constexpr std::size_t max_shapes = 32;
 } // namespace
 
 ShapeTables::ShapeTables(const Sheet &sheet)
@@ -45,7 +45,7 @@ ShapeTables::Shape *ShapeTables::shape_of(const Cell &cell)
       shapes_.splice(shapes_.begin(), shapes_, shape);
       return &shapes_.front();
     }
-  if (shapes_.size() == most_shapes)
+  if (shapes_.size() == max_shapes)
     return nullptr;
   shapes_.emplace_front();
   shapes_.front().edges[0] = edges[0];

@@ -15,11 +15,11 @@
 
 namespace latcon::continuum
 {
-/// The scalar shape functions of a cell at the Gauss points of the cell or of one of its faces.
+/// Derivatives of the scalar shape functions of a cell at the Gauss points of the cell or of one of its faces.
 struct ShapeTable
 {
   unsigned int n_points = 0;
-  unsigned int stride = 0;                   ///< from row to row: the number of shape functions, padded with zeros
+  unsigned int stride = 0;                   ///< length of a row: number of shape functions, padded with zeros
   std::vector<double> derivatives;           ///< [point][derivative][shape function]
   std::vector<double> JxW;                   ///< weight [m^2] or [m] of each point
   std::vector<dealii::Tensor<1, 2>> normals; ///< of each point of a face, outward
@@ -29,9 +29,8 @@ struct ShapeTable
   }
 };
 
-/// Makes shape tables for the cells of a sheet. Straight parallelograms that differ by a translation alone share
-/// theirs, which is then computed once; edges that differ by less than 1e-11 of their length, which is rounding, count
-/// as equal.
+/// Cache of the shape tables of the cells of a sheet. Parallelograms that differ only by a translation share a table.
+/// Edges that differ by less than 1e-11 of their length, an effect of rounding, are considered equal.
 class ShapeTables
 {
 public:
@@ -39,14 +38,14 @@ public:
 
   explicit ShapeTables(const Sheet &sheet);
 
-  /// Of a cell; valid until the next call of cell().
+  /// Returns the table of a cell, valid until the next call of cell().
   const ShapeTable &cell(const Cell &cell);
 
-  /// Of a face, or with `subface` other than numbers::invalid_unsigned_int of a half of it; valid until the next call
-  /// of face() for the same `side`, 0 or 1.
+  /// Returns the table of a face or, if `subface` is not numbers::invalid_unsigned_int, of one half of the face; valid
+  /// until the next call of face() for the same `side`, 0 or 1.
   const ShapeTable &face(const Cell &cell, unsigned int face, unsigned int subface, unsigned int side);
 
-  /// FEFaceValues of a face, with points.
+  /// Returns the FEFaceValues of a face, with quadrature points.
   const dealii::FEFaceValues<2> &face_values(const Cell &cell, unsigned int face);
 
 private:
@@ -67,8 +66,8 @@ private:
   dealii::FEValues<2> cell_values_;
   std::unique_ptr<dealii::FEFaceValues<2>> face_values_;
   std::unique_ptr<dealii::FESubfaceValues<2>> subface_values_;
-  std::list<Shape> shapes_; // the last one found first
-  ShapeTable own_table_;    // of a cell that shares its shape with none
+  std::list<Shape> shapes_; // most recently used first
+  ShapeTable own_table_;    // of a cell whose shape is not shared
   std::array<ShapeTable, 2> own_faces_;
 };
 } // namespace latcon::continuum

@@ -25,11 +25,11 @@ namespace
 unsigned int checked_degree(const unsigned int degree)
 {
   if (degree == 0)
-    throw InvalidInput("elements need a degree of at least 1");
+    throw InvalidInput("the degree of elements must be at least 1");
   return degree;
 }
 
-// Degree of the mapping: that of the elements where the domain has a curved part, else the cells are parallelograms.
+// Returns the degree of the mapping: that of the elements if a part of the domain is curved, otherwise 1.
 unsigned int mapping_degree(const Sheet::Mesh &mesh, const unsigned int degree)
 {
   for (const types::manifold_id id : mesh.get_manifold_ids())
@@ -49,7 +49,7 @@ Sheet::Sheet(const Mesh &mesh, const Constitution &constitution, const unsigned 
   distribute();
 }
 
-std::unique_ptr<Sheet> Sheet::on(const Mesh &mesh) const
+std::unique_ptr<Sheet> Sheet::clone_on(const Mesh &mesh) const
 {
   return std::make_unique<Sheet>(mesh, constitution_, degree_, conditions_);
 }
@@ -61,10 +61,10 @@ void Sheet::check_input() const
     if (!holds)
       throw InvalidInput(rule);
   };
-  require(mesh_.n_levels() > 0, "a sheet needs a mesh with cells");
+  require(mesh_.n_levels() > 0, "the mesh of a sheet has no cells");
   require(!has_gradient() || degree_ >= 2, "a gradient law needs elements of degree 2 or more");
   require(!has_gradient() || normal_stiffness_ > 0.,
-          "a gradient law needs a positive normal stiffness at F = I, which scales the penalty on the faces");
+          "a gradient law needs a positive normal stiffness at F = I, which scales the interior penalty");
   require(constitution_.penalty > 0. && std::isfinite(constitution_.penalty),
           "the interior penalty must be positive and finite");
   const auto ids = mesh_.get_boundary_ids();
@@ -74,7 +74,7 @@ void Sheet::check_input() const
             "the mesh has no boundary with id " + std::to_string(id));
   };
   const auto require_field = [&](const VectorField &field, const std::string &what)
-  { require(field && field->n_components == 2, what + " needs a function of two components"); };
+  { require(field && field->n_components == 2, what + " must be a function with two components"); };
   for (const auto &condition : conditions_.displacements)
   {
     require_edge(condition.boundary);
@@ -155,8 +155,7 @@ Sheet::Vector Sheet::lift() const
 
 std::vector<PointState> Sheet::evaluate(const Vector &u, const std::vector<Point<2>> &points) const
 {
-  // Each cell has one owner, so summing over the cells that hold a point and dividing by their number gives the same
-  // answer for every partition.
+  // Each cell has one owner, so the mean over the cells that contain a point is independent of the partition.
   constexpr unsigned int n_sums = 15; // u (2), F (4), G (8), number of cells
   std::vector<double> sums(n_sums * points.size(), 0.);
   collectively(communicator(),
@@ -205,7 +204,7 @@ std::vector<PointState> Sheet::evaluate(const Vector &u, const std::vector<Point
     if (count == 0.)
     {
       std::ostringstream message;
-      message << "the point (" << points[p] << ") m is not in the sheet";
+      message << "the point (" << points[p] << ") m is outside the sheet";
       throw InvalidInput(message.str()); // the sums are the same on every rank, so all throw
     }
     PointState &state = states[p];
@@ -256,7 +255,7 @@ std::map<Sheet::Cell, Sheet::PointsInCell> Sheet::locate(const std::vector<Point
       }
       catch (const Mapping<2>::ExcTransformationFailed &)
       {
-        // The point is in the bounding box, yet far outside the distorted cell.
+        // The point is in the bounding box but far outside the distorted cell.
       }
   }
   return located;

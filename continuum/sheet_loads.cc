@@ -37,7 +37,7 @@ Sheet::Vector Sheet::loads() const
             for (unsigned int i = 0; i < 2; ++i)
             {
               const double f = force->value(values.quadrature_point(q), i);
-              // Integrated by parts once: (1 - l^2 Laplace) f against a shape function.
+              // (1 - l^2 Laplace) f times a shape function, integrated by parts once.
               Tensor<1, 2> slope;
               if (length > 0.)
                 slope = length * length * force->gradient(values.quadrature_point(q), i);

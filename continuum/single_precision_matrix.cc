@@ -16,7 +16,7 @@ namespace latcon::continuum
 {
 namespace
 {
-// y = A x by pairs of rows.
+// Computes y = A x by pairs of rows.
 LATCON_CLONES void multiply(const std::size_t *first_block, const std::size_t n_rows, const unsigned int *columns,
                             const float *values, const double *x, double *y)
 {
@@ -44,7 +44,7 @@ void SinglePrecisionMatrix::copy_from(const Sheet::Matrix &K)
   const auto n_owned = static_cast<int>(owned.n_elements());
   Assert(n_owned % 2 == 0, ExcInternalError());
 
-  // Pairs of columns: as they are numbered in x_, with the ghosts behind the owned ones.
+  // Pairs of columns, numbered as in x_, with ghosts after the owned entries.
   IndexSet ghosts(K.n());
   for (int column = 0; column < matrix.NumMyCols(); ++column)
     if (const types::global_dof_index index = matrix.GCID(column); !owned.is_element(index))

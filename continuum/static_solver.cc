@@ -21,7 +21,7 @@ namespace latcon::continuum
 {
 namespace
 {
-// Adds the time of its life to a sum.
+// Timer that adds the time of its scope to a sum.
 class Clock
 {
 public:
@@ -36,15 +36,15 @@ private:
 };
 } // namespace
 
-/// Equilibrium at a displacement; see NewtonSolver.
+/// Residual of the equilibrium at a displacement; see NewtonSolver.
 struct StaticSolver::Evaluation
 {
   Vector displacement; // with ghost entries [m]
-  double energy;       // less the work of the dead loads [J/m]
+  double energy;       // minus the work of the dead loads [J/m]
   double free;         // norm of the residual over the free unknowns [N/m]
   double reference;    // norm of the nodal reactions and dead loads [N/m]
   Vector residual;     // of every unknown [N/m]
-  Vector magnitude;    // sums of absolute values behind the residual [N/m]
+  Vector magnitude;    // sums of the absolute values of the terms of the residual [N/m]
 };
 
 StaticSolver::StaticSolver(const Sheet::Mesh &mesh, const Constitution &constitution, BoundaryConditions conditions,
@@ -63,16 +63,16 @@ void StaticSolver::check_input() const
       throw InvalidInput(rule);
   };
   require(settings_.relative_tolerance > 0. && settings_.relative_tolerance < 1.,
-          "the relative tolerance of the residual must lie between 0 and 1");
-  require(settings_.first_load_step > 0. && settings_.first_load_step <= 1., "the first load step must lie in (0, 1]");
+          "the relative tolerance of the residual must be in (0, 1)");
+  require(settings_.first_load_step > 0. && settings_.first_load_step <= 1., "the first load step must be in (0, 1]");
   require(settings_.smallest_load_step > 0. && settings_.smallest_load_step <= settings_.first_load_step,
           "the smallest load step must be positive and no larger than the first");
-  require(settings_.largest_forcing >= 0. && settings_.largest_forcing < 1.,
-          "the largest residual of a linear system must lie in [0, 1)");
-  require(!sheet_.conditions().displacements.empty(), "a sheet needs a boundary with prescribed displacement");
+  require(settings_.largest_forcing >= 0. && settings_.largest_forcing < 1., "largest_forcing must be in [0, 1)");
+  require(!sheet_.conditions().displacements.empty(),
+          "static equilibrium needs a boundary with prescribed displacement");
 }
 
-// Everything that depends on the mesh.
+// Sets up everything that depends on the mesh.
 void StaticSolver::set_up()
 {
   full_lift_ = sheet_.make_ghosted();
@@ -94,7 +94,7 @@ StaticSolver::Evaluation StaticSolver::evaluate(const Vector &u, const double lo
     sheet_.residual(state.displacement, state.residual, state.magnitude, load_factor) - load_factor * (loads_ * u);
   state.residual.add(-load_factor, loads_);
   double free = 0.;
-  double given = 0.; // forces at work: reactions and dead loads
+  double given = 0.; // acting forces: reactions and dead loads
   for (const types::global_dof_index i : sheet_.owned())
   {
     (homogeneous_.is_constrained(i) ? given : free) += state.residual(i) * state.residual(i);
@@ -105,7 +105,7 @@ StaticSolver::Evaluation StaticSolver::evaluate(const Vector &u, const double lo
   return state;
 }
 
-// The floor of eq. (C.19).
+// Returns the round-off of the residual, eq. (C.19) [N/m].
 double StaticSolver::round_off(const Evaluation &state, const Vector &u) const
 {
   double sum = 0.;
@@ -116,7 +116,7 @@ double StaticSolver::round_off(const Evaluation &state, const Vector &u) const
       const double of_displacement = matrix_.diag_element(i) * u(i);
       sum += of_stress * of_stress + of_displacement * of_displacement;
     }
-  // Four: a stress takes several roundings after those of the displacement.
+  // Factor 4: computing a stress adds several rounding errors to those of the displacement.
   return 4. * std::numeric_limits<double>::epsilon() * std::sqrt(Utilities::MPI::sum(sum, sheet_.communicator()));
 }
 
@@ -151,14 +151,14 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
     const Clock clock(report.times.linear_solve);
     const unsigned int iterations = linear_solver_->solve(matrix_, step, rhs, forcing);
     homogeneous_.distribute(step);
-    return NewtonStep{iterations, -(rhs * step)}; // rhs is minus the residual, zero where held
+    return NewtonStep{iterations, -(rhs * step)}; // rhs is minus the residual, zero at constrained unknowns
   };
   const auto evaluate_at = [&](const Vector &at)
   {
     const Clock clock(report.times.assembly);
     return evaluate(at, target);
   };
-  // Energies closer than their round-off cannot be told apart: n terms summed, errors of random sign.
+  // Round-off of the energy: n terms summed, errors of random sign.
   const auto energy_noise = [&](const Evaluation &state)
   {
     const double n_points =
@@ -175,8 +175,8 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
   Vector u = sheet_.make_owned();
   try
   {
-    // Predictor: the linear response to the rise of load and boundary displacement, solved to round-off, because its
-    // right-hand side is large from the cells along held edges alone.
+    // Predictor: linear response to the increment of load and prescribed displacement. Solved to round-off, because the
+    // cells along held edges make its right-hand side large.
     Vector lift = sheet_.make_ghosted();
     lift = full_lift_;
     lift *= target - load_factor_;
@@ -210,7 +210,7 @@ SolverReport StaticSolver::solve(const Observer &observer)
   constexpr unsigned int few_iterations = 5;
   while (load_factor_ < 1.)
   {
-    // A remainder within rounding of the step is taken along rather than left as a step of its own.
+    // A remainder within rounding is added to this step.
     const double left = 1. - load_factor_;
     const double target = left <= rise * (1. + 1e-12) ? 1. : load_factor_ + rise;
     const std::size_t before = report.iterations.size();
@@ -239,9 +239,9 @@ SolverReport StaticSolver::solve(const Observer &observer)
 void StaticSolver::refine(Sheet::Mesh &mesh, const double fraction)
 {
   if (&mesh != &sheet_.mesh())
-    throw InvalidInput("a solver can refine the mesh of its own sheet only");
+    throw InvalidInput("refine() needs the mesh of the solver's own sheet");
   if (!(fraction > 0. && fraction <= 1.))
-    throw InvalidInput("the fraction of cells to refine must lie in (0, 1]");
+    throw InvalidInput("the fraction of cells to refine must be in (0, 1]");
   parallel::distributed::GridRefinement::refine_and_coarsen_fixed_number(mesh, error_indicators(sheet_, displacement_),
                                                                          fraction, 0.);
   mesh.prepare_coarsening_and_refinement();
@@ -253,7 +253,7 @@ void StaticSolver::refine(Sheet::Mesh &mesh, const double fraction)
 
   Vector u = sheet_.make_owned();
   transfer.interpolate(u);
-  // Boundary values are those of the function, which the coarser edge may have missed.
+  // Set boundary values from the prescribed function, which interpolation on the coarser edge may have missed.
   for (const types::global_dof_index i : sheet_.owned())
     if (homogeneous_.is_constrained(i) && !sheet_.conformity_constraints().is_constrained(i))
       u(i) = load_factor_ * full_lift_(i);

@@ -12,73 +12,74 @@
 
 namespace latcon::continuum
 {
-/// How the nonlinear problem is solved.
+/// Settings of StaticSolver.
 struct StaticSettings
 {
-  unsigned int degree = 3;                 ///< of the elements, p >= 1; p >= 2 with a gradient law
+  unsigned int degree = 3;                 ///< polynomial degree p >= 1 of the elements; p >= 2 with a gradient law
   double relative_tolerance = 1e-10;       ///< residual over reference force [-], in (0, 1)
   unsigned int max_newton_iterations = 20; ///< per load step
-  unsigned int max_halvings = 10;          ///< of the Newton step in one line search
-  double first_load_step = 1.;             ///< first rise of the load factor [-], in (0, 1]
-  double smallest_load_step = 1. / 1024.;  ///< rise below which the solve fails [-]
-  /// Largest residual of a linear system relative to its right-hand side [-], in [0, 1): what is solved more closely
-  /// than a Newton step is good for is lost work (theory-continuum.md, "Weak form and Newton"). 0: each to the last.
+  unsigned int max_halvings = 10;          ///< per Newton step in the line search
+  double first_load_step = 1.;             ///< first increment of the load factor [-], in (0, 1]
+  double smallest_load_step = 1. / 1024.;  ///< increment below which the solve fails [-]
+  /// Loosest tolerance of a linear system, residual relative to the right-hand side [-], in [0, 1). It avoids solving
+  /// linear systems more accurately than the Newton step deserves (theory-continuum.md, "Weak form and Newton"). 0:
+  /// solve each system to round-off.
   double largest_forcing = 1e-3;
   LinearSettings linear;
 };
 
-/// Static equilibrium of a sheet under boundary conditions and dead loads, at finite strain, total Lagrangian: the
-/// minimum of E(u) less the work of the dead loads (theory-continuum.md, eq. (C.15)), followed from the unloaded state
-/// at load factor 0 to load factor 1.
+/// Solves for the static equilibrium of a sheet under boundary conditions and dead loads at finite strain (total
+/// Lagrangian): the minimum of E(u) minus the work of the dead loads (theory-continuum.md, eq. (C.15)), continued from
+/// the unloaded state at load factor 0 to load factor 1.
 ///
-/// Each load step starts from the linear response to the rise of load and boundary displacement (predictor), then
-/// Newton with backtracking on the energy: the equilibria wanted are minima, and the energy tells them from saddle
-/// points, as the norm of the residual does not. A step that leaves det F <= 0 anywhere is halved. A load step that
-/// does not converge is cut in two; one that converges fast makes the next one larger.
+/// Each load step starts with a predictor, the linear response to the increment of load and prescribed displacement,
+/// followed by Newton's method with backtracking on the energy. Only minima are wanted; the energy distinguishes them
+/// from saddle points, the norm of the residual does not. A Newton step that leads to det F <= 0 anywhere is halved. A
+/// load step that does not converge is halved; after one that converges fast the next one is larger.
 ///
-/// The residual is held to relative_tolerance times the reference force (norm of the nodal reactions and dead
-/// loads), or to the round-off of its own evaluation where that is larger (theory-continuum.md, eq. (C.19)).
+/// The residual converges to relative_tolerance times the reference force (norm of the nodal reactions and dead loads),
+/// or to the round-off of its own evaluation where that is larger (theory-continuum.md, eq. (C.19)).
 ///
-/// All functions are collective, and every exception reaches every rank.
+/// All functions are collective. Every exception is thrown on every rank.
 class StaticSolver
 {
 public:
   using Vector = Sheet::Vector;
 
-  /// Called after every accepted load step, with the load factor [-] reached.
+  /// Function that is called after every accepted load step with the current load factor [-].
   using Observer = std::function<void(double load_factor)>;
 
-  /// `mesh` and the laws must outlive the solver. Throws InvalidInput for settings out of range, no prescribed
-  /// displacement, or what Sheet refuses. Where boundaries meet and disagree, the first in the list holds the
-  /// common node.
+  /// Creates a solver at load factor 0. `mesh` and the laws must outlive the solver. At a node with conflicting
+  /// conditions the first condition in the list applies. Throws InvalidInput for settings out of range, if no
+  /// displacement is prescribed, and as Sheet does.
   StaticSolver(const Sheet::Mesh &mesh, const Constitution &constitution, BoundaryConditions conditions,
                const StaticSettings &settings = StaticSettings());
 
-  /// Loads from zero to the full displacement. Throws SolverFailed with the history if that cannot be done; the state
-  /// is then the last accepted one.
+  /// Increases the load factor from 0 to 1. Throws SolverFailed with the history if that fails; the state is then the
+  /// last accepted one.
   SolverReport solve(const Observer &observer = Observer());
 
-  /// Refines the `fraction` [-] of the cells of `mesh` (that of the sheet) where the error seems largest and takes the
-  /// state along; equilibrate() makes it an equilibrium of the refined mesh. Throws InvalidInput for another mesh or a
+  /// Refines the `fraction` [-] of the cells of `mesh`, the mesh of the sheet, with the largest error indicators, and
+  /// interpolates the state; equilibrate() then restores equilibrium. Throws InvalidInput for another mesh or a
   /// fraction outside (0, 1].
   void refine(Sheet::Mesh &mesh, double fraction);
 
-  /// Finds the equilibrium at the present load factor from the present state, or if Newton fails there, by loading from
-  /// zero. Throws SolverFailed as solve() does.
+  /// Finds the equilibrium at the current load factor, starting from the current state or, if Newton's method fails
+  /// there, by loading from zero. Throws SolverFailed as solve() does.
   SolverReport equilibrate();
 
-  /// Stored energy E [J/m] of the present state, per unit reference thickness.
+  /// Returns the stored energy E [J/m] of the current state, per unit reference thickness.
   double total_energy() const;
 
-  /// Force [N/m] that each boundary with a prescribed displacement exerts on the sheet, per unit reference thickness:
-  /// sums of the nodal residuals, so that they balance exactly. A node where held boundaries meet is shared between
-  /// them by their tractions (theory-continuum.md, eq. (C.18)).
+  /// Returns the force [N/m] that each boundary with prescribed displacement exerts on the sheet, per unit reference
+  /// thickness. Forces are sums of nodal residuals, so they balance exactly; a node on several held boundaries is
+  /// divided between them according to their tractions (theory-continuum.md, eq. (C.18)).
   std::map<dealii::types::boundary_id, dealii::Tensor<1, 2>> reactions() const;
 
-  /// Range of the in-plane det F [-] over the quadrature points.
+  /// Returns the range of the in-plane det F [-] over the quadrature points.
   DeterminantRange determinant_range() const;
 
-  /// States at reference points [m]; see Sheet::evaluate.
+  /// Returns the states at reference points [m]; see Sheet::evaluate.
   std::vector<PointState> evaluate(const std::vector<dealii::Point<2>> &points) const;
 
   /// Nodal displacement [m], with ghost entries.
@@ -98,7 +99,7 @@ private:
   Sheet sheet_;
   StaticSettings settings_;
   std::unique_ptr<LinearSolver> linear_solver_;
-  dealii::AffineConstraints<double> homogeneous_; // hanging nodes, and held unknowns at zero
+  dealii::AffineConstraints<double> homogeneous_; // hanging nodes, and prescribed unknowns at zero
   Vector full_lift_;                              // prescribed displacement at load factor 1, zero elsewhere
   Vector loads_;                                  // nodal dead loads at load factor 1
   Sheet::Matrix matrix_;

@@ -26,17 +26,17 @@ namespace
 {
 constexpr unsigned int nowhere = numbers::invalid_unsigned_int;
 
-// Entries of the lower triangle of n rows in blocks of 4 by 4, those on the diagonal whole.
+// Returns the number of entries of a lower triangle of n rows in blocks of 4 by 4, with full diagonal blocks.
 std::size_t packed_size(const std::size_t n)
 {
   const std::size_t n_blocks = padded(n) / n_lanes;
   return n_blocks * (n_blocks + 1) / 2 * n_lanes * n_lanes;
 }
 
-// Packed inverse of `block`; false if the block had to be replaced.
+// Writes the packed inverse of `block`. Returns false if the block had to be replaced.
 bool invert(Eigen::MatrixXd &block, Eigen::LLT<Eigen::MatrixXd> &cholesky, float *packed)
 {
-  // Of the pivot, relative to the diagonal entry it came from: below it, round-off decides about the sign.
+  // Pivot relative to its diagonal entry, below which round-off determines the sign.
   constexpr double smallest_pivot = 1e-12;
   const Eigen::Index n = block.rows();
   bool is_safe = block.allFinite();
@@ -67,8 +67,8 @@ bool invert(Eigen::MatrixXd &block, Eigen::LLT<Eigen::MatrixXd> &cholesky, float
   return is_safe;
 }
 
-// y = A x for a symmetric matrix of n rows, a multiple of 4: of each four columns the blocks of 4 by 4 from the
-// diagonal down, column by column.
+// Computes y = A x for a symmetric matrix of n rows, a multiple of 4. `packed` contains, for each four columns, the
+// blocks of 4 by 4 from the diagonal down, column by column.
 inline __attribute__((always_inline)) void multiply(const float *packed, const unsigned int n, const double *x,
                                                     double *y)
 {
@@ -76,7 +76,7 @@ inline __attribute__((always_inline)) void multiply(const float *packed, const u
     y[i] = 0.;
   for (unsigned int J = 0; J < n; J += n_lanes)
   {
-    Lanes across[n_lanes] = {}; // what the columns of this strip give to its own rows, by symmetry
+    Lanes across[n_lanes] = {}; // symmetric contributions to the rows of this strip
     for (unsigned int I = J; I < n; I += n_lanes)
     {
       Lanes there;
@@ -99,7 +99,7 @@ inline __attribute__((always_inline)) void multiply(const float *packed, const u
   }
 }
 
-// z += sum over patches.
+// Adds the sum over patches to z.
 LATCON_CLONES void add_patches(const std::size_t n_patches, const std::size_t *first_dof, const unsigned int *dofs,
                                const std::size_t *first_entry, const float *inverses, double *work, const double *r,
                                double *z)
@@ -128,7 +128,7 @@ void make_unique(Dofs &dofs)
   dofs.erase(std::unique(dofs.begin(), dofs.end()), dofs.end());
 }
 
-// Degrees of freedom of one cell by the vertex, line or interior they sit on; the free ones of them.
+// Free degrees of freedom of one cell, by vertex, line and interior.
 class CellDofs
 {
 public:
@@ -138,7 +138,7 @@ public:
   }
   void reinit(const DoFHandler<2>::active_cell_iterator &cell) { cell->get_dof_indices(dofs_); }
 
-  // The first on a vertex, as a name of the vertex on all ranks.
+  // Returns the first degree of freedom of a vertex, which identifies the vertex on all ranks.
   types::global_dof_index name(const unsigned int vertex) const { return dofs_[vertex * element_.n_dofs_per_vertex()]; }
 
   void add_vertex(const unsigned int vertex, Dofs &to) const
@@ -164,7 +164,7 @@ private:
   Dofs dofs_;
 };
 
-// Free degrees of freedom of the patches of this rank.
+// Returns the free degrees of freedom of each patch of this rank.
 std::vector<Dofs> list_patches(const Sheet &sheet, const AffineConstraints<double> &constraints)
 {
   const auto &mesh = sheet.mesh();
@@ -172,7 +172,8 @@ std::vector<Dofs> list_patches(const Sheet &sheet, const AffineConstraints<doubl
   constexpr auto n_vertices = GeometryInfo<2>::vertices_per_cell;
   constexpr auto n_lines = GeometryInfo<2>::lines_per_cell;
 
-  // A vertex belongs to the lowest rank that owns a cell with that vertex; each of these ranks sees all such cells.
+  // A vertex belongs to the lowest rank that owns a cell with this vertex. Each such rank has all cells at the vertex,
+  // at least as ghosts.
   std::vector<types::subdomain_id> owner(mesh.n_vertices(), numbers::invalid_subdomain_id);
   for (const auto &cell : mesh.active_cell_iterators())
     if (!cell->is_artificial())
@@ -180,8 +181,9 @@ std::vector<Dofs> list_patches(const Sheet &sheet, const AffineConstraints<doubl
         owner[cell->vertex_index(v)] = std::min(owner[cell->vertex_index(v)], cell->subdomain_id());
 
   std::vector<Dofs> patch_of(mesh.n_vertices());
-  std::unordered_map<types::global_dof_index, unsigned int> vertex_of; // by name, for own vertices at halved lines
-  std::map<unsigned int, Dofs> messages;                               // by rank: name, number and list, over and over
+  std::unordered_map<types::global_dof_index, unsigned int>
+    vertex_of;                           // by name, for vertices of this rank at halved lines
+  std::map<unsigned int, Dofs> messages; // by rank: sequence of name, number, list
   CellDofs dofs(sheet, constraints);
   CellDofs smaller_dofs(sheet, constraints);
   Dofs beyond;
@@ -203,7 +205,7 @@ std::vector<Dofs> list_patches(const Sheet &sheet, const AffineConstraints<doubl
         vertex_of.emplace(dofs.name(v), cell->vertex_index(v));
       }
 
-    // The owner of a vertex need not see the smaller cells beyond a halved line; that of the larger cell does.
+    // The owner of a vertex may not have the smaller cells beyond a halved line; the owner of the larger cell does.
     if (!cell->is_locally_owned())
       continue;
     for (unsigned int line = 0; line < n_lines; ++line)
@@ -304,7 +306,8 @@ void VertexPatches::factorise(const Sheet::Matrix &K)
                  for (int column = 0; column < own.NumMyCols(); ++column)
                    own_columns[column] = position_of(own.GCID(column));
 
-                 std::vector<unsigned int> at(n_owned + layout_->n_ghost_indices(), nowhere); // in the present patch
+                 std::vector<unsigned int> at(n_owned + layout_->n_ghost_indices(),
+                                              nowhere); // position in the current patch
                  Eigen::MatrixXd block;
                  Eigen::LLT<Eigen::MatrixXd> cholesky;
                  for (std::size_t p = 0; p + 1 < first_dof_.size(); ++p)

@@ -16,36 +16,37 @@ namespace latcon::continuum
 /// where R_p picks the free degrees of freedom, both components, whose shape functions vanish outside the star of a
 /// vertex: on the vertex, on the lines that end there and inside the cells around it.
 ///
-/// Around hanging nodes, too, the star is the support of the continuous bilinear hat function of the vertex: if one of
-/// the lines is the side of a larger cell and halved on the other side, then both of the smaller cells there belong to
-/// the star, with the line between them. Hanging vertices have no hat function and no patch. Thus every free degree of
-/// freedom is in a patch, and the largest eigenvalue is the same as on uniform meshes. The inverses are kept in single
-/// precision, which is enough for a smoother, and applied in double.
+/// Near hanging nodes the star is likewise the support of the continuous bilinear hat function of the vertex: if one of
+/// the lines is a side of a larger cell and is halved on the other side, both smaller cells there and the line between
+/// them belong to the star. Hanging vertices have no hat function and no patch. Thus every free degree of freedom is in
+/// a patch, and the largest eigenvalue is the same as on uniform meshes. The inverses are stored in single precision,
+/// which is sufficient for a smoother, and applied in double precision.
 ///
-/// The operator is symmetric positive definite on vectors that vanish at constrained degrees of freedom, and the same
-/// for every partition of the mesh, rounding apart. Every vector must have the layout of layout().
+/// The operator is symmetric positive definite on vectors that vanish at constrained degrees of freedom, and up to
+/// rounding independent of the partition of the mesh. Every vector must have the layout of layout().
 class VertexPatches : public dealii::Subscriptor
 {
 public:
   using Vector = dealii::LinearAlgebra::distributed::Vector<double>;
   using Layout = dealii::Utilities::MPI::Partitioner;
 
-  /// Lists the patches. `constraints` tells which of the relevant degrees of freedom are free. Collective.
+  /// Builds the list of patches. Relevant degrees of freedom that `constraints` do not constrain are free. Collective.
   VertexPatches(const Sheet &sheet, const dealii::AffineConstraints<double> &constraints);
   ~VertexPatches();
 
-  /// Inverts the blocks of the condensed tangent K [N/m^2]. A block that is not safely positive definite (the tangent
-  /// at an unstable state) is replaced by the diagonal of its absolute row sums, which is, and which bounds it.
-  /// Collective.
+  /// Inverts the blocks of the condensed tangent K [N/m^2]. A block that is not numerically positive definite (at an
+  /// unstable state) is replaced by the diagonal of its absolute row sums, which is positive definite and bounds the
+  /// block. Collective.
   void factorise(const Sheet::Matrix &K);
 
-  /// z [m] from r [N/m]. Collective.
+  /// Computes z [m] from r [N/m]. Collective.
   void vmult(Vector &z, const Vector &r) const;
 
-  /// Blocks on all ranks that were replaced by their row sums in the last factorisation. Collective.
+  /// Returns the number of blocks on all ranks that the last factorise() replaced by their row sums. Collective.
   unsigned int n_replaced() const;
 
-  /// The owned degrees of freedom of the sheet and, as ghosts, the relevant ones and those of own patches.
+  /// Layout of vectors: the owned degrees of freedom of the sheet and, as ghosts, the relevant ones and those of the
+  /// patches of this rank.
   const std::shared_ptr<const Layout> &layout() const { return layout_; }
 
 private:
@@ -55,7 +56,7 @@ private:
   std::vector<std::size_t> first_entry_; // of each patch in inverses_, and the end
   std::size_t largest_patch_ = 0;
   std::vector<float> inverses_;            // of all patches: lower triangle of blocks of 4 by 4, see multiply
-  std::unique_ptr<Epetra_Map> ghost_rows_; // rows of K that patches need and other ranks own
+  std::unique_ptr<Epetra_Map> ghost_rows_; // rows of K of other ranks that patches of this rank need
   unsigned int own_replaced_ = 0;
 };
 } // namespace latcon::continuum

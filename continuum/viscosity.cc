@@ -11,7 +11,7 @@ namespace latcon::continuum
 {
 namespace
 {
-// A family in the state (F, Fdot).
+// Kinematics of a family in the state (F, Fdot).
 struct Stretching
 {
   double stretch;    // l [-]

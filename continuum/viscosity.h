@@ -6,9 +6,9 @@
 
 namespace latcon::continuum
 {
-/// A viscous law of a sheet: a stress that resists the rate of deformation, added to the elastic one. Const and
-/// stateless. F and densities as in Material; Fdot_iJ = dv_i/dX_J [1/s]. All functions throw NonPhysicalState when
-/// F is not a deformation (det F <= 0, not finite).
+/// Viscous law of a sheet: a stress that depends on the rate of deformation, added to the elastic stress. Laws are
+/// const and stateless. F and densities as in Material; Fdot_iJ = dv_i/dX_J [1/s]. All functions throw NonPhysicalState
+/// if F is invalid (det F <= 0 or not finite).
 class Viscosity
 {
 public:
@@ -24,30 +24,30 @@ public:
   virtual dealii::Tensor<4, 2> stress_by_rate(const dealii::Tensor<2, 2> &F,
                                               const dealii::Tensor<2, 2> &Fdot) const = 0;
 
-  /// Power lost P : Fdot >= 0 [W/m^3].
+  /// Returns the dissipated power P : Fdot >= 0 [W/m^3].
   double dissipation(const dealii::Tensor<2, 2> &F, const dealii::Tensor<2, 2> &Fdot) const;
 };
 
-/// Dashpots of one reference direction.
+/// Family of dashpots with one reference direction.
 struct FibreDashpot
 {
   dealii::Tensor<1, 2> direction; ///< unit vector N_J [-], reference configuration
-  double weight;                  ///< c [-] > 0, as of a FibreFamily
+  double weight;                  ///< c [-] > 0, as in FibreFamily
   double viscosity;               ///< eta [Pa s] >= 0
 };
 
-/// Throws InvalidMaterial, unless the direction is a unit vector to 1e-12, the weight is positive and the viscosity is
-/// not negative, all of them finite.
+/// Checks a family. Throws InvalidMaterial unless the direction is a unit vector to 1e-12, the weight is positive, the
+/// viscosity is not negative, and all are finite.
 void check(const FibreDashpot &dashpot);
 
-/// Kelvin damping of a network of fibres, each of which resists the rate of its own stretch (theory-continuum.md,
+/// Kelvin-Voigt damping of a network of fibres, each of which resists the rate of its own stretch (theory-continuum.md,
 /// eqs. (C.41), (C.42)):
 ///   P = sum over families of  c_k eta_k (n_k . Fdot N_k) n_k (x) N_k,   n = F N / |F N|
-/// The dashpots of a lattice of bonds, with c = A0 l/V.
+/// With c = A0 l/V it models the dashpots of a lattice of bonds.
 class FibreViscosity : public Viscosity
 {
 public:
-  /// Throws InvalidMaterial if there is no dashpot or one is not valid.
+  /// Creates the law. Throws InvalidMaterial if there is no dashpot or one is not valid.
   explicit FibreViscosity(std::vector<FibreDashpot> dashpots);
 
   dealii::Tensor<2, 2> stress(const dealii::Tensor<2, 2> &F, const dealii::Tensor<2, 2> &Fdot) const override;

@@ -15,7 +15,7 @@ namespace latcon::continuum
 {
 namespace
 {
-// Calls work(values, F, Fdot, dofs) for every own cell, u and v with ghost entries. Local.
+// Calls work(values, F, Fdot, dofs) for every locally owned cell; u and v have ghost entries. Local.
 template <typename Work>
 void for_each_cell(const Sheet &sheet, const Sheet::Vector &u, const Sheet::Vector &v, const Work &work)
 {

@@ -271,12 +271,12 @@ TEST(MotionArchive, PutsNodalValuesInTheirPlacesOnAnyNumberOfRanks)
   continuum::Sheet::Vector u = whole.sheet->make_owned();
   whole.sheet->for_each_owned_dof([&](const auto dof, const unsigned int component, const Point<2> &X)
                                   { u(dof) = field(X, component); });
-  const std::vector<double> values = NodalOrder(*whole.sheet).gathered(u);
+  const std::vector<double> values = NodalOrder(*whole.sheet).gather(u);
 
   const SheetWithHole shared(MPI_COMM_WORLD);
   continuum::Sheet::Vector x = shared.sheet->make_ghosted();
   const NodalOrder order(*shared.sheet);
-  order.spread(values, x);
+  order.scatter(values, x);
   std::vector<dealii::types::global_dof_index> dofs(shared.sheet->element().n_dofs_per_cell());
   for (const auto &cell : shared.sheet->dof_handler().active_cell_iterators())
     if (cell->is_locally_owned())
@@ -290,6 +290,6 @@ TEST(MotionArchive, PutsNodalValuesInTheirPlacesOnAnyNumberOfRanks)
         ASSERT_NEAR(x(dofs[a]), field(X, shared.sheet->element().system_to_component_index(a).first), 1e-13);
       }
     }
-  EXPECT_EQ(order.gathered(x), is_first_rank() ? values : std::vector<double>());
-  EXPECT_THROW(order.spread(std::vector<double>(values.size() - 1), x), continuum::InvalidInput);
+  EXPECT_EQ(order.gather(x), is_first_rank() ? values : std::vector<double>());
+  EXPECT_THROW(order.scatter(std::vector<double>(values.size() - 1), x), continuum::InvalidInput);
 }

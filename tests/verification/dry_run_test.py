@@ -16,11 +16,11 @@ PROGRAM = Forked(LATCON)
 MOTION = ["Continuum/solution=motion", "Time/end=0.01 ms", "Continuum/cells x=3", "Continuum/cells y=2", "Continuum/degree=2"]
 # Command, entries, a part of the message.
 REFUSED = [
-    ("continuum", [*MOTION, "Top edge/displacement x=1e-4*x"], "the initial displacement of a held boundary"),
-    ("continuum", [*MOTION, "Initial state/displacement x=1e-4*y"], "the initial displacement of a held boundary"),
+    ("continuum", [*MOTION, "Top edge/displacement x=1e-4*x"], "the initial displacement of a boundary"),
+    ("continuum", [*MOTION, "Initial state/displacement x=1e-4*y"], "the initial displacement of a boundary"),
     ("continuum", [*MOTION, "Initial state/base=equilibrium", "Initial state/displacement x=1e-4*y"],
-     "the initial displacement of a held boundary"),
-    ("continuum", [*MOTION, "Initial state/base=undeformed"], "the initial displacement of a held boundary"),
+     "the initial displacement of a boundary"),
+    ("continuum", [*MOTION, "Initial state/base=undeformed"], "the initial displacement of a boundary"),
     ("continuum", [*MOTION, "Initial state/displacement x=1/x"], "is no finite number"),
     ("continuum", [*MOTION, "Initial state/velocity y=1/y"], "is no finite number"),
     ("continuum", [*MOTION, "Continuum/time step=1e-20"], "more than the"),
