@@ -30,7 +30,7 @@ ParallelSession::ParallelSession()
 {
   float version = 0.f;
   if (Zoltan_Initialize(0, nullptr, &version) != ZOLTAN_OK)
-    throw std::runtime_error("Zoltan cannot be started");
+    throw std::runtime_error("Zoltan cannot be initialised");
   p4est_init(nullptr, SC_LP_SILENT);
   dealii::MultithreadInfo::set_thread_limit(1);
   dealii::Utilities::MPI::MPI_InitFinalize::signals.at_mpi_init();

@@ -21,10 +21,10 @@ namespace
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t n_digits = 16; // hexadecimal, of the random part of a name
+constexpr std::size_t n_digits = 16; // hexadecimal digits in the random part of a name
 const std::string suffix = ".part";
 
-// With the system's words for an error number; std::strerror is not safe with threads.
+// Creates an error with the message of the system for an error number; std::strerror is not thread-safe.
 OutputError error_of(const fs::path &place, int error_number)
 {
   return {place, std::generic_category().message(error_number)};
@@ -32,7 +32,7 @@ OutputError error_of(const fs::path &place, int error_number)
 
 fs::path random_neighbour(const fs::path &place)
 {
-  std::random_device random; // the system's, not to be foreseen
+  std::random_device random; // of the system: not predictable
   std::array<char, n_digits + 1> digits{};
   std::snprintf(digits.data(), digits.size(), "%08x%08x", random(), random());
   return place.string() + "." + digits.data() + suffix;
@@ -40,7 +40,7 @@ fs::path random_neighbour(const fs::path &place)
 
 bool is_name_of_part(const std::string &name)
 {
-  const std::size_t length = 1 + n_digits + suffix.size(); // what follows the name of the place
+  const std::size_t length = 1 + n_digits + suffix.size(); // length after the name of the file
   return name.size() > length && name[name.size() - length] == '.' &&
          name.compare(name.size() - suffix.size(), suffix.size(), suffix) == 0 &&
          std::all_of(name.end() - static_cast<std::ptrdiff_t>(length - 1),
@@ -48,8 +48,7 @@ bool is_name_of_part(const std::string &name)
                      [](char c) { return (c >= '0' && c <= '9') || (c >= 'a' && c <= 'f'); });
 }
 
-// Forces the names in the folder of a file to the disk. The file is whole either way, so that a folder that cannot be
-// synced is no failure.
+// Synchronises the folder of a file with the disk. Errors are ignored, because the file is complete in any case.
 void sync_folder_of(const fs::path &file)
 {
   const fs::path folder = file.has_parent_path() ? file.parent_path() : ".";
@@ -76,7 +75,7 @@ AtomicFile::AtomicFile(fs::path place) : place_(std::move(place))
   } while (descriptor_ < 0 && (errno == EEXIST || errno == EINTR));
   if (descriptor_ < 0)
     throw error_of(place_, errno);
-  // Asked now, not before: if the folder is replaced later on, the part is not where commit() looks for it.
+  // Checked after the part was created: if the folder is replaced later, commit() does not find the part.
   try
   {
     require_in_place(place_);
@@ -120,10 +119,10 @@ std::string AtomicFile::name() const
 
 void AtomicFile::commit(Sync sync)
 {
-  // Not every file system can sync (EINVAL); there the rename is all that can be had.
+  // Some file systems cannot sync (EINVAL); then the rename has to suffice.
   if (sync == Sync::yes && ::fsync(descriptor_) != 0 && errno != EINVAL)
     throw error_of(place_, errno);
-  // Some file systems report a full disk or a broken connection only here.
+  // Some file systems report a full disk or a broken connection only in close().
   int error_number = ::close(std::exchange(descriptor_, -1)) != 0 ? errno : 0;
   if (error_number == 0 && std::rename(part_.c_str(), place_.c_str()) != 0)
     error_number = errno;

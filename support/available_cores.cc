@@ -13,16 +13,16 @@ namespace latcon::support
 namespace
 {
 
-constexpr std::size_t most_cores = 8192; // that Linux can be configured for
+constexpr std::size_t max_cores = 8192; // largest number that Linux can be configured for
 
-// A byte for each hardware thread: 1 if this process may run on it, none if the system does not say.
+// Returns a byte per hardware thread, 1 if this process may run on it; empty if the system does not report it.
 std::vector<std::uint8_t> allowed_cores()
 {
-  cpu_set_t *const set = CPU_ALLOC(most_cores);
-  const std::size_t size = CPU_ALLOC_SIZE(most_cores);
-  std::vector<std::uint8_t> allowed(most_cores, 0);
+  cpu_set_t *const set = CPU_ALLOC(max_cores);
+  const std::size_t size = CPU_ALLOC_SIZE(max_cores);
+  std::vector<std::uint8_t> allowed(max_cores, 0);
   if (set != nullptr && sched_getaffinity(0, size, set) == 0)
-    for (std::size_t core = 0; core < most_cores; ++core)
+    for (std::size_t core = 0; core < max_cores; ++core)
       allowed[core] = CPU_ISSET_S(core, size, set) ? 1 : 0;
   CPU_FREE(set);
   return allowed;
@@ -37,7 +37,7 @@ unsigned int number_of(const std::vector<std::uint8_t> &cores)
 
 unsigned int available_cores()
 {
-  // With OMP_PROC_BIND the first thread is bound to one core before main; OpenMP then knows how many there were.
+  // With OMP_PROC_BIND the main thread is bound to one core before main; omp_get_num_procs() gives the original number.
   return std::max({1u, number_of(allowed_cores()), static_cast<unsigned int>(omp_get_num_procs())});
 }
 

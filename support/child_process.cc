@@ -54,7 +54,7 @@ pid_t start_child(const ChildProgram &program)
   const pid_t child = fork();
   if (child == 0)
   {
-    // Between fork and exec only what is safe in a signal handler.
+    // Between fork and exec, only async-signal-safe functions may be called.
     prctl(PR_SET_PDEATHSIG, SIGTERM);
     if (getppid() != parent)
       _exit(not_started);

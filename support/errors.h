@@ -1,4 +1,4 @@
-/// Why a run of latcon ended: exit codes, and the exceptions that carry them up to main.
+/// Exit codes, and exceptions that carry them to main.
 #pragma once
 
 #include <filesystem>
@@ -10,49 +10,50 @@
 namespace latcon::support
 {
 
-/// Exit status of the program. The values are part of the command line's contract.
+/// Exit status of the program. The values are part of the command-line interface.
 enum class ExitCode : int
 {
-  done = 0,           ///< finished, and every claim that was checked holds
+  done = 0,           ///< finished; all checked claims hold
   internal_error = 1, ///< a defect of latcon itself
-  bad_input = 2,      ///< a case, an option or a file that was read is wrong
+  bad_input = 2,      ///< invalid case, option or input file
   claim_failed = 3,   ///< lattice, continuum and theory do not agree
-  solver_failed = 4,  ///< a solver did not converge, or the state blew up
+  solver_failed = 4,  ///< a solver did not converge, or the state diverged
   output_failed = 5,  ///< a file could not be written
   interrupted = 130   ///< stopped by a signal, with the state saved
 };
 
-/// What every exception of this kind has in common: a message for the user, and the status to exit with.
+/// Base class of exceptions that end a run, with a message for the user and an exit status.
 class Error : public std::runtime_error
 {
 public:
   Error(const ExitCode exit_code, const std::string &message) : std::runtime_error(message), exit_code_(exit_code) {}
 
-  /// The status the program should end with.
+  /// Returns the exit status of the program.
   [[nodiscard]] ExitCode exit_code() const noexcept { return exit_code_; }
 
 private:
   ExitCode exit_code_;
 };
 
-/// The user's input is wrong. Carries every problem found, so that one run is enough to mend them all.
+/// Invalid input. Contains all problems that were found, so that the user can fix them at once.
 class InputError : public Error
 {
 public:
-  /// A single problem.
+  /// Creates an error with a single problem.
   explicit InputError(const std::string &problem) : InputError(std::vector<std::string>{problem}) {}
 
-  /// @param problems one line each, in the order in which they should be read; what() joins them by line breaks.
+  /// Creates an error with several problems. @param problems one line each, in the order of the output; what() joins
+  /// them with line breaks
   explicit InputError(std::vector<std::string> problems)
-    : Error(ExitCode::bad_input, joined(problems)), problems_(std::move(problems))
+    : Error(ExitCode::bad_input, join_lines(problems)), problems_(std::move(problems))
   {
   }
 
-  /// The problems, one line each.
+  /// Returns the problems, one line each.
   [[nodiscard]] const std::vector<std::string> &problems() const noexcept { return problems_; }
 
 private:
-  static std::string joined(const std::vector<std::string> &problems)
+  static std::string join_lines(const std::vector<std::string> &problems)
   {
     std::string text;
     for (const std::string &problem : problems)
@@ -63,43 +64,43 @@ private:
   std::vector<std::string> problems_;
 };
 
-/// A claim that the run depends on does not hold.
+/// Claim on which the run depends and that does not hold.
 class ClaimFailed : public Error
 {
 public:
   explicit ClaimFailed(const std::string &message) : Error(ExitCode::claim_failed, message) {}
 };
 
-/// A solver did not converge, or the state became unphysical or not finite.
+/// Solver that did not converge, or a state that became unphysical or not finite.
 class SolverError : public Error
 {
 public:
   explicit SolverError(const std::string &message) : Error(ExitCode::solver_failed, message) {}
 };
 
-/// A file could not be written; what was there before is whole.
+/// File that could not be written; an existing file is unchanged.
 class OutputError : public Error
 {
 public:
-  /// @param place the file that was to be written @param reason why it was not, usually the system's own words
+  /// @param place file to write @param reason cause, usually the message of the operating system
   OutputError(const std::filesystem::path &place, const std::string &reason)
     : Error(ExitCode::output_failed, "cannot write " + place.string() + ": " + reason)
   {
   }
 };
 
-/// The run was stopped from outside, and what is needed to go on has been written.
+/// Run that was interrupted by a signal, after its checkpoint was written.
 class Interrupted : public Error
 {
 public:
   explicit Interrupted(const std::string &message) : Error(ExitCode::interrupted, message) {}
 };
 
-/// Another process writes to the folder.
+/// Folder that another process writes to.
 class FolderInUse : public std::runtime_error
 {
 public:
-  /// @param owner process and machine, as the lock file names them; empty: not known
+  /// @param owner process and machine according to the lock file; empty if unknown
   FolderInUse(const std::filesystem::path &folder, const std::string &owner);
 };
 

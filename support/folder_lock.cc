@@ -28,7 +28,7 @@ std::string this_process()
   return std::to_string(::getpid()) + " on " + machine.data();
 }
 
-// The first line of the lock file, if another process of latcon wrote it.
+// Returns the process ID and machine in the lock file, up to the first character that latcon does not write there.
 std::string owner_in(int descriptor)
 {
   std::array<char, 300> text{};
@@ -40,7 +40,7 @@ std::string owner_in(int descriptor)
 
 int open_lock_file(const std::filesystem::path &path)
 {
-  // O_NONBLOCK: a pipe in its place must not hang.
+  // O_NONBLOCK: opening a pipe at this path must not block.
   const int descriptor = ::open(path.c_str(), O_RDWR | O_CREAT | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC, 0666);
   if (descriptor < 0)
     throw OutputError(path, std::generic_category().message(errno));
@@ -53,7 +53,7 @@ int open_lock_file(const std::filesystem::path &path)
   throw OutputError(path, "it is not a regular file");
 }
 
-// Those of this process, by the names of their folders.
+// Locks held by this process, by folder.
 struct HeldLocks
 {
   std::mutex mutex;
@@ -66,21 +66,21 @@ HeldLocks &held_locks()
   return locks;
 }
 
-// One name for a folder, however it is spelled, except through symbolic links.
+// Returns the normalised absolute path of a folder; symbolic links are not resolved.
 std::filesystem::path name_of_folder(const std::filesystem::path &folder)
 {
-  std::error_code none; // of a current folder that was removed
+  std::error_code none; // if the current folder was removed
   return (std::filesystem::absolute(folder, none) / "").lexically_normal().parent_path();
 }
 
-// Replaces what a lock file says. For people; the lock does not depend on it.
+// Replaces the content of a lock file, which is informative only; the lock does not depend on it.
 void write_owner(int descriptor, const std::string &owner)
 {
   struct stat status
   {
   };
   if (::fstat(descriptor, &status) != 0 || status.st_nlink > 1)
-    return; // a file that also lies elsewhere
+    return; // the file has other hard links
   const bool is_written = ::ftruncate(descriptor, 0) == 0 && ::pwrite(descriptor, owner.data(), owner.size(), 0) >= 0;
   (void)is_written;
 }
@@ -112,7 +112,7 @@ FolderLock::FolderLock(std::filesystem::path folder, std::chrono::milliseconds p
     const bool is_locked = ::flock(descriptor_, LOCK_EX | LOCK_NB) == 0;
     if (!is_locked && errno != EWOULDBLOCK && errno != EINTR)
       return; // no locks on this file system
-    // The file may have been removed or replaced between the two calls: its lock is then worth nothing.
+    // The file may have been removed or replaced between the two calls, which makes its lock useless.
     is_held_ = is_locked && is_same_file(descriptor_, path);
     if (is_held_)
       break;
@@ -134,7 +134,7 @@ FolderLock::~FolderLock()
   {
     const std::lock_guard<std::mutex> guard(held_locks().mutex);
     held_locks().by_folder.erase(name_);
-    write_owner(descriptor_, ""); // folders of finished runs are the same whichever process wrote them
+    write_owner(descriptor_, ""); // the folder of a finished run must not depend on the process that wrote it
   }
   ::close(descriptor_);
 }

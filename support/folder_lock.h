@@ -1,4 +1,4 @@
-/// Folders that one process at a time writes.
+/// Exclusive locks on folders.
 #pragma once
 
 #include <chrono>
@@ -9,17 +9,17 @@
 namespace latcon::support
 {
 
-/// Exclusive right to write to a folder: a lock (flock) on the file `.latcon.lock` in it, which meanwhile holds the
-/// number of the process and the name of its machine. The lock ends with the object and with the process, however that
-/// ends; the file stays. Only processes that ask for the lock respect it. Children do not inherit it.
+/// Exclusive, advisory lock on a folder: a lock (flock) on the file `.latcon.lock` in it, which contains the process ID
+/// and the name of the machine while the lock is held. The lock is released with the object and when the process ends
+/// for any reason; the file remains. Child processes do not inherit the lock.
 ///
-/// Over NFS the lock holds on all machines if the server runs its lock service. Where a file system has no locks,
-/// is_held() is false and nothing is protected.
+/// On NFS the lock is valid on all machines if the server runs its lock service. On a file system without locks
+/// is_held() is false and the folder is not protected.
 class FolderLock
 {
 public:
-  /// Locks an existing folder. Waits up to `patience` for a process that is about to end.
-  /// @throws FolderInUse @throws OutputError if the lock file cannot be made, or is no regular file
+  /// Locks an existing folder. Waits up to `patience` for another process to release the lock.
+  /// @throws FolderInUse @throws OutputError if the lock file cannot be created or is not a regular file
   explicit FolderLock(std::filesystem::path folder, std::chrono::milliseconds patience = std::chrono::seconds(1));
   ~FolderLock();
 
@@ -28,7 +28,7 @@ public:
 
   [[nodiscard]] bool is_held() const { return is_held_; }
 
-  /// Returns whether the path still leads to the folder that was locked: it was neither removed nor replaced.
+  /// Returns true if the path still refers to the locked folder, which was neither removed nor replaced.
   [[nodiscard]] bool is_in_place() const;
 
 private:
@@ -38,8 +38,9 @@ private:
   bool is_held_ = false;
 };
 
-/// Throws OutputError if `place` is in a folder that this process has locked, or below one, and the folder was removed
-/// or replaced since: what has its name now may belong to another process. May be called from any thread.
+/// Checks that `place` can be written: throws OutputError if it is in or below a folder that this process has locked
+/// and that has since been removed or replaced. A folder that has this name now may belong to another process.
+/// Thread-safe.
 void require_in_place(const std::filesystem::path &place);
 
 } // namespace latcon::support

@@ -13,7 +13,7 @@ std::string full_precision(const double value)
     return "nan";
   std::array<char, 32> digits{};
   const auto [end, status] = std::to_chars(digits.data(), digits.data() + digits.size(), value);
-  (void)status; // 24 characters are the longest there are
+  (void)status; // the longest text has 24 characters
   return std::string(digits.data(), end);
 }
 

@@ -68,7 +68,7 @@ void Extremes::add(double value)
   const double finite = finite_or_not_a_number(value);
   if (is_empty_)
     smallest_ = largest_ = finite;
-  // Comparisons with a not-a-number are false, so one that is there stays.
+  // Comparisons with NaN are false, so extremes that are NaN remain NaN.
   else if (std::isnan(finite))
     smallest_ = largest_ = not_a_number;
   else if (finite < smallest_)

@@ -1,7 +1,7 @@
-/// Errors and extremes from which a number that is not finite cannot be lost.
+/// Errors and extremes that propagate values that are not finite.
 ///
-/// `std::max(0., NaN)` is 0 and `std::max(x, NaN)` is x, so an error that could not be computed would pass as a small
-/// one. Here it stays: rows of claims take their errors and extremes from this file alone.
+/// `std::max(0., NaN)` is 0 and `std::max(x, NaN)` is x, so with std::max an error that could not be computed would
+/// count as small. The rows of claims must take their errors and extremes from this file, which propagates NaN.
 #pragma once
 
 #include <initializer_list>
@@ -10,24 +10,24 @@
 namespace latcon::support
 {
 
-/// |value / reference - 1| [-]; not-a-number if that is not finite.
+/// Returns |value / reference - 1| [-]; NaN if that is not finite.
 [[nodiscard]] double relative_error(double value, double reference);
 
-/// Error of a one-sided bound: `excess` where it is positive, else 0; not-a-number if `excess` is not finite.
+/// Returns the error of a one-sided bound: `excess` if positive, otherwise 0; NaN if `excess` is not finite.
 [[nodiscard]] double one_sided(double excess);
 
-/// Largest of one or more numbers; not-a-number if any is not finite.
+/// Returns the largest of one or more numbers; NaN if any is not finite.
 [[nodiscard]] double largest_of(std::initializer_list<double> values);
 
-/// Smallest of one or more numbers; not-a-number if any is not finite.
+/// Returns the smallest of one or more numbers; NaN if any is not finite.
 [[nodiscard]] double smallest_of(std::initializer_list<double> values);
 
-/// Largest of a sequence of errors, with the value and the reference between which it was found. The first error that
-/// is not finite makes it not-a-number, whatever follows; so it is while there is none.
+/// Largest of a sequence of errors, with its value and reference. NaN for an empty sequence, and from the first error
+/// on that is not finite.
 class LargestError
 {
 public:
-  /// Adds an error that belongs to a value beside a reference, or to neither.
+  /// Adds an error, optionally with its value and reference.
   void add(double error, double value = std::numeric_limits<double>::quiet_NaN(),
            double reference = std::numeric_limits<double>::quiet_NaN());
 
@@ -46,8 +46,8 @@ private:
   double error_ = std::numeric_limits<double>::quiet_NaN(), value_ = error_, reference_ = error_;
 };
 
-/// Smallest and largest of a sequence of numbers. The first that is not finite makes both not-a-number, whatever
-/// follows; so they are while there is none.
+/// Smallest and largest of a sequence of numbers. NaN for an empty sequence, and from the first number on that is not
+/// finite.
 class Extremes
 {
 public:

@@ -25,10 +25,10 @@ std::optional<double> number_in(const fs::path &file)
   double value = 0.;
   if (stream >> value)
     return value;
-  return {}; // not there, or the word "max"
+  return {}; // no such file, or the word "max"
 }
 
-// The number behind a word at the beginning of a line.
+// Returns the number after a word at the beginning of a line.
 std::optional<double> number_after(const fs::path &file, const std::string &word)
 {
   std::ifstream stream(file);
@@ -44,7 +44,7 @@ std::optional<double> number_after(const fs::path &file, const std::string &word
   return {};
 }
 
-// The two versions of control groups call the same things by different names.
+// Names of the files of a control group, which differ between versions 1 and 2.
 struct GroupFiles
 {
   const char *limit, *usage, *cache;
@@ -59,8 +59,8 @@ double left_in(const fs::path &group, const GroupFiles &files)
   return std::max(0., *limit - std::max(0., *usage - cache));
 }
 
-// The least that a group and those around it leave. A container may not see the folder of its own group by the name
-// that the system calls it: then the mounted root is its group.
+// Returns the smallest remaining memory of a group and its parents. In a container the folder of the group may not
+// exist under the name given by the system; the group is then the mounted root.
 double left_in_groups(const fs::path &mount, const std::string &name, const GroupFiles &files)
 {
   double left = left_in(mount, files);
@@ -81,7 +81,7 @@ double available_memory(const fs::path &root)
   if (const auto kibibytes = number_after(root / "proc/meminfo", "MemAvailable:"))
     available = 1024. * *kibibytes;
   std::ifstream groups(root / "proc/self/cgroup");
-  std::string line; // "NUMBER:CONTROLLERS:NAME", of version 2 "0::NAME"
+  std::string line; // "NUMBER:CONTROLLERS:NAME"; in version 2 "0::NAME"
   while (std::getline(groups, line))
   {
     const std::size_t first = line.find(':'), second = line.find(':', first + 1);
@@ -99,7 +99,7 @@ double available_memory(const fs::path &root)
   return available;
 }
 
-double held_memory()
+double resident_memory()
 {
   std::ifstream stream("/proc/self/statm"); // pages: total, resident, ...
   double total = 0., resident = 0.;

@@ -1,4 +1,4 @@
-/// What the machine has left for a run.
+/// Memory of the machine and of the process.
 #pragma once
 
 #include <filesystem>
@@ -7,16 +7,17 @@
 namespace latcon::support
 {
 
-/// Memory that a process may still take [bytes]: what the system has available (MemAvailable of /proc/meminfo), or what
-/// its control groups, version 1 or 2, leave, where that is less. Memory that only caches files counts as free.
-/// @param root where /proc and /sys are looked for; tests have trees of their own
-/// @return infinity if the system does not say
+/// Returns the memory that this process may still allocate [bytes]: the available memory of the system (MemAvailable of
+/// /proc/meminfo), or the remainder of the limits of its control groups (version 1 or 2) where that is less. Page cache
+/// counts as free.
+/// @param root folder that contains /proc and /sys; tests pass their own
+/// @return infinity if the system does not report it
 [[nodiscard]] double available_memory(const std::filesystem::path &root = "/");
 
-/// Memory that this process holds now [bytes]; 0 if the system does not say.
-[[nodiscard]] double held_memory();
+/// Returns the resident memory of this process [bytes]; 0 if the system does not report it.
+[[nodiscard]] double resident_memory();
 
-/// "1.5 GB", three digits.
+/// Formats a number of bytes with three digits and a unit: "1.5 GB".
 [[nodiscard]] std::string readable_bytes(double bytes);
 
 } // namespace latcon::support

@@ -16,15 +16,15 @@ MpiSession::MpiSession()
 {
   if (!is_started_by_launcher())
   {
-    constexpr int keep = 0; // what the user has set
+    constexpr int keep = 0; // do not overwrite values set by the user
     setenv("OMPI_MCA_ess_singleton_isolated", "1", keep);
     setenv("OMPI_MCA_orte_create_session_dirs", "0", keep);
   }
   int provided = MPI_THREAD_SINGLE;
   if (MPI_Init_thread(nullptr, nullptr, MPI_THREAD_SERIALIZED, &provided) != MPI_SUCCESS)
-    throw std::runtime_error("MPI cannot be started");
-  if (provided < MPI_THREAD_FUNNELED) // all calls come from the first thread
-    throw std::runtime_error("MPI cannot be used by a program with threads");
+    throw std::runtime_error("MPI cannot be initialised");
+  if (provided < MPI_THREAD_FUNNELED) // the main thread makes all calls
+    throw std::runtime_error("this MPI library does not support programs with threads (MPI_THREAD_FUNNELED)");
 }
 
 MpiSession::~MpiSession()

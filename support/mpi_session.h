@@ -1,4 +1,4 @@
-/// Start and end of MPI.
+/// Initialisation of MPI.
 #pragma once
 
 #include <string>
@@ -6,35 +6,35 @@
 namespace latcon::support
 {
 
-/// MPI, from construction to destruction: MPI_Init_thread at the level MPI_THREAD_SERIALIZED, and MPI_Finalize.
+/// Initialises MPI on construction (MPI_Init_thread with MPI_THREAD_SERIALIZED) and finalises it on destruction.
 ///
-/// A process that no launcher started is a job of its own, and shares nothing with other such processes: Open MPI makes
-/// neither a daemon nor a session folder for it. By default all such processes of a user on a machine use one folder,
-/// `ompi.HOST.UID/jf.0/0/0` in $TMPDIR. Each makes the levels that are missing and removes those that are empty when it
-/// ends, so that one fails to start if another ends between its calls of mkdir. Variables that the user has set
-/// (OMPI_MCA_ess_singleton_isolated, OMPI_MCA_orte_create_session_dirs) take precedence. Ranks of `mpirun` and `srun`
-/// are left as the launcher set them up.
+/// A process that was not started by a launcher is isolated: Open MPI creates neither a daemon nor a session folder for
+/// it. By default all such processes of a user on a machine share the folder `ompi.HOST.UID/jf.0/0/0` in $TMPDIR. Each
+/// process creates missing levels of the folder and removes empty levels when it ends, so a process fails to start if
+/// another one ends between its calls of mkdir. Variables set by the user (OMPI_MCA_ess_singleton_isolated,
+/// OMPI_MCA_orte_create_session_dirs) take precedence. Ranks of `mpirun` and `srun` are left as the launcher set them
+/// up.
 ///
-/// MPI does not see the arguments of the program. To be made once, before other threads.
+/// MPI does not get the arguments of the program. To be created once, before other threads start.
 class MpiSession
 {
 public:
-  /// @throws std::runtime_error if MPI cannot be started; Open MPI ends the process itself in most such cases
+  /// @throws std::runtime_error if MPI cannot be initialised; in most such cases Open MPI ends the process itself
   MpiSession();
 
-  /// Does not finalize MPI while an exception unwinds the stack: other ranks may never arrive.
+  /// Does not finalise MPI while an exception unwinds the stack, because other ranks may never call MPI_Finalize.
   ~MpiSession();
 
   MpiSession(const MpiSession &) = delete;
   MpiSession &operator=(const MpiSession &) = delete;
 };
 
-/// Returns whether a variable marks a process as a rank of a job: those of PMI and PMIx, OMPI_COMM_WORLD_*, and
-/// FLUX_JOB_ID. `SLURM_PROCID` does not: scripts of `sbatch` have it as well.
+/// Returns true if an environment variable indicates that the process is a rank of a job: variables of PMI and PMIx,
+/// OMPI_COMM_WORLD_*, and FLUX_JOB_ID. `SLURM_PROCID` does not, because it is also set in scripts of `sbatch`.
 /// @param variable name, or name and value as in `environ`
 [[nodiscard]] bool is_launcher_variable(const std::string &variable);
 
-/// Returns whether `mpirun`, `srun` or another launcher started this process as a rank.
+/// Returns true if `mpirun`, `srun` or another launcher started this process as a rank.
 [[nodiscard]] bool is_started_by_launcher();
 
 } // namespace latcon::support

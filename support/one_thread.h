@@ -5,8 +5,8 @@
 namespace latcon::support
 {
 
-/// Makes OpenMP use one thread while it lives, for lattices so small that threads wait for each other more than they
-/// share. Bits do not depend on the number of threads.
+/// Limits OpenMP to one thread in its scope, for lattices so small that synchronisation costs more than threads save.
+/// Results do not depend on the number of threads.
 class OneThread
 {
 public:

@@ -11,13 +11,13 @@ std::size_t width_of(const std::string &text)
     text.begin(), text.end(), [](const char c) { return (static_cast<unsigned char>(c) & 0xc0) != 0x80; }));
 }
 
-std::vector<std::string> wrapped(const std::string &text, const std::size_t width)
+std::vector<std::string> wrap_text(const std::string &text, const std::size_t width)
 {
   std::vector<std::string> lines(1);
   std::size_t columns = 0;
   for (std::size_t at = 0; at < text.size();)
   {
-    const std::size_t end = std::min(text.find(' ', at + 1), text.size()); // a word with the blank before it
+    const std::size_t end = std::min(text.find(' ', at + 1), text.size()); // a word with its leading blank
     std::string word = text.substr(at, end - at);
     at = end;
     if (columns > 0 && columns + width_of(word) > width)
@@ -36,7 +36,7 @@ std::vector<std::string> wrapped(const std::string &text, const std::size_t widt
         columns = 0;
       }
       columns += begins_character ? 1 : 0;
-      // A line break or an escape sequence would break the table.
+      // Control characters (line breaks, escape sequences) would break the table.
       lines.back() += static_cast<unsigned char>(c) < 0x20 || c == 0x7f ? '?' : c;
     }
   }

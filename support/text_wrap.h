@@ -1,4 +1,4 @@
-/// Text in columns of a terminal.
+/// Text layout in terminal columns.
 #pragma once
 
 #include <cstddef>
@@ -8,11 +8,11 @@
 namespace latcon::support
 {
 
-/// Columns a text takes on the screen: its code points.
+/// Returns the number of terminal columns of a UTF-8 text: its code points.
 [[nodiscard]] std::size_t width_of(const std::string &text);
 
-/// Breaks a text into lines of at most `width` columns, between words where that is possible. Control characters, which
-/// would break a table, become question marks. At least one line, which may be empty.
-[[nodiscard]] std::vector<std::string> wrapped(const std::string &text, std::size_t width);
+/// Breaks a text into lines of at most `width` columns, between words where possible. Replaces control characters,
+/// which would break a table, by question marks. Returns at least one line, which may be empty.
+[[nodiscard]] std::vector<std::string> wrap_text(const std::string &text, std::size_t width);
 
 } // namespace latcon::support

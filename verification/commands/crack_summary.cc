@@ -50,7 +50,7 @@ std::string crack_summary(const input::Case &input, const analysis::CrackMeasure
 {
   const std::string pattern = to_string(crack.pattern);
   std::string text;
-  for (const std::string &line : support::wrapped(
+  for (const std::string &line : support::wrap_text(
          (crack.pattern == analysis::CrackPattern::undecided ? "The pattern of the crack is " : "The crack is ") +
            pattern + ": " + crack.reason,
          columns))

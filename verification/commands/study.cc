@@ -208,7 +208,7 @@ resources::MemoryNeed memory_of(const std::vector<study::PlannedRun> &plan, std:
 {
   std::vector<double> needs;
   for (const study::PlannedRun &run : plan)
-    needs.push_back(run.memory + support::held_memory());
+    needs.push_back(run.memory + support::resident_memory());
   std::sort(needs.rbegin(), needs.rend());
   needs.resize(std::min(needs.size(), n_cores));
   return {std::accumulate(needs.begin(), needs.end(), 0.), 0.};

@@ -232,7 +232,7 @@ void Results::print(std::ostream &out) const
     std::size_t n_lines = 1;
     for (std::size_t i = 0; i < n_words; ++i)
     {
-      words[i] = support::wrapped(table[r][i], width[i]);
+      words[i] = support::wrap_text(table[r][i], width[i]);
       n_lines = std::max(n_lines, words[i].size());
     }
     for (std::size_t l = 0; l < n_lines; ++l)

@@ -93,7 +93,8 @@ struct OnMachine
 OnMachine on_machine(const MemoryNeed &need)
 {
   const double ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
-  std::array<double, 2> sums{support::held_memory(), need.shared / ranks + (is_first_rank() ? need.first_rank : 0.)};
+  std::array<double, 2> sums{support::resident_memory(),
+                             need.shared / ranks + (is_first_rank() ? need.first_rank : 0.)};
   MPI_Comm machine = MPI_COMM_NULL;
   MPI_Comm_split_type(MPI_COMM_WORLD, MPI_COMM_TYPE_SHARED, 0, MPI_INFO_NULL, &machine);
   MPI_Allreduce(MPI_IN_PLACE, sums.data(), 2, MPI_DOUBLE, MPI_SUM, machine);

@@ -217,7 +217,7 @@ void print_table(std::ostream &out, const StudyResults &results)
   const auto paragraph = [&out](const std::string &text, const std::string &first, const std::string &indent)
   {
     std::string lead = first;
-    for (const std::string &line : support::wrapped(text, width - support::width_of(indent)))
+    for (const std::string &line : support::wrap_text(text, width - support::width_of(indent)))
     {
       out << lead << line << '\n';
       lead = indent;
