@@ -12,7 +12,7 @@
 namespace latcon::bridge
 {
 
-/// u(X) = (F - I) X [m].
+/// Affine displacement field u(X) = (F - I) X [m].
 class AffineDisplacement : public dealii::Function<2>
 {
 public:
@@ -27,7 +27,7 @@ private:
   Eigen::Matrix2d F_;
 };
 
-/// All four edges of a rectangle displaced by (F - I) X.
+/// Returns conditions that prescribe the displacement (F - I) X on all four edges of a rectangle.
 inline std::vector<continuum::PrescribedDisplacement> affine_boundary(const Eigen::Matrix2d &F)
 {
   const auto displacement = std::make_shared<AffineDisplacement>(F);

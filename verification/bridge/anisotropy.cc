@@ -17,9 +17,9 @@ RotationMean rotation_mean(const Eigen::MatrixXd &values)
 {
   constexpr int n = n_lattice_rotations;
   if (values.cols() != n)
-    throw std::invalid_argument("a mean over rotations of the lattice takes one column of values per rotation");
+    throw std::invalid_argument("a mean over rotations of the lattice needs one column of values per rotation");
   const Eigen::VectorXd mean = values.rowwise().mean();
-  const Eigen::MatrixXd rest = values.colwise() - mean; // so that harmonics are not lost in the round-off of the mean
+  const Eigen::MatrixXd rest = values.colwise() - mean; // the harmonics would be lost in the round-off of the mean
   double bound = 0.;
   for (int j = 1; j < n; ++j)
   {

@@ -21,7 +21,7 @@ WaveMatrices bloch_matrices(const lattice::TriangularLattice &lattice, const lat
     const Eigen::Vector2d n = (F * R).normalized();
     const Eigen::Matrix2d along = n * n.transpose();
     const double section_over_length = lattice::cross_section(*shell, lattice) / length;
-    // 2 (1 - cos K.R), the two ends of the bond together, without loss of digits for long waves.
+    // 2 (1 - cos K.R) of both ends of the bond, in a form without cancellation for long waves.
     const double phase = 4. * std::pow(std::sin(0.5 * K.dot(R)), 2);
     matrices.stiffness += phase * section_over_length / mass *
                           (lattice::stiffness(shell->law, stretch) * along +

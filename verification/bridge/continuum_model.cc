@@ -14,7 +14,7 @@ namespace latcon::bridge
 namespace
 {
 
-// One component from each of two fields, or of the homogeneous loading.
+// Displacement whose components are expressions or that of the homogeneous loading.
 class EdgeDisplacement : public dealii::Function<2>
 {
 public:
@@ -50,7 +50,7 @@ ContinuumModel::ContinuumModel(const input::Case &input)
   {
     if (!subject_.mooney_rivlin)
       throw support::InputError(
-        "Continuum/law: no plane-stress Mooney-Rivlin law has a thickness in equilibrium all along the loading path to "
+        "Continuum/law: no plane-stress Mooney-Rivlin law has an equilibrium thickness along the whole loading path to "
         "Loading/strain x, strain y; give law = cauchy-born or mooney-rivlin-network" +
         std::string(input.continuum.mooney_rivlin_ratio ? ", or another Continuum/ratio" : ""));
     mooney_rivlin_.emplace(subject_.mooney_rivlin->law);
@@ -83,7 +83,7 @@ ContinuumModel::ContinuumModel(const input::Case &input)
 
 void ContinuumModel::make_mesh(const input::Case &input)
 {
-  // The size of the lattice after rounding to whole rows, so that both sides are the same sheet.
+  // The lattice rounds its size to whole rows; use the rounded size, so that both sheets are the same.
   const lattice::TriangularLattice sheet = input.lattice();
   const input::ContinuumCase &c = input.continuum;
   const auto periodic = [&c](std::size_t edge)
@@ -106,7 +106,7 @@ void ContinuumModel::make_conditions(const input::Case &input)
   for (dealii::types::boundary_id id = 0; id < c.edges.size(); ++id)
   {
     const input::EdgeCase &edge = c.edges[id];
-    // A mesh from a file may lack edges; the inner edge is there with a hole or a notch alone.
+    // A mesh from a file may lack edges; the inner edge exists only with a hole or a notch.
     if (std::find(ids.begin(), ids.end(), id) == ids.end())
       continue;
     if (edge.condition == input::EdgeCase::Condition::held)
@@ -123,7 +123,7 @@ void ContinuumModel::make_conditions(const input::Case &input)
       conditions_.normal_gradients.push_back({id, std::make_shared<dealii::Functions::ZeroFunction<2>>(2)});
     if (edge.normal_gradient == input::EdgeCase::NormalGradient::loading)
     {
-      // (F - I) N with the outward normal of an outer edge; rims of holes have no such single normal.
+      // (F - I) N with the outward normal of an outer edge; the rim of a hole has no unique normal.
       const Eigen::Vector2d normals[4] = {{-1., 0.}, {1., 0.}, {0., -1.}, {0., 1.}};
       const Eigen::Vector2d slope = (F - Eigen::Matrix2d::Identity()) * normals[id];
       conditions_.normal_gradients.push_back(
@@ -136,7 +136,7 @@ void ContinuumModel::make_conditions(const input::Case &input)
   }
   if (c.solution == input::ContinuumCase::Solution::equilibrium && conditions_.displacements.empty())
     throw support::InputError("the mesh file " + c.mesh_file +
-                              " has no edge that the case holds, and equilibrium needs one");
+                              " has none of the edges that the case holds; equilibrium needs a held edge");
   if (!c.body_force.is_zero())
     conditions_.body_force =
       continuum::BodyForce{c.body_force.field(extent_), c.body_force_corrected ? inertia_length_ : 0.};

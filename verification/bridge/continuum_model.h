@@ -12,12 +12,13 @@
 namespace latcon::bridge
 {
 
-/// The finite element sheet of a case: laws, mesh and conditions, handed to the continuum as constants and functions.
-/// Lives as long as the solvers made with it. Collective.
+/// Finite element model of a case: laws, mesh and boundary conditions. The continuum gets constants and functions only.
+/// Must outlive the solvers that use it. Collective.
 class ContinuumModel
 {
 public:
-  /// @throws InputError if the mesh file cannot be used, or no Mooney-Rivlin law is known for the loading path.
+  /// Builds the model. @throws InputError if the mesh file is invalid, or if no plane-stress Mooney-Rivlin law exists
+  /// for the loading path
   explicit ContinuumModel(const input::Case &input);
 
   continuum::Sheet::Mesh &mesh() { return mesh_; }
@@ -26,7 +27,7 @@ public:
   const Subject &subject() const { return subject_; }
 
   double extent() const { return extent_; }                 ///< smaller of length and height [m]
-  double static_length() const { return static_length_; }   ///< l_s [m] of the isotropic gradient energy; 0 for others
+  double static_length() const { return static_length_; }   ///< l_s [m] of the isotropic gradient energy; otherwise 0
   double inertia_length() const { return inertia_length_; } ///< l_d [m]; 0 without a gradient energy
 
 private:
@@ -35,7 +36,7 @@ private:
 
   Subject subject_;
   input::ContinuumLaw law_;
-  std::optional<continuum::MooneyRivlin> mooney_rivlin_; // if it is the case's law
+  std::optional<continuum::MooneyRivlin> mooney_rivlin_; // if the case selects this law
   double penalty_;
   double extent_ = 0.;
   double static_length_ = 0.;

@@ -13,8 +13,8 @@ namespace latcon::bridge
 namespace
 {
 
-// Stiffness psi''(1) A0 / l of the bonds of a kind against a change of their length, per sheet thickness [Pa]; 0 if
-// there are none.
+// Returns the stiffness psi''(1) A0 / l of the bonds of a kind against elongation, per sheet thickness [Pa]; 0 if there
+// are none.
 double spring_constant(const lattice::TriangularLattice &lattice, const lattice::Material &material, std::size_t kind)
 {
   const lattice::Shell *shell = material.shell(kind);
@@ -23,12 +23,11 @@ double spring_constant(const lattice::TriangularLattice &lattice, const lattice:
            : lattice::stiffness(shell->law, 1.) * lattice::cross_section(*shell, lattice) / lattice.rest_length(kind);
 }
 
-// Depth in units of the distance of planes at which a chain of planes is held whose planes 0 to reach - 1 are at rest,
-// as seen from far away: where the linear displacement found there, continued, vanishes. `springs[m]` ties planes m
-// apart.
+// Returns the effective depth at which a chain of planes is held whose planes 0 to reach - 1 are fixed, in units of the
+// distance of planes: the zero of the linear far-field displacement. `springs[m]` connects planes m apart.
 double chain_depth(const std::vector<double> &springs, std::size_t reach)
 {
-  // What the held planes disturb falls off by a factor of three or more with every plane.
+  // The perturbation by the held planes decays by a factor of three or more per plane.
   constexpr std::size_t n = 60;
   Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd f = Eigen::VectorXd::Zero(n);
@@ -120,7 +119,7 @@ EquivalentSheet equivalent_sheet(const lattice::TriangularLattice &lattice, cons
                         -0.5 * lattice.height() + depth(edges.bottom, y), 0.5 * lattice.height() - depth(edges.top, y),
                         0.};
   std::size_t removed = 0;
-  support::Extremes X; // of the sites in a notch
+  support::Extremes X; // of the sites removed by a notch
   X.add(0.);
   for (std::size_t place = 0; place < lattice.n_places(); ++place)
     if (lattice.is_site(place) && state.removed[place] != 0)
@@ -131,7 +130,7 @@ EquivalentSheet equivalent_sheet(const lattice::TriangularLattice &lattice, cons
   if (std::holds_alternative<lattice::RoundHole>(cutout))
     sheet.cut = std::sqrt(static_cast<double>(removed) * lattice.site_area() / M_PI) + recession;
   else
-    // The cell of the last site ends half way to the next one on the line.
+    // The cell of the last site ends half way to the next site on the line.
     sheet.cut =
       X.largest() - sheet.left +
       (lattice.orientation() == lattice::Orientation::rows_along_crack ? 0.5 : 0.5 * std::sqrt(3.)) * lattice.spacing();

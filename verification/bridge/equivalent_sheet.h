@@ -6,25 +6,26 @@
 namespace latcon::bridge
 {
 
-// Where the edges of a lattice sheet are, as a continuum feels them (theory-comparison.md, section "Edges of the
-// continuum"). To name them to a whole spacing is to leave an error of first order in d/R, which says nothing about the
+// Positions of the edges of the continuum that is equivalent to a lattice sheet (theory-comparison.md, section "Edges
+// of the continuum"). Positions to within a spacing would leave an error of first order in d/R that is unrelated to the
 // law.
 
-/// delta [m]: a free edge of the continuum lies this far inside the cells of the outermost sites, whose bonds across it
-/// are missing; mean over the directions of the edge, at small strain (theory-comparison.md, eq. (H.10)).
+/// Returns the distance delta [m] of a free edge of the continuum inside the cells of the outermost sites, which lack
+/// bonds across the edge: mean over the directions of the edge, at small strain (theory-comparison.md, eq. (H.10)).
 double rim_recession(const lattice::TriangularLattice &lattice, const lattice::Material &material);
 
-/// Depth [m] below the outermost sites at which an edge of the continuum is held where the lattice has its layer of
-/// held sites; mean over displacements across and along the edge, at small strain (theory-comparison.md, eq. (H.11)).
+/// Returns the depth [m] below the outermost sites of a held edge of the continuum that is equivalent to the layer of
+/// held sites of the lattice: mean over displacements across and along the edge, at small strain (theory-comparison.md,
+/// eq. (H.11)).
 /// @param normal unit vector along x or y
 double held_depth(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                   const Eigen::Vector2d &normal);
 
-/// How far the cells of the outermost sites reach beyond those sites at an edge, on average [m]: half a distance of
-/// rows, or a quarter of d where every second row is one site shorter.
+/// Returns the mean distance by which the cells of the outermost sites extend beyond these sites at an edge [m]: half
+/// the distance of rows, or d/4 if every second row is one site shorter.
 double cell_overhang(const lattice::TriangularLattice &lattice, const Eigen::Vector2d &normal);
 
-/// The continuum's sheet in the coordinates of the lattice.
+/// Sheet of the continuum in the coordinates of the lattice.
 struct EquivalentSheet
 {
   double left, right, bottom, top; ///< X of the left and right edge, Y of bottom and top [m]
@@ -34,13 +35,13 @@ struct EquivalentSheet
   double height() const { return top - bottom; }
 };
 
-/// @param state whose sites have been cut out
-/// @param edges which are held, the others being free
+/// Returns the sheet of the continuum that is equivalent to a lattice sheet. @param state lattice sheet with its cutout
+/// @param edges held edges; the others are free
 EquivalentSheet equivalent_sheet(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                                  const lattice::State &state, const lattice::Edges &edges,
                                  const lattice::Cutout &cutout);
 
-/// The sheet as a case describes it: edges through the outermost sites, hole and notch of their nominal size.
+/// Returns the nominal sheet of a case: edges through the outermost sites, hole and notch with their nominal sizes.
 EquivalentSheet nominal_sheet(const lattice::TriangularLattice &lattice, const lattice::Cutout &cutout);
 
 } // namespace latcon::bridge

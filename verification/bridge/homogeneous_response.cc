@@ -20,8 +20,8 @@ LatticeResponse homogeneous_response(const lattice::TriangularLattice &sheet, co
     return Eigen::Vector2d(forces.fx()[place], forces.fy()[place]);
   };
 
-  // The two uppermost rows hold the rest of the sheet: P times their normal, over the length d of one column; likewise
-  // the left end, whose sites with missing neighbours repeat every two rows.
+  // The forces on the two uppermost rows balance the rest of the sheet: they are P times the normal, per length d of a
+  // column. The same applies to the left end, where sites with missing neighbours repeat every two rows.
   const std::size_t top = sheet.rows() - 1, column = sheet.columns() / 2, row = 2 * (sheet.rows() / 4);
   const double d = sheet.spacing();
   const Eigen::Vector2d across = -(force(top, column) + force(top - 1, column)) / d;

@@ -5,15 +5,16 @@
 namespace latcon::bridge
 {
 
-/// Energy density [J/m^3] and first Piola stress [Pa] of a lattice in homogeneous deformation, by its simulator.
+/// Energy density [J/m^3] and first Piola stress [Pa] of a lattice in homogeneous deformation.
 struct LatticeResponse
 {
   double energy_density;
   Eigen::Matrix2d first_piola_stress;
 };
 
-/// Of a sheet of 12 by 12 spacings or more, whose middle sites have all their neighbours.
-/// @throws std::invalid_argument if F leaves no bond its length
+/// Computes the response of a lattice with its simulator. @param sheet at least 12 by 12 spacings, so that the sites in
+/// the middle have all their neighbours
+/// @throws std::invalid_argument if a bond has length zero at F
 LatticeResponse homogeneous_response(const lattice::TriangularLattice &sheet, const lattice::Material &material,
                                      const Eigen::Matrix2d &F);
 

@@ -13,13 +13,14 @@ namespace latcon::bridge
 namespace
 {
 
-// c = A0 l / V of one bond kind, V the reference volume of a site: a site owns one bond of each kind.
+// Returns c = A0 l / V of one kind of bond, with the reference volume V of a site: there is one bond of each kind per
+// site.
 double bond_weight(const lattice::TriangularLattice &lattice, const lattice::Shell &shell, std::size_t kind)
 {
   return lattice::cross_section(shell, lattice) * lattice.rest_length(kind) / lattice.site_area();
 }
 
-// Points along the path; the fit is to the whole of it, not to its end alone.
+// Number of points along the path; the fit covers the whole path, not only its end.
 constexpr int path_points = 40;
 
 Eigen::Matrix2d on_path(const Eigen::Matrix2d &F, int point)
@@ -75,7 +76,7 @@ std::vector<continuum::BondFamily> bond_families(const lattice::TriangularLattic
       else if (const auto *spring = std::get_if<lattice::LinearBond>(&shell->law))
         family.potential = continuum::LinearPotential{spring->modulus};
       else
-        throw std::invalid_argument("no continuum is known here for bonds with a law from outside");
+        throw std::invalid_argument("the continuum of bonds with a custom law is not supported");
       families.push_back({family, lattice.rest_length(kind)});
     }
   return families;
@@ -130,7 +131,7 @@ GradientLengths gradient_lengths(const lattice::TriangularLattice &lattice, cons
 Calibration calibrate_mooney_rivlin(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                                     const Eigen::Matrix2d &F)
 {
-  if (F.isIdentity(1e-12)) // every ratio is exact
+  if (F.isIdentity(1e-12)) // every ratio is exact at F = I
     return with_ratio(lattice, material, F, 0.);
   const double mu = small_strain(lattice, material).shear_modulus;
   const continuum::CauchyBorn exact = cauchy_born(lattice, material);
@@ -151,7 +152,7 @@ Calibration calibrate_mooney_rivlin(const lattice::TriangularLattice &lattice, c
     }
     catch (const continuum::NonPhysicalState &)
     {
-      return std::numeric_limits<double>::infinity(); // no thickness in equilibrium: not a law for this path
+      return std::numeric_limits<double>::infinity(); // no equilibrium thickness: excluded
     }
     catch (const continuum::InvalidMaterial &)
     {
@@ -159,8 +160,9 @@ Calibration calibrate_mooney_rivlin(const lattice::TriangularLattice &lattice, c
     }
   };
 
-  // A scan that brackets the minimum, then golden sections. The residual is smooth with one minimum where it is finite.
-  constexpr int scan_steps = 90; // of a hundredth, to either side
+  // A scan brackets the minimum, golden-section search refines it. The residual is smooth and has one minimum where it
+  // is finite.
+  constexpr int scan_steps = 90; // of 0.01, to either side
   constexpr double scan_step = largest_ratio / scan_steps;
   double best = 0.;
   for (int i = -scan_steps; i <= scan_steps; ++i)
@@ -169,7 +171,7 @@ Calibration calibrate_mooney_rivlin(const lattice::TriangularLattice &lattice, c
   double low = std::clamp(best - scan_step, -largest_ratio, largest_ratio),
          high = std::clamp(best + scan_step, -largest_ratio, largest_ratio);
   const double golden = (std::sqrt(5.) - 1.) / 2.;
-  // A minimum is located to the square root of round-off.
+  // A minimum can be located to the square root of the round-off.
   while (high - low > 1e-9)
   {
     const double left = high - golden * (high - low), right = low + golden * (high - low);
@@ -178,7 +180,7 @@ Calibration calibrate_mooney_rivlin(const lattice::TriangularLattice &lattice, c
     else
       low = left;
   }
-  // An end of the interval is met exactly.
+  // Return an end of the interval exactly.
   const double found = 0.5 * (low + high);
   const bool is_end = largest_ratio - std::abs(found) < 1e-8;
   return with_ratio(lattice, material, F, is_end ? std::copysign(largest_ratio, found) : found);

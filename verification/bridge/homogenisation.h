@@ -13,8 +13,8 @@
 namespace latcon::bridge
 {
 
-/// Small-strain constants of a lattice's continuum (theory-comparison.md, eqs. (H.2) and (H.3)): isotropic, lambda =
-/// mu.
+/// Small-strain constants of the continuum of a lattice (theory-comparison.md, eqs. (H.2) and (H.3)): isotropic, lambda
+/// = mu.
 struct SmallStrain
 {
   double shear_modulus;      ///< mu = (3/8) sum over shells of c psi''(1) [Pa], per reference thickness
@@ -22,44 +22,44 @@ struct SmallStrain
   double longitudinal_speed; ///< c_L = sqrt(3 mu / rho) [m/s]
 };
 
-/// Of a lattice at F = I.
+/// Returns the small-strain constants of a lattice at F = I.
 SmallStrain small_strain(const lattice::TriangularLattice &lattice, const lattice::Material &material);
 
-/// The Cauchy-Born law of a lattice: a fibre family for each of its bond directions, weights c = A0 l / V
-/// (theory-comparison.md, eq. (H.1)). Constants alone are handed over; the continuum evaluates them with its own code.
+/// Returns the Cauchy-Born law of a lattice: a fibre family for each bond direction, with weights c = A0 l / V
+/// (theory-comparison.md, eq. (H.1)). Passes constants only; the continuum evaluates the law with its own code.
 continuum::CauchyBorn cauchy_born(const lattice::TriangularLattice &lattice, const lattice::Material &material);
 
-/// The network of a lattice's bonds with all directions alike, the mean of its Cauchy-Born law over all rotations of
-/// the lattice (theory-comparison.md, eq. (H.13)). With Mooney-Rivlin bonds it is the Mooney-Rivlin law that agrees
-/// with the lattice but for its anisotropy; nothing is calibrated.
+/// Returns the isotropic network law of a lattice: mean of its Cauchy-Born law over all rotations
+/// (theory-comparison.md, eq. (H.13)). With Mooney-Rivlin bonds it is the Mooney-Rivlin law that agrees with the
+/// lattice up to anisotropy, without calibration.
 continuum::IsotropicNetwork isotropic_network(const lattice::TriangularLattice &lattice,
                                               const lattice::Material &material);
 
-/// The bonds of a lattice, for the gradient energy that its long waves have (theory-comparison.md, eq. (H.6)): families
-/// as in cauchy_born, with the undeformed length [m] of each.
+/// Returns the bond families of a lattice for the gradient energy of its long waves (theory-comparison.md, eq. (H.6)):
+/// families as in cauchy_born, each with its undeformed length [m].
 std::vector<continuum::BondFamily> bond_families(const lattice::TriangularLattice &lattice,
                                                  const lattice::Material &material);
 
-/// The dashpots of a lattice as a viscosity of its continuum, weights as in cauchy_born (theory-comparison.md, eq.
-/// (H.9)); null if no bond has one.
+/// Returns the viscous law of the dashpots of a lattice, with weights as in cauchy_born (theory-comparison.md, eq.
+/// (H.9)); null if there are no dashpots.
 std::unique_ptr<continuum::Viscosity> homogenised_viscosity(const lattice::TriangularLattice &lattice,
                                                             const lattice::Material &material);
 
 /// Lengths of the gradient continuum.
 struct GradientLengths
 {
-  double lattice;           ///< l_d of the lattice's own gradient energy, the shortest that keeps it positive [m]
+  double lattice;           ///< l_d of the lattice gradient energy, the smallest that keeps it positive [m]
   double isotropic_static;  ///< l_s of the isotropic gradient energy [m]
-  double isotropic_inertia; ///< l_d that goes with it [m]
+  double isotropic_inertia; ///< l_d of the isotropic gradient energy [m]
 };
 
-/// The isotropic pair gives the longitudinal and the shear wave their dispersion at F = I, averaged over directions:
-/// l_s^2 = Lambda/24, l_d^2 = Lambda/12 with Lambda = sum c l^2 psi''(1) / sum c psi''(1) over the bonds
-/// (theory-comparison.md, eqs. (H.7), (H.8)).
+/// Returns the lengths. The two isotropic lengths reproduce the dispersion of the longitudinal and the shear wave at F
+/// = I, averaged over directions: l_s^2 = Lambda/24, l_d^2 = Lambda/12 with Lambda = sum c l^2 psi''(1) / sum c
+/// psi''(1) over the bonds (theory-comparison.md, eqs. (H.7), (H.8)).
 GradientLengths gradient_lengths(const lattice::TriangularLattice &lattice, const lattice::Material &material);
 
-/// The plane-stress Mooney-Rivlin law of the textbooks fitted to a lattice: exact at small strain, closest in energy
-/// along a loading path.
+/// Plane-stress Mooney-Rivlin law fitted to a lattice: exact at small strain, least-squares fit of the energy along a
+/// loading path.
 struct Calibration
 {
   double ratio;                           ///< r = C2 / (C1 + C2) [-] (theory-comparison.md, eq. (H.4))
@@ -69,25 +69,25 @@ struct Calibration
   continuum::MooneyRivlin::Constants law; ///< [Pa]
 };
 
-/// End of the interval [-r, r] of ratios in which the calibration looks for the best [-]: towards -1 and 1 one of the
-/// constants that eq. (H.4) gives loses all weight beside the other.
+/// Limit r of the interval [-r, r] in which the calibration searches the ratio [-]. Towards -1 and 1 one of the
+/// constants from eq. (H.4) becomes negligible.
 inline constexpr double largest_ratio = 0.9;
 
 /// Calibrates r along F(t) = I + t (F - I), 0 < t <= 1, by least squares of the relative energy difference
-/// (theory-comparison.md, eq. (H.5)), within [-largest_ratio, largest_ratio]: the best ratio may be an end of that.
-/// Without a path, at F = I, the ratio is 0. @param F end of the loading path [-]
-/// @throws continuum::NonPhysicalState if no ratio gives a law that has a thickness all along the path
+/// (theory-comparison.md, eq. (H.5)), within [-largest_ratio, largest_ratio]; the result may be an end of this
+/// interval. At F = I, where there is no path, the ratio is 0. @param F end of the loading path [-]
+/// @throws continuum::NonPhysicalState if no ratio gives a law with an equilibrium thickness along the whole path
 Calibration calibrate_mooney_rivlin(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                                     const Eigen::Matrix2d &F);
 
-/// The same for a ratio r that is given, its residuals along the same path.
-/// @throws continuum::NonPhysicalState if the law breaks down on the path
+/// Returns the law with the given ratio r, and its residuals along the same path.
+/// @throws continuum::NonPhysicalState if the law has no equilibrium thickness somewhere on the path
 Calibration with_ratio(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                        const Eigen::Matrix2d &F, double ratio);
 
-/// The same deformation gradient or vector in the other library's type.
+/// Converts a deformation gradient to the type of the continuum.
 dealii::Tensor<2, 2> to_continuum(const Eigen::Matrix2d &F);
-/// Likewise, the other way.
+/// Converts a tensor to the type of the lattice.
 Eigen::Matrix2d to_lattice(const dealii::Tensor<2, 2> &F);
 
 } // namespace latcon::bridge

@@ -14,21 +14,21 @@ void check_edge(const input::EdgeCase &edge, input::Parameters &p, const std::st
 {
   if (edge.condition == Condition::held && (edge.displacement_x != "loading" || edge.displacement_y != "loading"))
     p.error(edge.name + (edge.displacement_x != "loading" ? "/displacement x" : "/displacement y"),
-            command + " holds an edge at the homogeneous loading or not at all; give displacement = loading for both "
+            command + " supports held edges only at the homogeneous loading; give displacement = loading for both "
                       "components, or condition = free",
             {edge.name + "/condition"});
   if (!edge.traction.is_zero())
-    p.error(edge.name + "/traction " + edge.traction.given(), command + " has no tractions; give 0");
+    p.error(edge.name + "/traction " + edge.traction.given(), command + " does not support tractions; give 0");
   if (!edge.double_traction.is_zero())
     p.error(edge.name + "/double traction " + edge.double_traction.given(),
-            command + " has no double tractions; give 0");
-  // Sites held at the loading in a layer have its normal gradient, whatever the edge of a gradient continuum is told.
+            command + " does not support double tractions; give 0");
+  // A layer of held sites at the loading has its normal gradient, for any condition of a gradient continuum.
   if (edge.normal_gradient == input::EdgeCase::NormalGradient::clamped)
-    p.error(edge.name + "/normal gradient", command + " cannot clamp it; give free or loading");
+    p.error(edge.name + "/normal gradient", command + " does not support clamped edges; give free or loading");
 }
 
-// A pair of periodic edges moves as a whole in a motion, which starts at the loading; in equilibrium the finite
-// elements keep its period as it is undeformed.
+// A motion starts at the loading, with the deformed period. In equilibrium the finite elements keep the undeformed
+// period.
 void check_period(const input::Case &input, input::Parameters &p, const std::string &command)
 {
   if (input.solution != input::Case::Solution::relaxed)
@@ -52,10 +52,10 @@ void require_lattice_sheet(const input::Case &input, input::Parameters &p, const
   if (input.has_inner_edge() && c.edges[4].condition == Condition::held)
     p.error("Inner edge/condition", command + " leaves the rim of a hole or notch free; give free");
   if (!c.mesh_file.empty())
-    p.error("Continuum/mesh file", command + " has no use for a mesh; the lattice fills a rectangle");
+    p.error("Continuum/mesh file", command + " does not support a mesh file; the lattice fills a rectangle");
   if (!c.body_force.is_zero())
     p.error(c.body_force.x != "0" ? "Body force/force x" : "Body force/force y",
-            command + " has no body force; give 0");
+            command + " does not support body forces; give 0");
   if (input.has_sheet())
     check_period(input, p, command);
   if (input.solution == input::Case::Solution::relaxed)
@@ -64,7 +64,7 @@ void require_lattice_sheet(const input::Case &input, input::Parameters &p, const
     for (std::size_t id = 0; id < 4; ++id)
       held = held || c.edges[id].condition == Condition::held;
     if (!held)
-      p.error("Left edge/condition", command + " needs an edge that is held, for the sheet to relax against",
+      p.error("Left edge/condition", command + " needs a held edge for equilibrium",
               {"Right edge/condition", "Bottom edge/condition", "Top edge/condition"});
     return;
   }
@@ -73,18 +73,19 @@ void require_lattice_sheet(const input::Case &input, input::Parameters &p, const
   for (const auto &[field, name] : {std::pair(&c.initial_displacement, std::string("Initial state/displacement")),
                                     std::pair(&c.initial_velocity, std::string("Initial state/velocity"))})
     if (!field->is_zero())
-      p.error(name + (field->x != "0" ? " x" : " y"), command + " starts a motion at rest, but for the noise; give 0");
+      p.error(name + (field->x != "0" ? " x" : " y"), command + " starts a motion at rest, apart from noise; give 0");
 }
 
 void require_whole_held_sheet(const input::Case &input, input::Parameters &p, const std::string &command)
 {
   if (input.hole_radius > 0.)
-    p.error("Sheet/hole radius", command + " has no use for a hole; give 0");
+    p.error("Sheet/hole radius", command + " does not support holes; give 0");
   if (input.notch_length > 0.)
-    p.error("Sheet/notch length", command + " has no use for a notch; give 0");
+    p.error("Sheet/notch length", command + " does not support notches; give 0");
   for (std::size_t id = 0; id < 4; ++id)
     if (input.continuum.edges[id].condition != Condition::held)
-      p.error(input.continuum.edges[id].name + "/condition", command + " holds every edge of the sheet; give held");
+      p.error(input.continuum.edges[id].name + "/condition",
+              command + " needs every edge of the sheet held; give held");
   for (const input::EdgeCase &edge : input.continuum.edges)
     check_edge(edge, p, command);
 }
@@ -99,8 +100,8 @@ void require_fracture_case(const input::Case &input, input::Parameters &p)
   const bool absorbs = input.left_end == input::Case::End::absorbing || input.right_end == input::Case::End::absorbing;
   if (p.good() && absorbs && !lattice::waves_run_along_x(input.lattice(), input.material(), input.deformation()))
     p.error(input.left_end == input::Case::End::absorbing ? "Fracture/left end" : "Fracture/right end",
-            "no waves run along x in the sheet as it is loaded, which buckles there, so that an end cannot absorb "
-            "them; give held or free",
+            "the loaded sheet buckles, so no waves propagate along x that an end could "
+            "absorb; give held or free",
             {"Loading/strain x", "Loading/strain y"});
 }
 

@@ -7,33 +7,33 @@
 namespace latcon::bridge
 {
 
-/// Laws of the continuum that claims set beside a lattice.
+/// Continuum laws that claims compare with a lattice.
 enum class Law
 {
-  cauchy_born,           ///< the lattice's own, local
-  lattice_gradient,      ///< the same with the gradient energy of the lattice's long waves
-  isotropic_gradient,    ///< the same with the isotropic gradient energy
-  mooney_rivlin_network, ///< local, the lattice's mean over all directions
-  mooney_rivlin          ///< local, of plane stress, calibrated along the loading path
+  cauchy_born,           ///< Cauchy-Born law of the lattice, local
+  lattice_gradient,      ///< Cauchy-Born law with the gradient energy of the long waves of the lattice
+  isotropic_gradient,    ///< Cauchy-Born law with the isotropic gradient energy
+  mooney_rivlin_network, ///< mean of the Cauchy-Born law over all directions, local
+  mooney_rivlin          ///< plane-stress law, local, calibrated along the loading path
 };
 
-/// Laws on which a run relies. Claims judge what they find about these, and report what they find about others.
+/// Laws on which a run relies. Claims judge results for these laws, and only report results for other laws.
 using Laws = std::set<Law>;
 
-/// Every law.
+/// Returns all laws.
 inline Laws all_laws()
 {
   return {Law::cauchy_born, Law::lattice_gradient, Law::isotropic_gradient, Law::mooney_rivlin_network,
           Law::mooney_rivlin};
 }
 
-/// Laws of a run on the lattice alone: the continuum that its bonds make, and no law that was fitted to it.
+/// Returns the laws for a run of the lattice alone: those derived from its bonds, without fitted laws.
 inline Laws laws_of_lattice()
 {
   return {Law::cauchy_born, Law::lattice_gradient};
 }
 
-/// Laws of the runs of a case: those of its lattice, and those that its finite elements ask for.
+/// Returns the laws for the runs of a case: those of its lattice, and those of its finite elements.
 inline Laws laws_of(const input::Case &input)
 {
   Laws laws = laws_of_lattice();

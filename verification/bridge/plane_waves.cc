@@ -18,7 +18,7 @@ namespace
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
-// Without dashpots the problem is symmetric, and its eigenvectors orthogonal to round-off.
+// Waves without dashpots: the problem is symmetric, so its eigenvectors are orthogonal to round-off.
 std::array<PlaneWave, 2> undamped(const Eigen::Matrix2d &stiffness)
 {
   const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(stiffness);
@@ -30,13 +30,14 @@ std::array<PlaneWave, 2> undamped(const Eigen::Matrix2d &stiffness)
 
 std::array<PlaneWave, 2> damped(const WaveMatrices &matrices)
 {
-  // (u, u'/s)' = s B (u, u'/s) with a rate s that makes the entries comparable.
+  // (u, u'/s)' = s B (u, u'/s) with a rate s that scales the entries to similar size.
   const double rate = std::sqrt(matrices.stiffness.norm());
   Eigen::Matrix4d B;
   B << Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Identity(), -matrices.stiffness / (rate * rate),
     -matrices.damping / rate;
   const Eigen::EigenSolver<Eigen::Matrix4d> solver(B);
-  // Of each conjugate pair the one that turns forward; of two real ones, which an overdamped wave has, the slower.
+  // Select from each conjugate pair the eigenvalue with positive frequency, and from two real ones (an overdamped wave)
+  // the slower.
   std::array<int, 4> order{0, 1, 2, 3};
   std::sort(order.begin(), order.end(),
             [&](int a, int b)
@@ -48,7 +49,7 @@ std::array<PlaneWave, 2> damped(const WaveMatrices &matrices)
   {
     const std::complex<double> value = rate * solver.eigenvalues()[i];
     const Eigen::Vector2cd vector = solver.eigenvectors().col(i).head<2>();
-    // Real up to a phase where damping and stiffness share their axes, nearly so elsewhere.
+    // Real up to a phase if damping and stiffness have the same axes, nearly so otherwise.
     const std::complex<double> largest = std::abs(vector[0]) > std::abs(vector[1]) ? vector[0] : vector[1];
     return PlaneWave{support::one_sided(value.imag()), -value.real(),
                      Eigen::Vector2d((vector / largest).real()).normalized()};
@@ -60,7 +61,7 @@ std::array<PlaneWave, 2> damped(const WaveMatrices &matrices)
 
 std::array<PlaneWave, 2> plane_waves(const WaveMatrices &matrices, const Eigen::Vector2d &normal)
 {
-  // The solvers may return anything for what is not finite.
+  // The eigenvalue solvers do not handle values that are not finite.
   if (!matrices.stiffness.allFinite() || !matrices.damping.allFinite())
     return {PlaneWave{not_a_number, not_a_number, {not_a_number, not_a_number}},
             PlaneWave{not_a_number, not_a_number, {not_a_number, not_a_number}}};
@@ -74,7 +75,7 @@ double fastest_frequency(const std::array<PlaneWave, 2> &waves)
 {
   for (const PlaneWave &wave : waves)
     if (!std::isfinite(wave.frequency) || !(wave.frequency > 0.))
-      throw std::runtime_error("a wave does not oscillate: it is overdamped, or the sheet is not stable");
+      throw std::runtime_error("a wave does not oscillate: it is overdamped, or the sheet is unstable");
   return support::largest_of({waves[0].frequency, waves[1].frequency});
 }
 

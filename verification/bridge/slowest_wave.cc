@@ -13,13 +13,13 @@ namespace latcon::bridge
 SlowestWave slowest_wave(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                          const Eigen::Matrix2d &F)
 {
-  // The corners of the hexagonal zone are at kd = 4 pi / 3; no reciprocal vector, where w = 0 again, is as short.
+  // The corners of the hexagonal zone are at kd = 4 pi / 3; all reciprocal vectors, where w = 0 again, are longer.
   constexpr double shortest = 0.01, largest = 4. * M_PI / 3.;
   constexpr int n_angles = 120, n_lengths = 60;
   SlowestWave slowest{std::numeric_limits<double>::infinity(), Eigen::Vector2d::Zero()};
   for (int i = 0; i < n_angles; ++i)
   {
-    const double angle = M_PI * i / n_angles; // K and -K are one wave
+    const double angle = M_PI * i / n_angles; // K and -K are the same wave
     const Eigen::Vector2d N(std::cos(angle), std::sin(angle));
     for (int j = 0; j <= n_lengths; ++j)
     {

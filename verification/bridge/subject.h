@@ -19,14 +19,14 @@
 namespace latcon::bridge
 {
 
-/// What rows call a lattice with one shell or two: "NN" or "NN+NNN".
+/// Returns the name of the shells of a lattice in results: "NN" or "NN+NNN".
 inline std::string shells_name(const lattice::Material &material)
 {
   return material.next_nearest ? "NN+NNN" : "NN";
 }
 
-/// What a claim is about: a lattice on one side, the laws meant to agree with it on the other. The claims compare the
-/// two and take nothing for granted about how they came together, so a test can put a wrong law beside a right lattice.
+/// Subject of claims: a lattice and the continuum laws that should agree with it. Claims compare the two without
+/// assumptions on how they were derived, so a test can combine a wrong law with a correct lattice.
 struct Subject
 {
   std::string name; ///< in results: "NN+NNN" or "NN"
@@ -38,26 +38,27 @@ struct Subject
   SlowestWave slowest_wave; ///< about the loaded sheet
   continuum::CauchyBorn cauchy_born;
   continuum::IsotropicNetwork network;      ///< mean of cauchy_born over all rotations of the lattice
-  std::optional<Calibration> mooney_rivlin; ///< none if no such law has a thickness all along the loading path
-  bool ratio_is_calibrated;                 ///< the Mooney-Rivlin ratio was fitted, not given
+  std::optional<Calibration> mooney_rivlin; ///< none if no such law has an equilibrium thickness along the loading path
+  bool ratio_is_calibrated;                 ///< true if the Mooney-Rivlin ratio was fitted, false if given
   GradientLengths lengths;
   std::shared_ptr<const continuum::GradientLaw> lattice_gradient;   ///< with lengths.lattice
   std::shared_ptr<const continuum::GradientLaw> isotropic_gradient; ///< with lengths.isotropic_static
   std::shared_ptr<const continuum::GradientLaw> network_gradient;   ///< mean of lattice_gradient over all rotations
-  Laws laws; ///< those that are judged; what is found about others is reported
+  Laws laws; ///< laws to judge; results for other laws are only reported
 
-  /// Whether the loaded lattice stays homogeneous. If not there are no waves about it, and no sheet to compare.
+  /// Returns true if the homogeneous loaded lattice is stable. Otherwise it has no waves, and there is no sheet to
+  /// compare.
   bool is_stable() const { return slowest_wave.squared_speed > 0.; }
 
-  /// The tolerance of a row about a law: none, so that the row is reported, if the law is not to be judged.
+  /// Returns the tolerance of a row about a law; none, which makes the row informational, if the law is not judged.
   std::optional<double> tolerance(Law law, double value) const
   {
     return laws.count(law) > 0 ? std::optional(value) : std::nullopt;
   }
 
-  /// The tolerance of a row by which the gradient continuum has the lattice's next order in kd about F: none, so that
-  /// the row is reported, where the gradient energy is not that of the bonds as they stand. It leaves out what bonds
-  /// that push would take from it, and so stays positive (theory-continuum.md, eq. (C.27)).
+  /// Returns the tolerance of a row that compares the next order in kd of the gradient continuum and the lattice at F.
+  /// None, which makes the row informational, where bonds are below full_stretch: there the gradient energy omits the
+  /// negative contribution of bonds in compression, to remain positive (theory-continuum.md, eq. (C.27)).
   std::optional<double> gradient_tolerance(const Eigen::Matrix2d &F, double value) const
   {
     for (const continuum::FibreFamily &family : cauchy_born.families())
@@ -69,7 +70,7 @@ struct Subject
     return tolerance(Law::lattice_gradient, value);
   }
 
-  /// The same of the network, which has fibres in every direction.
+  /// Returns the tolerance as gradient_tolerance() for the network, which has fibres in every direction.
   std::optional<double> network_gradient_tolerance(const Eigen::Matrix2d &F, double value) const
   {
     if (!F.isIdentity(1e-12) && F.jacobiSvd().singularValues()(1) < continuum::LatticeGradient::full_stretch)
@@ -78,7 +79,7 @@ struct Subject
   }
 };
 
-/// The subject of a case; `material` may differ from the case's own.
+/// Creates the subject of a case with another `material`.
 inline Subject subject(const input::Case &input, const lattice::Material &material, const Laws &laws = all_laws())
 {
   const lattice::TriangularLattice sheet = input.lattice();
@@ -91,7 +92,7 @@ inline Subject subject(const input::Case &input, const lattice::Material &materi
   }
   catch (const continuum::NonPhysicalState &)
   {
-    // Claims say so.
+    // Claims report that there is no such law.
   }
   const SmallStrain theory = small_strain(sheet, material);
   const GradientLengths lengths = gradient_lengths(sheet, material);
@@ -113,7 +114,7 @@ inline Subject subject(const input::Case &input, const lattice::Material &materi
           laws};
 }
 
-/// The subject of a case as it stands, all laws judged.
+/// Creates the subject of a case with its own material; all laws are judged.
 inline Subject subject(const input::Case &input)
 {
   return subject(input, input.material());

@@ -23,30 +23,31 @@ namespace latcon::resources
 namespace
 {
 
-// Bytes a place in State, Forces and the integrator, and those that RungeKuttaChebyshev has more of.
+// Bytes per slot in State, Forces and the integrator, and additional bytes of RungeKuttaChebyshev.
 constexpr double bytes_of_place = 180., bytes_of_chebyshev_place = 48.;
-// Bytes a site, and a bond, while a frame is collected and written; a site in the image of a checkpoint.
+// Bytes per site and per bond while a frame is gathered and written, and per site in the image of a checkpoint.
 constexpr double bytes_of_site_in_frame = 640., bytes_of_bond_in_frame = 50., bytes_of_site_in_checkpoint = 150.;
-// A site in the window around the tip, in the sums over all samples and over those that are not folded yet.
+// Bytes per site in the window around the tip, in the sums over all samples and over samples not yet folded.
 constexpr double bytes_of_site_near_tip = 2700.;
-// The claims in their small versions, whatever the case.
+// Memory of the small versions of the claims, for any case.
 constexpr double bytes_of_claims = 7e7;
 
-// On one core of 3 to 4 GHz [s].
+// Measured on one core of 3 to 4 GHz.
 constexpr double nanoseconds_per_site_evaluation = 15.;
 constexpr double seconds_of_start = 0.5, seconds_of_site_in_frame = 9e-6, seconds_of_unknown_in_frame = 6e-6;
-// Of FIRE, from noise to round-off; and as long waves have to cross the sheet.
+// Force evaluations of FIRE from noise to round-off, and per column, because long waves have to cross the sheet.
 constexpr double evaluations_relaxed = 7000., evaluations_relaxed_per_column = 30.;
-// Contact, the tip, samples near it and energies, over the time of the kernel.
+// Cost of contact, tip search, near-tip samples and energies, relative to the kernel.
 constexpr double beside_kernel = 1.2;
 
 // Unknowns are numbered by signed integers of 32 bits in Trilinos.
-constexpr double most_unknowns = 2147483647.;
-// Steps beyond these do not change a time of double precision.
-constexpr double most_steps = 1e15;
+constexpr double max_unknowns = 2147483647.;
+// With more steps, a step does not change a time in double precision.
+constexpr double max_steps = 1e15;
 
-// Entries in a row of the tangent, averaged over the nodes of a mesh of squares: a node in a cell meets those of the
-// cell, one on an edge those of two, one in a corner those of four; with face terms, those of the cells beside as well.
+// Returns the number of entries per row of the tangent, averaged over the nodes of a mesh of squares: a node couples to
+// all nodes of its cells, which are one, two or four for a node inside a cell, on an edge or at a corner; with face
+// terms also to those of the neighbouring cells.
 double entries_per_row(const unsigned int degree, const bool has_face_terms)
 {
   const double p = degree;
@@ -84,7 +85,7 @@ bool is_first_rank()
   return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
 }
 
-// What this machine's ranks hold now, and what they will need besides.
+// Current and additional memory of the ranks on this machine.
 struct OnMachine
 {
   double held, needed;
@@ -102,7 +103,7 @@ OnMachine on_machine(const MemoryNeed &need)
   return {sums[0], sums[1]};
 }
 
-// A piece of the sheet of a case that takes no time to make, and as many threads as the sheet.
+// Returns the case of a small piece of the sheet, cheap to set up, with the same number of threads.
 input::Case small_piece(const input::Case &input)
 {
   constexpr double rows = 120., sites = 28000.;
@@ -114,7 +115,7 @@ input::Case small_piece(const input::Case &input)
   return piece;
 }
 
-// Time of a step over the number of sites [s].
+// Measures the time of a step per site [s].
 double measured_seconds_per_site_step(const input::Case &input, const lattice::TimeStepping &stepping,
                                       const bool breaks)
 {
@@ -156,7 +157,7 @@ MemoryNeed lattice_memory(const input::Case &input, const RunKind run, const boo
   const double checkpoint = run != RunKind::equilibrium ? sites * bytes_of_site_in_checkpoint : 0.;
   const double fields = places * (bytes_of_place + (is_chebyshev ? bytes_of_chebyshev_place : 0.));
   MemoryNeed need;
-  // Equilibrium is a matter of the first rank.
+  // Equilibrium is computed on the root rank only.
   (run == RunKind::equilibrium ? need.first_rank : need.shared) = fields;
   need.first_rank += std::max(frame, checkpoint);
   if (run == RunKind::fracture && output::near_tip_interval(input) > 0.)
@@ -188,28 +189,28 @@ ContinuumSize continuum_size(const input::Case &input)
          halvings += 1.)
       coarse_cells /= 4.;
   }
-  // Of as many squares, edges included.
+  // Unknowns of a square mesh with this number of cells.
   const auto unknowns = [p](double cells) { return 2. * (p * p * cells + 2. * p * std::sqrt(cells) + 1.); };
   ContinuumSize size;
   size.cells = coarse_cells * std::pow(4., halvings);
   size.unknowns = unknowns(size.cells);
-  // Three further cells for each that is refined.
+  // Each refined cell adds three cells.
   const double final_cells = size.cells * std::pow(1. + 3. * c.refined_fraction, c.adaptive_cycles);
   size.final_unknowns = unknowns(final_cells);
   size.coarse_unknowns = size.final_unknowns;
   if (!is_direct(input, size.final_unknowns))
   {
-    constexpr double coarsest_size = 2000.; // of continuum::MultigridSettings
+    constexpr double coarsest_size = 2000.; // as in continuum::MultigridSettings
     double coarse = coarse_cells;
     while (4. * coarse <= size.cells && unknowns(4. * coarse) <= coarsest_size)
       coarse *= 4.;
     size.coarse_unknowns = unknowns(coarse);
   }
-  if (size.final_unknowns > most_unknowns)
+  if (size.final_unknowns > max_unknowns)
   {
     std::ostringstream text;
     text << "the finite element mesh would have about " << size.final_unknowns
-         << " unknowns, and no more than 2147483647 can be numbered; give fewer cells, refinements or adaptive cycles";
+         << " unknowns, more than the limit of 2147483647; give fewer cells, refinements or adaptive cycles";
     throw support::InputError(text.str());
   }
   return size;
@@ -220,8 +221,8 @@ MemoryNeed continuum_memory(const input::Case &input, const ContinuumSize &size)
   const input::ContinuumCase &c = input.continuum;
   const bool has_face_terms = c.gradient != input::ContinuumGradient::none;
   const double entries = entries_per_row(c.degree, has_face_terms);
-  // Bytes that the peak of runs of one rank grows by: cells and points with all that is kept of them, entries of
-  // matrices and of what is set up from them, of factors.
+  // Measured growth of the peak memory of runs on one rank, in bytes per unknown, per matrix entry and per entry of the
+  // factors.
   const double of_unknown = 700. + 1000. / (c.degree * c.degree);
   const double of_entry = (is_direct(input, size.final_unknowns) ? 0. : 30.) +
                           (c.solution == input::ContinuumCase::Solution::motion ? 30. : 0.);
@@ -235,7 +236,7 @@ void require_memory(const MemoryNeed &need)
 {
   const OnMachine machine = on_machine(need);
   const double available = support::available_memory();
-  // All ranks say the same, that of the machine that is worst off.
+  // All ranks report the same numbers, those of the machine with the largest deficit.
   const int rank = static_cast<int>(dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD));
   struct
   {
@@ -249,10 +250,10 @@ void require_memory(const MemoryNeed &need)
     return;
   std::ostringstream text;
   text.precision(0);
-  text << std::fixed << "refused for want of memory: the run would take about " << numbers[0] << " bytes ("
-       << support::readable_bytes(numbers[0]) << ") more than latcon has now, and this machine has " << numbers[1]
-       << " bytes (" << support::readable_bytes(numbers[1])
-       << ") available; make the sheet smaller or coarser, or share it among more machines";
+  text << std::fixed << "not enough memory: the run would take about " << numbers[0] << " bytes ("
+       << support::readable_bytes(numbers[0]) << ") in addition to the current memory of latcon, and this machine has "
+       << numbers[1] << " bytes (" << support::readable_bytes(numbers[1])
+       << ") available; use a smaller or coarser sheet, or more machines";
   throw support::InputError(text.str());
 }
 
@@ -262,15 +263,15 @@ std::string memory_text(const MemoryNeed &need)
   std::ostringstream text;
   text.precision(0);
   text << std::fixed << "# memory: about " << machine.held + machine.needed << " bytes ("
-       << support::readable_bytes(machine.held + machine.needed) << ") at the peak, of which latcon itself "
-       << machine.held << " bytes; available are " << support::available_memory() << " bytes\n";
+       << support::readable_bytes(machine.held + machine.needed) << ") at the peak, of which the program itself takes "
+       << machine.held << " bytes; available: " << support::available_memory() << " bytes\n";
   return text.str();
 }
 
 double lattice_seconds(const input::Case &input, const lattice::TimeStepping &stepping, const RunKind run,
                        const double steps, const double frames)
 {
-  // One part of a step is measured: a whole one may take longer than anybody waits for an estimate.
+  // Time one substep, because a whole step may take too long for an estimate.
   const double parts = parts_of_first_step(input, stepping, run);
   lattice::TimeStepping part = stepping;
   part.step /= parts;
@@ -322,7 +323,8 @@ double continuum_seconds(const input::Case &input, const ContinuumSize &size, co
   const input::ContinuumCase &c = input.continuum;
   const double entries = entries_per_row(c.degree, c.gradient != input::ContinuumGradient::none);
   constexpr double seconds_of_unknown = 8e-6, seconds_of_entry = 2e-7; // in a Newton iteration
-  // Newton iterations of the loading, of an adaptive cycle, of a time step. A homogeneous sheet starts as it ends.
+  // Newton iterations of the loading, of an adaptive cycle, and of a time step. For a homogeneous sheet the predictor
+  // is exact.
   const double of_loading = is_homogeneous(input) ? 2. : 8.;
   constexpr double of_cycle = 4., of_step = 2.;
   double work = c.solution == input::ContinuumCase::Solution::motion ? of_step * steps * size.unknowns : 0.;
@@ -348,11 +350,11 @@ double core_seconds(const double site_evaluations)
 
 void check_steps(const input::Case &input, const double step, input::Parameters &parameters)
 {
-  if (input.end_time / step <= most_steps)
+  if (input.end_time / step <= max_steps)
     return;
   std::ostringstream text;
-  text << "it is " << input.end_time / step << " time steps of " << step << " s away, more than the " << most_steps
-       << " that can be counted";
+  text << "the run would take " << input.end_time / step << " time steps of " << step << " s, more than the limit of "
+       << max_steps;
   parameters.error("Time/end", text.str());
 }
 

@@ -1,5 +1,5 @@
-/// Memory and time that a run will take, estimated before it starts: one estimate for what --dry-run prints and for
-/// what is refused.
+/// Estimates of the memory and the time of a run before it starts, for the output of --dry-run and for the memory
+/// check.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 namespace latcon::resources
 {
 
-/// What is computed with a lattice.
+/// Kind of run of a lattice.
 enum class RunKind
 {
   equilibrium, ///< `latcon lattice`, equilibrium
@@ -18,68 +18,73 @@ enum class RunKind
   fracture     ///< `latcon fracture`
 };
 
-/// Memory of a run, beyond what its processes hold before it starts [bytes].
+/// Memory that a run needs in addition to the current memory of its processes [bytes].
 struct MemoryNeed
 {
   double shared = 0.;     ///< divided among all ranks
-  double first_rank = 0.; ///< of the first rank besides
+  double first_rank = 0.; ///< additional memory on the root rank
 };
 
-/// Of a lattice: fields of all places, and a frame of all sites, or the image of a checkpoint, on the first rank.
-/// @param claims whether the claims are checked before the crack
+/// Estimates the memory of a lattice run: fields of all slots and, on the root rank, a frame of all sites or the image
+/// of a checkpoint.
+/// @param claims true if the claims are checked before the crack
 [[nodiscard]] MemoryNeed lattice_memory(const input::Case &input, RunKind run, bool claims = false);
 
-/// A finite element problem, as far as its cost depends on it.
+/// Size of a finite element problem.
 struct ContinuumSize
 {
   double cells = 0.;           ///< at the start
-  double coarse_unknowns = 0.; ///< of the mesh that multigrid solves directly; all, if there is no multigrid
+  double coarse_unknowns = 0.; ///< of the coarsest mesh, which is solved directly; all unknowns without multigrid
   double unknowns = 0.;        ///< at the start
   double final_unknowns = 0.;  ///< after the adaptive cycles
 };
 
-/// Sizes of the finite element problem of a case, before there is a mesh: a mesh may be larger than the memory.
-/// @throws InputError for more unknowns than can be numbered; continuum::InvalidInput if a mesh file cannot be read
+/// Computes the size of the finite element problem of a case without generating its mesh, which may not fit into
+/// memory.
+/// @throws InputError if the number of unknowns exceeds the range of their indices; continuum::InvalidInput if a mesh
+/// file cannot be read
 [[nodiscard]] ContinuumSize continuum_size(const input::Case &input);
 
-/// Of a finite element sheet of that size.
+/// Estimates the memory of a finite element run of that size.
 [[nodiscard]] MemoryNeed continuum_memory(const input::Case &input, const ContinuumSize &size);
 
-/// Refuses a run that this machine has no memory for. Ranks that share a machine add up. Collective: all ranks throw,
-/// or none.
-/// @throws InputError with what is needed and what there is
+/// Checks that the machine has enough memory for a run, summed over the ranks on the machine. Collective: all ranks
+/// throw, or none.
+/// @throws InputError with the needed and the available memory
 void require_memory(const MemoryNeed &need);
 
-/// "# memory: ..." for a dry run: peak of all ranks on the first rank's machine, libraries included. Collective.
+/// Returns the line "# memory: ..." of a dry run: peak memory of all ranks on the machine of the root rank, libraries
+/// included. Collective.
 [[nodiscard]] std::string memory_text(const MemoryNeed &need);
 
-/// Time that a run of the lattice will take [s], here and now: the kernel is run on a small sheet of the same case for
-/// some tenths of a second. Collective.
+/// Estimates the wall time of a lattice run [s] on this machine by timing the kernel on a small sheet of the same case
+/// for a fraction of a second. Collective.
 /// @param steps expected number of time steps
 /// @param frames number of frames written
 [[nodiscard]] double lattice_seconds(const input::Case &input, const lattice::TimeStepping &stepping, RunKind run,
                                      double steps, double frames);
 
-/// The claims in their small versions, and the pictures and the page of a crack, on one core [s].
-inline constexpr double seconds_of_claims = 8., seconds_of_report = 9.; ///< see above
+/// Wall time of the small versions of the claims, and of the pictures and the page of a crack, on one core [s].
+inline constexpr double seconds_of_claims = 8., seconds_of_report = 9.; ///< for the pictures and the page
 
-/// Steps that a crack as fast as the shear waves of the unloaded sheet takes to the stop position, at most all.
+/// Returns the number of steps in which a crack at the shear wave speed of the unloaded sheet reaches the stop
+/// position, at most all steps of the run.
 [[nodiscard]] double expected_steps(const input::Case &input, const lattice::TimeStepping &stepping);
 
-/// Parts into which the first step is divided because bonds of the loaded sheet are short (theory.md, eq. (L.24)); 1:
-/// none.
+/// Returns the number of substeps of the first step that short bonds of the loaded sheet require (theory.md, eq.
+/// (L.24)); 1 if it is not divided.
 [[nodiscard]] double parts_of_first_step(const input::Case &input, const lattice::TimeStepping &stepping, RunKind run);
 
-/// Time that a finite element run takes [s], from costs per unknown and iteration that were measured on one core.
-/// @param steps of a motion; 0 for an equilibrium
+/// Estimates the wall time of a finite element run [s] from measured costs per unknown and iteration on one core.
+/// @param steps number of time steps; 0 for an equilibrium
 /// @param frames number of frames written
 [[nodiscard]] double continuum_seconds(const input::Case &input, const ContinuumSize &size, double steps,
                                        double frames);
 
-/// Time that so many evaluations of the forces on a site take on one core, time stepping included, estimated [s].
+/// Estimates the time [s] on one core of a number of force evaluations on a site, time stepping included.
 [[nodiscard]] double core_seconds(double site_evaluations);
 
-/// Reports `Time/end` if a motion would have more steps than can be counted. @param step [s], > 0
+/// Reports `Time/end` to `parameters` if the number of steps exceeds the range of the counter. @param step [s], > 0
 void check_steps(const input::Case &input, double step, input::Parameters &parameters);
 
 } // namespace latcon::resources
