@@ -205,7 +205,7 @@ void NearTipRecord::step()
   if (!simulation_.tip())
     return;
   const std::size_t tip = *simulation_.tip();
-  if (sampler_.looks_at(tip))
+  if (sampler_.samples_at(tip))
     simulation_.gather(sampler_.rows_around(tip));
   if (!simulation_.band().is_first())
     return;

@@ -243,7 +243,7 @@ TEST(CrackMeasurement, GrowingPartIsLeftOut)
     // part.
     EXPECT_NEAR(m.wavelength->value, wavelength, 6. * 0.14e-3);
     sum += m.amplitude->value / n;
-    options.settled_amplitude = 0.01;
+    options.steady_amplitude = 0.01;
     sum_of_whole += measure_crack(tip, {}, options).sinusoid->amplitude.value / n;
   }
   // What is left of the growth, between 27 and 100 % over a fifth of the window, takes off a few per cent. With the

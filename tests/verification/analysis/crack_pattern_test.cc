@@ -426,7 +426,7 @@ TEST(CrackMeasurement, RefusesBadOptions)
   refuses([&](auto &o) { o.max_straight_rms = 0.; }, "straying");
   refuses([&](auto &o) { o.min_share = 1.; }, "share");
   refuses([&](auto &o) { o.clear_log_evidence = 1.; }, "evidence");
-  refuses([&](auto &o) { o.settled_amplitude = 0.; }, "settled");
+  refuses([&](auto &o) { o.steady_amplitude = 0.; }, "settled");
   refuses([&](auto &o) { o.arrest_fraction = 0.; }, "arrest");
   refuses([&](auto &o) { o.min_branched_fraction = 1.5; }, "branched fraction");
   refuses([&](auto &o) { o.branch_rule.gap = 0.; }, "gap");
