@@ -331,7 +331,7 @@ std::optional<double> wedge_angle(const std::vector<Eigen::Vector2d> &sites, con
 {
   const double strips_between = (to - from) / pitch.x();
   if (!(pitch.x() > 0. && pitch.y() > 0. && strips_between >= 0. && strips_between < 1e9))
-    throw std::invalid_argument("wedge_angle: needs a positive pitch and 0 <= from <= to");
+    throw std::invalid_argument("wedge_angle: needs a positive pitch and from <= to");
   const auto n_strips = static_cast<std::size_t>(strips_between);
   std::vector<std::vector<Eigen::Vector2d>> strips(n_strips);
   for (const Eigen::Vector2d &site : sites)

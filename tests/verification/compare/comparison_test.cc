@@ -176,7 +176,7 @@ TEST_F(Comparing, RefusesStressInOtherUnits)
   write_lattice(folder_ / "a.vtp", state);
   state.scale_of_stress = 1.02e-6;
   write_continuum(folder_ / "a.vtu", state);
-  refused({"first_piola_stress", "not in the same units", "Pa"});
+  refused({"first_piola_stress", "different units", "Pa"});
 }
 
 TEST_F(Comparing, RefusesAHoleInOneOfThem)
@@ -202,7 +202,7 @@ TEST_F(Comparing, RefusesAHoleInOneOfThem)
       }
       return X;
     });
-  refused({"not the same sheet", "the continuum has nothing at the site"});
+  refused({"not the same sheet", "the continuum has no cell at the site"});
 }
 
 TEST_F(Comparing, RefusesOtherTimes)
@@ -219,7 +219,7 @@ TEST_F(Comparing, RefusesOtherTimes)
   write_continuum(folder_ / "a.vtu", state);
   run();
   EXPECT_EQ(row(run(), "velocity, rms difference").lattice, 2.);
-  refused([&] { lattice(3e-4); }, {"is at the time 2e-04, not at 3e-04"});
+  refused([&] { lattice(3e-4); }, {"has the time 2e-04, not 3e-04"});
 }
 
 TEST_F(Comparing, RefusesMotionAgainstEquilibrium)
@@ -278,7 +278,7 @@ TEST_F(Comparing, RefusesDamagedFiles)
     {
       std::ofstream(folder_ / name, std::ios::binary) << content.substr(0, kept);
       refused([&, s = side] { s == Side::lattice ? void(lattice()) : void(continuum()); },
-              {name, kept > 60 ? "damaged: " : "not a VTK file"});
+              {name, kept > 60 ? "corrupt: " : "not a VTK file"});
     }
   }
 }
@@ -303,13 +303,13 @@ TEST_F(Comparing, ChoosesTheFrameOfASeries)
   const auto find = [&](const std::string &name, Side side, std::optional<double> time)
   { return [=] { find_frame(folder_ / name, side, time); }; };
   refused(find("lattice.pvd", Side::lattice, 0.7), {"no frame at 0.7", "0, 0.5, 1"});
-  refused(find("lattice.pvd", Side::lattice, {}), {"gone.vtp", "not there"});
-  refused(find("lattice.pvd", Side::continuum, 0.5), {"a lattice frame where one of the continuum is wanted"});
-  refused(find("0.vtp", Side::continuum, {}), {"a lattice frame where one of the continuum is wanted"});
-  refused(find("", Side::continuum, {}), {"no continuum.pvd", "the lattice comes first"});
+  refused(find("lattice.pvd", Side::lattice, {}), {"gone.vtp", "does not exist"});
+  refused(find("lattice.pvd", Side::continuum, 0.5), {"a lattice frame where a continuum frame is expected"});
+  refused(find("0.vtp", Side::continuum, {}), {"a lattice frame where a continuum frame is expected"});
+  refused(find("", Side::continuum, {}), {"no continuum.pvd", "give the lattice first"});
   refused(find("none.vtp", Side::lattice, {}), {"none.vtp", "no such file"});
   std::ofstream(folder_ / "lattice.pvd") << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Coll";
-  refused(find("lattice.pvd", Side::lattice, {}), {"cut short"});
+  refused(find("lattice.pvd", Side::lattice, {}), {"truncated"});
 }
 
 TEST(ListOfTimes, LeavesOutTheMiddle)
