@@ -178,7 +178,7 @@ class Resume(TemporaryFolder):
         self.run_to_end()
         run = latcon(*STRIP, "--output-dir", self.out, "--resume", "--set", "Fracture/breaking stretch=3.1")
         self.assertEqual(run.returncode, 2)
-        self.assertIn("another case: Fracture/breaking stretch = 3.05 there, 3.1 here", run.stderr)
+        self.assertIn("another case: Fracture/breaking stretch = 3.05 in the checkpoint, 3.1 in this case", run.stderr)
         run = latcon("lattice", *STRIP[1:2], "--output-dir", self.out, "--resume", "--set", "Lattice/solution=motion")
         self.assertEqual(run.returncode, 2)
         self.assertIn("written by `latcon fracture`", run.stderr)

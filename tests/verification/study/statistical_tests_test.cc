@@ -140,13 +140,13 @@ TEST(Welch, FindsWhatIsThere)
 
 TEST(Holm, AdjustsEachByTheNumberOfThoseThatAreLeft)
 {
-  const std::vector<double> adjusted = holm_adjusted({0.04, 0.01, 0.03, not_a_number});
+  const std::vector<double> adjusted = adjust_by_holm({0.04, 0.01, 0.03, not_a_number});
   EXPECT_NEAR(adjusted[1], 0.04, 1e-15);
   EXPECT_NEAR(adjusted[2], 0.09, 1e-15);
   EXPECT_NEAR(adjusted[0], 0.09, 1e-15); // not less than one before
   EXPECT_TRUE(std::isnan(adjusted[3]));
-  EXPECT_EQ(holm_adjusted({0.9, 0.8})[0], 1.);
-  EXPECT_TRUE(holm_adjusted({}).empty());
+  EXPECT_EQ(adjust_by_holm({0.9, 0.8})[0], 1.);
+  EXPECT_TRUE(adjust_by_holm({}).empty());
 }
 
 // All pairs of six runs alike: one or more is named in at most 5 % of cases.
@@ -164,7 +164,7 @@ TEST(Holm, NamesAPairThatIsNotThereAsOftenAsItSays)
     for (std::size_t i = 0; i < samples.size(); ++i)
       for (std::size_t j = i + 1; j < samples.size(); ++j)
         p_values.push_back(welch_p_value(samples[j], samples[i]).value());
-    const std::vector<double> adjusted = holm_adjusted(p_values);
+    const std::vector<double> adjusted = adjust_by_holm(p_values);
     named += std::any_of(adjusted.begin(), adjusted.end(), [](double p) { return p <= significance; });
   }
   EXPECT_LE(static_cast<double>(named) / n, above_nominal(n));

@@ -167,7 +167,7 @@ TEST(StudyTable, ARunBesideAnotherMustDifferClearly)
   EXPECT_EQ(table.judged(row).verdict, RowVerdict::does_not_hold);
   row.bound_run = "one";
   EXPECT_EQ(table.judged(row).verdict, RowVerdict::not_measured);
-  EXPECT_HAS(table.judged(row).note, "a beside one: how much seeds scatter is unknown");
+  EXPECT_HAS(table.judged(row).note, "a beside one: the scatter of the seeds is unknown");
   row.runs = {"same"};
   row.rule = Rule::above;
   row.bound_run = "same";
@@ -296,7 +296,7 @@ TEST(StudyTable, NoTrendIsMeasuredWithoutAScatterOfSeeds)
     outcome.values["wavelength_uncertainty"] = 1e-4; // of the measurement, not of the cracks
   const RowOutcome single = table.judged(row_of({"a", "b", "c"}, Rule::rises));
   EXPECT_EQ(single.verdict, RowVerdict::not_measured);
-  EXPECT_HAS(single.note, "how much seeds scatter is unknown");
+  EXPECT_HAS(single.note, "the scatter of the seeds is unknown");
   table.add("d", {0.05, 0.05}); // nor by seeds that agree to the last bit
   EXPECT_EQ(table.judged(row_of({"a", "b", "c", "d"}, Rule::rises)).verdict, RowVerdict::not_measured);
   table.add("e", {0.0500, 0.0501, 0.0502});
@@ -372,7 +372,7 @@ TEST(StudyTable, RunsThatTheQuickStudyLeavesOut)
   table.add("b", {0.0200, 0.0201});
   const RowOutcome alone = table.judged(row_of({"big"}, Rule::above, 0.), {"big"});
   EXPECT_EQ(alone.verdict, RowVerdict::not_measured);
-  EXPECT_EQ(alone.note, "big is not part of the quick study");
+  EXPECT_EQ(alone.note, "big is omitted in the quick study");
   EXPECT_EQ(table.judged(row_of({"a", "b", "big"}, Rule::rises), {"big"}).verdict, RowVerdict::holds);
 }
 
