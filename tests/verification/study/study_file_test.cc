@@ -223,7 +223,7 @@ TEST(StudyFile, WordsOfAStudyOfOnesOwnMayBeLeftOut)
   EXPECT_EQ(study.claims.front().paper, "");
   EXPECT_EQ(study.claims.front().note, "");
   EXPECT_EQ(study.run("big").about, "");
-  EXPECT_HAS(problem_after([](nlohmann::ordered_json &d) { d["claims"][0]["paper"] = 3; }), "paper: must be a text");
+  EXPECT_HAS(problem_after([](nlohmann::ordered_json &d) { d["claims"][0]["paper"] = 3; }), "paper: must be a non-empty text");
 }
 
 TEST(StudyFile, RowsKnowTheUnitOfWhatTheyAreAgainst)
