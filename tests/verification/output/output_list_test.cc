@@ -23,7 +23,7 @@ std::string content(const fs::path &path)
 class OutputList : public testing::Test
 {
 protected:
-  // A file of a run, and one that a library or a user puts there.
+  // Writes a file of a run, and a file of a library or a user.
   void written(const std::string &name, const std::string &text = "run") { write_file((folder / name).string(), text); }
   void put(const std::string &name, const std::string &text = "user") { std::ofstream(folder / name) << text; }
   bool has(const std::string &name) const { return fs::exists(folder / name); }
@@ -77,7 +77,7 @@ TEST_F(OutputList, FilesOfTheRunBeforeAreMovedAndNoOthers)
   written("crack.csv", "second");
   EXPECT_EQ(archive_earlier_output(folder, {}), folder / "earlier-run");
   EXPECT_EQ(content(folder / "earlier-run/crack.csv"), "second");
-  EXPECT_FALSE(has("earlier-run/lattice-0000.vtp")); // of the run before that one
+  EXPECT_FALSE(has("earlier-run/lattice-0000.vtp")); // of the run before the previous one
   EXPECT_TRUE(has("earlier-run/mine.txt"));
 }
 

@@ -1,4 +1,4 @@
-// Study files: what is read, in which order settings win, and that every mistake is named with its place.
+// Study files: content, precedence of settings, and error messages with positions.
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ Study read(const nlohmann::ordered_json &document, bool quick = false)
   return read_study(document.dump(), "folder/x.json", quick);
 }
 
-// What a text is refused for as a study.
+// Returns the error message for a text that is not a valid study.
 std::string refusal(const std::string &text)
 {
   try
@@ -67,7 +67,7 @@ std::vector<PlannedRun> plan_of(const Study &study, const std::vector<std::strin
   return plan_runs(study, read_input_file(study.base), settings);
 }
 
-// The problem that the example has once it is changed by `change`; there must be one alone.
+// Returns the only problem of the example after `change`.
 template <typename Change>
 std::string problem_after(const Change &change)
 {
@@ -223,7 +223,8 @@ TEST(StudyFile, WordsOfAStudyOfOnesOwnMayBeLeftOut)
   EXPECT_EQ(study.claims.front().paper, "");
   EXPECT_EQ(study.claims.front().note, "");
   EXPECT_EQ(study.run("big").about, "");
-  EXPECT_HAS(problem_after([](nlohmann::ordered_json &d) { d["claims"][0]["paper"] = 3; }), "paper: must be a non-empty text");
+  EXPECT_HAS(problem_after([](nlohmann::ordered_json &d) { d["claims"][0]["paper"] = 3; }),
+             "paper: must be a non-empty text");
 }
 
 TEST(StudyFile, RowsKnowTheUnitOfWhatTheyAreAgainst)
@@ -312,7 +313,7 @@ TEST(StudyFile, TheShippedStudyIsWhole)
   }
 }
 
-// One that goes deep would take the stack with it, one number that overflows the program.
+// Deep nesting could overflow the stack, and a number could be out of range.
 TEST(StudyFile, RefusesNumbersAndDepthBeyondAllSense)
 {
   for (const std::string &text :
