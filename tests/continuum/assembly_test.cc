@@ -1,4 +1,4 @@
-// How elements become matrices and vectors. On one rank among the unit tests, on several in ranks_tests.
+// Assembly of matrices and vectors. On one rank in the unit tests, on several in ranks_tests.
 #include "continuum/element_integrals.h"
 #include "continuum/meshes.h"
 #include "continuum/shape_tables.h"
@@ -14,14 +14,14 @@ using namespace multigrid_cases;
 
 namespace
 {
-// Cells of three sizes with hanging nodes.
+// Makes a mesh with cells of three sizes and hanging nodes.
 void make_adaptive(Mesh &mesh)
 {
   continuum::make_rectangle(mesh, rectangle(6, 4));
   refine_towards(mesh, Point<2>(0.4 * length, 0.003), 2, length / 4.);
 }
 
-// A state that jumps nowhere and is homogeneous nowhere, with ghost entries.
+// Returns a continuous state that is homogeneous nowhere, with ghost entries.
 Sheet::Vector wavy_state(const Sheet &sheet)
 {
   return nodal(sheet,
@@ -33,7 +33,7 @@ Sheet::Vector wavy_state(const Sheet &sheet)
 }
 } // namespace
 
-// The same sums in another order: each of the up to 100 terms of an entry is rounded once.
+// Sums in another order: each of the up to 100 terms of an entry is rounded once.
 TEST(Assembly, WritesWhatConstraintsDistribute)
 {
   const continuum::CauchyBorn law = rubber_network();
@@ -72,7 +72,7 @@ TEST(Assembly, WritesWhatConstraintsDistribute)
   }
 }
 
-// Tables that cells share against those of each cell: straight cells of several sizes, and curved ones.
+// Compares shared tables with tables of each cell: straight cells of several sizes, and curved cells.
 TEST(Assembly, SharesTheTablesOfEqualCells)
 {
   const continuum::CauchyBorn law = rubber_network();
@@ -126,7 +126,7 @@ TEST(Assembly, SharesTheTablesOfEqualCells)
   }
 }
 
-// Each entry is rounded to 24 bits, so the product is off by 2^-24 sum |K_ab| |x_b| at most.
+// Each entry is rounded to 24 bits, so the error of the product is at most 2^-24 sum |K_ab| |x_b|.
 TEST(Assembly, MultipliesInSinglePrecision)
 {
   const continuum::CauchyBorn law = rubber_network();
@@ -136,7 +136,7 @@ TEST(Assembly, MultipliesInSinglePrecision)
     Mesh mesh(MPI_COMM_WORLD);
     make_adaptive(mesh);
     const Sheet sheet(mesh, continuum::Constitution(law, gradient), degree);
-    // One component held, so that the rows of a pair differ.
+    // One component is held, so that the rows of a pair differ.
     const auto constraints = continuum::homogeneous_constraints(
       sheet, {{continuum::edge::left, dealii::ComponentMask(std::vector<bool>{true, false})}});
     Sheet::Matrix K;

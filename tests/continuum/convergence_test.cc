@@ -1,6 +1,6 @@
-// Manufactured solutions at finite strain: errors of the displacement and its first and second derivatives fall with
-// the orders of C0 interior penalty elements. With LATCON_TABLES set to a folder, every series of three meshes is also
-// written there as CSV.
+// Manufactured solutions at finite strain: the errors of the displacement and its first and second derivatives converge
+// with the orders of C0 interior penalty elements. If LATCON_TABLES is set to a folder, every series of three meshes is
+// also written there as CSV.
 #include "manufactured.h"
 
 #include <deal.II/base/quadrature_lib.h>
@@ -29,7 +29,7 @@ constexpr double gradient_length = 0.1; // of the unit square; every mesh but th
 struct Errors
 {
   double h;
-  double u, gradient, hessian; // L2 norms, the last one cell by cell
+  double u, gradient, hessian; // L2 norms, the last one over cells
 };
 
 Errors errors(const StaticSolver &solver, const Solution &exact)
@@ -86,7 +86,7 @@ enum class Meshes
 };
 enum class Edges
 {
-  clamped,     // displacement and normal gradient given
+  clamped,     // prescribed displacement and normal gradient
   loaded_above // traction and double traction on the upper edge
 };
 
@@ -109,8 +109,8 @@ struct Series
   }
 };
 
-// The unit square in cells of side 2^-level, with a disc in the middle refined once more if there are to be hanging
-// nodes.
+// Makes a mesh of the unit square with cells of side 2^-level; for hanging nodes, refines a disc in the middle once
+// more.
 void make_mesh(Mesh &mesh, const unsigned int level, const Meshes meshes)
 {
   dealii::GridGenerator::hyper_cube(mesh, 0., 1., true);
@@ -200,9 +200,9 @@ std::vector<Errors> run(const Series &series, const unsigned int n_meshes)
 
   StaticSettings settings;
   settings.degree = series.degree;
-  settings.relative_tolerance = 1e-13; // so the round-off of the residual decides
+  settings.relative_tolerance = 1e-13; // so that the round-off of the residual is the tolerance
   std::vector<Errors> result;
-  // Finest of three meshes: 32 cells a side for p = 2, then 16.
+  // Finest of three meshes: 32 cells per side for p = 2, otherwise 16.
   const unsigned int first_level = series.degree == 2 ? 3 : 2;
   for (unsigned int level = first_level; level < first_level + n_meshes; ++level)
   {
@@ -224,9 +224,9 @@ std::vector<Errors> run(const Series &series, const unsigned int n_meshes)
   return result;
 }
 
-// Theory for a smooth solution and h < l: displacement 2 for p = 2 with a gradient law, p + 1 otherwise; gradient p;
-// second gradient p - 1. Taken between the two finest meshes, where the next terms weigh less than 0.2 in the order.
-// theory-continuum.md, eqs. (C.28) and (C.31).
+// Theoretical orders for a smooth solution and h < l: displacement 2 for p = 2 with a gradient law, otherwise p + 1;
+// gradient p; second gradient p - 1. Measured between the two finest meshes, where higher-order terms change the order
+// by less than 0.2. theory-continuum.md, eqs. (C.28) and (C.31).
 void expect_orders(const Series &series, const unsigned int n_meshes)
 {
   const std::vector<Errors> e = run(series, n_meshes);
@@ -253,8 +253,8 @@ TEST_P(Convergence, HasTheOrdersOfInteriorPenaltyElements)
   expect_orders(GetParam(), 3);
 }
 
-// Two meshes are in the asymptotic range as well, but for p = 4 with the isotropic gradient law, whose next terms weigh
-// 0.23 there.
+// Two meshes are in the asymptotic range as well, except for p = 4 with the isotropic gradient law, where higher-order
+// terms contribute 0.23.
 TEST_P(CoarseConvergence, HasTheOrdersOfInteriorPenaltyElements)
 {
   const Series &series = GetParam();

@@ -1,4 +1,4 @@
-// Factors of one matrix after another.
+// Direct solver for a sequence of matrices.
 #include "continuum/direct_solver.h"
 #include "continuum/errors.h"
 #include "sheets.h"
@@ -61,7 +61,7 @@ struct Tangents
 };
 } // namespace
 
-// A motion that is resumed starts with another matrix than the one it was stopped from, and has to give the same bits.
+// A resumed motion starts with another matrix than an uninterrupted one had before, and must give the same bits.
 TEST(DirectSolver, KeptAnalysisChangesNoBit)
 {
   const Tangents sheet(12), other(7, 2);
@@ -78,7 +78,7 @@ TEST(DirectSolver, KeptAnalysisChangesNoBit)
       EXPECT_NE(x, before);
       before = x;
     }
-    // A matrix of another sparsity is analysed anew.
+    // A matrix with another sparsity needs a new symbolic factorisation.
     other.solution(kept, other.at(1.2));
     EXPECT_EQ(sheet.solution(kept, sheet.at(2.9)), before);
   }

@@ -1,4 +1,4 @@
-// Motion of sheets on one rank: orders in time, the energy ledger, and what happens when a step cannot be taken.
+// Dynamics of sheets on one rank: orders in time, energy balance, and steps that do not converge.
 #include "continuum/errors.h"
 #include "moving_sheets.h"
 
@@ -26,7 +26,7 @@ namespace edge = continuum::edge;
 
 namespace
 {
-// Everything at once: a moving held edge, a traction, a weak normal gradient, a gradient law, viscosity.
+// Problem with all features: a moving held edge, a traction, a weak normal gradient, a gradient law, viscosity.
 struct Problem
 {
   continuum::CauchyBorn law = rubber_network();
@@ -40,7 +40,7 @@ struct Problem
     all.normal_gradients = {{edge::right, constant(0.2, 0.1)}};
     return all;
   }
-  // Two derivatives vanish at the start; one period takes 10 ms, that of the slowest mode about 25 ms.
+  // Two derivatives vanish at the start; the period is 10 ms, that of the slowest mode about 25 ms.
   static double load_factor(const double time) { return std::pow(std::sin(100. * pi * time), 4); }
 };
 
@@ -84,7 +84,7 @@ TEST(DynamicSolver, IsOfSecondOrderInTime)
   {
     const double coarse = error(rule, 40);
     const double fine = error(rule, 80);
-    // The reference is itself off by (80/640)^2 of the fine error at most, 0.02 of an order.
+    // The error of the reference is at most (80/640)^2 of the fine error, which changes the order by 0.02.
     EXPECT_NEAR(std::log2(coarse / fine), 2., 0.15) << coarse << " " << fine;
     RecordProperty("order with gamma " + std::to_string(rule.gamma), std::to_string(std::log2(coarse / fine)));
   }
@@ -122,9 +122,9 @@ TEST(DynamicSolver, LedgerClosesToSecondOrder)
 
 TEST(DynamicSolver, KeepsTheEnergyOfALongVibration)
 {
-  // Four bilinear cells with all edges held: one node swings at some 1200/s through 0.2 of a cell, in a potential that
-  // is not quadratic. With more nodes energy moves to shorter waves, and the error, (w dt)^2 of it, grows until it has
-  // done so.
+  // Four bilinear cells with all edges held: one node oscillates at about 1200/s with 0.2 of a cell in an anharmonic
+  // potential. With more nodes, energy moves to shorter waves and the error, a fraction (w dt)^2 of it, grows
+  // meanwhile.
   const continuum::CauchyBorn law = rubber_network();
   Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, rectangle(2, 2));
@@ -141,7 +141,7 @@ TEST(DynamicSolver, KeepsTheEnergyOfALongVibration)
     settings.degree = 1;
     settings.relative_tolerance = 1e-9;
     DynamicSolver solver(mesh, law, on_all_edges(constant(0., 0.)), {density, 0.}, settings);
-    solver.start(nullptr, constant(15., 4.5)); // of the free node; the edges stay
+    solver.start(nullptr, constant(15., 4.5)); // of the free node; the edges are fixed
     const double energy = solver.ledger().kinetic;
     Errors e;
     double smallest = energy;
@@ -158,17 +158,18 @@ TEST(DynamicSolver, KeepsTheEnergyOfALongVibration)
         e.mean_at_last += error / n_first;
       smallest = std::min(smallest, solver.ledger().kinetic);
     }
-    EXPECT_LT(smallest, 0.01 * energy); // it does vibrate
+    EXPECT_LT(smallest, 0.01 * energy); // it does oscillate
     EXPECT_EQ(solver.ledger().dissipated, 0.);
     EXPECT_EQ(solver.ledger().work, 0.);
     return e;
   };
   const Errors coarse = errors(2e-4, 500, 500);
   const Errors fine = errors(1e-4, 1000, 10000);
-  // The next term of the error is (w dt)^4: w dt is 0.25 for the coarse step, so 4 to within a few per cent.
+  // The next term of the error is (w dt)^4 with w dt = 0.25 for the coarse step, so the ratio is 4 to within a few per
+  // cent.
   EXPECT_NEAR(coarse.largest_at_first / fine.largest_at_first, 4., 0.2) << fine.largest_at_first;
-  // A stationary error has means that differ by the phases at which 0.1 s, some 20 periods, are cut: at most 1/50 of
-  // its size. A drift of a thousandth of it in each of 200 periods would be ten times that.
+  // The means of a stationary error differ by the phases at the ends of 0.1 s, about 20 periods: at most 1/50 of its
+  // size. A drift of a thousandth of it in each of 200 periods would be ten times that.
   EXPECT_LT(fine.largest, 1.02 * fine.largest_at_first);
   EXPECT_LT(std::abs(fine.mean_at_last - fine.mean_at_first), 0.02 * fine.largest_at_first);
   RecordProperty("largest error", std::to_string(1e6 * fine.largest) + "e-6");
@@ -187,7 +188,7 @@ TEST(DynamicSolver, MovesHeldBoundariesWithTheLoadFactor)
     std::make_shared<Field>([=](const Point<2> &X) { return -density * w * w * (H * Tensor<1, 2>(X)); })};
   Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, rectangle(2, 2));
-  mesh.begin_active()->set_refine_flag(); // for the sake of hanging nodes
+  mesh.begin_active()->set_refine_flag(); // creates hanging nodes
   mesh.execute_coarsening_and_refinement();
   for (const NewmarkParameters &rule :
        {NewmarkParameters::average_acceleration(), NewmarkParameters::generalised_alpha(0.8)})
@@ -208,7 +209,7 @@ TEST(DynamicSolver, MovesHeldBoundariesWithTheLoadFactor)
       double error = 0.;
       for (const auto &state : solver.evaluate(scattered_points(5, 5)))
         error = std::max(error, (state.displacement - factor * (H * Tensor<1, 2>(state.X))).norm() / length);
-      // Step of w dt = 0.04 and 0.02: errors of the order of its square.
+      // Steps with w dt = 0.04 and 0.02: errors of the order of its square.
       EXPECT_LT(error, 1e-3);
       if (n_steps == 100)
       {
@@ -253,7 +254,7 @@ TEST(DynamicSolver, KeepsTheMomentumOfAFreeSheet)
     // The mean velocity is that of the middle of the sheet.
     EXPECT_NEAR((before - density * length * height * Tensor<1, 2>({3. + 75. * length, -2.})).norm(), 0.,
                 1e-12 * before.norm());
-    double impulse = 0.; // that the residuals allowed leave, at most
+    double impulse = 0.; // upper bound from the tolerances of the residuals
     for (int n = 0; n < 100; ++n)
     {
       solver.step();
@@ -301,7 +302,7 @@ TEST(DynamicSolver, LeavesEquilibriumAtRest)
   difference = solver.displacement();
   before = equilibrium.displacement();
   difference -= before;
-  // What the residual of the static solution, 1e-10 of the reactions, can set in motion.
+  // Motion that the residual of the static solution, 1e-10 of the reactions, can cause.
   EXPECT_LT(difference.linfty_norm(), 1e-8 * length);
 }
 
@@ -338,8 +339,8 @@ TEST(DynamicSolver, ThrowsWithHistoryAndStaysWhenAStepFails)
 }
 
 // The right edge is pushed to the left by more than a cell within a step, slowly compared with waves: in the first
-// iterate of a whole step the cells next to it are inverted, in those of smaller parts they are not. Whole steps
-// follow, and the ledger over the parts closes.
+// iterate of a whole step the cells next to it are inverted, but not in those of smaller parts. Whole steps follow, and
+// the energy balance over the parts closes.
 TEST(DynamicSolver, DividesAStepThatCannotBeSolved)
 {
   const continuum::CauchyBorn law = rubber_network();
@@ -365,8 +366,8 @@ TEST(DynamicSolver, DividesAStepThatCannotBeSolved)
   const auto [n_divided, ledger, attempts] = moved(4);
   EXPECT_GE(n_divided, 1u);
   EXPECT_LE(n_divided, 2u);
-  EXPECT_EQ(attempts, 1u); // at the last step, whole again
-  // Second order in the step: 0.002 here. The work of one part is a tenth and more.
+  EXPECT_EQ(attempts, 1u); // the last step is not divided
+  // Second order in the step: 0.002 here. The work of one part is at least a tenth.
   EXPECT_LT(std::abs(ledger.imbalance), 0.01 * (ledger.stored + ledger.kinetic));
 }
 
@@ -375,7 +376,7 @@ TEST(DynamicSolver, NewtonIsQuadraticWithViscosityAtFiniteStrain)
   Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, rectangle(4, 4));
   const Problem problem;
-  DynamicSettings settings{2e-3}; // long, so that the predictor is far off
+  DynamicSettings settings{2e-3}; // long, so that the predictor is poor
   settings.degree = 2;
   settings.rule = NewmarkParameters::generalised_alpha(0.7);
   const FibreViscosity viscosity = network_viscosity(200.);
@@ -400,7 +401,7 @@ TEST(DynamicSolver, NewtonIsQuadraticWithViscosityAtFiniteStrain)
   EXPECT_GE(best, 1.7) << solver.last_report().text();
 }
 
-// The unsymmetric matrix of dashpots at finite strain, by GMRES with a multigrid of its symmetric part.
+// Unsymmetric matrix of dashpots at finite strain, solved by GMRES with multigrid of its symmetric part.
 TEST(DynamicSolver, GmresAgreesWithTheDirectSolver)
 {
   const Problem problem;
@@ -435,9 +436,9 @@ TEST(DynamicSolver, GmresAgreesWithTheDirectSolver)
   EXPECT_EQ(none, 0u);
   EXPECT_GT(most_linear, 2u);
   EXPECT_LE(most_linear, 30u);
-  EXPECT_LE(newton_of_gmres, newton + 6); // linear systems are solved to 1e-8 in place of round-off
-  // Each step ends at 1e-10 of the forces at work; waves as long as the sheet, which u is made of, are amplified by no
-  // more than the forces are.
+  EXPECT_LE(newton_of_gmres, newton + 6); // linear systems are solved to 1e-8 instead of round-off
+  // Each step converges to 1e-10 of the acting forces; waves as long as the sheet, which dominate u, are amplified no
+  // more than the forces.
   continuum::Sheet::Vector difference = u;
   difference -= exact;
   EXPECT_LT(difference.l2_norm(), 1e-8 * exact.l2_norm());
@@ -465,12 +466,12 @@ TEST(DynamicSolver, RefusesImpossibleInput)
   settings.rule.gamma = 0.6; // first order
   refuses({density, 0.}, settings);
   settings = {1e-3};
-  settings.rule.beta = 1. / 6.; // linear acceleration: not stable for every step
+  settings.rule.beta = 1. / 6.; // linear acceleration: only conditionally stable
   refuses({density, 0.}, settings);
   EXPECT_THROW(NewmarkParameters::generalised_alpha(-0.1), continuum::InvalidInput);
   EXPECT_THROW(NewmarkParameters::generalised_alpha(1.1), continuum::InvalidInput);
 
-  // A held edge that is not where the load factor puts it, fields of one component, a load factor that is none.
+  // A held edge that is not at the prescribed position, fields with one component, a load factor that is not finite.
   DynamicSolver held(mesh, law, {{edge::left, constant(0.01, 0.)}}, {density, 0.}, {1e-3});
   EXPECT_THROW(held.start(), continuum::InvalidInput);
   EXPECT_NO_THROW(held.start(constant(0.01, 0.)));

@@ -1,4 +1,4 @@
-// Waves in sheets on one rank, against their dispersion and damping.
+// Waves in sheets on one rank, compared with theoretical dispersion and damping.
 #include "moving_sheets.h"
 
 #include <deal.II/base/mpi.h>
@@ -24,7 +24,7 @@ namespace edge = continuum::edge;
 
 namespace
 {
-// x.A y over the independent unknowns.
+// Returns x.A y over the independent unknowns.
 double form(const continuum::Sheet &sheet, const continuum::Sheet::Matrix &A, const Vector &x, const Vector &y)
 {
   Vector product = sheet.make_owned();
@@ -36,7 +36,7 @@ double form(const continuum::Sheet &sheet, const continuum::Sheet::Matrix &A, co
   return sum;
 }
 
-// omega^2 of the discrete wave at the homogeneous state F that is closest to omega^2 = `expected`: inverse iteration
+// Returns omega^2 of the discrete wave at the homogeneous state F closest to omega^2 = `expected`, by inverse iteration
 // from the nodal values of the wave.
 double discrete_frequency(const Constitution &laws, const double inertia_length, const Tensor<2, 2> &F,
                           const Tensor<1, 2> &polarisation, const unsigned int degree, const unsigned int n,
@@ -55,13 +55,13 @@ double discrete_frequency(const Constitution &laws, const double inertia_length,
   sheet.tangent(u, sheet.conformity_constraints(), K);
   sheet.mass(density, inertia_length, sheet.conformity_constraints(), M);
   A.add(1., K);
-  A.add(-0.9 * expected, M); // not at the eigenvalue, where A is singular
+  A.add(-0.9 * expected, M); // shifted away from the eigenvalue, where A is singular
   continuum::LinearSolver solver(sheet, {}, {});
   Vector x = sheet.make_owned();
   dealii::VectorTools::interpolate(sheet.mapping(), sheet.dof_handler(), *wave(polarisation), x);
   Vector b = sheet.make_owned();
-  // The eigenvalue converges by the square of the ratio of distances to the shift, under 0.1/1.1 here and, next to the
-  // second polarisation, which symmetry keeps apart: five take it from 1 % to round-off.
+  // The eigenvalue converges with the square of the ratio of distances to the shift, below 0.1/1.1 here; symmetry
+  // separates the second polarisation. Five iterations reduce the error from 1 % to round-off.
   for (int iteration = 0; iteration < 5; ++iteration)
   {
     M.vmult(b, x);
@@ -79,7 +79,7 @@ double discrete_frequency(const Constitution &laws, const double inertia_length,
 void expect_order_in_space(const Constitution &laws, const double inertia_length, const Tensor<2, 2> &F,
                            const Tensor<1, 2> &polarisation, const double exact, const std::string &name)
 {
-  // Where the gradient is resolved the order is 2 (p - 1), that of the energy of the error in second derivatives.
+  // If the gradient is resolved, the order is 2 (p - 1), that of the energy of the error in second derivatives.
   for (const unsigned int degree : {2, 3})
   {
     std::vector<double> errors;
@@ -184,18 +184,18 @@ TEST(DynamicSolver, DampsAStandingWaveAsKelvinTheorySays)
                        const double t = solver.time();
                        const double exact =
                          std::exp(-g * t) * (std::cos(damped * t) + g / damped * std::sin(damped * t));
-                       // Average acceleration is slow by (w dt)^2/12 of the phase, 1/3000, which is 4e-3 after two
-                       // periods.
+                       // The phase of average acceleration lags by a fraction (w dt)^2/12 = 1/3000, which is 4e-3 after
+                       // two periods.
                        EXPECT_NEAR((u * initial) / initial.norm_sqr(), exact, 5e-3);
                        EXPECT_GE(solver.ledger().dissipated, dissipated);
                        dissipated = solver.ledger().dissipated;
                        smallest = std::min(smallest, exact);
                      });
     const double decay = std::exp(-g * solver.time());
-    EXPECT_LT(decay, 0.8); // there was something to see
+    EXPECT_LT(decay, 0.8); // the damping is measurable
     Vector u = solver.sheet().make_owned();
     u = solver.displacement();
-    // At the end of a period the error of the phase is of second order: the decay by itself.
+    // At the end of a period the error of the phase has a second-order effect, so only the decay matters.
     EXPECT_NEAR((u * initial) / initial.norm_sqr(), decay, 1e-3) << decay;
   }
 }
@@ -203,13 +203,13 @@ TEST(DynamicSolver, DampsAStandingWaveAsKelvinTheorySays)
 // theory-continuum.md, eq. (C.44).
 TEST(DynamicSolver, DampsHighFrequenciesOnly)
 {
-  // The same shear wave, followed with steps that resolve it and with steps far longer than its period.
+  // A shear wave with time steps that resolve it, and with steps much longer than its period.
   const continuum::CauchyBorn law = rubber_network();
   const double w = k_wave * std::sqrt(law.tangent(identity)[1][0][1][0] / density);
   Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, strip(8));
-  // q^2 + (dq/dt)^2/w^2 of the wave's amplitude q, over that at the start. The energy itself would drown in the
-  // round-off of W at strains of 1e-5.
+  // Returns q^2 + (dq/dt)^2/w^2 of the amplitude q of the wave, relative to the start. The energy itself would be lost
+  // in the round-off of W at strains of 1e-5.
   const auto energy_left = [&](const NewmarkParameters &rule, const double dt, const unsigned int n_steps)
   {
     DynamicSettings settings{dt};
@@ -227,11 +227,11 @@ TEST(DynamicSolver, DampsHighFrequenciesOnly)
     const double rate = (now * initial) / initial.norm_sqr();
     return q * q + rate * rate / (w * w);
   };
-  // A period in 60 steps, w dt = 0.1. Eight cells of degree 3 have w to 1e-5.
+  // A period in 60 steps, w dt = 0.1. Eight cells of degree 3 give w to 1e-5.
   EXPECT_NEAR(energy_left(NewmarkParameters::generalised_alpha(0.5), 2. * pi / 60. / w, 60), 1., 5e-3);
   EXPECT_NEAR(energy_left(NewmarkParameters::average_acceleration(), 2. * pi / 60. / w, 60), 1., 1e-4);
-  // As w dt grows the three eigenvalues of a step all tend to rho_inf: what is left of q after n steps is of the order
-  // of n^2 rho_inf^n, 1600 * 2^-40 here, and its square 2e-18 within constants.
+  // For large w dt the three eigenvalues of a step all tend to rho_inf: after n steps q is of the order of n^2
+  // rho_inf^n, 1600 * 2^-40 here, and its square 2e-18 up to constants.
   EXPECT_LT(energy_left(NewmarkParameters::generalised_alpha(0.5), 1000. / w, 40), 1e-14);
   EXPECT_NEAR(energy_left(NewmarkParameters::average_acceleration(), 1000. / w, 20), 1., 1e-4);
 }

@@ -1,4 +1,4 @@
-// Files that the continuum writes, read back by VTK through python: check_fields.py holds its own formulas.
+// Files of the continuum, read back by VTK in Python; check_fields.py has independent formulas.
 #include "continuum/errors.h"
 #include "continuum/field_writer.h"
 #include "sheets.h"
@@ -18,7 +18,7 @@ namespace fs = std::filesystem;
 
 namespace
 {
-// A folder of its own for each test, removed at the end.
+// Temporary folder for each test, removed at the end.
 class FieldWriter : public testing::Test
 {
 protected:
@@ -40,9 +40,9 @@ TEST_F(FieldWriter, IsReadByVtkWithNamesTimesAndValues)
   Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, rectangle(6, 4));
   continuum::StaticSettings settings;
-  settings.first_load_step = 1. / 3.; // a time that 6 digits would cut
+  settings.first_load_step = 1. / 3.; // a time with more than 6 digits
   continuum::StaticSolver solver(mesh, law, on_all_edges(affine(matrix(2.3, 0.25, -0.1, 1.4))), settings);
-  // A folder above that is gone is not made anew: the run was removed with it.
+  // A removed parent folder is not created again, because the run was removed with it.
   EXPECT_THROW(continuum::FieldWriter(MPI_COMM_SELF, directory_ / "deeper"), continuum::OutputFailed);
   fs::create_directory(directory_);
   continuum::FieldWriter writer(MPI_COMM_SELF, directory_ / "deeper");

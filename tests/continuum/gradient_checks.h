@@ -1,7 +1,7 @@
 #pragma once
 
-// Properties that every gradient law has: its derivatives, against automatic differentiation of the energy as
-// theory-continuum.md, eq. (C.22), writes it, and its symmetries.
+// Properties of every gradient law: derivatives, compared with automatic differentiation of the energy in the form of
+// theory-continuum.md, eq. (C.22), and symmetries.
 
 #include "continuum/errors.h"
 #include "sheets.h"
@@ -38,8 +38,8 @@ inline unsigned int variable(const unsigned int i, const unsigned int J, const u
   return 4 + 3 * i + place[J][K];
 }
 
-// Sum over the bonds of c/2 [ l_d^2 (G_.JK N_K).H.(G_.JL N_L) - (l^2/12) (G:NN).H.(G:NN) ], with the bond's own
-// stiffness H = psi'' n n + w (psi'/stretch) (I - n n), where w rises from 0 at stretch 1 to 1 at full_stretch.
+// Energy: sum over the bonds of c/2 [ l_d^2 (G_.JK N_K).H.(G_.JL N_L) - (l^2/12) (G:NN).H.(G:NN) ], with the stiffness
+// of the bond H = psi'' n n + w (psi'/stretch) (I - n n), where w rises from 0 at stretch 1 to 1 at full_stretch.
 template <typename Number>
 Number lattice_energy(const std::vector<BondFamily> &bonds, const double length,
                       const std::array<Number, n_variables> &v)
@@ -101,7 +101,7 @@ inline std::vector<BondFamily> mixed_bonds()
           {{Tensor<1, 2>({-0.28, 0.96}), 0.4, latcon::continuum::RodPotential{2e5, -0.5e5}}, spacing}};
 }
 
-// Value, first and second derivatives of an energy by the ten variables.
+// Computes value, first and second derivatives of an energy by the ten variables.
 template <typename Energy>
 FadFad differentiated(const Energy &energy, const Tensor<2, 2> &F, const Gradient &G)
 {
@@ -118,10 +118,11 @@ FadFad differentiated(const Energy &energy, const Tensor<2, 2> &F, const Gradien
   return energy(v);
 }
 
-// A sum of a few hundred terms, each good to a few roundings; scale is what they are made of.
+// A sum of several hundred terms, each with several rounding errors; scale is their size.
 constexpr double roundings = 300.;
 
-// At principal stretches from `low` to `high`; `condition` is how much faster than F the energy varies.
+// Checks at principal stretches from `low` to `high`; `condition` is the rate at which the energy varies, relative to
+// F.
 template <typename Energy>
 void expect_derivatives(const GradientLaw &law, const Energy &energy, const double low = 0.8, const double high = 3.,
                         const double condition = 1.)
@@ -137,7 +138,7 @@ void expect_derivatives(const GradientLaw &law, const Energy &energy, const doub
     const FadFad at_sum = differentiated(energy, F, G + Z);
     const FadFad form = at_sum - at_G - at_Z; // W(G + Z) - W(G) - W(Z) = B(G, Z)
     const double tolerance = roundings * epsilon * condition * at_sum.val().val();
-    const double per_G = spacing; // derivatives by G are larger by the inverse of what G is made of
+    const double per_G = spacing; // derivatives by G are larger by the inverse of the size of G
 
     EXPECT_NEAR(law.energy(F, G), at_G.val().val(), tolerance);
     EXPECT_NEAR(law.form(F, G, Z), form.val().val(), tolerance);
@@ -161,7 +162,7 @@ void expect_derivatives(const GradientLaw &law, const Energy &energy, const doub
           }
         for (unsigned int K = 0; K < 2; ++K)
         {
-          // One variable stands for G_i12 and G_i21.
+          // One variable represents G_i12 and G_i21.
           const double half = J == K ? 1. : 0.5;
           const auto by_Q = at_G.dx(variable(i, J, K));
           EXPECT_NEAR(Q[i][J][K], half * by_Q.val(), 10. * per_G * tolerance);
@@ -187,7 +188,7 @@ inline Gradient rotated(const Tensor<2, 2> &R, const Gradient &G)
   return result;
 }
 
-// G seen from a reference configuration turned by R.
+// Returns G in a reference configuration rotated by R.
 inline Gradient turned(const Gradient &G, const Tensor<2, 2> &R)
 {
   Gradient result;
@@ -214,7 +215,8 @@ inline void expect_objective(const GradientLaw &law)
   }
 }
 
-// n . A . n with A from the second normal derivative, over the mass: coefficient of k^4 in w^2 that the law adds.
+// Returns n . A . n with A from the second normal derivative, divided by the mass: contribution of the law to the
+// coefficient of k^4 in w^2.
 inline double symbol(const GradientLaw &law, const Tensor<2, 2> &F, const Tensor<1, 2> &k, const Tensor<1, 2> &p)
 {
   const Gradient G = outer_product(p, outer_product(k, k));

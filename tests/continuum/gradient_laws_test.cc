@@ -1,4 +1,4 @@
-// Gradient laws alone: forms and their derivatives, symmetries, positivity, and the dispersion of the lattice.
+// Gradient laws: forms and their derivatives, symmetries, positivity, and the dispersion of the lattice.
 #include "continuum/network_gradient.h"
 #include "gradient_checks.h"
 
@@ -29,8 +29,8 @@ TEST(LatticeGradient, FormsAreDerivativesOfTheEnergy)
   expect_derivatives(LatticeGradient(bonds, l_d), [&](const auto &v) { return lattice_energy(bonds, l_d, v); });
 }
 
-// theory-continuum.md, eq. (C.27): every bond between rest and full stretch, where the energy varies over the distance
-// between the two.
+// theory-continuum.md, eq. (C.27): every bond is between rest and full stretch, where the energy varies on the scale of
+// this interval.
 TEST(LatticeGradient, FormsAreDerivativesOfTheEnergyWhereTensionBegins)
 {
   const auto bonds = mixed_bonds();
@@ -41,8 +41,7 @@ TEST(LatticeGradient, FormsAreDerivativesOfTheEnergyWhereTensionBegins)
     1. / (full - 1.));
 }
 
-// Form and its derivatives up to the second are continuous where bonds come into tension and where they are fully in
-// it.
+// The form and its first two derivatives are continuous where bonds enter tension and where they reach full stretch.
 TEST(LatticeGradient, IsTwiceContinuouslyDifferentiable)
 {
   const LatticeGradient law = rubber_gradient(spacing);
@@ -54,7 +53,7 @@ TEST(LatticeGradient, IsTwiceContinuouslyDifferentiable)
     constexpr double step = 1e-9;
     const auto at = [&](const double l) { return matrix(l, 0., 0., l); };
     const Tensor<2, 2> below = at(stretch - step), above = at(stretch + step);
-    // Third derivatives are up to 60 over the cube of the width of the switch, in units of the energy.
+    // Third derivatives are up to 60 divided by the cube of the width of the transition, in units of the energy.
     const double tolerance =
       60. / std::pow(LatticeGradient::full_stretch - 1., 3) * 2. * step * (law.energy(above, G) + law.energy(above, Z));
     EXPECT_NEAR(law.form(below, G, Z), law.form(above, G, Z), tolerance);
@@ -117,7 +116,7 @@ TEST(LatticeGradient, IsHexagonalAndNotIsotropic)
   EXPECT_GT(largest_difference, 0.01);
 }
 
-// Bonds in tension have stiffness along and across; at l_d = d/2 the energy is at the edge of positivity.
+// Bonds in tension have axial and transverse stiffness; at l_d = d/2 the energy is at the limit of positivity.
 // theory-continuum.md, eqs. (C.25) and (C.26).
 TEST(LatticeGradient, IsPositiveInTension)
 {
@@ -128,8 +127,8 @@ TEST(LatticeGradient, IsPositiveInTension)
     EXPECT_GT(law.energy(random_deformation(generator, 1.01, 3.), random_gradient(generator, spacing)), 0.);
 }
 
-// theory-continuum.md, eq. (C.27). Bonds that are compressed push their ends apart across themselves, which the energy
-// leaves out: it stays positive, whatever the bonds.
+// theory-continuum.md, eq. (C.27). Bonds in compression have a negative transverse stiffness, which the energy omits;
+// it therefore stays positive for all bonds.
 TEST(LatticeGradient, IsPositiveUnderCompression)
 {
   const LatticeGradient law = rubber_gradient(spacing);
@@ -143,10 +142,11 @@ TEST(LatticeGradient, IsPositiveUnderCompression)
     EXPECT_GT(law.energy(F, G), 0.);
     EXPECT_GT(network.energy(F, G), 0.);
   }
-  // A strip pulled along y and free across, where P_xx = 0 in the local law, has the stretch 0.747 along x at 2.5 along
-  // y. With bonds that push, a wave along x would gain energy there.
+  // A strip pulled along y and free across, with P_xx = 0 in the local law, has the stretch 0.747 along x at 2.5 along
+  // y. With bonds in compression a wave along x would gain energy there.
   const Tensor<2, 2> F = matrix(0.747, 0., 0., 2.5);
-  EXPECT_LT(std::abs(rubber_network().first_piola_stress(F)[0][0]), 1e3); // of 5e5 Pa: the three digits of the stretch
+  EXPECT_LT(std::abs(rubber_network().first_piola_stress(F)[0][0]),
+            1e3); // compared with 5e5 Pa: three digits of the stretch
   for (int n = 0; n < 180; ++n)
     for (int p = 0; p < 180; ++p)
       EXPECT_GT(symbol(law, F, Tensor<1, 2>({std::cos(n * pi / 180.), std::sin(n * pi / 180.)}),
@@ -185,7 +185,7 @@ TEST(GradientLaw, NormalStiffnessIsThatOfTheStiffestDirection)
     for (int p = 0; p < 360; ++p)
       largest = std::max(largest, symbol(law, I, Tensor<1, 2>({std::cos(n * pi / 360.), std::sin(n * pi / 360.)}),
                                          Tensor<1, 2>({std::cos(p * pi / 360.), std::sin(p * pi / 360.)})));
-  // The scan misses the largest by the square of its step at most.
+  // The error of the scan is at most of the order of the square of its step.
   EXPECT_NEAR(law.normal_stiffness(), largest, 1e-3 * largest);
 }
 

@@ -1,4 +1,4 @@
-// Equilibrium with gradient energies: Newton, load steps, linear iterations, limits.
+// Equilibrium with gradient energies: Newton's method, load steps, linear iterations, limits.
 #include "continuum/errors.h"
 #include "continuum/meshes.h"
 #include "sheets.h"
@@ -18,7 +18,8 @@ namespace
 {
 constexpr double internal_length = 0.005;
 
-// All edges held, the normal gradient too: of the homogeneous stretch on three sides, zero above, where the bump is.
+// Conditions that hold displacement and normal gradient on all edges: normal gradient of the homogeneous stretch on
+// three sides, zero at the top with the bump.
 BoundaryConditions clamped_bump(const double stretch_x, const double stretch_y, const double bump)
 {
   BoundaryConditions conditions(bump_problem(stretch_x, stretch_y, bump));
@@ -62,8 +63,8 @@ TEST(GradientEquilibrium, ResidualAndTangentAreDerivativesOfOneFunctional)
         result = v;
         return result;
       };
-      // Over cells of 2.5 to 7.5 cm; bonds stay stretched beyond the switch of (C.27), which differences would not
-      // resolve.
+      // On cells of 2.5 to 7.5 cm; bonds stay stretched beyond the transition of (C.27), which finite differences would
+      // not resolve.
       Vector u = random(2e-3);
       sheet.for_each_owned_dof(
         [&](const auto dof, const unsigned int i, const auto &X)
@@ -80,7 +81,7 @@ TEST(GradientEquilibrium, ResidualAndTangentAreDerivativesOfOneFunctional)
       continuum::Sheet::Matrix K;
       sheet.make_matrix(sheet.conformity_constraints(), K);
       sheet.tangent(ghosted(u), sheet.conformity_constraints(), K);
-      // The rows of dependent unknowns hold a diagonal that is none of the functional's.
+      // The rows of constrained unknowns contain a diagonal that does not belong to the functional.
       const auto product = [&](const Vector &x, Vector &Kx)
       {
         K.vmult(Kx, x);
@@ -112,9 +113,9 @@ TEST(GradientEquilibrium, ResidualAndTangentAreDerivativesOfOneFunctional)
     }
 }
 
-// Quadratic: the largest exponent by which the residual falls from one iteration to the next. The first steps are too
-// far away for it, and the last one ends in round-off. Both gradient laws, whose face terms enter the tangent with
-// their second variation.
+// Quadratic convergence: the largest exponent of the residual between iterations. The first steps are not yet in the
+// quadratic range, and the last one ends in round-off. Tests both gradient laws, whose face terms enter the tangent
+// with their second variation.
 TEST(GradientEquilibrium, NewtonIsQuadratic)
 {
   const continuum::CauchyBorn law = rubber_network();
@@ -137,7 +138,8 @@ TEST(GradientEquilibrium, NewtonIsQuadratic)
   }
 }
 
-// A notched sheet pulled to four times its height in one step: that fails, and the answer is that of small steps.
+// A notched sheet pulled to four times its height in one step: the step fails, and the solution equals that of small
+// steps.
 TEST(GradientEquilibrium, RecoversFromALoadStepThatFails)
 {
   const continuum::CauchyBorn law = rubber_network();
@@ -164,8 +166,8 @@ TEST(GradientEquilibrium, RecoversFromALoadStepThatFails)
   EXPECT_NEAR(energy, energy_slowly, 1e-9 * energy);
 }
 
-// Iterations of conjugate gradients inside Newton, at finite strain, over two refinements, and on adaptive meshes.
-// Measured: 14, 17, 19 with degree 2, and 8, 9, 9 with degree 3.
+// Iterations of conjugate gradients within Newton's method, at finite strain, over two refinements and on adaptive
+// meshes. Measured: 14, 17, 19 with degree 2, and 8, 9, 9 with degree 3.
 TEST(GradientEquilibrium, LinearIterationsDependLittleOnTheMesh)
 {
   const continuum::CauchyBorn law = rubber_network();
@@ -209,8 +211,8 @@ TEST(GradientEquilibrium, LinearIterationsDependLittleOnTheMesh)
   }
 }
 
-// Linear systems solved no more closely than Newton can use: the same equilibrium for less, and no more than two
-// further steps, the last ones as large as those of exact steps.
+// Inexact linear solves: the same equilibrium at lower cost, with at most two additional Newton steps, of which the
+// last are as large as exact steps.
 TEST(GradientEquilibrium, InexactStepsEndAtTheSameEquilibrium)
 {
   const continuum::CauchyBorn law = rubber_network();
@@ -245,7 +247,7 @@ TEST(GradientEquilibrium, InexactStepsEndAtTheSameEquilibrium)
     const Answer inexact = solve(largest_forcing);
     EXPECT_LE(inexact.n_steps, exact.n_steps + 2);
     EXPECT_LT(inexact.n_linear, exact.n_linear);
-    // The energy is stationary, so it shows the square of the error: round-off alone.
+    // The energy is stationary, so its error is quadratic: only round-off remains.
     EXPECT_NEAR(inexact.energy, exact.energy, 1e-12 * exact.energy);
     // Residuals are 1e-10 of the forces.
     for (std::size_t p = 0; p < exact.states.size(); ++p)
@@ -253,7 +255,7 @@ TEST(GradientEquilibrium, InexactStepsEndAtTheSameEquilibrium)
   }
 }
 
-// Without length the gradient law is the local one; homogeneous states know nothing of it at any length.
+// With zero length the gradient law has no effect; in homogeneous states it has no effect at any length.
 TEST(GradientEquilibrium, IsLocalWithoutLengthAndInHomogeneousStates)
 {
   const continuum::CauchyBorn law = rubber_network();
@@ -277,7 +279,7 @@ TEST(GradientEquilibrium, IsLocalWithoutLengthAndInHomogeneousStates)
   EXPECT_NEAR(energy(Constitution(law, rubber_gradient(0.01)), homogeneous), flat, 1e-12 * flat);
 }
 
-// A law that vanishes at F = I and not under strain.
+// Law that vanishes at F = I and not under strain.
 class StiffeningGradient : public continuum::IsotropicGradient
 {
 public:
@@ -288,8 +290,8 @@ public:
   }
 };
 
-// One answer to whether there is a gradient energy: of the law, whatever its stiffness at F = I. What that would leave
-// without a penalty on the faces is refused, not dropped from the energy alone.
+// Only is_zero() of the law decides whether there is a gradient energy, regardless of its stiffness at F = I. A law
+// that would have no penalty on the faces is refused, not dropped from the energy only.
 TEST(GradientEquilibrium, TakesALawForZeroOnlyIfItSaysSo)
 {
   const continuum::CauchyBorn law = rubber_network();
@@ -307,9 +309,8 @@ TEST(GradientEquilibrium, TakesALawForZeroOnlyIfItSaysSo)
   EXPECT_THROW(continuum::Sheet(mesh, Constitution(law, stiffening), 2), continuum::InvalidInput);
 }
 
-// A sinusoidal force of wave number k is 1 + l^2 k^2 times as large for (1 - l^2 Laplace), on every shape function: the
-// integral over the boundary makes up for the partial integration.
-// theory-continuum.md, eq. (C.32).
+// (1 - l^2 Laplace) multiplies a sinusoidal force of wave number k by 1 + l^2 k^2 for every shape function; the
+// boundary integral compensates the partial integration. theory-continuum.md, eq. (C.32).
 TEST(GradientEquilibrium, CorrectsTheBodyForceOfMicroInertia)
 {
   const continuum::CauchyBorn law = rubber_network();
@@ -329,7 +330,7 @@ TEST(GradientEquilibrium, CorrectsTheBodyForceOfMicroInertia)
   continuum::Sheet::Vector corrected = loads(0.02);
   plain *= 1. + std::pow(0.02 * k, 2);
   corrected -= plain;
-  // Gauss points of degree 9 over cells of half a radian, and differences of fourth order: both below 1e-8.
+  // Gauss quadrature of degree 9 on cells of half a radian, and fourth-order differences: both errors are below 1e-8.
   EXPECT_LT(corrected.linfty_norm(), 1e-7 * plain.linfty_norm());
 }
 
@@ -344,7 +345,7 @@ TEST(GradientEquilibrium, RefusesImpossibleInput)
   StaticSettings linear;
   linear.degree = 1;
   EXPECT_THROW(StaticSolver(mesh, Constitution(law, gradient), conditions, linear), continuum::InvalidInput);
-  // Without a gradient energy there is nothing that could hold a normal gradient or do work against it.
+  // Without a gradient energy, normal gradients cannot be prescribed and double tractions do no work.
   const continuum::IsotropicGradient zero(5e5, 0.);
   BoundaryConditions held = conditions, loaded = conditions;
   held.normal_gradients.push_back({0, field});

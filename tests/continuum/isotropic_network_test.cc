@@ -1,5 +1,5 @@
-// The network with all directions alike: against sums over directions, against Legendre functions in 40 digits, and
-// against the triangular network whose mean it is.
+// Isotropic network law, compared with sums over directions, with Legendre functions to 40 digits, and with the
+// triangular network of which it is the mean.
 #include "continuum/isotropic_network.h"
 #include "material_checks.h"
 
@@ -14,7 +14,7 @@ using continuum::IsotropicNetwork;
 
 namespace
 {
-// Rods with two ratios of their constants and springs; directions do not matter.
+// Rods with two ratios of their constants, and springs; directions are irrelevant.
 std::vector<FibreFamily> mixed_families()
 {
   const Tensor<1, 2> x({1., 0.});
@@ -28,7 +28,7 @@ IsotropicNetwork mixed_network()
   return IsotropicNetwork(mixed_families());
 }
 
-// The same fibres, each in n directions over half a turn.
+// Returns these fibres, each in n directions over half a turn.
 CauchyBorn in_directions(const std::vector<FibreFamily> &families, const unsigned int n, const double first = 0.3)
 {
   std::vector<FibreFamily> turned;
@@ -41,7 +41,7 @@ CauchyBorn in_directions(const std::vector<FibreFamily> &families, const unsigne
   return CauchyBorn(turned);
 }
 
-// Paper's lattice with the area factors of quick.prm, rows along x.
+// Lattice of the paper with the area factors of quick.prm, rows along x.
 CauchyBorn quick_network()
 {
   std::vector<FibreFamily> families;
@@ -52,8 +52,8 @@ CauchyBorn quick_network()
 }
 } // namespace
 
-// theory-continuum.md, eqs. (C.50) to (C.56): a sum over n directions misses the mean by the n-th power of
-// (l1 - l2)/(l1 + l2), times a power of n for the derivatives.
+// theory-continuum.md, eqs. (C.50) to (C.56): a sum over n directions differs from the mean by the n-th power of (l1 -
+// l2)/(l1 + l2), times a power of n for the derivatives.
 TEST(IsotropicNetwork, IsTheMeanOverAllDirections)
 {
   std::mt19937 generator(2);
@@ -67,7 +67,8 @@ TEST(IsotropicNetwork, IsTheMeanOverAllDirections)
         rotation(angle(generator)) * matrix(stretch * ratio, 0., 0., stretch) * rotation(angle(generator));
       const IsotropicNetwork law({family});
       const CauchyBorn sum = in_directions({family}, n);
-      // Both sides round some tens of terms of the size of the tangent; a sum of n terms sqrt(n) times as often.
+      // Both sides have rounding errors of tens of terms of the size of the tangent; a sum of n terms has sqrt(n) times
+      // as many.
       const double tolerance = 20. * std::sqrt(n) * epsilon * sum.tangent(F).norm();
       EXPECT_NEAR(law.energy(F), sum.energy(F), tolerance * F.norm_square());
       EXPECT_NEAR((law.first_piola_stress(F) - sum.first_piola_stress(F)).norm(), 0., tolerance * F.norm());
@@ -77,8 +78,8 @@ TEST(IsotropicNetwork, IsTheMeanOverAllDirections)
 
 TEST(IsotropicNetwork, SumsOverDirectionsConvergeGeometrically)
 {
-  // Per direction the error falls by (l1 - l2)/(l1 + l2), but for a power of n, which costs less than 10 % of a digit
-  // per direction here.
+  // Per direction the error decreases by (l1 - l2)/(l1 + l2), apart from a power of n, which costs less than 10 % of a
+  // digit per direction here.
   const IsotropicNetwork law = mixed_network();
   for (const auto &[l1, l2] : {std::pair{2.3, 1.}, std::pair{2.8, 1.}, std::pair{2.8, 0.6}})
   {
@@ -138,7 +139,7 @@ TEST(StretchMeans, AreLegendreFunctions)
     const auto expect = [x = x](const continuum::InvariantFunction &f, const std::array<double, 6> &digits)
     {
       const std::array<double, 6> values = {f.value, f.by_I, f.by_J, f.by_II, f.by_IJ, f.by_JJ};
-      // Some ten operations on an arithmetic-geometric mean that is itself good to a few roundings.
+      // About ten operations on an arithmetic-geometric mean that has several rounding errors itself.
       for (unsigned int k = 0; k < 6; ++k)
         EXPECT_NEAR(values[k] / digits[k], 1., 16. * epsilon) << "x = " << x << ", derivative " << k;
     };
@@ -147,7 +148,7 @@ TEST(StretchMeans, AreLegendreFunctions)
   }
 }
 
-// Degrees 1 and -1 in the stretches, so 1/2 and -1/2 in the invariants.
+// Homogeneous of degrees 1 and -1 in the stretches, hence 1/2 and -1/2 in the invariants.
 TEST(StretchMeans, AreHomogeneous)
 {
   for (const auto &[I, J] : {std::pair{2., 1.}, std::pair{5.3, 2.1}, std::pair{7., 0.01}})
@@ -184,7 +185,7 @@ TEST(IsotropicNetwork, RefusesNonPositiveDeterminant)
   expect_refusal(mixed_network());
 }
 
-// Turning the reference configuration by any angle changes nothing.
+// A rotation of the reference configuration by any angle has no effect.
 TEST(IsotropicNetwork, IsIsotropic)
 {
   const IsotropicNetwork law = mixed_network();
@@ -218,8 +219,8 @@ TEST(IsotropicNetwork, HasHandWorkedValues)
   EXPECT_NEAR(rods.first_piola_stress(F)[0][1], 0., 40. * epsilon);
 }
 
-// What the mean leaves out of the triangular lattice is its sixfold dependence on direction: nothing under equal
-// stretches, and elsewhere what an independent script found, in two digits.
+// The mean omits the sixfold anisotropy of the triangular lattice: zero under equal stretches, and elsewhere the result
+// of an independent script, to two digits.
 TEST(IsotropicNetwork, MissesTheLatticeByItsAnisotropyAlone)
 {
   const CauchyBorn lattice = quick_network();

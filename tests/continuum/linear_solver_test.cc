@@ -1,4 +1,4 @@
-// When a multigrid is kept and when it is set up anew, and unsymmetric matrices.
+// Reuse and rebuilding of multigrid, and unsymmetric matrices.
 #include "continuum/errors.h"
 #include "continuum/linear_solver.h"
 #include "multigrid_cases.h"
@@ -13,7 +13,7 @@ using continuum::Symmetry;
 
 namespace
 {
-// Matrices of one sheet for several internal lengths, by one solver.
+// Matrices of a sheet for several internal lengths, with one solver.
 struct Problem
 {
   explicit Problem(LinearSettings settings, const Symmetry given_symmetry = Symmetry::symmetric)
@@ -31,7 +31,7 @@ struct Problem
     body_force(*sheet, *constraints, b);
   }
 
-  // Iterations for the form with this length; expects the answer of a direct solver.
+  // Solves the form with this length, compares with a direct solver, and returns the number of iterations.
   unsigned int solve(const double internal_length)
   {
     const GradientForm form(internal_length);
@@ -52,14 +52,14 @@ struct Problem
     Sheet::Vector exact = sheet->make_owned();
     LinearSolver(*sheet, all_held(), direct).solve(K, exact, b);
     x -= exact;
-    // The residual is 1e-8 in the Euclidean norm; the smoothest waves, which make up x, are amplified by no more than
-    // those of b, which they make up too.
+    // The residual is 1e-8 in the Euclidean norm; the smoothest waves dominate both x and b, so their error is
+    // amplified no more than b.
     EXPECT_LT(x.l2_norm(), 1e-6 * exact.l2_norm());
     return iterations;
   }
 
-  // By 0.7 to 1.3, smoothly: K of the form times a matrix close to the identity, so that multigrid of the form is close
-  // to the inverse.
+  // Scales columns smoothly by 0.7 to 1.3: K of the form times a matrix close to the identity, so that multigrid of the
+  // form is close to the inverse.
   void scale_columns()
   {
     Sheet::Vector scale = sheet->make_owned();
@@ -76,7 +76,7 @@ struct Problem
   std::unique_ptr<AffineConstraints<double>> constraints;
   std::unique_ptr<LinearSolver> solver;
   Symmetry symmetry;
-  unsigned int n_fine_assemblies = 0; // of the assembler, for the sheet itself
+  unsigned int n_fine_assemblies = 0; // calls of the assembler for the sheet itself
   Sheet::Matrix K;
   Sheet::Vector b;
 };
@@ -98,7 +98,7 @@ TEST(LinearSolver, RenewsAMultigridThatIsWorn)
 {
   Problem problem{LinearSettings()};
   problem.solve(0.02 * length);
-  const unsigned int worn = problem.solve(0.08 * length); // a matrix sixteen times as large for short waves
+  const unsigned int worn = problem.solve(0.08 * length); // a matrix sixteen times larger for short waves
   EXPECT_EQ(problem.solver->n_set_ups(), 1u);
   const unsigned int fresh = problem.solve(0.08 * length);
   EXPECT_EQ(problem.solver->n_set_ups(), 2u);
@@ -107,7 +107,7 @@ TEST(LinearSolver, RenewsAMultigridThatIsWorn)
   EXPECT_EQ(problem.solver->n_set_ups(), 2u);
 }
 
-// Within one solve, where the old one does not get there.
+// Rebuilds within one solve, if the old multigrid does not converge.
 TEST(LinearSolver, RenewsAMultigridThatFails)
 {
   LinearSettings settings;
@@ -117,23 +117,23 @@ TEST(LinearSolver, RenewsAMultigridThatFails)
   problem.solve(0.2 * length);
   EXPECT_EQ(problem.solver->n_set_ups(), 2u);
 
-  settings.max_iterations = 3; // too few for a fresh one
+  settings.max_iterations = 3; // too few even for an up-to-date one
   Problem impossible(settings);
   EXPECT_THROW(impossible.solve(0.1 * length), continuum::LinearSolverFailed);
 }
 
-// By GMRES, with multigrid of the symmetric matrix: that of K would need a smoother for unsymmetric matrices.
+// GMRES with multigrid of the symmetric matrix; multigrid of K would need a smoother for unsymmetric matrices.
 TEST(LinearSolver, SolvesUnsymmetricMatrices)
 {
   Problem symmetric{LinearSettings()};
   const unsigned int usual = symmetric.solve(0.05 * length);
   EXPECT_EQ(symmetric.n_fine_assemblies, 0u);
   Problem unsymmetric(LinearSettings(), Symmetry::unsymmetric);
-  // Eigenvalues spread by 1.3/0.7 besides: at a rate of (sqrt(1.3) - sqrt(0.7))/(sqrt(1.3) + sqrt(0.7)) = 0.15 for each
-  // iteration alone, eight digits take ten.
+  // The eigenvalues have an additional spread of 1.3/0.7: at a rate of (sqrt(1.3) - sqrt(0.7))/(sqrt(1.3) + sqrt(0.7))
+  // = 0.15 per iteration, eight digits take ten iterations.
   EXPECT_LE(unsymmetric.solve(0.05 * length), usual + 10);
   EXPECT_EQ(unsymmetric.n_fine_assemblies, 1u);
-  unsymmetric.solve(0.052 * length); // with the multigrid that is kept
+  unsymmetric.solve(0.052 * length); // with the reused multigrid
   EXPECT_EQ(unsymmetric.solver->n_set_ups(), 1u);
 
   LinearSettings settings;

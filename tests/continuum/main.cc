@@ -5,8 +5,8 @@
 
 using namespace latcon;
 
-// Under AddressSanitizer: MPI and Trilinos keep memory until the process ends, some of it in modules unloaded by then,
-// which no suppression can name. Every other check stays on.
+// For AddressSanitizer: MPI and Trilinos keep memory until the process ends, some of it in modules that are unloaded by
+// then and cannot be named in suppressions. All other checks remain enabled.
 extern "C" const char *__asan_default_options();
 extern "C" const char *__asan_default_options()
 {

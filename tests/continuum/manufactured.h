@@ -1,8 +1,7 @@
 #pragma once
 
-// A manufactured solution at finite strain. Its body force, tractions and double tractions come from automatic
-// differentiation of the energies as their definitions write them, in space and by F and Grad F, and from no code under
-// test.
+// Manufactured solution at finite strain. Its body force, tractions and double tractions are computed by automatic
+// differentiation of the energies in their defining form, in space and by F and Grad F, without code under test.
 
 #include "sheets.h"
 
@@ -16,14 +15,14 @@ namespace manufactured
 using dealii::Point;
 using dealii::Tensor;
 
-// A number with its gradient and second derivatives in space, and an energy with its derivatives by the ten variables
-// F_11 F_12 F_21 F_22, G_i11 G_i22 G_i12.
+// Number with its gradient and second derivatives in space, and energy with its derivatives by the ten variables F_11
+// F_12 F_21 F_22, G_i11 G_i22 G_i12.
 using InSpace = Sacado::Fad::SFad<Sacado::Fad::SFad<double, 2>, 2>;
 constexpr unsigned int n_variables = 10;
 using Energy = Sacado::Fad::SFad<InSpace, n_variables>;
 using Variables = std::array<Energy, n_variables>;
 
-/// u_i = (s_i - 1) X_i + a_i sin(k_i . X + phase_i): principal stretches from 0.9 to 2.0 over the unit square.
+/// Solution u_i = (s_i - 1) X_i + a_i sin(k_i . X + phase_i): principal stretches from 0.9 to 2.0 over the unit square.
 struct Solution
 {
   double stretch[2] = {1.55, 1.4};
@@ -100,7 +99,7 @@ struct MooneyRivlinEnergy
     for (int k = 0; k < 60; ++k)
       t0 -= by_thickness(m, f0, j0, t0) /
             (m.c1 * (2. + 2. / (t0 * t0)) + m.c2 * (2. * f0 + 4. / (t0 * t0)) + m.kappa * j0 * j0);
-    // Each Newton step from there makes one more derivative right; three are taken of the thickness.
+    // Each further Newton step makes one more derivative correct; three derivatives of the thickness are needed.
     Energy t(t0);
     for (int k = 0; k < 3; ++k)
     {
@@ -130,7 +129,7 @@ struct IsotropicGradientEnergy
   }
 };
 
-/// theory-continuum.md, eq. (C.22), bond by bond.
+/// Energy of theory-continuum.md, eq. (C.22), bond by bond.
 struct LatticeGradientEnergy
 {
   std::vector<latcon::continuum::BondFamily> bonds;
@@ -169,7 +168,7 @@ struct LatticeGradientEnergy
   }
 };
 
-/// What the solution needs at a point: forces per volume and, for a normal N, on an edge.
+/// Forces of the solution at a point: per volume and, for a normal N, on an edge.
 class Forces
 {
 public:
@@ -227,7 +226,7 @@ public:
   const Solution &solution() const { return solution_; }
 
 private:
-  // Components are asked for one by one, so the last point is kept.
+  // Components are evaluated one by one, so the last point is cached.
   void look_at(const Point<2> &X) const
   {
     if (known_ && X == at_)

@@ -1,6 +1,6 @@
 #pragma once
 
-// Properties that every local law has, whatever it is: its derivatives, symmetries, domain and moduli.
+// Properties of every local law: derivatives, symmetries, domain and moduli.
 
 #include "continuum/errors.h"
 #include "sheets.h"
@@ -17,7 +17,7 @@ using namespace sheets;
 
 inline const double epsilon = std::numeric_limits<double>::epsilon();
 
-// Least-squares slope of log(remainder) over log(h), h = 2^-4 ... 2^-10.
+// Returns the least-squares slope of log(remainder) over log(h), h = 2^-4 ... 2^-10.
 inline double observed_order(const std::function<double(double)> &remainder)
 {
   double n = 0., x_sum = 0., y_sum = 0., xx_sum = 0., xy_sum = 0.;
@@ -35,8 +35,8 @@ inline double observed_order(const std::function<double(double)> &remainder)
   return (n * xy_sum - x_sum * y_sum) / (n * xx_sum - x_sum * x_sum);
 }
 
-// Energy to stress and stress to tangent by Taylor's theorem. The second-order remainders are left by terms of the size
-// of the stiffness, so an error of any derivative shows as order 1.
+// Checks stress against energy and tangent against stress by Taylor's theorem. The second-order remainders have the
+// size of the stiffness, so an error of any derivative reduces the order to 1.
 inline void expect_taylor_orders(const latcon::continuum::Material &law, const bool of_energy)
 {
   std::mt19937 generator(11);
@@ -52,7 +52,7 @@ inline void expect_taylor_orders(const latcon::continuum::Material &law, const b
       of_energy
         ? observed_order([&](const double h) { return std::abs(law.energy(F + h * G) - W - h * scalar_product(P, G)); })
         : observed_order([&](const double h) { return (law.first_piola_stress(F + h * G) - P - h * dP).norm(); });
-    // A remainder of order 3 where the second derivative happens to vanish would be no error, hence no upper limit.
+    // A remainder of order 3 where the second derivative happens to vanish is not an error, hence no upper limit.
     EXPECT_GE(order, 1.9) << "F = " << F;
   }
 }

@@ -1,4 +1,5 @@
-// Laws alone: energy, stress and tangent against each other, automatic differentiation, and numbers worked by hand.
+// Laws: energy, stress and tangent, compared with each other, with automatic differentiation, and with hand
+// calculations.
 #include "material_checks.h"
 
 #include <Sacado.hpp>
@@ -17,8 +18,8 @@ using Fad = Sacado::Fad::DFad<double>;
 using FadFad = Sacado::Fad::DFad<Fad>;
 constexpr unsigned int n_variables = 5; // F_11, F_12, F_21, F_22, F_33
 
-// The energies written once more, from their definitions: the sheet from the full three-dimensional C, with F_33 a
-// variable.
+// Independent implementation of the energies from their definitions: the sheet from the full three-dimensional C, with
+// variable F_33.
 template <typename Number>
 Number energy_in_3d(const MooneyRivlin::Constants &m, const std::array<Number, n_variables> &f)
 {
@@ -91,7 +92,7 @@ void expect_derivatives(const Material &law, const Tensor<2, 2> &F, const Deriva
 {
   const Tensor<2, 2> P = law.first_piola_stress(F);
   const Tensor<4, 2> T = law.tangent(F);
-  // Both sides add some tens of terms of the size of the tangent: 100 rounding errors of it, times the cancellation.
+  // Both sides add tens of terms of the size of the tangent: 100 rounding errors of it, times the cancellation.
   const double tolerance = 100. * epsilon * condition * T.norm();
   for (unsigned int i = 0; i < 2; ++i)
     for (unsigned int J = 0; J < 2; ++J)
@@ -103,7 +104,7 @@ void expect_derivatives(const Material &law, const Tensor<2, 2> &F, const Deriva
     }
 }
 
-// sqrt of the eigenvalues of Q(n)/rho, ascending [m/s].
+// Returns the square roots of the eigenvalues of Q(n)/rho, ascending [m/s].
 std::array<double, 2> wave_speeds(const Material &law, const Tensor<2, 2> &F, const Tensor<1, 2> &n, const double rho)
 {
   const Tensor<4, 2> T = law.tangent(F);
@@ -162,7 +163,7 @@ TEST(MooneyRivlin, AgreesWithDifferentiatedThreeDimensionalEnergy)
       // The thickness is in equilibrium, and stable.
       EXPECT_NEAR(d.first[4], 0., 100. * epsilon * d.second[4][4]);
       EXPECT_GT(d.second[4][4], 0.);
-      // Eliminate it, as a minimum does.
+      // Eliminate the thickness by minimisation.
       for (unsigned int i = 0; i < 4; ++i)
         for (unsigned int j = 0; j < 4; ++j)
           d.second[i][j] -= d.second[i][4] * d.second[4][j] / d.second[4][4];
@@ -284,7 +285,8 @@ TEST(CauchyBorn, HasEqualLameConstantsAtIdentity)
 
 TEST(CauchyBorn, HasTheWaveSpeedsOfTheTheory)
 {
-  // theory-comparison.md, eq. (W.2), worked out apart from the code to seven digits, so half a unit of the last one.
+  // theory-comparison.md, eq. (W.2), evaluated independently to seven digits, so the tolerance is half a unit of the
+  // last digit.
   const CauchyBorn law = rubber_network();
   const double rho = 944.;
   const Tensor<1, 2> x({1., 0.});
@@ -301,7 +303,7 @@ TEST(CauchyBorn, HasTheWaveSpeedsOfTheTheory)
 
 TEST(Material, MinimumAcousticEigenvalueIsTheShearModulusAtIdentity)
 {
-  // Isotropic moduli: the slow wave is the shear wave in every direction.
+  // Isotropic moduli: in every direction the slow wave is the shear wave.
   EXPECT_NEAR(continuum::minimum_acoustic_eigenvalue(rubber_sheet(), matrix(1., 0., 0., 1.)), 5e5, 1e-10 * 5e5);
 }
 
@@ -320,7 +322,8 @@ TEST(Material, MinimumAcousticEigenvalueIsTheLowestOverAllDirections)
       const double speed = wave_speeds(law, F, Tensor<1, 2>({std::cos(pi * k / n), std::sin(pi * k / n)}), 1.)[0];
       lowest = std::min(lowest, speed * speed);
     }
-    // A scan of step pi/n misses a smooth minimum by about its curvature times (pi/n)^2/8, below 1e-6 of the stiffness.
+    // The error of a scan with step pi/n at a smooth minimum is about its curvature times (pi/n)^2/8, below 1e-6 of the
+    // stiffness.
     const double found = continuum::minimum_acoustic_eigenvalue(law, F);
     EXPECT_LE(found, lowest * (1. + 1e-12));
     EXPECT_NEAR(found, lowest, 1e-6 * law.tangent(F).norm());
@@ -329,7 +332,8 @@ TEST(Material, MinimumAcousticEigenvalueIsTheLowestOverAllDirections)
 
 TEST(Material, StrongEllipticityIsSeenToBeLost)
 {
-  // c2 < 0: at equibiaxial stretch the slow wave softens and turns unstable while a thickness still exists.
+  // c2 < 0: at equibiaxial stretch the slow wave softens and becomes unstable while an equilibrium thickness still
+  // exists.
   const MooneyRivlin law = rubber_sheet(-0.2);
   EXPECT_GT(continuum::minimum_acoustic_eigenvalue(law, matrix(1.5, 0., 0., 1.5)), 0.);
   EXPECT_LT(continuum::minimum_acoustic_eigenvalue(law, matrix(3., 0., 0., 0.7)), 0.);

@@ -1,7 +1,6 @@
 #pragma once
 
-// Archives in memory: what a class stores, value by value, under the names of the values and of the objects they are
-// in.
+// Archives in memory: values that a class stores, by the names of the values and of the objects that contain them.
 
 #include <gtest/gtest.h>
 

@@ -1,4 +1,4 @@
-// The loop over cells and faces against deal.II's, on each rank: the same calls in the same order.
+// Compares the loop over cells and faces with that of deal.II on each rank: equal calls in equal order.
 #include "continuum/mesh_loop.h"
 #include "sheets.h"
 
@@ -21,7 +21,7 @@ namespace
 {
 using Iterator = dealii::DoFHandler<2>::active_cell_iterator;
 
-// A call: the cells, and the numbers of faces and subfaces.
+// Call: cells, and numbers of faces and subfaces.
 using Call = std::pair<std::array<std::string, 2>, std::array<unsigned int, 4>>;
 using Calls = std::vector<Call>;
 constexpr unsigned int none = 99;
@@ -63,7 +63,7 @@ Calls calls_of_deal_ii(const dealii::DoFHandler<2> &dofs)
   return calls;
 }
 
-// Refined around a corner, so that there are hanging nodes, on ranks' borders and on periodic edges as well.
+// Makes a mesh that is refined around a corner, with hanging nodes also at rank boundaries and on periodic edges.
 void make_refined(Mesh &mesh, const bool periodic)
 {
   auto shape = rectangle(4, 4);
@@ -84,7 +84,7 @@ TEST(MeshLoop, CallsWhatDealIICalls)
   for (const bool periodic : {false, true})
   {
 #ifdef DEBUG
-    if (periodic) // where deal.II's loop fails an assertion of its own
+    if (periodic) // an internal assertion of deal.II's loop fails here
       continue;
 #endif
     Mesh mesh(MPI_COMM_WORLD);
@@ -102,7 +102,7 @@ TEST(MeshLoop, CallsWhatDealIICalls)
   }
 }
 
-// Periodic edges in every build: each face between cells is visited once over all ranks, and no face is an edge.
+// Periodic edges in all builds: each face between cells is visited once over all ranks, and no face is a boundary.
 TEST(MeshLoop, VisitsPeriodicFacesOnce)
 {
   const dealii::FE_Q<2> element(1);

@@ -1,4 +1,4 @@
-// Domains and their boundary ids, and refinement where the error is.
+// Domains and their boundary ids, and refinement by error indicators.
 #include "continuum/error_indicator.h"
 #include "continuum/errors.h"
 #include "continuum/meshes.h"
@@ -24,10 +24,10 @@ namespace
 struct Measures
 {
   double area;
-  std::map<dealii::types::boundary_id, double> edges; // length of each
+  std::map<dealii::types::boundary_id, double> edges; // length per edge
 };
 
-// By quadrature through the mapping that a sheet of this degree has.
+// Measures area and edges by quadrature with the mapping of a sheet of this degree.
 Measures measures(const continuum::Sheet &sheet)
 {
   dealii::FEValues<2> values(sheet.mapping(), sheet.element(), dealii::QGauss<2>(sheet.degree() + 2),
@@ -93,7 +93,7 @@ TEST(Meshes, HoleHasItsAreaAndRim)
     Mesh mesh(MPI_COMM_SELF);
     continuum::make_rectangle_with_hole(mesh, {length, height, radius, 2});
     const Measures m = measures(continuum::Sheet(mesh, law, 4));
-    // Each of 32 arcs is a polynomial of degree 4: the error of the area is that of interpolating a circle.
+    // Each of 32 arcs is a polynomial of degree 4; the error of the area is that of interpolating a circle.
     EXPECT_NEAR(m.area, length * height - pi * radius * radius, 1e-8 * radius * radius);
     EXPECT_NEAR(m.edges.at(continuum::edge::inner), 2. * pi * radius, 1e-8 * radius);
     EXPECT_NEAR(m.edges.at(continuum::edge::left), height, 1e-12);
@@ -179,7 +179,7 @@ TEST(Meshes, RefusesWhatCannotBeMeshed)
   EXPECT_THROW(continuum::read_gmsh(mesh, write_file("text.msh", "not a mesh")), continuum::InvalidInput);
 }
 
-// What deal.II takes for the curve 0, or leaves out, without a word.
+// Errors that deal.II does not report: it treats such edges as curve 0 or ignores them.
 TEST(Meshes, RefusesEdgesWithoutACurveAndNodesOutOfThePlane)
 {
   const auto refusal = [](const std::string &from, const std::string &to) -> std::string
@@ -199,11 +199,11 @@ TEST(Meshes, RefusesEdgesWithoutACurveAndNodesOutOfThePlane)
   EXPECT_EQ(refusal("$Nodes", "$Nodes"), "accepted");
   for (const std::string id : {"5", "300", "-1"})
     EXPECT_NE(refusal("3 1 2 4 2 3 6", "3 1 2 " + id + " 2 3 6").find("physical curve " + id), std::string::npos) << id;
-  // No line along the right edge, or one along the edge between the squares in its place.
+  // No line along the right edge, and a line along the edge between the squares instead.
   EXPECT_NE(refusal("8\n1 1 2 2 1 1 2\n2 1 2 2 1 2 3\n3 1 2 4 2 3 6\n", "7\n1 1 2 2 1 1 2\n2 1 2 2 1 2 3\n")
               .find("from (2, 0) to (2, 1) m on no physical curve"),
             std::string::npos);
-  // Nodes 3 and 6 in other planes than the rest; a mesh in another plane is one in a plane.
+  // Nodes 3 and 6 in other planes than the rest; a mesh in a shifted plane is accepted.
   EXPECT_NE(refusal("3 2 0 0", "3 2 0 5").find("z = 0 and 5 m"), std::string::npos);
   EXPECT_NE(refusal("6 2 1 0", "6 2 1 -1e-3").find("z = "), std::string::npos);
   std::string raised = two_squares;
@@ -277,7 +277,7 @@ $EndElements
   EXPECT_THROW((void)continuum::n_coarse_cells(write_file("square.msh", square("1 7"))), continuum::InvalidInput);
 }
 
-// A smaller error of the energy with a third of the unknowns of a uniform mesh.
+// The error of the energy is smaller with a third of the unknowns of a uniform mesh.
 TEST(ErrorIndicator, RefinesAtTheTipOfANotch)
 {
   const continuum::CauchyBorn law = rubber_network();
@@ -300,7 +300,7 @@ TEST(ErrorIndicator, RefinesAtTheTipOfANotch)
   {
     adaptive->refine(here, 0.12);
     const continuum::SolverReport report = adaptive->equilibrate();
-    EXPECT_EQ(report.load_steps.size(), 1u) << report.text(); // from the state carried over, not from zero
+    EXPECT_EQ(report.load_steps.size(), 1u) << report.text(); // from the interpolated state, not from zero
     energies.push_back(adaptive->total_energy());
     unknowns.push_back(adaptive->sheet().dof_handler().n_dofs());
   }
@@ -326,7 +326,7 @@ TEST(ErrorIndicator, VanishesInHomogeneousDeformation)
   continuum::make_rectangle(mesh, rectangle(6, 4));
   StaticSolver solver(mesh, continuum::Constitution(law, gradient), on_all_edges(affine(matrix(2.3, 0.1, 0.2, 2.8))));
   solver.solve();
-  // Against the energy of a deformation that varies by itself.
+  // Compared with the energy of an inhomogeneous deformation.
   EXPECT_LT(continuum::error_indicators(solver.sheet(), solver.displacement()).l2_norm(),
             1e-9 * std::sqrt(solver.total_energy()));
 }

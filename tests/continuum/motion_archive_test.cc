@@ -1,4 +1,4 @@
-// Motions that are stored and taken up again, on the ranks the program is started on.
+// Saving and resuming of motions, on the ranks of the test program.
 #include "continuum/dynamic_solver.h"
 #include "continuum/errors.h"
 #include "continuum/meshes.h"
@@ -24,7 +24,7 @@ namespace edge = continuum::edge;
 
 namespace
 {
-// A sheet set in motion, of laws and conditions that use everything the kind of linear solver can take.
+// Moving sheet with all laws and conditions that the linear solver supports.
 class Motion
 {
 public:
@@ -77,7 +77,8 @@ public:
   }
 };
 
-// With hanging nodes and a normal gradient that grows with the load, by conjugate gradients or, with dashpots, GMRES.
+// With hanging nodes and a normal gradient that increases with the load, solved by conjugate gradients or, with
+// dashpots, by GMRES.
 template <bool has_dashpots>
 class MultigridMotion : public Motion
 {
@@ -94,7 +95,7 @@ public:
     settings.degree = 2;
     settings.linear.direct_limit = 0;
     settings.linear.multigrid.coarsest_size = 100;
-    settings.linear.rebuild_ratio = 1.1; // so that some of the steps, and not all, set it up
+    settings.linear.rebuild_ratio = 1.1; // so that some but not all of the steps rebuild it
     make_solver(conditions, settings, has_dashpots ? &viscosity_ : nullptr);
   }
 };
@@ -124,7 +125,7 @@ std::vector<std::string> differing(const Store &one, const Store &two)
 
 constexpr unsigned int n_steps = 10;
 
-// States after each step, from the start on, of a motion that was never stopped.
+// Returns the states at the start and after each step of an uninterrupted motion.
 template <class M>
 std::vector<Store> undisturbed()
 {
@@ -156,7 +157,7 @@ void expect_same_bits_after_resuming(const std::vector<Store> &states)
   }
 }
 
-// The first `n` ranks, or none on ranks that are not of them.
+// Communicator of the first `n` ranks; null on other ranks.
 class FirstRanks
 {
 public:
@@ -177,7 +178,7 @@ private:
   MPI_Comm communicator_ = MPI_COMM_NULL;
 };
 
-// A field on a mesh whose coarse cells are turned against each other, some of them refined.
+// Field on a mesh with coarse cells of different orientations, some of them refined.
 struct SheetWithHole
 {
   explicit SheetWithHole(const MPI_Comm communicator) : mesh(communicator)
@@ -202,7 +203,7 @@ template <class M>
 void expect_same_bits_with_kept_multigrid()
 {
   const std::vector<Store> states = undisturbed<M>();
-  // Stored with a fresh multigrid, with one that has served for some steps, and with a worn one.
+  // Saved with an up-to-date multigrid, with one reused for several steps, and with a stale one.
   const auto set_ups = [&](const unsigned int at) { return value<unsigned int>(states[at], "linear_solver/set_ups"); };
   unsigned int n_keeping = 0;
   for (unsigned int at = 1; at <= n_steps; ++at)
@@ -254,7 +255,7 @@ TEST(MotionArchive, IsTakenUpByAnyNumberOfRanks)
       if (!is_first_rank())
         continue;
       EXPECT_EQ(differing(again, at_stop), std::vector<std::string>()) << writers << " to " << readers;
-      // Round-off, in sums of another order, and conjugate gradients that stop at 1e-8.
+      // Round-off in sums of another order, and conjugate gradients with a tolerance of 1e-8.
       const double energy = value<double>(at_end, "ledger/stored") + value<double>(at_end, "ledger/kinetic");
       EXPECT_NEAR(motion.solver().ledger().stored, value<double>(at_end, "ledger/stored"), 1e-9 * energy);
       EXPECT_NEAR(motion.solver().ledger().work, value<double>(at_end, "ledger/work"), 1e-9 * energy);
@@ -286,7 +287,7 @@ TEST(MotionArchive, PutsNodalValuesInTheirPlacesOnAnyNumberOfRanks)
       {
         const Point<2> X =
           shared.sheet->mapping().transform_unit_to_real_cell(cell, shared.sheet->element().unit_support_point(a));
-        // A node may be placed by another cell that it belongs to, with other rounding.
+        // The position of a node may be computed from another of its cells, with other rounding errors.
         ASSERT_NEAR(x(dofs[a]), field(X, shared.sheet->element().system_to_component_index(a).first), 1e-13);
       }
     }

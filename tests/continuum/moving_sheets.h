@@ -1,6 +1,6 @@
 #pragma once
 
-// Waves, strips and dashpots that tests of motion share. SI units.
+// Waves, strips and dashpots for tests of dynamics. SI units.
 
 #include "continuum/dynamic_solver.h"
 #include "sheets.h"
@@ -25,7 +25,7 @@ inline latcon::continuum::BoundaryConditions periodic()
   return conditions;
 }
 
-// Along x one wavelength of 1 m and n cells, two of them across.
+// Strip with one wavelength of 1 m and n cells along x, and two cells across.
 inline latcon::continuum::Rectangle strip(const unsigned int n)
 {
   return {1., 2. / n, n, 2, true, true};

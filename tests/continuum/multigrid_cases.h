@@ -1,6 +1,6 @@
 #pragma once
 
-// Linear forms and meshes on which multigrid is tried.
+// Linear forms and meshes for tests of multigrid.
 
 #include "continuum/multigrid.h"
 #include "sheets.h"
@@ -20,8 +20,8 @@ using dealii::AffineConstraints;
 using latcon::continuum::Multigrid;
 using latcon::continuum::Sheet;
 
-/// Grad u : Grad v + l^2 Grad Grad u : Grad Grad v, the normal derivative continuous by an interior penalty: the
-/// linear form of strain-gradient elasticity, with fourth-order operator and face terms.
+/// Linear form of strain-gradient elasticity, Grad u : Grad v + l^2 Grad Grad u : Grad Grad v, with an interior penalty
+/// on jumps of the normal derivative: fourth-order operator and face terms.
 class GradientForm
 {
 public:
@@ -160,10 +160,10 @@ public:
   }
 
 private:
-  double square_; // of the internal length
+  double square_; // squared internal length
 };
 
-/// Sheets of the same law and degree on coarser meshes.
+/// Creates sheets of the same law and degree on coarser meshes.
 inline Multigrid::SheetFactory same_sheets(const latcon::continuum::Material &law, const unsigned int degree)
 {
   return [&law, degree](const Mesh &mesh) { return std::make_unique<Sheet>(mesh, law, degree); };
@@ -177,7 +177,7 @@ inline latcon::continuum::DirichletBoundaries all_held()
           {latcon::continuum::edge::top, {}}};
 }
 
-/// Refines `times` times around `tip`, each time within half the radius of the last [m].
+/// Refines `times` times around `tip`, each time within half of the previous radius [m].
 inline void refine_towards(Mesh &mesh, const Point<2> &tip, const unsigned int times, double radius)
 {
   for (unsigned int n = 0; n < times; ++n, radius *= 0.5)
@@ -189,7 +189,7 @@ inline void refine_towards(Mesh &mesh, const Point<2> &tip, const unsigned int t
   }
 }
 
-/// Nodal forces of a body force of different components, zero where constrained.
+/// Returns the nodal forces of a body force with different components, zero at constrained unknowns.
 inline void body_force(const Sheet &sheet, const AffineConstraints<double> &constraints, Sheet::Vector &b)
 {
   b = 0.;
@@ -213,7 +213,7 @@ inline void body_force(const Sheet &sheet, const AffineConstraints<double> &cons
   b.compress(dealii::VectorOperation::add);
 }
 
-/// Conjugate gradients preconditioned by `multigrid`, from zero; returns the iterations.
+/// Solves by conjugate gradients preconditioned by `multigrid`, starting from zero; returns the number of iterations.
 inline unsigned int solve(const Multigrid &multigrid, const Sheet::Matrix &K, Sheet::Vector &x, const Sheet::Vector &b,
                           const double tolerance = 1e-8)
 {

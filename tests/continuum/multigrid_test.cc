@@ -10,7 +10,7 @@ using continuum::MultigridSettings;
 
 namespace
 {
-// Small enough that every mesh here has levels.
+// Settings with coarsest levels so small that every mesh here has several levels.
 MultigridSettings many_levels()
 {
   MultigridSettings settings;
@@ -18,7 +18,7 @@ MultigridSettings many_levels()
   return settings;
 }
 
-// A mesh of 3 x 2 cells, halved `halvings` times and then refined `times` times around a place inside.
+// Makes a mesh of 3 x 2 cells, halved `halvings` times and then refined `times` times around an interior point.
 void make_mesh(Mesh &mesh, const unsigned int halvings, const unsigned int times)
 {
   continuum::make_rectangle(mesh, rectangle(3u << halvings, 2u << halvings));
@@ -40,7 +40,7 @@ struct LinearProblem
     multigrid->update(sheet->make_ghosted(), K, form.assembler());
   }
 
-  // Iterations to a residual of 1e-8.
+  // Returns the number of iterations to a residual of 1e-8.
   unsigned int iterations() const
   {
     Sheet::Vector x = sheet->make_owned();
@@ -49,7 +49,7 @@ struct LinearProblem
     return solve(*multigrid, K, x, b);
   }
 
-  // Random numbers at the free degrees of freedom.
+  // Returns random numbers at the free degrees of freedom.
   Multigrid::Vector random(const unsigned int seed) const
   {
     std::mt19937 generator(seed);
@@ -128,7 +128,7 @@ TEST(Multigrid, NeedsAboutAsManyIterationsOnEveryMeshForTheFourthOrderForm)
 
 TEST(Multigrid, SmoothsAroundHangingNodesAsElsewhere)
 {
-  // The largest eigenvalue of patches times tangent. Measured: 5.7 on uniform and adaptive meshes.
+  // Largest eigenvalue of patches times tangent. Measured: 5.7 on uniform and adaptive meshes.
   const LinearProblem problem(0.1 * length, 3, 2, 4);
   const auto levels = problem.multigrid->levels();
   for (std::size_t level = 1; level < levels.size(); ++level)
@@ -144,7 +144,7 @@ TEST(Multigrid, HasAPatchForEveryFreeDegreeOfFreedom)
   const continuum::MooneyRivlin law = rubber_sheet();
   for (const unsigned int degree : {1u, 2u, 3u})
   {
-    // Cells refined at random: levels that meet in every way that the mesh allows.
+    // Randomly refined cells, with all combinations of levels that a mesh can have.
     Mesh mesh(MPI_COMM_SELF);
     continuum::make_rectangle(mesh, rectangle(6, 4));
     std::mt19937 generator(degree);
@@ -232,7 +232,7 @@ Tensor<1, 2> quadratic(const Point<2> &X)
 
 TEST(Multigrid, TakesTheStateToEveryLevel)
 {
-  // A quadratic field, held boundaries included, is the same field on every mesh.
+  // A quadratic field, including held boundaries, is represented exactly on every mesh.
   const continuum::MooneyRivlin law = rubber_sheet();
   for (const unsigned int degree : {2u, 3u})
   {
@@ -302,7 +302,7 @@ TEST(Multigrid, StaysFiniteForATangentThatIsNotPositiveDefinite)
 
 TEST(Multigrid, SolvesForTheTangentOfAStretchedSheet)
 {
-  // The same cycle with the law's own tangent at a large, inhomogeneous stretch. Measured: 8 and 8.
+  // The cycle with the tangent of the law at a large, inhomogeneous stretch. Measured: 8 and 8.
   const continuum::MooneyRivlin law = rubber_sheet();
   for (const unsigned int degree : {2u, 3u})
   {

@@ -1,4 +1,4 @@
-// The gradient energy of a network with all directions alike: against that of the lattice turned in many ways.
+// Isotropic gradient energy of a network, compared with that of the rotated lattice.
 #include "continuum/network_gradient.h"
 #include "gradient_checks.h"
 
@@ -8,9 +8,9 @@ using namespace latcon;
 using namespace gradient_checks;
 using continuum::NetworkGradient;
 
-// theory-continuum.md, eq. (C.57): the mean over all rotations of the reference configuration of the lattice's energy,
-// here the sum over 64 of them. The law's 32 directions miss the mean by rho^32, rho = (l1 - l2)/(l1 + l2), times a
-// power of 32 for the derivatives: by 5e-33 and 2e-11 times that.
+// theory-continuum.md, eq. (C.57): mean of the lattice energy over all rotations of the reference configuration, here a
+// sum over 64 rotations. The 32 directions of the law differ from the mean by rho^32, rho = (l1 - l2)/(l1 + l2), times
+// a power of 32 for the derivatives: by 5e-33 and 2e-11 times that.
 TEST(NetworkGradient, IsTheMeanOfTheLatticeOverAllDirections)
 {
   const auto bonds = rubber_bonds(spacing);
@@ -41,7 +41,8 @@ TEST(NetworkGradient, IsTheMeanOfTheLatticeOverAllDirections)
       Q += turned_law.double_stress(F, G);
       Q_by_G += turned_law.double_stress_by_G(F);
     }
-    const double scale = law.energy(F, G) + law.energy(F, Z); // of the form, which has both signs, and its derivatives
+    const double scale =
+      law.energy(F, G) + law.energy(F, Z); // size of the form, which has both signs, and of its derivatives
     EXPECT_NEAR(law.form(F, G, Z), form, digits * scale);
     EXPECT_NEAR((law.form_by_F(F, G, Z) - by_F).norm(), 0., 10. * digits * scale);
     EXPECT_NEAR((law.double_stress(F, G) - Q).norm(), 0., digits * Q.norm());
@@ -49,7 +50,7 @@ TEST(NetworkGradient, IsTheMeanOfTheLatticeOverAllDirections)
   }
 }
 
-// Bonds of different potentials do not act as one.
+// Bonds with different potentials are not merged.
 TEST(NetworkGradient, FormsAreDerivativesOfTheEnergy)
 {
   const auto bonds = mixed_bonds();
@@ -73,7 +74,7 @@ TEST(NetworkGradient, IsObjective)
   expect_objective(NetworkGradient(bonds, LatticeGradient::smallest_length(bonds)));
 }
 
-// Turned by any angle, up to the n-th power of (l1 - l2)/(l1 + l2), which l1/l2 = 3 halves.
+// Isotropic up to the n-th power of (l1 - l2)/(l1 + l2), which is 1/2 for l1/l2 = 3.
 TEST(NetworkGradient, IsIsotropic)
 {
   const auto bonds = rubber_bonds(spacing);
@@ -89,7 +90,7 @@ TEST(NetworkGradient, IsIsotropic)
   }
 }
 
-// theory-continuum.md, eq. (C.58). With G_iJK = p_i delta_JK every direction has the whole of G along its bonds.
+// theory-continuum.md, eq. (C.58). With G_iJK = p_i delta_JK, G is completely along the bonds for every direction.
 TEST(NetworkGradient, HasTheMeanSquaredLengthOfLikeBonds)
 {
   const auto bonds = rubber_bonds(spacing);
@@ -103,6 +104,6 @@ TEST(NetworkGradient, HasTheMeanSquaredLengthOfLikeBonds)
   EXPECT_NEAR(NetworkGradient(bonds, least).energy(I, G), 0., 100. * epsilon * mu);
   EXPECT_GT(NetworkGradient(bonds, 1.01 * least).energy(I, G), 1e-6 * mu);
   EXPECT_THROW(NetworkGradient(bonds, 0.999 * least), continuum::InvalidMaterial);
-  // A third potential, on bonds of its own: the longest mean counts.
+  // With a third potential on additional bonds, the longest mean determines the result.
   EXPECT_NEAR(NetworkGradient::smallest_length(mixed_bonds()), 1.3 * spacing / std::sqrt(12.), 10. * epsilon * spacing);
 }

@@ -1,5 +1,5 @@
-// What several ranks compute, against one rank alone: each rank solves the whole problem on its own communicator, then
-// all solve it together.
+// Comparison of several ranks with one rank: each rank solves the whole problem on its own communicator, then all solve
+// it together.
 #include "continuum/collective.h"
 #include "continuum/dynamic_solver.h"
 #include "continuum/errors.h"
@@ -68,7 +68,7 @@ void expect_same(const Answer &alone, const Answer &together)
   }
 }
 
-// A gradient law on a notched sheet that refines itself: face terms, hanging nodes and their constraints across ranks.
+// Gradient law on an adaptively refined notched sheet: face terms, hanging nodes and their constraints across ranks.
 Answer adaptive_answer(const MPI_Comm communicator, const dealii::types::global_dof_index direct_limit)
 {
   const continuum::MooneyRivlin law = rubber_sheet();
@@ -107,7 +107,7 @@ struct LinearAnswer
   std::vector<continuum::Multigrid::LevelFacts> levels;
 };
 
-// The fourth-order form on an adaptive mesh, by conjugate gradients with multigrid.
+// Fourth-order form on an adaptive mesh, solved by conjugate gradients with multigrid.
 LinearAnswer linear_answer(const MPI_Comm communicator, const unsigned int degree)
 {
   const continuum::MooneyRivlin law = rubber_sheet();
@@ -130,7 +130,7 @@ LinearAnswer linear_answer(const MPI_Comm communicator, const unsigned int degre
   LinearAnswer answer;
   answer.iterations = multigrid_cases::solve(multigrid, K, x, b, 1e-12);
   multigrid.constraints().distribute(x);
-  // Scaled to be a displacement that the law takes.
+  // Scaled to a displacement within the domain of the law.
   x *= 1e-3 * length / x.linfty_norm();
   continuum::Sheet::Vector u = sheet.make_ghosted();
   u = x;
@@ -182,7 +182,7 @@ TEST(Ranks, NeedTheSameMultigridIterationsForTheSameAnswer)
 
 TEST(Ranks, SolveSheetsSmallerThanTheirNumber)
 {
-  // One cell: all ranks but one have nothing.
+  // One cell: all ranks except one have no cells.
   const continuum::CauchyBorn law = rubber_network();
   Mesh mesh(MPI_COMM_WORLD);
   continuum::make_rectangle(mesh, rectangle(1, 1));
@@ -211,7 +211,7 @@ TEST(Ranks, AllThrowWhatOneThrows)
   {
     EXPECT_EQ(failure.what(), "rank " + std::to_string(last));
   }
-  // The gravest failure is told, wherever it is.
+  // The most severe failure is reported, regardless of its rank.
   const auto fail_differently = [&]
   {
     if (rank() == last)
@@ -224,7 +224,7 @@ TEST(Ranks, AllThrowWhatOneThrows)
 
 TEST(Ranks, AllSeeANonPhysicalStateOnOneRank)
 {
-  // One cell of the sheet, in a corner, is turned inside out.
+  // One cell in a corner of the sheet is inverted.
   const continuum::MooneyRivlin law = rubber_sheet();
   Mesh mesh(MPI_COMM_WORLD);
   continuum::make_rectangle(mesh, rectangle(8, 8));
@@ -246,7 +246,7 @@ TEST(Ranks, AllSeeANonPhysicalStateOnOneRank)
   EXPECT_THROW(sheet.residual(u, r, magnitude), continuum::NonPhysicalState);
   EXPECT_LT(sheet.determinant_range(u).smallest, 0.);
 
-  // The same through the solver, which cuts its steps, gives up and tells every rank.
+  // The solver halves its steps, fails, and throws on every rank.
   StaticSettings settings;
   settings.degree = 1;
   settings.smallest_load_step = 0.25;
@@ -267,8 +267,8 @@ struct Motion
   Tensor<1, 2> momentum;
 };
 
-// One edge shaken: a gradient law, viscosity, a load and time rule that use everything; solved directly if the sheet is
-// periodic across, else by GMRES.
+// Sheet with a shaken edge, a gradient law, viscosity, loads and generalised-alpha; solved directly if the sheet is
+// periodic across, otherwise by GMRES.
 Motion motion(const MPI_Comm communicator, const bool is_periodic)
 {
   const continuum::CauchyBorn law = rubber_network();
@@ -370,7 +370,7 @@ TEST(Ranks, GiveTheSameGradientEquilibriumOnAnAdaptiveMesh)
 TEST(Ranks, WritePiecesThatVtkJoins)
 {
   namespace fs = std::filesystem;
-  // The same folder on every rank: named after the parent, mpirun.
+  // The same folder on every rank, named after the parent process, mpirun.
   const fs::path directory = fs::temp_directory_path() / ("latcon_ranks_" + std::to_string(::getppid()));
   const continuum::CauchyBorn law = rubber_network();
   Mesh mesh(MPI_COMM_WORLD);

@@ -1,4 +1,4 @@
-// Edges that open in the course of a motion, and planes of symmetry of sheets with a gradient energy.
+// Edges that open during a motion, and planes of symmetry of sheets with a gradient energy.
 #include "continuum/errors.h"
 #include "moving_sheets.h"
 
@@ -32,7 +32,7 @@ void open(Mesh &mesh, const double X)
         cell->face(face)->set_boundary_id(opened);
 }
 
-// A sheet held at the top and, across it, at the bottom.
+// Sheet held at the top and, in y only, at the bottom.
 struct Pulled
 {
   continuum::CauchyBorn law = rubber_network();
@@ -61,7 +61,7 @@ struct Pulled
 };
 } // namespace
 
-// The force that held a node acts at full strength when it is let go, and is gone after the given time.
+// The reaction at a released node acts at full strength at the release, and is zero after the given time.
 TEST(Release, LetsNodesGoSmoothly)
 {
   const Pulled problem;
@@ -78,7 +78,7 @@ TEST(Release, LetsNodesGoSmoothly)
     solver->run_until(2. * duration);
     work = solver->ledger().released;
     EXPECT_NEAR(solver->ledger().imbalance, 0., 2e-2 * work);
-    EXPECT_NEAR(solver->ledger().work, -work, 1e-12 * std::abs(work)); // what is held does not move
+    EXPECT_NEAR(solver->ledger().work, -work, 1e-12 * std::abs(work)); // the held edge does not move
     return first;
   };
   double coarse = 0., middle = 0., fine = 0.;
@@ -90,7 +90,7 @@ TEST(Release, LetsNodesGoSmoothly)
   EXPECT_NEAR((coarse - middle) / (middle - fine), 4., 1.2);
 }
 
-// A long time after it was let go an edge is where it is in equilibrium when it was never held.
+// A long time after the release, an edge is at the equilibrium position of an edge that was never held.
 TEST(Release, EndsWithAFreeEdge)
 {
   const Pulled problem;
@@ -129,7 +129,7 @@ TEST(Release, RefusesWhatItCannotDo)
   solver->release(2e-3);
   solver->step();
   open(mesh, 0.5 * length);
-  EXPECT_THROW(solver->release(2e-3), continuum::InvalidInput); // the first ones are still pulled
+  EXPECT_THROW(solver->release(2e-3), continuum::InvalidInput); // reactions of the first release still act
   solver->step();
   EXPECT_NO_THROW(solver->release(2e-3));
   for (const auto &cell : mesh.active_cell_iterators())
@@ -140,8 +140,8 @@ TEST(Release, RefusesWhatItCannotDo)
   EXPECT_THROW(solver->release(2e-3), continuum::InvalidInput); // a free node would be held
 }
 
-// Half of a sheet with a gradient energy is the half of the whole sheet: on the plane of symmetry the displacement
-// along it has no normal gradient, the one across it is zero, and the normal gradient of that is free.
+// A half model of a sheet with a gradient energy agrees with the whole sheet: on the plane of symmetry the tangential
+// displacement has no normal gradient, the normal displacement is zero, and its normal gradient is free.
 TEST(SymmetryPlane, HalvesASheet)
 {
   const Pulled problem;
@@ -178,7 +178,7 @@ TEST(SymmetryPlane, HalvesASheet)
       largest = std::max(largest, (found[n].F - expected[n].F).norm());
     return largest;
   };
-  // The whole sheet has faces on the plane, on which its own jumps are penalised: equal to the discretisation error.
+  // The whole sheet has faces on the plane, with penalised jumps, so both agree up to the discretisation error.
   EXPECT_LT(error(dealii::ComponentMask(std::vector<bool>{true, false})), 2e-4);
   EXPECT_GT(error(dealii::ComponentMask(std::vector<bool>{true, true})), 1e-2);
   half_conditions.normal_gradients = {

@@ -1,6 +1,6 @@
 #pragma once
 
-// Laws, meshes and conditions that several continuum tests use. SI units.
+// Laws, meshes and conditions for several continuum tests. SI units.
 
 #include "continuum/cauchy_born.h"
 #include "continuum/isotropic_gradient.h"
@@ -39,7 +39,7 @@ inline Tensor<2, 2> rotation(const double angle)
   return matrix(std::cos(angle), -std::sin(angle), std::sin(angle), std::cos(angle));
 }
 
-/// A displacement [m], given at reference places, at the nodes of a sheet: one field, with ghost entries.
+/// Interpolates a displacement [m], a function of reference position, at the nodes of a sheet; with ghost entries.
 inline latcon::continuum::Sheet::Vector nodal(const latcon::continuum::Sheet &sheet,
                                               const std::function<Tensor<1, 2>(const Point<2> &)> &field)
 {
@@ -53,7 +53,7 @@ inline latcon::continuum::Sheet::Vector nodal(const latcon::continuum::Sheet &sh
   return u;
 }
 
-/// A second gradient of places G_iJK [1/m], symmetric in J and K, with entries up to 0.3 over `length` [m].
+/// Returns a random second gradient G_iJK [1/m], symmetric in J and K, with entries up to 0.3 / `length` [m].
 inline Tensor<3, 2> random_gradient(std::mt19937 &generator, const double length)
 {
   std::uniform_real_distribution<double> entry(-0.3 / length, 0.3 / length);
@@ -67,8 +67,8 @@ inline Tensor<3, 2> random_gradient(std::mt19937 &generator, const double length
   return G;
 }
 
-/// Rubber of the source paper's Fig. 1: both shells of the triangular network, area factor s = 2/3, so weights s and
-/// sqrt(3) s.
+/// Rubber of Fig. 1 of the source paper: both shells of the triangular network, area factor s = 2/3, hence weights s
+/// and sqrt(3) s.
 inline latcon::continuum::CauchyBorn rubber_network(const double a = 1e5, const double b = 1.5e5)
 {
   const double s = 2. / 3.;
@@ -79,7 +79,7 @@ inline latcon::continuum::CauchyBorn rubber_network(const double a = 1e5, const 
   return latcon::continuum::CauchyBorn(families);
 }
 
-/// Its bonds, for nearest neighbours at the distance `spacing` [m].
+/// Bonds of rubber_network, with nearest neighbours at the distance `spacing` [m].
 inline std::vector<latcon::continuum::BondFamily> rubber_bonds(const double spacing)
 {
   const latcon::continuum::CauchyBorn network = rubber_network();
@@ -101,7 +101,7 @@ inline latcon::continuum::MooneyRivlin rubber_sheet(const double ratio = -0.05)
     latcon::continuum::MooneyRivlin::Constants::with_equal_lame_constants(5e5, ratio));
 }
 
-/// A deformation gradient with principal stretches from `low` to `high` and rotations on both sides.
+/// Returns a random deformation gradient with principal stretches from `low` to `high` and rotations on both sides.
 inline Tensor<2, 2> random_deformation(std::mt19937 &generator, const double low = 0.7, const double high = 3.5)
 {
   std::uniform_real_distribution<double> stretch(low, high);
@@ -110,7 +110,7 @@ inline Tensor<2, 2> random_deformation(std::mt19937 &generator, const double low
          rotation(angle(generator));
 }
 
-/// A displacement field from a lambda.
+/// Displacement field defined by a lambda.
 class Field : public dealii::Function<2>
 {
 public:
@@ -134,7 +134,7 @@ inline std::shared_ptr<Field> affine(const Tensor<2, 2> &F)
   return std::make_shared<Field>([F](const Point<2> &X) { return F * Tensor<1, 2>(X) - Tensor<1, 2>(X); });
 }
 
-/// The same displacement on all four edges.
+/// Prescribes the same displacement on all four edges.
 inline std::vector<latcon::continuum::PrescribedDisplacement> on_all_edges(const std::shared_ptr<Field> &field)
 {
   return {{latcon::continuum::edge::left, field},
@@ -143,8 +143,8 @@ inline std::vector<latcon::continuum::PrescribedDisplacement> on_all_edges(const
           {latcon::continuum::edge::top, field}};
 }
 
-/// Stretch by (stretch_x, stretch_y) on all edges of a 0.15 m x 0.1 m sheet, and on top of it a bump of the top edge of
-/// height `bump` [m] that vanishes with three derivatives at the corners, so that the solution is smooth there.
+/// Prescribes the stretch (stretch_x, stretch_y) on all edges of a 0.15 m x 0.1 m sheet, plus a bump of height `bump`
+/// [m] of the top edge that vanishes with three derivatives at the corners, so that the solution is smooth there.
 constexpr double length = 0.15;
 constexpr double height = 0.1;
 inline std::vector<latcon::continuum::PrescribedDisplacement> bump_problem(const double stretch_x,
@@ -163,7 +163,7 @@ inline latcon::continuum::Rectangle rectangle(const unsigned int cells_x, const 
   return {length, height, cells_x, cells_y};
 }
 
-/// Points that lie on no cell boundary of the meshes used here, spread over the sheet.
+/// Returns points all over the sheet that are on no cell boundary of the meshes used here.
 inline std::vector<Point<2>> scattered_points(const unsigned int n_x = 23, const unsigned int n_y = 17)
 {
   std::vector<Point<2>> points;

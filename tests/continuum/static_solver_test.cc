@@ -1,4 +1,4 @@
-// The static solver on one rank: exactness, orders, Newton, and what happens when it cannot converge.
+// Static solver on one rank: exactness, orders, Newton's method, and failure to converge.
 //
 //            top: held             Every edge is held unless a test says otherwise. The bump problem is smooth up to
 //        +--------------+          the corners, so that the orders of the elements can show.
@@ -21,7 +21,7 @@ namespace edge = continuum::edge;
 
 namespace
 {
-// Moves interior vertices by up to 0.3 of a cell; the edges stay straight and their vertices in place.
+// Moves interior vertices by up to 0.3 of a cell; vertices on the edges do not move.
 void distort(Mesh &mesh, const unsigned int cells_x, const unsigned int cells_y)
 {
   dealii::GridTools::transform(
@@ -42,7 +42,7 @@ double norm_of_error(const std::vector<continuum::PointState> &states, const std
   return std::sqrt(sum / states.size());
 }
 
-// Residuals of the last load step.
+// Returns the residuals of the last load step.
 std::vector<continuum::NewtonIteration> last_step(const continuum::SolverReport &report)
 {
   std::vector<continuum::NewtonIteration> last;
@@ -97,7 +97,7 @@ TEST(StaticSolver, PassesPatchTestOnDistortedMesh)
 
 TEST(StaticSolver, HoldsOnlyTheMaskedComponents)
 {
-  // Uniaxial tension: u_x given left and right, u_y at the bottom, nothing at the top.
+  // Uniaxial tension: u_x is prescribed left and right, u_y at the bottom, the top is free.
   const continuum::CauchyBorn law = rubber_network();
   Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, rectangle(3, 2));
@@ -169,7 +169,7 @@ TEST(StaticSolver, EnergyFallsAndToleranceIsMet)
 
 TEST(StaticSolver, CutsALoadStepThatIsTooBig)
 {
-  // The bump pushes the top edge half way down: in one step the predictor turns cells over.
+  // The bump pushes the top edge half way down: in a single step the predictor inverts cells.
   const continuum::MooneyRivlin law = rubber_sheet(0.1);
   Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, rectangle(12, 8));
@@ -185,13 +185,13 @@ TEST(StaticSolver, CutsALoadStepThatIsTooBig)
   slowly.first_load_step = 1. / 64.;
   StaticSolver step_by_step(mesh, law, conditions, slowly);
   step_by_step.solve();
-  // Residuals at 1e-10 of the reactions leave an energy error of the order of its square: round-off is what remains.
+  // Residuals of 1e-10 of the reactions give an energy error of the order of their square: only round-off remains.
   EXPECT_NEAR(at_once.total_energy(), step_by_step.total_energy(), 1e-12 * step_by_step.total_energy());
 }
 
 TEST(StaticSolver, BacktracksOnEnergy)
 {
-  // Springs soften towards their rest length from below, so a large compression needs steps shorter than Newton's.
+  // Springs in compression soften, so a large compression needs steps shorter than full Newton steps.
   const continuum::CauchyBorn law = rubber_network();
   Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, rectangle(12, 8));
@@ -224,13 +224,13 @@ TEST(StaticSolver, ReportsEveryLoadStepToTheObserver)
       factors.push_back(factor);
       EXPECT_NEAR(solver.determinant_range().largest, (1. + factor) * (1. + factor), 1e-10);
     });
-  // Each step converges at once and doubles the next.
+  // Each step converges fast and doubles the next.
   EXPECT_EQ(factors, (std::vector<double>{0.25, 0.75, 1.}));
 }
 
 TEST(StaticSolver, ThrowsWithHistoryWhenItDoesNotConverge)
 {
-  // The right edge is pushed through the left one: no load step can take the sheet there.
+  // The right edge is pushed through the left one, which no load step can reach.
   const continuum::MooneyRivlin law = rubber_sheet(0.1);
   Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, rectangle(6, 4));
@@ -272,8 +272,8 @@ TEST(StaticSolver, ThrowsWhenIterationsRunOut)
 // theory-continuum.md, eq. (C.19).
 TEST(StaticSolver, StopsAtTheRoundOffOfTheResidual)
 {
-  // A tolerance that no arithmetic can meet is answered by the floor, on coarse and fine meshes. A floor that stays
-  // within a factor of 100 of what is reached is not merely generous.
+  // With a tolerance below round-off, the floor ends the iteration, on coarse and fine meshes. The floor must be within
+  // a factor of 100 of the residual reached, so it is not too large.
   const continuum::MooneyRivlin law = rubber_sheet();
   for (const unsigned int n : {4, 12, 36})
   {
@@ -303,14 +303,14 @@ TEST(StaticSolver, ReactionsBalance)
     sum += force;
     size += force.norm();
   }
-  // Free residuals are held to 1e-10 of the reactions, and they are what is missing from the sum.
+  // Free residuals are at most 1e-10 of the reactions, and the sum is off by these residuals.
   EXPECT_NEAR(sum.norm(), 0., 1e-10 * size);
 }
 
 // theory-continuum.md, eqs. (C.15) and (C.18).
 TEST(StaticSolver, ReactionIsTheDerivativeOfTheEnergy)
 {
-  // dE/d(load factor) = reaction of the top edge against its unit displacement, all else held in place.
+  // dE/d(load factor) = reaction of the top edge times its unit displacement, with all other edges fixed.
   const continuum::CauchyBorn law = rubber_network();
   Mesh mesh(MPI_COMM_SELF);
   continuum::make_rectangle(mesh, rectangle(8, 8));
@@ -346,8 +346,8 @@ TEST(StaticSolver, ConvergesAtTheOrderOfTheElements)
     solver.solve();
     return solver.evaluate(scattered_points());
   };
-  // Degree 5 on 24 x 24 is two orders closer than degree 3 on 32 x 32; coarser than 16 x 16 the bump is not resolved
-  // yet.
+  // Degree 5 on 24 x 24 cells is two orders more accurate than degree 3 on 32 x 32; meshes coarser than 16 x 16 do not
+  // resolve the bump.
   const auto exact = solution(24, 5);
   for (const unsigned int degree : {1, 2, 3})
   {
@@ -374,7 +374,8 @@ TEST(StaticSolver, ConjugateGradientsAgreeWithDirectSolver)
     settings.linear.direct_limit = 0;
     StaticSolver iterative(mesh, law, conditions, settings);
     const continuum::SolverReport report = iterative.solve();
-    EXPECT_EQ(report.iterations.size(), newton_iterations); // linear solves tight enough to keep Newton quadratic
+    EXPECT_EQ(report.iterations.size(),
+              newton_iterations); // linear solves are accurate enough for quadratic convergence
     EXPECT_NEAR(iterative.total_energy(), direct.total_energy(), 1e-12 * direct.total_energy());
     const auto left = direct.reactions().at(edge::left);
     EXPECT_NEAR((iterative.reactions().at(edge::left) - left).norm(), 0., 1e-9 * left.norm());
@@ -385,12 +386,12 @@ TEST(StaticSolver, ConjugateGradientsAgreeWithDirectSolver)
     most_iterations.push_back(most);
     RecordProperty("iterations at " + std::to_string(n), std::to_string(most));
   }
-  // Flat under refinement, and as few as the cycle needs for any local law: 6 measured on both meshes.
+  // Constant under refinement, and as few as for any local law: 6 measured on both meshes.
   EXPECT_LE(most_iterations[1], most_iterations[0] + 1);
   EXPECT_LE(most_iterations[1], 9u);
 }
 
-// An odd number of cells leaves no coarser mesh: the whole system is the coarsest level, too large for KLU.
+// With an odd number of cells there is no coarser mesh: the whole system is the coarsest level, too large for KLU.
 TEST(StaticSolver, SolvesOnAMeshThatCannotBeCoarsened)
 {
   const continuum::MooneyRivlin law = rubber_sheet();
@@ -448,13 +449,13 @@ TEST(StaticSolver, LeavesAnUnloadedSheetAtRest)
   StaticSolver solver(mesh, law, on_all_edges(affine(matrix(1., 0., 0., 1.))));
   solver.solve();
   EXPECT_NEAR(solver.total_energy(), 0., 1e-14 * 5e5 * length * height);
-  // The round-off of the stress at F = I, over the stiffness.
+  // Round-off of the stress at F = I, divided by the stiffness.
   EXPECT_LE(solver.displacement().linfty_norm(), 1e-15 * length);
 }
 
 TEST(Sheet, EvaluatesOnCellBoundariesAndCorners)
 {
-  // Linear field: the gradient is the same from every side, so the mean over the cells is exact.
+  // Linear field: the gradient is equal in all adjacent cells, so their mean is exact.
   const continuum::CauchyBorn law = rubber_network();
   const Tensor<2, 2> F = matrix(1.3, 0.2, 0.1, 0.9);
   Mesh mesh(MPI_COMM_SELF);

@@ -1,5 +1,5 @@
-// Laws of a triangular network must not see which of its rows is called the first, nor a mirror, nor units. Where units
-// are powers of two, bits must not change either. What must not see the observer is in materials_test.cc and
+// Laws of a triangular network must be invariant under the symmetries of the lattice and under a change of units. For
+// units that are powers of two, bits must not change either. Objectivity is tested in materials_test.cc and
 // gradient_laws_test.cc.
 #include "moving_sheets.h"
 
@@ -20,7 +20,7 @@ namespace
 const double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double spacing = 0.625e-3;
 
-// With x = F X and X = Q^T X', where Q is orthogonal: F' = F Q^T and G'_iJK = G_iLM Q_JL Q_KM.
+// Transforms to X' with X = Q^T X', Q orthogonal: F' = F Q^T and G'_iJK = G_iLM Q_JL Q_KM.
 Gradient seen_from(const Tensor<2, 2> &Q, const Gradient &G)
 {
   Gradient result;
@@ -29,7 +29,7 @@ Gradient seen_from(const Tensor<2, 2> &Q, const Gradient &G)
   return result;
 }
 
-// Of a triangular network: sixths of a turn, and mirrors on lines along and across its rows.
+// Symmetry group of a triangular network: rotations by 60 degrees, and reflections in lines along and across its rows.
 std::vector<Tensor<2, 2>> hexagonal_group()
 {
   std::vector<Tensor<2, 2>> group;
@@ -65,7 +65,7 @@ TEST(MaterialSymmetry, LocalLawsAreThoseOfTheHexagonalNetwork)
       for (const Tensor<2, 2> &Q : hexagonal_group())
       {
         const Tensor<2, 2> turned = F * transpose(Q);
-        if (determinant(turned) < 0.) // a mirror of both configurations is a deformation
+        if (determinant(turned) < 0.) // a reflection of both configurations is a valid deformation
         {
           const Tensor<2, 2> M = matrix(1., 0., 0., -1.);
           EXPECT_NEAR(law->energy(M * turned), law->energy(F), 100. * epsilon * scale);
@@ -83,7 +83,7 @@ TEST(MaterialSymmetry, LocalLawsAreThoseOfTheHexagonalNetwork)
     }
 }
 
-// The network knows its directions; a sheet of rubber does not.
+// The network is anisotropic; a sheet of rubber is isotropic.
 TEST(MaterialSymmetry, OnlyTheNetworkKnowsATwelfthOfATurn)
 {
   const Laws laws;
@@ -113,7 +113,7 @@ TEST(MaterialSymmetry, GradientLawsAreThoseOfTheHexagonalNetwork)
       const double scale = law->energy(F, G) + law->energy(F, Z);
       for (const Tensor<2, 2> &Q : hexagonal_group())
       {
-        // A mirror is one of both configurations, so that what was a deformation is one still.
+        // Reflect both configurations, so that det F remains positive.
         const Tensor<2, 2> R = determinant(Q) < 0. ? M : identity;
         const auto moved = [&](const Gradient &gradient)
         {
@@ -166,7 +166,8 @@ TEST(GradientLaw, HasSymmetricForms)
     }
 }
 
-// Lengths 4 times, stresses 8 times as large: gradients 1/4, double stresses 32, what resists a gradient 128 times.
+// Lengths 4 times and stresses 8 times larger: factors 1/4 for gradients, 32 for double stresses, 128 for gradient
+// stiffnesses.
 TEST(GradientLaw, DoesNotDependOnUnits)
 {
   constexpr double l = 4., e = 8.;
@@ -201,15 +202,15 @@ TEST(GradientLaw, DoesNotDependOnUnits)
 
 namespace
 {
-// Units of a sheet in those of another one. The equation of motion, r u / t^2 = e / l, gives that of time; a viscosity
-// is a stress times a time.
+// Units of a sheet relative to those of another one. The equation of motion, r u / t^2 = e / l, determines the unit of
+// time; a viscosity is a stress times a time.
 struct Units
 {
   double length, stress, density;
   double time() const { return length * std::sqrt(density / stress); }
 };
 
-// A sheet with everything that has a unit: mass with micro-inertia, both laws, dashpots, a moving edge, a traction, a
+// Sheet with all quantities that have units: mass with micro-inertia, both laws, dashpots, a moving edge, a traction, a
 // weak normal gradient.
 struct MovingSheet
 {
@@ -251,8 +252,8 @@ struct MovingSheet
 };
 } // namespace
 
-// All units are powers of two, so that both runs have the same mantissas throughout, in the elements, in the factors of
-// the matrix and in all norms that are compared.
+// All units are powers of two, so both runs have equal mantissas everywhere: in the elements, in the factors of the
+// matrix and in all compared norms.
 TEST(DynamicSolver, DoesNotDependOnUnits)
 {
   const MovingSheet one_sheet({1., 1., 1.});

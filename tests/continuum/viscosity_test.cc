@@ -1,5 +1,5 @@
-// Dashpots of a network alone: stress and tangents against automatic differentiation and Taylor's theorem, objectivity,
-// dissipation, and the force of one dashpot by hand.
+// Dashpots of a network: stress and tangents, compared with automatic differentiation and Taylor's theorem,
+// objectivity, dissipation, and a hand calculation for one dashpot.
 #include "continuum/errors.h"
 #include "continuum/viscosity.h"
 #include "sheets.h"
@@ -36,7 +36,7 @@ Tensor<2, 2> random_rate(std::mt19937 &generator)
 using Fad = Sacado::Fad::DFad<double>;
 constexpr unsigned int n_variables = 8; // F_11, F_12, F_21, F_22, then Fdot likewise
 
-// The stress once more: the rate of l from l dl/dt = (F N).(Fdot N).
+// Independent implementation of the stress: rate of l from l dl/dt = (F N).(Fdot N).
 std::array<Fad, 4> differentiable_stress(const FibreViscosity &law, const std::array<Fad, n_variables> &z)
 {
   std::array<Fad, 4> P;
@@ -74,8 +74,8 @@ TEST(Viscosity, AgreesWithDifferentiatedStress)
     const auto P = differentiable_stress(law, z);
     const Tensor<4, 2> by_F = law.stress_by_F(F, Fdot);
     const Tensor<4, 2> by_rate = law.stress_by_rate(F, Fdot);
-    // Both sides add some tens of terms: 100 rounding errors of their size, which is that of eta and of eta Fdot / l
-    // with stretches l of at least 0.7.
+    // Both sides add tens of terms: 100 rounding errors of their size, which is that of eta and of eta Fdot / l with
+    // stretches l of at least 0.7.
     const double tolerance = 100. * epsilon * by_rate.norm();
     const double rate = Fdot.norm() / 0.7;
     for (unsigned int i = 0; i < 2; ++i)
@@ -107,7 +107,7 @@ TEST(Viscosity, TangentsLeaveASecondOrderRemainder)
                                dealii::double_contract<2, 0, 3, 1>(law.stress_by_rate(F, Fdot), Gdot);
     const auto remainder = [&](const double h)
     { return (law.stress(F + h * G, Fdot + h * Gdot) - P - h * slope).norm(); };
-    // From 2^-6 to 2^-9: an error of a tangent would leave order 1.
+    // From 2^-6 to 2^-9: an error of a tangent would reduce the order to 1.
     EXPECT_GE(std::log2(remainder(std::ldexp(1., -6)) / remainder(std::ldexp(1., -9))) / 3., 1.9) << "F = " << F;
   }
 }
@@ -123,7 +123,7 @@ TEST(Viscosity, IsObjectiveAndIgnoresRotation)
     const double scale = law.stress_by_rate(F, Fdot).norm() * (Fdot.norm() + F.norm());
     const Tensor<2, 2> spin = matrix(0., -1., 1., 0.);
     EXPECT_NEAR(law.stress(F, spin * F).norm(), 0., 100. * epsilon * scale);
-    // Seen from a frame turned by R, which turns itself: d(R F)/dt = R (Fdot + spin F).
+    // In a rotating frame with rotation R: d(R F)/dt = R (Fdot + spin F).
     const Tensor<2, 2> R = rotation(0.1 + 0.12 * sample);
     EXPECT_NEAR((law.stress(R * F, R * (Fdot + spin * F)) - R * law.stress(F, Fdot)).norm(), 0.,
                 100. * epsilon * scale);
@@ -156,7 +156,7 @@ TEST(Viscosity, DissipatesWhatItsDashpotsDo)
 
 TEST(Viscosity, HasTheForceOfABond)
 {
-  // One fibre along x, stretched to 2 and stretching at 3/s while it turns: 0.5 * 60 * 3 Pa along its current
+  // One fibre along x, stretched to 2 and stretching at 3/s while it rotates: 0.5 * 60 * 3 Pa along its current
   // direction (3/5, 4/5).
   const FibreViscosity law({{Tensor<1, 2>({1., 0.}), 0.5, 60.}});
   const Tensor<2, 2> F = matrix(1.2, 0., 1.6, 1.);

@@ -1,4 +1,4 @@
-// A place holds the old file or the new one, and nothing but a part that this process created is ever written to.
+// A destination contains the old file or the new one, and only parts that this process created are ever written to.
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -21,7 +21,7 @@ namespace fs = std::filesystem;
 namespace
 {
 
-// The message of the error when a file is written; empty if there is none.
+// Returns the message of the error when a file is written; empty if there is none.
 std::string complaint(const std::string &path, const std::string &text = "new")
 {
   try
@@ -40,7 +40,7 @@ std::vector<fs::path> entries(const TemporaryFolder &folder)
   return {fs::directory_iterator(folder.path()), fs::directory_iterator()};
 }
 
-// The part in a folder that holds nothing else.
+// Returns the part in a folder that contains nothing else.
 fs::path only_part(const TemporaryFolder &folder)
 {
   const std::vector<fs::path> found = entries(folder);
@@ -48,7 +48,7 @@ fs::path only_part(const TemporaryFolder &folder)
   return found.at(0);
 }
 
-// Files of this process may not grow beyond some bytes: the disk is full in the middle of a file.
+// Limits the size of files of this process, as if the disk became full in the middle of a file.
 class SmallDisk
 {
 public:
@@ -131,7 +131,7 @@ TEST(AtomicFile, LibrariesOpenItByName)
 {
   const TemporaryFolder folder;
   AtomicFile file(folder / "a.txt");
-  // Whatever happens to the name of the part meanwhile.
+  // Independent of changes to the name of the part in the meantime.
   const fs::path part = only_part(folder);
   std::ofstream(folder / "victim") << "mine";
   fs::rename(part, folder / "moved");
@@ -206,7 +206,7 @@ TEST(AtomicFile, NeverReplacesADeviceOrAFolder)
   const TemporaryFolder folder;
   fs::create_directory(folder / "sub");
   EXPECT_EQ(complaint(folder / "sub"), "cannot write " + (folder / "sub") + ": it is a folder");
-  // A pipe stands for every device: code that failed this test as root would destroy a real one.
+  // A pipe represents all devices: code that fails this test as root would destroy a real device.
   const std::string pipe = folder / "pipe";
   ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
   EXPECT_EQ(complaint(pipe), "cannot write " + pipe + ": it is not a regular file");

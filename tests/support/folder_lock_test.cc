@@ -1,4 +1,4 @@
-// One process at a time has a folder, until it ends in whatever way.
+// Only one process at a time holds the lock of a folder, until it ends for any reason.
 #include <chrono>
 #include <csignal>
 #include <filesystem>
@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 namespace
 {
 
-// Whether a lock is refused, and with which message.
+// Returns the message with which a lock is refused; empty if it is granted.
 std::string refusal(const std::string &folder)
 {
   try
@@ -36,7 +36,7 @@ std::string refusal(const std::string &folder)
   return "";
 }
 
-// A process that locks a folder and waits for a signal.
+// Process that locks a folder and waits for a signal.
 class Holder
 {
 public:
@@ -119,7 +119,7 @@ TEST(FolderLock, IsNotInherited)
   const pid_t child = fork();
   if (child == 0)
     execl("/bin/sleep", "sleep", "30", nullptr);
-  // Until the child has become the other program it has this one's descriptors.
+  // Until exec the child has the descriptors of this process.
   lock.reset();
   EXPECT_TRUE(FolderLock(folder.path(), 20s).is_held());
   EXPECT_EQ(waitpid(child, nullptr, WNOHANG), 0);
@@ -149,7 +149,7 @@ TEST(FolderLock, FilesAreNotWrittenToAFolderThatTookThePlace)
   const std::string why = ": the folder " + out + " was removed or replaced during the run";
   fs::create_directories(out + "/sub");
   {
-    const FolderLock lock(out + "/"); // however it is spelled
+    const FolderLock lock(out + "/"); // another spelling of the path
     EXPECT_NO_THROW(write_atomically(file, "mine", Sync::no));
     EXPECT_NO_THROW(write_atomically(out + "/../out/sub/b.txt", "mine", Sync::no));
     AtomicFile begun(file);
@@ -170,7 +170,7 @@ TEST(FolderLock, FilesAreNotWrittenToAFolderThatTookThePlace)
     EXPECT_TRUE(fs::is_empty(out + "/sub"));
     EXPECT_EQ(std::distance(fs::directory_iterator(out), fs::directory_iterator()), 1);
   }
-  EXPECT_NO_THROW(write_atomically(file, "mine", Sync::no)); // without a lock nothing is known
+  EXPECT_NO_THROW(write_atomically(file, "mine", Sync::no)); // without a lock there is no check
 }
 
 TEST(FolderLock, FollowsNoLinksAndWaitsForNoPipes)

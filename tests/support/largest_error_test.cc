@@ -1,4 +1,4 @@
-// What is not finite is never lost among errors and extremes, wherever it stands among them.
+// Values that are not finite propagate to errors and extremes at any position of the sequence.
 #include "support/largest_error.h"
 
 #include <gtest/gtest.h>
@@ -32,7 +32,7 @@ TEST(LargestError, IsTheLargestWithItsValueAndReference)
   EXPECT_EQ(error.value(), -3.);
 }
 
-// Errors with a sign, of which all may be negative: how far inside a bound.
+// Signed errors, which may all be negative: distances inside a bound.
 TEST(LargestError, OfNegativeErrorsIsTheOneNextToTheBound)
 {
   LargestError error;

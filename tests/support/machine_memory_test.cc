@@ -1,4 +1,4 @@
-// What the machine has left is what it says in /proc and in its control groups, the least of all.
+// The available memory is the smallest of those in /proc and in the control groups.
 #include "support/machine_memory.h"
 
 #include "tests/support/temporary_folder.h"
@@ -60,7 +60,7 @@ TEST_F(MachineMemory, IsLimitedByAControlGroupAndThoseAroundIt)
   EXPECT_EQ(available(), 0.);
 }
 
-// A container sees its own group where the root would be.
+// A container sees its own group at the root of the hierarchy.
 TEST_F(MachineMemory, IsLimitedByTheGroupThatIsMounted)
 {
   put_available("1000");

@@ -1,4 +1,4 @@
-/// A folder of its own for a test, removed with all it holds at the end.
+/// Temporary folder of a test, removed with its content on destruction.
 #pragma once
 
 #include <cstdlib>
@@ -29,7 +29,7 @@ public:
   TemporaryFolder(const TemporaryFolder &) = delete;
   TemporaryFolder &operator=(const TemporaryFolder &) = delete;
 
-  /// Full name of a file in the folder.
+  /// Returns the full path of a file in the folder.
   [[nodiscard]] std::string operator/(const std::string &name) const { return (path_ / name).string(); }
   [[nodiscard]] std::string path() const { return path_.string(); }
 
@@ -37,7 +37,7 @@ private:
   std::filesystem::path path_;
 };
 
-/// Everything a file holds.
+/// Returns the content of a file.
 inline std::string content_of(const std::string &path)
 {
   std::ifstream file(path, std::ios::binary);

@@ -41,7 +41,7 @@ class Compare(TemporaryFolder):
         damaged.write_bytes(frame.read_bytes().replace(b'NumberOfComponents="4"', b'NumberOfComponents="-1"', 1))
         run = latcon("compare", damaged, self.continuum, "--output-dir", self.out)
         self.assertEqual(run.returncode, 2, run.stderr)
-        self.assertIn("damaged.vtp: damaged", run.stderr)
+        self.assertIn("damaged.vtp: corrupt", run.stderr)
         self.assertFalse(self.out.exists())
 
     @classmethod
@@ -213,7 +213,7 @@ class Compare(TemporaryFolder):
     def test_bad_input_touches_nothing(self):
         self.assertEqual(self.compare(self.lattice, self.continuum).returncode, 0)
         before = {path.name: path.read_bytes() for path in self.out.iterdir()}
-        self.refused(["the lattice comes first"], self.continuum, self.lattice)
+        self.refused(["give the lattice first"], self.continuum, self.lattice)
         self.refused(["--tolerance speed=1", "displacement"], self.lattice, self.continuum, "--tolerance", "speed=1")
         self.refused(["larger than 0"], self.lattice, self.continuum, "--tolerance", "displacement=0")
         self.refused(["velocity"], self.lattice, self.continuum, "--tolerance", "velocity=1")

@@ -122,7 +122,7 @@ class NearTip(TemporaryFolder):
     def test_says_when_there_was_no_running_crack(self):
         found = fracture(self.out, "--set", "Time/end=0.05 ms", "--no-report")
         self.assertEqual(found["samples"], 0)
-        self.assertIn("no crack ran", found["reason"])
+        self.assertIn("the crack did not run", found["reason"])
         self.assertIsNone(found["negative_zone_area"])
         self.assertIsNone(found["wedge_angle"])
         self.assertGreater(found["shear_speed"], 0)

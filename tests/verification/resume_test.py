@@ -156,7 +156,7 @@ class Resume(TemporaryFolder):
         content[len(content) // 2] ^= 16
         last.write_bytes(content)
         run = self.run_to_end("--resume")
-        self.assertIn(f"{last}: it is damaged", run.stderr)
+        self.assertIn(f"{last}: it is corrupt", run.stderr)
         self.assertIn(str(first), run.stdout)
         self.assertEqual(files(self.out) == expected, True)
 
@@ -169,19 +169,19 @@ class Resume(TemporaryFolder):
         before = {path: path.stat().st_mtime_ns for path in self.out.rglob("*")}
         run = latcon(*STRIP, "--output-dir", self.out, "--resume")
         self.assertEqual(run.returncode, 2)
-        self.assertIn(f"{first}: it is damaged", run.stderr)
-        self.assertIn(f"{last}: it is no checkpoint", run.stderr)
-        self.assertIn("leave out --resume", run.stderr)
+        self.assertIn(f"{first}: it is corrupt", run.stderr)
+        self.assertIn(f"{last}: it is not a checkpoint", run.stderr)
+        self.assertIn("omit --resume", run.stderr)
         self.assertEqual({path: path.stat().st_mtime_ns for path in self.out.rglob("*")}, before)
 
     def test_those_of_another_case_are_refused_with_the_difference(self):
         self.run_to_end()
         run = latcon(*STRIP, "--output-dir", self.out, "--resume", "--set", "Fracture/breaking stretch=3.1")
         self.assertEqual(run.returncode, 2)
-        self.assertIn("another case: Fracture/breaking stretch = 3.05 there, 3.1 here", run.stderr)
+        self.assertIn("another case: Fracture/breaking stretch = 3.05 in the checkpoint, 3.1 in this case", run.stderr)
         run = latcon("lattice", *STRIP[1:2], "--output-dir", self.out, "--resume", "--set", "Lattice/solution=motion")
         self.assertEqual(run.returncode, 2)
-        self.assertIn("left by `latcon fracture`", run.stderr)
+        self.assertIn("written by `latcon fracture`", run.stderr)
 
     def test_how_often_they_are_written_may_change(self):
         self.run_to_end()
@@ -222,7 +222,7 @@ class BlowUp(TemporaryFolder):
         self.push(sorted((self.out / "checkpoints").glob("*.h5"))[-1], 1e4)
         run = latcon(*motion, "--resume")
         self.assertEqual(run.returncode, 4, run.stderr)
-        told = re.search(r"blew up: at (\S+) s .* site (\d+) at X = (\S+) m, Y = (\S+) m, .* sheet at (\S+) s, when",
+        told = re.search(r"became unstable: at (\S+) s .* number (\d+) at X = (\S+) m, Y = (\S+) m, .* state, at (\S+) s; try",
                          run.stderr)
         self.assertIsNotNone(told, run.stderr)
         blown, site, X, Y, sound = map(float, told.groups())

@@ -306,7 +306,7 @@ class Study(TemporaryFolder):
         def unknown(document):
             document["runs"]["low"]["set"]["Sheet/hight"] = 1
         printed = self.study(change=unknown, expect=2)
-        self.assertIn("tiny.json: runs/low/set/Sheet/hight: no entry of a case; nearest: Sheet/height", printed)
+        self.assertIn("tiny.json: runs/low/set/Sheet/hight: not an entry of a case; nearest: Sheet/height", printed)
 
         def out_of_range(document):
             document["runs"]["low"]["set"]["Sheet/height"] = "1 mm"

@@ -14,8 +14,8 @@ namespace
 
 constexpr double pi = 3.14159265358979323846;
 
-/// Turns rows with correlated noise of unit variance into rows with independent noise of unit variance, in place, by
-/// the one-state Kalman filter that this noise has: O(rows), and gaps between positions need no care.
+/// Transforms rows with correlated noise of unit variance in place to rows with independent noise of unit variance, by
+/// the one-state Kalman filter of this noise. Takes O(rows); positions may have gaps.
 /// @return log det of the correlation matrix
 double whiten(Eigen::MatrixXd &rows, const Eigen::VectorXd &position, double correlated_fraction,
               double correlation_length)
@@ -50,15 +50,15 @@ NoiseFit fit_noise(const Eigen::VectorXd &position, const Eigen::MatrixXd &desig
   const Eigen::Index n = samples.size();
   const Eigen::Index n_coefficients = design.cols();
   if (design.rows() != n || position.size() != n || n <= n_coefficients)
-    throw std::invalid_argument("noise can only be estimated from more samples than the model has coefficients");
+    throw std::invalid_argument("a noise estimate needs more samples than coefficients of the model");
   for (Eigen::Index i = 1; i < n; ++i)
     if (!(position(i) > position(i - 1)))
-      throw std::invalid_argument("noise can only be estimated from samples in increasing order of position");
+      throw std::invalid_argument("a noise estimate needs samples in increasing order of position");
 
   const double extent = position(n - 1) - position(0);
   const double shortest = 0.5 * extent / static_cast<double>(n - 1);
   const double floor = static_cast<double>(n) * resolution * resolution;
-  // Scaled columns, so that their rank can be told from round-off.
+  // Scale the columns, so that the rank is not affected by round-off.
   const Eigen::RowVectorXd scale = design.colwise().norm();
 
   const double log_scale = scale.array().log().sum();
@@ -84,7 +84,7 @@ NoiseFit fit_noise(const Eigen::VectorXd &position, const Eigen::MatrixXd &desig
       best = {{variance, fraction, length}, log_evidence};
   };
 
-  // Coarse on purpose: the likelihood of two hundred samples is flat over such steps.
+  // A coarse grid suffices: the likelihood of two hundred samples is flat on this scale.
   consider(0., shortest);
   // NOLINTNEXTLINE(clang-analyzer-security.FloatLoopCounter): a geometric series
   for (double length = shortest; length < 1.5 * extent; length *= 1.5)

@@ -5,48 +5,48 @@
 namespace latcon::analysis
 {
 
-/// Stationary noise along a coordinate s (reference X [m], or time [s]): a part that is new at every sample, such as a
-/// tip that hops between sites, and a part that is remembered over a correlation length, such as a path that wanders,
+/// Stationary noise along a coordinate s (reference X [m], or time [s]): a white part, such as a tip that hops between
+/// sites, and a part with a correlation length, such as a path that wanders,
 ///   C(s, s') = variance [ (1 - f) delta(s, s') + f exp(-|s - s'| / length) ],   f = correlated_fraction.
-/// With length far beyond the record the second part is a random walk.
+/// For lengths much larger than the record the second part is a random walk.
 struct CorrelatedNoise
 {
   double variance;            ///< of one sample [unit of the samples squared], >= 0
   double correlated_fraction; ///< f [-], in [0, 1)
-  double correlation_length;  ///< [unit of s], > 0; without meaning where f = 0
+  double correlation_length;  ///< [unit of s], > 0; unused if f = 0
 };
 
-/// Noise left by a linear model, and how well model and noise together explain the samples.
+/// Noise in the residuals of a linear model, and the evidence for model and noise.
 struct NoiseFit
 {
   CorrelatedNoise noise;
-  /// ln of the likelihood of the samples, integrated over all coefficients of the model (flat prior), at the noise
-  /// where it is largest. Its differences between models weigh what more coefficients explain against the freedom they
-  /// have.
+  /// Logarithm of the likelihood of the samples, integrated over all coefficients of the model (flat prior), at the
+  /// noise that maximises it. Differences between models weigh the fit of additional coefficients against their
+  /// freedom.
   double log_evidence;
 };
 
-/// Noise in `samples` that the linear model `design` * coefficients does not explain.
+/// Estimates the noise in `samples` that the linear model `design` * coefficients does not explain.
 ///
-/// Variance, f and length maximise the restricted likelihood (the one integrated over the coefficients), the last two
-/// on a grid. Unlike the autocorrelation of the residuals, it is not biased towards short correlation by the freedom
-/// that the model has taken out of them.
+/// Variance, f and length maximise the restricted likelihood (integrated over the coefficients), the last two on a
+/// grid. Unlike the autocorrelation of the residuals, this estimate is not biased towards short correlation by the
+/// fitted coefficients.
 /// @param position s of the samples, strictly increasing
 /// @param design one row per sample, one column per coefficient, of full rank
-/// @param samples as many as positions, more than columns in `design`
-/// @param resolution standard deviation below which samples are not told apart [unit of the samples], > 0; keeps the
-/// likelihood finite where a model fits exactly
-/// @throws std::invalid_argument if sizes do not fit or a position does not increase
+/// @param samples one per position, more than the columns of `design`
+/// @param resolution smallest standard deviation [unit of the samples], > 0; keeps the likelihood finite if a model
+/// fits exactly
+/// @throws std::invalid_argument if sizes do not match or positions do not increase
 NoiseFit fit_noise(const Eigen::VectorXd &position, const Eigen::MatrixXd &design, const Eigen::VectorXd &samples,
                    double resolution);
 
-/// Covariance matrix of samples at `position` [unit of the samples squared].
+/// Returns the covariance matrix of samples at `position` [unit of the samples squared].
 Eigen::MatrixXd covariance(const CorrelatedNoise &noise, const Eigen::VectorXd &position);
 
-/// Covariance of the ordinary least-squares coefficients of `design` when the samples carry this noise,
+/// Returns the covariance of the ordinary least-squares coefficients of `design` for samples with this noise,
 ///   (D^T D)^-1 D^T C D (D^T D)^-1,
-/// which is the usual sigma^2 (D^T D)^-1 for white noise and larger for noise that is correlated over the scale on
-/// which the columns of D vary.
+/// which is sigma^2 (D^T D)^-1 for white noise, and larger for noise that is correlated over the scale on which the
+/// columns of D vary.
 Eigen::MatrixXd least_squares_covariance(const CorrelatedNoise &noise, const Eigen::VectorXd &position,
                                          const Eigen::MatrixXd &design);
 

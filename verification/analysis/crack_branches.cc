@@ -10,7 +10,7 @@ namespace latcon::analysis
 namespace
 {
 
-/// Widest empty stretch between neighbouring strands of one column [m]; 0 if there are fewer than two strands.
+/// Returns the widest gap between neighbouring strands of one column [m]; 0 if there are fewer than two strands.
 double widest_gap(std::vector<double> &Y, double gap, double min_bonds)
 {
   std::sort(Y.begin(), Y.end());
@@ -41,7 +41,7 @@ double branched_fraction(const std::vector<BreakRecord> &breaks, double X_begin,
   if (!(X_end - X_begin >= width))
     return 0.;
   if (!(X_end - X_begin < 1e9 * width))
-    throw std::invalid_argument("branches are counted in fewer than 1e9 columns");
+    throw std::invalid_argument("branched_fraction: the interval must contain fewer than 1e9 columns");
   const auto n_columns = static_cast<std::size_t>((X_end - X_begin) / width);
   std::vector<std::vector<double>> columns(n_columns);
   for (const BreakRecord &bond : breaks)

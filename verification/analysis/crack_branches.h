@@ -7,35 +7,36 @@
 namespace latcon::analysis
 {
 
-/// When the broken bonds of a sheet count as two cracks. Lengths in lattice spacings d.
+/// Criteria for counting the broken bonds of a sheet as two or more strands. Lengths in lattice spacings d.
 struct BranchRule
 {
-  /// Width of the columns of X in which strands are told apart. Wide enough for a dozen broken bonds, narrow enough
-  /// that an oscillating path (slope below 1) spreads over less than half of `gap` in one column.
+  /// Width of the columns of X in which strands are separated. Wide enough for a dozen broken bonds, narrow enough that
+  /// an oscillating path (slope below 1) covers less than half of `gap` in one column.
   double column_width = 4.;
-  /// Empty stretch of Y between two strands. Bonds that break in the wake lie within several d of the path; a branch at
-  /// 30 degrees is past this after 9 d.
+  /// Empty interval of Y between two strands. Bonds that break in the wake lie within several d of the path; a branch
+  /// at 30 degrees exceeds this gap after 9 d.
   double gap = 10.;
-  /// Broken bonds per d of X that make a strand. A crack right through the lattice cuts at least 2 (nearest neighbours
-  /// alone, along a row); half of it leaves room for ligaments. Loose debris has less.
+  /// Broken bonds per d of X in a strand. A crack that cuts the lattice completely breaks at least 2 (nearest
+  /// neighbours only, along a row); half of that allows for ligaments. Loose debris has fewer.
   double bonds_per_spacing = 1.;
-  /// Length of X over which two strands must run side by side without a break. Holes torn beside a crest of an
-  /// oscillating path are shorter than half a wavelength, which is 8 d to 32 d in rubber; a branch goes on.
+  /// Length of X over which two strands must run in parallel without interruption. Holes beside a crest of an
+  /// oscillating path are shorter than half a wavelength, which is 8 d to 32 d in rubber; a branch continues.
   double persistence = 20.;
-  /// Gap that the strands must reach somewhere along that length: a branch moves away, a damaged band keeps its
+  /// Gap that the strands must reach somewhere along this length: a branch moves away, whereas a damaged band keeps its
   /// distance.
   double grown_gap = 15.;
 };
 
-/// Fraction of the columns between X_begin and X_end in which the crack runs in two or more strands.
+/// Returns the fraction of the columns between X_begin and X_end in which the crack has two or more strands.
 ///
-/// In every column the Y of the broken bonds are sorted and parted at gaps; a strand is a group with enough bonds; a
-/// column counts if it belongs to a run of columns with two or more strands that is long enough and opens enough.
+/// In every column the Y of the broken bonds are sorted and split at gaps; a group with enough bonds is a strand. A
+/// column counts if it belongs to a run of columns with two or more strands that is long enough and reaches a large
+/// enough gap.
 /// @param breaks broken bonds in any order, may be empty
-/// @param X_begin, X_end stretch looked at, reference [m]
+/// @param X_begin, X_end interval, reference [m]
 /// @param lattice_spacing d [m], > 0
-/// @return in [0, 1]; 0 where the stretch holds no whole column
-/// @throws std::invalid_argument if it holds 1e9 columns or more
+/// @return in [0, 1]; 0 if the interval contains no whole column
+/// @throws std::invalid_argument if the interval contains 1e9 columns or more
 double branched_fraction(const std::vector<BreakRecord> &breaks, double X_begin, double X_end, double lattice_spacing,
                          const BranchRule &rule = {});
 

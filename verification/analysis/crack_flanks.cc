@@ -11,8 +11,8 @@ namespace latcon::analysis
 namespace
 {
 
-/// Distance from the path beyond which a broken bond is damage of the flanks [d]. Bonds of both shells that cross the
-/// row of the tip, and those lost by sites that come off at a crest, lie nearer.
+/// Distance from the path beyond which a broken bond counts as damage of the flanks [d]. Bonds of both shells that
+/// cross the row of the tip, and bonds of sites that detach at a crest, are closer.
 constexpr double flank_begins = 6.;
 
 double distance_from_segment(const Eigen::Vector2d &P, const Eigen::Vector2d &A, const Eigen::Vector2d &B)
@@ -23,14 +23,14 @@ double distance_from_segment(const Eigen::Vector2d &P, const Eigen::Vector2d &A,
   return (P - A - part * AB).norm();
 }
 
-/// Distance of P from the polyline through all positions of the tip.
+/// Returns the distance of P from the polyline through all positions of the tip.
 double distance_from_path(const Eigen::Vector2d &P, const std::vector<TipRecord> &tip)
 {
   const auto at = [&tip](std::size_t i) { return Eigen::Vector2d(tip[i].X, tip[i].Y); };
   const auto above =
     std::partition_point(tip.begin(), tip.end(), [&P](const TipRecord &entry) { return entry.X < P.x(); });
   const auto start = static_cast<std::size_t>(above - tip.begin());
-  // Outwards from the bond's X on either side, until X alone is farther away than the nearest segment.
+  // Search outwards from X of the bond on either side, until the distance in X exceeds that of the nearest segment.
   double nearest = (P - at(std::min(start, tip.size() - 1))).norm();
   for (std::size_t i = start; i < tip.size() && tip[i > 0 ? i - 1 : 0].X - P.x() < nearest; ++i)
     nearest = std::min(nearest, distance_from_segment(P, at(i > 0 ? i - 1 : 0), at(i)));

@@ -19,13 +19,13 @@ struct FlankDamage
   double share; ///< share of the broken bonds that lie more than 6 d from the path [-], 0 to 1
 };
 
-/// Damage of the flanks between X_begin and X_end, reference [m].
+/// Measures the damage of the flanks between X_begin and X_end, reference [m].
 ///
-/// The path is the polyline through the places of the tip; the distance of a bond is that of its midpoint from the
-/// nearest point of it.
+/// The path is the polyline through the positions of the tip; the distance of a bond is the distance of its midpoint
+/// from the path.
 /// @param tip record of the tip, X not decreasing @param breaks broken bonds in any order
 /// @param spacing d [m], > 0
-/// @return nothing without a record of the tip, or if no bond broke between X_begin and X_end
+/// @return none if there is no record of the tip, or if no bond broke between X_begin and X_end
 std::optional<FlankDamage> flank_damage(const std::vector<TipRecord> &tip, const std::vector<BreakRecord> &breaks,
                                         double X_begin, double X_end, double spacing);
 

@@ -12,8 +12,8 @@ namespace latcon::analysis
 namespace
 {
 
-/// Error of an amplitude, in d, because a tip can only be at sites: root mean square over exact sinusoids of amplitude
-/// d to 5 d and wavelength 20 d to 50 d, each moved to the nearest sites.
+/// Error of an amplitude due to the discrete sites, in d: root mean square over exact sinusoids of amplitude d to 5 d
+/// and wavelength 20 d to 50 d, rounded to the nearest sites.
 constexpr double site_error = 0.09;
 
 void require(bool condition, const std::string &message)
@@ -31,20 +31,20 @@ void check(const CrackMeasurementOptions &o)
 {
   require(o.strip_length > 0. && std::isfinite(o.strip_length), "crack measurement: the strip length must be positive");
   require(o.lattice_spacing > 0. && o.lattice_spacing < o.strip_length,
-          "crack measurement: the lattice spacing must lie between 0 and the strip length");
-  require(o.end_time >= 0. && std::isfinite(o.end_time), "crack measurement: the run cannot end before it begins");
+          "crack measurement: the lattice spacing must be between 0 and the strip length");
+  require(o.end_time >= 0. && std::isfinite(o.end_time), "crack measurement: the end time must be finite and >= 0");
   require(o.seed_tip_X >= 0. && o.seed_tip_X < o.strip_length, "crack measurement: the seed must end inside the strip");
   require(o.run_in_fraction >= 0. && o.clamp_fraction >= 0. && o.run_in_fraction + o.clamp_fraction < 1.,
-          "crack measurement: run-in and clamp zone must be fractions and leave something of the strip");
+          "crack measurement: run-in and clamp zone must be fractions with a sum below 1");
   require(o.min_wavelength >= 6. && o.min_amplitude >= 0. && o.max_steepness > 0. && o.max_straight_rms > 0. &&
             o.min_periods >= 1. && o.clear_periods >= o.min_periods,
-          "crack measurement: needs a shortest wavelength >= 6 d, an amplitude >= 0, slope and straying > 0, at "
-          "least one period, and no fewer to be clear");
-  require(in_unit_interval(o.min_share) && in_unit_interval(o.settled_amplitude) &&
+          "crack measurement: needs a shortest wavelength >= 6 d, an amplitude >= 0, slope and straight rms > 0, at "
+          "least one period, and clear_periods >= min_periods");
+  require(in_unit_interval(o.min_share) && in_unit_interval(o.steady_amplitude) &&
             in_unit_interval(o.arrest_fraction) && in_unit_interval(o.min_branched_fraction),
-          "crack measurement: the thresholds on share, settling, arrest and branching lie between 0 and 1");
+          "crack measurement: the thresholds on share, steady amplitude, arrest and branching must be between 0 and 1");
   require(o.min_log_evidence >= 0. && o.clear_log_evidence >= o.min_log_evidence,
-          "crack measurement: clear evidence cannot be less than the evidence needed, nor that less than 0");
+          "crack measurement: needs clear_log_evidence >= min_log_evidence >= 0");
   require(o.branch_rule.column_width > 0. && o.branch_rule.gap > 0. && o.branch_rule.bonds_per_spacing > 0.,
           "crack measurement: the branch rule needs positive lengths and bond counts");
 }
@@ -79,13 +79,13 @@ std::string text(const char *format, Values... values)
   return buffer;
 }
 
-/// Time at which the tip first reached X; tip.back().X >= X.
+/// Returns the time at which the tip first reached X; requires tip.back().X >= X.
 double time_at(const std::vector<TipRecord> &tip, double X)
 {
   return std::find_if(tip.begin(), tip.end(), [&](const TipRecord &entry) { return entry.X >= X; })->t;
 }
 
-/// Where the tip stood at time t.
+/// Returns X of the tip at time t.
 double X_at(const std::vector<TipRecord> &tip, double t, double seed_tip_X)
 {
   double X = seed_tip_X;
@@ -95,9 +95,9 @@ double X_at(const std::vector<TipRecord> &tip, double t, double seed_tip_X)
   return X;
 }
 
-/// Whether the tip stands still before the clamp zone: during the time in which it would have run `arrest_fraction` of
-/// the strip at its own mean speed, up to the end of the run, it ran less than a tenth of that. The mean speed is taken
-/// from 10 % to 90 % of the advance, so that neither a slow start nor a creeping end enters.
+/// Returns true if the tip stands still before the clamp zone: in the last period of the run, in which it would have
+/// advanced by `arrest_fraction` of the strip at its mean speed, it advanced by less than a tenth of that. The mean
+/// speed is measured from 10 % to 90 % of the advance, to exclude a slow start and a slow end.
 bool stands_still(const std::vector<TipRecord> &tip, const CrackMeasurementOptions &o)
 {
   const double X_last = tip.back().X;
@@ -119,8 +119,8 @@ void decide_oscillating_or_straight(CrackMeasurement &m, bool is_long_enough, co
   {
     if (is_long_enough)
       m.pattern = CrackPattern::straight;
-    m.reason = is_long_enough ? "the path has no waviness at all"
-                              : text("only %.3g mm of path to measure, or too few entries in it: too short to tell",
+    m.reason = is_long_enough ? "the path has no waviness"
+                              : text("only %.3g mm of path, or too few entries in it: too short to decide",
                                      1e3 * (m.X_end - m.X_begin));
     return;
   }
@@ -151,8 +151,8 @@ void decide_oscillating_or_straight(CrackMeasurement &m, bool is_long_enough, co
     }
     return;
   }
-  // Here hops count: a straight path with hops all about it is straight, one that a sinusoid follows or that strays far
-  // is doubtful.
+  // The distance includes hops: a straight path with hops is straight; a path that follows a sinusoid or strays far is
+  // undecided.
   const double strayed_rms = fit.residual_rms / std::sqrt(std::max(1. - fit.R_squared, 1e-12)) / o.lattice_spacing;
   const bool is_wavy = is_high && (fit.R_squared >= o.min_share || strayed_rms > o.max_straight_rms);
   if (!is_wavy)
@@ -164,11 +164,11 @@ void decide_oscillating_or_straight(CrackMeasurement &m, bool is_long_enough, co
       sinusoid + text(", but explains only %.0f %% of a path that stays within %.2g d (rms) of a straight line",
                       100. * fit.R_squared, strayed_rms);
   else if (!is_path)
-    m.reason = sinusoid + ", but is too steep: the tip jumps between places, which is no path";
+    m.reason = sinusoid + ", but is too steep: the tip jumps between strands";
   else if (!has_periods)
     m.reason = sinusoid + text(", but fewer than %.3g periods: it may be a bend", o.min_periods);
   else
-    m.reason = sinusoid + text(", but makes up %.0f %% of the path with log evidence %.1f, where an oscillation has at "
+    m.reason = sinusoid + text(", but makes up %.0f %% of the path with log evidence %.1f; an oscillation needs at "
                                "least %.0f %% and %.3g: the path wanders",
                                share, fit.log_evidence, 100. * o.min_share, o.min_log_evidence);
 }
@@ -204,7 +204,7 @@ CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vec
   m.X_begin = m.X_end = options.seed_tip_X;
   if (options.end_time == 0.)
   {
-    m.reason = "the run was stopped before its first step: nothing to tell";
+    m.reason = "the run was stopped before its first step";
     return m;
   }
   const double X_last = tip.empty() ? options.seed_tip_X : std::max(options.seed_tip_X, tip.back().X);
@@ -219,16 +219,16 @@ CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vec
   if (advance < least_advance)
   {
     m.reason =
-      text("the tip has advanced %.3g mm from the seed and was still moving: too short to tell", 1e3 * advance);
+      text("the tip has advanced %.3g mm from the seed and was still moving: too short to decide", 1e3 * advance);
     return m;
   }
 
   m.X_end = std::min(X_last, (1. - options.clamp_fraction) * options.strip_length);
   m.X_begin = std::min(m.X_end, options.seed_tip_X + options.run_in_fraction * options.strip_length);
-  const SteadyPart settled = find_steady_part(
-    tip, m.X_begin, m.X_end, {options.lattice_spacing, options.min_wavelength, options.settled_amplitude});
-  m.X_begin = settled.X_begin;
-  m.sinusoid = settled.sinusoid;
+  const SteadyPart steady_part = find_steady_part(
+    tip, m.X_begin, m.X_end, {options.lattice_spacing, options.min_wavelength, options.steady_amplitude});
+  m.X_begin = steady_part.X_begin;
+  m.sinusoid = steady_part.sinusoid;
   if (m.sinusoid)
   {
     m.periods = (m.X_end - m.X_begin) / m.sinusoid->curve.wavelength;
@@ -254,7 +254,7 @@ CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vec
                     1e3 * tip.back().Y, 1e3 * (options.end_time - tip.back().t));
   }
   else
-    decide_oscillating_or_straight(m, settled.is_long_enough, options);
+    decide_oscillating_or_straight(m, steady_part.is_long_enough, options);
   if (m.wavelength)
   {
     m.crest_amplitude = crest_amplitude(steady, options.lattice_spacing, m.sinusoid->curve);

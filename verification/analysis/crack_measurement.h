@@ -13,21 +13,21 @@
 namespace latcon::analysis
 {
 
-/// What the path of a crack is like.
+/// Pattern of the path of a crack.
 enum class CrackPattern
 {
   straight,
   oscillating,
   branching,
   arrested,
-  undecided ///< the record is too short or not clear enough to tell
+  undecided ///< the record is too short or not clear enough to decide
 };
 
-/// The word that outputs use: "straight", "oscillating", "branching", "arrested", "undecided".
+/// Returns the name of a pattern in output files: "straight", "oscillating", "branching", "arrested", "undecided".
 const char *to_string(CrackPattern pattern);
 
-/// What the sheet was, and where the rules of the measurement draw their lines. The first four have no default: NaN is
-/// refused. Lengths are in the reference configuration, X runs from 0 at the left edge.
+/// Data of the sheet and thresholds of the measurement. The first four have no default; NaN is rejected. Lengths are in
+/// the reference configuration; X is 0 at the left edge.
 struct CrackMeasurementOptions
 {
   double strip_length = std::numeric_limits<double>::quiet_NaN();    ///< L [m], > 0
@@ -35,92 +35,95 @@ struct CrackMeasurementOptions
   double end_time = std::numeric_limits<double>::quiet_NaN();        ///< end of the run [s], >= 0, not before a record
   double seed_tip_X = std::numeric_limits<double>::quiet_NaN();      ///< tip of the seed crack [m], in [0, L)
 
-  /// Part of L ahead of the seed's tip that is left out in any case [-]: the crack accelerates there and has not
-  /// forgotten the seed. What else has not settled is found from the path itself.
+  /// Fraction of L ahead of the tip of the seed that is always excluded [-], because the crack accelerates there and is
+  /// influenced by the seed. The rest of the transient is determined from the path.
   double run_in_fraction = 0.1;
-  /// Part of L before the held right edge that is left out [-]: there the edge carries load past the crack.
+  /// Fraction of L before the held right edge that is excluded [-], because the edge carries load there.
   double clamp_fraction = 0.1;
 
-  /// Shortest wavelength looked for, in d, >= 6: the path is averaged over columns of 2 d, three of them a wavelength
-  /// are the least that show one, and the paths known in rubber are longer (16 d and more).
+  /// Shortest wavelength of the search, in d, >= 6. The path is averaged over columns of 2 d, and a wavelength needs at
+  /// least three of them; known wavelengths in rubber are longer (16 d and more).
   double min_wavelength = 8.;
-  /// Least amplitude of an oscillation, in d: a tip that hops between two neighbouring rows, a fraction of the time
-  /// each, shows at most (4 / pi) (sqrt3 / 4) d = 0.55 d.
+  /// Smallest amplitude of an oscillation, in d. A tip that hops between two neighbouring rows shows at most (4 / pi)
+  /// (sqrt3 / 4) d = 0.55 d.
   double min_amplitude = 0.75;
-  /// Greatest slope 2 pi amplitude / wavelength of an oscillation [-], > 0. The right-most damaged site follows a path
-  /// up to about 60 degrees; what seems steeper is a tip that jumps from one strand to another. Known paths reach 0.6.
+  /// Largest slope 2 pi amplitude / wavelength of an oscillation [-], > 0. The right-most damaged site follows a path
+  /// up to about 60 degrees; steeper paths are tips that jump between strands. Known paths reach 0.6.
   double max_steepness = 2.;
-  /// Least SinusoidFit::share_of_path [-]: the sinusoid must be most of what the path does.
+  /// Smallest SinusoidFit::share_of_path [-]: the sinusoid must explain most of the path.
   double min_share = 0.5;
-  /// Greatest root mean square distance from a straight line of a path that is surely straight, in d, > 0: hops of a
-  /// few d are no more than this after averaging. A path that strays further is undecided unless it oscillates.
+  /// Largest root mean square distance from a straight line of a straight path, in d, > 0; hops of a few d stay below
+  /// it after averaging. A path with a larger distance is undecided unless it oscillates.
   double max_straight_rms = 4.;
-  /// Least number of wavelengths in the window: below it a bend and an oscillation are one and the same.
+  /// Smallest number of wavelengths in the window; with fewer, a bend cannot be distinguished from an oscillation.
   double min_periods = 1.5;
-  /// From here on the number of wavelengths leaves no doubt. In between, the pattern is undecided.
+  /// Number of wavelengths that is sufficient without doubt. Between the two numbers the pattern is undecided.
   double clear_periods = 2.;
-  /// Least SinusoidFit::log_evidence of an oscillation [-]: odds of 20 to 1 against a straight path that wanders.
+  /// Smallest SinusoidFit::log_evidence of an oscillation [-]: odds of 20 to 1 against a straight path that wanders.
   double min_log_evidence = 3.;
-  /// From here on the evidence leaves no doubt [-]: odds of 150 to 1. In between, the pattern is undecided.
+  /// Evidence that is sufficient without doubt [-]: odds of 150 to 1. Between the two values the pattern is undecided.
   double clear_log_evidence = 5.;
-  /// The window begins where the amplitude over one wavelength has come to this part of its later value [-], in (0, 1).
-  double settled_amplitude = 0.75;
+  /// Fraction of its later value that the amplitude over one wavelength has reached at the beginning of the window [-],
+  /// in (0, 1).
+  double steady_amplitude = 0.75;
 
-  /// Part of L [-] that a crack would have run at its own mean speed while it stood still, to be called arrested; also,
-  /// halved, the least advance of a crack that has left its seed. As long as the clamp zone, many times the pauses of a
-  /// running crack (a few d).
+  /// Fraction of L [-] that an arrested crack would have run at its mean speed while it stood still; half of it is the
+  /// smallest advance of a crack that has left its seed. Equal to the clamp zone, and many times longer than the pauses
+  /// of a running crack (a few d).
   double arrest_fraction = 0.1;
-  /// Part of the crack's length that must run in several strands to be called branching [-].
+  /// Fraction of the length of the crack with several strands from which on the pattern is branching [-].
   double min_branched_fraction = 0.25;
   BranchRule branch_rule{};
 };
 
-/// What the record of a crack says.
+/// Result of measure_crack().
 struct CrackMeasurement
 {
-  /// Undecided where the record is too short, or its path too wavy for straight and not regular enough for an
-  /// oscillation, or an oscillation that is likely holds fewer than two periods or lacks clear evidence.
+  /// Pattern; undecided if the record is too short, if the path is too wavy to be straight and too irregular for an
+  /// oscillation, or if a likely oscillation has fewer than two periods or no clear evidence.
   CrackPattern pattern = CrackPattern::undecided;
-  std::string reason; ///< one sentence for a reader: the criterion that decided, with its numbers
+  std::string reason; ///< sentence with the decisive criterion and its numbers
 
-  /// Window that everything below was measured in, reference [m]. Equal ends where there is nothing to measure.
+  /// Window of the measurements below, reference [m]. Both ends are equal if there is nothing to measure.
   double X_begin = 0., X_end = 0.;
 
   std::optional<Measured> speed_lagrangian; ///< dX/dt [m/s]; none if the tip moved fewer than 10 times in the window
-  std::optional<Measured> speed_laboratory; ///< dx/dt [m/s]; none likewise
+  std::optional<Measured> speed_laboratory; ///< dx/dt [m/s]; none as for speed_lagrangian
 
-  /// Reference [m]; of cracks that oscillate, or are likely to.
+  /// Wavelength, reference [m]; only of cracks that oscillate or are likely to.
   std::optional<Measured> wavelength;
-  std::optional<Measured> amplitude; ///< of the nearest sinusoid, reference [m]; likewise
-  /// Half the height from trough to crest, reference [m]; likewise, with two wavelengths or more only. What one
-  /// reads off a drawn path: a zigzag is higher than its nearest sinusoid, up to pi^2 / 8 = 1.23 times.
+  std::optional<Measured> amplitude; ///< of the fitted sinusoid, reference [m]; as for wavelength
+  /// Half the height from trough to crest, reference [m]; as for wavelength, and only with two wavelengths or more. It
+  /// corresponds to a reading from a plot: a zigzag is up to pi^2 / 8 = 1.23 times higher than its fitted sinusoid.
   std::optional<Measured> crest_amplitude;
 
-  /// The sinusoid nearest to the path, whether or not it means anything; none where the window is too short.
+  /// Sinusoid fitted to the path, significant or not; none if the window is too short.
   std::optional<SinusoidFit> sinusoid;
   double periods = 0.;               ///< wavelengths of `sinusoid` in the window [-]
-  double branched_fraction = 0.;     ///< part of the crack in two or more strands [-], see BranchRule
-  std::optional<FlankDamage> flanks; ///< in the window; none where no bond broke in it
+  double branched_fraction = 0.;     ///< fraction of the crack with two or more strands [-], see BranchRule
+  std::optional<FlankDamage> flanks; ///< in the window; none if no bond broke in it
 };
 
 /// Measures speed, pattern, wavelength and amplitude of a crack.
 ///
 /// Patterns, in this order:
-/// 1. arrested: the tip never left the seed;
-/// 2. branching: broken bonds form several strands over a substantial part of the crack (looked at before a stop, for
-///    branches stop when they reach the upper and lower edge);
-/// 3. arrested: the tip stopped before the clamp zone and stood while it could have run `arrest_fraction` of the strip;
-/// 4. oscillating: a sinusoid of sufficient amplitude is most of what the path does, over enough periods, and explains
-///    it better than a straight path that wanders does;
-/// 5. straight: the amplitude is too small for an oscillation, or hops outweigh the sinusoid;
-/// 6. undecided otherwise, and where the record is too short for any of these.
+/// 1. arrested: the tip did not leave the seed;
+/// 2. branching: broken bonds form several strands over a substantial part of the crack (tested before arrest, because
+///    branches stop at the upper and lower edge);
+/// 3. arrested: the tip stopped before the clamp zone for the time in which it could have run `arrest_fraction` of the
+///    strip;
+/// 4. oscillating: a sinusoid of sufficient amplitude explains most of the path over enough periods, and explains it
+///    better than a straight path that wanders;
+/// 5. straight: the amplitude is too small for an oscillation, or hops dominate over the sinusoid;
+/// 6. undecided: otherwise, and if the record is too short.
 ///
-/// The window runs from the end of the run-in to the clamp zone or the last position of the tip. Its beginning moves on
-/// to where the oscillation has reached its later amplitude, but two wavelengths stay in it where there are two.
+/// The window runs from the end of the run-in to the clamp zone or the last position of the tip. Its beginning moves
+/// forward to where the oscillation has reached its later amplitude, but at least two wavelengths remain in the window
+/// if there are two.
 /// @param tip record of the tip, may be empty
-/// @param breaks broken bonds in any order; without them no crack is called branching
-/// @throws std::invalid_argument for a value that is not finite, a time or X that decreases, a record after the end of
-/// the run, or options out of range
+/// @param breaks broken bonds in any order; if empty, the pattern is never branching
+/// @throws std::invalid_argument for values that are not finite, decreasing times or X, a record after the end of the
+/// run, or options out of range
 CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vector<BreakRecord> &breaks,
                                const CrackMeasurementOptions &options);
 

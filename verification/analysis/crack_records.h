@@ -3,7 +3,7 @@
 namespace latcon::analysis
 {
 
-/// Where the crack tip was. One record each time the tip moves; between records it rests.
+/// Position of the crack tip. There is one record per move of the tip; between records it rests.
 struct TipRecord
 {
   double t;    ///< time [s], not decreasing along a record
@@ -21,7 +21,7 @@ struct TipRecord
   }
 };
 
-/// One broken bond.
+/// Record of one broken bond.
 struct BreakRecord
 {
   double t; ///< time of breaking [s]

@@ -13,12 +13,12 @@ namespace latcon::analysis
 namespace
 {
 
-/// Columns over which a path is averaged, in d: a quarter of the shortest wavelength looked for, and enough entries
-/// (two to four) to even out hops of the tip between neighbouring sites.
+/// Width of the columns over which a path is averaged, in d: a quarter of the shortest wavelength of the search, with
+/// enough entries (two to four) to average hops of the tip between neighbouring sites.
 constexpr double column_width = 2.;
 
-/// Advance of the tip in a span of time over which its position is averaged, in d: enough that its steps (d / 2, a few
-/// d where it hops) are a small part of it.
+/// Advance of the tip in a time span over which its position is averaged, in d: large compared with its steps (d / 2, a
+/// few d if it hops).
 constexpr double span_advance = 6.;
 
 ColumnMeans column_means(const std::vector<TipRecord> &tip, double spacing)
@@ -32,11 +32,11 @@ ColumnMeans column_means(const std::vector<TipRecord> &tip, double spacing)
   return {std::move(X), std::move(Y), column_width * spacing};
 }
 
-/// Wavelengths that stay in the window: two, and what the wavelength may change by when the window has moved.
+/// Wavelengths that remain in the window: two, plus a margin for the change of the wavelength when the window moves.
 constexpr double kept_periods = 2.2;
 
-/// Amplitude over the wavelength that begins at X_begin, of the path less the offset and drift of the whole window;
-/// none where fewer than four columns lie there.
+/// Returns the amplitude over the wavelength that begins at X_begin, of the path minus the offset and drift of the
+/// whole window; none if the wavelength contains fewer than four columns.
 std::optional<double> local_amplitude(const ColumnMeans &path, const Sinusoid &curve, double X_begin)
 {
   const double q = 2. * std::acos(-1.) / curve.wavelength;
@@ -59,9 +59,9 @@ std::optional<double> local_amplitude(const ColumnMeans &path, const Sinusoid &c
   return std::hypot(coefficients(1), coefficients(2));
 }
 
-/// Where the oscillation has settled: past the leading wavelengths whose amplitude falls short of the later one by more
-/// than its own uncertainty allows.
-double settled_from(const ColumnMeans &path, const SinusoidFit &fit, double X_begin, double X_end, double settled)
+/// Returns X from which on the oscillation is steady: after the leading wavelengths whose amplitude is below the later
+/// one by more than its uncertainty.
+double steady_from(const ColumnMeans &path, const SinusoidFit &fit, double X_begin, double X_end, double fraction)
 {
   const double wavelength = fit.curve.wavelength;
   const double step = wavelength / 8.;
@@ -77,17 +77,18 @@ double settled_from(const ColumnMeans &path, const SinusoidFit &fit, double X_be
   std::vector<double> later(amplitudes.begin() + static_cast<std::ptrdiff_t>(amplitudes.size() / 2), amplitudes.end());
   std::nth_element(later.begin(), later.begin() + static_cast<std::ptrdiff_t>(later.size() / 2), later.end());
   const double reference = later[later.size() / 2];
-  // The uncertainty of an amplitude goes with one over the square root of the length it is measured on.
+  // The uncertainty of an amplitude is inversely proportional to the square root of the measured length.
   const double uncertainty = fit.amplitude.uncertainty * std::sqrt((X_end - X_begin) / wavelength);
 
   std::size_t first = 0;
-  while (first < amplitudes.size() && amplitudes[first] < settled * reference &&
+  while (first < amplitudes.size() && amplitudes[first] < fraction * reference &&
          amplitudes[first] < reference - 2. * uncertainty)
     ++first;
   if (first == 0)
     return X_begin;
-  // Over a wavelength that holds the onset of a steady oscillation, the amplitude is the part that lies past the onset.
-  const double onset = (first < starts.size() ? starts[first] : starts.back()) + (1. - settled) * wavelength;
+  // Over the wavelength that contains the onset of a steady oscillation, the amplitude is proportional to the part
+  // after the onset.
+  const double onset = (first < starts.size() ? starts[first] : starts.back()) + (1. - fraction) * wavelength;
   return std::max(X_begin, std::min(onset, X_end - kept_periods * wavelength));
 }
 
@@ -117,10 +118,10 @@ SteadyPart find_steady_part(const std::vector<TipRecord> &tip, double X_begin, d
     const bool is_clear = fit.amplitude.value > 3. * fit.amplitude.uncertainty;
     if (!is_clear || X_end - result.X_begin < kept_periods * fit.curve.wavelength)
       return result;
-    const double settled = settled_from(path, fit, result.X_begin, X_end, rule.settled_amplitude);
-    if (settled - result.X_begin < 0.05 * fit.curve.wavelength)
+    const double steady_begin = steady_from(path, fit, result.X_begin, X_end, rule.steady_amplitude);
+    if (steady_begin - result.X_begin < 0.05 * fit.curve.wavelength)
       return result;
-    result.X_begin = settled;
+    result.X_begin = steady_begin;
   }
 }
 

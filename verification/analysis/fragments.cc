@@ -14,7 +14,7 @@ struct Piece
   bool held = false;
 };
 
-// Pieces in the order of their lowest sites.
+// Finds the connected pieces, in the order of their lowest sites.
 std::vector<Piece> pieces(const lattice::State &state, const lattice::TriangularLattice &lattice)
 {
   std::vector<std::vector<std::size_t>> neighbours(lattice.n_places());
@@ -88,7 +88,7 @@ double bridged_length(const lattice::State &state, const lattice::TriangularLatt
   const auto strip_of = [&](std::size_t place)
   { return static_cast<std::ptrdiff_t>(std::floor((lattice.reference(place).x() - X_from) / width)); };
 
-  // Sites below the middle that are held, and what can be reached from them.
+  // Held sites below the middle, and all sites connected to them.
   std::vector<std::uint8_t> reached(lattice.n_places(), 0);
   std::vector<std::size_t> places;
   for (std::size_t place = 0; place < lattice.n_places(); ++place)

@@ -8,29 +8,29 @@
 namespace latcon::analysis
 {
 
-/// The pieces of a broken sheet: its sites, connected through the bonds that are present.
+/// Connected pieces of a broken sheet: sites connected by bonds that are present.
 struct Fragments
 {
-  /// Of each place: 0 for the sheet, which is every piece that has a held site; 1, 2 ... for detached fragments, larger
-  /// ones first, of equal ones that with the lowest site number. 0 at removed sites and in the margin as well. Where no
-  /// site is held the largest piece counts as the sheet.
+  /// Per slot: 0 for the sheet, which is every piece with a held site; 1, 2 ... for detached fragments, in the order of
+  /// decreasing size, then of the lowest site number. 0 also at removed sites and in the margin. If no site is held,
+  /// the largest piece counts as the sheet.
   std::vector<std::uint32_t> number;
-  /// Sites of each detached fragment, that of number 1 first.
+  /// Number of sites per detached fragment, number 1 first.
   std::vector<std::size_t> sizes;
 };
 
-/// Of the bonds that are present.
+/// Finds the fragments of a sheet from the bonds that are present.
 Fragments find_fragments(const lattice::State &state, const lattice::TriangularLattice &lattice);
 
-/// Bonds present beyond the stretch that would have broken them had they not been toughened: fibrils in the wake of a
-/// crack, and flanks that were held together.
+/// Returns the number of bonds present beyond `breaking_stretch` [-], which are intact only because they were
+/// toughened: fibrils in the wake of a crack, and bonds in the flanks.
 std::size_t n_overstretched_bonds(const lattice::State &state, const lattice::TriangularLattice &lattice,
                                   double breaking_stretch);
 
-/// Length of crack that fibrils bridge: of the strips across the sheet, 4 d wide, that lie between X_from and X_to,
-/// those in which bonds still lead from a held site below the middle to one above it without leaving the strip.
-/// @param X_from, X_to reference [m]; the seed's tip and the tip, say
-/// @return their width in all, reference [m]
+/// Returns the length of a crack that fibrils bridge: of the strips across the sheet, 4 d wide, between X_from and
+/// X_to, those in which bonds connect a held site below the middle to a held site above it within the strip.
+/// @param X_from, X_to reference [m], for example the tip of the seed and the tip
+/// @return total width of these strips, reference [m]
 double bridged_length(const lattice::State &state, const lattice::TriangularLattice &lattice, double X_from,
                       double X_to);
 

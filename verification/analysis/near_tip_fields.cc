@@ -10,15 +10,15 @@ namespace latcon::analysis
 namespace
 {
 
-// The path's direction is that from its mean here to its mean there, on either side of a sample [d].
+// Range behind and ahead of a sample over which the path is averaged to find its direction [d].
 constexpr double heading_from = 2.5, heading_to = 7.5;
-// Calls after which a tip that has not moved is at rest.
+// Number of calls after which an unmoved tip is at rest.
 constexpr std::size_t calls_of_rest = 10;
 
-// Of the samples one in so many has stresses and gradients.
+// Interval of samples with stresses and gradients.
 constexpr std::size_t samples_for_tensors = 4;
 
-// 1 for components that keep their sign in a mirror image Y -> -Y, -1 for those with an odd number of indices y.
+// Signs of components under the reflection Y -> -Y: -1 for components with an odd number of indices y, otherwise 1.
 struct MirrorSigns
 {
   NearTipSums::Motion motion;
@@ -71,7 +71,7 @@ NearTipGrid make_grid(const lattice::TriangularLattice &lattice, const NearTipOp
   const auto points = [](double extent, double pitch)
   {
     if (!(extent >= pitch && extent < 1e9 * pitch))
-      throw std::invalid_argument("the window around the tip must reach one lattice row at least, and less than 1e9");
+      throw std::invalid_argument("the window around the tip must cover at least one and fewer than 1e9 lattice rows");
     return static_cast<int>(std::floor(extent / pitch * (1. + 1e-12)));
   };
   grid.behind = points(options.behind, grid.pitch_X);
@@ -150,7 +150,7 @@ void NearTipSums::add_site(int i2, int j2, const Motion &motion, const std::opti
     tensors_.make_room(grid_);
   if (gradients)
     gradients_.make_room(grid_);
-  // An odd number is half-way between two points; the lattice has no site that is so both ways.
+  // An odd number is half-way between two points; no site is half-way in both directions.
   const auto low = [](int twice) { return twice >= 0 ? twice / 2 : -((1 - twice) / 2); };
   const int i_low = low(i2), i_high = low(i2 + 1), j_low = low(j2), j_high = low(j2 + 1);
   const double weight = (i_low == i_high ? 1. : 0.5) * (j_low == j_high ? 1. : 0.5);
@@ -210,19 +210,19 @@ NearTipSampler::NearTipSampler(const lattice::TriangularLattice &lattice, const 
     evaluator_(lattice, material), gradient_fit_(lattice), plain_(grid_), folded_(n_blocks, NearTipSums(grid_))
 {
   if (!(options.X_end >= options.X_begin))
-    throw std::invalid_argument("the stretch in which samples are taken near the tip must end after it begins");
+    throw std::invalid_argument("the sampled interval of the tip must have X_end > X_begin");
 }
 
-bool NearTipSampler::looks_at(std::size_t tip) const
+bool NearTipSampler::samples_at(std::size_t tip) const
 {
   const double X = lattice_.reference(tip).x();
   return X >= options_.X_begin && X <= options_.X_end;
 }
 
-// Of `n` rows or columns those that a grid around the one of the tip may have to do with.
+// Returns those of `n` rows or columns that a grid around the tip may need.
 lattice::Rows NearTipSampler::around(std::size_t centre, int before, int after, std::size_t n)
 {
-  // One more than the grid has, up to four between the tip and the axis, and two whose bonds reach a site.
+  // One beyond the grid, up to four between the tip and the axis, and two for bonds that reach a site.
   constexpr int more = 7;
   const auto first = static_cast<std::ptrdiff_t>(centre) - before - more;
   return {static_cast<std::size_t>(std::max<std::ptrdiff_t>(first, 0)),
@@ -250,7 +250,7 @@ const NearTipSample *NearTipSampler::sample(const lattice::State &state, std::si
   const Axis now = axis(state, tip);
   path_.push_back(now.reference);
   fold_until(now.reference.x() - heading_to * lattice_.spacing());
-  if (!looks_at(tip) || calls_at_rest_ >= calls_of_rest)
+  if (!samples_at(tip) || calls_at_rest_ >= calls_of_rest)
     return nullptr;
   pending_.push_back(look(state, now, tip, taken_ % samples_for_tensors == 0));
   ++taken_;
@@ -289,7 +289,7 @@ NearTipSample NearTipSampler::look(const lattice::State &state, const Axis &axis
   const auto look_at = [&](std::size_t place)
   {
     const Eigen::Vector2d reference = lattice_.reference(place), offset = reference - axis.reference;
-    // Half a pitch more than the grid: sites there count half at its rim.
+    // Half a pitch beyond the grid: sites there count half at the rim.
     if (offset.x() < -(grid_.behind + 0.75) * grid_.pitch_X || offset.x() > (grid_.ahead + 0.75) * grid_.pitch_X ||
         std::abs(offset.y()) > (grid_.half_height + 0.75) * grid_.pitch_Y)
       return;

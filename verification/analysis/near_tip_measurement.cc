@@ -21,8 +21,8 @@ Eigen::Vector2d on_circle(const Eigen::Vector2d &centre, double radius, double a
   return centre + radius * Eigen::Vector2d(std::cos(angle), std::sin(angle));
 }
 
-// Bilinear interpolation of `value(i, j)` at a reference position relative to the tip; none unless all four points
-// around it hold material.
+// Interpolates `value(i, j)` bilinearly at a reference position relative to the tip; none unless all four points around
+// it have material.
 template <typename Value>
 auto interpolate(const NearTipField &field, const Eigen::Vector2d &X, const Value &value)
   -> std::optional<std::decay_t<decltype(value(0, 0))>>
@@ -30,7 +30,7 @@ auto interpolate(const NearTipField &field, const Eigen::Vector2d &X, const Valu
   const double u = X.x() / field.grid.pitch_X, v = X.y() / field.grid.pitch_Y;
   if (!(u >= -field.grid.behind && u <= field.grid.ahead && std::abs(v) <= field.grid.half_height))
     return std::nullopt;
-  // On the last line of points the cell before it serves.
+  // On the last line of points, use the cell before it.
   const int i = std::min(static_cast<int>(std::floor(u)), field.grid.ahead - 1);
   const int j = std::min(static_cast<int>(std::floor(v)), field.grid.half_height - 1);
   if (!field.holds(i, j) || !field.holds(i + 1, j) || !field.holds(i, j + 1) || !field.holds(i + 1, j + 1))
@@ -49,7 +49,7 @@ double fastest(const NearTipField &field)
   return std::sqrt(square);
 }
 
-// Whether both components change their sign from corner to corner: rules out nearly every cell at little cost.
+// Returns true if both components change sign between corners: a cheap test that excludes nearly all cells.
 bool may_surround_zero(const std::array<Eigen::Vector2d, 4> &corners)
 {
   const auto changes_sign = [&](Eigen::Index k)
@@ -60,7 +60,7 @@ bool may_surround_zero(const std::array<Eigen::Vector2d, 4> &corners)
   return changes_sign(0) && changes_sign(1);
 }
 
-// Turns of a vector over its corner values, once around: the Poincare index of what is inside.
+// Returns the winding number of a vector around the corners of a cell: the Poincare index of its interior.
 int winding(const std::array<Eigen::Vector2d, 4> &corners)
 {
   double turned = 0.;
@@ -72,8 +72,8 @@ int winding(const std::array<Eigen::Vector2d, 4> &corners)
   return static_cast<int>(std::lround(turned / (2. * M_PI)));
 }
 
-// Means over a cell of the derivatives along the grid of corner values (counter-clockwise from the lower left), as
-// columns, over one pitch.
+// Returns the means over a cell of the derivatives along the grid, as columns, per pitch, from corner values
+// (counter-clockwise from the lower left).
 Eigen::Matrix2d cell_derivatives(const std::array<Eigen::Vector2d, 4> &corners)
 {
   Eigen::Matrix2d derivatives;
@@ -187,7 +187,7 @@ std::vector<Vortex> vortices(const NearTipField &field, double slowest, double w
   const NearTipGrid &grid = field.grid;
   const double radius = vortex_radius * std::max(grid.pitch_X, grid.pitch_Y);
   const Eigen::Vector2d pitch(grid.pitch_X, grid.pitch_Y);
-  // A zero in a corner belongs to one of the cells around it: whichever this nudge puts it into.
+  // This offset assigns a zero in a corner to one of the cells around it.
   const Eigen::Vector2d nudge = 1e-12 * fastest(field) * Eigen::Vector2d(1., std::sqrt(2.));
   std::vector<Vortex> found;
   for (int j = -grid.half_height; j < grid.half_height; ++j)
@@ -209,14 +209,14 @@ std::vector<Vortex> vortices(const NearTipField &field, double slowest, double w
       const Eigen::Matrix2d L = dv * dx.inverse(); // dv/dx: the pitches cancel
       if (!(L.trace() * L.trace() < 4. * L.determinant()))
         continue;
-      // The zero of the linear part, from the middle of the cell on, in pitches.
+      // Zero of the linear part, relative to the centre of the cell, in pitches.
       const Eigen::Vector2d middle = 0.25 * (v[0] + v[1] + v[2] + v[3]);
       const Eigen::Vector2d offset = (-dv.inverse() * middle).cwiseMax(-0.5).cwiseMin(0.5);
       const Eigen::Vector2d place = grid.reference(i, j) + pitch.cwiseProduct(Eigen::Vector2d(0.5, 0.5) + offset);
       const std::optional<double> turning = circulation(field, place, radius, false);
       if (!turning)
         continue;
-      // Length of the circle in the current configuration, to the accuracy that a limit needs.
+      // Approximate length of the circle in the current configuration, accurate enough for a threshold.
       const double length = 2. * M_PI * radius * std::sqrt(std::abs(dx.determinant()) / pitch.prod());
       const double speed = std::abs(*turning) / length;
       if (speed > slowest)
@@ -331,7 +331,7 @@ std::optional<double> wedge_angle(const std::vector<Eigen::Vector2d> &sites, con
 {
   const double strips_between = (to - from) / pitch.x();
   if (!(pitch.x() > 0. && pitch.y() > 0. && strips_between >= 0. && strips_between < 1e9))
-    throw std::invalid_argument("a wedge is measured in strips of a positive pitch from one distance to a larger one");
+    throw std::invalid_argument("wedge_angle: needs a positive pitch and from <= to");
   const auto n_strips = static_cast<std::size_t>(strips_between);
   std::vector<std::vector<Eigen::Vector2d>> strips(n_strips);
   for (const Eigen::Vector2d &site : sites)

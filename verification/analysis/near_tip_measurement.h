@@ -9,98 +9,100 @@
 namespace latcon::analysis
 {
 
-/// Material ahead of the tip that moves against the crack, v_x < -fraction * crack speed. In a steady field that is
-/// where rubber is stretched along x beyond the loaded sheet (theory.md, eq. (N.1)).
+/// Zone ahead of the tip in which material moves against the crack, v_x < -fraction * crack speed. In a steady field
+/// the rubber there is stretched along x more than the loaded sheet (theory.md, eq. (N.1)).
 struct NegativeZone
 {
-  double area;                    ///< reference [m^2]; 0 if there is none
-  double length;                  ///< extent along X, reference [m]; 0 if there is none
-  std::optional<double> distance; ///< from the tip to its nearest point along X [m]; none if there is none
-  double depth;                   ///< most negative v_x ahead of the tip [m/s], <= 0, in the zone or not
-  Eigen::Vector2d deepest;        ///< where that is, reference, relative to the tip [m]
+  double area;                    ///< reference [m^2]; 0 without a zone
+  double length;                  ///< extent along X, reference [m]; 0 without a zone
+  std::optional<double> distance; ///< from the tip to its nearest point along X, reference [m]; none without a zone
+  double depth;                   ///< most negative v_x ahead of the tip [m/s], <= 0, inside or outside of the zone
+  Eigen::Vector2d deepest;        ///< position of this velocity, reference, relative to the tip [m]
 };
 
 /// Fraction of the crack's laboratory speed above which backward motion counts [-].
 inline constexpr double negative_zone_limit = 0.01;
 
-/// @param laboratory_speed of the crack [m/s], > 0 @param fraction of it [-]
+/// Measures the zone. @param laboratory_speed speed of the crack [m/s], > 0 @param fraction threshold as a fraction of
+/// this speed [-]
 NegativeZone negative_zone(const NearTipField &field, double laboratory_speed, double fraction = negative_zone_limit);
 
-/// |v - M v| / |v| [-] of a velocity field (theory.md, eq. (N.3)), M v its mirror image in the axis Y = Y_tip: (v_x,
-/// -v_y)(X, -Y). Norms are root mean squares over the points that hold material together with their images. 0 for a
-/// symmetric field, sqrt2 for one side moving alone, 2 for an antisymmetric field. None without such points, or at
-/// rest.
+/// Returns the asymmetry |v - M v| / |v| [-] of a velocity field (theory.md, eq. (N.3)), with its mirror image M v in
+/// the axis Y = Y_tip: (v_x, -v_y)(X, -Y). Norms are root mean squares over points that contain material, as do their
+/// images. 0 for a symmetric field, sqrt2 if only one side moves, 2 for an antisymmetric field. None without such
+/// points, or at rest.
 std::optional<double> velocity_asymmetry(const NearTipField &field);
 
-/// Integral of v . dx [m^2/s] along a circle around `centre`, both reference and relative to the tip,
-/// counter-clockwise, x being the current positions on it. @param across_opening parts of the circle that meet no
-/// material are left out; otherwise there is no value if there are such parts
+/// Returns the circulation [m^2/s], the integral of v . dx counter-clockwise along a circle, with current positions x.
+/// `centre` and `radius` [m] are in the reference configuration, `centre` relative to the tip. @param across_opening
+/// true to skip parts of the circle without material; false to return none if there are such parts
 std::optional<double> circulation(const NearTipField &field, const Eigen::Vector2d &centre, double radius,
                                   bool across_opening);
 
-/// A point around which the material turns.
+/// Point around which the material rotates.
 struct Vortex
 {
   Eigen::Vector2d position; ///< reference, relative to the tip [m]
-  double circulation;       ///< on the circle of radius 2 d around it [m^2/s]; > 0: counter-clockwise
+  double circulation;       ///< on the circle of radius 2 d around the point [m^2/s]; > 0: counter-clockwise
   double speed;             ///< mean along that circle [m/s], >= 0
 };
 
-/// Critical points v = 0 of the laboratory velocity with Poincare index +1 and complex eigenvalues of dv/dx, whose
-/// circle of radius 2 d lies in material. Nearest to the tip first.
-/// @param slowest speed along the circle [m/s], >= 0; what turns no faster is left out
-/// @param within distance of their cells from the tip, reference [m]
+/// Finds critical points v = 0 of the laboratory velocity with Poincare index +1 and complex eigenvalues of dv/dx,
+/// whose circle of radius 2 d lies in material. In the order of their distance from the tip.
+/// @param slowest speed along the circle [m/s], >= 0; only faster vortices are returned
+/// @param within largest distance of their cells from the tip, reference [m]
 std::vector<Vortex> vortices(const NearTipField &field, double slowest,
                              double within = std::numeric_limits<double>::infinity());
 
-/// Material behind the tip that follows the crack.
+/// Zone behind the tip in which material follows the crack.
 struct FollowingZone
 {
-  double length;         ///< extent along X, reference [m]; 0 if there is none
-  double fastest;        ///< largest v_x behind the tip [m/s], in the zone or not
-  Eigen::Vector2d place; ///< where that is, reference, relative to the tip [m]
+  double length;         ///< extent along X, reference [m]; 0 without a zone
+  double fastest;        ///< largest v_x behind the tip [m/s], inside or outside of the zone
+  Eigen::Vector2d place; ///< position of this velocity, reference, relative to the tip [m]
 };
 
-/// Points behind the tip with v_x > `speed`, connected to each other and to some that are at most 8 pitches from the
-/// tip: the tip is the foremost damaged site, and the sheet comes apart within a few spacings of it.
+/// Measures the zone of points behind the tip with v_x > `speed` [m/s] that are connected to points at most 8 pitches
+/// from the tip. The tip is the foremost damaged site; the sheet separates within a few spacings of it.
 FollowingZone following_zone(const NearTipField &field, double speed);
 
-/// v_x [m/s] of the material just behind the tip, in the order of the grid: of the points that hold material at
-/// -14 d <= X <= -3 d, |Y| <= 3 d, reference, relative to the tip. Empty if none does. Nearer to the tip bonds still
-/// break; farther behind it the flanks have parted.
+/// Returns v_x [m/s] of the material just behind the tip, in the order of the grid: of points with material at -14 d <=
+/// X <= -3 d, |Y| <= 3 d, reference, relative to the tip. Empty if there is none. Closer to the tip bonds still break;
+/// farther behind it the flanks have separated.
 ///
 /// The paper: "a small zone behind the crack tip in which the mass points move rapidly along the crack direction. Such
 /// a zone can be regarded as a process zone and exists only in the case of oscillation. It fades for a straight crack."
-/// The share of these points above a given speed measures that zone also where it is a crescent across the path, which
-/// following_zone() sees as short.
+/// The fraction of these points above a given speed measures this zone also if it is a crescent across the path, for
+/// which following_zone() is short.
 std::vector<double> speeds_behind_tip(const NearTipField &field);
 
-/// v_x [m/s] of the points ahead of the tip that move against the crack, v_x < 0, in the order of the grid.
+/// Returns v_x [m/s] of the points ahead of the tip that move against the crack, v_x < 0, in the order of the grid.
 ///
 /// The paper: "a negative velocity zone (NVZ) ahead of the crack tip in which the mass points move in the opposite
 /// direction of the crack propagation". A zone that wanders with an oscillating path is blurred in the mean over
-/// samples. These speeds are what a sample keeps until the speed of the crack, and with it the limit, is known.
+/// samples. Each sample keeps these speeds until the speed of the crack, and hence the threshold, is known.
 std::vector<double> backward_speeds(const NearTipField &field);
 
-/// The stress sigma_yy around the tip, mean of both sides.
+/// Angular dependence of the stress sigma_yy around the tip, mean of both sides.
 struct OpeningStress
 {
-  double angle; ///< of the peak to the direction of the crack, reference [degrees], >= 0
-  double ratio; ///< peak over the value straight ahead [-], >= 1; above 1 the field has a lobe on either side
+  double angle; ///< between the peak and the direction of the crack, reference [degrees], >= 0
+  double ratio; ///< peak over the value straight ahead [-], >= 1; above 1 the field has a lobe on each side
   double peak;  ///< [Pa], Cauchy
 };
 
-/// On a circle around the tip, up to 120 degrees off the crack's direction: beyond that the flanks, pulled along
-/// themselves, have a stress that opens nothing. None where less than that holds material or nothing pulls ahead.
+/// Measures the stress on a circle around the tip up to 120 degrees from the direction of the crack; beyond that the
+/// stress in the flanks is along the crack and does not open it. None if a part of this arc has no material or if the
+/// stress ahead is not tensile.
 /// @param radius reference [m]
 std::optional<OpeningStress> opening_stress(const NearTipField &field, double radius);
 
-/// Full angle between the flanks of a crack [rad] from current positions of sites relative to the tip [m].
+/// Returns the full angle between the flanks of a crack [rad] from current positions of sites relative to the tip [m].
 ///
-/// Strips of width `pitch.x()` along x divide -to <= x <= -from. In each the widest gap in y between sites that follow
-/// each other is the opening, if it exceeds two pitches, and the sites on either side of it are the flanks, to each of
-/// which a straight line y(x) is fitted. None unless half the strips show an opening.
-/// @param pitch of the lattice in the loaded sheet along x and y [m], > 0
+/// Strips of width `pitch.x()` along x divide -to <= x <= -from. In each strip the widest gap in y between consecutive
+/// sites is the opening, if it exceeds two pitches. The sites on its two sides belong to the flanks; a straight line
+/// y(x) is fitted to each flank. None unless half the strips have an opening.
+/// @param pitch pitch of the lattice in the loaded sheet along x and y [m], > 0
 /// @throws std::invalid_argument for `to` < `from`, or a pitch or a distance out of range
 std::optional<double> wedge_angle(const std::vector<Eigen::Vector2d> &sites, const Eigen::Vector2d &pitch, double from,
                                   double to);

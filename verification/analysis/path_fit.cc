@@ -13,15 +13,15 @@ namespace
 
 constexpr double pi = 3.14159265358979323846;
 
-/// Stretch of a path that is fitted: coordinates from its middle in units of its length keep the columns of the model
-/// of comparable size.
+/// Fitted interval of a path. Coordinates relative to its middle in units of its length keep the columns of the model
+/// of similar size.
 struct Stretch
 {
   double origin;
   double length;
 };
 
-/// Columns 1, u, sin, cos of the model at one wave number, u = (X - origin) / length.
+/// Returns the columns 1, u, sin, cos of the model at one wave number, u = (X - origin) / length.
 Eigen::MatrixXd linear_columns(const ColumnMeans &path, const Stretch &stretch, double wave_number)
 {
   const double q = 2. * pi * wave_number;
@@ -47,7 +47,7 @@ Projection project(const Eigen::MatrixXd &columns, const Eigen::VectorXd &values
   return result;
 }
 
-/// Minimiser of a function with one minimum between a and b, to within `tolerance`.
+/// Returns the minimiser of a function with one minimum between a and b, to within `tolerance`.
 template <typename Function>
 double golden_section(const Function &function, double a, double b, double tolerance)
 {
@@ -83,7 +83,7 @@ double golden_section(const Function &function, double a, double b, double toler
 ColumnMeans::ColumnMeans(std::vector<double> X, std::vector<double> Y, double width) : X_(std::move(X))
 {
   if (X_.size() != Y.size() || !(width > 0.))
-    throw std::invalid_argument("a path needs as many X as Y and columns of positive width");
+    throw std::invalid_argument("a path needs equal numbers of X and Y, and columns of positive width");
   double current_column = -1.;
   for (std::size_t i = 0; i < X_.size(); ++i)
   {
@@ -148,9 +148,9 @@ std::optional<SinusoidFit> fit_sinusoid(const ColumnMeans &path, double shortest
   result.curve = {stretch.origin, c(0), c(1) / stretch.length, c(2), c(3), 1. / wave_number};
   const double amplitude = result.curve.amplitude();
   if (!(amplitude > resolution))
-    return std::nullopt; // a path without any waviness has no wave number to speak of
+    return std::nullopt; // the wave number of a path without waviness is undefined
 
-  // Linearised model: the fifth column is the derivative with respect to the wave number.
+  // Linearised model; the fifth column is the derivative with respect to the wave number.
   Eigen::MatrixXd jacobian(path.size(), 5);
   jacobian << columns, path.mean_of(
                          [&](double X)
@@ -169,7 +169,7 @@ std::optional<SinusoidFit> fit_sinusoid(const ColumnMeans &path, double shortest
   const auto count = static_cast<double>(path.size());
   const double variance_about_line = project(straight, path.Y()).residual.squaredNorm() / count;
   const double residual_variance = fit.residual.squaredNorm() / count;
-  // Volume of (sine, cosine, wave number) held equally likely: a disc of radius sqrt(2 variance) times a length.
+  // Volume of the uniform prior of (sine, cosine, wave number): a disc of radius sqrt(2 variance) times an interval.
   const double prior_volume = 2. * pi * variance_about_line * highest;
   result.log_evidence = with_sinusoid.log_evidence - without_sinusoid.log_evidence - std::log(prior_volume);
   result.residual_rms = std::sqrt(residual_variance);

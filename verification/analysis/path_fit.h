@@ -11,28 +11,28 @@
 namespace latcon::analysis
 {
 
-/// A measured value and one standard deviation of its error, both in the unit of the quantity.
+/// Measured value and one standard deviation of its error, both in the unit of the quantity.
 struct Measured
 {
   double value;
   double uncertainty;
 };
 
-/// A path Y(X) averaged over columns of equal width, so that every length of crack has the same weight however densely
-/// the tip was recorded there. Columns without an entry are left out.
+/// Path Y(X) averaged over columns of equal width, so that every length of crack has the same weight, independent of
+/// the density of records. Columns without an entry are omitted.
 class ColumnMeans
 {
 public:
-  /// @param X, Y entries of the path [m], X not decreasing, both of one size
+  /// @param X, Y entries of the path [m], of equal size, X not decreasing
   /// @param width of a column [m], > 0
   ColumnMeans(std::vector<double> X, std::vector<double> Y, double width);
 
-  Eigen::Index size() const { return X_mean_.size(); } ///< columns that hold an entry
+  Eigen::Index size() const { return X_mean_.size(); } ///< number of columns with an entry
   const Eigen::VectorXd &X() const { return X_mean_; } ///< mean X of the entries of each column [m]
   const Eigen::VectorXd &Y() const { return Y_mean_; } ///< mean Y of the entries of each column [m]
 
-  /// Mean over the entries of each column of a function of X. A model averaged as the path was is not flattened by the
-  /// width of the columns.
+  /// Returns the mean of a function of X over the entries of each column. A model that is averaged in the same way as
+  /// the path is not biased by the width of the columns.
   template <typename Function>
   Eigen::VectorXd mean_of(const Function &function) const
   {
@@ -51,15 +51,16 @@ public:
 
 private:
   std::vector<double> X_;
-  std::vector<std::size_t> first_; // first entry of each column, and one past the last entry
+  std::vector<std::size_t> first_; // first entry per column, and one past the last entry
   Eigen::VectorXd X_mean_;
   Eigen::VectorXd Y_mean_;
 };
 
-/// Y(X) = offset + slope (X - origin) + sine sin(2 pi (X - origin) / wavelength) + cosine cos(same).
+/// Sinusoid with drift: Y(X) = offset + slope (X - origin) + sine sin(2 pi (X - origin) / wavelength) + cosine
+/// cos(same).
 struct Sinusoid
 {
-  double origin;       ///< middle of the fitted stretch, reference X [m]
+  double origin;       ///< middle of the fitted interval, reference X [m]
   double offset;       ///< [m]
   double slope;        ///< drift across the sheet [-]
   double sine, cosine; ///< [m]
@@ -69,46 +70,45 @@ struct Sinusoid
   double operator()(double X) const;                            ///< Y [m]
 };
 
-/// Least number of columns for a sinusoid: its five coefficients, the three numbers of the noise, and half as many
-/// again.
+/// Smallest number of columns for a fit: one and a half times the five coefficients and the three parameters of the
+/// noise.
 inline constexpr Eigen::Index min_columns_of_sinusoid = 12;
 
-/// The sinusoid nearest to a path.
+/// Least-squares fit of a sinusoid to a path.
 struct SinusoidFit
 {
   Sinusoid curve;
   Measured wavelength; ///< [m]
   Measured amplitude;  ///< [m]
   double residual_rms; ///< of the column means [m]
-  double R_squared;    ///< part of the variance about the best straight line that the sinusoid explains [-]
-  /// The same without that part of the residual which is forgotten from one column to the next [-]: hops of the tip
-  /// between sites are an error of the record, not a shape of the path.
+  double R_squared;    ///< fraction of the variance about the best straight line that the sinusoid explains [-]
+  /// R_squared without the part of the residual that is uncorrelated between columns [-]: hops of the tip between sites
+  /// are an error of the record and not part of the path.
   double share_of_path;
-  /// ln of the odds (Bayes factor) of "sinusoid and noise" against "straight line and noise", each with the correlated
-  /// noise that suits it best: above 3, 20 to 1; above 5, 150 to 1. Before the measurement all wave numbers up to the
-  /// highest one looked for count as equally likely, and so do all (sine, cosine) up to an amplitude that accounts for
-  /// the whole variance. A random walk, which some slow sinusoid always follows well, gains nothing by it.
+  /// Logarithm of the Bayes factor of "sinusoid and noise" against "straight line and noise", each with its best
+  /// correlated noise: above 3, 20 to 1; above 5, 150 to 1. The prior is uniform over wave numbers up to the highest
+  /// one of the search and over (sine, cosine) up to an amplitude that accounts for the whole variance. A random walk,
+  /// which some slow sinusoid always fits well, gets no evidence from that fit.
   double log_evidence;
 };
 
-/// Least-squares sinusoid over all wavelengths from `shortest_wavelength` to the length of the path.
+/// Fits a sinusoid by least squares over all wavelengths from `shortest_wavelength` to the length of the path.
 ///
 /// The four linear coefficients are eliminated (variable projection); the wave number is scanned at an eighth of the
 /// spacing of independent wave numbers, 1 / length, and refined by golden-section search about the lowest value, which
-/// lies within one scan step. Uncertainties are those of the linearised problem under the noise left in the residuals.
-/// @param resolution standard deviation below which values of Y are not told apart [m], > 0
+/// lies within one scan step. Uncertainties are those of the linearised problem with the noise in the residuals.
+/// @param resolution smallest standard deviation of Y [m], > 0
 /// @return none if there are too few columns, if the path is shorter than the shortest wavelength, or if it is straight
-/// to within the resolution
+/// within the resolution
 std::optional<SinusoidFit> fit_sinusoid(const ColumnMeans &path, double shortest_wavelength, double resolution);
 
-/// Slope of the least-squares straight line through samples [unit of samples / unit of position].
+/// Fits a straight line by least squares and returns its slope [unit of samples / unit of position].
 ///
-/// The line's slope is a weighted mean of the slopes from sample to sample; the uncertainty is that of this mean when
-/// the slopes carry correlated noise. So a rate that wanders, and with it a position that drifts ever further from the
-/// line, is accounted for; a rate that does not wander at all gets too large an uncertainty rather than too small a
-/// one.
+/// The slope is a weighted mean of the slopes between consecutive samples; the uncertainty is that of this mean for
+/// slopes with correlated noise. It accounts for a rate that wanders, for which the position drifts away from the line;
+/// for a constant rate it is an overestimate.
 /// @param position strictly increasing
-/// @param resolution standard deviation below which samples are not told apart [unit of the samples], > 0
+/// @param resolution smallest standard deviation [unit of the samples], > 0
 /// @throws std::invalid_argument for fewer than four samples
 Measured fit_slope(const Eigen::VectorXd &position, const Eigen::VectorXd &samples, double resolution);
 

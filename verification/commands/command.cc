@@ -107,7 +107,7 @@ void Run::clear(const input::Options &options, bool has_case) const
                               "; give another --output-dir, or move the case out of it");
   if (!resumes_)
   {
-    const std::filesystem::path aside = output::set_earlier_output_aside(directory_, options.case_file);
+    const std::filesystem::path aside = output::archive_earlier_output(directory_, options.case_file);
     if (is_verbose_ && !aside.empty())
       std::cout << "The files of the run before in " << directory_ << " are now in " << aside.string() << std::endl;
   }

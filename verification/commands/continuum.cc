@@ -269,8 +269,8 @@ output::Results move(const input::Case &input, const bridge::ContinuumModel &mod
     {
       const double done = static_cast<double>(step), frames_so_far = static_cast<double>(fields.n_frames());
       constexpr double epsilon = std::numeric_limits<double>::epsilon();
-      output::require_course(*checkpoints.found(), step, solver.time(), done * settings.time_step,
-                             4. * epsilon * solver.time());
+      output::require_matching_time(*checkpoints.found(), step, solver.time(), done * settings.time_step,
+                                    4. * epsilon * solver.time());
       const bool has_series = input.frame_interval > 0.;
       if (step > n_steps || !(record.last_time() <= solver.time() && fields.last_time() <= solver.time()))
         throw support::InputError("what was recorded is of later times");

@@ -34,8 +34,8 @@ void LatticeMotion::check_loaded()
 {
   const double time = simulation_.state().time, step = simulation_.time_step(), done = static_cast<double>(step_);
   // Steps were added up one by one.
-  output::require_course(*checkpoints_.found(), step_, time, done * step,
-                         done * std::numeric_limits<double>::epsilon() * time);
+  output::require_matching_time(*checkpoints_.found(), step_, time, done * step,
+                                done * std::numeric_limits<double>::epsilon() * time);
   lattice::require_archived(time <= input_.end_time + step, "`time` is after the end");
   // A frame at the start, and one an interval, but no more than one a step.
   if (run_.is_root() && input_.frame_interval > 0.)

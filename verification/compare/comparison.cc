@@ -19,7 +19,7 @@ namespace latcon::compare
 namespace
 {
 
-// Significant digits for messages.
+// Formats a number with few digits for messages.
 std::string short_number(double value)
 {
   char text[32];
@@ -58,7 +58,7 @@ std::string series_text(const Frame &frame, const char *side)
                                      : "";
 }
 
-// Whether a ratio is that of a unit and one with a prefix, to 5 %.
+// Returns true if a ratio is that of a unit with a prefix to the unit itself, to 5 %.
 bool is_ratio_of_units(double ratio)
 {
   for (const double units : {1e2, 1e3, 1e6, 1e9})
@@ -68,7 +68,7 @@ bool is_ratio_of_units(double ratio)
   return false;
 }
 
-// A value of a field as it is measured: F less identity.
+// Returns a component of a field for the norms: F minus identity for the deformation gradient.
 double component(const FieldValues &field, std::size_t point, std::size_t c)
 {
   const bool diagonal = c == 0 || c == 3;
@@ -102,8 +102,7 @@ double relative(double difference, double lattice, double continuum)
   return difference == 0. ? 0. : difference / support::largest_of({lattice, continuum});
 }
 
-// A site at the rim of a curved hole may be outside for the rounding of the rim, but then some of its neighbours are
-// not.
+// A site at the rim of a curved hole may be outside because of rounding, but then some of its neighbours are inside.
 void require_no_missing_part(const LatticeFrame &lattice, const ContinuumFrame &continuum, const SiteValues &at_sites)
 {
   std::vector<std::uint8_t> has_neighbour_inside(lattice.points.size(), 0);
@@ -115,7 +114,7 @@ void require_no_missing_part(const LatticeFrame &lattice, const ContinuumFrame &
   for (std::size_t i = 0; i < lattice.points.size(); ++i)
     if (at_sites.outside[i] != 0 && has_neighbour_inside[i] == 0 && lattice.n_bonds[i] > 0)
       throw support::InputError(
-        both_files(lattice, continuum) + ": not the same sheet: the continuum has nothing at the site (" +
+        both_files(lattice, continuum) + ": not the same sheet: the continuum has no cell at the site (" +
         short_number(lattice.points[i][0]) + ", " + short_number(lattice.points[i][1]) + ") m, nor at its neighbours");
 
   vtkNew<vtkPolyData> sites;
@@ -123,7 +122,7 @@ void require_no_missing_part(const LatticeFrame &lattice, const ContinuumFrame &
   vtkNew<vtkStaticPointLocator> locator;
   locator->SetDataSet(sites);
   locator->BuildLocator();
-  // In a whole lattice every point of the sheet is within one spacing of a site.
+  // In a complete lattice every point of the sheet is within one spacing of a site.
   const double far = 2. * lattice.spacing;
   for (const Position &point : continuum.points)
   {
@@ -152,13 +151,13 @@ void require_same_units(const LatticeFrame &lattice, const ContinuumFrame &conti
         squares_here += here.at(i)[c] * here.at(i)[c];
         squares_there += there.at(i)[c] * there.at(i)[c];
       }
-    // The same shape, and a size that only a unit explains.
+    // Proportional fields, with a ratio that indicates another unit.
     const bool alike = product > 0.95 * std::sqrt(squares_here * squares_there);
     const double ratio = std::sqrt(squares_there / squares_here);
     if (alike && squares_here > 0. && is_ratio_of_units(ratio))
-      throw support::InputError(
-        both_files(lattice, continuum) + ": '" + there.field->name + "' of the continuum is " + short_number(ratio) +
-        " times that of the lattice: not in the same units? Both are to be in " + there.field->unit);
+      throw support::InputError(both_files(lattice, continuum) + ": '" + there.field->name + "' of the continuum is " +
+                                short_number(ratio) + " times that of the lattice: different units? Both must be in " +
+                                there.field->unit);
   }
 }
 
@@ -175,7 +174,7 @@ void require_same_time(const LatticeFrame &lattice, const ContinuumFrame &contin
   if (lattice.file.chosen && continuum.file.chosen)
     return;
   const std::string advice = series_text(lattice, "lattice") + series_text(continuum, "continuum") +
-                             "\nto compare them nevertheless, give both --lattice-time and --continuum-time";
+                             "\nto compare these frames anyway, give both --lattice-time and --continuum-time";
   if ((lattice.kind == TimeKind::motion && continuum.kind == TimeKind::equilibrium) ||
       (lattice.kind == TimeKind::equilibrium && continuum.kind == TimeKind::motion))
   {
@@ -208,7 +207,7 @@ void require_same_bounds(const LatticeFrame &lattice, const ContinuumFrame &cont
   std::string why;
   const Position ratio{{there.side(0) / here.side(0), there.side(1) / here.side(1)}};
   if (is_ratio_of_units(ratio[0]) && std::abs(ratio[1] / ratio[0] - 1.) < 0.05)
-    why = ": " + short_number(ratio[0]) + " times as large both ways, so one of them is not in metres";
+    why = ": " + short_number(ratio[0]) + " times as large in both directions, so one of them is not in metres";
   else if (std::abs(there.side(0) - here.side(1)) <= tolerance && std::abs(there.side(1) - here.side(0)) <= tolerance)
     why = ": x and y are exchanged";
   throw support::InputError(both_files(lattice, continuum) + ": not the same sheet: the lattice spans " + here.text() +
@@ -254,7 +253,7 @@ Comparison compare(const LatticeFrame &lattice, const ContinuumFrame &continuum,
     if (comparison.compared(lattice, *there.field).empty())
       throw support::InputError(
         both_files(lattice, continuum) + ": '" + there.field->name +
-        "' cannot be compared: no free site inside the continuum, and in no excluded circle, has all "
+        "' cannot be compared: no free site inside the continuum and outside the excluded circles has all "
         "its bonds");
   }
   require_same_units(lattice, continuum, comparison);

@@ -20,7 +20,7 @@ namespace
 constexpr const char *sites_file = "difference_sites.vtp";
 constexpr const char *continuum_file = "difference_continuum.vtu";
 
-// Vectors of three and tensors of nine components, as ParaView wants them.
+// Adds a field with three components for vectors and nine for tensors, as ParaView expects.
 void add_field(vtkPointData &data, const FieldValues &field, const char *suffix)
 {
   constexpr std::array<int, 4> in_plane{{0, 1, 3, 4}};
@@ -58,7 +58,7 @@ void write_data(const std::string &path, Data *data)
   writer->SetCompressorTypeToZLib();
   writer->WriteToOutputStringOn();
   if (writer->Write() != 1 || !quiet.error().empty())
-    throw support::OutputError(path, quiet.error().empty() ? "VTK could not format it" : quiet.error());
+    throw support::OutputError(path, quiet.error().empty() ? "VTK could not write it" : quiet.error());
   output::write_file(path, writer->GetOutputString());
 }
 

@@ -7,12 +7,12 @@
 namespace latcon::compare
 {
 
-/// Writes for ParaView what was compared: `difference.pvd` with two parts at the time of the lattice frame.
+/// Writes the comparison for ParaView: `difference.pvd` with two parts at the time of the lattice frame.
 ///
-/// `difference_sites.vtp`, part 0: the lattice frame with all its fields, and for each common field NAME also
-/// NAME_continuum, the finite element field at the sites, and NAME_difference, lattice less continuum, both
-/// not-a-number at sites outside; `outside`, `complete` and `excluded` are 0 or 1. `difference_continuum.vtu`, part 1:
-/// the continuum frame as it was read, in one piece. The series is written last, so that what it names is there. To be
+/// Part 0, `difference_sites.vtp`, is the lattice frame with all its fields. For each common field NAME it also
+/// contains NAME_continuum, the finite element field at the sites, and NAME_difference, lattice minus continuum, both
+/// NaN at sites outside; `outside`, `complete` and `excluded` are 0 or 1. Part 1, `difference_continuum.vtu`, is the
+/// continuum frame as read, in one piece. The series is written last, so that the files it refers to exist. To be
 /// called by one rank.
 /// @throws OutputError
 void write_difference(const std::string &directory, const LatticeFrame &lattice, const ContinuumFrame &continuum,

@@ -1,4 +1,4 @@
-/// The fields that lattice and continuum frames have in common.
+/// Fields that lattice and continuum frames have in common.
 #pragma once
 
 #include <array>
@@ -9,17 +9,17 @@
 namespace latcon::compare
 {
 
-/// What lattice and continuum files say under the same name.
+/// Field with the same name in lattice and continuum files.
 struct CommonField
 {
-  const char *name; ///< of the array in the files
+  const char *name; ///< name of the array in the files
   const char *unit;
-  std::size_t components; ///< in the plane: 1 scalar, 2 vector, 4 tensor row by row
-  bool from_bonds;     ///< on the lattice a sum or fit over the bonds of a site, so less of it where bonds are missing
-  bool in_motion_only; ///< on the continuum
+  std::size_t components; ///< in-plane components: 1 scalar, 2 vector, 4 tensor by rows
+  bool from_bonds;        ///< on the lattice, a sum or fit over the bonds of a site, so incomplete if bonds are missing
+  bool in_motion_only;    ///< continuum frames have it only in motion
 };
 
-/// All of them, in the order of the tables.
+/// All common fields, in the order of the tables.
 inline constexpr std::array<CommonField, 6> common_fields{{{"displacement", "m", 2, false, false},
                                                            {"velocity", "m/s", 2, false, true},
                                                            {"deformation_gradient", "1", 4, true, false},
@@ -27,7 +27,7 @@ inline constexpr std::array<CommonField, 6> common_fields{{{"displacement", "m",
                                                            {"cauchy_stress", "Pa", 4, true, false},
                                                            {"strain_energy_density", "J/m^3", 1, true, false}}};
 
-/// Values of a field at points, those of a point one after another.
+/// Values of a field at points; the components of a point are contiguous.
 struct FieldValues
 {
   const CommonField *field;

@@ -28,7 +28,7 @@ namespace
   throw support::InputError(file.path.string() + ": " + problem);
 }
 
-// What a reader of VTK makes of a file.
+// Reads a file with a reader of VTK.
 template <typename Reader>
 auto read_data(const FrameFile &file)
 {
@@ -36,20 +36,20 @@ auto read_data(const FrameFile &file)
   vtkNew<Reader> reader;
   reader->SetFileName(file.path.c_str());
   if (reader->CanReadFile(file.path.c_str()) != 1)
-    fail(file, "not a VTK file of the kind that its name says");
+    fail(file, "not a VTK file of the type that its name says");
   try
   {
     reader->Update();
   }
   catch (const std::length_error &)
   {
-    fail(file, "damaged: the size of an array is impossible");
+    fail(file, "corrupt: invalid size of an array");
   }
   vtkSmartPointer data = reader->GetOutput();
   if (!quiet.error().empty())
-    fail(file, "damaged: " + quiet.error());
+    fail(file, "corrupt: " + quiet.error());
   if (reader->GetErrorCode() != 0 || data->GetNumberOfPoints() == 0)
-    fail(file, "cut short, or without points");
+    fail(file, "truncated, or without points");
   return data;
 }
 
@@ -60,13 +60,13 @@ vtkDataArray &array(const FrameFile &file, vtkDataSet &data, const char *name, i
     fail(file, std::string("has no point data '") + name + "'");
   if (values->GetNumberOfComponents() != components || values->GetNumberOfTuples() != data.GetNumberOfPoints())
     fail(file, std::string("'") + name + "' has " + std::to_string(values->GetNumberOfComponents()) +
-                 " components where " + std::to_string(components) + " are wanted, or not a value for every point");
+                 " components where " + std::to_string(components) + " are expected, or not a value for every point");
   return *values;
 }
 
 FieldValues read_field(const FrameFile &file, vtkDataSet &data, const CommonField &field)
 {
-  // Files hold vectors of three and tensors of nine components; the plane's are 0, 1 and 0, 1, 3, 4.
+  // Vectors in files have three and tensors nine components; the in-plane components are 0, 1 and 0, 1, 3, 4.
   constexpr std::array<int, 4> in_plane{{0, 1, 3, 4}};
   const int in_file = field.components == 1 ? 1 : field.components == 2 ? 3 : 9;
   vtkDataArray &values = array(file, data, field.name, in_file);
@@ -98,23 +98,23 @@ std::vector<Position> read_points(const FrameFile &file, vtkPointSet &data)
     std::array<double, 3> x{};
     data.GetPoint(static_cast<vtkIdType>(i), x.data());
     if (!std::isfinite(x[0]) || !std::isfinite(x[1]))
-      fail(file, "a point has no finite position");
+      fail(file, "the position of a point is not finite");
     points[i] = {{x[0], x[1]}};
   }
   return points;
 }
 
-// The time of the series, else of the file.
+// Returns the time given by the series, otherwise that in the file.
 double frame_time(const FrameFile &file, vtkDataSet &data, const char *name, std::optional<double> wanted)
 {
   if (file.time)
     return *file.time;
   vtkDataArray *const time = data.GetFieldData()->GetArray(name);
   if (time == nullptr || time->GetNumberOfTuples() != 1 || !std::isfinite(time->GetComponent(0, 0)))
-    fail(file, std::string("has no field data '") + name + "', so its time is not known");
+    fail(file, std::string("has no field data '") + name + "', so its time is unknown");
   const double found = time->GetComponent(0, 0);
   if (wanted && !same_time(found, *wanted))
-    fail(file, "is at the time " + support::full_precision(found) + ", not at " + support::full_precision(*wanted));
+    fail(file, "has the time " + support::full_precision(found) + ", not " + support::full_precision(*wanted));
   return found;
 }
 
@@ -123,7 +123,7 @@ double length(const Position &a, const Position &b)
   return std::hypot(a[0] - b[0], a[1] - b[1]);
 }
 
-// Nodes of a cell of VTK in rows and columns.
+// Adds a cell of VTK with its nodes ordered by rows and columns.
 void add_cell(ContinuumFrame &frame, vtkIdType id)
 {
   vtkIdType n = 0;
@@ -133,7 +133,7 @@ void add_cell(ContinuumFrame &frame, vtkIdType id)
   const auto side = static_cast<int>(std::lround(std::sqrt(static_cast<double>(n))));
   if ((type != VTK_QUAD && type != VTK_LAGRANGE_QUADRILATERAL) || side < 2 || side > 32 ||
       static_cast<vtkIdType>(side) * side != n)
-    fail(frame.file, "has a cell that is no quadrilateral of the same degree both ways (VTK's type " +
+    fail(frame.file, "has a cell that is not a quadrilateral of equal degree in both directions (VTK type " +
                        std::to_string(type) + " with " + std::to_string(n) + " points)");
   const std::array<int, 2> order{{side - 1, side - 1}};
   frame.cells.push_back({static_cast<unsigned int>(side - 1), frame.nodes.size()});
@@ -163,7 +163,7 @@ LatticeFrame read_lattice_frame(const FrameFile &file, std::optional<double> tim
   if (vtkDataArray *const bounds = frame.data->GetFieldData()->GetArray("SheetBounds"))
   {
     if (bounds->GetNumberOfComponents() != 4 || bounds->GetNumberOfTuples() != 1)
-      fail(file, "its field data 'SheetBounds' are not four numbers");
+      fail(file, "its field data 'SheetBounds' must be four numbers");
     frame.sheet_bounds.emplace();
     bounds->GetTuple(0, frame.sheet_bounds->data());
   }
@@ -189,7 +189,7 @@ LatticeFrame read_lattice_frame(const FrameFile &file, std::optional<double> tim
     const vtkIdType *ends = nullptr;
     lines->GetCellAtId(id, n, ends);
     if (n != 2)
-      fail(file, "a line has " + std::to_string(n) + " points, so it is no bond");
+      fail(file, "a line has " + std::to_string(n) + " points, so it is not a bond");
     const std::array<std::size_t, 2> bond{{static_cast<std::size_t>(ends[0]), static_cast<std::size_t>(ends[1])}};
     for (const std::size_t end : bond)
       ++frame.n_bonds[end];
@@ -198,7 +198,7 @@ LatticeFrame read_lattice_frame(const FrameFile &file, std::optional<double> tim
     frame.bonds.push_back(bond);
   }
   if (!(frame.spacing > 0.))
-    fail(file, "has no bonds, or one without length, so it is no lattice");
+    fail(file, "has no bonds, or a bond of zero length, so it is not a lattice");
   return frame;
 }
 

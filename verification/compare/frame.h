@@ -1,4 +1,4 @@
-/// Frames of either side, read from their files and checked.
+/// Frames of both sides, as read from their files.
 #pragma once
 
 #include <array>
@@ -16,15 +16,15 @@
 namespace latcon::compare
 {
 
-/// What a frame's time means.
+/// Meaning of the time of a frame.
 enum class TimeKind
 {
   motion,      ///< seconds
   equilibrium, ///< load factor
-  start        ///< 0 of either
+  start        ///< time 0: start of a motion, or unloaded state
 };
 
-/// What both sides have. Points are at reference positions [m].
+/// Common part of the frames of both sides. Points are at reference positions [m].
 struct Frame
 {
   FrameFile file;
@@ -33,44 +33,46 @@ struct Frame
   std::vector<Position> points;
   std::vector<FieldValues> fields; ///< finite, at the points; in the order of common_fields
 
-  /// Null if the frame does not have it.
+  /// Returns the field with this name; null if the frame does not have it.
   const FieldValues *find(const std::string &name) const;
 };
 
-/// The sites of a lattice and the bonds between them.
+/// Frame of a lattice: sites and bonds.
 struct LatticeFrame : Frame
 {
-  vtkSmartPointer<vtkPolyData> data; ///< the file's content
+  vtkSmartPointer<vtkPolyData> data; ///< content of the file
   std::vector<std::array<std::size_t, 2>> bonds;
-  std::vector<std::uint8_t> held;    ///< 1 where the motion is prescribed
-  std::vector<unsigned int> n_bonds; ///< of each site
+  std::vector<std::uint8_t> held;    ///< 1 at sites whose motion is prescribed
+  std::vector<unsigned int> n_bonds; ///< per site
   double spacing = 0.;               ///< length of the shortest undeformed bond [m]
-  /// Bounds of the undeformed sheet if the file says them: X from, to, Y from, to [m].
+  /// Bounds of the undeformed sheet, if the file contains them: X from, to, Y from, to [m].
   std::optional<std::array<double, 4>> sheet_bounds;
 };
 
-/// A quadrilateral of degree p, whose geometry and fields are Lagrange polynomials between (p + 1)^2 equidistant nodes.
+/// Quadrilateral of degree p: geometry and fields are Lagrange polynomials on (p + 1)^2 equidistant nodes.
 struct Cell
 {
   unsigned int degree;
   std::size_t first_node; ///< in ContinuumFrame::nodes; the first coordinate runs fastest
 };
 
-/// The sheet in finite elements. Points belong to one cell each, so that fields may jump between cells.
+/// Frame of finite elements. Each point belongs to one cell, so fields may jump between cells.
 struct ContinuumFrame : Frame
 {
-  vtkSmartPointer<vtkUnstructuredGrid> data; ///< the file's content, the pieces of a .pvtu in one
+  vtkSmartPointer<vtkUnstructuredGrid> data; ///< content of the file, with the pieces of a .pvtu merged
   std::vector<Cell> cells;
   std::vector<std::size_t> nodes; ///< points of the cells
 };
 
-/// Reads a frame. In motion a lattice has velocities; at rest at time 0 it may be the start of either.
-/// @throws InputError if VTK cannot read the file, or it lacks an array, or one has the wrong size or holds a value
-/// that is not finite, or it has no bonds, or if a time was asked for and the frame has another
+/// Reads a lattice frame and checks it. It is of a motion if it has velocities; at rest at time 0 it may be the start
+/// of a motion or of an equilibrium.
+/// @param time required time [s], or load factor [-] @throws InputError if VTK cannot read the file, if an array is
+/// missing, has the wrong size or contains a value that is not finite, if there are no bonds, or if the frame has
+/// another time
 LatticeFrame read_lattice_frame(const FrameFile &file, std::optional<double> time = {});
 
-/// The same. In motion the continuum has the field `velocity`.
-/// @throws InputError as above, and for cells other than quadrilaterals, linear or Lagrange's
+/// Reads a continuum frame and checks it. It is of a motion if it has the field `velocity`.
+/// @throws InputError as read_lattice_frame(), and for cells other than linear or Lagrange quadrilaterals
 ContinuumFrame read_continuum_frame(const FrameFile &file, std::optional<double> time = {});
 
 } // namespace latcon::compare

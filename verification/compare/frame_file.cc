@@ -47,10 +47,9 @@ void require_side(const fs::path &path, Side side)
   if (is_frame_of(path, side))
     return;
   if (is_frame_of(path, other(side)))
-    fail(path, "a " + to_string(other(side)) + " frame where one of the " + to_string(side) +
-                 " is wanted: the lattice comes first, then the continuum");
-  fail(path,
-       "no " + to_string(side) + " frame: a " + kinds_of(side) + " file, a .pvd or an output directory is wanted");
+    fail(path, "a " + to_string(other(side)) + " frame where a " + to_string(side) +
+                 " frame is expected: give the lattice first, then the continuum");
+  fail(path, "not a " + to_string(side) + " frame: give a " + kinds_of(side) + " file, a .pvd or an output directory");
 }
 
 struct Entry
@@ -64,10 +63,10 @@ std::vector<Entry> read_series(const fs::path &path)
   QuietVtk quiet;
   const auto root = vtkSmartPointer<vtkXMLDataElement>::Take(vtkXMLUtilities::ReadElementFromFile(path.c_str()));
   if (root == nullptr)
-    fail(path, "no XML, or cut short");
+    fail(path, "not XML, or truncated");
   vtkXMLDataElement *const collection = root->FindNestedElementWithName("Collection");
   if (collection == nullptr)
-    fail(path, "no series of frames: it has no element Collection");
+    fail(path, "not a series of frames: it has no element Collection");
   std::vector<Entry> entries;
   for (int i = 0; i < collection->GetNumberOfNestedElements(); ++i)
   {
@@ -79,7 +78,7 @@ std::vector<Entry> read_series(const fs::path &path)
     entries.push_back({time, path.parent_path() / file});
   }
   if (entries.empty())
-    fail(path, "holds no frames");
+    fail(path, "contains no frames");
   std::stable_sort(entries.begin(), entries.end(), [](const Entry &a, const Entry &b) { return a.time < b.time; });
   return entries;
 }
@@ -104,14 +103,14 @@ FrameFile pick(const fs::path &series, Side side, std::optional<double> time)
     fail(series, "no frame at " + support::full_precision(wanted) + "; the nearest are at " + list_of_times(nearest));
   }
   if (found.size() > 1)
-    fail(series,
-         std::to_string(found.size()) + " files at the time " + support::full_precision(wanted) + ": give one of them");
+    fail(series, std::to_string(found.size()) + " files at the time " + support::full_precision(wanted) +
+                   ": give one of these files");
   frame.path = found.front().path;
   frame.time = found.front().time;
   frame.chosen = time.has_value();
   require_side(frame.path, side);
   if (!fs::is_regular_file(frame.path))
-    fail(frame.path, "not there, though " + series.string() + " names it");
+    fail(frame.path, "does not exist, but " + series.string() + " refers to it");
   return frame;
 }
 
@@ -137,8 +136,8 @@ FrameFile find_frame(const std::string &name, Side side, std::optional<double> t
       return pick(series, side, time);
     const bool swapped = fs::is_regular_file(path / (to_string(other(side)) + ".pvd"));
     fail(path,
-         "holds no " + series.filename().string() +
-           (swapped ? ", but a " + to_string(other(side)) + ".pvd: the lattice comes first, then the continuum" : ""));
+         "contains no " + series.filename().string() +
+           (swapped ? ", but a " + to_string(other(side)) + ".pvd: give the lattice first, then the continuum" : ""));
   }
   if (!fs::is_regular_file(path))
     fail(path, "no such file");
@@ -153,7 +152,7 @@ FrameFile find_frame(const std::string &name, Side side, std::optional<double> t
 
 std::string list_of_times(const std::vector<double> &times)
 {
-  constexpr std::size_t ends = 4; // shown at either end of a long list
+  constexpr std::size_t ends = 4; // shown at each end of a long list
   std::string text;
   for (std::size_t i = 0; i < times.size(); ++i)
   {

@@ -5,7 +5,7 @@
 namespace latcon::compare
 {
 
-// VTK tells both its window and its log.
+// VTK writes messages to both its output window and its log.
 QuietVtk::QuietVtk() : before_(vtkOutputWindow::GetInstance())
 {
   vtkOutputWindow::SetInstance(kept_);

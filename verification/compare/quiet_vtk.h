@@ -9,7 +9,7 @@
 namespace latcon::compare
 {
 
-/// While it lives, what VTK has to say about files goes here and not to the terminal. One thread at a time.
+/// Redirects error messages of VTK from the terminal to this object in its scope. Not thread-safe.
 class QuietVtk
 {
 public:
@@ -18,11 +18,11 @@ public:
   QuietVtk(const QuietVtk &) = delete;
   QuietVtk &operator=(const QuietVtk &) = delete;
 
-  /// The first error, without the place in VTK's sources; empty if there was none.
+  /// Returns the first error without its position in the sources of VTK; empty if there was none.
   std::string error() const;
 
 private:
-  // Keeps the first error.
+  // Stores the first error.
   class Kept : public vtkOutputWindow
   {
   public:

@@ -9,7 +9,7 @@ namespace latcon::compare
 namespace
 {
 
-// Lagrange polynomials between p + 1 equidistant nodes of [0, 1], and their derivatives.
+// Lagrange polynomials on p + 1 equidistant nodes of [0, 1], and their derivatives.
 struct Basis
 {
   std::array<double, 32> value, slope;
@@ -34,7 +34,7 @@ void evaluate_basis(unsigned int p, double x, Basis &basis)
   }
 }
 
-// How far a coordinate is beyond [0, 1].
+// Returns the distance of a coordinate outside [0, 1].
 double beyond(double x)
 {
   return x < 0. ? x : std::max(0., x - 1.);
@@ -61,7 +61,7 @@ SiteProbe::SiteProbe(const ContinuumFrame &frame, double tolerance) : frame_(fra
         box.low[k] = std::min(box.low[k], x);
         box.high[k] = std::max(box.high[k], x);
       }
-    // A curved side may bulge out of the box of its nodes, by far less than the cell is long.
+    // A curved side may extend beyond the box of its nodes, by much less than the length of the cell.
     const double margin = 0.1 * std::max(box.high[0] - box.low[0], box.high[1] - box.low[1]) + tolerance;
     for (std::size_t k = 0; k < 2; ++k)
     {
@@ -73,7 +73,7 @@ SiteProbe::SiteProbe(const ContinuumFrame &frame, double tolerance) : frame_(fra
     boxes_.push_back(box);
   }
 
-  // About as many bins as cells, about as wide as high.
+  // About as many bins as cells, nearly square.
   const double width = whole_.high[0] - whole_.low[0];
   const double height = whole_.high[1] - whole_.low[1];
   const double per_length = std::sqrt(static_cast<double>(boxes_.size()) / (width * height));
@@ -119,7 +119,7 @@ bool SiteProbe::find_in_cell(const Cell &cell, const Position &point, Position &
     const Position r{{point[0] - x[0], point[1] - x[1]}};
     const Position step{
       {(d[1][1] * r[0] - d[1][0] * r[1]) / determinant, (d[0][0] * r[1] - d[0][1] * r[0]) / determinant}};
-    // Where the polynomials are far outside the cell they say nothing about it. Not-a-number ends here as well.
+    // Far outside the cell the polynomials are meaningless. NaN also ends the iteration here.
     if (!(std::abs(unit[0] - 0.5) < 2. && std::abs(unit[1] - 0.5) < 2. && std::isfinite(step[0] + step[1])))
       return false;
     unit[0] += step[0];
@@ -190,7 +190,7 @@ SiteValues probe(const ContinuumFrame &frame, const std::vector<Position> &point
   for (std::size_t i = 0; i < mine_outside.size(); ++i)
     mine_outside[i] = site_probe.evaluate(points[first_point(rank) + i], mine.data() + i * n_values) ? 0 : 1;
 
-  // Counts of sites, since those of values may not fit into an int.
+  // Counts of sites, because counts of values may exceed the range of int.
   std::vector<int> counts, offsets;
   for (int r = 0; r < n_ranks; ++r)
   {

@@ -1,4 +1,4 @@
-/// Values of a finite element field at points.
+/// Evaluation of finite element fields at points.
 #pragma once
 
 #include <cstdint>
@@ -11,22 +11,22 @@
 namespace latcon::compare
 {
 
-/// Finds the cells at a point and interpolates between their nodes. Positions of curved cells are inverted by Newton's
-/// method, so that a polynomial of the cells' degree is found again to the precision of the file.
+/// Finds the cells at a point and interpolates between their nodes. Newton's method inverts the mapping of curved
+/// cells, so that polynomials of the degree of the cells are reproduced to the precision of the file.
 ///
-/// @note The frame must outlive it.
+/// The frame must outlive this object.
 class SiteProbe
 {
 public:
-  /// @param tolerance how far outside a cell a point may be and still belong to it [m]
+  /// @param tolerance distance outside a cell up to which a point belongs to it [m]
   SiteProbe(const ContinuumFrame &frame, double tolerance);
 
-  /// Number of values at a point: the components of all fields of the frame.
+  /// Returns the number of values at a point: components of all fields of the frame.
   std::size_t n_values() const { return n_values_; }
 
-  /// Fields at a point one after another, the mean over the cells that meet there, since derivatives jump between
-  /// cells.
-  /// @return false if the point is in no cell; then the values are left as they are
+  /// Evaluates all fields at a point, one after another. On cell boundaries it takes the mean over the adjacent cells,
+  /// because derivatives jump between cells.
+  /// @return false if the point is in no cell; the values are then unchanged
   bool evaluate(const Position &point, double *values) const;
 
 private:
@@ -40,21 +40,21 @@ private:
   {
     Position low, high;
   };
-  std::vector<Box> boxes_; // of the cells
+  std::vector<Box> boxes_; // bounding boxes of the cells
   Box whole_;
   std::array<std::size_t, 2> n_bins_{};
-  std::vector<std::vector<std::size_t>> bins_; // cells whose boxes meet a bin
+  std::vector<std::vector<std::size_t>> bins_; // cells whose boxes overlap a bin
 };
 
 /// Fields of a continuum frame at points.
 struct SiteValues
 {
   std::vector<std::uint8_t> outside; ///< 1 at points that are in no cell
-  std::vector<FieldValues> fields;   ///< not-a-number at points outside
+  std::vector<FieldValues> fields;   ///< NaN at points outside
 };
 
-/// Values at points, which are shared over the ranks. All ranks have the whole frame and get all values, the same bits
-/// for any number of ranks. Collective.
+/// Evaluates a frame at points, which are distributed over the ranks. All ranks pass the whole frame and get all
+/// values. The result does not depend on the number of ranks. Collective.
 /// @param tolerance see SiteProbe
 SiteValues probe(const ContinuumFrame &frame, const std::vector<Position> &points, double tolerance,
                  MPI_Comm communicator);

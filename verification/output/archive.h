@@ -1,6 +1,6 @@
-/// What objects save themselves to and load themselves from.
+/// Archives to which objects save their state and from which they load it.
 ///
-/// A class with a state to be kept has one function for both ways:
+/// A class with a state has one function for both directions:
 ///
 ///     template <class Archive> void archive(Archive &archive)
 ///     {
@@ -8,10 +8,10 @@
 ///       archive("displacement", displacement_);
 ///     }
 ///
-/// so that what is saved and what is loaded cannot differ. The class needs to know no more of an archive than that it
-/// is called with names and values, and that `Archive::loads` tells which way it goes. Where MPI ranks share an object,
-/// all call its archive(): to save, the first rank passes the whole (the others' values are not looked at); to load,
-/// every rank gets the whole and takes its share.
+/// so that saving and loading cannot differ. The class only uses that an archive is called with names and values, and
+/// that `Archive::loads` is true if it loads. If an object is distributed over MPI ranks, all ranks call its archive():
+/// to save, the root rank passes the complete values (values of other ranks are ignored); to load, every rank gets the
+/// complete values and keeps its part.
 #pragma once
 
 #include <algorithm>
@@ -63,14 +63,14 @@ struct HasArchive<T, Archive, std::void_t<decltype(std::declval<T &>().archive(s
 template <class T>
 constexpr bool is_matrix = std::is_base_of_v<Eigen::MatrixBase<T>, T>;
 
-/// Values of the members of many records, by the names of the members.
+/// Values of the members of many records, by member name.
 struct Columns
 {
   std::map<std::string, std::vector<double>> reals;
   std::map<std::string, std::vector<std::uint64_t>> wholes;
 };
 
-/// Takes the members of one record, of row `row`, to columns or from them.
+/// Archive that copies the members of one record to or from row `row` of columns.
 template <bool loading>
 class RecordArchive
 {
@@ -90,7 +90,7 @@ public:
         exchange(columns_.reals[prefix_ + name + "_" + std::to_string(i)], value.data()[i]);
     else
     {
-      static_assert(HasArchive<T, RecordArchive>::value, "a record holds numbers, and records of them");
+      static_assert(HasArchive<T, RecordArchive>::value, "a record consists of numbers and of records");
       const std::string outer = prefix_;
       prefix_ += name + "_";
       value.archive(*this);
@@ -113,13 +113,14 @@ private:
   std::string prefix_;
 };
 
-/// What both ways have in common: how an object is taken apart.
+/// Common base of both archives, which decomposes objects into arrays and texts.
 template <class Archive>
 class Base
 {
 public:
-  /// A number, a text, a matrix of fixed size, a vector of numbers or of such matrices, an optional number, a vector of
-  /// vectors of numbers; or an object that has archive(), or a range of those, whose number is the same both ways.
+  /// Archives a number, a text, a matrix of fixed size, a vector of numbers or of such matrices, an optional number, a
+  /// vector of vectors of numbers, an object with archive(), or a range of such objects. The size of a range must be
+  /// the same for saving and loading.
   template <class T>
   void operator()(const std::string &name, T &value)
   {
@@ -129,7 +130,7 @@ public:
     {
       std::uint8_t byte = value ? 1 : 0;
       self().elements(name, &byte, 1);
-      require(byte <= 1, name, "is neither true nor false");
+      require(byte <= 1, name, "is not a truth value");
       value = byte != 0;
     }
     else if constexpr (std::is_arithmetic_v<T>)
@@ -149,7 +150,7 @@ public:
       several(name, value);
   }
 
-  /// Many small objects whose archive() names numbers, and objects of numbers, alone: a column for each of these.
+  /// Archives many small objects as columns. Their archive() may contain only numbers and objects of numbers.
   template <class Record>
   void records(const std::string &name, std::vector<Record> &all)
   {
@@ -162,7 +163,7 @@ public:
     Columns columns;
     if constexpr (Archive::loads)
     {
-      // One record tells which columns there are.
+      // A default record lists the columns.
       Record record{};
       Columns names;
       RecordArchive<false> list(names, 0);
@@ -172,12 +173,12 @@ public:
         for (const auto &[column, unused] : of)
         {
           (*this)(name + "/" + column, to[column]);
-          require(to[column].size() == n, name + "/" + column, "has another length than `n` says");
+          require(to[column].size() == n, name + "/" + column, "has a length other than `n`");
         }
       };
       read(columns.reals, names.reals);
       read(columns.wholes, names.wholes);
-      all.resize(n); // which the columns have shown to be no more than the file holds
+      all.resize(n); // the columns have this size, so it is not larger than the file
     }
     for (std::size_t row = 0; row < n; ++row)
     {
@@ -200,7 +201,7 @@ protected:
       throw Hdf5Error("`" + prefix_ + name + "` " + problem);
   }
 
-  std::string prefix_; // of the object that is being taken apart
+  std::string prefix_; // of the current object
 
 private:
   Archive &self() { return static_cast<Archive &>(*this); }
@@ -216,7 +217,7 @@ private:
     value = values.empty() ? std::nullopt : std::optional<T>(values.front());
   }
 
-  // As the values one after the other, and how many there are in each.
+  // Archives concatenated values, and the size of each vector.
   template <class Number>
   void vectors(const std::string &name, std::vector<std::vector<Number>> &all)
   {
@@ -233,12 +234,11 @@ private:
     auto next = values.begin();
     for (const std::uint64_t size : sizes)
     {
-      require(size <= static_cast<std::uint64_t>(values.end() - next), name + "/sizes",
-              "are of more values than there are");
+      require(size <= static_cast<std::uint64_t>(values.end() - next), name + "/sizes", "exceed the number of values");
       all.emplace_back(next, next + static_cast<std::ptrdiff_t>(size));
       next += static_cast<std::ptrdiff_t>(size);
     }
-    require(next == values.end(), name + "/sizes", "are of fewer values than there are");
+    require(next == values.end(), name + "/sizes", "are less than the number of values");
   }
 
   template <class Range>
@@ -258,7 +258,7 @@ private:
       if constexpr (Archive::loads)
       {
         const std::size_t n = self().size(name);
-        require(n % per_element == 0, name, "has a part of an element");
+        require(n % per_element == 0, name, "ends with an incomplete element");
         range.resize(n / per_element);
       }
       self().elements(name, range.empty() ? nullptr : range.front().data(), per_element * range.size());
@@ -269,7 +269,7 @@ private:
     {
       std::size_t n = range.size();
       (*this)(name + "/n", n);
-      require(range.size() == n, name, "holds another number of objects");
+      require(range.size() == n, name, "has another number of objects");
       std::size_t i = 0;
       for (T &element : range)
         (*this)(name + "/" + std::to_string(i++), element);
@@ -279,13 +279,13 @@ private:
 
 } // namespace archive_detail
 
-/// Saves to a file in memory. @throws Hdf5Error if memory is short
+/// Archive that saves to a file in memory. @throws Hdf5Error if there is not enough memory
 class CheckpointWriter : public archive_detail::Base<CheckpointWriter>
 {
 public:
   static constexpr bool loads = false;
 
-  /// @param image where to, on the first rank; null on the others
+  /// @param image destination on the root rank; null on other ranks
   explicit CheckpointWriter(Hdf5Image *image) : image_(image) {}
 
   template <class T>
@@ -304,9 +304,9 @@ private:
   Hdf5Image *image_;
 };
 
-/// Loads from a file. Sizes are those of what is there, never those that a number in the file says; an object that
-/// expects a size or looks something up by a number compares it in its archive().
-/// @throws Hdf5Error if something is not there, of another type or size, or a real number is not finite
+/// Archive that loads from a file. Sizes are those of the stored arrays, never numbers read from the file. An object
+/// that expects a size, or uses a number as an index, must check it in its archive().
+/// @throws Hdf5Error if an array or text is missing or of another type or size, or if a real number is not finite
 class CheckpointReader : public archive_detail::Base<CheckpointReader>
 {
 public:

@@ -26,7 +26,7 @@ namespace
 
 namespace fs = std::filesystem;
 
-constexpr int schema = 4; // of what is in a file; another one cannot be read
+constexpr int schema = 4; // of the content of a file; other schemas cannot be read
 constexpr std::size_t n_kept = 2;
 constexpr std::size_t max_reported_differences = 3;
 const std::string first_words = "latcon checkpoint, SHA-256 of the bytes from 512 on: ";
@@ -41,7 +41,7 @@ std::map<std::string, std::string> entries_of(const std::string &lines)
   return entries;
 }
 
-// The entries in which two cases differ, in words.
+// Describes the entries in which two cases differ.
 std::string differences(const std::string &there, const std::string &here)
 {
   const std::map<std::string, std::string> theirs = entries_of(there), ours = entries_of(here);
@@ -50,17 +50,18 @@ std::string differences(const std::string &there, const std::string &here)
   {
     const auto other = theirs.find(key);
     if (other == theirs.end() || other->second != value)
-      found.push_back(key + " = " + (other == theirs.end() ? "(none)" : other->second) + " there, " + value + " here");
+      found.push_back(key + " = " + (other == theirs.end() ? "(none)" : other->second) + " in the checkpoint, " +
+                      value + " in this case");
   }
   std::string text;
   for (std::size_t i = 0; i < std::min(found.size(), max_reported_differences); ++i)
     text += (i > 0 ? "; " : "") + found[i];
   if (found.size() > max_reported_differences)
     text += "; and " + std::to_string(found.size() - max_reported_differences) + " more";
-  return text.empty() ? "entries that are not known here" : text;
+  return text.empty() ? "unknown entries" : text;
 }
 
-// The hash that a file was given; empty if it begins like no checkpoint.
+// Returns the hash in the first line of a file; empty if the file is not a checkpoint.
 std::string hash_in(const fs::path &path)
 {
   std::ifstream in(path, std::ios::binary);
@@ -78,12 +79,13 @@ std::string name_of(std::size_t step)
 
 } // namespace
 
-void require_course(const CheckpointPlace &place, std::size_t step, double time, double expected, double rounding)
+void require_matching_time(const CheckpointPlace &place, std::size_t step, double time, double expected,
+                           double rounding)
 {
   if (step != place.step || time != place.time)
-    throw std::invalid_argument("`step` or `time` is not that of `run`");
+    throw std::invalid_argument("`step` or `time` differs from that in `run`");
   if (!(std::abs(time - expected) <= rounding))
-    throw std::invalid_argument("`time` is not that of its steps");
+    throw std::invalid_argument("`time` does not match the number of steps");
 }
 
 Checkpoints::Checkpoints(const input::Options &options, const input::Parameters &parameters, const input::Case &input,
@@ -128,8 +130,7 @@ Checkpoints::Checkpoints(const input::Options &options, const input::Parameters 
     last_step_asked_ = best.step;
   }
   else if (!problems.empty())
-    throw support::InputError("there is no checkpoint to go on from; to start from the beginning leave out --resume\n" +
-                              problems);
+    throw support::InputError("there is no usable checkpoint; to start from the beginning omit --resume\n" + problems);
   if (first_rank_ && !problems.empty())
     std::fprintf(stderr, "latcon: %s\n", problems.c_str());
 }
@@ -145,14 +146,14 @@ std::vector<fs::path> Checkpoints::files() const
   return found;
 }
 
-// Why a file cannot be used, in words; empty if it can.
+// Returns the reason why a file cannot be used; empty if it can.
 std::string Checkpoints::problem_of(const fs::path &path, CheckpointPlace &place) const
 {
   const std::string hash = hash_in(path);
   if (hash.empty())
-    return "it is no checkpoint";
+    return "it is not a checkpoint";
   if (sha256_of_file(path, Hdf5Image::user_block) != hash)
-    return "it is damaged: its bytes are not those that were written";
+    return "it is corrupt: its checksum does not match";
   try
   {
     const Hdf5File file(path);
@@ -164,10 +165,10 @@ std::string Checkpoints::problem_of(const fs::path &path, CheckpointPlace &place
     std::string text;
     archive("run/command", text);
     if (text != command_)
-      return "it was left by `latcon " + text + "`, this is `latcon " + command_ + "`";
+      return "it was written by `latcon " + text + "`, this is `latcon " + command_ + "`";
     archive("run/case", text);
     if (text != case_text_)
-      return "it was left by another case: " + differences(text, case_text_);
+      return "it was written for another case: " + differences(text, case_text_);
     archive("run/commit", place.commit);
     archive("run/program_hash", place.program_hash);
     archive("run/step", place.step);
@@ -175,7 +176,7 @@ std::string Checkpoints::problem_of(const fs::path &path, CheckpointPlace &place
     place.file = path;
     return "";
   }
-  catch (const std::exception &error) // HDF5's, or no memory for what it says it holds
+  catch (const std::exception &error) // of HDF5, or not enough memory for the stated size
   {
     return error.what();
   }
@@ -189,11 +190,11 @@ void Checkpoints::load(const std::function<void(CheckpointReader &)> &parts) con
     CheckpointReader archive(file);
     parts(archive);
   }
-  // Whatever the parts object to, it is the file that is wrong: the run was set up without it.
+  // Any error of the parts is an error of the file, because the run itself has been set up.
   catch (const std::exception &error)
   {
-    throw UnusableCheckpoint(found_->file.string() + ": it was not left by this run: " + error.what() +
-                             "; to start from the beginning leave out --resume");
+    throw UnusableCheckpoint(found_->file.string() + ": it was not written by this run: " + error.what() +
+                             "; to start from the beginning omit --resume");
   }
 }
 
@@ -202,7 +203,7 @@ bool Checkpoints::due(std::size_t step)
   const bool by_steps = step_interval_ > 0 && step / step_interval_ > last_step_asked_ / step_interval_;
   last_step_asked_ = step;
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - last_written_;
-  // Clocks differ: the first rank's counts.
+  // Clocks differ between ranks; the root rank decides.
   const bool by_time = wall_interval_ > 0. && dealii::Utilities::MPI::broadcast(
                                                 MPI_COMM_WORLD, elapsed.count() >= wall_interval_ ? 1 : 0) != 0;
   return by_steps || by_time;
@@ -233,12 +234,12 @@ void Checkpoints::save(std::size_t step, double time, const std::function<void(C
     bytes.replace(0, head.size(), head);
     std::error_code error;
     support::require_in_place(folder_);
-    fs::create_directory(folder_, error); // not the folder above: if that was removed, so was the run
+    fs::create_directory(folder_, error); // not its parent: if the parent was removed, the run was removed
     if (error)
       throw support::OutputError(folder_.string(), error.message());
     write_file((folder_ / name_of(step)).string(), bytes);
-    // By now the last one is whole, so that the older ones can go; those of later steps were left by a run that this
-    // one has gone back behind.
+    // The last checkpoint is complete now, so older ones can be deleted. Checkpoints of later steps belong to an
+    // earlier run that continued beyond the step from which this run resumed.
     std::vector<fs::path> all = files();
     const auto written = std::find(all.begin(), all.end(), folder_ / name_of(step));
     const auto before = static_cast<std::size_t>(written - all.begin());

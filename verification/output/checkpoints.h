@@ -20,50 +20,51 @@ class Parameters;
 namespace latcon::output
 {
 
-/// Where a run was when it left a checkpoint.
+/// State of progress of a run at a checkpoint.
 struct CheckpointPlace
 {
   std::filesystem::path file;
   std::size_t step = 0;     ///< steps done
-  double time = 0.;         ///< of the sheet [s]
+  double time = 0.;         ///< simulated time [s]
   std::string commit;       ///< of the program that wrote it, see git_commit()
   std::string program_hash; ///< of the program that wrote it, see program_hash()
 };
 
-/// A checkpoint whose bytes are those that were written, but whose contents are none that this run can have left.
+/// Checkpoint that is intact but cannot have been written by this run.
 class UnusableCheckpoint : public support::InputError
 {
 public:
   using support::InputError::InputError;
 };
 
-/// Refuses steps done and a time [s] that are not those of the checkpoint, or do not belong together: the time is to be
-/// `expected` within `rounding`. @throws std::invalid_argument
-void require_course(const CheckpointPlace &place, std::size_t step, double time, double expected, double rounding);
+/// Checks that `step` and `time` [s] match those of the checkpoint, and that the time equals `expected` within
+/// `rounding`. @throws std::invalid_argument otherwise
+void require_matching_time(const CheckpointPlace &place, std::size_t step, double time, double expected,
+                           double rounding);
 
-/// The checkpoints of a run, in the folder `checkpoints` of its output directory: HDF5 files checkpoint-STEP.h5, of
-/// which the last two are kept.
+/// Checkpoints of a run: HDF5 files checkpoint-STEP.h5 in the folder `checkpoints` of its output directory, of which
+/// the last two are kept.
 ///
-/// A file begins with a line that holds the SHA-256 of all behind its first 512 bytes, where the HDF5 part begins. The
-/// group `run` in it tells the schema, the program, the command, the case (all entries but those about checkpoints,
-/// with a hash), step and time; the rest is what the parts of the run archived, under the names they gave it. A run
-/// goes on from the file with the most steps that is whole and belongs to it, whatever the files are called.
+/// A file begins with a line that contains the SHA-256 of all bytes after the first 512; the HDF5 part begins there.
+/// Its group `run` contains the schema, the program, the command, the case (all entries except those about checkpoints,
+/// with a hash), step and time; the other groups contain the archives of the parts of the run. A run resumes from the
+/// file with the most steps that is intact and belongs to it, regardless of file names.
 class Checkpoints
 {
 public:
-  /// Looks for a checkpoint to go on from, if the options ask for that. To be made before anything is written.
-  /// Collective. @param command name of the command @throws InputError if there are checkpoints and none can be used:
-  /// each with the reason
+  /// Searches for a checkpoint to resume from, if the options request it. To be created before the run writes anything.
+  /// Collective. @param command name of the command @throws InputError if there are checkpoints but none can be used,
+  /// with the reason for each
   Checkpoints(const input::Options &options, const input::Parameters &parameters, const input::Case &input,
               std::string command);
 
-  /// The checkpoint that the run goes on from; none where it starts from the beginning.
+  /// Returns the checkpoint from which the run resumes; none if it starts from the beginning.
   const std::optional<CheckpointPlace> &found() const { return found_; }
 
-  /// Loads the parts of a run, set up as for its first step, from the checkpoint that was found; where there is none,
-  /// does nothing but move checkpoints of an earlier run out of the way, to `checkpoints.old`. Collective.
-  /// @param parts called with an archive
-  /// @return whether there was one. @throws UnusableCheckpoint if parts do not fit it, OutputError
+  /// Loads the parts of a run, which must be set up as for its first step, from the checkpoint that was found. Without
+  /// a checkpoint, only moves checkpoints of an earlier run to `checkpoints.old`. Collective.
+  /// @param parts function that is called with an archive
+  /// @return true if there was a checkpoint. @throws UnusableCheckpoint if the parts do not match it, OutputError
   template <class Parts>
   bool resume(const Parts &parts)
   {
@@ -76,12 +77,12 @@ public:
     return true;
   }
 
-  /// Whether a checkpoint is to be written now: by steps, or by the wall time since the last. To be called after every
-  /// `steps_between_signals` steps at most. Collective, with the same answer on all ranks.
+  /// Returns true if a checkpoint is due, by the number of steps or by the wall time since the last one. To be called
+  /// at least every `steps_between_signals` steps. Collective, with the same result on all ranks.
   bool due(std::size_t step);
 
-  /// Writes a checkpoint, and deletes those before the last two. Collective; the first rank writes.
-  /// @param parts called with an archive @throws OutputError
+  /// Writes a checkpoint, and deletes all but the last two. Collective; the root rank writes.
+  /// @param parts function that is called with an archive @throws OutputError
   template <class Parts>
   void write(std::size_t step, double time, const Parts &parts)
   {
@@ -98,7 +99,7 @@ private:
 
   std::filesystem::path folder_;
   std::string command_;
-  std::string case_text_; // an entry a line
+  std::string case_text_; // one entry per line
   std::string case_hash_;
   std::size_t step_interval_;
   double wall_interval_; // [s]

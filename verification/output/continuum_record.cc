@@ -82,7 +82,7 @@ void ContinuumRecord::check_loaded() const
     throw std::invalid_argument("`motion` has no states");
   for (std::size_t row = 1; row < motion_.size(); ++row)
     if (!(motion_[row].time > motion_[row - 1].time))
-      throw std::invalid_argument("times of `motion` do not grow");
+      throw std::invalid_argument("times of `motion` do not increase");
 }
 
 double ContinuumRecord::largest_reaction() const

@@ -9,33 +9,33 @@
 namespace latcon::output
 {
 
-/// The tables that a run of the finite element sheet leaves behind besides fields. All ranks note, one writes.
+/// Tables of a run of the finite element sheet. All ranks record, one rank writes.
 class ContinuumRecord
 {
 public:
-  /// An equilibrium: the load factor, energy and reactions of it. It takes the place of one at the same load factor on
-  /// a coarser mesh.
+  /// Records load factor, energy and reactions of an equilibrium. Replaces that of the same load factor on a coarser
+  /// mesh.
   void equilibrium(const continuum::StaticSolver &solver);
 
-  /// A mesh of an adaptive series, once equilibrium is found on it.
+  /// Records a mesh of an adaptive series, after equilibrium was found on it.
   void mesh(const continuum::StaticSolver &solver);
 
-  /// The Newton iterations of a solve, on the mesh that is to be noted next.
+  /// Records the Newton iterations of a solve, on the mesh that is recorded next.
   void newton(const continuum::SolverReport &report);
 
-  /// A state of a motion, unless it is the one noted last.
+  /// Records a state of a motion, unless it was recorded already.
   void motion(const continuum::DynamicSolver &solver);
 
-  /// Largest of |reaction of an edge| of the last mesh noted [N/m], and its relative change from the one before [-]; 0
-  /// and infinite where there is none.
+  /// Returns the largest |reaction of an edge| on the last recorded mesh [N/m]; 0 without a mesh.
   double largest_reaction() const;
+  /// Returns its relative change from the previous mesh [-]; infinity without one.
   double reaction_change() const;
 
-  /// Time of the state of a motion noted last [s]; minus infinity before the first.
+  /// Returns the time of the last recorded state of a motion [s]; minus infinity before the first.
   double last_time() const;
 
-  /// Stores the states of a motion that were noted, or takes them from there. @throws std::invalid_argument if there
-  /// are none, or their times do not grow
+  /// Saves or loads the recorded states of a motion. @throws std::invalid_argument if there are none, or if their times
+  /// do not increase
   template <class Archive>
   void archive(Archive &archive)
   {
@@ -80,11 +80,11 @@ private:
 
   std::vector<Equilibrium> equilibria_;
   std::vector<MeshRow> meshes_;
-  std::vector<std::pair<std::size_t, continuum::NewtonIteration>> iterations_; // with the number of the mesh, from 0
+  std::vector<std::pair<std::size_t, continuum::NewtonIteration>> iterations_; // with the index of the mesh, from 0
   std::vector<MotionRow> motion_;
 };
 
-/// "left", "right", "bottom", "top", "inner", or the number of another edge.
+/// Returns the name of an edge: "left", "right", "bottom", "top", "inner", or its number.
 std::string edge_name(dealii::types::boundary_id id);
 
 } // namespace latcon::output

@@ -35,7 +35,7 @@ void CrackFilm::step()
   next_frame_ = due_beyond(tip_X, next_frame_);
 }
 
-// Where the next frame is due once the tip is at tip_X [m]. @param due where one was [m]
+// Returns X at which the next frame is due after the tip has reached tip_X [m]. @param due X of a previous frame [m]
 double CrackFilm::due_beyond(double tip_X, double due) const
 {
   while (tip_X >= due)
@@ -43,7 +43,7 @@ double CrackFilm::due_beyond(double tip_X, double due) const
   return due;
 }
 
-// @param first X of the tip at which a frame is due, after that of the start [m]
+// @param first X of the tip of the first frame after the start [m]
 void CrackFilm::check_loaded(double first) const
 {
   std::vector<double> times{0.};
@@ -55,9 +55,9 @@ void CrackFilm::check_loaded(double first) const
         times.push_back(tip.t);
       next = due_beyond(tip.X, next);
     }
-  lattice::require_archived(next_frame_ == next, "`next_frame` is not the first that is due");
+  lattice::require_archived(next_frame_ == next, "`next_frame` is not the next frame that is due");
   if (wanted_)
-    lattice::require_archived(frames_.times() == times, "`times` of frames are not those at which the tip came by");
+    lattice::require_archived(frames_.times() == times, "`times` of frames do not match the record of the tip");
 }
 
 void CrackFilm::add_frame()

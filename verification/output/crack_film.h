@@ -10,28 +10,27 @@
 namespace latcon::output
 {
 
-/// Light frames of a crack for animations, evenly spread over the way of its tip. On every rank alike; the first
-/// writes.
+/// Small frames of a crack for animations, at equal distances of its tip. All ranks call it, the root rank writes.
 class CrackFilm
 {
 public:
-  /// The simulation and the record of its crack must outlive this object.
-  /// @param seed_tip_X where the crack starts [m]; its way ends at the stop position
+  /// Creates a film. The simulation and the record of its crack must outlive this object.
+  /// @param seed_tip_X reference X of the tip of the seed [m]; the film ends at the stop position
   CrackFilm(const input::Case &input, lattice::Simulation &simulation, const CrackRecord &record, double seed_tip_X,
             std::filesystem::path directory);
 
-  /// Writes the first frame, or, of a run that goes on from a checkpoint, takes back what was written after that.
-  /// Collective. @throws support::OutputError if a file cannot be written, as the others do
+  /// Writes the first frame or, in a resumed run, discards the frames after the checkpoint. Collective. @throws
+  /// support::OutputError if a file cannot be written, as do step() and end()
   void begin(bool resumed);
 
-  /// Adds a frame if the tip has come to where the next one is due. Collective.
+  /// Adds a frame if the tip has reached the position of the next one. Collective.
   void step();
 
   /// Adds the last frame. Collective.
   void end() { add_frame(); }
 
-  /// Saves or loads which frames there are; see lattice::Simulation. The record of the crack is loaded before.
-  /// @throws std::invalid_argument unless they are those for which the way of the tip calls
+  /// Saves or loads the list of frames; see lattice::Simulation. The record of the crack must be loaded first.
+  /// @throws std::invalid_argument if the frames do not match the record of the tip
   template <class Archive>
   void archive(Archive &archive)
   {
@@ -51,8 +50,8 @@ private:
   const CrackRecord &record_;
   MotionWriter frames_;
   bool wanted_;
-  double pitch_;      // of the tip between frames [m]
-  double next_frame_; // X of the tip [m]
+  double pitch_;      // advance of the tip between frames [m]
+  double next_frame_; // X of the tip at the next frame [m]
 };
 
 } // namespace latcon::output

@@ -21,7 +21,7 @@ namespace latcon::output
 namespace
 {
 
-// The tip hops from site to site; its speed means something over several of them only.
+// The tip hops between sites, so its speed is meaningful only over several of them.
 constexpr double speed_baseline = 6.; // in spacings
 
 void write_row(std::ostream &out, std::initializer_list<double> values)
@@ -34,7 +34,7 @@ void write_row(std::ostream &out, std::initializer_list<double> values)
   }
 }
 
-// The site that moves fastest, one that is not at a finite place or speed before all others.
+// Fastest site; a site whose position or velocity is not finite takes precedence.
 struct FastestSite
 {
   std::size_t place = 0;
@@ -69,7 +69,7 @@ CrackRecord::CrackRecord(lattice::Simulation &simulation) : simulation_(simulati
 
 void CrackRecord::start()
 {
-  note_tip();
+  record_tip();
   energies();
 }
 
@@ -78,10 +78,10 @@ void CrackRecord::step(const std::vector<lattice::BrokenBond> &broken)
   if (broken.empty())
     return;
   broken_.insert(broken_.end(), broken.begin(), broken.end());
-  note_tip();
+  record_tip();
 }
 
-void CrackRecord::note_tip()
+void CrackRecord::record_tip()
 {
   const std::optional<std::size_t> tip = simulation_.tip();
   if (!tip || tip == last_tip_)
@@ -120,12 +120,12 @@ lattice::EnergyBalance CrackRecord::sound_energies()
   const FastestSite fastest = fastest_site(simulation_);
   const Eigen::Vector2d X = simulation_.lattice().reference(fastest.place);
   std::ostringstream message;
-  message << "the lattice blew up: at " << simulation_.state().time << " s it holds " << balance.elastic
-          << " J/m elastic and " << balance.kinetic << " J/m kinetic energy, of " << available
-          << " J/m it was given; the fastest is site " << simulation_.lattice().site_number(fastest.place)
+  message << "the simulation became unstable: at " << simulation_.state().time << " s the lattice has "
+          << balance.elastic << " J/m elastic and " << balance.kinetic << " J/m kinetic energy, of " << available
+          << " J/m supplied; the fastest site is number " << simulation_.lattice().site_number(fastest.place)
           << " at X = " << X.x() << " m, Y = " << X.y() << " m, with " << fastest.speed
-          << " m/s; the last frame shows the sheet at " << last_sound_.time()
-          << " s, when it was sound; a smaller Time/safety factor may help";
+          << " m/s; the last frame shows the last valid state, at " << last_sound_.time()
+          << " s; try a smaller Time/safety factor";
   simulation_.show_snapshot(last_sound_);
   throw support::SolverError(message.str());
 }
@@ -137,21 +137,21 @@ void CrackRecord::check_loaded() const
   const auto is_site = [&](std::size_t place) { return place < sheet.n_places() && sheet.is_site(place); };
   const double now = simulation_.state().time;
   require_archived(speeds_.size() == tip_.size() && broken_at_tip_.size() == tip_.size(),
-                   "`speeds` or `broken_at_tip` are not as many as the records of the tip");
+                   "the numbers of `speeds`, `broken_at_tip` and records of the tip do not match");
   require_archived(last_tip_.has_value() == !tip_.empty() && (!last_tip_ || is_site(*last_tip_)),
-                   "`last_tip` is no site of the sheet");
-  require_archived(broken_.size() == simulation_.n_broken(), "`broken_bonds` are not as many as broke");
-  require_archived(!energies_.empty(), "`energies` were never recorded");
+                   "`last_tip` is not a site of the sheet");
+  require_archived(broken_.size() == simulation_.n_broken(), "the number of `broken_bonds` does not match the state");
+  require_archived(!energies_.empty(), "`energies` is empty");
   double before = 0.;
   const auto require_order = [&](double time, const std::string &what)
   {
-    require_archived(time >= before && time <= now, "times of `" + what + "` do not grow up to now");
+    require_archived(time >= before && time <= now, "times of `" + what + "` do not increase up to the current time");
     before = time;
   };
   for (const analysis::TipRecord &tip : tip_)
   {
     require_order(tip.t, "tip");
-    require_archived(std::abs(tip.X) <= sheet.length() + sheet.spacing(), "`tip` is beyond the sheet");
+    require_archived(std::abs(tip.X) <= sheet.length() + sheet.spacing(), "`tip` is outside the sheet");
   }
   before = 0.;
   for (const EnergyRow &row : energies_)
@@ -161,7 +161,7 @@ void CrackRecord::check_loaded() const
   {
     require_order(bond.time, "broken_bonds");
     require_archived(is_site(bond.near) && is_site(bond.far) && bond.kind < lattice::n_bond_kinds,
-                     "`broken_bonds` has some that the sheet never had");
+                     "`broken_bonds` contains bonds that the sheet does not have");
   }
 }
 
@@ -171,7 +171,7 @@ double CrackRecord::largest_imbalance() const
   for (const EnergyRow &row : energies_)
   {
     const double imbalance = std::abs(row.balance.imbalance());
-    // A sheet at rest has been given nothing, and nothing is missing.
+    // A sheet at rest has no energy and no imbalance: avoid 0/0.
     largest.add(imbalance == 0. ? 0. : imbalance / (row.balance.initial + std::abs(row.balance.boundary_work)));
   }
   return largest.error();

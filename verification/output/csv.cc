@@ -28,7 +28,7 @@ void Table::add(std::vector<Cell> row)
 void Table::add(const Table &other)
 {
   if (other.columns_ != columns_)
-    throw std::invalid_argument("tables with different columns cannot be joined");
+    throw std::invalid_argument("tables with different columns cannot be concatenated");
   rows_.insert(rows_.end(), other.rows_.begin(), other.rows_.end());
 }
 

@@ -8,22 +8,23 @@
 namespace latcon::output
 {
 
-/// A field that holds `text`: quoted where commas, quotes or line breaks ask for it.
+/// Returns a CSV field that contains `text`, quoted if it has commas, quotes or line breaks.
 [[nodiscard]] std::string csv_field(const std::string &text);
 
-/// A table with one header line. Numbers are written in full precision.
+/// Table with one header line. Numbers are written in full precision.
 class Table
 {
 public:
   using Cell = std::variant<double, std::string>;
 
-  /// @param columns names, with the unit in brackets where there is one: "k d", "phase velocity [m/s]"
+  /// Creates an empty table. @param columns names, with the unit in brackets if there is one: "k d", "phase velocity
+  /// [m/s]"
   explicit Table(std::vector<std::string> columns) : columns_(std::move(columns)) {}
 
-  /// @throws std::invalid_argument unless there is a cell for every column
+  /// Appends a row. @throws std::invalid_argument unless there is a cell for every column
   void add(std::vector<Cell> row);
 
-  /// Appends the rows of a table. @throws std::invalid_argument unless it has the same columns
+  /// Appends the rows of a table. @throws std::invalid_argument if its columns differ
   void add(const Table &other);
 
   const std::vector<std::string> &columns() const { return columns_; }

@@ -1,6 +1,6 @@
 #pragma once
 
-// Units of the fields in VTK files, for the sources that write them alone.
+// Units of the fields in VTK files; private to the sources that write them.
 
 #include <string>
 #include <utility>
@@ -12,8 +12,7 @@
 namespace latcon::output
 {
 
-/// Gives a field the unit that belongs to its name, as VTK keeps units (`UNITS_LABEL`). Names that are not quantities
-/// get none.
+/// Sets the unit of a field according to its name, as VTK's `UNITS_LABEL`. Fields that are not quantities get none.
 inline void set_unit(vtkDataArray &field)
 {
   static constexpr std::pair<const char *, const char *> units[] = {{"displacement", "m"},

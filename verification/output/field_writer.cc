@@ -34,7 +34,7 @@ vtkNew<vtkDoubleArray> array(const char *name, int components, vtkIdType tuples)
   return values;
 }
 
-// ParaView wants vectors of three and tensors of nine components.
+// ParaView expects three components for vectors and nine for tensors.
 void set_vector(vtkDoubleArray &values, vtkIdType id, double x, double y)
 {
   values.SetTuple3(id, x, y, 0.);
@@ -55,7 +55,7 @@ FieldWriter::FieldWriter(const lattice::TriangularLattice &lattice, const lattic
 
 void FieldWriter::add_frame(const lattice::State &state)
 {
-  std::vector<std::size_t> places; // of the points, in their order
+  std::vector<std::size_t> places; // slots of the points, in their order
   std::vector<vtkIdType> point_of_place(lattice_.n_places(), -1);
   for (std::size_t row = 0; row < lattice_.rows(); ++row)
     for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
@@ -120,8 +120,8 @@ void FieldWriter::add_frame(const lattice::State &state)
   vtkNew<vtkUnsignedCharArray> shell, toughened;
   shell->SetName("shell");
   toughened->SetName("toughened");
-  // Cell data counts the vertices first, then the lines. A site has the mean of its bonds, so that it is no dot of
-  // another colour among them.
+  // Cell data has the vertices first, then the lines. A site gets the mean of its bonds, so that it has the colour of
+  // its surroundings.
   for (vtkIdType id = 0; id < n_points; ++id)
   {
     bond_stretch->InsertNextValue(0.);
@@ -133,7 +133,7 @@ void FieldWriter::add_frame(const lattice::State &state)
                 [&](std::size_t near, std::size_t kind, std::size_t far)
                 {
                   if (point_of_place[far] < 0)
-                    return; // across a periodic edge; a line through the whole sheet would stand for it
+                    return; // across a periodic edge: it would be drawn as a line through the whole sheet
                   const std::array<vtkIdType, 2> ends{{point_of_place[near], point_of_place[far]}};
                   lines->InsertNextCell(2, ends.data());
                   const double value = stretch(state, lattice_, near, kind);
@@ -168,10 +168,10 @@ void FieldWriter::add_frame(const lattice::State &state)
   for (vtkDataArray *data : {static_cast<vtkDataArray *>(bond_stretch.Get()), static_cast<vtkDataArray *>(shell.Get()),
                              static_cast<vtkDataArray *>(toughened.Get())})
     sheet->GetCellData()->AddArray(data);
-  // What ParaView shows first.
+  // Arrays that ParaView shows by default.
   sheet->GetPointData()->SetActiveVectors(displacement->GetName());
   sheet->GetCellData()->SetActiveScalars(bond_stretch->GetName());
-  // The sites of a periodic sheet stop short of its ends.
+  // The outermost sites of a periodic sheet are inside its ends.
   const auto bounds = array("SheetBounds", 4, 1);
   bounds->SetTuple4(0, 0., lattice_.length(), -0.5 * lattice_.height(), 0.5 * lattice_.height());
   sheet->GetFieldData()->AddArray(bounds);

@@ -51,7 +51,7 @@ void FrameSeries::add(vtkPolyData &frame, double time)
     times_.pop_back();
   vtkNew<vtkXMLPolyDataWriter> writer;
   writer->SetInputData(&frame);
-  writer->SetCompressionLevel(1); // higher ones take a sixth of a crack's time to save a few percent
+  writer->SetCompressionLevel(1); // higher levels take a sixth of the time of a crack run and save a few percent
   write_vtk_file(*writer, directory_ / file_name(times_.size()));
   times_.push_back(time);
   write_collection();

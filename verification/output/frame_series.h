@@ -14,26 +14,26 @@ class vtkPolyData;
 namespace latcon::output
 {
 
-/// Frames of one sheet over time, for ParaView: `NAME.pvd` and a file `NAME-NNNN.vtp` a frame, in one directory. Every
-/// file is written beside its place and renamed.
+/// Time series of frames of a sheet for ParaView: `NAME.pvd`, and a file `NAME-NNNN.vtp` per frame, in one directory.
+/// Every file is replaced atomically.
 class FrameSeries
 {
 public:
   FrameSeries(std::filesystem::path directory, std::string name);
 
-  /// Adds a frame, in the place of the last one if that is of the same time, and notes the time in it (TimeValue).
+  /// Adds a frame and stores the time in it (TimeValue); replaces the last frame if it has the same time.
   /// @param time [s] @throws support::OutputError if a file cannot be written
   void add(vtkPolyData &frame, double time);
 
-  /// Writes `NAME.pvd`, so that it names the frames there are. @throws support::OutputError
+  /// Writes `NAME.pvd` with the current list of frames. @throws support::OutputError
   void write_collection() const;
 
   std::size_t n_frames() const { return times_.size(); }
 
-  /// Of the frames, in their order [s].
+  /// Returns the times of the frames [s].
   const std::vector<double> &times() const { return times_; }
 
-  /// Saves or loads which frames there are; see Simulation. @throws std::invalid_argument if their times do not grow
+  /// Saves or loads the list of frames; see Simulation. @throws std::invalid_argument if their times do not increase
   template <class Archive>
   void archive(Archive &archive)
   {
@@ -42,7 +42,7 @@ public:
       lattice::require_archived(std::adjacent_find(times_.begin(), times_.end(), std::greater_equal<>()) ==
                                     times_.end() &&
                                   (times_.empty() || times_.front() >= 0.),
-                                "`times` of frames do not grow from 0 on");
+                                "`times` of frames do not increase from 0");
   }
 
 private:

@@ -11,7 +11,7 @@ namespace
 
 static_assert(std::is_same_v<hid_t, std::int64_t>);
 
-// A handle of HDF5 and how to give it back.
+// Owner of an HDF5 handle.
 class Handle
 {
 public:
@@ -36,7 +36,7 @@ void require(herr_t status, const std::string &what)
     throw Hdf5Error(what);
 }
 
-// HDF5 prints what goes wrong unless told not to; here exceptions tell it.
+// Disables the error messages of HDF5; exceptions report errors.
 void be_quiet()
 {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
@@ -84,7 +84,7 @@ hid_t type_in_memory(ElementType type)
   }
 }
 
-// Arrays lie in the file itself: links that lead to other files are not followed.
+// Links to other files are not followed: arrays must be in the file itself.
 herr_t refuse_other_file(const char *, const char *, const char *, const char *, unsigned *, hid_t, void *)
 {
   return -1;
@@ -92,14 +92,14 @@ herr_t refuse_other_file(const char *, const char *, const char *, const char *,
 
 Handle open_array(hid_t file, const std::string &path)
 {
-  const std::string what = "there is no `" + path + "` in it";
+  const std::string what = "it has no `" + path + "`";
   const Handle access(H5Pcreate(H5P_DATASET_ACCESS), H5Pclose, what);
   require(H5Pset_elink_cb(access, refuse_other_file, nullptr), what);
   return {H5Dopen2(file, path.c_str(), access), H5Dclose, what};
 }
 
-// Number of elements of an array as checkpoints have them: one after the other, within the file. What a file says of
-// its size is not believed, since memory is taken for it.
+// Returns the number of elements of a contiguous array inside the file. Checks the stated size against the file,
+// because the caller allocates memory for it.
 std::size_t size_of(hid_t file, hid_t array, const std::string &path)
 {
   const std::string none = "`" + path + "` has no size";
@@ -107,9 +107,9 @@ std::size_t size_of(hid_t file, hid_t array, const std::string &path)
   const Handle type(H5Dget_type(array), H5Tclose, none);
   const Handle creation(H5Dget_create_plist(array), H5Pclose, none);
   if (H5Sget_simple_extent_type(space) != H5S_SIMPLE || H5Sget_simple_extent_ndims(space) != 1)
-    throw Hdf5Error("`" + path + "` is no list");
+    throw Hdf5Error("`" + path + "` is not a one-dimensional array");
   if (H5Pget_layout(creation) != H5D_CONTIGUOUS || H5Pget_external_count(creation) != 0)
-    throw Hdf5Error("`" + path + "` does not lie in the file as it is");
+    throw Hdf5Error("`" + path + "` is not stored contiguously in the file");
   const hssize_t n = H5Sget_simple_extent_npoints(space);
   hsize_t bytes = 0;
   if (n < 0 || H5Fget_filesize(file, &bytes) < 0)
@@ -137,7 +137,7 @@ void write_array(hid_t file, const std::string &path, hid_t in_file, hid_t in_me
 Hdf5Image::Hdf5Image()
 {
   be_quiet();
-  const std::string what = "HDF5 cannot make a file in memory";
+  const std::string what = "HDF5 cannot create a file in memory";
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, what);
   constexpr std::size_t increment = 1U << 20U;
   require(H5Pset_fapl_core(access, increment, 0), what);
@@ -162,19 +162,19 @@ void Hdf5Image::write(const std::string &path, ElementType type, const void *ele
 void Hdf5Image::write_text(const std::string &path, const std::string &text)
 {
   const Handle type(H5Tcopy(H5T_C_S1), H5Tclose, "cannot write `" + path + "`");
-  require(H5Tset_size(type, text.size() + 1), "cannot write `" + path + "`"); // with the zero at its end
+  require(H5Tset_size(type, text.size() + 1), "cannot write `" + path + "`"); // including the terminating zero
   require(H5Tset_cset(type, H5T_CSET_UTF8), "cannot write `" + path + "`");
   write_array(file_, path, type, type, text.c_str(), 1);
 }
 
 std::string Hdf5Image::take_bytes()
 {
-  const std::string what = "HDF5 cannot give the bytes of a file in memory";
+  const std::string what = "HDF5 cannot return the bytes of a file in memory";
   require(H5Fflush(file_, H5F_SCOPE_GLOBAL), what);
   const ssize_t size = H5Fget_file_image(file_, nullptr, 0);
   if (size < 0)
     throw Hdf5Error(what);
-  // The image begins behind the user block.
+  // The image starts after the user block.
   std::string bytes(user_block + static_cast<std::size_t>(size), '\0');
   if (H5Fget_file_image(file_, &bytes[user_block], static_cast<std::size_t>(size)) != size)
     throw Hdf5Error(what);
@@ -188,7 +188,7 @@ Hdf5File::Hdf5File(const std::string &path)
   be_quiet();
   file_ = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file_ < 0)
-    throw Hdf5Error("it is no HDF5 file");
+    throw Hdf5Error("it is not an HDF5 file");
 }
 
 Hdf5File::~Hdf5File()
@@ -206,9 +206,9 @@ void Hdf5File::read(const std::string &path, ElementType type, void *elements, s
   const Handle array = open_array(file_, path);
   const Handle stored(H5Dget_type(array), H5Tclose, "`" + path + "` has no type");
   if (H5Tequal(stored, type_in_file(type)) <= 0)
-    throw Hdf5Error("`" + path + "` is of another type");
+    throw Hdf5Error("`" + path + "` has another type");
   if (size_of(file_, array, path) != n)
-    throw Hdf5Error("`" + path + "` is of another size");
+    throw Hdf5Error("`" + path + "` has another size");
   if (n > 0)
     require(H5Dread(array, type_in_memory(type), H5S_ALL, H5S_ALL, H5P_DEFAULT, elements),
             "cannot read `" + path + "`");
@@ -219,13 +219,13 @@ std::string Hdf5File::read_text(const std::string &path) const
   const Handle array = open_array(file_, path);
   const Handle type(H5Dget_type(array), H5Tclose, "`" + path + "` has no type");
   if (H5Tget_class(type) != H5T_STRING || H5Tis_variable_str(type) != 0)
-    throw Hdf5Error("`" + path + "` is no text");
+    throw Hdf5Error("`" + path + "` is not a text");
   if (size_of(file_, array, path) != 1)
-    throw Hdf5Error("`" + path + "` is not one text");
+    throw Hdf5Error("`" + path + "` is not a single text");
   std::string text(H5Tget_size(type), '\0');
   require(H5Dread(array, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, text.data()), "cannot read `" + path + "`");
-  if (text.find('\0') != text.size() - 1) // where it was written
-    throw Hdf5Error("`" + path + "` does not end where it says");
+  if (text.find('\0') != text.size() - 1) // the terminating zero
+    throw Hdf5Error("`" + path + "` has a zero byte before its end");
   text.pop_back();
   return text;
 }

@@ -1,4 +1,4 @@
-/// The few things of HDF5 that checkpoints need: arrays of numbers and texts under paths, in one file.
+/// Minimal interface to HDF5 for checkpoints: arrays of numbers and texts under paths, in one file.
 #pragma once
 
 #include <cstddef>
@@ -10,14 +10,14 @@
 namespace latcon::output
 {
 
-/// What a file cannot give: no such path, another type or size, or no HDF5 file at all.
+/// Error of an HDF5 file: not an HDF5 file, missing path, or another type or size.
 class Hdf5Error : public std::runtime_error
 {
 public:
   using std::runtime_error::runtime_error;
 };
 
-/// Types of the elements of an array; in files all are little-endian.
+/// Types of array elements, little-endian in files.
 enum class ElementType
 {
   float64,
@@ -29,7 +29,7 @@ enum class ElementType
   uint64
 };
 
-/// The one in which numbers of a type are kept.
+/// Returns the element type for numbers of type T.
 template <class T>
 constexpr ElementType element_type()
 {
@@ -48,8 +48,8 @@ constexpr ElementType element_type()
                             : ElementType::uint64;
 }
 
-/// A file that is made in memory, so that a full disk is met by who writes its bytes and never by HDF5. Groups of a
-/// path are made as they are needed.
+/// HDF5 file in memory, so that a full disk is an error of the caller, who writes the bytes, and never of HDF5. Creates
+/// the groups of a path when necessary.
 class Hdf5Image
 {
 public:
@@ -58,21 +58,21 @@ public:
   Hdf5Image(const Hdf5Image &) = delete;
   Hdf5Image &operator=(const Hdf5Image &) = delete;
 
-  /// Bytes before the HDF5 part that are left to the owner of the file; HDF5 calls them the user block.
+  /// Size of the HDF5 user block: bytes before the HDF5 part, for use by the caller.
   static constexpr std::size_t user_block = 512;
 
-  /// @throws Hdf5Error if there is something at that path already, or memory is short
+  /// Writes an array. @throws Hdf5Error if the path already exists, or if there is not enough memory
   void write(const std::string &path, ElementType type, const void *elements, std::size_t n);
   void write_text(const std::string &path, const std::string &text);
 
-  /// The whole file, its user block zeros. Nothing can be written afterwards.
+  /// Returns the whole file, with zeros in its user block. Nothing can be written afterwards.
   std::string take_bytes();
 
 private:
   std::int64_t file_;
 };
 
-/// A file that is read.
+/// HDF5 file for reading.
 class Hdf5File
 {
 public:
@@ -82,12 +82,13 @@ public:
   Hdf5File(const Hdf5File &) = delete;
   Hdf5File &operator=(const Hdf5File &) = delete;
 
-  /// Number of elements of an array. @throws Hdf5Error also if the file is too small for it, or it lies in another
+  /// Returns the number of elements of an array. @throws Hdf5Error, also if the array is larger than the file or stored
+  /// in another file
   std::size_t size(const std::string &path) const;
 
-  /// Reads a whole array. @throws Hdf5Error unless it has this type and size
+  /// Reads a whole array. @throws Hdf5Error if the type or size differs
   void read(const std::string &path, ElementType type, void *elements, std::size_t n) const;
-  /// @throws Hdf5Error unless it is one text that ends with its only zero byte
+  /// Reads a text. @throws Hdf5Error unless it is a single text whose only zero byte is at its end
   std::string read_text(const std::string &path) const;
 
 private:

@@ -19,7 +19,7 @@ MotionWriter::MotionWriter(const lattice::TriangularLattice &lattice, std::files
 
 void MotionWriter::add_frame(const lattice::State &state)
 {
-  vtkNew<vtkPoints> points; // of single precision
+  vtkNew<vtkPoints> points; // in single precision
   vtkNew<vtkCellArray> vertices;
   vtkNew<vtkFloatArray> displacement, velocity;
   displacement->SetName("displacement");
@@ -46,7 +46,7 @@ void MotionWriter::add_frame(const lattice::State &state)
   sheet->SetVerts(vertices);
   sheet->GetPointData()->AddArray(displacement);
   sheet->GetPointData()->AddArray(velocity);
-  // What ParaView shows first; at the start nothing moves yet.
+  // Array that ParaView shows by default; velocities are zero at the start.
   sheet->GetPointData()->SetActiveScalars(displacement->GetName());
   sheet->GetPointData()->SetActiveVectors(displacement->GetName());
   series_.add(*sheet, state.time);

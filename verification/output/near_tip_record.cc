@@ -16,23 +16,24 @@ namespace latcon::output
 namespace
 {
 
-// Way of a shear wave of the undeformed sheet between two samples [d].
+// Distance that a shear wave of the undeformed sheet travels between two samples [d].
 constexpr double sampled_advance = 0.5;
-// Extent of the window if the case leaves it open [d]: the wake, several process zones long; both lobes of the opening
-// stress; the waves ahead.
+// Default extent of the window [d]: contains the wake over several process zones, both lobes of the opening stress, and
+// the waves ahead.
 constexpr double default_behind = 40., default_ahead = 32., default_half_height = 32.;
-// Part of the way from the seed to the stop position on which samples are taken.
+// Fractions of the distance from the seed to the stop position between which samples are taken.
 constexpr double sampled_from = 0.4, sampled_to = 0.9;
-// The flanks are straight lines from here to there behind the tip [d].
+// Range behind the tip in which straight lines are fitted to the flanks [d].
 constexpr double flanks_from = 5., flanks_to = 25.;
 constexpr double tip_loop = 8.; // radius [d]
-// What turns faster than this share of the crack's speed is a vortex: ten times the noise of single sites ahead of a
-// running tip.
+// Smallest speed of a vortex as a fraction of the crack speed: ten times the noise of single sites ahead of a running
+// tip.
 constexpr double vortex_limit = 2e-3;
-// In samples vortices are counted up to here [d]: the zone of negative velocity reaches 10 d, beyond 16 d little moves.
+// Largest distance of vortices in samples [d]: the zone of negative velocity extends to 10 d, and there is little
+// motion beyond 16 d.
 constexpr double vortices_within = 16.;
-// Fraction of the speed of fully relaxed material, c - C (theory.md, section "Near the tip"), above which forward
-// motion is rapid, for the length of the process zone and for its share.
+// Fraction of the speed of fully relaxed material, c - C (theory.md, section "Near the tip"), above which material
+// belongs to the process zone, for its length and its share.
 constexpr double process_zone_part = 0.5;
 
 analysis::NearTipOptions sampler_options(const input::Case &input, double X_begin, double X_end)
@@ -46,7 +47,7 @@ analysis::NearTipOptions sampler_options(const input::Case &input, double X_begi
           input.deformation()};
 }
 
-// Numbers of `speeds` above and below a limit.
+// Returns the number of `speeds` above a limit.
 double number_above(const std::vector<double> &speeds, double limit)
 {
   return static_cast<double>(std::count_if(speeds.begin(), speeds.end(), [&](double speed) { return speed > limit; }));
@@ -57,7 +58,7 @@ double number_below(const std::vector<double> &speeds, double limit)
   return static_cast<double>(std::count_if(speeds.begin(), speeds.end(), [&](double speed) { return speed < limit; }));
 }
 
-// Share of `speeds` above a limit; none of no speeds.
+// Returns the fraction of `speeds` above a limit; none if there are no speeds.
 std::optional<double> share_above(const std::vector<double> &speeds, double limit)
 {
   if (speeds.empty())
@@ -67,8 +68,8 @@ std::optional<double> share_above(const std::vector<double> &speeds, double limi
 
 using Number = std::pair<std::string, std::optional<double>>;
 
-// What a mean field says. Numbers that need the speed of the crack have no value without it; the list is always of the
-// same names.
+// Returns the measurements of a mean field. The names are always the same; numbers that depend on the speed of the
+// crack have no value without it.
 std::vector<Number> field_numbers(const analysis::NearTipField &field, std::optional<double> laboratory_speed,
                                   std::optional<double> process_zone_speed, double far_opening_stress, double spacing)
 {
@@ -116,7 +117,8 @@ std::vector<Number> field_numbers(const analysis::NearTipField &field, std::opti
   return numbers;
 }
 
-// Cauchy stress of the loaded sheet [Pa]: of a site in the middle of one, all of whose bonds are stretched alike.
+// Returns the Cauchy stress of the loaded sheet [Pa], evaluated at a site in the middle of a homogeneously deformed
+// sheet.
 Eigen::Matrix2d stress_of_loaded_sheet(const input::Case &input)
 {
   const double side = 12. * input.spacing;
@@ -129,7 +131,8 @@ Eigen::Matrix2d stress_of_loaded_sheet(const input::Case &input)
   return lattice::SiteEvaluator(sheet, material).at(state, sheet.index(row, sheet.sites_in_row(row) / 2)).cauchy_stress;
 }
 
-// Standard deviation of the mean of all blocks, from that of those that have a value; none from fewer than two.
+// Returns the standard deviation of the mean over all blocks, estimated from blocks with a value; none for fewer than
+// two.
 std::optional<double> uncertainty(const std::vector<std::optional<double>> &blocks)
 {
   double sum = 0., squares = 0.;
@@ -152,7 +155,7 @@ std::optional<double> uncertainty(const std::vector<std::optional<double>> &bloc
 
 WaveSpeeds wave_speeds_along_crack(const input::Case &input)
 {
-  constexpr double kd = 1e-3; // the error is of its square, times a tenth
+  constexpr double kd = 1e-3; // relative error of about kd^2 / 10
   const double k = kd / input.spacing;
   const auto waves = bridge::bloch_waves(input.lattice(), input.material(), input.deformation(), {k, 0.});
   return {waves[0].frequency / k, waves[1].frequency / k};
@@ -189,9 +192,10 @@ void NearTipRecord::check_loaded() const
     lattice::require_archived(block.vortices.size() == n && block.backward_speeds.size() == n &&
                                 block.following_speeds.size() == n && block.asymmetry.samples <= n &&
                                 block.wedge_angle.samples <= n,
-                              "`blocks` are of different numbers of samples");
+                              "`blocks` have different numbers of samples");
   }
-  lattice::require_archived(samples == sampler_.samples(), "`blocks` are not of the samples that were taken");
+  lattice::require_archived(samples == sampler_.samples(),
+                            "the number of samples in `blocks` does not match the number taken");
 }
 
 void NearTipRecord::step()
@@ -205,7 +209,7 @@ void NearTipRecord::step()
   if (!simulation_.tip())
     return;
   const std::size_t tip = *simulation_.tip();
-  if (sampler_.looks_at(tip))
+  if (sampler_.samples_at(tip))
     simulation_.gather(sampler_.rows_around(tip));
   if (!simulation_.band().is_first())
     return;
@@ -258,9 +262,10 @@ std::string NearTipRecord::measurements(const analysis::CrackMeasurement &crack)
   };
 
   json["samples"] = sampler_.samples();
-  json["reason"] = sampler_.samples() == 0   ? "no crack ran through the stretch in which samples are taken"
-                   : !crack.speed_laboratory ? "the speed of the crack could not be measured, nor what refers to it"
-                                             : "";
+  json["reason"] = sampler_.samples() == 0 ? "the crack did not run through the interval in which samples are taken"
+                   : !crack.speed_laboratory
+                     ? "the speed of the crack, and quantities relative to it, could not be measured"
+                     : "";
   json["sampled_from"] = X_begin_;
   json["sampled_to"] = X_end_;
 
@@ -268,7 +273,7 @@ std::string NearTipRecord::measurements(const analysis::CrackMeasurement &crack)
   std::optional<double> laboratory_speed, process_zone_speed;
   if (crack.speed_laboratory)
     laboratory_speed = crack.speed_laboratory->value;
-  // Of what fully relaxed rubber behind a steady crack has (theory.md, eq. (N.1)).
+  // Fraction of the speed of fully relaxed rubber behind a steady crack (theory.md, eq. (N.1)).
   if (laboratory_speed && deformation_(0, 0) > 1.)
     process_zone_speed = process_zone_part * (1. - 1. / deformation_(0, 0)) * *laboratory_speed;
 
@@ -278,7 +283,7 @@ std::string NearTipRecord::measurements(const analysis::CrackMeasurement &crack)
       of_blocks.push_back(field_numbers(sampler_.folded_block(block).mean(), laboratory_speed, process_zone_speed,
                                         far_opening_stress_, d));
   if (sampler_.samples() == 0)
-    laboratory_speed = process_zone_speed = std::nullopt; // of an empty field nothing is measured, not even 0
+    laboratory_speed = process_zone_speed = std::nullopt; // without samples nothing is measured, not even 0
   const std::vector<Number> numbers =
     field_numbers(sampler_.folded(), laboratory_speed, process_zone_speed, far_opening_stress_, d);
   for (std::size_t n = 0; n < numbers.size(); ++n)
@@ -306,7 +311,7 @@ std::string NearTipRecord::measurements(const analysis::CrackMeasurement &crack)
   };
   put_sums("velocity_asymmetry_of_samples", [](const Block &block) { return block.asymmetry; });
   put_sums("negative_zone_depth_of_samples", [](const Block &block) { return block.negative_zone_depth; });
-  // Mean over samples of a function of the speeds that each has left; no value without the speed that they count from.
+  // Adds the mean over samples of a function of the speeds stored per sample; no value without their threshold.
   const auto put_speeds =
     [&](const std::string &name, auto speeds_of, const std::optional<double> &needed, auto value_of)
   {
@@ -344,7 +349,7 @@ std::string NearTipRecord::measurements(const analysis::CrackMeasurement &crack)
   put_measured("speed_over_shear", over(waves_.shear), deviation(waves_.shear));
   json["units"] =
     "lengths m, areas m^2, wave speeds m/s in the undeformed sheet; velocities m/s of the laboratory; "
-    "circulations m^2/s in the current one; stresses Pa (Cauchy); angles degrees, that of the peak stress "
+    "circulations m^2/s in the current sheet; stresses Pa (Cauchy); angles degrees, that of the peak stress "
     "undeformed, of the wedge current; uncertainties are one standard deviation of the mean";
   return json.dump(2) + "\n";
 }

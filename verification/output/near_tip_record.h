@@ -13,43 +13,43 @@
 namespace latcon::output
 {
 
-/// Speeds of long waves along x in the loaded sheet, dashpots left out (theory-comparison.md, eq. (W.2)).
+/// Speeds of long waves along x in the loaded sheet, without dashpots (theory-comparison.md, eq. (W.2)).
 struct WaveSpeeds
 {
-  double longitudinal, shear; ///< referential [m/s]: of the laboratory over the stretch along x
+  double longitudinal, shear; ///< referential [m/s]: laboratory speed divided by the stretch along x
 };
 
-/// Of the sheet of a case in its loaded state.
+/// Computes the wave speeds of the loaded sheet of a case.
 WaveSpeeds wave_speeds_along_crack(const input::Case &input);
 
-/// Time between samples [s]; 0: none are taken. The default is d / (2 c_S), c_S the speed of long shear waves in the
-/// undeformed sheet: at about that speed a crack advances half a spacing between two samples, with any time step.
+/// Returns the time between samples [s]; 0: no samples. The default is d / (2 c_S), with the speed c_S of long shear
+/// waves in the undeformed sheet: a crack at about that speed advances half a spacing between two samples, for any time
+/// step.
 double near_tip_interval(const input::Case &input);
 
-/// Area of the window around the tip, undeformed [m^2].
+/// Returns the area of the window around the tip, reference [m^2].
 double near_tip_window(const input::Case &input);
 
-/// The fields around the tip of a fracture run, and what is measured of them.
+/// Record of the fields around the tip of a fracture run, and measurements of them.
 ///
-/// Samples are taken while the tip is between 40 and 90 % of the way from the seed to the stop position: the crack has
-/// forgotten the seed, and the held edge behind the stop is far.
+/// Samples are taken while the tip is between 40 and 90 % of the distance from the seed to the stop position, where
+/// neither the seed nor the held edge behind the stop position influences the crack.
 class NearTipRecord
 {
 public:
-  /// @param seed_tip_X of the seed crack, reference [m]
+  /// Creates a record. @param seed_tip_X reference X of the tip of the seed [m]
   NearTipRecord(const input::Case &input, lattice::Simulation &simulation, double seed_tip_X);
 
-  /// To be called after every step; takes a sample after the first step that ends in another interval of time than the
-  /// one before. Collective; the first rank takes the samples.
+  /// Takes a sample if this step is the first to end in another time interval than the step before. To be called after
+  /// every step. Collective; the root rank takes the samples.
   void step();
 
-  /// Writes near_tip.json and, if there are samples, near_tip.vti and near_tip_folded.vti; nothing if no samples were
-  /// asked for. To be called once, at the end, on the first rank. @throws OutputError,
-  /// support::OutputError
+  /// Writes near_tip.json and, if there are samples, near_tip.vti and near_tip_folded.vti; nothing if samples are
+  /// disabled. To be called once, at the end, on the root rank. @throws support::OutputError
   void write(const std::filesystem::path &directory, const analysis::CrackMeasurement &crack);
 
-  /// Saves or loads what the samples said; see lattice::Simulation. The first rank's is the whole.
-  /// @throws std::invalid_argument if it is not of as many samples as were taken
+  /// Saves or loads the record; see lattice::Simulation. The root rank has the complete record.
+  /// @throws std::invalid_argument if the numbers of samples do not match
   template <class Archive>
   void archive(Archive &archive)
   {
@@ -61,7 +61,7 @@ public:
   }
 
 private:
-  /// Sums over the samples of a block of what single samples say.
+  /// Sum of a measurement over the samples of a block.
   struct Sum
   {
     double value = 0.;
@@ -81,8 +81,8 @@ private:
   struct Block
   {
     Sum asymmetry, negative_zone_depth, wedge_angle;
-    // Of each sample; which of them count is known at the end, with the speed of the crack.
-    std::vector<std::vector<double>> vortices;         ///< their speeds [m/s]
+    // Per sample. The thresholds on these speeds are known at the end, with the speed of the crack.
+    std::vector<std::vector<double>> vortices;         ///< speeds of vortices [m/s]
     std::vector<std::vector<double>> backward_speeds;  ///< see backward_speeds()
     std::vector<std::vector<double>> following_speeds; ///< see speeds_behind_tip()
 
@@ -102,7 +102,7 @@ private:
 
   lattice::Simulation &simulation_;
   double interval_;       // [s], 0: no samples
-  double intervals_ = 0.; // whole intervals until now
+  double intervals_ = 0.; // number of complete intervals
   Eigen::Matrix2d deformation_;
   double far_opening_stress_; // Cauchy sigma_yy of the loaded sheet [Pa]
   WaveSpeeds waves_;

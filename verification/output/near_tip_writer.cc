@@ -17,7 +17,7 @@ namespace latcon::output
 namespace
 {
 
-// Adds an array of `components` a point; fill(array, id, point) sets a tuple.
+// Adds an array with a number of `components` per point; fill(array, id, point) sets a tuple.
 template <typename Fill>
 void add(vtkImageData &image, const char *name, int components, std::size_t points, const Fill &fill)
 {

@@ -21,7 +21,7 @@ void write_file(const std::string &path, const std::function<void(std::ostream &
   std::ostringstream text;
   writer(text);
   if (!text)
-    throw support::OutputError(path, "its content could not be formatted");
+    throw support::OutputError(path, "error while formatting its content");
   write_file(path, text.str());
 }
 

@@ -1,4 +1,4 @@
-/// Text files of a run, replaced atomically.
+/// Atomic writing of text files.
 #pragma once
 
 #include <functional>
@@ -8,15 +8,14 @@
 namespace latcon::output
 {
 
-/// Replaces the file `path` by `text`, forced to the disk; see support::AtomicFile. The file is listed in its
-/// folder first (output_list.h).
-/// @throws OutputError naming `path` and the system's reason; the old file is untouched.
+/// Replaces the file `path` by `text` and synchronises it with the disk; see support::AtomicFile. First adds the file
+/// to the list of its folder (output_list.h).
+/// @throws OutputError with `path` and the reason given by the system; the old file is unchanged
 void write_file(const std::string &path, const std::string &text);
 
-/// The same for a text that `writer` prints. Nothing is written if `writer` throws; what it throws is passed on.
-/// The whole text is held in memory. The stream prints doubles with six digits unless told otherwise; see
-/// full_precision().
-/// @throws OutputError as above, and if `writer` leaves the stream in a failed state.
+/// Replaces the file `path` by the output of `writer`. If `writer` throws, nothing is written and the exception is
+/// propagated. The whole text is in memory. The stream prints doubles with six digits by default; see full_precision().
+/// @throws OutputError as above, and if `writer` leaves the stream in a failed state
 void write_file(const std::string &path, const std::function<void(std::ostream &)> &writer);
 
 } // namespace latcon::output

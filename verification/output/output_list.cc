@@ -18,7 +18,7 @@ namespace
 namespace fs = std::filesystem;
 using Names = std::set<std::string>;
 
-// What the libraries of either side write by themselves.
+// Files written by the libraries of both sides.
 const Names frames{"lattice.pvd", "lattice-*.vtp", "motion.pvd", "motion-*.vtp", "continuum.pvd", "continuum_*.vtu",
                    "continuum_*.pvtu", "near_tip.vti", "near_tip_folded.vti",
                    // of the claim running-crack
@@ -58,7 +58,7 @@ bool fits(const std::string &file, const std::string &name)
                      [](const unsigned char c) { return std::isdigit(c) != 0 || c == '.'; });
 }
 
-// Regular files of a folder that a list names, without the list itself.
+// Returns the regular files of a folder that are in a list, without the list itself.
 std::vector<fs::path> files_of(const fs::path &folder, const Names &names)
 {
   std::vector<fs::path> files;
@@ -70,7 +70,7 @@ std::vector<fs::path> files_of(const fs::path &folder, const Names &names)
   return files;
 }
 
-// The first name that is free, or of a folder to which files were moved before.
+// Returns the first name that is free or belongs to a folder to which files were moved before.
 fs::path folder_for_earlier(const fs::path &folder)
 {
   const fs::path plain = folder / "earlier-run";
@@ -113,7 +113,7 @@ void list_output(const fs::path &file)
     write_names(folder, names);
 }
 
-fs::path set_earlier_output_aside(const fs::path &folder, const fs::path &keep)
+fs::path archive_earlier_output(const fs::path &folder, const fs::path &keep)
 {
   try
   {
@@ -126,8 +126,8 @@ fs::path set_earlier_output_aside(const fs::path &folder, const fs::path &keep)
       return {};
     const fs::path aside = folder_for_earlier(folder);
     fs::create_directory(aside);
-    // The list is there only while the folder is whole: files that a killed run had moved by half are nobody's to
-    // remove, and the next run takes another folder.
+    // The list exists only while the folder is complete: files that a killed run has moved in part are never removed,
+    // and the next run uses another folder.
     const std::vector<fs::path> older = files_of(aside, names_in(aside));
     fs::remove(aside / output_list_name);
     for (const fs::path &file : older)
@@ -140,7 +140,7 @@ fs::path set_earlier_output_aside(const fs::path &folder, const fs::path &keep)
   catch (const fs::filesystem_error &error)
   {
     throw support::OutputError(folder.string(),
-                               std::string("the files of the run before cannot be moved: ") + error.what());
+                               std::string("the files of the previous run cannot be moved: ") + error.what());
   }
 }
 

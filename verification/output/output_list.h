@@ -1,4 +1,5 @@
-/// Which files of an output directory latcon wrote, so that a later run there does not mix with an earlier one.
+/// List of the files in an output directory that latcon wrote, so that files of a later run are not mixed with those of
+/// an earlier one.
 #pragma once
 
 #include <filesystem>
@@ -7,26 +8,26 @@
 namespace latcon::output
 {
 
-/// Name of the list in an output directory: a line for each file that latcon wrote, sorted. A `*` represents the digits
-/// and dots that number a frame.
+/// Name of the list in an output directory: sorted, with a line per file that latcon wrote. A `*` represents the digits
+/// and dots in the number of a frame.
 inline constexpr const char *output_list_name = ".latcon-files";
 
-/// Whether a file is in the list of its folder.
+/// Returns true if a file is in the list of its folder.
 [[nodiscard]] bool is_listed_output(const std::filesystem::path &file);
 
-/// Begins the list of an output directory with the names of frames and fields, or keeps the one that is there.
+/// Creates the list of an output directory with the names of frames and fields, or keeps an existing one.
 /// @throws OutputError
 void begin_output_list(const std::filesystem::path &folder);
 
-/// Puts a file into the list of its folder; nothing if the folder has none. To be called before the file is written.
+/// Adds a file to the list of its folder, if the folder has one. To be called before the file is written.
 /// @throws OutputError
 void list_output(const std::filesystem::path &file);
 
-/// Moves the files that the list of an output directory names into a folder `earlier-run` in it, in the place of those
-/// that were moved there before. Files that are not listed stay, also in that folder.
-/// @param keep a file that stays where it is, listed or not; may be empty
+/// Moves the listed files of an output directory to its subfolder `earlier-run`, where they replace the files of a
+/// previous call. Files that are not listed are not moved or removed.
+/// @param keep file that is not moved, listed or not; may be empty
 /// @return the folder, or an empty path if there was nothing to move
 /// @throws OutputError
-std::filesystem::path set_earlier_output_aside(const std::filesystem::path &folder, const std::filesystem::path &keep);
+std::filesystem::path archive_earlier_output(const std::filesystem::path &folder, const std::filesystem::path &keep);
 
 } // namespace latcon::output

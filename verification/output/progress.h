@@ -6,22 +6,23 @@
 namespace latcon::output
 {
 
-/// Says on standard error how far a run is: on a terminal in one line that is replaced a few times a second, elsewhere,
-/// as in the log of a batch job, in a line of its own every so often.
+/// Progress indicator on standard error: on a terminal, a line that is updated several times per second; otherwise, for
+/// example in the log of a batch job, a new line at regular intervals.
 class Progress
 {
 public:
-  /// @param wanted false to show nothing
-  /// @param log_interval between lines where standard error is no terminal
+  /// @param wanted false for no output
+  /// @param log_interval interval between lines if standard error is not a terminal
   explicit Progress(bool wanted, std::chrono::milliseconds log_interval = std::chrono::minutes(1));
   ~Progress(); ///< clears the line of a terminal
   Progress(const Progress &) = delete;
   Progress &operator=(const Progress &) = delete;
 
-  /// Whether enough time has passed for a new line to be worth making.
+  /// Returns true if the next update is due.
   bool due() const;
 
-  /// Replaces the line, or adds one. @param fraction_done of the run, 0 to 1; the time left is estimated from it
+  /// Replaces the line, or adds one. @param fraction_done fraction of the run that is done, 0 to 1; determines the
+  /// estimate of the remaining time
   void show(const std::string &text, double fraction_done);
 
 private:

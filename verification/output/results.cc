@@ -30,7 +30,7 @@ nlohmann::ordered_json json_of(const Value &value)
 {
   if (!value)
     return nullptr;
-  // JSON knows no such numbers, and null would say that there is no value.
+  // JSON has no such numbers, and null means that there is no value.
   if (!std::isfinite(*value))
     return support::full_precision(*value);
   return *value;
@@ -198,7 +198,7 @@ void Results::print(std::ostream &out) const
 {
   constexpr std::size_t n_columns = 8;
   constexpr std::size_t n_words =
-    2; // columns of words, at the left, which may be wrapped; then numbers, then the verdict
+    2; // columns of words on the left, which may be wrapped, followed by numbers and the verdict
   constexpr std::size_t widest = 120;
   constexpr std::size_t gap = 2;
   using Cells = std::array<std::string, n_columns>;
@@ -214,7 +214,8 @@ void Results::print(std::ostream &out) const
   for (const Cells &cells : table)
     for (std::size_t i = 0; i < n_columns; ++i)
       width[i] = std::max(width[i], support::width_of(cells[i]));
-  // Numbers are never cut, so the words share what is left: the claim has a fixed limit, the quantity takes the rest.
+  // Numbers are never truncated, so the words share the remaining width: the claim has a fixed limit, the quantity gets
+  // the rest.
   width[0] = std::min<std::size_t>(width[0], 20);
   std::size_t others = 0;
   for (std::size_t i = 0; i < n_columns; ++i)

@@ -1,4 +1,4 @@
-/// What was checked, what came out, and whether it holds.
+/// Results of claims: checked quantities, errors and verdicts.
 #pragma once
 
 #include <functional>
@@ -10,39 +10,39 @@
 namespace latcon::output
 {
 
-/// Outcome of one checked quantity.
+/// Verdict on one checked quantity.
 enum class Verdict
 {
   holds,   ///< the error is within the tolerance
-  fails,   ///< it is not, or it is missing, or a number of the row is not finite
-  reported ///< no tolerance was set: for information
+  fails,   ///< the error is larger or missing, or a number of the row is not finite
+  reported ///< informational: there is no tolerance
 };
 
-/// The word for a verdict: "holds", "fails", "reported".
+/// Returns the name of a verdict: "holds", "fails", "reported".
 [[nodiscard]] std::string to_string(Verdict verdict);
 
-/// One checked quantity. Values that do not apply are left empty.
+/// Result for one checked quantity. Values that do not apply are empty.
 struct Result
 {
   std::string claim;               ///< name of the claim, e.g. "energy"
-  std::string quantity;            ///< what was compared, in words
+  std::string quantity;            ///< description of the compared quantity
   std::string unit;                ///< unit of lattice, continuum and theory; "1" for a pure number
   std::optional<double> lattice;   ///< measured on the lattice
   std::optional<double> continuum; ///< measured on the continuum
   std::optional<double> theory;    ///< from a closed formula or the literature
-  std::optional<double> error;     ///< as the claim defines it, usually relative; smaller is better
-  std::optional<double> tolerance; ///< largest error with which the claim holds; empty for information only
+  std::optional<double> error;     ///< as defined by the claim, usually relative; smaller is better
+  std::optional<double> tolerance; ///< largest error with which the claim holds; empty: informational
 
-  /// Reported without a tolerance. With one it holds if the error is there, error <= tolerance, and every number that
-  /// is given, of lattice, continuum, theory, error, and tolerance, is finite.
+  /// Returns `reported` if there is no tolerance. Otherwise `holds` if there is an error, error <= tolerance, and all
+  /// given numbers (lattice, continuum, theory, error, tolerance) are finite; otherwise `fails`.
   [[nodiscard]] Verdict verdict() const;
 };
 
-/// Row of a claim in place of those that could not be computed: it fails, and gives the reason.
-/// @param quantity subject and what was to be computed, in words
+/// Returns a row that fails, with the reason, for rows of a claim that could not be computed.
+/// @param quantity subject and quantity that could not be computed
 [[nodiscard]] Result not_computed(const std::string &claim, const std::string &quantity, const std::string &reason);
 
-/// All results of a run.
+/// Collection of all results of a run.
 class Results
 {
 public:
@@ -52,38 +52,37 @@ public:
   /// Appends the rows of another collection, in their order.
   void add(const Results &others);
 
-  /// All rows, in the order in which they came.
+  /// Returns all rows, in the order in which they were added.
   [[nodiscard]] const std::vector<Result> &rows() const { return rows_; }
 
-  /// "fails" if a row fails, else "holds" if a row was checked, else "reported": nothing was checked, so nothing is
-  /// shown.
+  /// Returns `fails` if a row fails, otherwise `holds` if a row was checked, otherwise `reported`.
   [[nodiscard]] Verdict verdict() const;
 
-  /// Whether at least one row was checked and none fails.
+  /// Returns true if at least one row was checked and none fails.
   [[nodiscard]] bool all_hold() const { return verdict() == Verdict::holds; }
 
-  /// Number of rows that have this verdict.
+  /// Returns the number of rows with this verdict.
   [[nodiscard]] std::size_t count(Verdict verdict) const;
 
-  /// How the checks came out: "98 checks hold", or how many fail and, a line each, which: claim, quantity, error,
-  /// tolerance. @param most rows that are named; of more the number alone
+  /// Returns a summary: "98 checks hold", or the number of failures with a line for each: claim, quantity, error,
+  /// tolerance. @param most largest number of listed rows
   [[nodiscard]] std::string verdict_text(std::size_t most) const;
 
-  /// The rows as JSON: {"claims": [{"claim": ..., "quantity": ..., "unit": ..., "lattice": ..., "continuum": ...,
-  /// "theory": ..., "error": ..., "tolerance": ..., "verdict": ...}, ...], "verdict": ...}. Doubles in full precision,
-  /// empty values null, numbers that are not finite as the strings "nan", "inf", "-inf".
+  /// Returns the rows as JSON: {"claims": [{"claim": ..., "quantity": ..., "unit": ..., "lattice": ..., "continuum":
+  /// ..., "theory": ..., "error": ..., "tolerance": ..., "verdict": ...}, ...], "verdict": ...}. Doubles in full
+  /// precision, empty values null, numbers that are not finite as the strings "nan", "inf", "-inf".
   [[nodiscard]] std::string json() const;
 
-  /// The rows as CSV (RFC 4180, one header line, columns as in json()). Empty values are empty fields.
+  /// Returns the rows as CSV (RFC 4180, one header line, columns as in json()). Empty values are empty fields.
   [[nodiscard]] std::string csv() const;
 
   /// Writes results.json and results.csv into `folder`, which must exist. @throws OutputError
   void write(const std::string &folder) const;
 
-  /// Calls `compute`. If that throws, adds the row not_computed() with the text of the exception: a claim of which a
-  /// part could not be checked does not hold. What the user or the machine must set right passes through: exceptions of
-  /// the kinds Error, std::system_error, and std::bad_alloc. What is collective must throw on all ranks.
-  /// @return whether it did not throw
+  /// Calls `compute`. If it throws, adds the row not_computed() with the message of the exception, because a claim does
+  /// not hold if a part of it could not be checked. Propagates exceptions that the user or the machine must resolve:
+  /// Error, std::system_error, and std::bad_alloc. Collective functions must throw on all ranks.
+  /// @return true if `compute` did not throw
   bool attempt(const std::string &claim, const std::string &quantity, const std::function<void()> &compute);
 
   /// Prints an aligned table, at most 120 columns wide, values with seven significant digits. Long names are wrapped.

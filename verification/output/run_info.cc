@@ -35,13 +35,13 @@ std::string mpi_version()
 {
   std::array<char, MPI_MAX_LIBRARY_VERSION_STRING> text{};
   int length = 0;
-  MPI_Get_library_version(text.data(), &length); // one of the few calls allowed before MPI_Init
-  // What follows, if anything, is who built it and when.
+  MPI_Get_library_version(text.data(), &length); // allowed before MPI_Init
+  // The rest, if any, is the builder and the date.
   const std::string all(text.data(), static_cast<std::size_t>(std::max(length, 0)));
   return all.substr(0, all.find_first_of(",\n"));
 }
 
-// Ranks that run together; 1 if MPI is not running.
+// Returns the number of ranks; 1 if MPI is not initialised.
 int n_ranks()
 {
   int running = 0;
@@ -68,7 +68,7 @@ std::string dotted(const int major, const int minor, const int third)
   return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(third);
 }
 
-// JSON has no number for what is not finite.
+// JSON has no numbers that are not finite.
 Json number(const double value)
 {
   return std::isfinite(value) ? Json(value) : Json(support::full_precision(value));
@@ -170,7 +170,7 @@ const std::string &program_hash()
   {
     std::string digits = sha256_of_file("/proc/self/exe");
     if (digits.empty())
-      throw std::runtime_error("the program cannot read its own file");
+      throw std::runtime_error("cannot read the executable of this program");
     return digits;
   }();
   return hash;
@@ -180,7 +180,7 @@ std::uint64_t peak_memory()
 {
   rusage usage{};
   getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024; // Linux counts in kibibytes
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024; // Linux reports kibibytes
 }
 
 RunInfo::RunInfo(std::vector<std::string> command_line)
@@ -221,7 +221,7 @@ void RunInfo::add(const std::string &key, const Object &object)
 void RunInfo::add_value(const std::string &key, Value value)
 {
   if (common_facts(command_line_, n_threads_, n_ranks_, stopwatch_, 0., {}, "").contains(key))
-    throw std::logic_error("run.json has its own '" + key + "'");
+    throw std::logic_error("'" + key + "' is a standard key of run.json");
   const std::lock_guard lock(mutex_);
   const auto found = std::find_if(facts_.begin(), facts_.end(), [&key](const auto &fact) { return fact.first == key; });
   if (found == facts_.end())
@@ -244,7 +244,7 @@ std::string RunInfo::json(const std::optional<support::ExitCode> exit_code, cons
     }
     else
       document[key] = json_of(std::get<Scalar>(value));
-  // Arguments and texts may hold bytes that are not UTF-8.
+  // Arguments and texts may contain bytes that are not UTF-8.
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 

@@ -1,4 +1,4 @@
-/// How a run came about: program, machine, times.
+/// Provenance of a run: program, libraries, times.
 #pragma once
 
 #include "support/errors.h"
@@ -15,12 +15,11 @@
 namespace latcon::output
 {
 
-/// Wall time spent in named phases. A phase may be entered again: its times add up. Phases may overlap. Threads may
-/// share a stopwatch.
+/// Wall times of named phases. Times of repeated phases add up. Phases may overlap. Thread-safe.
 class Stopwatch
 {
 public:
-  /// Runs from its construction until its destruction or stop(); the stopwatch must outlive it.
+  /// Phase from its construction until its destruction or stop(); the stopwatch must outlive it.
   class Phase
   {
   public:
@@ -44,7 +43,7 @@ public:
   /// Adds a time [s] measured elsewhere.
   void add(const std::string &name, double seconds);
 
-  /// Phases that have ended, with their wall times [s], in the order in which they first ended.
+  /// Returns the phases that have ended, with their wall times [s], in the order in which they first ended.
   [[nodiscard]] std::vector<std::pair<std::string, double>> times() const;
 
 private:
@@ -52,33 +51,33 @@ private:
   std::vector<std::pair<std::string, double>> times_;
 };
 
-/// Version of latcon, e.g. "0.1.0".
+/// Returns the version of latcon, for example "0.1.0".
 [[nodiscard]] std::string program_version();
 
-/// Commit the program was built from, 40 digits, with "-dirty" behind it if tracked files differed from it; "unknown"
-/// if it was not built in a checkout.
+/// Returns the Git commit from which the program was built, 40 digits, with the suffix "-dirty" if tracked files were
+/// modified; "unknown" if it was not built in a checkout.
 [[nodiscard]] std::string git_commit();
 
-/// SHA-256 of the running program's file, 64 hexadecimal digits. The file is read at the first call.
+/// Returns the SHA-256 of the executable of this program, 64 hexadecimal digits. Reads the file at the first call.
 /// @throws std::runtime_error if it cannot be read
 [[nodiscard]] const std::string &program_hash();
 
-/// Largest memory this process has held so far [byte].
+/// Returns the peak memory of this process [bytes].
 [[nodiscard]] std::uint64_t peak_memory();
 
-/// What run.json tells: program, compiler, libraries, threads and ranks, times, memory, command line, outcome, and
-/// whatever the run adds. The name of the machine is not in it. One thread may write it while another one adds.
+/// Content of run.json: program, compiler, libraries, threads and ranks, times, memory, command line, outcome, and
+/// entries added by the run; the name of the machine is not included. Thread-safe.
 class RunInfo
 {
 public:
-  /// @param command_line the program's arguments, argv[0] included
+  /// Creates the content. @param command_line arguments of the program, including argv[0]
   explicit RunInfo(std::vector<std::string> command_line);
 
-  /// Wall times of this run's phases.
+  /// Returns the wall times of the phases of this run.
   [[nodiscard]] Stopwatch &stopwatch() { return stopwatch_; }
 
-  /// Adds a fact under a key of its own, e.g. add("skip_verification", true). The same key again replaces the value.
-  /// @throws std::logic_error if the key is one that run.json has anyway.
+  /// Adds a value under a new key, for example add("skip_verification", true). A repeated key replaces the value.
+  /// @throws std::logic_error if the key is a standard key of run.json
   void add(const std::string &key, bool value);
   void add(const std::string &key, int value);
   void add(const std::string &key, std::uint64_t value);
@@ -86,20 +85,20 @@ public:
   void add(const std::string &key, const char *value);
   void add(const std::string &key, const std::string &value);
 
-  /// The value of one fact, or of one member of an object.
+  /// Value of a key, or of a member of an object.
   using Scalar = std::variant<bool, int, std::uint64_t, double, std::string>;
   using Object = std::vector<std::pair<std::string, Scalar>>;
 
-  /// Adds an object: its members are written in their order.
+  /// Adds an object, whose members are written in their order.
   void add(const std::string &key, const Object &object);
 
-  /// The content of run.json as it now stands.
-  /// @param exit_code what the run ended with; empty while it is under way (null in the file)
+  /// Returns the current content of run.json.
+  /// @param exit_code exit code of the run; empty (null in the file) while it is running
   /// @param verdict   verdict on the claims, if any were checked
-  /// @return JSON with a line break at its end; wall times [s], memory [byte] of the calling process.
+  /// @return JSON with a final line break; wall times [s], memory [bytes] of the calling process
   [[nodiscard]] std::string json(std::optional<support::ExitCode> exit_code, const std::string &verdict = "") const;
 
-  /// Writes json() to `path`; of several ranks, one should call it. @throws OutputError
+  /// Writes json() to `path`. To be called on one rank. @throws OutputError
   void write(const std::string &path, std::optional<support::ExitCode> exit_code,
              const std::string &verdict = "") const;
 
@@ -110,7 +109,7 @@ private:
   std::vector<std::string> command_line_;
   std::chrono::steady_clock::time_point start_;
   Stopwatch stopwatch_;
-  int n_threads_, n_ranks_;  // as the thread that constructs sees them
+  int n_threads_, n_ranks_;  // as seen by the constructing thread
   mutable std::mutex mutex_; // of facts_
   std::vector<std::pair<std::string, Value>> facts_;
 };

@@ -13,13 +13,13 @@ namespace latcon::output
 namespace
 {
 
-// VTK's codes begin with the system's.
+// Error codes of VTK start after those of the system.
 std::string reason(unsigned long code)
 {
   if (code == vtkErrorCode::OutOfDiskSpaceError)
     return std::make_error_code(std::errc::no_space_on_device).message();
   return code > 0 && code < vtkErrorCode::FirstVTKErrorCode ? std::generic_category().message(static_cast<int>(code))
-                                                            : "error " + std::to_string(code) + " of VTK";
+                                                            : "VTK error " + std::to_string(code);
 }
 
 } // namespace

@@ -38,7 +38,7 @@ struct Child
   pid_t process;
 };
 
-// Ends what runs, whichever way the pool is left.
+// List of running children that ends them on destruction.
 class Children : public std::vector<Child>
 {
 public:
@@ -97,7 +97,7 @@ bool run_processes(const ProcessPool &pool)
       }
       const std::size_t job = child->job;
       child = running.erase(child);
-      // A child may have had the signal before this process: from a terminal all of them get it.
+      // A signal from a terminal goes to all processes, so a child may have received it before this process.
       if (pool.stop())
         return false;
       pool.ended(job, status);

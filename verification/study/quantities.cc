@@ -8,7 +8,7 @@ namespace latcon::study
 namespace
 {
 
-// A measured number and its uncertainty, one standard deviation.
+// Adds a measured quantity and its uncertainty, one standard deviation.
 void add_measured(std::vector<StudyQuantity> &all, const std::string &name, const std::string &unit,
                   StudyQuantity::Source source)
 {
@@ -16,7 +16,7 @@ void add_measured(std::vector<StudyQuantity> &all, const std::string &name, cons
   all.push_back({name + "_uncertainty", unit, source});
 }
 
-// Known in m, and over d as well.
+// Lengths that are recorded in m and divided by d.
 const std::vector<std::string> lengths_of_oscillation{"wavelength", "amplitude", "crest_amplitude"};
 
 std::vector<StudyQuantity> all_quantities()
@@ -94,7 +94,7 @@ std::string unit_of(const std::string &quantity)
   const auto found = std::find_if(quantities().begin(), quantities().end(),
                                   [&quantity](const StudyQuantity &known) { return known.name == quantity; });
   if (found == quantities().end())
-    throw std::logic_error("study: '" + quantity + "' is no quantity");
+    throw std::logic_error("study: '" + quantity + "' is not a quantity");
   return found->unit;
 }
 

@@ -1,4 +1,4 @@
-/// What a study can say of a run: the names, units and places of its numbers.
+/// Quantities that a study records of a run: names, units and sources.
 #pragma once
 
 #include <map>
@@ -8,15 +8,15 @@
 namespace latcon::study
 {
 
-/// Number that a study records of each run.
+/// Quantity that a study records of each run.
 struct StudyQuantity
 {
-  /// Where the number is read.
+  /// Source of the value.
   enum class Source
   {
     crack,    ///< crack.json, under its own name
     near_tip, ///< near_tip.json, under its own name
-    derived   ///< computed from others and from the case
+    derived   ///< computed from other quantities and the case
   };
 
   std::string name;
@@ -24,24 +24,24 @@ struct StudyQuantity
   Source source;
 };
 
-/// All numbers, in the order of study.csv. Those that a run does not have are left empty there.
+/// Returns all quantities, in the order of study.csv. Fields of quantities that a run does not have are empty.
 [[nodiscard]] const std::vector<StudyQuantity> &quantities();
 
-/// The one quantity that is a word: "straight", "oscillating", "branching" or "arrested".
+/// Name of the only quantity that is a word: "straight", "oscillating", "branching" or "arrested".
 inline constexpr const char *pattern_quantity = "pattern";
-/// The word for a crack whose record does not settle its pattern.
+/// Word for a crack whose pattern could not be determined.
 inline constexpr const char *undecided_pattern = "undecided";
 
-/// The words for a pattern that a row can state.
+/// Returns the patterns that a row can require.
 [[nodiscard]] const std::vector<std::string> &pattern_words();
 
-/// The SI unit of a quantity. @throws std::logic_error for a name that is none
+/// Returns the SI unit of a quantity. @throws std::logic_error if there is no such quantity
 [[nodiscard]] std::string unit_of(const std::string &quantity);
 
-/// Numbers by quantity; what was not measured is not in it. All finite.
+/// Finite values by quantity; quantities that were not measured are absent.
 using Values = std::map<std::string, double>;
 
-/// Adds what follows from a run's numbers and its lattice spacing d [m].
+/// Adds the quantities derived from the values of a run and its lattice spacing d [m].
 void add_derived(Values &values, double spacing);
 
 } // namespace latcon::study

@@ -23,7 +23,7 @@ std::string content(const std::string &path)
   return {std::istreambuf_iterator<char>(file), std::istreambuf_iterator<char>()};
 }
 
-// The object in a file; an empty one if it is missing or damaged.
+// Reads the JSON object in a file; returns an empty object if the file is missing or corrupt.
 Json object_in(const std::string &path)
 {
   Json document = Json::parse(content(path), nullptr, false);
@@ -50,8 +50,8 @@ void read_numbers(const Json &object, const StudyQuantity::Source source, Values
       values[quantity.name] = object[quantity.name].get<double>();
 }
 
-// What the program said last, which may take several lines: from the last that begins with its name; else the last
-// line.
+// Returns the last message of the program, which may have several lines: everything from the last line that begins with
+// the name of the program, or the last line.
 std::string last_words(const std::string &text)
 {
   const std::string all = "\n" + input::trimmed(text);
@@ -95,7 +95,7 @@ RunOutcome read_outcome(const PlannedRun &run, const std::string &folder, const 
   const bool ended = outcome.exit_code == static_cast<int>(support::ExitCode::done) ||
                      outcome.exit_code == static_cast<int>(support::ExitCode::claim_failed);
   outcome.pattern = value_or(crack, "pattern", std::string());
-  // A crack that differs from its published values ends with the same exit code as a refused one, but was measured.
+  // A crack that differs from its published values has the same exit code as a refused run, but it was measured.
   if (ended && !outcome.pattern.empty())
   {
     outcome.state = RunState::measured;

@@ -10,7 +10,7 @@ namespace latcon::study
 namespace
 {
 
-// Units that a reader is used to.
+// Unit and scale for display.
 struct Display
 {
   double scale;
@@ -93,7 +93,7 @@ SeedStatistics statistics(const std::string &run, const std::string &quantity, c
     const auto value = outcome.values.find(quantity);
     if (value == outcome.values.end())
     {
-      seeds.missing.push_back(seed + outcome.pattern); // such a crack has no such number
+      seeds.missing.push_back(seed + outcome.pattern); // a crack with this pattern does not have this quantity
       continue;
     }
     ++seeds.n;
@@ -136,7 +136,7 @@ std::string quantity_text(const double value, const std::optional<double> deviat
   const Display shown = display(unit);
   if (!deviation || !(*deviation > 0.))
     return formatted("%.*g", 4, shown.scale * value) + shown.unit;
-  // Two digits of the deviation, and the value to the same place.
+  // Two digits of the deviation, and the value to the same decimal place.
   const double spread = shown.scale * *deviation;
   const int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(spread))), 0, 12);
   if (digits > 6 && std::abs(shown.scale * value) < 1e-3)

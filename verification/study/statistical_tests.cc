@@ -13,15 +13,15 @@ namespace latcon::study
 namespace
 {
 
-// Consecutive means of which the isotonic fit makes one.
+// Consecutive means that the isotonic fit pools.
 struct Block
 {
   double mean, weight;
   std::size_t n;
 };
 
-// The isotonic fit by pooling adjacent violators.
-std::vector<Block> pooled_blocks(const std::vector<double> &means, const std::vector<double> &weights)
+// Computes the isotonic fit by pooling adjacent violators.
+std::vector<Block> pool_blocks(const std::vector<double> &means, const std::vector<double> &weights)
 {
   std::vector<Block> blocks;
   for (std::size_t i = 0; i < means.size(); ++i)
@@ -47,7 +47,7 @@ std::vector<double> weights_of(const std::vector<SampleMean> &samples)
   return weights;
 }
 
-// P(F >= statistic / freedom); 1 for a statistic of 0.
+// Returns P(F >= statistic / freedom); 1 if the statistic is 0.
 double exceedance(double statistic, std::size_t freedom, double freedom_of_error)
 {
   const auto n = static_cast<double>(freedom);
@@ -62,7 +62,7 @@ std::optional<double> welch_p_value(const SampleMean &smaller, const SampleMean 
     return {};
   struct Share
   {
-    double spread, error; // squares of the standard error, from the spread alone and with its floor
+    double spread, error; // squared standard error, from the sample variance and from the floored variance
     double freedom;
   };
   const auto share = [](const SampleMean &sample)
@@ -73,17 +73,17 @@ std::optional<double> welch_p_value(const SampleMean &smaller, const SampleMean 
   const Share a = share(smaller), b = share(larger);
   if (!(a.spread + b.spread > 0.))
     return {};
-  // By the spreads themselves, so that a floor does not add degrees of freedom.
+  // From the sample variances, so that the floor does not add degrees of freedom.
   const double freedom =
     std::floor(std::pow(a.spread + b.spread, 2) / (a.spread * a.spread / a.freedom + b.spread * b.spread / b.freedom) +
-               1e-9); // round-off below a whole number
+               1e-9); // compensates round-off below an integer
   const double t = (larger.mean - smaller.mean) / std::sqrt(a.error + b.error);
   if (!std::isfinite(t) || !std::isfinite(freedom))
     return {};
   return boost::math::cdf(boost::math::complement(boost::math::students_t(freedom), t));
 }
 
-std::vector<double> holm_adjusted(const std::vector<double> &p_values)
+std::vector<double> adjust_by_holm(const std::vector<double> &p_values)
 {
   std::vector<std::size_t> order;
   for (std::size_t i = 0; i < p_values.size(); ++i)
@@ -91,7 +91,7 @@ std::vector<double> holm_adjusted(const std::vector<double> &p_values)
       order.push_back(i);
   std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return p_values[a] < p_values[b]; });
   std::vector<double> adjusted = p_values;
-  // A comparison that could not be made counts among them.
+  // A comparison without a p-value counts as well.
   double last = 0.;
   for (std::size_t rank = 0; rank < order.size(); ++rank)
   {
@@ -112,11 +112,11 @@ std::vector<double> level_probabilities(const std::vector<double> &weights)
   {
     for (std::size_t i = 0; i < z.size(); ++i)
     {
-      // Between 0 and 1, exclusive, and the same on every machine, unlike std's distributions.
+      // In (0, 1), and identical on every machine, unlike the distributions of the standard library.
       const double uniform = (static_cast<double>(generator() >> 11) + 0.5) * 0x1p-53;
       z[i] = boost::math::quantile(normal, uniform) / std::sqrt(weights[i]);
     }
-    probabilities[pooled_blocks(z, weights).size() - 1] += 1. / n_draws;
+    probabilities[pool_blocks(z, weights).size() - 1] += 1. / n_draws;
   }
   return probabilities;
 }
@@ -144,7 +144,7 @@ std::optional<TrendTest> isotonic_test(const std::vector<SampleMean> &samples, c
     return {};
   const double variance = SampleMean{0., 1, squares / freedom, least / total}.floored_variance();
 
-  const std::vector<Block> fit = pooled_blocks(means, weights);
+  const std::vector<Block> fit = pool_blocks(means, weights);
   double explained = 0., left = 0.;
   std::size_t i = 0;
   for (const Block &block : fit)
@@ -161,7 +161,7 @@ std::optional<TrendTest> isotonic_test(const std::vector<SampleMean> &samples, c
     test.p_rise += levels[l - 1] * (l > 1 ? exceedance(explained, l - 1, freedom) : 0.);
     test.p_fall += levels[l - 1] * (l < k ? exceedance(left, k - l, freedom) : 0.);
   }
-  // Nothing explained, or nothing left, is what every sequence has or exceeds.
+  // If the fit explains nothing, or everything, every sequence is at least as extreme.
   if (fit.size() == 1)
     test.p_rise = 1.;
   if (fit.size() == k)

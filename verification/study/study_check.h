@@ -1,4 +1,4 @@
-/// Checks that belong to no run of a study: the simulator against solutions that are known.
+/// Checks of the simulator against known solutions, independent of the runs of a study.
 #pragma once
 
 #include <string>
@@ -9,18 +9,18 @@
 namespace latcon::study
 {
 
-/// A check that a study file can ask for.
+/// Check that a study file can request.
 struct StudyCheck
 {
   std::string name;
-  std::string about; ///< what is held against what, in a few sentences
+  std::string about; ///< description in a few sentences
   claims::ClaimOutcome (*run)(bool quick);
 };
 
-/// All of them.
+/// Returns all checks.
 [[nodiscard]] const std::vector<StudyCheck> &study_checks();
 
-/// What a check found.
+/// Result of a check.
 struct CheckResult
 {
   std::string name;
@@ -29,7 +29,7 @@ struct CheckResult
 };
 
 /// Runs a check on one thread and writes its tables into `folder`.
-/// @throws std::logic_error for a name that is none; OutputError
+/// @throws std::logic_error if there is no such check; OutputError
 [[nodiscard]] CheckResult run_check(const std::string &name, bool quick, const std::string &folder);
 
 } // namespace latcon::study

@@ -21,7 +21,7 @@ namespace latcon::study
 namespace
 {
 
-// An entry of a case that a study may change or vary.
+// Entry of a case that a study may change or vary.
 struct CaseEntry
 {
   std::string key, unit;
@@ -38,7 +38,7 @@ std::vector<CaseEntry> case_entries()
   return entries;
 }
 
-// Settings and seeds as an object of the file gives them; none where it gives none.
+// Settings and seeds in an object of the file; none if absent.
 struct Change
 {
   Settings set;
@@ -113,9 +113,9 @@ private:
     for (const auto &[key, value] : place.members())
     {
       if (std::find(entries_.begin(), entries_.end(), key) == entries_.end())
-        value.problem("no entry of a case" + nearest_hint(key, entries_));
+        value.problem("not an entry of a case" + nearest_hint(key, entries_));
       else if (key == seed_entry)
-        value.problem("is what \"seeds\" stands for");
+        value.problem("is set by \"seeds\"");
       else if (value.value().is_string())
         found.emplace_back(key, value.text());
       else if (value.value().is_number() || value.value().is_boolean())
@@ -131,9 +131,9 @@ private:
     std::vector<std::uint64_t> found;
     for (const JsonPlace &seed : place.list())
       if (!seed.value().is_number_unsigned())
-        seed.problem("must be a whole number, 0 or more");
+        seed.problem("must be a whole number >= 0");
       else if (std::find(found.begin(), found.end(), seed.value().get<std::uint64_t>()) != found.end())
-        seed.problem("this seed is there already");
+        seed.problem("this seed is given twice");
       else
         found.push_back(seed.value().get<std::uint64_t>());
     return found;
@@ -143,7 +143,7 @@ private:
   {
     const auto allowed = [](const unsigned char c) { return std::isalnum(c) != 0 || c == '.' || c == '_' || c == '-'; };
     if (name.empty() || name.front() == '.' || !std::all_of(name.begin(), name.end(), allowed))
-      place.problem("a run's name is made of letters, digits, '.', '_' and '-', and does not begin with '.'");
+      place.problem("the name of a run must consist of letters, digits, '.', '_' and '-', and must not begin with '.'");
     names_.push_back(name);
     if (!place.is_object({"about", "set", "seeds", "quick"}))
       return;
@@ -191,7 +191,7 @@ private:
     {
       const std::string check = name.word(known, "check");
       if (std::find(study_.checks.begin(), study_.checks.end(), check) != study_.checks.end())
-        name.problem("this check is there already");
+        name.problem("this check is given twice");
       study_.checks.push_back(check);
     }
   }
@@ -221,7 +221,7 @@ private:
                           "bracket", "against", "quick"}))
       return row;
     if (place.has("run") == place.has("runs"))
-      place.problem("a row has either \"run\" or \"runs\"");
+      place.problem("a row needs either \"run\" or \"runs\"");
     else if (place.has("run"))
       row.runs = {known_run(place.at("run"))};
     else
@@ -229,7 +229,7 @@ private:
       {
         row.runs.push_back(known_run(run));
         if (std::count(row.runs.begin(), row.runs.end(), row.runs.back()) > 1 && !row.runs.back().empty())
-          run.problem("'" + row.runs.back() + "' is there twice");
+          run.problem("'" + row.runs.back() + "' is given twice");
       }
     if (const auto quantity = place.required("quantity"))
       row.quantity = quantity->word(quantity_names(), "quantity");
@@ -240,7 +240,7 @@ private:
       const JsonPlace against = place.at("against");
       row.against = against.text();
       if (std::find(known.begin(), known.end(), row.against) == known.end())
-        against.problem("neither zeta nor an entry of a case" + nearest_hint(row.against, known));
+        against.problem("must be zeta or an entry of a case" + nearest_hint(row.against, known));
       else
         row.against_unit = units_.at(row.against);
     }
@@ -259,16 +259,16 @@ private:
       if (place.has(key))
       {
         if (row.rule != Rule::reported)
-          place.problem("a row has one rule; this one has two, the second is \"" + key + "\"");
+          place.problem("a row can have only one rule; the second one is \"" + key + "\"");
         row.rule = rule;
         read_rule_value(place.at(key), row);
       }
     const bool of_patterns = row.rule == Rule::is || row.rule == Rule::bracket;
     if (row.rule != Rule::reported && !row.quantity.empty() && of_patterns != (row.quantity == pattern_quantity))
-      place.problem(of_patterns ? "this rule is for the quantity \"pattern\""
-                                : "this rule is for numbers, not patterns");
+      place.problem(of_patterns ? "this rule is only for the quantity \"pattern\""
+                                : "this rule is only for numbers, not for patterns");
     if (place.has("tolerance") != (row.rule == Rule::is_near))
-      place.problem("\"is near\" and \"tolerance\" go together");
+      place.problem("\"is near\" and \"tolerance\" must be given together");
     else if (row.rule == Rule::is_near)
     {
       row.tolerance = place.at("tolerance").number();
@@ -316,7 +316,7 @@ private:
       }
       row.bound = place.number();
       if (row.rule == Rule::is_near && place.value().is_number() && row.bound == 0.)
-        place.problem("the tolerance is relative, so this must not be 0");
+        place.problem("must not be 0, because the tolerance is relative");
     }
   }
 
@@ -330,8 +330,8 @@ private:
 
   bool quick_;
   std::vector<std::string> entries_;
-  std::map<std::string, std::string> units_{{"zeta", "1"}}; // of all that a row can be against
-  std::vector<std::string> names_;                          // of all runs of the file
+  std::map<std::string, std::string> units_{{"zeta", "1"}}; // of everything that `against` can be
+  std::vector<std::string> names_;                          // names of all runs of the file
   std::vector<std::string> problems_;
   Change whole_, quick_change_;
   Study study_;
@@ -361,7 +361,7 @@ const StudyRun &Study::run(const std::string &name) const
 {
   const auto found = std::find_if(runs.begin(), runs.end(), [&name](const StudyRun &run) { return run.name == name; });
   if (found == runs.end())
-    throw std::logic_error("study: '" + name + "' is no run");
+    throw std::logic_error("study: '" + name + "' is not a run");
   return *found;
 }
 

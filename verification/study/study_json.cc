@@ -13,11 +13,11 @@ namespace latcon::study
 namespace
 {
 
-// Deeper than any study goes, and than the stack allows those that look at it all.
-constexpr int deepest = 64;
+// Largest nesting depth: deeper than any study, and safe for recursion.
+constexpr int max_depth = 64;
 
-// Some names, and how many there are where they would fill pages.
-std::string listed(const std::vector<std::string> &names)
+// Lists names; long lists are abbreviated, with their number.
+std::string abbreviated_list(const std::vector<std::string> &names)
 {
   constexpr std::ptrdiff_t most = 60;
   if (names.size() <= most)
@@ -31,22 +31,22 @@ std::string listed(const std::vector<std::string> &names)
 nlohmann::ordered_json parse_json(const std::string &text, const std::string &file)
 {
   using Json = nlohmann::ordered_json;
-  if (const auto problem = input::zero_byte(text, file)) // where the parser would end
+  if (const auto problem = input::zero_byte(text, file)) // the parser would stop there
     throw support::InputError(problem->place + ": " + problem->text);
-  std::vector<std::set<std::string>> open; // keys of the objects around the place being parsed
+  std::vector<std::set<std::string>> open; // keys of the objects that enclose the current position
   std::vector<std::string> problems;
   const auto check = [&](int depth, Json::parse_event_t event, Json &value)
   {
-    if (depth > deepest)
-      throw support::InputError(file + ": not a study: objects and lists in each other deeper than " +
-                                std::to_string(deepest));
+    if (depth > max_depth)
+      throw support::InputError(file + ": not a study: objects and lists are nested deeper than " +
+                                std::to_string(max_depth));
     if (event == Json::parse_event_t::object_start)
       open.emplace_back();
     else if (event == Json::parse_event_t::object_end)
       open.pop_back();
     else if (event == Json::parse_event_t::key && !open.back().insert(value.get<std::string>()).second)
       problems.push_back(file + ": the key '" + input::printable(value.get<std::string>()) +
-                         "' is there twice in one object");
+                         "' occurs twice in an object");
     return true;
   };
   Json document;
@@ -62,7 +62,7 @@ nlohmann::ordered_json parse_json(const std::string &text, const std::string &fi
       file + ": not JSON: " + input::printable(what.substr(std::min(what.size(), what.find(']') + 2)), 200));
   }
   if (!document.is_object())
-    problems.push_back(file + ": a study is a JSON object");
+    problems.push_back(file + ": a study must be a JSON object");
   if (!problems.empty())
     throw support::InputError(problems);
   return document;
@@ -100,7 +100,7 @@ std::string JsonPlace::text() const
 {
   if (value_->is_string() && !value_->get_ref<const std::string &>().empty())
     return value_->get<std::string>();
-  problem("must be a text that is not empty, not " + input::printable(value_->dump()));
+  problem("must be a non-empty text, not " + input::printable(value_->dump()));
   return {};
 }
 
@@ -134,7 +134,7 @@ std::vector<JsonPlace> JsonPlace::list() const
     for (std::size_t i = 0; i < value_->size(); ++i)
       places.push_back(child((*value_)[i], std::to_string(i + 1)));
   else
-    problem("must be a list that is not empty, not " + input::printable(value_->dump()));
+    problem("must be a non-empty list, not " + input::printable(value_->dump()));
   return places;
 }
 
@@ -154,7 +154,8 @@ std::string JsonPlace::word(const std::vector<std::string> &known, const std::st
   const std::string given = text();
   if (given.empty() || std::find(known.begin(), known.end(), given) != known.end())
     return given;
-  problem("'" + input::printable(given) + "' is no " + what + nearest_hint(given, known) + "; known: " + listed(known));
+  problem("'" + input::printable(given) + "' is not a known " + what + nearest_hint(given, known) +
+          "; known: " + abbreviated_list(known));
   return {};
 }
 

@@ -1,4 +1,4 @@
-/// Strict reading of JSON: whatever is not asked for, or is not what was asked for, is a problem.
+/// Strict reader of JSON: unknown keys and values of another type are problems.
 #pragma once
 
 #include <optional>
@@ -10,41 +10,41 @@
 namespace latcon::study
 {
 
-/// A place in a JSON document, and the list of problems that all places of the document share.
+/// Position in a JSON document, and the list of problems shared by all positions of the document.
 class JsonPlace
 {
 public:
   using Json = nlohmann::ordered_json;
 
-  /// @param path of the place, "runs/fig1/seeds"; empty at the top
+  /// @param path position, for example "runs/fig1/seeds"; empty at the top
   JsonPlace(const Json &value, std::string file, std::string path, std::vector<std::string> &problems)
     : value_(&value), file_(std::move(file)), path_(std::move(path)), problems_(&problems)
   {
   }
 
   const Json &value() const { return *value_; }
-  /// "FILE: PATH".
+  /// Returns "FILE: PATH".
   std::string place() const { return path_.empty() ? file_ : file_ + ": " + path_; }
   void problem(const std::string &text) const { problems_->push_back(place() + ": " + text); }
 
-  /// Whether this is an object without keys other than these; what is wrong is noted.
+  /// Returns true if this is an object; adds a problem if it is not, and for each unknown key.
   bool is_object(const std::vector<std::string> &known) const;
   bool has(const std::string &key) const { return value_->is_object() && value_->contains(key); }
-  /// A member, which must be there.
+  /// Returns a member, which must exist.
   JsonPlace at(const std::string &key) const { return child(value_->at(key), key); }
-  /// A member; an empty place, and a problem, if it is missing.
+  /// Returns a member; adds a problem and returns none if it is missing.
   std::optional<JsonPlace> required(const std::string &key) const;
 
-  /// Text of a member, which may be missing or empty.
+  /// Returns the text of a member, which may be missing or empty.
   std::string optional_text(const std::string &key) const;
 
-  // Values; one of another type is a problem, and gives an empty one.
+  // Values. For another type they add a problem and return an empty value.
   std::string text() const;
   double number() const;
   bool boolean() const;
-  std::vector<JsonPlace> list() const;                            ///< not empty
-  std::vector<std::pair<std::string, JsonPlace>> members() const; ///< of an object, in their order
-  std::string word(const std::vector<std::string> &known, const std::string &what) const; ///< one of the known ones
+  std::vector<JsonPlace> list() const;                            ///< non-empty list
+  std::vector<std::pair<std::string, JsonPlace>> members() const; ///< members of an object, in their order
+  std::string word(const std::vector<std::string> &known, const std::string &what) const; ///< one of `known`
 
 private:
   JsonPlace child(const Json &value, const std::string &key) const
@@ -57,10 +57,10 @@ private:
   std::vector<std::string> *problems_;
 };
 
-/// Parses a JSON object in which no key comes twice. @param file name for messages @throws InputError
+/// Parses a JSON object without repeated keys. @param file name for messages @throws InputError
 [[nodiscard]] nlohmann::ordered_json parse_json(const std::string &text, const std::string &file);
 
-/// "; nearest: WORD" for a word that was mistyped; empty if none could be meant.
+/// Returns "; nearest: WORD" for a mistyped word; empty if no known word is similar.
 [[nodiscard]] std::string nearest_hint(const std::string &given, const std::vector<std::string> &known);
 
 } // namespace latcon::study

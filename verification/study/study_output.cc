@@ -87,7 +87,7 @@ Json json_of(const RowOutcome &outcome)
   return row;
 }
 
-// The words of the table for rows of checks.
+// Returns the verdict of the table for a row of a check.
 RowVerdict row_verdict(const output::Verdict verdict)
 {
   return verdict == output::Verdict::holds   ? RowVerdict::holds

@@ -1,4 +1,4 @@
-/// What a study writes and prints.
+/// Output files and tables of a study.
 #pragma once
 
 #include <iosfwd>
@@ -11,33 +11,34 @@
 namespace latcon::study
 {
 
-/// A study that was run.
+/// Results of a study.
 struct StudyResults
 {
   Study study;
   std::vector<PlannedRun> plan;
-  std::vector<RunOutcome> outcomes; ///< of the plan, in its order
+  std::vector<RunOutcome> outcomes; ///< outcomes in the order of the plan
   std::vector<ClaimResult> claims;
-  std::vector<CheckResult> checks; ///< those of the study, unless it was interrupted before
+  std::vector<CheckResult> checks; ///< checks of the study; empty if it was interrupted before them
   bool quick = false;
-  std::string verification; ///< what was verified, in words
-  bool is_verified = false; ///< material and pre-stretch of every run were
+  std::string verification; ///< description of the verification
+  bool is_verified = false; ///< material and pre-stretch of every run were verified
 };
 
-/// study.json: everything, for the page and for other programs. The same runs give the same text.
+/// Returns the content of study.json: all data, for the page and for other programs. Equal runs give equal texts.
 [[nodiscard]] std::string study_json(const StudyResults &results);
 
-/// study.csv: a line for each run and seed, units in the header, empty fields for what was not measured.
+/// Returns the content of study.csv: a line per run and seed, units in the header, empty fields for quantities that
+/// were not measured.
 [[nodiscard]] std::string study_csv(const StudyResults &results);
 
-/// The rows that have a number or a rule, in the form that all commands have, then those of the checks. A row holds
-/// here if it does in the table; one that was to be judged and was not measured fails.
+/// Returns the rows that have a number or a rule in the common form of all commands, followed by those of the checks. A
+/// row with a rule that was not measured fails.
 [[nodiscard]] output::Results study_rows(const StudyResults &results);
 
 /// Prints the table, at most 120 columns wide.
 void print_table(std::ostream &out, const StudyResults &results);
 
-/// Prints the runs with their sizes and the estimated time on so many cores, and the checks beside them.
+/// Prints the runs with their sizes, the estimated time on `n_cores` cores, and the checks.
 void print_plan(std::ostream &out, const Study &study, const std::vector<PlannedRun> &plan, std::size_t n_cores);
 
 } // namespace latcon::study

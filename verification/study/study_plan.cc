@@ -51,7 +51,7 @@ PlannedRun plan_run(const Study &study, const input::InputFile &base, const Stud
   if (base.problem.empty())
     parameters.read_text(base.text, study.base);
   else
-    parameters.read_file(study.base); // which says the same
+    parameters.read_file(study.base); // throws the same problems
   parameters.read_overrides(changes);
   input.check(parameters);
   bridge::require_fracture_case(input, parameters);
@@ -70,7 +70,7 @@ PlannedRun plan_run(const Study &study, const input::InputFile &base, const Stud
   return planned;
 }
 
-// A row along something that none of its runs has a number of.
+// Adds a problem for each row whose `against` is not a number in any of its runs.
 void check_abscissas(const Study &study, const std::vector<PlannedRun> &runs, std::vector<std::string> &problems)
 {
   for (const StudyClaim &claim : study.claims)
@@ -87,12 +87,12 @@ void check_abscissas(const Study &study, const std::vector<PlannedRun> &runs, st
       { return std::find(study.left_out.begin(), study.left_out.end(), run) != study.left_out.end(); };
       if (std::none_of(runs.begin(), runs.end(), has_number) &&
           !std::all_of(row.runs.begin(), row.runs.end(), is_left_out))
-        problems.push_back(row.place + "/against: " + row.against + " is no number in any of these runs");
+        problems.push_back(row.place + "/against: " + row.against + " is not a number in any of these runs");
     }
 }
 
-// "Section/Name=value" taken apart; what is wrong with it is found when the case reads it.
-Settings parsed(const std::vector<std::string> &texts)
+// Splits "Section/Name=value"; the case checks names and values when it reads them.
+Settings parse_settings(const std::vector<std::string> &texts)
 {
   Settings settings;
   for (const std::string &text : texts)
@@ -105,7 +105,7 @@ Settings parsed(const std::vector<std::string> &texts)
   }
   for (const auto &[key, value] : settings)
     if (key == seed_entry)
-      throw support::InputError("--set: " + key + " is what the seeds of the study stand for");
+      throw support::InputError("--set: " + key + " is set by the seeds of the study");
   return settings;
 }
 
@@ -130,7 +130,7 @@ std::optional<double> PlannedRun::value(const std::string &against) const
 std::vector<PlannedRun> plan_runs(const Study &study, const input::InputFile &base,
                                   const std::vector<std::string> &settings)
 {
-  const Settings overrides = parsed(settings);
+  const Settings overrides = parse_settings(settings);
   std::vector<PlannedRun> runs;
   std::vector<std::string> problems;
   for (const StudyRun &run : study.runs)
@@ -141,7 +141,7 @@ std::vector<PlannedRun> plan_runs(const Study &study, const input::InputFile &ba
     }
     catch (const support::InputError &error)
     {
-      // What is wrong with the base case is wrong in every run: told once.
+      // A problem of the base case occurs in every run: report it once.
       for (const std::string &problem : error.problems())
       {
         const std::string text = ": " + problem;

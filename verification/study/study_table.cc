@@ -60,9 +60,10 @@ std::string p_text(double p)
   return p < 1e-4 ? "p < 0.0001" : "p = " + quantity_text(std::round(1e4 * p) / 1e4, {}, "1");
 }
 
-constexpr const char *no_scatter = "how much seeds scatter is unknown: it takes two with different numbers";
+constexpr const char *no_scatter =
+  "the scatter of the seeds is unknown: at least two seeds with different values are needed";
 
-// Each run against another: all of them must lie on the side of it that the rule says, clearly.
+// Compares each run with another run: all must be significantly on the side that the rule requires.
 void judge_beside(RowOutcome &outcome, const SeedStatistics &other)
 {
   support::LargestError worst;
@@ -84,7 +85,7 @@ void judge_beside(RowOutcome &outcome, const SeedStatistics &other)
   append(outcome.measured, p_text(worst.error()));
 }
 
-// Rules for each run by itself: all of them must fit, the worst one counts.
+// Rules for individual runs: all must satisfy the rule; the largest misfit counts.
 void judge_each(RowOutcome &outcome)
 {
   const StudyRow &row = outcome.row;
@@ -117,7 +118,7 @@ void judge_each(RowOutcome &outcome)
   outcome.misfit = worst.error();
 }
 
-// Slope of ln(mean) over ln(abscissa), least squares; none unless all are positive and differ.
+// Returns the least-squares slope of ln(mean) over ln(abscissa); none unless all are positive and the abscissas differ.
 std::optional<double> exponent(const std::vector<const SeedStatistics *> &points)
 {
   double n = 0., sx = 0., sy = 0., sxx = 0., sxy = 0.;
@@ -133,8 +134,8 @@ std::optional<double> exponent(const std::vector<const SeedStatistics *> &points
   return spread > 1e-12 * n * sxx ? std::optional<double>((n * sxy - sx * sy) / spread) : std::nullopt;
 }
 
-// What was measured along `against`, in the order of the row.
-std::vector<const SeedStatistics *> measured_along(const RowOutcome &outcome)
+// Returns the measured runs with a value of `against`, in the order of the row.
+std::vector<const SeedStatistics *> measurements_along(const RowOutcome &outcome)
 {
   std::vector<const SeedStatistics *> points;
   for (const SeedStatistics &run : outcome.runs)
@@ -143,7 +144,7 @@ std::vector<const SeedStatistics *> measured_along(const RowOutcome &outcome)
   return points;
 }
 
-// Pairs of means of which the later one is clearly the smaller, after Holm over all pairs, in words.
+// Describes the pairs of means of which the later one is significantly smaller, with Holm's adjustment over all pairs.
 std::string falling_pairs(const std::vector<const SeedStatistics *> &points, const std::vector<SampleMean> &samples)
 {
   std::vector<std::pair<std::size_t, std::size_t>> pairs;
@@ -154,7 +155,7 @@ std::string falling_pairs(const std::vector<const SeedStatistics *> &points, con
       pairs.emplace_back(i, j);
       p_values.push_back(welch_p_value(samples[j], samples[i]).value_or(std::numeric_limits<double>::quiet_NaN()));
     }
-  const std::vector<double> adjusted = holm_adjusted(p_values);
+  const std::vector<double> adjusted = adjust_by_holm(p_values);
   std::string text;
   for (std::size_t pair = 0; pair < pairs.size(); ++pair)
     if (adjusted[pair] <= significance)
@@ -165,10 +166,10 @@ std::string falling_pairs(const std::vector<const SeedStatistics *> &points, con
   return text;
 }
 
-// Along `against` the means must rise, and may fall nowhere: a quantity that saturates still rises.
+// Along `against` the means must rise and must not fall anywhere; a quantity that saturates still rises.
 void judge_trend(RowOutcome &outcome)
 {
-  const std::vector<const SeedStatistics *> points = measured_along(outcome);
+  const std::vector<const SeedStatistics *> points = measurements_along(outcome);
   if (points.size() < 2)
     return;
   const bool rises = outcome.row.rule == Rule::rises;
@@ -186,7 +187,7 @@ void judge_trend(RowOutcome &outcome)
     return;
   }
   const std::string with_it = rises ? "rise" : "fall", against_it = rises ? "fall" : "rise";
-  // Means that go against the rule somewhere do not follow it, whatever they do elsewhere.
+  // Means that violate the rule anywhere do not hold.
   const bool is_broken = !(test->p_fall > significance);
   outcome.misfit = is_broken ? 1. : test->p_rise;
   append(outcome.measured, with_it + ": " + p_text(test->p_rise));
@@ -197,11 +198,11 @@ void judge_trend(RowOutcome &outcome)
     append(outcome.measured, "exponent " + quantity_text(*outcome.number, {}, "1"));
 }
 
-// Up to some value of `against` every run shows one pattern, from another value on every run shows the other. What
-// lies between the two belongs to the bracket, whatever it shows.
+// Up to one value of `against` every run shows one pattern, and from another value on every run shows the other. Runs
+// between the two values belong to the bracket, with any pattern.
 void judge_bracket(RowOutcome &outcome)
 {
-  const std::vector<const SeedStatistics *> points = measured_along(outcome);
+  const std::vector<const SeedStatistics *> points = measurements_along(outcome);
   if (points.size() < 2)
     return;
   const auto low = std::find_if_not(points.begin(), points.end(),
@@ -222,12 +223,12 @@ void judge_bracket(RowOutcome &outcome)
   append(outcome.measured, outcome.row.against + " between " + number(last_from) + " and " + number(first_to));
 }
 
-// Seeds and runs without the quantity, each with the reason.
+// Lists seeds and runs without the quantity, with the reasons.
 std::string missing_text(const RowOutcome &outcome, const std::vector<std::string> &left_out)
 {
   std::string note;
   for (const std::string &run : left_out)
-    append(note, run + " is not part of the quick study");
+    append(note, run + " is omitted in the quick study");
   for (const SeedStatistics &run : outcome.runs)
   {
     std::string seeds;
@@ -253,7 +254,7 @@ RowOutcome judge(const StudyRow &row, const std::vector<PlannedRun> &plan, const
     if (other.is_measured())
       outcome.bound = other.mean;
     else
-      append(outcome.note, row.bound_run + ", to compare with, was not measured");
+      append(outcome.note, row.bound_run + ", the run to compare with, was not measured");
   }
   else if (has_bound(row))
     outcome.bound = row.bound;
@@ -359,7 +360,7 @@ std::optional<output::Result> RowOutcome::result(const std::string &claim) const
   }
   if (verdict != RowVerdict::reported)
   {
-    // Beyond the bound; not how far inside.
+    // Excess beyond the bound; 0 inside.
     result.error = misfit ? support::one_sided(*misfit) : std::numeric_limits<double>::quiet_NaN();
     result.tolerance = allowed();
   }

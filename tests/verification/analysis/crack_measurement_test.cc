@@ -2,9 +2,9 @@
 //
 // Tolerances. For a sinusoid of n periods, amplitude a, in N entries with independent noise sigma, least squares gives
 //   sd(wavelength) = wavelength (sqrt6 / pi) (sigma / a) / (n sqrt N),   sd(amplitude) = sigma sqrt(2 / N)
-// (Cramer-Rao bound); moving to the nearest site of a column, where every other row has one, adds sigma = d / 2.
-// Ensembles are of 200 seeds: a fraction p has a standard deviation of sqrt(p (1 - p) / 200), 0.033 at p = 0.68 and
-// 0.015 at p = 0.95.
+// (Cramer-Rao bound). Rounding to the nearest site of a column, where every second row has one, adds sigma = d / 2.
+// Ensembles have 200 seeds: a fraction p has a standard deviation of sqrt(p (1 - p) / 200), 0.033 at p = 0.68 and 0.015
+// at p = 0.95.
 
 #include <cmath>
 #include <random>
@@ -23,7 +23,7 @@ using namespace synthetic_crack;
 
 constexpr unsigned int n_seeds = 200;
 
-/// How often an ensemble of cracks was found to be what, and how far its numbers were from the truth.
+/// Counts of the patterns found in an ensemble of cracks, and of measurements within one and two uncertainties.
 struct Ensemble
 {
   unsigned int n_likely_oscillating = 0, n_oscillating = 0, n_straight = 0, n_decided = 0;
@@ -46,7 +46,7 @@ struct Ensemble
       n_oscillating += m.pattern == CrackPattern::oscillating;
       n_straight += m.pattern == CrackPattern::straight;
       n_decided += m.pattern != CrackPattern::undecided;
-      // Coverage is that of the fit, whatever the pattern: to leave out unclear cases would bias what remains.
+      // Coverage is of the fit for any pattern, because excluding unclear cases would be biased.
       count(m.sinusoid.value().wavelength, true_wavelength, wavelength_within_1, wavelength_within_2);
       count(m.sinusoid.value().amplitude, true_amplitude, amplitude_within_1, amplitude_within_2);
       count(m.speed_lagrangian.value(), speed, speed_within_1, speed_within_2);
@@ -54,8 +54,8 @@ struct Ensemble
   }
 };
 
-/// 1 sigma shall cover 68 %: three standard deviations below that, and above it up to where an uncertainty would be
-/// 1.6 times too large. 2 sigma shall cover 95 %: at least 85 %, room for the uncertainty's own error.
+/// 1 sigma must cover 68 %: from three standard deviations below up to the coverage of an uncertainty that is 1.6 times
+/// too large. 2 sigma must cover 95 %: at least 85 %, to allow for the error of the uncertainty.
 #define EXPECT_COVERS(within_1, within_2)                                                                              \
   do                                                                                                                   \
   {                                                                                                                    \
@@ -73,12 +73,12 @@ TEST(CrackMeasurement, PureSinusoidIsExact)
   crack.on_sites = false;
   const CrackMeasurement m = measure(crack);
   ASSERT_EQ(m.pattern, CrackPattern::oscillating) << m.reason;
-  // The wave number is sought to 1e-7 of itself; the amplitude is stationary there.
+  // The wave number is found to a relative 1e-7; the amplitude is stationary there.
   EXPECT_NEAR(m.wavelength->value, wavelength, 1e-6 * wavelength);
   EXPECT_NEAR(m.amplitude->value, amplitude, 1e-6 * amplitude);
   EXPECT_NEAR(m.sinusoid->R_squared, 1., 1e-6);
   EXPECT_NEAR(m.sinusoid->share_of_path, 1., 1e-6);
-  // Entries lie on columns d / 2 apart, up to three d / 2 skipped at the ends.
+  // Entries are on columns at distances of d / 2, with up to three columns skipped at the ends.
   EXPECT_NEAR(m.X_begin, 0.2 * length, 3. * d);
   EXPECT_NEAR(m.X_end, 0.9 * length, 3. * d);
   EXPECT_NEAR(m.periods, 0.7 * length / wavelength, 6. * d / wavelength);
@@ -92,8 +92,8 @@ TEST(CrackMeasurement, ZigzagIsHigherThanItsSinusoid)
   crack.on_sites = false;
   const CrackMeasurement m = measure(crack);
   ASSERT_TRUE(m.crest_amplitude) << m.reason;
-  // The first term of the Fourier series; the mean over a column that holds a crest is lower by at most half the
-  // column's width times the slope, and so is what lies between two columns.
+  // First term of the Fourier series. The mean over a column that contains a crest is lower by at most the slope times
+  // half the width of the column; the same bound applies between two columns.
   EXPECT_NEAR(m.amplitude->value, 8. / (pi * pi) * amplitude, 0.02 * amplitude);
   const double column = 2. * d;
   EXPECT_LE(m.crest_amplitude->value, amplitude * (1. + 1e-3));
@@ -108,8 +108,8 @@ TEST(CrackMeasurement, CrestsOfASinusoidAreItsAmplitude)
   {
     const CrackMeasurement m = measure(crack, seed);
     ASSERT_TRUE(m.crest_amplitude) << m.reason;
-    // The highest of a wavelength's 18 columns, each off by d / 2 over the root of its two or three entries: at most
-    // two standard deviations too high.
+    // Highest of the 18 columns of a wavelength, each with an error of d / 2 divided by the root of its two or three
+    // entries: at most two standard deviations too high.
     EXPECT_NEAR(m.crest_amplitude->value, amplitude, 2. * 0.5 * d / std::sqrt(2.));
     EXPECT_GT(m.crest_amplitude->uncertainty, 0.09 * d);
   }
@@ -119,7 +119,8 @@ TEST(CrackMeasurement, CrestsOfASinusoidAreItsAmplitude)
 
 TEST(CrackMeasurement, ShortWavesAreNotFlattenedByAveraging)
 {
-  // Columns of 2 d would take (pi 2 d / wavelength)^2 / 6 = 6 % off this amplitude if the model were not averaged too.
+  // Columns of 2 d would reduce this amplitude by (pi 2 d / wavelength)^2 / 6 = 6 % if the model were not averaged as
+  // well.
   SyntheticCrack crack;
   crack.path = sinusoid(10.3 * d, amplitude);
   crack.on_sites = false;
@@ -145,7 +146,8 @@ TEST(CrackMeasurement, SinusoidOnLatticeSites)
 
 TEST(CrackMeasurement, RangeOfWavelengthsAndAmplitudesOnSites)
 {
-  // Hops of d / 2 on top of the sites': sigma = 0.7 d; four of the standard deviations at the top of this file.
+  // Hops of d / 2 in addition to those due to sites: sigma = 0.7 d; four of the standard deviations at the top of this
+  // file.
   const double sigma = std::sqrt(0.5) * d;
   for (const double lambda : {0.010, 0.015, 0.023, 0.030, 0.040})
     for (const double a : {0.8e-3, 1.7e-3, 3e-3})
@@ -175,7 +177,7 @@ TEST(CrackMeasurement, UncertaintiesCoverTheTruthWithIndependentNoise)
 
 TEST(CrackMeasurement, UncertaintiesCoverTheTruthWithCorrelatedNoise)
 {
-  // Had the noise been taken for independent, 1 sigma would cover about 40 %.
+  // With an assumption of independent noise, 1 sigma would cover about 40 %.
   SyntheticCrack crack;
   crack.path = sinusoid(wavelength, amplitude);
   crack.hops = d;
@@ -201,7 +203,7 @@ TEST(CrackMeasurement, UncertaintiesCoverTheTruthWithLongMemory)
 
 TEST(CrackMeasurement, HopsOfSeveralSpacingsDoNotHideAnOscillation)
 {
-  // Hops of 3 d rms exceed the amplitude of 2.7 d, but they are errors of the record, not the shape of the path.
+  // Hops of 3 d rms exceed the amplitude of 2.7 d, but they are errors of the record and not part of the path.
   SyntheticCrack crack;
   crack.path = sinusoid(wavelength, amplitude);
   crack.hops = 3. * d;
@@ -239,22 +241,22 @@ TEST(CrackMeasurement, GrowingPartIsLeftOut)
     EXPECT_GT(m.X_begin, 0.049);
     EXPECT_LT(m.X_begin, 0.070);
     EXPECT_GE(m.periods, 2.);
-    // Six standard deviations of the formula above with n = 3.3 periods, N = 150, sigma = 0.7 d: growth is left in
-    // part.
+    // Six standard deviations of the formula above with n = 3.3 periods, N = 150, sigma = 0.7 d, because a part of the
+    // growth remains.
     EXPECT_NEAR(m.wavelength->value, wavelength, 6. * 0.14e-3);
     sum += m.amplitude->value / n;
-    options.settled_amplitude = 0.01;
+    options.steady_amplitude = 0.01;
     sum_of_whole += measure_crack(tip, {}, options).sinusoid->amplitude.value / n;
   }
-  // What is left of the growth, between 27 and 100 % over a fifth of the window, takes off a few per cent. With the
-  // growing part in, 25 mm of 105 have next to no amplitude, which takes off more than a tenth.
+  // The remaining growth, from 27 to 100 % over a fifth of the window, reduces the mean by a few per cent. With the
+  // growing part, 25 mm of 105 mm would have almost no amplitude, which would reduce it by more than a tenth.
   EXPECT_NEAR(sum, amplitude, 0.06 * amplitude);
   EXPECT_LT(sum_of_whole, 0.88 * amplitude);
 }
 
 TEST(CrackMeasurement, LateOnsetKeepsTwoWavelengths)
 {
-  // 55 to 65 mm, 1.6 to 1.9 wavelengths, are steady. The window must not shrink to them.
+  // 55 to 65 mm, 1.6 to 1.9 wavelengths, are steady. The window must not be reduced to this part.
   const double lambda = 0.035;
   SyntheticCrack crack;
   crack.hops = 0.3 * d;
@@ -263,7 +265,7 @@ TEST(CrackMeasurement, LateOnsetKeepsTwoWavelengths)
     crack.path = [=](double X) { return X < onset ? 0. : amplitude * std::sin(2. * pi * (X - onset) / lambda); };
     const CrackMeasurement m = measure(crack);
     ASSERT_TRUE(m.sinusoid);
-    EXPECT_GT(m.X_begin, 0.05) << m.reason; // it did move
+    EXPECT_GT(m.X_begin, 0.05) << m.reason; // the beginning did move
     EXPECT_GE(m.periods, 2.) << m.reason;
   }
 }
@@ -271,7 +273,7 @@ TEST(CrackMeasurement, LateOnsetKeepsTwoWavelengths)
 TEST(CrackMeasurement, UnevenSamplingDoesNotBias)
 {
   // The wavelength changes from 22 to 24 mm in the middle of the window. With eight times as many entries in the first
-  // half, a fit that weighs entries would settle near 22 mm; one that weighs lengths of crack stays where it was.
+  // half, a fit weighted by entries would give about 22 mm; a fit weighted by length does not change.
   const double middle = 0.55 * length;
   const auto Y = [&](double X)
   {
@@ -287,8 +289,9 @@ TEST(CrackMeasurement, UnevenSamplingDoesNotBias)
   const CrackMeasurement of_uneven = measure_crack(uneven, {}, options_for(uneven));
   ASSERT_TRUE(of_even.wavelength && of_uneven.wavelength);
   EXPECT_NEAR(of_even.wavelength->value, 0.023, 0.1e-3);
-  // Entries spread through a column of 2 d instead of at its edge: the window shifts by up to a column in 105 mm, 1 %
-  // of the difference of 2 mm; weighing entries shifts by 0.5 mm and more.
+  // Entries are distributed over a column of 2 d instead of at its edge: the window shifts by up to a column in 105 mm,
+  // which changes the result by 1 % of the difference of 2 mm; a fit weighted by entries would shift by at least 0.5
+  // mm.
   EXPECT_NEAR(of_uneven.wavelength->value, of_even.wavelength->value, 0.05e-3);
 }
 
@@ -321,7 +324,8 @@ TEST(CrackMeasurement, LessThanOnePeriodAndAHalfIsABend)
 
 TEST(CrackMeasurement, HoppingStraightPathIsStraight)
 {
-  // Odds of 20 to 1 are found by chance in fewer than 1 of 20 straight paths, far fewer in practice: 1 % is asserted.
+  // Odds of 20 to 1 occur by chance in less than 1 of 20 straight paths, and in practice much less often: the test
+  // requires 1 %.
   SyntheticCrack crack;
   for (const double hops : {0.5 * d, 2. * d})
   {
@@ -334,8 +338,8 @@ TEST(CrackMeasurement, HoppingStraightPathIsStraight)
 
 TEST(CrackMeasurement, WanderingStraightPathIsNotOscillating)
 {
-  // Correlated over 5 d and 20 d, as strong as an oscillation of amplitude 2.8 d. Sinusoids follow much of the slower
-  // one, so that not every path can be told to be straight; but none may be taken for an oscillation.
+  // Noise correlated over 5 d and 20 d, as strong as an oscillation of amplitude 2.8 d. Sinusoids fit much of the
+  // slower noise, so not every path is found straight; but none may be found oscillating.
   SyntheticCrack crack;
   crack.hops = 0.5 * d;
   crack.wander = 2. * d;
@@ -350,9 +354,9 @@ TEST(CrackMeasurement, WanderingStraightPathIsNotOscillating)
 
 TEST(CrackMeasurement, RandomWalkIsNotOscillating)
 {
-  // Strays by 0.5 d sqrt(168) = 6.5 d along the window. The nearest sinusoid explains over half of the variance of most
-  // such paths, over one to two periods; the evidence says that a wandering path does as well, and the result says that
-  // nothing is certain: neither straight nor oscillating.
+  // Random walk of 0.5 d sqrt(168) = 6.5 d along the window. The best sinusoid explains more than half of the variance
+  // of most such paths, over one to two periods. The evidence shows that a wandering path explains as much, so the
+  // result is undecided: neither straight nor oscillating.
   SyntheticCrack crack;
   crack.walk = 0.5 * d;
   const Ensemble ensemble(crack);
@@ -363,7 +367,7 @@ TEST(CrackMeasurement, RandomWalkIsNotOscillating)
 
 TEST(CrackMeasurement, RippleOnAWanderingPathIsNotItsPattern)
 {
-  // A true sinusoid of 10 mm and 1 mm, evident as such, on a path that strays by 3 d for reasons of its own.
+  // A clear sinusoid of 10 mm wavelength and 1 mm amplitude on a path that additionally wanders by 3 d.
   SyntheticCrack crack;
   crack.path = sinusoid(0.01, 0.001);
   crack.wander = 3. * d;
@@ -407,7 +411,7 @@ TEST(CrackMeasurement, ExactlyStraightPath)
 
 TEST(CrackMeasurement, SteadySpeed)
 {
-  // Constant speed, tip on columns up to 3 d apart: the straight line is off by less than that in 105 mm.
+  // Constant speed, tip on columns at distances up to 3 d: the error of the straight line is less than that in 105 mm.
   const CrackMeasurement m = measure(SyntheticCrack());
   ASSERT_TRUE(m.speed_lagrangian && m.speed_laboratory);
   EXPECT_NEAR(m.speed_lagrangian->value, speed, 3. * d / (0.7 * length) * speed);
@@ -420,7 +424,7 @@ TEST(CrackMeasurement, SteadySpeed)
 
 TEST(CrackMeasurement, LaboratorySpeedIsMeasuredFromCurrentPositions)
 {
-  // A tip that falls back behind its reference place at 3 m/s: dx/dt = 2.3 * 20 - 3.
+  // A tip that lags behind its reference position at 3 m/s: dx/dt = 2.3 * 20 - 3.
   std::vector<TipRecord> tip = SyntheticCrack().record(1);
   for (TipRecord &entry : tip)
     entry.x -= 3. * entry.t;
@@ -430,7 +434,7 @@ TEST(CrackMeasurement, LaboratorySpeedIsMeasuredFromCurrentPositions)
 
 TEST(CrackMeasurement, SpeedUncertaintyCoversTheTruth)
 {
-  // Slowness that varies by 30 %, remembered over 8 d: a position that walks away from the straight line.
+  // Slowness that varies by 30 %, correlated over 8 d, so that the position wanders away from the straight line.
   SyntheticCrack crack;
   crack.path = sinusoid(wavelength, amplitude);
   crack.slowness_noise = 0.3;
@@ -440,7 +444,7 @@ TEST(CrackMeasurement, SpeedUncertaintyCoversTheTruth)
 
 TEST(CrackMeasurement, RunInAndClampZoneDoNotEnterTheSpeed)
 {
-  // Half speed up to 0.2 L and beyond 0.9 L: either of them in the window would take 5 % and more off the speed.
+  // Half speed up to 0.2 L and beyond 0.9 L: each part, if in the window, would reduce the speed by at least 5 %.
   std::vector<TipRecord> tip = SyntheticCrack().record(1);
   double t = 0.;
   for (std::size_t i = 1; i < tip.size(); ++i)

@@ -1,4 +1,4 @@
-// Branching and arrest of synthetic cracks, and records and options that cannot be used.
+// Branching and arrest of synthetic cracks, and invalid records and options.
 
 #include <cmath>
 #include <functional>
@@ -22,7 +22,7 @@ using namespace synthetic_crack;
 // --- branching
 // ----------------------------------------------------------------------------------------------------------
 
-/// Crack that splits at X = 50 mm into two branches at +-30 degrees, one a little ahead of the other by turns.
+/// Crack that splits at X = 50 mm into two branches at +-30 degrees, which are alternately slightly ahead.
 struct BranchedCrack
 {
   std::vector<TipRecord> tip;
@@ -53,15 +53,15 @@ TEST(CrackMeasurement, TwoDivergingStrandsBranch)
   const CrackMeasurement m = measure_crack(crack.tip, crack.breaks, options_for(crack.tip));
   EXPECT_EQ(m.pattern, CrackPattern::branching) << m.reason;
   EXPECT_FALSE(m.wavelength);
-  // From where the strands are 10 d (and 2 d of breadth) apart, 12 d / (2 tan 30) past the fork, to 0.9 L; a column of
-  // 4 d at either end.
+  // From where the distance of the strands is 10 d (plus 2 d of width), 12 d / (2 tan 30) after the fork, to 0.9 L, to
+  // within a column of 4 d at each end.
   const double expected = (0.9 * length - 0.05 - 12. * d / (2. * std::tan(pi / 6.))) / (0.9 * length - seed_tip);
   EXPECT_NEAR(m.branched_fraction, expected, 8. * d / (0.9 * length - seed_tip));
 }
 
 TEST(CrackMeasurement, BranchesThatReachTheEdgesAreBranchesNotArrest)
 {
-  // Branches at 60 degrees meet the edges of a sheet 10 cm high 29 mm past the fork, and the crack stands.
+  // Branches at 60 degrees reach the edges of a sheet of 10 cm height 29 mm after the fork, and the crack stops.
   const BranchedCrack crack(60., 0.05 + 0.029);
   CrackMeasurementOptions options = options_for(crack.tip);
   options.end_time *= 3.;
@@ -79,7 +79,7 @@ TEST(CrackMeasurement, WithoutBreaksNothingBranches)
 
 TEST(CrackMeasurement, TipThatJumpsBetweenBranchesByTurnsDoesNotOscillate)
 {
-  // The jumps are periodic to the eye of a sinusoid: 6 mm long, 49 mm high.
+  // The jumps look like a sinusoid: 6 mm wavelength, 49 mm height.
   const BranchedCrack crack(30., 0.98 * length, true);
   const CrackMeasurement m = measure_crack(crack.tip, {}, options_for(crack.tip));
   EXPECT_EQ(m.pattern, CrackPattern::undecided) << m.reason;
@@ -120,7 +120,7 @@ TEST_F(CrackMeasurementDamage, BandInTheWakeIsNoBranch)
 
 TEST_F(CrackMeasurementDamage, RowBesideThePathIsNoBranch)
 {
-  // 14 d off for the whole length, breadth 1 d on both sides: the gap is 12 d, and never more.
+  // At a distance of 14 d over the whole length, with a width of 1 d on both sides: the gap is never more than 12 d.
   break_along(
     breaks, [&](double X) { return crack.path(X) + 14. * d; }, seed_tip, 0.98 * length);
   expect_oscillating();
@@ -128,7 +128,7 @@ TEST_F(CrackMeasurementDamage, RowBesideThePathIsNoBranch)
 
 TEST_F(CrackMeasurementDamage, StragglingDamageIsNoBranch)
 {
-  // Damage that leaves a gap of 4 d to 16 d and comes back every 37 d: past 10 d for less than 20 d at a time.
+  // Damage with a gap that varies between 4 d and 16 d every 37 d: above 10 d for less than 20 d at a time.
   const auto beside = [&](double X) { return crack.path(X) + (12. + 6. * std::sin(2. * pi * X / wavelength)) * d; };
   break_along(breaks, beside, seed_tip, 0.98 * length);
   expect_oscillating();
@@ -136,7 +136,7 @@ TEST_F(CrackMeasurementDamage, StragglingDamageIsNoBranch)
 
 TEST_F(CrackMeasurementDamage, SpurAtEveryCrestIsNoBranch)
 {
-  // Secondary cracks of 14 d that leave every second crest at 60 degrees and die.
+  // Secondary cracks of 14 d that branch off every second crest at 60 degrees and stop.
   for (double X = 0.03; X < 0.13; X += wavelength)
     break_along(
       breaks, [&](double s) { return crack.path(X) + std::tan(pi / 3.) * (s - X); }, X, X + 14. * d);
@@ -145,7 +145,7 @@ TEST_F(CrackMeasurementDamage, SpurAtEveryCrestIsNoBranch)
 
 TEST_F(CrackMeasurementDamage, ScatteredDebrisIsNoBranch)
 {
-  // One broken bond in every 2 d of length, anywhere up to 60 d from the path.
+  // One broken bond per 2 d of length, at random up to 60 d from the path.
   std::mt19937 generator(3);
   std::uniform_real_distribution<double> offset(-60. * d, 60. * d);
   for (double X = seed_tip; X < 0.98 * length; X += 2. * d)
@@ -156,11 +156,11 @@ TEST_F(CrackMeasurementDamage, ScatteredDebrisIsNoBranch)
 // --- flanks
 // ------------------------------------------------------------------------------------------------------------
 
-// Bonds along a slanted path, and a few torn out of its flanks at a known distance.
+// Bonds along an inclined path, and several broken bonds in its flanks at known distances.
 TEST(FlankDamage, IsMeasuredFromTheNearestPointOfThePath)
 {
   std::vector<TipRecord> tip;
-  const double slope = 0.75; // a 3-4-5 triangle: the distance is 0.8 of that along Y
+  const double slope = 0.75; // a 3-4-5 triangle: the distance is 0.8 times that along Y
   for (int i = 0; i <= 100; ++i)
     tip.push_back({1e-5 * i, i * d, slope * i * d, 0., 0.});
   std::vector<BreakRecord> breaks;
@@ -173,12 +173,12 @@ TEST(FlankDamage, IsMeasuredFromTheNearestPointOfThePath)
   for (const double offset : {7.45, 7.55, -12.}) // 5.96, 6.04 and 9.6 d away
     breaks.push_back({0., 50.2 * d, (slope * 50.2 + offset) * d});
   breaks.push_back({0., 20. * d, 15. * d + 20. * d});
-  const auto torn = flank_damage(tip, breaks, 22. * d, 90. * d, d); // without the last, and 27 of the path's
+  const auto torn = flank_damage(tip, breaks, 22. * d, 90. * d, d); // without the last bond, and 27 bonds of the path
   ASSERT_TRUE(torn);
   EXPECT_NEAR(torn->depth, 9.6 * d, 1e-12 * d);
   EXPECT_DOUBLE_EQ(torn->share, 2. / (96 - 27 + 3));
   EXPECT_NEAR(flank_damage(tip, breaks, 0., 100. * d, d)->depth, 16. * d, 1e-12 * d);
-  // Beyond the ends of the path its last point is the nearest.
+  // Beyond the ends of the path the nearest point is its last point.
   EXPECT_NEAR(flank_damage(tip, {{0., 103. * d, 79. * d}}, 0., 200. * d, d)->depth, 5. * d, 1e-12 * d);
   EXPECT_NEAR(flank_damage(tip, {{0., -3. * d, -4. * d}}, -10. * d, 0., d)->depth, 5. * d, 1e-12 * d);
   EXPECT_FALSE(flank_damage(tip, breaks, 100. * d, 120. * d, d));
@@ -189,15 +189,15 @@ TEST_F(CrackMeasurementDamage, OfTheFlanksIsThatInTheWindow)
 {
   const auto beside = [&](double X, double offset) { return BreakRecord{1e-3, X, crack.path(X) + offset}; };
   breaks.push_back(beside(0.1 * length, 30. * d));  // before the window
-  breaks.push_back(beside(0.95 * length, 30. * d)); // and behind it
+  breaks.push_back(beside(0.95 * length, 30. * d)); // after the window
   CrackMeasurement m = measure(crack, 1, breaks);
   ASSERT_TRUE(m.flanks);
-  // Bonds at d on either side of a path that is known at the sites of its tip, d / 2 or so off.
+  // Bonds at d on both sides of a path that is known at the sites of its tip, with errors of about d / 2.
   EXPECT_NEAR(m.flanks->depth, d, 0.75 * d);
   EXPECT_EQ(m.flanks->share, 0.);
   breaks.push_back(beside(0.6 * length, 12. * d));
   m = measure(crack, 1, breaks);
-  EXPECT_GT(m.flanks->depth, 9. * d); // nearer than along Y: the path is up to 25 degrees steep
+  EXPECT_GT(m.flanks->depth, 9. * d); // less than along Y: the slope of the path is up to 25 degrees
   EXPECT_LT(m.flanks->depth, 12.75 * d);
   EXPECT_GT(m.flanks->share, 0.);
 }
@@ -214,13 +214,13 @@ TEST(CrackMeasurement, CrackThatStopsIsArrested)
   options.end_time = 2. * tip.back().t;
   const CrackMeasurement m = measure_crack(tip, {}, options);
   EXPECT_EQ(m.pattern, CrackPattern::arrested) << m.reason;
-  ASSERT_TRUE(m.speed_lagrangian); // while it ran
+  ASSERT_TRUE(m.speed_lagrangian); // of the time before arrest
   EXPECT_NEAR(m.speed_lagrangian->value, speed, 6. * d / (0.25 * length) * speed);
 }
 
 TEST(CrackMeasurement, PauseIsNoArrest)
 {
-  // The run ends 0.05 L / v after the last advance: half of what arrest takes.
+  // The run ends 0.05 L / v after the last advance, half of the time required for arrest.
   SyntheticCrack crack;
   crack.X_last = 0.6 * length;
   const std::vector<TipRecord> tip = crack.record(1);
@@ -268,7 +268,7 @@ TEST(CrackMeasurement, SeedThatNeverRanIsArrested)
   EXPECT_EQ(m.pattern, CrackPattern::arrested);
 }
 
-// --- the sentence
+// --- reasons
 // --------------------------------------------------------------------------------------------------------------
 
 TEST(CrackMeasurement, SentenceNamesTheCriterionThatDecided)
@@ -290,7 +290,7 @@ TEST(CrackMeasurement, SentenceNamesTheCriterionThatDecided)
   expect(measure(crack), CrackPattern::undecided, {"an amplitude of", "fewer than 1.5 periods: it may be a bend"});
 }
 
-// --- records and options that cannot be used
+// --- invalid records and options
 // ---------------------------------------------------------------------------
 
 TEST(CrackMeasurement, ShortRecordOfARunningCrackIsUndecided)
@@ -298,7 +298,7 @@ TEST(CrackMeasurement, ShortRecordOfARunningCrackIsUndecided)
   SyntheticCrack crack;
   crack.path = sinusoid(wavelength, amplitude);
   const std::vector<TipRecord> whole = crack.record(1);
-  // Up to 25 mm, less than the run-in and 12 columns: nothing can be said about the pattern.
+  // Up to 25 mm, less than the run-in and 12 columns: the pattern is undecided.
   for (std::size_t n = 1; n < whole.size() && whole[n - 1].X < 0.2 * length + 12. * d; ++n)
   {
     const std::vector<TipRecord> tip(whole.begin(), whole.begin() + static_cast<std::ptrdiff_t>(n));
@@ -321,7 +321,7 @@ TEST(CrackMeasurement, RunStoppedBeforeItsFirstStepSaysNothing)
 
 TEST(CrackMeasurement, AnyPartOfARecordCanBeMeasured)
 {
-  // Every window length, and every one of them with a tenth of the entries: no number may come out that is not finite.
+  // All window lengths, also with a tenth of the entries: all numbers must be finite.
   SyntheticCrack crack;
   crack.path = sinusoid(wavelength, amplitude);
   crack.hops = d;
@@ -426,7 +426,7 @@ TEST(CrackMeasurement, RefusesBadOptions)
   refuses([&](auto &o) { o.max_straight_rms = 0.; }, "straying");
   refuses([&](auto &o) { o.min_share = 1.; }, "share");
   refuses([&](auto &o) { o.clear_log_evidence = 1.; }, "evidence");
-  refuses([&](auto &o) { o.settled_amplitude = 0.; }, "settled");
+  refuses([&](auto &o) { o.steady_amplitude = 0.; }, "settled");
   refuses([&](auto &o) { o.arrest_fraction = 0.; }, "arrest");
   refuses([&](auto &o) { o.min_branched_fraction = 1.5; }, "branched fraction");
   refuses([&](auto &o) { o.branch_rule.gap = 0.; }, "gap");

@@ -24,7 +24,7 @@ protected:
   {
   }
 
-  // Takes all bonds that join one of `inner` to another site.
+  // Removes all bonds between a site in `inner` and another site.
   void cut_around(const std::vector<std::size_t> &inner)
   {
     const auto is_inner = [&](std::size_t place)
@@ -49,7 +49,7 @@ TEST_F(Cut, WholeSheetHasNoFragments)
   EXPECT_EQ(fragments.number, std::vector<std::uint32_t>(sheet.n_places(), 0));
 }
 
-// Three pieces, of 1, 3 and 3 sites; the larger ones come first, of these the one that starts in the lower row.
+// Three pieces of 1, 3 and 3 sites; larger pieces come first, and of equal ones the piece that starts in the lower row.
 TEST_F(Cut, FragmentsAreNumberedByFallingSize)
 {
   const std::vector<std::size_t> lone{sheet.index(3, 5)};
@@ -68,7 +68,7 @@ TEST_F(Cut, FragmentsAreNumberedByFallingSize)
   EXPECT_EQ(fragments.number, wanted);
 }
 
-// A cut through the whole sheet leaves two halves that are held each; a site that was cut out is no fragment.
+// A cut through the whole sheet leaves two halves, both held; a removed site is not a fragment.
 TEST_F(Cut, HalvesOfTheSheetAreNoFragments)
 {
   std::vector<std::size_t> half;
@@ -91,7 +91,7 @@ TEST_F(Cut, WithoutHeldSitesTheLargestPieceIsTheSheet)
   EXPECT_EQ(fragments.number[sheet.index(5, 5)], 0u);
 }
 
-// Across a periodic edge a piece goes on at the other end.
+// Pieces are connected across a periodic edge.
 TEST(Fragments, GoOnAcrossAPeriodicEdge)
 {
   const TriangularLattice sheet(1., 12., 12., Orientation::rows_along_crack, {true, false});
@@ -109,11 +109,11 @@ TEST(Fragments, GoOnAcrossAPeriodicEdge)
   EXPECT_EQ(find_fragments(state, sheet).sizes, std::vector<std::size_t>{2});
 }
 
-// Bonds beyond lam_f count, toughened or not.
+// Bonds beyond lam_f count, regardless of toughening.
 TEST_F(Cut, OverstretchedBondsAreThoseThatOnlyTougheningKept)
 {
   EXPECT_EQ(n_overstretched_bonds(state, sheet, 2.), 0u);
-  // One site moved far up: its bonds are long, whatever they would break at.
+  // One site is moved far up: its bonds are long, independent of their breaking stretch.
   const std::size_t place = sheet.index(8, 8);
   state.y[place] += 6. * sheets::spacing;
   std::size_t n = 0;
@@ -149,7 +149,7 @@ TEST_F(Cut, FibrilsBridgeTheStripsTheyAreIn)
   for (const auto &[near, kind] : cut)
     state.bonds.remove(near, kind);
   EXPECT_EQ(bridged_length(state, sheet, 2. * d, 14. * d), 0.);
-  // One bond, from site to site within the strip from 6 d to 10 d, bridges that one alone.
+  // One bond between sites of the strip from 6 d to 10 d bridges only this strip.
   for (const auto &[near, kind] : cut)
   {
     const double X = sheet.reference(near).x() / d;

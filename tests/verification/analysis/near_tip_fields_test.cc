@@ -19,7 +19,7 @@ using namespace analysis;
 constexpr double d = sheets::spacing;
 const Eigen::Matrix2d loading = sheets::stretched(2.3, 2.8);
 
-/// A sheet of 40 x 30 spacings with a slit along y = 0 that ends in `tip`, its sites moved by hand.
+/// Sheet of 40 x 30 spacings with a slit along y = 0 that ends at `tip`; tests prescribe the positions of its sites.
 struct SlitSheet
 {
   TriangularLattice sheet;
@@ -62,7 +62,7 @@ struct SlitSheet
   }
 };
 
-// Affine velocities and a quadratic deformation are what they are at every point of the grid, between sites too.
+// Affine velocities and a quadratic deformation are exact at every point of the grid, also between sites.
 class NearTipFieldsOf : public testing::TestWithParam<Orientation>
 {
 };
@@ -93,7 +93,7 @@ TEST_P(NearTipFieldsOf, LinearFieldsAreExact)
       EXPECT_NEAR((field.position(i, j) - loading * X).norm(), 0., 1e-13 * 40 * d);
       EXPECT_NEAR((field.deformation_gradient[point] - loading).norm(), 0., 1e-12);
       EXPECT_NEAR((field.first_piola_stress[point] - P).norm(), 0., 1e-10 * P.norm());
-      // Round-off of positions over d^2.
+      // Round-off of positions divided by d^2.
       EXPECT_NEAR(field.strain_gradient_x[point].norm() + field.strain_gradient_y[point].norm(), 0., 1e-12 / d);
     }
 }
@@ -101,8 +101,7 @@ TEST_P(NearTipFieldsOf, LinearFieldsAreExact)
 INSTANTIATE_TEST_SUITE_P(BothOrientations, NearTipFieldsOf,
                          testing::Values(Orientation::rows_along_crack, Orientation::rows_across_crack));
 
-// Also where half the neighbours are gone.
-// theory.md, eq. (N.2).
+// Also where half the neighbours are missing. theory.md, eq. (N.2).
 TEST(StrainGradientFit, IsExactForQuadraticDisplacements)
 {
   for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
@@ -123,7 +122,7 @@ TEST(StrainGradientFit, IsExactForQuadraticDisplacements)
       {
         const auto G = fit.at(slit.state, place);
         ASSERT_TRUE(G);
-        // Round-off of positions, 1e-16 of the sheet, over d^2; the largest entry of the weights is of order 1.
+        // Round-off of positions, 1e-16 of the sheet, divided by d^2; the largest weight is of order 1.
         EXPECT_NEAR((G->x - Gx).norm() + (G->y - Gy).norm(), 0., 1e-14 * 100. * 40. / d);
       }
       if (!both_shells)
@@ -133,13 +132,13 @@ TEST(StrainGradientFit, IsExactForQuadraticDisplacements)
     }
 }
 
-// A tip of two sites one above the other lies between them: the mirror image of the state is the state.
+// If the tip consists of two sites above each other, the axis is between them: the state equals its mirror image.
 TEST(NearTipSampler, AxisOfAMirrorSymmetricStateIsItsMirror)
 {
   for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
   {
     SlitSheet slit(orientation);
-    // Sites above and below the middle, at the same X, each with three bonds less.
+    // Sites above and below the middle, at the same X, each with three lost bonds.
     const bool along = orientation == Orientation::rows_along_crack;
     const std::size_t step = along ? slit.sheet.stride() : 1;
     const std::size_t low = slit.tip - step, high = slit.tip + step;
@@ -158,9 +157,9 @@ TEST(NearTipSampler, AxisOfAMirrorSymmetricStateIsItsMirror)
       const NearTipSample *sample = sampler.sample(slit.state, tip);
       ASSERT_NE(sample, nullptr);
       EXPECT_NEAR(sample->Y, 0., 1e-15 * d);
-      // Cosines and sines of opposite arguments, which are themselves known to round-off.
+      // Cosines and sines of opposite arguments, which have round-off.
       EXPECT_LT(*velocity_asymmetry(sampler.plain()), 1e-12);
-      // Off the axis by half the distance of the two it is not.
+      // With an axis that is shifted by half the distance of the two sites, the state is not symmetric.
       slit.state.lost_bonds[high] = 2;
       NearTipSampler beside(slit.sheet, slit.material, slit.options());
       beside.sample(slit.state, low);
@@ -170,8 +169,8 @@ TEST(NearTipSampler, AxisOfAMirrorSymmetricStateIsItsMirror)
   }
 }
 
-// A field that always moves to the left-hand side of the path keeps its side in the folded mean, and loses it in the
-// plain one.
+// A velocity that always points to the left of the path keeps its side in the folded mean, and cancels in the plain
+// mean.
 TEST(NearTipSampler, FoldsWhereThePathDescends)
 {
   SlitSheet slit(Orientation::rows_along_crack, sheets::rubber());
@@ -195,7 +194,8 @@ TEST(NearTipSampler, FoldsWhereThePathDescends)
   EXPECT_EQ(sampler.samples(), 80u); // columns 30 to 110 in rows without or with an offset of half a spacing
   const NearTipField plain = sampler.plain(), folded = sampler.folded();
   EXPECT_EQ(folded.samples, sampler.samples());
-  // Rows are whole, so that each of the four turning points is known to two columns: 8 samples of 80 may change sign.
+  // The path is on rows of sites, so each of the four turning points is known to two columns: 8 of 80 samples may have
+  // the wrong sign.
   EXPECT_LT(std::abs(plain.velocity[plain.grid.point(0, 3)].y()), 0.2);
   EXPECT_GT(folded.velocity[folded.grid.point(0, 3)].y(), 0.8 - 1e-12);
   EXPECT_EQ(folded.velocity[folded.grid.point(0, 3)].x(), 0.);
@@ -205,7 +205,7 @@ TEST(NearTipSampler, FoldsWhereThePathDescends)
   EXPECT_EQ(in_blocks, sampler.samples());
 }
 
-// Mirroring twice is nothing; mirrored once every component has the sign of its number of indices y.
+// Two reflections have no effect; under one reflection the sign of a component is that of its number of indices y.
 TEST(NearTipSums, MirrorComponents)
 {
   NearTipGrid grid{d, d, 2, 2, 2};
@@ -238,7 +238,7 @@ TEST(NearTipSums, MirrorComponents)
   }
 }
 
-// Samples without tensors leave the means of those that have them alone.
+// Samples without tensors do not affect the means over samples with tensors.
 TEST(NearTipSums, TensorsAreMeansOverTheSamplesThatHaveThem)
 {
   NearTipGrid grid{d, d, 2, 2, 2};
@@ -261,7 +261,7 @@ TEST(NearTipSums, TensorsAreMeansOverTheSamplesThatHaveThem)
   EXPECT_TRUE(std::isnan(mean.strain_gradient_x[point](0, 0)));
 }
 
-// A site with fewer than half its bonds is debris, and a tip at rest is no running crack.
+// A site with fewer than half its bonds is debris, and a tip at rest is not a running crack.
 TEST(NearTipSampler, LeavesOutDebrisAndTipsAtRest)
 {
   SlitSheet slit;
@@ -269,7 +269,7 @@ TEST(NearTipSampler, LeavesOutDebrisAndTipsAtRest)
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
   {
     slit.break_bond(debris, kind);
-    if (kind == 0) // one of the other half
+    if (kind == 0) // one bond of the other half
       slit.break_bond(debris - static_cast<std::size_t>(slit.sheet.shift(0, slit.sheet.row_of(debris))), 0);
   }
   NearTipSampler sampler(slit.sheet, slit.material, slit.options());

@@ -20,9 +20,10 @@ using namespace analysis;
 
 constexpr double d = 1e-3;
 constexpr double speed = 50.; // of the crack [m/s]
-constexpr double slow = 0.1;  // what turns no faster is no vortex [m/s]
+constexpr double slow = 0.1;  // slower rotations are not vortices [m/s]
 
-/// A field of given velocities (of the reference position relative to the tip), the material deformed by F.
+/// Returns a field with given velocities (functions of the reference position relative to the tip), and material
+/// deformed by F.
 template <typename Velocity>
 NearTipField field_of(const Velocity &velocity, const Eigen::Matrix2d &F = Eigen::Matrix2d::Identity())
 {
@@ -42,7 +43,7 @@ NearTipField field_of(const Velocity &velocity, const Eigen::Matrix2d &F = Eigen
   return field;
 }
 
-/// Takes the material out of |Y| < half_width behind the tip.
+/// Removes the material at |Y| < half_width behind the tip.
 void open_crack(NearTipField &field, double half_width)
 {
   for (int j = -field.grid.half_height; j <= field.grid.half_height; ++j)
@@ -59,7 +60,7 @@ Eigen::Vector2d turn(const Eigen::Vector2d &X)
   return {-X.y(), X.x()};
 }
 
-// A disc of backward motion, 5 d in radius, 12 d ahead of the tip.
+// Disc of backward motion with radius 5 d, 12 d ahead of the tip.
 TEST(NegativeZone, IsTheDiscThatMovesBack)
 {
   const Eigen::Vector2d centre(12 * d, 0.);
@@ -71,13 +72,13 @@ TEST(NegativeZone, IsTheDiscThatMovesBack)
       return {r < radius ? -4. + 3. * r / radius : -0.4, 0.}; // -4 to -1, and less than 1 % of 50 m/s around
     });
   const NegativeZone zone = negative_zone(field, speed);
-  // A disc is counted in cells to a fraction of its rim, 31 cells of 91.
+  // The area of the disc in cells has an error of a fraction of its rim, 31 of 91 cells.
   EXPECT_NEAR(zone.area, M_PI * radius * radius, 0.15 * M_PI * radius * radius);
   EXPECT_NEAR(zone.length, 9 * d, 1e-9 * d); // centres of cells from 8 to 16 d
   EXPECT_NEAR(*zone.distance, 8 * d, 1e-9 * d);
   EXPECT_DOUBLE_EQ(zone.depth, -4.);
   EXPECT_NEAR((zone.deepest - centre).norm(), 0., 1e-9 * d);
-  // Behind the tip nothing counts, and neither does what holds no material.
+  // Points behind the tip and points without material do not count.
   for (std::size_t point = 0; point < field.grid.size(); ++point)
     field.occupancy[point] = 0.4;
   EXPECT_EQ(negative_zone(field, speed).area, 0.);
@@ -89,7 +90,7 @@ TEST(NegativeZone, IsTheDiscThatMovesBack)
   EXPECT_GT(negative_zone(field, speed, 0.001).area, 0.);
 }
 
-// What a sample keeps of its backward motion gives the area that the field itself gives, for any limit.
+// The backward speeds stored by a sample give the same area as its field, for any threshold.
 TEST(NegativeZone, OfASampleIsKnownFromItsBackwardSpeeds)
 {
   NearTipField field = field_of(
@@ -120,7 +121,7 @@ TEST(VelocityAsymmetry, OfSymmetricAntisymmetricAndOneSidedFields)
   EXPECT_NEAR(*velocity_asymmetry(field_of(odd)), 2., 1e-15);
   const auto one_side = [](const Eigen::Vector2d &X) -> Eigen::Vector2d { return {X.y() > 0. ? 1. : 0., 0.}; };
   EXPECT_NEAR(*velocity_asymmetry(field_of(one_side)), std::sqrt(2.), 1e-15);
-  // Points whose image holds no material do not count.
+  // Points whose mirror image has no material do not count.
   NearTipField half = field_of(odd);
   for (int i = -30; i <= 30; ++i)
     for (int j = 1; j <= 30; ++j)
@@ -130,7 +131,7 @@ TEST(VelocityAsymmetry, OfSymmetricAntisymmetricAndOneSidedFields)
   EXPECT_FALSE(velocity_asymmetry(field_of(rest)));
 }
 
-// A rigid turn has the circulation 2 omega times the current area of the loop.
+// The circulation of a rigid rotation is 2 omega times the current area of the loop.
 TEST(Circulation, OfARigidTurnInTheCurrentConfiguration)
 {
   Eigen::Matrix2d F;
@@ -143,7 +144,7 @@ TEST(Circulation, OfARigidTurnInTheCurrentConfiguration)
   EXPECT_NEAR(*circulation(field, {3 * d, 2 * d}, radius, false), 2. * omega * area, 1e-9 * omega * area);
   EXPECT_FALSE(circulation(field, {28 * d, 0.}, radius, false)); // leaves the window
 
-  // Around the tip: the gap of the loop in the opening is left out, and only its sides count in a symmetric field.
+  // Around the tip: the part of the loop in the opening is skipped.
   NearTipField cracked = field_of(
     [](const Eigen::Vector2d &X) -> Eigen::Vector2d {
       return {std::abs(X.y()), -X.y()};
@@ -155,8 +156,7 @@ TEST(Circulation, OfARigidTurnInTheCurrentConfiguration)
 
 TEST(Vortices, AreFoundWithPlaceAndSense)
 {
-  // Two vortices of opposite sense, gaussians of 3 d; between and around them there is no other turning point of
-  // index 1.
+  // Two Gaussian vortices of 3 d with opposite sense; there is no other critical point of index 1.
   const Eigen::Vector2d one(10.3 * d, 8.2 * d), other(10.3 * d, -8.2 * d);
   const double width = 3 * d;
   const auto spin = [&](const Eigen::Vector2d &X, const Eigen::Vector2d &centre) -> Eigen::Vector2d
@@ -174,7 +174,7 @@ TEST(Vortices, AreFoundWithPlaceAndSense)
   EXPECT_NEAR(a.circulation, exact, 0.06 * exact);
   EXPECT_NEAR(b.circulation, -0.5 * exact, 0.03 * exact);
   EXPECT_NEAR(a.speed, a.circulation / (4. * M_PI * d), 1e-12 * a.speed);
-  EXPECT_EQ(vortices(field, slow, 15 * d).size(), 2u); // they stand at 13.2 d
+  EXPECT_EQ(vortices(field, slow, 15 * d).size(), 2u); // they are at 13.2 d
   EXPECT_EQ(vortices(field, slow, 11 * d).size(), 0u);
 }
 
@@ -196,13 +196,13 @@ TEST(Vortices, AreNeitherNodesNorSaddlesNorSlowNorInTheOpening)
   EXPECT_EQ(vortices(around(L), slow).size(), 0u);
   L << 1e4, 0., 0., -1e4; // saddle
   EXPECT_EQ(vortices(around(L), slow).size(), 0u);
-  // With its zero on a point of the grid it is one vortex, not four and not none.
+  // A zero at a point of the grid gives exactly one vortex.
   L << 0., -1e4, 1e4, 0.;
   EXPECT_EQ(vortices(field_of([&](const Eigen::Vector2d &X) -> Eigen::Vector2d { return L * X; }), slow).size(), 1u);
 }
 
-// The corner values of a cell cross over: a small lobe around zero is passed clockwise, while the larger lobe makes the
-// mean derivative that of a turn. Cells around it may hold a vortex, that cell does not.
+// The polygon of corner values of a cell intersects itself: it passes a small lobe around zero clockwise, while the
+// larger lobe gives the mean derivative of a rotation. This cell contains no vortex; neighbouring cells may.
 TEST(Vortices, HaveTheIndexOfAVortex)
 {
   NearTipField field = field_of([](const Eigen::Vector2d &X) -> Eigen::Vector2d { return {100. + 2000. * X.y(), 0.}; });
@@ -216,13 +216,13 @@ TEST(Vortices, HaveTheIndexOfAVortex)
     EXPECT_FALSE((vortex.position.array() >= low.array()).all() && (vortex.position.array() <= high.array()).all());
 }
 
-// Where v_x passes through zero, at the edge of the zone of negative velocity, the noise of single sites alone makes
-// critical points: the limit of speed leaves none of them, and a vortex where it is.
+// Where v_x is zero, at the edge of the zone of negative velocity, the noise of single sites creates critical points:
+// the speed threshold removes them and keeps true vortices.
 TEST(Vortices, OfASampleAreThoseOfTheMotionNotOfTheNoise)
 {
   std::mt19937 random(1);
   std::normal_distribution<double> normal;
-  const double noise = 2e-4 * speed, limit = 2e-3 * speed; // of what a running crack has, of what near_tip.json counts
+  const double noise = 2e-4 * speed, limit = 2e-3 * speed; // noise of a running crack, and threshold of near_tip.json
   const auto noisy = [&](NearTipField field)
   {
     for (Eigen::Vector2d &v : field.velocity)
@@ -241,7 +241,7 @@ TEST(Vortices, OfASampleAreThoseOfTheMotionNotOfTheNoise)
   }
   EXPECT_GT(of_noise, 0u);
 
-  // A turn of 3 d in radius, 0.7 % of the crack's speed at 2 d.
+  // A vortex of radius 3 d with 0.7 % of the crack speed at 2 d.
   const Eigen::Vector2d centre(6.4 * d, 3.9 * d);
   const double width = 3 * d, fast = 0.35 / (2. / 3. * std::exp(-4. / 18.));
   const NearTipField field = noisy(field_of(
@@ -266,7 +266,7 @@ TEST(FollowingZone, IsWhatHangsTogetherNearTheTip)
   };
   const FollowingZone zone = following_zone(field_of(velocity), 10.);
   EXPECT_NEAR(zone.length, 11 * d, 1e-9 * d); // points -2 to -12 d
-  EXPECT_EQ(zone.fastest, 40.);               // of all that is behind
+  EXPECT_EQ(zone.fastest, 40.);               // over all points behind the tip
   EXPECT_NEAR(zone.place.x(), -24 * d, 1e-9 * d);
   EXPECT_NEAR(following_zone(field_of(velocity), 25.).length, 7 * d, 1e-9 * d); // points -6 to -12 d
   EXPECT_EQ(following_zone(field_of(velocity), 50.).length, 0.);
@@ -275,7 +275,7 @@ TEST(FollowingZone, IsWhatHangsTogetherNearTheTip)
   EXPECT_NEAR(following_zone(cracked, 10.).length, 11 * d, 1e-9 * d); // along the flanks
 }
 
-// The box -14 d <= X <= -3 d, |Y| <= 3 d has twelve points by seven; a crescent across it and what lies about it.
+// The box -14 d <= X <= -3 d, |Y| <= 3 d has twelve by seven points, with a crescent across it.
 TEST(SpeedsBehindTip, AreThoseOfTheMaterialInTheBox)
 {
   const auto crescent = [](const Eigen::Vector2d &X) -> Eigen::Vector2d
@@ -288,13 +288,13 @@ TEST(SpeedsBehindTip, AreThoseOfTheMaterialInTheBox)
   EXPECT_EQ(speeds.size(), 12u * 7u);
   EXPECT_EQ(std::count(speeds.begin(), speeds.end(), 20.), 3 * 7);
   EXPECT_EQ(std::count(speeds.begin(), speeds.end(), 5.), 9 * 7);
-  // The opening holds no material: three rows on either side are left, or none.
+  // The opening has no material: three rows on each side remain, or none.
   NearTipField cracked = field_of(crescent);
   open_crack(cracked, 0.5 * d);
   EXPECT_EQ(speeds_behind_tip(cracked).size(), 12u * 6u);
   open_crack(cracked, 4. * d);
   EXPECT_TRUE(speeds_behind_tip(cracked).empty());
-  // Turned by 30 degrees the pitches change places, and the box stays what it is: thirteen points by seven.
+  // With the lattice rotated by 30 degrees the pitches are exchanged, and the same box has thirteen by seven points.
   NearTipField turned(NearTipGrid{std::sqrt(0.75) * d, d, 30, 30, 30});
   for (std::size_t point = 0; point < turned.grid.size(); ++point)
   {
@@ -304,7 +304,7 @@ TEST(SpeedsBehindTip, AreThoseOfTheMaterialInTheBox)
   EXPECT_EQ(speeds_behind_tip(turned).size(), 13u * 7u); // X from -16 to -4 pitches
 }
 
-// sigma_yy = 1 + c sin^2(t) sin^2(3 t / 2) has its peak where the product has: found on a fine grid of angles.
+// The peak of sigma_yy = 1 + c sin^2(t) sin^2(3 t / 2) is that of the product, determined on a fine grid of angles.
 TEST(OpeningStress, HasTheLobesOfAKidney)
 {
   const auto lobes = [](double theta)
@@ -325,12 +325,12 @@ TEST(OpeningStress, HasTheLobesOfAKidney)
   };
   const auto found = opening_stress(stressed(lobes), 16 * d);
   ASSERT_TRUE(found);
-  // One spacing is 3.6 degrees at 16 d: the error of interpolation is of its square times the curvature, 1 %, which
-  // moves a maximum as flat as this by a few degrees.
+  // One spacing is 3.6 degrees at 16 d: the interpolation error is its square times the curvature, 1 %, which shifts
+  // such a flat maximum by a few degrees.
   EXPECT_NEAR(found->angle, best * 180. / M_PI, 3.);
   EXPECT_NEAR(found->peak, lobes(best), 0.01 * lobes(best));
   EXPECT_NEAR(found->ratio, lobes(best) / lobes(0.), 0.02 * lobes(best) / lobes(0.));
-  // One lobe ahead, and one side alone.
+  // One lobe ahead, and a lobe on one side only.
   const auto ahead = opening_stress(stressed([](double theta) { return 1e5 * (2. + std::cos(theta)); }), 8 * d);
   EXPECT_EQ(ahead->angle, 0.);
   EXPECT_EQ(ahead->ratio, 1.);
@@ -344,7 +344,7 @@ TEST(OpeningStress, HasTheLobesOfAKidney)
   EXPECT_FALSE(opening_stress(stressed([](double) { return -1.; }), 8 * d));
 }
 
-// Flanks at +30 and -20 degrees to the crack's axis: 50 degrees between them, whatever debris there is ahead of them.
+// Flanks at +30 and -20 degrees to the axis of the crack: 50 degrees between them, regardless of debris ahead.
 TEST(WedgeAngle, IsThatBetweenTheFlanks)
 {
   const Eigen::Vector2d pitch(2.3 * d, 2.4 * d);
@@ -360,7 +360,7 @@ TEST(WedgeAngle, IsThatBetweenTheFlanks)
   const auto angle = wedge_angle(sites, pitch, 5 * 2.3 * d, 25 * 2.3 * d);
   ASSERT_TRUE(angle);
   EXPECT_NEAR(*angle * 180. / M_PI, 50., 1e-9);
-  // An unbroken sheet has no wedge.
+  // An intact sheet has no wedge.
   std::vector<Eigen::Vector2d> whole;
   for (double x = -100 * d; x < 30 * d; x += pitch.x())
     for (double y = -40 * d; y < 40 * d; y += pitch.y())

@@ -1,4 +1,4 @@
-// The statistics behind the measurement of crack paths, against dense algebra, textbook formulas and hand calculation.
+// Statistics of crack paths, compared with dense linear algebra, textbook formulas and hand calculations.
 
 #include "verification/analysis/path_fit.h"
 
@@ -34,8 +34,8 @@ TEST(CorrelatedNoise, IndependentNoiseGivesTheTextbookCovariance)
 
 TEST(CorrelatedNoise, LikelihoodIsThatOfTheDenseMatrix)
 {
-  // The filter against the definition: -1/2 [(n - p)(ln 2 pi v + 1) + ln det C + ln det(D^T C^-1 D)] at the noise
-  // found.
+  // Compares the filter with the definition -1/2 [(n - p)(ln 2 pi v + 1) + ln det C + ln det(D^T C^-1 D)] at the
+  // estimated noise.
   const Eigen::Index n = 15;
   std::mt19937 generator(5);
   std::normal_distribution<double> normal;
@@ -53,7 +53,7 @@ TEST(CorrelatedNoise, LikelihoodIsThatOfTheDenseMatrix)
   const Eigen::MatrixXd information = line.transpose() * C.inverse() * line;
   const Eigen::VectorXd residual = y - line * information.inverse() * line.transpose() * C.inverse() * y;
   const double freedom = static_cast<double>(n - 2);
-  EXPECT_NEAR(residual.dot(C.inverse() * residual), freedom, 1e-9 * freedom); // the variance is the best one
+  EXPECT_NEAR(residual.dot(C.inverse() * residual), freedom, 1e-9 * freedom); // the variance is optimal
   const double expected =
     -0.5 * (freedom * (std::log(2. * pi) + 1.) + std::log(C.determinant()) + std::log(information.determinant()));
   EXPECT_NEAR(fit.log_evidence, expected, 1e-9 * std::abs(expected));
@@ -61,7 +61,7 @@ TEST(CorrelatedNoise, LikelihoodIsThatOfTheDenseMatrix)
 
 TEST(CorrelatedNoise, FindsFractionAndLength)
 {
-  // 400 samples, f = 0.6, length 8 samples, three grid steps of 1.5 either way in the median over 25 seeds.
+  // 400 samples, f = 0.6, length of 8 samples; the median over 25 seeds is within three grid steps of a factor 1.5.
   std::vector<double> lengths, fractions;
   for (unsigned int seed = 1; seed <= 25; ++seed)
   {

@@ -51,13 +51,13 @@ struct SyntheticCrack
 {
   Path path = straight;
   double hops = 0.;              // independent noise of Y [m]
-  double wander = 0.;            // noise of Y that is remembered over `memory` [m]
+  double wander = 0.;            // noise of Y, correlated over `memory` [m]
   double memory = 5. * d;        // [m]
   double walk = 0.;              // random walk: rms of a step over one d [m]
-  double slowness_noise = 0.;    // relative, remembered over 8 d
+  double slowness_noise = 0.;    // relative, correlated over 8 d
   double X_last = 0.98 * length; // [m]
-  bool on_sites = true;          // moved to the nearest site of the column
-  bool skips_columns = true;     // uneven steps of the tip
+  bool on_sites = true;          // rounded to the nearest site of the column
+  bool skips_columns = true;     // irregular steps of the tip
 
   std::vector<TipRecord> record(unsigned int seed) const
   {
@@ -90,13 +90,13 @@ struct SyntheticCrack
         const int parity = column % 2;
         Y = row_pitch * (2. * std::round(0.5 * (Y / row_pitch - parity)) + parity);
       }
-      // The tip retracts: in the laboratory it stays a constant distance behind the place of the unbroken sheet.
+      // The tip retracts: in the laboratory frame it is at a constant distance behind its position in the intact sheet.
       tip.push_back({t, X, Y, stretch_x * X - 0.004, 2.8 * Y});
     }
   }
 };
 
-/// Options of a run that ended with the last entry of the record.
+/// Returns the options of a run that ended with the last entry of the record.
 inline CrackMeasurementOptions options_for(const std::vector<TipRecord> &tip)
 {
   CrackMeasurementOptions options;
@@ -114,7 +114,7 @@ inline CrackMeasurement measure(const SyntheticCrack &crack, unsigned int seed =
   return measure_crack(tip, breaks, options_for(tip));
 }
 
-/// Six broken bonds per d, as a crack through nearest and next-nearest neighbours leaves them, spread evenly over
+/// Adds six broken bonds per d, as for a crack through nearest and next-nearest neighbours, uniformly within
 /// `half_width` on both sides of a path.
 inline void break_along(std::vector<BreakRecord> &breaks, const Path &path, double X_begin, double X_end,
                         double half_width = d)

@@ -1,4 +1,4 @@
-// Means over rotations of a lattice and bounds of what they leave out.
+// Means over rotations of a lattice, and bounds of the anisotropy that they omit.
 #include "verification/bridge/anisotropy.h"
 
 #include <cmath>
@@ -52,8 +52,8 @@ TEST(RotationMean, SumsTheAmplitudesOfHarmonics)
   EXPECT_THROW(rotation_mean(Eigen::MatrixXd::Zero(1, n_lattice_rotations + 1)), std::invalid_argument);
 }
 
-// theory-comparison.md, eqs. (H.14) and (H.15): bounds over the lattice's own values, from the Fourier coefficients of
-// one bond of each shell by an independent script. The energy attains its bound.
+// theory-comparison.md, eqs. (H.14) and (H.15): bounds relative to the values of the lattice, computed by an
+// independent script from the Fourier coefficients of one bond of each shell. The energy attains its bound.
 TEST(RotationMean, BoundsWhatTheNetworkLeavesOut)
 {
   const continuum::CauchyBorn lattice = quick_law();
@@ -86,7 +86,7 @@ TEST(RotationMean, BoundsWhatTheNetworkLeavesOut)
     EXPECT_NEAR(P.bound / stress_of(lattice_rotation(0)).norm() / stress, 1., 5e-3);
 
     double farthest_energy = 0., farthest_stress = 0.;
-    for (int k = 0; k < 100; ++k) // angles of which none but 0 is one of the rotations
+    for (int k = 0; k < 100; ++k) // of these angles only 0 is one of the rotations
     {
       const Eigen::Matrix2d R = Eigen::Rotation2Dd(M_PI / 3. * k / 100.).toRotationMatrix();
       farthest_energy = std::max(farthest_energy, (energy_of(R) - W.mean).norm());
@@ -100,7 +100,7 @@ TEST(RotationMean, BoundsWhatTheNetworkLeavesOut)
   }
 }
 
-// theory-comparison.md, eq. (H.16): what it leaves out of the energy is smaller by rho^2.
+// theory-comparison.md, eq. (H.16): the part of the energy that the mean omits is smaller by rho^2.
 TEST(RotationMean, LeavesOutTheThirdPowerOfTheDifferenceOfStretches)
 {
   const continuum::CauchyBorn lattice = quick_law();

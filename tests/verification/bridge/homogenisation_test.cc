@@ -16,7 +16,7 @@ using namespace bridge;
 using namespace claims;
 using namespace input;
 
-// Worked out apart from the code: theory-comparison.md, eqs. (H.2) and (H.3).
+// Evaluated independently: theory-comparison.md, eqs. (H.2) and (H.3).
 TEST(Homogenisation, HasTheKnownSmallStrainConstants)
 {
   const Case input = subjects::paper_case();
@@ -29,8 +29,7 @@ TEST(Homogenisation, HasTheKnownSmallStrainConstants)
   EXPECT_NEAR(nearest.longitudinal_speed, 24.41042, 5e-6);
 }
 
-// In closed form for equal s on both shells: mu = s (9/8) (1 + sqrt3) (a + b).
-// theory-comparison.md, eq. (H.2).
+// Closed form for equal s on both shells: mu = s (9/8) (1 + sqrt3) (a + b). theory-comparison.md, eq. (H.2).
 TEST(Homogenisation, ShearModulusIsTheClosedForm)
 {
   Case input = subjects::paper_case();
@@ -39,7 +38,7 @@ TEST(Homogenisation, ShearModulusIsTheClosedForm)
               0.5 * 9. / 8. * (1. + std::sqrt(3.)) * 2.5e5, 1e-6);
 }
 
-// The tangent of the Cauchy-Born law at F = I, made by the continuum's own code, is isotropic with lambda = mu.
+// The tangent of the Cauchy-Born law at F = I, as computed by the continuum, is isotropic with lambda = mu.
 // theory-comparison.md, eqs. (H.1) and (H.2).
 TEST(Homogenisation, CauchyBornTangentAtRestIsIsotropic)
 {
@@ -61,8 +60,8 @@ TEST(Homogenisation, CauchyBornTangentAtRestIsIsotropic)
   }
 }
 
-// Of the lattice, alpha d^2 of (W.2), averaged over all directions, is l_d^2 - l_s^2 M / (rho c^2) with M = mu, the
-// isotropic gradient's modulus: theory-comparison.md, eqs. (H.7) and (H.8).
+// The mean over all directions of alpha d^2 of the lattice, (W.2), is l_d^2 - l_s^2 M / (rho c^2) with the modulus M =
+// mu of the isotropic gradient energy: theory-comparison.md, eqs. (H.7) and (H.8).
 TEST(GradientLengths, OfTheIsotropicLawAverageTheDispersionOfTheLattice)
 {
   const Case input = subjects::paper_case();
@@ -95,15 +94,15 @@ TEST(Calibration, IsTheBestRatioOnThePath)
   const auto sheet = input.lattice();
   const auto F = input.deformation();
   const Calibration best = calibrate_mooney_rivlin(sheet, input.material(), F);
-  EXPECT_GT(best.energy_residual, 1e-3); // no ratio makes the two laws one
-  EXPECT_LT(best.energy_residual, 0.07); // what theory.md says is within reach
+  EXPECT_GT(best.energy_residual, 1e-3); // the laws differ for every ratio
+  EXPECT_LT(best.energy_residual, 0.07); // as stated in theory.md
   EXPECT_GT(best.smallest_acoustic_eigenvalue, 0.);
   for (const double offset : {-0.02, -1e-3, 1e-3, 0.02})
     EXPECT_GT(with_ratio(sheet, input.material(), F, best.ratio + offset).energy_residual, best.energy_residual)
       << offset;
 }
 
-// r from b / (a + b), as the constants of a bond would suggest, is far off at large stretch: a factor of 3 in energy.
+// r = b / (a + b), as the constants of a bond suggest, is wrong at large stretch, by a factor of 3 in energy.
 TEST(Calibration, RatioOfTheBondConstantsIsWrong)
 {
   const Case input = subjects::paper_case();

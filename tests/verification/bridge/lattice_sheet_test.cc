@@ -1,5 +1,5 @@
-// The lattice of a case has the edges, hole and notch that the case gives the finite elements, or the case is refused
-// with the entry to change.
+// The lattice of a case has the same edges, hole and notch as its finite elements; otherwise the case is refused, with
+// the entry to change.
 #include "verification/bridge/lattice_sheet.h"
 
 #include <algorithm>
@@ -22,7 +22,7 @@ const Lines sheet = {"Sheet/spacing=1 mm",        "Sheet/length=20 mm",      "Sh
                      "Material/density=1000",     "Loading/strain x=0",      "Loading/strain y=0.2",
                      "Right edge/condition=free", "Left edge/condition=free"};
 
-// The case with these entries in place of those above.
+// Reads the case with these entries instead of those above.
 Case read(const Lines &overrides, Parameters &parameters)
 {
   Case input;
@@ -94,7 +94,7 @@ TEST(LatticeSheet, IsPeriodicWhereItsEdgesAre)
   const Case input = read(both, parameters);
   EXPECT_TRUE(input.lattice().periodic().x);
   EXPECT_FALSE(input.lattice().periodic().y);
-  // The finite elements keep a period in equilibrium, and start from a stretched one in motion.
+  // The finite elements keep the undeformed period in equilibrium, and start with the stretched one in motion.
   expect_refused("Loading/strain x", {both[0], both[1], "Loading/strain x=0.1"});
   EXPECT_TRUE(problems({both[0], both[1], "Loading/strain x=0.1", "Lattice/solution=motion"}).empty());
 }

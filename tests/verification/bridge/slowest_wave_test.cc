@@ -32,7 +32,7 @@ Eigen::Matrix2d stretched(double x, double y)
   return Eigen::Vector2d(x, y).asDiagonal();
 }
 
-// No wave of a thousand others is slower by more than what the grid leaves. theory-comparison.md, eq. (W.1).
+// None of a thousand other waves is slower by more than the error of the grid. theory-comparison.md, eq. (W.1).
 TEST(SlowestWave, IsTheSlowestOfAll)
 {
   const Case input = subjects::paper_case();
@@ -53,12 +53,12 @@ TEST(SlowestWave, IsTheSlowestOfAll)
         scale = std::max(scale, found);
         smallest = std::min(smallest, found);
       }
-      // A grid of 0.07 in kd and 1.5 degrees misses a minimum by its curvature times the square of half of that.
+      // The error of a grid with steps of 0.07 in kd and 1.5 degrees is the curvature times the square of half a step.
       EXPECT_GE(smallest, slowest.squared_speed - 2e-3 * scale);
     }
 }
 
-// Bonds along x that push hold only as long as others are not pulled tight across them.
+// Bonds in compression along x are stable only up to some stretch of the bonds across them.
 TEST(SlowestWave, KnowsSheetsThatBuckle)
 {
   const Case input = subjects::paper_case();
@@ -86,7 +86,7 @@ TEST(StabilityRow, HoldsOrSaysInWhichWavesTheSheetBuckles)
   EXPECT_EQ(buckled.verdict(), Verdict::fails);
   EXPECT_LT(buckled.lattice.value(), 0.);
   EXPECT_EQ(buckled.error.value(), -buckled.lattice.value());
-  // About to buckle is no stability either.
+  // Neutral stability does not count as stable.
   Subject neutral = subject(input);
   neutral.slowest_wave.squared_speed = 0.;
   EXPECT_EQ(stability_row(neutral, "prestretch").verdict(), Verdict::fails);

@@ -30,7 +30,7 @@ protected:
     return read_continuum_frame(find_frame(folder_ / "a.vtu", Side::continuum, time), time);
   }
 
-  // As the command goes about it.
+  // Compares as the command does.
   Results run(const std::map<std::string, double> &tolerances = {}) const
   {
     const LatticeFrame here = lattice();
@@ -49,7 +49,7 @@ protected:
     return {};
   }
 
-  // The message of the input error that must come, which must have all the parts.
+  // Expects an input error whose message contains all parts.
   template <typename Work>
   static void refused(const Work &work, const std::vector<std::string> &parts)
   {
@@ -110,14 +110,14 @@ TEST_F(Comparing, MeasuresADifferenceByItsNorms)
   EXPECT_EQ(results.verdict(), Verdict::fails);
   const Result stress = row(results, "first_piola_stress, rms difference");
   EXPECT_NEAR(*stress.lattice, 1.25e5 * std::sqrt(2.), 1e-9);
-  EXPECT_NEAR(*stress.error, 0.2, 1e-14); // of the larger side
+  EXPECT_NEAR(*stress.error, 0.2, 1e-14); // relative to the larger side
   EXPECT_EQ(stress.verdict(), Verdict::reported);
   EXPECT_NEAR(*row(results, "deformation_gradient less identity, rms difference").lattice, 0.1 * std::sqrt(2.), 1e-14);
 }
 
 TEST_F(Comparing, LeavesSitesThatLackBondsOutOfStressAndEnergy)
 {
-  // A hole in both: the site in its middle is gone, and so are bonds of the eight around it.
+  // A hole in both sheets: the site in its middle is missing, as are bonds of the eight sites around it.
   const auto removed = [](double X, double Y) { return std::hypot(X - 0.03, Y - 0.02) < 1e-6; };
   write_lattice(folder_ / "a.vtp", {}, 12, 8, 0.06, 0.04, removed);
   write_continuum(folder_ / "a.vtu", {});
@@ -176,7 +176,7 @@ TEST_F(Comparing, RefusesStressInOtherUnits)
   write_lattice(folder_ / "a.vtp", state);
   state.scale_of_stress = 1.02e-6;
   write_continuum(folder_ / "a.vtu", state);
-  refused({"first_piola_stress", "not in the same units", "Pa"});
+  refused({"first_piola_stress", "different units", "Pa"});
 }
 
 TEST_F(Comparing, RefusesAHoleInOneOfThem)
@@ -186,7 +186,7 @@ TEST_F(Comparing, RefusesAHoleInOneOfThem)
   write_continuum(folder_ / "a.vtu", {}, 4, 4, 4);
   refused({"not the same sheet", "the lattice has no site within 0.01 m"});
   write_lattice(folder_ / "a.vtp", {}, 48, 32);
-  // The middle ones of 3 by 3 cells left out is what a frame around them is.
+  // 3 by 3 cells without the middle cell: a frame.
   write_continuum(
     folder_ / "a.vtu", {}, 4, 1, 4,
     [](double r, double s)
@@ -202,7 +202,7 @@ TEST_F(Comparing, RefusesAHoleInOneOfThem)
       }
       return X;
     });
-  refused({"not the same sheet", "the continuum has nothing at the site"});
+  refused({"not the same sheet", "the continuum has no cell at the site"});
 }
 
 TEST_F(Comparing, RefusesOtherTimes)
@@ -214,12 +214,12 @@ TEST_F(Comparing, RefusesOtherTimes)
   state.time = 2e-4 * (1. + 5e-9);
   write_continuum(folder_ / "a.vtu", state);
   refused({"the times differ", "of the lattice", "of the continuum", "--lattice-time"});
-  require_same_time(lattice(2e-4), continuum(state.time)); // asked for by name
+  require_same_time(lattice(2e-4), continuum(state.time)); // the time was given explicitly
   state.time = 2e-4 * (1. + 2e-10);
   write_continuum(folder_ / "a.vtu", state);
   run();
   EXPECT_EQ(row(run(), "velocity, rms difference").lattice, 2.);
-  refused([&] { lattice(3e-4); }, {"is at the time 2e-04, not at 3e-04"});
+  refused([&] { lattice(3e-4); }, {"has the time 2e-04, not 3e-04"});
 }
 
 TEST_F(Comparing, RefusesMotionAgainstEquilibrium)
@@ -233,7 +233,7 @@ TEST_F(Comparing, RefusesMotionAgainstEquilibrium)
   state.moves = false;
   write_lattice(folder_ / "a.vtp", state);
   refused({"the continuum is in motion and the lattice in equilibrium"});
-  state.time = 0.; // at rest, the start of either
+  state.time = 0.; // at rest: start of a motion or of an equilibrium
   write_lattice(folder_ / "a.vtp", state);
   state.moves = true;
   write_continuum(folder_ / "a.vtu", state);
@@ -278,7 +278,7 @@ TEST_F(Comparing, RefusesDamagedFiles)
     {
       std::ofstream(folder_ / name, std::ios::binary) << content.substr(0, kept);
       refused([&, s = side] { s == Side::lattice ? void(lattice()) : void(continuum()); },
-              {name, kept > 60 ? "damaged: " : "not a VTK file"});
+              {name, kept > 60 ? "corrupt: " : "not a VTK file"});
     }
   }
 }
@@ -303,13 +303,13 @@ TEST_F(Comparing, ChoosesTheFrameOfASeries)
   const auto find = [&](const std::string &name, Side side, std::optional<double> time)
   { return [=] { find_frame(folder_ / name, side, time); }; };
   refused(find("lattice.pvd", Side::lattice, 0.7), {"no frame at 0.7", "0, 0.5, 1"});
-  refused(find("lattice.pvd", Side::lattice, {}), {"gone.vtp", "not there"});
-  refused(find("lattice.pvd", Side::continuum, 0.5), {"a lattice frame where one of the continuum is wanted"});
-  refused(find("0.vtp", Side::continuum, {}), {"a lattice frame where one of the continuum is wanted"});
-  refused(find("", Side::continuum, {}), {"no continuum.pvd", "the lattice comes first"});
+  refused(find("lattice.pvd", Side::lattice, {}), {"gone.vtp", "does not exist"});
+  refused(find("lattice.pvd", Side::continuum, 0.5), {"a lattice frame where a continuum frame is expected"});
+  refused(find("0.vtp", Side::continuum, {}), {"a lattice frame where a continuum frame is expected"});
+  refused(find("", Side::continuum, {}), {"no continuum.pvd", "give the lattice first"});
   refused(find("none.vtp", Side::lattice, {}), {"none.vtp", "no such file"});
   std::ofstream(folder_ / "lattice.pvd") << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Coll";
-  refused(find("lattice.pvd", Side::lattice, {}), {"cut short"});
+  refused(find("lattice.pvd", Side::lattice, {}), {"truncated"});
 }
 
 TEST(ListOfTimes, LeavesOutTheMiddle)

@@ -1,4 +1,4 @@
-// The frames that the claim on a running crack leaves can be compared.
+// Frames written by the claim `running-crack` can be compared.
 #include "verification/claims/running_crack/running_crack_claim.h"
 
 #include <gtest/gtest.h>
@@ -13,7 +13,7 @@ using namespace claims;
 using namespace compare;
 using namespace output;
 
-// The frames of both sides show the same moment in common coordinates.
+// The frames of both sides have the same time and common coordinates.
 TEST(RunningCrack, LeavesFramesThatCanBeCompared)
 {
   const Subject rubber = subject(subjects::paper_case());
@@ -41,13 +41,14 @@ TEST(RunningCrack, LeavesFramesThatCanBeCompared)
     const auto difference = [&](const Position &centre)
     {
       const Scope scope{true, {{centre, 5. * rubber.spacing}}};
-      const Results results = norms(lattice, continuum, compare::compare(lattice, continuum, scope, MPI_COMM_WORLD), {});
+      const Results results =
+        norms(lattice, continuum, compare::compare(lattice, continuum, scope, MPI_COMM_WORLD), {});
       for (const Result &row : results.rows())
         if (row.quantity == "velocity, largest difference")
           return row.error.value();
       return std::nan("");
     };
-    // What is largest is at the tip.
+    // The largest difference is at the tip.
     EXPECT_LT(difference(tip), 0.5 * difference({{tip[0] - 8. * rubber.spacing, tip[1]}}));
   }
 }

@@ -1,4 +1,4 @@
-/// Frames made up here, written by VTK's own writers.
+/// Artificial frames, written by the writers of VTK.
 #pragma once
 
 #include <array>
@@ -20,7 +20,7 @@
 #include <vtkXMLPolyDataWriter.h>
 #include <vtkXMLUnstructuredGridWriter.h>
 
-/// A deformed state of the plane, or of either side.
+/// Deformed state of the plane, for both sides.
 struct MadeUpState
 {
   double time = 1.;
@@ -28,10 +28,10 @@ struct MadeUpState
   std::function<std::array<double, 2>(double, double)> displacement = [](double X, double Y) {
     return std::array<double, 2>{{0.1 * X + 0.02 * Y, 0.2 * Y}};
   };
-  std::string without;         ///< name of a field to leave out
-  double scale_of_stress = 1.; ///< all stresses times this
+  std::string without;         ///< name of a field to omit
+  double scale_of_stress = 1.; ///< factor of all stresses
   double scale_of_lengths = 1.;
-  bool bad = false; ///< a value of the first Piola stress is not a number
+  bool bad = false; ///< a value of the first Piola stress is NaN
 };
 
 inline void add_array(vtkDataSet &data, const MadeUpState &state, const char *name, int components, double value)
@@ -48,7 +48,7 @@ inline void add_array(vtkDataSet &data, const MadeUpState &state, const char *na
   data.GetPointData()->AddArray(values);
 }
 
-/// The fields that both sides have: displacement as given, the others constant.
+/// Adds the common fields: displacement as given, the others constant.
 inline void add_fields(vtkDataSet &data, const MadeUpState &state, const char *name_of_time)
 {
   add_array(data, state, "displacement", 3, 0.);
@@ -71,7 +71,7 @@ inline void add_fields(vtkDataSet &data, const MadeUpState &state, const char *n
   data.GetFieldData()->AddArray(time);
 }
 
-/// A square lattice with diagonals, on [0, width] x [0, height] [m], its rim held.
+/// Writes a square lattice with diagonals on [0, width] x [0, height] [m], with a held rim.
 inline std::string write_lattice(const std::string &path, const MadeUpState &state, int nx = 12, int ny = 8,
                                  double width = 0.06, double height = 0.04,
                                  const std::function<bool(double, double)> &removed = {})
@@ -117,7 +117,7 @@ inline std::string write_lattice(const std::string &path, const MadeUpState &sta
   return path;
 }
 
-/// Maps the unit square on the sheet.
+/// Map of the unit square to the sheet.
 using Shape = std::function<std::array<double, 2>(double, double)>;
 
 inline Shape rectangle(double width = 0.06, double height = 0.04)
@@ -125,7 +125,7 @@ inline Shape rectangle(double width = 0.06, double height = 0.04)
   return [=](double r, double s) { return std::array<double, 2>{{width * r, height * s}}; };
 }
 
-/// nx by ny Lagrange cells of a degree on a mapped square, each with points of its own.
+/// Writes nx by ny Lagrange cells of a degree on a mapped square, each with its own points.
 inline std::string write_continuum(const std::string &path, const MadeUpState &state, int degree = 3, int nx = 3,
                                    int ny = 2, const Shape &shape = rectangle())
 {

@@ -4,7 +4,7 @@
 
 using namespace latcon;
 
-// Sites are shared over ranks, of which there is one here.
+// Sites are distributed over ranks; there is one rank here.
 int main(int argc, char **argv)
 {
   const continuum::ParallelSession session;

@@ -21,7 +21,7 @@ ContinuumFrame read(const std::string &path)
 
 constexpr double pi = 3.14159265358979324;
 
-// A quarter of an annulus, whose cells have curved sides. [m]
+// Maps the unit square to a quarter of an annulus, whose cells have curved sides [m].
 std::array<double, 2> annulus(double r, double s)
 {
   const double radius = 0.01 + 0.02 * r;
@@ -51,7 +51,7 @@ TEST(SiteProbe, FindsPolynomialsOfTheDegreeOfItsCells)
     const ContinuumFrame frame = read(write_continuum(folder / "a.vtu", state, degree));
     std::vector<Position> points;
     for (int j = 0; j <= 24; ++j)
-      for (int i = 0; i <= 36; ++i) // on cells' edges and corners, on the sheet's, and between
+      for (int i = 0; i <= 36; ++i) // on edges and corners of cells and of the sheet, and between
         points.push_back({{0.06 * i / 36., 0.04 * j / 24.}});
     const SiteValues found = probe(frame, points, 1e-9, MPI_COMM_SELF);
     for (std::size_t i = 0; i < points.size(); ++i)
@@ -66,7 +66,7 @@ TEST(SiteProbe, FindsPolynomialsOfTheDegreeOfItsCells)
 
 TEST(SiteProbe, InvertsCurvedCells)
 {
-  // Isoparametric cells hold linear displacement exactly, however curved they are.
+  // Isoparametric cells represent linear displacements exactly, for any curvature.
   TemporaryFolder folder;
   const ContinuumFrame frame = read(write_continuum(folder / "a.vtu", {}, 3, 2, 4, annulus));
   std::vector<Position> points;
@@ -86,7 +86,7 @@ TEST(SiteProbe, GivesNoValueOutside)
 {
   TemporaryFolder folder;
   const ContinuumFrame frame = read(write_continuum(folder / "a.vtu", {}, 3, 2, 4, annulus));
-  // In the hole, beyond the rim, by less and by more than the tolerance beyond a straight side.
+  // In the hole, beyond the rim, and beyond a straight side by less and by more than the tolerance.
   const std::vector<Position> points{
     {{0.005, 0.005}}, {{0.0299, 0.0299}}, {{0.02, -0.9e-6}}, {{0.02, -1.1e-6}}, {{1., 1.}}};
   const SiteValues found = probe(frame, points, 1e-6, MPI_COMM_SELF);
@@ -94,7 +94,7 @@ TEST(SiteProbe, GivesNoValueOutside)
   for (const std::size_t i : {0u, 1u, 3u, 4u})
     for (const FieldValues &field : found.fields)
       EXPECT_TRUE(std::isnan(field.at(i)[0]));
-  EXPECT_NEAR(found.fields[0].at(2)[1], -0.9e-6 * 0.2, 1e-16); // continued, not held
+  EXPECT_NEAR(found.fields[0].at(2)[1], -0.9e-6 * 0.2, 1e-16); // extrapolated, not constant
 }
 
 TEST(SiteProbe, TakesTheMeanWhereFieldsJump)
@@ -121,7 +121,7 @@ TEST(SiteProbe, IsQuickOnManySites)
       points.push_back({{0.06 * i / 399., 0.04 * j / 249.}});
   const auto start = std::chrono::steady_clock::now();
   const SiteValues found = probe(frame, points, 1e-9, MPI_COMM_SELF);
-  // 1e5 sites among 1e4 cells. Measured: 0.3 s; minutes if every cell were asked.
+  // 1e5 sites among 1e4 cells. Measured: 0.3 s; a search over all cells would take minutes.
   EXPECT_LT(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count(), 5.);
   EXPECT_EQ(std::count(found.outside.begin(), found.outside.end(), 0), 100000);
   EXPECT_NEAR(largest(found.fields[0]), 0.2 * 0.04, 1e-12);

@@ -101,7 +101,7 @@ Everything example()
 class Archive : public testing::Test
 {
 protected:
-  // A file with one object, under the name "all".
+  // Writes a file with one object under the name "all".
   template <class T>
   std::string written(T &object)
   {
@@ -187,7 +187,7 @@ TEST_F(Archive, RefusesWhatDoesNotFit)
   EXPECT_THROW(archive("all", three), Hdf5Error);
 }
 
-// What a file holds that was made by hand, under the names that objects have.
+// Fixture for handmade files with the names of archived objects.
 class HostileArchive : public testing::Test
 {
 protected:

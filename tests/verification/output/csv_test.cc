@@ -1,4 +1,4 @@
-// Tables read back as what was put in, and refuse rows that do not fit.
+// Tables are read back unchanged, and refuse rows with another number of cells.
 #include "verification/claims/claim_outcome.h"
 
 #include <stdexcept>

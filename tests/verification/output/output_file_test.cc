@@ -1,4 +1,4 @@
-// What write_file adds to support/atomic_file.h: writers, and the list of outputs.
+// write_file, in addition to support/atomic_file.h: writers, and the list of outputs.
 #include "tests/support/temporary_folder.h"
 
 #include "support/errors.h"
@@ -16,7 +16,7 @@ using output::write_file;
 namespace
 {
 
-// What write_file says when it cannot write; empty if it could.
+// Returns the error message of write_file; empty on success.
 std::string complaint(const std::string &path, const std::string &text = "new")
 {
   try

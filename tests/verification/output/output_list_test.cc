@@ -23,7 +23,7 @@ std::string content(const fs::path &path)
 class OutputList : public testing::Test
 {
 protected:
-  // A file of a run, and one that a library or a user puts there.
+  // Writes a file of a run, and a file of a library or a user.
   void written(const std::string &name, const std::string &text = "run") { write_file((folder / name).string(), text); }
   void put(const std::string &name, const std::string &text = "user") { std::ofstream(folder / name) << text; }
   bool has(const std::string &name) const { return fs::exists(folder / name); }
@@ -61,7 +61,7 @@ TEST_F(OutputList, FilesOfTheRunBeforeAreMovedAndNoOthers)
   put("notes.txt");
   fs::create_directory(folder / "crack.csv.d");
   fs::create_symlink(folder / "notes.txt", folder / "lattice-0002.vtp");
-  EXPECT_EQ(set_earlier_output_aside(folder, {}), folder / "earlier-run");
+  EXPECT_EQ(archive_earlier_output(folder, {}), folder / "earlier-run");
   for (const char *name : {"crack.csv", "lattice-0000.vtp", "lattice-0001.vtp"})
   {
     EXPECT_FALSE(has(name)) << name;
@@ -70,14 +70,14 @@ TEST_F(OutputList, FilesOfTheRunBeforeAreMovedAndNoOthers)
   for (const char *name : {"lattice-mine.vtp", "notes.txt", "crack.csv.d", "lattice-0002.vtp"})
     EXPECT_TRUE(has(name)) << name;
 
-  EXPECT_EQ(set_earlier_output_aside(folder, {}), fs::path()); // nothing is left to move
+  EXPECT_EQ(archive_earlier_output(folder, {}), fs::path()); // nothing is left to move
 
   put("earlier-run/mine.txt");
   begin_output_list(folder);
   written("crack.csv", "second");
-  EXPECT_EQ(set_earlier_output_aside(folder, {}), folder / "earlier-run");
+  EXPECT_EQ(archive_earlier_output(folder, {}), folder / "earlier-run");
   EXPECT_EQ(content(folder / "earlier-run/crack.csv"), "second");
-  EXPECT_FALSE(has("earlier-run/lattice-0000.vtp")); // of the run before that one
+  EXPECT_FALSE(has("earlier-run/lattice-0000.vtp")); // of the run before the previous one
   EXPECT_TRUE(has("earlier-run/mine.txt"));
 }
 
@@ -86,7 +86,7 @@ TEST_F(OutputList, TheCaseStays)
   begin_output_list(folder);
   written("case.prm");
   written("crack.csv");
-  set_earlier_output_aside(folder, folder / "." / "case.prm");
+  archive_earlier_output(folder, folder / "." / "case.prm");
   EXPECT_TRUE(has("case.prm"));
   EXPECT_FALSE(has("crack.csv"));
 }
@@ -97,7 +97,7 @@ TEST_F(OutputList, AFolderOfTheUsersIsNotUsed)
   put("earlier-run/crack.csv");
   begin_output_list(folder);
   written("crack.csv");
-  EXPECT_EQ(set_earlier_output_aside(folder, {}), folder / "earlier-run-2");
+  EXPECT_EQ(archive_earlier_output(folder, {}), folder / "earlier-run-2");
   EXPECT_EQ(content(folder / "earlier-run/crack.csv"), "user");
 }
 
@@ -105,7 +105,7 @@ TEST_F(OutputList, WithoutAListNothingIsTouched)
 {
   put("crack.csv");
   put("lattice-0000.vtp");
-  EXPECT_EQ(set_earlier_output_aside(folder, {}), fs::path());
+  EXPECT_EQ(archive_earlier_output(folder, {}), fs::path());
   EXPECT_TRUE(has("crack.csv"));
   EXPECT_FALSE(has(output_list_name));
 }

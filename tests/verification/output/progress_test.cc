@@ -12,7 +12,7 @@ namespace
 using output::Progress;
 using namespace std::chrono_literals;
 
-// What is written to standard error, which is no terminal here.
+// Output to standard error, which is not a terminal here.
 TEST(Progress, AddsALineToALogEverySoOften)
 {
   testing::internal::CaptureStderr();

@@ -1,4 +1,4 @@
-// A result holds if and only if its error is a finite number within its tolerance; files and table say the same.
+// A result holds if and only if its error is a finite number within its tolerance; files and table agree.
 #include "tests/support/temporary_folder.h"
 
 #include "support/errors.h"
@@ -36,7 +36,7 @@ Result checked(const std::optional<double> error, const std::optional<double> to
   return result;
 }
 
-// The fields of a CSV text, by RFC 4180.
+// Parses the fields of a CSV text according to RFC 4180.
 std::vector<std::vector<std::string>> fields_of(const std::string &csv)
 {
   std::vector<std::vector<std::string>> rows;
@@ -128,7 +128,7 @@ TEST(Results, APartThatThrowsIsARowThatFailsAndSaysWhy)
   EXPECT_EQ(results.rows()[1].verdict(), Verdict::fails);
   EXPECT_EQ(results.rows()[1].claim, "energy");
   EXPECT_EQ(results.rows()[1].quantity, "NN: waves: not computed: no positive step");
-  // These have exit codes of their own.
+  // These errors have their own exit codes.
   EXPECT_THROW(results.attempt("energy", "", [] { throw latcon::support::InputError("wrong"); }),
                latcon::support::InputError);
   EXPECT_THROW(results.attempt("energy", "", [] { throw std::bad_alloc(); }), std::bad_alloc);
@@ -271,7 +271,7 @@ TEST(Results, TableIsAlignedAndFitsTheScreen)
   EXPECT_EQ(n_verdicts, 4u);
   EXPECT_NE(table.find("-1.234568e-300"), std::string::npos);
   EXPECT_EQ(table.find("-1.2345679e-300"), std::string::npos);
-  // Nothing is cut away: the wrapped pieces hold all the words.
+  // Nothing is truncated: the wrapped pieces contain all words.
   EXPECT_NE(table.find("about it"), std::string::npos);
 }
 

@@ -1,4 +1,4 @@
-// run.json says what ran, on what, for how long, and how it ended.
+// Content of run.json: program, libraries, times, outcome.
 #include "tests/support/temporary_folder.h"
 
 #include "verification/output/run_info.h"
@@ -21,7 +21,7 @@ using output::Stopwatch;
 namespace
 {
 
-// Whether the text holds a number, a point, and a number.
+// Returns true if the text contains a number, a point, and a number.
 bool is_version(const std::string &text)
 {
   const std::size_t point = text.find('.');
@@ -117,7 +117,7 @@ TEST(RunInfo, DoesNotNameTheMachine)
   char host[256] = {};
   ASSERT_EQ(gethostname(host, sizeof(host) - 1), 0);
   const std::string name = host;
-  if (name.size() > 3) // a shorter one may be part of any word
+  if (name.size() > 3) // a shorter name may be part of any word
   {
     EXPECT_EQ(RunInfo({"latcon"}).json({}).find(name), std::string::npos);
   }

@@ -1,4 +1,4 @@
-// Tests of means over seeds: known values, and how often they decide wrongly and rightly, by simulation.
+// Tests of means over seeds: known values, and simulated rates of wrong and correct decisions.
 #include "verification/study/statistical_tests.h"
 
 #include <gtest/gtest.h>
@@ -26,7 +26,7 @@ double standard_normal(std::mt19937_64 &generator)
   return boost::math::quantile(boost::math::normal(), uniform);
 }
 
-// Mean and spread of n draws about a mean, with a standard deviation.
+// Draws n normal numbers with a mean and a standard deviation, and returns their sample mean and variance.
 SampleMean drawn(std::mt19937_64 &generator, double mean, std::size_t n, double deviation = 1.)
 {
   std::vector<double> values;
@@ -43,7 +43,8 @@ SampleMean drawn(std::mt19937_64 &generator, double mean, std::size_t n, double 
   return sample;
 }
 
-// Four standard deviations of a share that is 5 %: one of 30,000 sound rules goes beyond.
+// Upper bound on a measured rate of 5 %, at four standard deviations: exceeded by chance for one of 30,000 correct
+// rules.
 double above_nominal(std::size_t n_draws)
 {
   return significance + 4. * std::sqrt(significance * (1. - significance) / static_cast<double>(n_draws));
@@ -51,7 +52,8 @@ double above_nominal(std::size_t n_draws)
 
 constexpr std::size_t n_draws = 10000;
 
-// Share of draws of two samples in which the second is found to exceed the first, by `difference` standard deviations.
+// Returns the fraction of draws in which the second sample is found to exceed the first; the true difference is
+// `difference` standard deviations.
 double share_found(std::size_t n, std::size_t m, double difference, double first_deviation = 1., double floor = 0.)
 {
   std::mt19937_64 generator(1947);
@@ -65,7 +67,7 @@ double share_found(std::size_t n, std::size_t m, double difference, double first
   return static_cast<double>(found) / n_draws;
 }
 
-// Shares of draws in which means are found to rise, to fall somewhere, and the rule `rises` holds.
+// Fractions of draws in which means are found to rise, to fall somewhere, and in which the rule `rises` holds.
 struct Shares
 {
   double rise = 0., fall = 0., holds = 0.;
@@ -94,7 +96,7 @@ Shares shares_of(const std::vector<double> &means, const std::vector<std::size_t
   return shares;
 }
 
-// As in the studies: two seeds, the case of Fig. 1 five.
+// As in the studies: two seeds, and five for the case of Fig. 1.
 const std::vector<std::size_t> six_runs{2, 2, 2, 2, 5, 2}, four_runs{2, 2, 2, 5}, three_seeds_each{3, 3, 3, 3, 3, 3};
 
 } // namespace
@@ -121,11 +123,11 @@ TEST(Welch, FindsWhatIsNotThereAsOftenAsItSays)
 {
   for (const auto &[n, m] : {std::pair(2, 2), std::pair(2, 5), std::pair(3, 5), std::pair(5, 5)})
     EXPECT_LE(share_found(n, m, 0.), above_nominal(n_draws)) << n << " and " << m << " seeds";
-  // Two seeds that scatter three times as much as five are what its approximation is worst at: 6.2 %.
+  // Worst case of the approximation: two seeds with three times the scatter of five, 6.2 %.
   EXPECT_LE(share_found(2, 5, 0., 3.), 0.062 + above_nominal(n_draws) - significance);
-  // Its level is not only kept by deciding nothing.
+  // The test does find differences: its level is not zero.
   EXPECT_GE(share_found(5, 5, 0.), 0.035);
-  // A floor makes no test decide more often.
+  // With a floor no test finds more differences.
   for (const double floor : {0.5, 1., 2.})
     EXPECT_LE(share_found(2, 5, 0., 1., floor), share_found(2, 5, 0.));
 }
@@ -140,16 +142,16 @@ TEST(Welch, FindsWhatIsThere)
 
 TEST(Holm, AdjustsEachByTheNumberOfThoseThatAreLeft)
 {
-  const std::vector<double> adjusted = holm_adjusted({0.04, 0.01, 0.03, not_a_number});
+  const std::vector<double> adjusted = adjust_by_holm({0.04, 0.01, 0.03, not_a_number});
   EXPECT_NEAR(adjusted[1], 0.04, 1e-15);
   EXPECT_NEAR(adjusted[2], 0.09, 1e-15);
-  EXPECT_NEAR(adjusted[0], 0.09, 1e-15); // not less than one before
+  EXPECT_NEAR(adjusted[0], 0.09, 1e-15); // not less than a previous one
   EXPECT_TRUE(std::isnan(adjusted[3]));
-  EXPECT_EQ(holm_adjusted({0.9, 0.8})[0], 1.);
-  EXPECT_TRUE(holm_adjusted({}).empty());
+  EXPECT_EQ(adjust_by_holm({0.9, 0.8})[0], 1.);
+  EXPECT_TRUE(adjust_by_holm({}).empty());
 }
 
-// All pairs of six runs alike: one or more is named in at most 5 % of cases.
+// All pairs of six equal runs: at least one pair is found in at most 5 % of cases.
 TEST(Holm, NamesAPairThatIsNotThereAsOftenAsItSays)
 {
   std::mt19937_64 generator(1979);
@@ -164,7 +166,7 @@ TEST(Holm, NamesAPairThatIsNotThereAsOftenAsItSays)
     for (std::size_t i = 0; i < samples.size(); ++i)
       for (std::size_t j = i + 1; j < samples.size(); ++j)
         p_values.push_back(welch_p_value(samples[j], samples[i]).value());
-    const std::vector<double> adjusted = holm_adjusted(p_values);
+    const std::vector<double> adjusted = adjust_by_holm(p_values);
     named += std::any_of(adjusted.begin(), adjusted.end(), [](double p) { return p <= significance; });
   }
   EXPECT_LE(static_cast<double>(named) / n, above_nominal(n));
@@ -186,7 +188,7 @@ TEST(LevelProbabilities, AreTheKnownOnes)
   EXPECT_NEAR(three[0], 0.25 - std::asin(rho) / (2. * M_PI), digits);
 }
 
-// Two runs: half of Fisher's F, which is Student's t, one-sided.
+// Two runs: half of Fisher's F, that is, one-sided Student's t.
 TEST(IsotonicTest, OfTwoRunsIsStudentsTest)
 {
   const std::vector<double> levels{0.5, 0.5};
@@ -212,17 +214,17 @@ TEST(IsotonicTest, FindsWhatIsNotThereAsOftenAsItSays)
   for (const auto &n : {six_runs, four_runs, three_seeds_each})
   {
     const Shares flat = shares_of(std::vector<double>(n.size(), 0.), n);
-    EXPECT_LE(flat.rise, above_nominal(n_draws)); // a rise where there is none
-    EXPECT_LE(flat.fall, above_nominal(n_draws)); // a fall where there is none
-    EXPECT_GE(flat.rise, 0.04);                   // and the test does decide
+    EXPECT_LE(flat.rise, above_nominal(n_draws)); // wrongly found rise
+    EXPECT_LE(flat.fall, above_nominal(n_draws)); // wrongly found fall
+    EXPECT_GE(flat.rise, 0.04);                   // the level is not zero
     EXPECT_GE(flat.fall, 0.04);
   }
-  // Rising until it saturates is never falling: the rule fails such a sequence less often than a flat one.
+  // A sequence that rises until it saturates does not fall: the rule rejects it less often than a constant one.
   EXPECT_LE(shares_of({0., 2., 3.5, 4., 4., 4.}, six_runs).fall, above_nominal(n_draws));
-  // Seeds that scatter in proportion to the mean.
+  // Scatter of the seeds in proportion to the mean.
   EXPECT_LE(shares_of({10., 15., 18., 20., 20., 20.}, six_runs, {1., 1.5, 1.8, 2., 2., 2.}).fall,
             above_nominal(n_draws));
-  // A floor makes no test decide more often.
+  // With a floor no test finds more differences.
   const Shares floored = shares_of(std::vector<double>(6, 0.), six_runs, {}, 1.);
   EXPECT_LE(floored.rise, above_nominal(n_draws));
   EXPECT_LE(floored.fall, above_nominal(n_draws));
@@ -234,7 +236,7 @@ TEST(IsotonicTest, FindsWhatIsThere)
   EXPECT_GE(shares_of({0., 1.5, 2.4, 3., 3., 3.}, six_runs).holds, 0.9); // saturates
   EXPECT_GE(shares_of({0., 0.6, 1.2, 1.8, 2.4, 3.}, six_runs).holds, 0.9);
   EXPECT_GE(shares_of({0., 1.8, 3., 3.}, four_runs).holds, 0.85);
-  // Rises, and falls back at the end, or in the middle: to be told from a rise.
+  // Sequences that fall at the end or in the middle must be distinguished from a rise.
   EXPECT_LE(shares_of({0., 2., 4., 4., 4., 0.}, six_runs).holds, 0.15);
   EXPECT_LE(shares_of({0., 2., 4., -2., 4., 4.}, six_runs).holds, 0.15);
 }

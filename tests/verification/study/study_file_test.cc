@@ -1,4 +1,4 @@
-// Study files: what is read, in which order settings win, and that every mistake is named with its place.
+// Study files: content, precedence of settings, and error messages with positions.
 #include <filesystem>
 
 #include <gtest/gtest.h>
@@ -48,7 +48,7 @@ Study read(const nlohmann::ordered_json &document, bool quick = false)
   return read_study(document.dump(), "folder/x.json", quick);
 }
 
-// What a text is refused for as a study.
+// Returns the error message for a text that is not a valid study.
 std::string refusal(const std::string &text)
 {
   try
@@ -67,7 +67,7 @@ std::vector<PlannedRun> plan_of(const Study &study, const std::vector<std::strin
   return plan_runs(study, read_input_file(study.base), settings);
 }
 
-// The problem that the example has once it is changed by `change`; there must be one alone.
+// Returns the only problem of the example after `change`.
 template <typename Change>
 std::string problem_after(const Change &change)
 {
@@ -183,21 +183,21 @@ TEST(StudyFile, UnknownWordsAreNamedWithTheirPlaceAndTheNearestKnownOne)
   EXPECT_HAS(problem_after([](Json &d) { d["pictuers"] = d["pictures"]; }),
              "unknown key 'pictuers'; nearest: pictures");
   EXPECT_HAS(problem_after([](Json &d) { d["runs"]["one"]["set"]["Sheet/spacin"] = 1; }),
-             "runs/one/set/Sheet/spacin: no entry of a case; nearest: Sheet/spacing");
+             "runs/one/set/Sheet/spacin: not an entry of a case; nearest: Sheet/spacing");
   EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][5]["run"] = "onee"; }),
-             "claims/1/rows/6/run: 'onee' is no run; nearest: one");
+             "claims/1/rows/6/run: 'onee' is not a known run; nearest: one");
   EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][5]["quantity"] = "wavelenght"; }),
-             "claims/1/rows/6/quantity: 'wavelenght' is no quantity; nearest: wavelength");
+             "claims/1/rows/6/quantity: 'wavelenght' is not a known quantity; nearest: wavelength");
   EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][4]["is"] = "wavy"; }), "'wavy' is no pattern");
   EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][1]["against"] = "zetta"; }), "nearest: zeta");
-  EXPECT_HAS(problem_after([](Json &d) { d["pictures"][0] = "nothing"; }), "pictures/1: 'nothing' is no run");
+  EXPECT_HAS(problem_after([](Json &d) { d["pictures"][0] = "nothing"; }), "pictures/1: 'nothing' is not a known run");
   EXPECT_HAS(problem_after(
                [](Json &d) {
                  d["claims"][0]["rows"][1]["runs"] = {"one", "a-2", "one"};
                }),
-             "claims/1/rows/2/runs/3: 'one' is there twice");
+             "claims/1/rows/2/runs/3: 'one' is given twice");
   EXPECT_HAS(problem_after([](Json &d) { d["checks"] = {"stady-crack"}; }),
-             "checks/1: 'stady-crack' is no check; nearest: steady-crack");
+             "checks/1: 'stady-crack' is not a known check; nearest: steady-crack");
 }
 
 TEST(StudyFile, NoMessageListsThousandsOfRuns)
@@ -223,7 +223,8 @@ TEST(StudyFile, WordsOfAStudyOfOnesOwnMayBeLeftOut)
   EXPECT_EQ(study.claims.front().paper, "");
   EXPECT_EQ(study.claims.front().note, "");
   EXPECT_EQ(study.run("big").about, "");
-  EXPECT_HAS(problem_after([](nlohmann::ordered_json &d) { d["claims"][0]["paper"] = 3; }), "paper: must be a text");
+  EXPECT_HAS(problem_after([](nlohmann::ordered_json &d) { d["claims"][0]["paper"] = 3; }),
+             "paper: must be a non-empty text");
 }
 
 TEST(StudyFile, RowsKnowTheUnitOfWhatTheyAreAgainst)
@@ -254,24 +255,24 @@ TEST(StudyFile, WrongTypesAndMissingKeysAreNamed)
 {
   using Json = nlohmann::ordered_json;
   EXPECT_HAS(problem_after([](Json &d) { d.erase("title"); }), "the key 'title' is missing");
-  EXPECT_HAS(problem_after([](Json &d) { d["seeds"] = 3; }), "seeds: must be a list");
+  EXPECT_HAS(problem_after([](Json &d) { d["seeds"] = 3; }), "seeds: must be a non-empty list");
   EXPECT_HAS(problem_after([](Json &d) { d["runs"]["one"]["seeds"][1] = 1.5; }), "runs/one/seeds/2: must be a whole");
-  EXPECT_HAS(problem_after([](Json &d) { d["runs"]["one"]["seeds"][1] = 3; }), "this seed is there already");
-  EXPECT_HAS(problem_after([](Json &d) { d["checks"] = "steady-crack"; }), "checks: must be a list");
+  EXPECT_HAS(problem_after([](Json &d) { d["runs"]["one"]["seeds"][1] = 3; }), "this seed is given twice");
+  EXPECT_HAS(problem_after([](Json &d) { d["checks"] = "steady-crack"; }), "checks: must be a non-empty list");
   EXPECT_HAS(problem_after(
                [](Json &d) {
                  d["checks"] = {"steady-crack", "steady-crack"};
                }),
-             "checks/2: this check is there already");
-  EXPECT_HAS(problem_after([](Json &d) { d["runs"]["one"]["set"]["Lattice/noise seed"] = 3; }), "\"seeds\" stands for");
-  EXPECT_HAS(problem_after([](Json &d) { d["runs"]["../x"] = Json::object(); }), "a run's name");
+             "checks/2: this check is given twice");
+  EXPECT_HAS(problem_after([](Json &d) { d["runs"]["one"]["set"]["Lattice/noise seed"] = 3; }), "is set by \"seeds\"");
+  EXPECT_HAS(problem_after([](Json &d) { d["runs"]["../x"] = Json::object(); }), "the name of a run");
   EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][0]["is near"] = "2 cm"; }), "must be a number");
-  EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][0].erase("tolerance"); }), "go together");
-  EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][0]["above"] = 1; }), "a row has one rule");
+  EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][0].erase("tolerance"); }), "must be given together");
+  EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][0]["above"] = 1; }), "a row can have only one rule");
   EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][1].erase("against"); }), "needs \"against\"");
   EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][1]["falls"] = false; }), "falls: must be true");
   EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][4]["quantity"] = "periods"; }), "\"pattern\"");
-  EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][3]["quantity"] = "pattern"; }), "not patterns");
+  EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][3]["quantity"] = "pattern"; }), "not for patterns");
   EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][1]["run"] = "one"; }), "either \"run\" or \"runs\"");
 }
 
@@ -282,7 +283,7 @@ TEST(StudyFile, CasesThatAreWrongAreNamedOnceWithTheirRun)
              "runs/one: --set: Fracture/breaking stretch = 2.0");
   EXPECT_HAS(problem_after([](Json &d) { d["set"]["Material/density"] = -1; }), "Material/density = -1");
   EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][1]["against"] = "Sheet/orientation"; }),
-             "is no number in any of these runs");
+             "is not a number in any of these runs");
 }
 
 TEST(StudyFile, TextThatIsNoStudyIsRefused)
@@ -298,7 +299,7 @@ TEST(StudyFile, TextThatIsNoStudyIsRefused)
   }
   catch (const latcon::support::InputError &error)
   {
-    EXPECT_HAS(std::string(error.what()), "'title' is there twice");
+    EXPECT_HAS(std::string(error.what()), "'title' occurs twice");
   }
 }
 
@@ -312,7 +313,7 @@ TEST(StudyFile, TheShippedStudyIsWhole)
   }
 }
 
-// One that goes deep would take the stack with it, one number that overflows the program.
+// Deep nesting could overflow the stack, and a number could be out of range.
 TEST(StudyFile, RefusesNumbersAndDepthBeyondAllSense)
 {
   for (const std::string &text :

@@ -1,4 +1,4 @@
-// Child processes of a study: how many at once, how they end, what they are told.
+// Child processes of a study: concurrency, termination, environment.
 #include <algorithm>
 #include <cstdlib>
 #include <filesystem>
@@ -17,7 +17,7 @@ using namespace study;
 namespace
 {
 
-// A pool of shell scripts.
+// Pool of shell scripts.
 struct Scripts
 {
   explicit Scripts(std::vector<std::string> texts, std::size_t limit = 2) : scripts(std::move(texts))

@@ -1,4 +1,4 @@
-// The rules of a study, each both ways, on made-up values; and what is said of seeds and runs without a value.
+// Rules of a study on artificial values, each with both outcomes, and notes on seeds and runs without a value.
 #include <cmath>
 #include <sstream>
 
@@ -19,7 +19,7 @@ namespace
 class MadeUpStudy
 {
 public:
-  // Seeds of a run with values of the wavelength [m]; NaN: straight, none measured.
+  // Adds seeds of a run with values of the wavelength [m]; NaN: straight, no wavelength.
   void add(const std::string &run, const std::vector<double> &wavelengths)
   {
     for (const double wavelength : wavelengths)
@@ -102,7 +102,7 @@ TEST(StudyTable, MeanAndStandardDeviationOverSeeds)
   EXPECT_EQ(seeds.text("m"), "2.20 ± 0.20 cm (3)");
 }
 
-// Of the seeds that give one, whatever the others do.
+// Over seeds with an uncertainty only.
 TEST(StudyTable, UncertaintyIsTheRootMeanSquareOverTheSeedsThatGiveOne)
 {
   MadeUpStudy table;
@@ -154,7 +154,7 @@ TEST(StudyTable, BoundMayBeThatOfAnotherRun)
   EXPECT_HAS(table.judged(row).note, "none, to compare with");
 }
 
-// A difference that the scatter of the seeds explains is none; and without a scatter nothing is clear.
+// A difference within the scatter of the seeds is not significant; without a scatter nothing is.
 TEST(StudyTable, ARunBesideAnotherMustDifferClearly)
 {
   MadeUpStudy table;
@@ -167,19 +167,19 @@ TEST(StudyTable, ARunBesideAnotherMustDifferClearly)
   EXPECT_EQ(table.judged(row).verdict, RowVerdict::does_not_hold);
   row.bound_run = "one";
   EXPECT_EQ(table.judged(row).verdict, RowVerdict::not_measured);
-  EXPECT_HAS(table.judged(row).note, "a beside one: how much seeds scatter is unknown");
+  EXPECT_HAS(table.judged(row).note, "a beside one: the scatter of the seeds is unknown");
   row.runs = {"same"};
   row.rule = Rule::above;
   row.bound_run = "same";
   EXPECT_EQ(table.judged(row).verdict, RowVerdict::not_measured);
-  // All of several runs must lie on that side.
+  // All runs must be on the required side.
   table.add("c", {0.0100, 0.0101, 0.0102, 0.0103});
   row = row_of({"c", "a"}, Rule::below);
   row.bound_run = "b";
   EXPECT_EQ(table.judged(row).verdict, RowVerdict::does_not_hold);
 }
 
-// 0 / 0: a relative distance from nothing.
+// 0 / 0: relative distance from zero.
 TEST(StudyTable, WhatIsNoNumberDoesNotHold)
 {
   MadeUpStudy table;
@@ -243,7 +243,7 @@ TEST(StudyTable, SeedsWithoutTheNumberAreNamedAndMoreThanAQuarterAreTooMany)
   EXPECT_EQ(more.result("c").value().verdict(), Verdict::fails);
 }
 
-// A claim is as good as all of its rows.
+// A claim holds only if all its rows hold.
 TEST(StudyTable, AClaimWithARowThatWasNotMeasuredIsIncomplete)
 {
   const auto verdict = [](const std::vector<RowVerdict> &rows)
@@ -278,14 +278,14 @@ TEST(StudyTable, RisesAndFalls)
   const RowOutcome falls = table.judged(row_of({"c", "a", "b"}, Rule::falls));
   EXPECT_EQ(falls.verdict, RowVerdict::does_not_hold);
   EXPECT_HAS(falls.measured, "fall: p = 1");
-  table.add("d", {0.012, 0.013}); // above the first, but clearly below the others
+  table.add("d", {0.012, 0.013}); // above the first, but significantly below the others
   const RowOutcome broken = table.judged(row_of({"a", "b", "c", "d"}, Rule::rises));
   EXPECT_EQ(broken.verdict, RowVerdict::does_not_hold);
   EXPECT_EQ(broken.misfit, 1.);
   EXPECT_HAS(broken.measured, "clearly from 2 to 4");
 }
 
-// One seed a run, however many runs: how much seeds scatter is not known, so no difference is clear.
+// With one seed per run the scatter is unknown for any number of runs, so no difference is significant.
 TEST(StudyTable, NoTrendIsMeasuredWithoutAScatterOfSeeds)
 {
   MadeUpStudy table;
@@ -293,17 +293,17 @@ TEST(StudyTable, NoTrendIsMeasuredWithoutAScatterOfSeeds)
   table.add("b", {0.02});
   table.add("c", {0.03});
   for (RunOutcome &outcome : table.outcomes)
-    outcome.values["wavelength_uncertainty"] = 1e-4; // of the measurement, not of the cracks
+    outcome.values["wavelength_uncertainty"] = 1e-4; // of the measurement, not scatter of the cracks
   const RowOutcome single = table.judged(row_of({"a", "b", "c"}, Rule::rises));
   EXPECT_EQ(single.verdict, RowVerdict::not_measured);
-  EXPECT_HAS(single.note, "how much seeds scatter is unknown");
-  table.add("d", {0.05, 0.05}); // nor by seeds that agree to the last bit
+  EXPECT_HAS(single.note, "the scatter of the seeds is unknown");
+  table.add("d", {0.05, 0.05}); // identical seeds give no scatter either
   EXPECT_EQ(table.judged(row_of({"a", "b", "c", "d"}, Rule::rises)).verdict, RowVerdict::not_measured);
   table.add("e", {0.0500, 0.0501, 0.0502});
   EXPECT_EQ(table.judged(row_of({"a", "b", "c", "d", "e"}, Rule::rises)).verdict, RowVerdict::holds);
 }
 
-// Two seeds that agree by luck do not make a trend of what their measurements cannot tell apart.
+// Two seeds that agree by chance must not make a difference below the measurement uncertainty significant.
 TEST(StudyTable, ScatterIsNotBelowTheUncertaintyOfAMeasurement)
 {
   MadeUpStudy table;
@@ -372,7 +372,7 @@ TEST(StudyTable, RunsThatTheQuickStudyLeavesOut)
   table.add("b", {0.0200, 0.0201});
   const RowOutcome alone = table.judged(row_of({"big"}, Rule::above, 0.), {"big"});
   EXPECT_EQ(alone.verdict, RowVerdict::not_measured);
-  EXPECT_EQ(alone.note, "big is not part of the quick study");
+  EXPECT_EQ(alone.note, "big is omitted in the quick study");
   EXPECT_EQ(table.judged(row_of({"a", "b", "big"}, Rule::rises), {"big"}).verdict, RowVerdict::holds);
 }
 
@@ -392,7 +392,7 @@ TEST(StudyTable, ResultsHaveTheVerdictsOfTheTable)
     const Result result = outcome.result("c").value();
     const Verdict verdict = result.verdict();
     EXPECT_FALSE(result.error.value_or(0.) < 0.)
-      << outcome.expected; // an error is no sign of how far inside a bound it is
+      << outcome.expected; // an error does not show the distance inside a bound
     EXPECT_EQ(verdict == Verdict::holds, outcome.verdict == RowVerdict::holds) << outcome.expected;
     EXPECT_EQ(verdict == Verdict::reported, outcome.verdict == RowVerdict::reported) << outcome.expected;
   }
