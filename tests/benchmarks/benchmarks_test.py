@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What the benchmarks read, derive and show, from numbers made up here."""
+"""Tests of the benchmark tools: what they read, derive and show, with synthetic numbers."""
 import copy
 import json
 import pathlib
