@@ -4,7 +4,7 @@ that LIBRARIES keeps from it; if folders include each other in a circle; if a so
 its own; or if docs/pictures/includes.svg is not the graph of the sources.
 
 Usage: check_includes.py PROJECT_ROOT [--draw]     --draw: make the picture, with Graphviz
-The rules are tried on planted violations first, so that a rule which has stopped biting fails as well.
+The rules are first applied to deliberate violations, so that a rule that has no effect fails as well.
 """
 import collections
 import html
@@ -16,7 +16,7 @@ import sys
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
 SIDES = ("support", "lattice", "continuum")
 MODELS = (*SIDES, "verification/input", "verification/bridge", "verification/analysis", "verification/output")
-# The folders that a folder may include besides itself; `claims/*` stands for the folder of any one claim.
+# The folders that a folder may include in addition to itself; `claims/*` is the folder of any one claim.
 ALLOWED = {
     "support": (),
     "lattice": ("support",),
@@ -34,7 +34,7 @@ ALLOWED = {
                               "verification/claims/*", "verification/study"),
     # main.cc, and the headers that are compiled once.
     "verification": ("continuum", "support", "verification/commands"),
-    # Tests of one side must not lean on the other either.
+    # Tests of one side must not depend on the other either.
     "tests/support": ("support",),
     "tests/lattice": ("support", "lattice", "tests/support"),
     "tests/continuum": ("support", "continuum", "tests/support"),
@@ -105,18 +105,18 @@ def namespace(folder):
 
 
 def wrong_namespaces(folder, text):
-    """Namespaces that a source opens besides its folder's."""
+    """Namespaces other than its folder's that a source opens."""
     return [name for name in NAMESPACE.findall(DECLARATION.sub("", text)) if name != namespace(folder)]
 
 
 def sources(root):
-    """Pairs (folder, source) of all that has a rule, the folder relative to the root."""
+    """Pairs (folder, source) of all sources with a rule; folders are relative to the root."""
     files = sorted(path for top in ROOTS for path in (root / top).rglob("*") if path.suffix in (".h", ".cc", ".inc"))
     return [(folder, path) for path in files if rule(folder := str(path.relative_to(root).parent))]
 
 
 def graph(root):
-    """Pairs (folder, folder that it includes), relative to the root. main.cc is above all folders and left out."""
+    """Pairs (folder, included folder), relative to the root; main.cc, which is above all folders, is omitted."""
     found = set()
     for folder, path in sources(root):
         if folder != "verification" and folder.split("/")[0] != "tests":
@@ -126,7 +126,7 @@ def graph(root):
 
 
 def circle(pairs):
-    """Folders that lead back to the first of them; none: []."""
+    """Folders of a cycle, or [] if there is none."""
     after = collections.defaultdict(list)
     for folder, other in sorted(pairs):
         after[folder].append(other)
@@ -145,7 +145,7 @@ def circle(pairs):
 
 
 def outline(pairs):
-    """The pairs with one folder for all claims, without those that follow from others."""
+    """The pairs with one folder for all claims, without those implied by others."""
     pairs = {(rule(folder), rule(other)) for folder, other in pairs}
     after = collections.defaultdict(set)
     for folder, other in pairs:

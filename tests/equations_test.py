@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""Code, tests and theory name the same equations.
+"""Checks that code, tests and theory refer to the same equations.
 
 Usage: equations_test.py PROJECT_ROOT
 
-The theory pages number equations by \\tag{L.2}. What implements one and what checks one refers to it as (L.2); (L.17) to (L.20)
-stands for all four.
+The theory pages number equations by \\tag{L.2}. Code that implements an equation and tests that check it refer to it as (L.2);
+(L.17) to (L.20) denotes all four.
 """
 import collections
 import pathlib
@@ -16,7 +16,7 @@ ROOT = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else pathlib.Path(__fi
 CODE = ("lattice", "continuum", "verification")
 KINDS = {".h", ".cc", ".inc", ".py", ".prm", ".json"}
 
-# Steps of a derivation, which no line of code computes: what is computed is the equation that they lead to.
+# Steps of a derivation, which the code does not compute; it computes the equation that they lead to.
 DERIVATION = {"L.21": "says where damped modes lie, which (L.22) then keeps stable",
               "L.25": "shows for two stages that (L.23) keeps touching sites stable",
               "H.16": "leading term of (H.14), which says why the energy agrees best at one mean stretch"}
@@ -33,14 +33,14 @@ def expanded(first, last):
 
 
 def references(text):
-    """Numbers of the equations that a text refers to. Of a range, those between its ends need not all be there."""
+    """Numbers of the equations that a text refers to; the equations between the ends of a range need not all exist."""
     named = set(ONE.findall(text))
     within = {number for first, last in RANGE.findall(text) for number in expanded(first, last)}
     return named, within | named
 
 
 def bare(text, letters):
-    """What looks like a reference and is not in parentheses, so that it would not be found."""
+    """References without parentheses, which references() does not find."""
     return re.findall(rf"(?:\beqs?\.|\.md,)\s+(?:[/#]+\s+)?[{letters}]\.\d+", text)
 
 
@@ -49,7 +49,7 @@ def theory_pages():
 
 
 def equations():
-    """Number of each equation: how often it is given."""
+    """Number of occurrences of each equation number."""
     return collections.Counter(tag for page in theory_pages() for tag in TAG.findall(page.read_text()))
 
 

@@ -1,10 +1,10 @@
 #!/usr/bin/python3
-"""A class has one definition: no two files define one of the same name in the same namespace.
+"""Checks that no two files define classes with the same name in the same namespace.
 
 Usage: one_definition_test.py PROJECT_ROOT
 
-Such classes compile, and link without a word: the linker keeps one of their destructors, and calls it for both. Which programs that
-breaks depends on the optimisation. `tests/clean/run lto` has the compiler compare all types of whole programs.
+Such classes compile and link without a warning: the linker keeps one of their destructors, and calls it for both. Which programs
+fail depends on the optimisation. With `tests/clean/run lto` the compiler compares all types of whole programs.
 """
 import collections
 import pathlib
@@ -30,7 +30,7 @@ def classes_in(text):
         elif match["namespace"] is not None:
             scopes.append(match["namespace"].strip())
         else:
-            # A specialisation is told from others by what it is for.
+            # Specialisations are distinguished by their arguments.
             if match["type"] and not match["special"] and all(scopes):
                 found.append("::".join([*scopes, match["type"]]))
             scopes.append(None)

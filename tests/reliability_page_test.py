@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Every answer in docs/reliability.md, and every test in docs/security.md, is one that there is.
+"""Checks that the tests named in docs/reliability.md and docs/security.md exist.
 
 Usage: reliability_page_test.py SOURCE_FOLDER
 """
@@ -12,7 +12,7 @@ SOURCE = pathlib.Path(sys.argv.pop(1))
 
 
 def known_tests():
-    """Names as the page writes them: Suite.Name of ctest, FILE.py::METHOD of Python. Programs are named by their path."""
+    """Names of tests as written on the pages: Suite.Name of ctest, FILE.py::METHOD of Python."""
     names = set()
     for path in (SOURCE / "tests").rglob("*"):
         if path.suffix == ".cc":

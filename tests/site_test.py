@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""The documentation as a web site is built without a warning, and whoever follows its links gets there.
+"""Checks that the web site of the documentation is built without warnings and has no dead links.
 
-Usage: site_test.py PROJECT_ROOT DOXYFILE SITE [--full]     --full: also what Chromium makes of the equations
+Usage: site_test.py PROJECT_ROOT DOXYFILE SITE [--full]     --full: also the layout of equations in Chromium
 """
 import html.parser
 import importlib.util
@@ -25,7 +25,8 @@ def module(path):
     return loaded
 
 
-# What a page says in its title once its formulas are set: boxes of equations and code, and those whose text is cut off.
+# Script that writes to the title of a page, once its formulas are typeset, the number of equation and code boxes, and those
+# whose text is cut off.
 MEASURE = """<script>addEventListener("load", () => MathJax.Hub.Queue(() => {
   const boxes = [...document.querySelectorAll("div.fragment, pre.fragment, .MathJax_Display")];
   const cut = boxes.filter(box => box.scrollWidth > box.clientWidth + 1);
@@ -34,7 +35,7 @@ MEASURE = """<script>addEventListener("load", () => MathJax.Hub.Queue(() => {
 
 
 class Page(html.parser.HTMLParser):
-    """Anchors, links and pictures of a page, its text, and what of it is formulas."""
+    """Anchors, links, pictures, text and formulas of a page."""
 
     def __init__(self, text):
         super().__init__()
@@ -105,7 +106,7 @@ class Site(unittest.TestCase):
             self.assertNotIn("$", "".join(page.text))
 
     def test_formulas_are_what_mathjax_knows(self):
-        """MathJax shows an unknown command in red and a formula with a brace too many not at all."""
+        """MathJax shows unknown commands in red, and does not show formulas with unbalanced braces."""
         tex = SITE / "mathjax"
         files = [tex / "jax/input/TeX/jax.js", *(tex / "extensions/TeX" / f"{n}.js" for n in ("AMSmath", "AMSsymbols"))]
         known = "".join(path.read_text() for path in files)
@@ -124,7 +125,7 @@ class Site(unittest.TestCase):
             self.assertEqual([link for link in page.links if re.match(r"(https?:)?//.*\.(js|css|png|woff)", link)], [])
 
     def test_mathjax_has_what_it_loads(self):
-        """As a browser listed it; without any of these formulas are error messages."""
+        """Files listed by a browser; if any is missing, formulas are replaced by error messages."""
         loads = [*(f"extensions/{n}.js" for n in ("MathEvents", "TeX/AMSmath", "TeX/AMSsymbols", "tex2jax")),
                  "jax/input/TeX/config.js", "jax/input/TeX/jax.js", "jax/element/mml/jax.js",
                  *(f"jax/element/mml/optable/{n}.js" for n in ("Arrows", "BasicLatin", "GeneralPunctuation")),
@@ -137,10 +138,10 @@ class Site(unittest.TestCase):
     def test_equations_and_the_front_page_s_code_fit_a_laptop(self):
         for name in ("index.html", *(f"{path.stem}.html" for path in sorted((ROOT / "docs").glob("theory*.md")))):
             self.assertEqual(self.cut_off(name, 1280), [], name)
-        self.assertNotEqual(self.cut_off("theory.html", 700), [])  # and what does not fit is seen
+        self.assertNotEqual(self.cut_off("theory.html", 700), [])  # boxes that do not fit are detected
 
     def cut_off(self, name, width):
-        """Equations and code of a page that are wider than their boxes in a window of so many pixels, in Chromium."""
+        """Equations and code of a page that are wider than their boxes in a Chromium window of `width` pixels."""
         measured = SITE / f"measured-{name}"
         measured.write_text((SITE / name).read_text().replace("</body>", MEASURE + "</body>"))
         try:

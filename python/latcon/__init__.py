@@ -1,4 +1,4 @@
-"""Runs latcon, dynamic fracture of rubber on a lattice beside its continuum, and reads its results.
+"""Runs latcon, a simulator of dynamic fracture of rubber, and reads its results.
 
 Examples
 --------
@@ -18,7 +18,7 @@ from .results import Run
 from .results import open_run as open  # called as latcon.open
 from .schema import Entry, Schema, schema
 
-# Without `open`, which `from latcon import *` would put in place of Python's own.
+# Without `open`, which `from latcon import *` would substitute for Python's built-in function.
 __all__ = ["BadInput", "Case", "ClaimFailed", "DidNotConverge", "Entry", "Frame", "InternalError", "Interrupted", "LatconError",
            "OutputFailed", "ProgramError", "ProgramNotFound", "Quantities", "Run", "Schema", "UnknownEntry", "UnreadableFile",
            "Value", "continuum", "find_program", "fracture", "lattice", "schema", "verify"]

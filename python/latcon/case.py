@@ -1,4 +1,4 @@
-"""Cases: a file and the entries that replace its own."""
+"""Cases: a case file and entries that override those of the file."""
 from __future__ import annotations
 
 import os
@@ -15,10 +15,10 @@ Settable = str | float | int | bool | None | Sequence[float] | np.generic | np.n
 
 
 class Case:
-    """Input of a run: a case file, and entries that replace those of the file.
+    """Input of a run: a case file, and entries that override those of the file.
 
-    A case does not change: :meth:`set` returns another one. The program reads and checks it when a value is asked for, when it
-    is written and when it is run.
+    A case is immutable: :meth:`set` returns a new one. The program reads and checks a case when a value is accessed, when the
+    case is written and when it is run.
 
     Parameters
     ----------
@@ -29,7 +29,7 @@ class Case:
     Raises
     ------
     BadInput
-        If there is neither such a file nor such a shipped case.
+        If neither a file nor a shipped case of this name exists.
 
     Examples
     --------
@@ -52,12 +52,12 @@ class Case:
 
     @property
     def file(self) -> pathlib.Path:
-        """Case file that the entries of :attr:`overrides` replace those of."""
+        """Case file, whose entries :attr:`overrides` replaces."""
         return self._file
 
     @property
     def overrides(self) -> Mapping[str, str]:
-        """Replaced entries by key, as texts."""
+        """Replaced entries by key, as strings."""
         return dict(self._overrides)
 
     def set(self, key: str, value: Settable) -> Case:
@@ -68,7 +68,7 @@ class Case:
         key
             ``Section/Name``.
         value
-            A number in the SI unit of the entry, a text with a unit (``"5 cm"``), a word, a truth value, a sequence of numbers,
+            A number in the SI unit of the entry, a string with a unit (``"5 cm"``), a keyword, a Boolean, a sequence of numbers,
             or None for ``auto``.
 
         Returns
@@ -79,8 +79,8 @@ class Case:
         Raises
         ------
         UnknownEntry
-            If there is no such entry; the message has the nearest known one. A bad value is reported by the program when the
-            case is first read.
+            If there is no such entry; the message names the nearest known one. An invalid value is reported by the program when
+            the case is first read.
         """
         if key not in schema():
             raise self._unknown(key)
@@ -89,7 +89,7 @@ class Case:
         return changed
 
     def __getitem__(self, key: str) -> EntryValue:
-        """Value of an entry in SI units; None is ``auto``."""
+        """Value of an entry in SI units; None means ``auto``."""
         values = self._resolve().values
         if key not in values:
             raise self._unknown(key)
@@ -110,12 +110,12 @@ class Case:
         return self._resolve().text
 
     def write(self, path: str | os.PathLike[str]) -> pathlib.Path:
-        """Writes the resolved case, every entry included, to a ``.prm`` file; replaces the file as a whole.
+        """Writes the resolved case with all entries to a ``.prm`` file, atomically.
 
         Raises
         ------
         BadInput
-            If the case is wrong; nothing is written.
+            If the case is invalid; nothing is written.
         OSError
             If the file cannot be written.
         """
@@ -132,7 +132,7 @@ class Case:
         return path
 
     def arguments(self) -> list[str]:
-        """Options of the command line that set the replaced entries."""
+        """Command-line options that set the replaced entries."""
         return [word for key, value in self._overrides.items() for word in ("--set", f"{key}={value}")]
 
     def __repr__(self) -> str:
@@ -149,7 +149,7 @@ class Case:
         return self._cached[1]
 
     def _unknown(self, key: str) -> UnknownEntry:
-        """The program's own message, which has the nearest known entry."""
+        """Exception with the program's message, which names the nearest known entry."""
         try:
             resolve(self._file, [f"{key}="])
         except BadInput as error:
@@ -161,7 +161,7 @@ class Case:
 
 
 def _text(key: str, value: Settable) -> str:
-    """Value as a case file holds it."""
+    """Value in the syntax of a case file."""
     if isinstance(value, (np.generic, np.ndarray)):
         value = value.tolist()
     if value is None:
@@ -174,5 +174,5 @@ def _text(key: str, value: Settable) -> str:
         return str(value)
     if isinstance(value, Sequence):
         return ", ".join(_text(key, item) for item in value)
-    raise TypeError(f"{key}: a value must be a text, a number, a truth value, a sequence of numbers or None, and not "
+    raise TypeError(f"{key}: a value must be a string, a number, a Boolean, a sequence of numbers or None, not "
                     f"{type(value).__name__}")

@@ -27,9 +27,9 @@ def fracture(case: CaseLike, directory: Directory, *, threads: int | None = None
     resume
         Whether to continue from the last checkpoint.
     skip_verification
-        Whether to run the crack unverified; noted in every output.
+        Whether to run the crack without verification; every output states it.
     report
-        Whether to make pictures and `report.html`.
+        Whether to create pictures and `report.html`.
     progress
         True: a progress indicator on standard error, tqdm if it is installed. False: none. A function: called with each
         progress line of the program.
@@ -81,7 +81,7 @@ def verify(*claims: str, directory: Directory, case: CaseLike | None = None, qui
     case
         Case whose material, loading and laws to verify; default: every law on the rubber of Fig. 1.
     quick
-        Whether to check the small versions.
+        Whether to use the small versions of the claims.
     threads, progress
         As in :func:`fracture`.
 

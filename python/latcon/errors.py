@@ -1,4 +1,4 @@
-"""Exceptions of the package; those of a run carry the program's message and exit code."""
+"""Exceptions of the package. Those of a run contain the program's message and exit code."""
 from __future__ import annotations
 
 import os
@@ -31,7 +31,7 @@ class UnreadableFile(LatconError):
 
 
 class _EndOfProgram(BaseException):
-    """Message, exit code and output directory of a program that did not end with 0."""
+    """Message, exit code and output directory of a program that ended with a non-zero exit code."""
 
     message: str
     exit_code: int
@@ -53,7 +53,7 @@ class ProgramError(_EndOfProgram, LatconError):
     Attributes
     ----------
     message : str
-        The program's message, without its name in front.
+        The program's message, without the leading program name.
     exit_code : int
         Exit status; negative: number of the signal that killed the program.
     directory : pathlib.Path or None
@@ -70,7 +70,7 @@ class BadInput(ProgramError, ValueError):
 
 
 class UnknownEntry(BadInput, KeyError):
-    """A key is no entry of a case; the message has the nearest known one."""
+    """A key is not an entry of a case; the message names the nearest known one."""
 
 
 class ClaimFailed(ProgramError):
@@ -98,5 +98,5 @@ _BY_EXIT_CODE: dict[int, type[ProgramError] | type[Interrupted]] = {
 
 
 def error_of(exit_code: int, message: str, directory: pathlib.Path | None = None) -> ProgramError | Interrupted:
-    """Exception that belongs to an exit code of the program."""
+    """Returns the exception for an exit code of the program."""
     return _BY_EXIT_CODE.get(exit_code, ProgramError)(message, exit_code, directory)

@@ -14,7 +14,7 @@ from .errors import UnreadableFile
 
 
 def read_text(path: pathlib.Path) -> str:
-    """Text of a file.
+    """Returns the text of a file.
 
     Raises
     ------
@@ -30,24 +30,24 @@ def read_text(path: pathlib.Path) -> str:
 
 
 def read_json(path: pathlib.Path) -> dict[str, Any]:
-    """Object in a JSON file.
+    """Returns the object in a JSON file.
 
     Raises
     ------
     UnreadableFile
-        If it is missing, damaged, or holds no object.
+        If it is missing or damaged, or does not contain an object.
     """
     try:
         value = json.loads(read_text(path))
     except ValueError as error:
         raise UnreadableFile(path, f"not JSON: {error}") from error
     if not isinstance(value, dict):
-        raise UnreadableFile(path, "holds no JSON object")
+        raise UnreadableFile(path, "not a JSON object")
     return value
 
 
 def read_table(path: pathlib.Path, units: Mapping[str, str]) -> pd.DataFrame:
-    """Table of a CSV file whose cells are numbers.
+    """Returns the table in a CSV file of numbers.
 
     Parameters
     ----------
@@ -59,7 +59,7 @@ def read_table(path: pathlib.Path, units: Mapping[str, str]) -> pd.DataFrame:
     Raises
     ------
     UnreadableFile
-        If it is missing, a cell is no number, or rows differ in length.
+        If it is missing, a cell is not a number, or rows differ in length.
     """
     text = read_text(path)
     lines = text.splitlines()
@@ -76,13 +76,13 @@ def read_table(path: pathlib.Path, units: Mapping[str, str]) -> pd.DataFrame:
         raise UnreadableFile(path, f"not a table: {error}") from error
     for name in table:
         if len(table) and not pd.api.types.is_numeric_dtype(table[name]):
-            raise UnreadableFile(path, f"column {name!r} holds a cell that is no number")
+            raise UnreadableFile(path, f"column {name!r} has a cell that is not a number")
     table.attrs["units"] = {name: units[name] for name in table if name in units}
     return table
 
 
 def read_series(path: pathlib.Path) -> list[tuple[float, pathlib.Path]]:
-    """Times [s] and files of the frames that a `.pvd` names.
+    """Returns times [s] and files of the frames listed in a `.pvd`.
 
     Raises
     ------

@@ -1,4 +1,4 @@
-"""Fields in VTK files: frames of a lattice, and means near the tip of a crack."""
+"""Readers of fields in VTK files: frames of a lattice, and mean fields near the tip of a crack."""
 from __future__ import annotations
 
 import dataclasses
@@ -26,18 +26,18 @@ class Frame:
     Attributes
     ----------
     time : float
-        Time t [s]; of a relaxed sheet 0 before and 1 after.
+        Time t [s]; for a relaxed sheet 0 before and 1 after relaxation.
     reference : ndarray, shape (sites, 2)
         Undeformed positions X, Y [m].
     position : ndarray, shape (sites, 2)
         Current positions x, y [m].
     bonds : ndarray of int, shape (bonds, 2)
-        Sites at the ends of each bond: rows of `reference`. None are in reduced frames of a motion.
+        Sites at the ends of each bond, as rows of `reference`. Reduced frames of a motion have no bonds.
     stretch : ndarray, shape (bonds,)
         Current over undeformed length λ.
     fields : dict of ndarray
-        Fields at the sites, under the names of docs/reference.md. Vectors have shape (sites, 2), tensors (sites, 2, 2)
-        with the current index first: the components in the plane.
+        Fields at the sites, with the names of docs/reference.md. Vectors have shape (sites, 2), tensors (sites, 2, 2)
+        with the current index first: the in-plane components.
     bond_fields : dict of ndarray
         Fields of the bonds, likewise.
     units : dict
@@ -55,7 +55,7 @@ class Frame:
 
 
 class Frames(Sequence[Frame]):
-    """Frames of a series, read when they are asked for.
+    """Frames of a series, read when they are accessed.
 
     Parameters
     ----------
@@ -95,12 +95,12 @@ class Frames(Sequence[Frame]):
 
 
 def read_frame(path: pathlib.Path, time: float) -> Frame:
-    """One frame of a lattice, a `.vtp`.
+    """Reads a frame of a lattice, a `.vtp` file.
 
     Raises
     ------
     UnreadableFile
-        If it is missing or damaged, or no frame of a lattice.
+        If the file is missing or damaged, or is not a frame of a lattice.
     """
     sheet = _read(path, "vtkXMLPolyDataReader")
     if sheet.GetNumberOfPoints() == 0:  # VTK's result for a damaged file
@@ -108,9 +108,9 @@ def read_frame(path: pathlib.Path, time: float) -> Frame:
     numpy_of = _converter()
     fields, units = _arrays(sheet.GetPointData())
     if "displacement" not in fields:
-        raise UnreadableFile(path, "no frame of a lattice: it has no field 'displacement'")
+        raise UnreadableFile(path, "not a frame of a lattice: the field 'displacement' is missing")
     cell_fields, cell_units = _arrays(sheet.GetCellData())
-    sites = sheet.GetNumberOfVerts()  # cell data counts the vertices first
+    sites = sheet.GetNumberOfVerts()  # cell data begin with the vertices
     bond_fields = {name: values[sites:] for name, values in cell_fields.items()}
     ends = np.empty((0, 2), dtype=np.int64)
     if sheet.GetNumberOfLines():
@@ -121,7 +121,7 @@ def read_frame(path: pathlib.Path, time: float) -> Frame:
 
 
 def read_near_tip(path: pathlib.Path) -> xarray.Dataset:
-    """Means around the tip, `near_tip.vti` or `near_tip_folded.vti`.
+    """Reads the mean fields around the tip, `near_tip.vti` or `near_tip_folded.vti`.
 
     Returns
     -------
@@ -167,7 +167,7 @@ def _read(path: pathlib.Path, reader_name: str) -> Any:
         raise LatconError("frames need the Python package vtk (Debian: python3-vtk9)") from error
     if not path.is_file():
         raise UnreadableFile(path, "no such file")
-    vtkObject.GlobalWarningDisplayOff()  # of a damaged file nothing is left, which the callers report
+    vtkObject.GlobalWarningDisplayOff()  # the callers report damaged files
     reader = getattr(vtkIOXML, reader_name)()
     reader.SetFileName(str(path))
     reader.Update()
@@ -180,7 +180,7 @@ def _converter() -> Any:
 
 
 def _arrays(data: Any) -> tuple[dict[str, Any], dict[str, str]]:
-    """Arrays by name, vectors and tensors by their components in the plane, and units of those that have one."""
+    """Returns arrays by name, with the in-plane components of vectors and tensors, and the units of those that have one."""
     from vtkmodules.vtkCommonCore import vtkDataArray
     numpy_of = _converter()
     arrays, units = {}, {}

@@ -54,7 +54,7 @@ def draw_sheet(frame: Frame, color: str, ax: matplotlib.axes.Axes | None) -> mat
 
 
 def bond_values(frame: Frame, color: str) -> Floats:
-    """Values of a field on the bonds; of a field of the sites the mean of both ends.
+    """Returns the values of a field on the bonds; for a field of the sites, the mean of both ends.
 
     Parameters
     ----------
@@ -66,10 +66,10 @@ def bond_values(frame: Frame, color: str) -> Floats:
     Raises
     ------
     ValueError
-        If the frame has no bonds or no such field, or the component does not fit.
+        If the frame has no bonds or no such field, or if the component does not match the field.
     """
     if not len(frame.bonds):
-        raise ValueError("the frame has no bonds; take one of run.frames")
+        raise ValueError("the frame has no bonds; use a frame of run.frames")
     name, _, component = color.partition(" ")
     on_bonds = name in frame.bond_fields
     if not on_bonds and name not in frame.fields:

@@ -1,4 +1,4 @@
-"""The program ``latcon``: where it is, and how it is run as a child process."""
+"""Finds the program ``latcon`` and runs it as a child process."""
 from __future__ import annotations
 
 import importlib.util
@@ -18,17 +18,17 @@ from .errors import ProgramNotFound, error_of
 
 Progress = bool | Callable[[str], None]
 
-# Bytes of the program's standard output that an error message may show.
+# Largest part of the program's standard output in an error message [bytes].
 _TAIL = 4000
 # Seconds between progress lines where standard error is neither a terminal nor a notebook.
 _LOG_INTERVAL = 60.0
 
 
 def find_program() -> pathlib.Path:
-    """Path of the program.
+    """Returns the path of the program.
 
-    Searched in this order: the environment variable ``LATCON``, the prefix that this package is installed below, ``PATH``, and
-    the build folder of the source checkout that this package, or the current directory, lies in.
+    The program is searched for in this order: the environment variable ``LATCON``, the prefix below which this package is
+    installed, ``PATH``, and the build folder of the source tree that contains this package or the current directory.
 
     Returns
     -------
@@ -38,12 +38,12 @@ def find_program() -> pathlib.Path:
     Raises
     ------
     ProgramNotFound
-        If it is in none of these places, or ``LATCON`` names no executable file.
+        If it is in none of these places, or if ``LATCON`` is not an executable file.
     """
     if named := os.environ.get("LATCON"):
         found = shutil.which(named)
         if found is None:
-            raise ProgramNotFound(f"the environment variable LATCON is {named!r}, which is no executable file")
+            raise ProgramNotFound(f"the environment variable LATCON is {named!r}, which is not an executable file")
         return pathlib.Path(found).resolve()
     here, current = pathlib.Path(__file__).resolve(), pathlib.Path.cwd()
     installed = next((folder for folder in here.parents if folder.name in ("dist-packages", "site-packages")), None)
@@ -62,7 +62,7 @@ def find_program() -> pathlib.Path:
 
 
 def ask(*arguments: str) -> str:
-    """Standard output of a command of the program that ends at once.
+    """Returns the standard output of a short command of the program.
 
     Raises
     ------
@@ -80,7 +80,7 @@ def run(arguments: Sequence[str], directory: pathlib.Path, progress: Progress) -
     """Runs a command of the program to its end.
 
     Ctrl-C sends SIGINT to the program, which writes a checkpoint and all results, and waits for its end; a second Ctrl-C
-    kills it. The program runs in a session of its own, so that a signal of the terminal reaches it once.
+    kills it. The program runs in a separate session, so that a signal from the terminal reaches it only once.
 
     Parameters
     ----------
@@ -94,7 +94,7 @@ def run(arguments: Sequence[str], directory: pathlib.Path, progress: Progress) -
     Raises
     ------
     ProgramError, Interrupted
-        If the program does not end with exit code 0.
+        If the exit code of the program is not 0.
     """
     # The program updates its progress line in place only if its standard error is a terminal.
     terminal, end_of_child = os.openpty()
@@ -124,7 +124,7 @@ def run(arguments: Sequence[str], directory: pathlib.Path, progress: Progress) -
 
 
 def _follow(child: subprocess.Popen[bytes], terminal: int, lines: _Lines) -> None:
-    """Passes on what the program writes to standard error until it has ended."""
+    """Forwards the standard error of the program until it has ended."""
     interrupted = False
     while True:
         try:
@@ -142,10 +142,10 @@ def _follow(child: subprocess.Popen[bytes], terminal: int, lines: _Lines) -> Non
 
 
 def _read(terminal: int) -> bytes:
-    """Next bytes; none once every writer has closed its end."""
+    """Returns the next bytes; none after every writer has closed its end."""
     try:
         return os.read(terminal, 65536)
-    except OSError:  # EIO: how a pseudo-terminal reports the end
+    except OSError:  # EIO: end of a pseudo-terminal
         return b""
 
 
@@ -161,13 +161,13 @@ def _tail(output: IO[bytes]) -> str:
 
 
 def _message(errors: Sequence[str], output: str) -> str:
-    """Message of an error: standard error, or, if that is empty, the end of standard output."""
+    """Returns the message of an error: standard error, or the end of standard output if that is empty."""
     text = "\n".join(errors).strip() or output.strip()[-_TAIL:] or "the program ended without a message"
     return re.sub(r"^latcon: ", "", text, flags=re.MULTILINE)
 
 
 class _Lines:
-    """Standard error of the program, separated into progress lines and messages.
+    """Splits the standard error of the program into progress lines and messages.
 
     A progress line follows ``\\r ESC [K`` and has no line end; a message ends with one.
     """
@@ -178,7 +178,7 @@ class _Lines:
         self.messages: list[str] = []
         self._show = show
         self._pending = ""
-        self._in_progress = False  # whether the pending text follows the mark of a progress line
+        self._in_progress = False  # whether the pending text belongs to a progress line
 
     def feed(self, text: str) -> None:
         pieces = self._SEPARATOR.split(self._pending + text)
@@ -187,7 +187,7 @@ class _Lines:
                 self._add(piece)
             self._in_progress = not separator.endswith("\n")
         self._pending = pieces[-1]
-        # All but complete beginnings of the next separator.
+        # Without a partial separator at the end.
         line = self._pending.partition("\r")[0]
         if self._in_progress and line:
             self._show.line(line)
@@ -204,10 +204,10 @@ class _Lines:
 
 
 class _Shower:
-    """Progress indicator; this one shows nothing."""
+    """Progress indicator; the base class shows nothing."""
 
     def line(self, text: str) -> None:
-        """Shows the present progress line."""
+        """Shows a progress line."""
 
     def close(self) -> None:
         """Ends the indicator."""
@@ -222,7 +222,7 @@ class _Function(_Shower):
 
 
 class _Stream(_Shower):
-    """The program's own lines: in place in a terminal or notebook, else one per minute."""
+    """Shows the lines of the program: in place in a terminal or notebook, otherwise one per minute."""
 
     def __init__(self) -> None:
         self._in_place = sys.stderr.isatty() or "ipykernel" in sys.modules
@@ -243,7 +243,7 @@ class _Stream(_Shower):
 
 
 class _Bar(_Shower):
-    """Bar of tqdm, in percent of the wall time that the program expects."""
+    """Progress bar of tqdm, in percent of the estimated wall time."""
 
     def __init__(self) -> None:
         from tqdm.auto import tqdm

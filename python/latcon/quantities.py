@@ -31,9 +31,9 @@ class Value:
     Attributes
     ----------
     value : float
-        In `unit`; not-a-number if it could not be determined.
+        In `unit`; NaN if it could not be determined.
     uncertainty : float
-        One standard deviation, in `unit`; not-a-number if there is none.
+        One standard deviation, in `unit`; NaN if there is none.
     unit : str
         SI unit; ``1`` for a pure number.
     """
@@ -58,8 +58,8 @@ class Value:
 class Quantities(Mapping[str, Any]):
     """Measured quantities by name, also as attributes: ``crack["wavelength"]``, ``crack.wavelength``.
 
-    Numbers are :class:`Value`; words (``pattern``, ``reason``), truth values and nested quantities are as they are. Keys of
-    uncertainties and ``units`` are left out.
+    Numbers are :class:`Value`; strings (``pattern``, ``reason``), Booleans and nested quantities are unchanged. Keys of
+    uncertainties and ``units`` are omitted.
     """
 
     def __init__(self, numbers: Mapping[str, Any]) -> None:

@@ -1,4 +1,4 @@
-"""Results of a run: everything in its output directory."""
+"""Results of a run: the contents of its output directory."""
 from __future__ import annotations
 
 import functools
@@ -27,7 +27,7 @@ _RESULT_COLUMNS = ("claim", "quantity", "unit", "lattice", "continuum", "theory"
 
 
 class Run:
-    """Results of a run in an output directory. Files are read when they are asked for, and once.
+    """Results of a run in an output directory. Each file is read once, when it is first accessed.
 
     Parameters
     ----------
@@ -37,12 +37,12 @@ class Run:
     Raises
     ------
     UnreadableFile
-        If the directory holds no `run.json`; of each property if its file is missing or damaged.
+        If the directory has no `run.json`; from a property, if its file is missing or damaged.
     """
 
     def __init__(self, directory: str | os.PathLike[str]) -> None:
         self.directory = pathlib.Path(directory)
-        self.info  # a folder without it holds no run
+        self.info  # raises if the directory is not that of a run
 
     def __repr__(self) -> str:
         return f"latcon.open({str(self.directory)!r})"
@@ -77,7 +77,7 @@ class Run:
 
     @functools.cached_property
     def path(self) -> pd.DataFrame:
-        """`crack.csv`: a row each time the tip moves.
+        """`crack.csv`: one row each time the tip moves.
 
         Columns ``t`` [s], ``X``, ``Y`` (undeformed), ``x``, ``y`` (current) [m], ``speed`` (Lagrangian) [m/s],
         ``bonds_broken``; units in ``attrs["units"]``.
@@ -86,7 +86,7 @@ class Run:
 
     @functools.cached_property
     def broken_bonds(self) -> pd.DataFrame:
-        """`broken_bonds.csv`: a row for each broken bond.
+        """`broken_bonds.csv`: one row per broken bond.
 
         Columns ``t`` [s], ``site``, ``other_site`` (the field ``site`` of frames), ``X``, ``Y`` of the undeformed midpoint [m],
         ``stretch``; units in ``attrs["units"]``.
@@ -98,13 +98,13 @@ class Run:
         """`energy.csv`: energies per unit sheet thickness [J/m] against ``t`` [s] or ``load_factor``.
 
         Columns of a lattice: ``elastic``, ``kinetic``, ``viscous``, ``broken``, ``boundary_work``, ``contact``, ``imbalance``;
-        of finite elements: docs/reference.md. Units in ``attrs["units"]``.
+        for those of finite elements see docs/reference.md. Units in ``attrs["units"]``.
         """
         return read_table(self.directory / "energy.csv", _ENERGY_UNITS)
 
     @functools.cached_property
     def results(self) -> pd.DataFrame:
-        """`results.json`: a row for each checked quantity.
+        """`results.json`: one row per checked quantity.
 
         Columns ``claim``, ``quantity``, ``unit``, ``lattice``, ``continuum``, ``theory``, ``error``, ``tolerance``,
         ``verdict`` (``holds``, ``fails``, ``reported``); numbers that do not apply are NaN. The first three numbers are in
@@ -145,7 +145,7 @@ class Run:
         return read_near_tip(self.directory / f"near_tip{'_folded' if folded else ''}.vti")
 
     def plot_path(self, ax: matplotlib.axes.Axes | None = None) -> matplotlib.axes.Axes:
-        """Draws the path of the tip in the undeformed sheet [cm], and the bonds that broke.
+        """Draws the path of the tip and the broken bonds in the undeformed sheet [cm].
 
         Parameters
         ----------
@@ -164,8 +164,8 @@ class Run:
         frame
             Index of the frame.
         color
-            Field of the bonds, or scalar field of the sites (a bond has the mean of its ends), such as ``"stretch"``,
-            ``"damage"``, ``"strain_energy_density"``; of a vector or tensor a component: ``"velocity x"``,
+            Field of the bonds, or field of the sites (a bond has the mean of its ends): a scalar such as ``"stretch"``,
+            ``"damage"``, ``"strain_energy_density"``, or a component of a vector or tensor such as ``"velocity x"``,
             ``"cauchy_stress yy"``.
         ax
             Axes to draw in; default: those of a new figure.
@@ -174,7 +174,7 @@ class Run:
         return draw_sheet(self.frames[frame], color, ax)
 
     def to_html(self) -> pathlib.Path:
-        """Makes `report.html` by ``latcon report``, and returns its path.
+        """Creates `report.html` with ``latcon report`` and returns its path.
 
         Raises
         ------
@@ -191,6 +191,6 @@ def open_run(directory: str | os.PathLike[str]) -> Run:
     Raises
     ------
     UnreadableFile
-        If it holds no run.
+        If the directory is not that of a run.
     """
     return Run(directory)

@@ -1,4 +1,4 @@
-"""Entries of a case, as the program declares them."""
+"""Entries of a case as declared by the program."""
 from __future__ import annotations
 
 import dataclasses
@@ -29,13 +29,13 @@ class Entry:
     type : str
         ``number``, ``integer``, ``numbers`` (a list), ``boolean``, ``word`` (one of `words`) or ``text``.
     unit : str or None
-        SI unit; ``1`` for a pure number, None for entries that are no quantities.
+        SI unit; ``1`` for a pure number, None for entries that are not quantities.
     required : bool
         Whether every case must set it; then it has no default.
     default : EntryValue
         Default value in SI units; None is ``auto``.
     range : dict
-        Bounds that exist, of ``minimum``, ``exclusive_minimum``, ``maximum``, ``exclusive_maximum``; of ``numbers`` for each.
+        Those of ``minimum``, ``exclusive_minimum``, ``maximum``, ``exclusive_maximum`` that exist; for ``numbers``, of each.
     auto : bool
         Whether ``auto`` (None) is allowed: the program derives the value.
     words : tuple of str
@@ -79,7 +79,7 @@ class Schema(Mapping[str, Entry]):
 
     def __init__(self, document: Mapping[str, Any]) -> None:
         if document.get("format") != "latcon-schema" or document.get("format_version") != _FORMAT_VERSION:
-            raise LatconError(f"the program {find_program()} prints another schema than this package reads (format version "
+            raise LatconError(f"the schema of the program {find_program()} does not match this package (format version "
                               f"{document.get('format_version')}, not {_FORMAT_VERSION}); install both from the same version")
         self.version: str = document["version"]
         self.cases = {name: pathlib.Path(path) for name, path in document["cases"].items()}
@@ -103,7 +103,7 @@ def _entry(item: Mapping[str, Any]) -> Entry:
 
 
 def schema() -> Schema:
-    """Entries of a case that the program declares (``latcon schema``)."""
+    """Returns the entries of a case that the program declares (``latcon schema``)."""
     program = find_program()
     return _schema(program, program.stat().st_mtime_ns)
 
@@ -115,14 +115,14 @@ def _schema(_program: pathlib.Path, _modified: int) -> Schema:
 
 @dataclasses.dataclass(frozen=True)
 class ResolvedCase:
-    """Case as the program reads it: every value, and the text of `case.prm`."""
+    """Case as read by the program: all values, and the text of `case.prm`."""
 
     values: Mapping[str, EntryValue]
     text: str
 
 
 def resolve(file: str | os.PathLike[str], overrides: Sequence[str]) -> ResolvedCase:
-    """Reads a case by the program.
+    """Reads a case with the program.
 
     Parameters
     ----------

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What the benchmarks read, derive and show, from numbers made up here."""
+"""Tests of the benchmark tools: what they read, derive and show, with synthetic numbers."""
 import copy
 import json
 import pathlib
@@ -220,14 +220,14 @@ class Page(unittest.TestCase):
         text = page.markdown(DOCUMENT)
         for line in ("| everything | AVX2 | 10,192 | 8.0 | 6 % |",
                      "| 1,000 | 100 | 80.0 | 5.0 | 10.0 | 16.0 | 8.0 | 4e-13 | 1e-12 |",
-                     "| 100,000 | 7.0 | 3.5 | 2.00 | 5 % | 5 % | 67 |", "200 bytes a site",
+                     "| 100,000 | 7.0 | 3.5 | 2.00 | 5 % | 5 % | 67 |", "200 bytes per site",
                      "| `latcon lattice`, a.prm | 4.00 | 1.60 | 2.00 | 5 % |",
                      "| crack alone | 15.50 | 2 % | fracture 10.00 |",
                      "| runge-kutta-chebyshev | 4.00 | 2.50 | 1e-06 | 3 | 6,000 | oscillating | 20.25 ± 1 | 0.023 ± 0.0002 | - |",
                      "| 100,000 | 2 | 5.00 | 1.00 + 1.50 + 2.00 | 2.00 | 20.00 | 4.0 | 3 4 | 900 | 2500 | 2e-09 |",
                      "| 400,000 | 2 | 5.00 | 1.00 + 1.50 + 2.00 | - | - | - | 3 | 900 | - | - |", "| 65,536 | 10.00 | 6.55 |",
                      "Not measured: `smoke`, no reason.", "Not measured: `mirrors`, all broken.",
-                     "versions of harmonic bonds in it: plain, `-suffix omp`", "Swift 9 (family 26, AVX2), 2 cores, "
+                     "its versions of harmonic bonds: plain, `-suffix omp`", "Swift 9 (family 26, AVX2), 2 cores, "
                      "L2 2 MiB (2 instances), 16 GiB; c++ 1, Release; commit abc, 2000-01-01."):
             self.assertIn(line, text)
         # 10^5 sites of 10 ns beside two messages of 0.2 us + 64 kB / (6.5536 GB/s) and four rounds of 0.2 us.
@@ -240,7 +240,7 @@ class Page(unittest.TestCase):
 
     def test_terminal_has_the_same_numbers_in_columns(self):
         text = page.text(dict(DOCUMENT, quick=True))
-        self.assertIn("small versions, which say nothing", text)
+        self.assertIn("small versions, not representative", text)
         self.assertRegex(text, r"(?m)^everything +AVX2 +10,192 +8\.0 +6 %$")
 
     def test_the_hand_written_part_of_the_page_is_left_alone(self):

@@ -1,7 +1,7 @@
-"""Time of a step on many ranks, from what was measured on one machine.
+"""Model for the time of a step on many ranks, from measurements on one machine.
 
-A rank has a band of rows of a sheet of `columns` sites a row. Each step moves its sites, exchanges two rows at either end
-of the band with the rank beyond it, and adds one number up over all ranks. Nothing overlaps, the worst case:
+Each rank has a band of rows, with `columns` sites per row. In each step it moves its sites, exchanges two rows at either end
+of the band with the neighbouring rank, and takes part in a sum of one number over all ranks. Nothing overlaps (worst case):
 
     T = n t_site + 2 (latency + bytes / bandwidth) + log2(ranks) t_reduction
 """
@@ -14,14 +14,14 @@ HALO_FIELDS = 4  # two components of position and of velocity, 8 bytes each
 
 @dataclasses.dataclass(frozen=True)
 class Machine:
-    site_seconds: float  # t_site: of one site in one step, on one core of a machine all of whose cores work [s]
+    site_seconds: float  # t_site: time per site and step, on one core of a machine with all cores busy [s]
     latency: float       # of a short message [s]
     bandwidth: float     # of a long message, both ways at once [byte/s]
     reduction: float     # t_reduction: of one number over two ranks [s]
 
 
 def halo_bytes(columns):
-    """Sent to one neighbour in one step [byte]."""
+    """Bytes sent to one neighbour in one step."""
     return 8. * HALO_ROWS * HALO_FIELDS * columns
 
 
@@ -34,13 +34,13 @@ def step_seconds(machine, sites_per_rank, columns, ranks):
 
 
 def efficiency(machine, sites_per_rank, columns, ranks):
-    """Time of the sites over the whole time [-]: speed-up over the number of ranks."""
+    """Parallel efficiency [-]: time of the sites over the total time."""
     return sites_per_rank * machine.site_seconds / step_seconds(machine, sites_per_rank, columns, ranks)
 
 
 def message_times(exchanges):
-    """(latency [s], bandwidth [byte/s]) from pairs of (bytes, seconds): of the shortest message, and of the slowest whose
-    length is that of a halo, 16 KiB to 1 MiB."""
+    """(latency [s], bandwidth [byte/s]) from pairs of (bytes, seconds): latency of the shortest message, and lowest
+    bandwidth of messages as long as a halo, 16 KiB to 1 MiB."""
     shortest = min(exchanges)[1]
     rates = [n_bytes / seconds for n_bytes, seconds in exchanges if 2**14 <= n_bytes <= 2**20]
     return shortest, min(rates)

@@ -1,8 +1,8 @@
 """The sheet of continuum_sheet.prm in dolfinx 0.5: the same functional, mesh, element, quadrature and penalty.
 
 Newton's method with MUMPS, from zero displacement, until the residual over the free unknowns is at most --tolerance.
-Prints one line of JSON. Times are those of this process, without imports; forms are compiled beforehand by a mesh of
-2 x 2 cells, which fills the cache of the form compiler.
+Prints one line of JSON. Times exclude imports; forms are compiled in advance on a mesh of 2 x 2 cells, which fills the
+cache of the form compiler.
 """
 import argparse
 import json
@@ -90,7 +90,7 @@ class Sheet:
 
 
 def newton(sheet, arguments, seconds):
-    """Solves for sheet.u; returns the number of steps and the residual [N/m]. Adds up the times of the parts."""
+    """Solves for sheet.u; returns the number of steps and the residual [N/m]. Accumulates the times of the parts."""
     clock = time.perf_counter
     start = clock()
     K = petsc.create_matrix(sheet.tangent)

@@ -41,7 +41,7 @@ def parse():
 
 
 def environment():
-    """One thread for each rank: the ranks are what is counted. Open MPI refuses root unless told otherwise."""
+    """Environment with one thread per rank, so that only ranks count, and with root allowed for Open MPI."""
     return {**os.environ, "OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1",
             "OMPI_ALLOW_RUN_AS_ROOT": "1", "OMPI_ALLOW_RUN_AS_ROOT_CONFIRM": "1"}
 
@@ -59,7 +59,7 @@ def rows(path):
 
 
 def displacement_at(path, point):
-    """Of the node of a frame that is nearest to `point` [m]; frames are in single precision."""
+    """Displacement of the node of a frame nearest to `point` [m]; frames are in single precision."""
     from vtkmodules.util.numpy_support import vtk_to_numpy
     from vtkmodules.vtkIOXML import vtkXMLUnstructuredGridReader
 
@@ -89,9 +89,9 @@ def latcon(program, cells, degree, ranks, folder):
         "assembly": times["assembly"],
         "preconditioner": times["preconditioner"],
         "linear_solve": times["linear solve"],
-        "newton_steps": len(newton),  # the predictor is one
+        "newton_steps": len(newton),  # including the predictor
         "krylov_iterations": [int(step["linear_iterations"]) for step in newton],
-        "bytes_per_unknown": ranks * info["peak_memory_bytes"] / unknowns,  # the first rank stands for all
+        "bytes_per_unknown": ranks * info["peak_memory_bytes"] / unknowns,  # the root rank is representative
         "tolerance": float(newton[-1]["tolerance"]),
         "energy": results["elastic energy per thickness"],
         "displacement": displacement_at(folder / "continuum_0001.vtu", PROBE) if ranks == 1 else None,
@@ -120,7 +120,7 @@ def compare(program, cells, degree, lu, folder):
     if lu:
         problem["dolfinx_lu"] = dolfinx(cells, degree, one["tolerance"], "lu", folder)
         problem["ratio_lu"] = problem["dolfinx_lu"]["seconds"] / one["seconds"]
-    # Energies are stationary, so what is left is the rounding of a sum over the cells, at worst one of each. Frames
+    # Energies are stationary, so only the rounding of a sum over the cells remains, at worst one per cell. Frames
     # have 24 bits of a displacement below 6 cm.
     energy_tolerance = sys.float_info.epsilon * cells**2
     problem["agrees"] = (

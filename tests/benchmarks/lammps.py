@@ -1,9 +1,9 @@
-"""The same sheet in LAMMPS: its input, and what its log says."""
+"""LAMMPS input of a sheet, and parsing of LAMMPS's log."""
 import re
 
 from measure import Failed, run
 
-# Neighbour lists are not built: there are no pair forces, and bonds never change. Sites stay in the order of the rows.
+# Neighbour lists are not built: there are no pair forces, and bonds never change. Sites remain ordered by rows.
 INPUT = """units si
 dimension 2
 boundary f f p
@@ -31,15 +31,15 @@ dump_modify positions sort id format float %.17g
 
 
 def input_text(data, time_step, steps, repetitions, positions=None):
-    """`steps` steps that are not timed, and `repetitions` times as many that are. @param positions file that gets them
-    before and after each of these times"""
+    """Input for `steps` untimed steps and `repetitions` timed runs of as many. @param positions file for the positions
+    before and after each run"""
     return INPUT.format(data=data, time_step=time_step, steps=steps,
                         dump="" if positions is None else DUMP.format(steps=steps, file=positions),
                         runs="\n".join([f"run {steps}"] * (repetitions + 1)))
 
 
 def read_positions(text):
-    """{step: [(x, y) of each site, in the order of their numbers]} [m] of the file that `input_text` asks for."""
+    """{step: [(x, y) of each site, by number]} [m] from the file of positions of `input_text`."""
     frames = {}
     for part in text.split("ITEM: TIMESTEP\n")[1:]:
         header, rows = part.split("ITEM: ATOMS id x y")
@@ -48,7 +48,7 @@ def read_positions(text):
 
 
 def read_log(text):
-    """A run after another: {"steps", "seconds", "potential_energy", "kinetic_energy"} at its end."""
+    """Results of each run in a log: {"steps", "seconds", "potential_energy", "kinetic_energy"} at its end."""
     runs = []
     pattern = re.compile(r"^Step PotEng KinEng\s*\n((?:[ \t]*\d+[ \t]+\S+[ \t]+\S+[ \t]*\n)+)"
                          r"Loop time of (\S+) on (\d+) procs for (\d+) steps", re.MULTILINE)
@@ -64,7 +64,7 @@ def read_log(text):
 
 
 def suffixes(help_text):
-    """Accelerated versions of harmonic bonds that `lmp -h` lists, as -suffix wants them; "none" is the plain one."""
+    """Suffixes of the accelerated harmonic bonds listed by `lmp -h`; "none" is the plain version."""
     match = re.search(r"\* Bond styles:\s*\n(.*?)\n\s*\n?\* ", help_text, re.DOTALL)
     if not match:
         raise Failed("`lmp -h` lists no bond styles")
@@ -73,19 +73,19 @@ def suffixes(help_text):
 
 
 def version(help_text):
-    """As `lmp -h` begins."""
+    """Version in the first line of `lmp -h`."""
     match = re.search(r"Massively Parallel Simulator - (.+)", help_text)
     return match.group(1).strip() if match else "unknown"
 
 
 def move(folder, suffix):
-    """Runs the input `in.sheet` of a folder on one core. @return what read_log() says"""
+    """Runs the input `in.sheet` of a folder on one core. @return result of read_log()"""
     version_of_bonds = "off" if suffix == "none" else suffix
     run(["lmp", "-in", "in.sheet", "-log", "log.sheet", "-screen", "none", "-suffix", version_of_bonds], folder=folder)
     return read_log((folder / "log.sheet").read_text(encoding="utf-8"))
 
 
 def energy_tolerance(sites, columns, steps):
-    """Relative difference of energies that round-off alone may make: one in each term of a sum over six bonds a site,
-    and in each step two in each end of a bond, whose position is up to `columns` bond lengths."""
+    """Bound on the relative difference of energies due to round-off: one rounding per term of a sum over six bonds per site,
+    and two per step and end of a bond, whose position is up to `columns` bond lengths."""
     return 2.**-53 * (6. * sites + 4. * columns * steps)

@@ -18,7 +18,7 @@ import lammps
 from measure import run
 
 SITES, STEPS, REPETITIONS = 400, 200, 9
-SKIPPED = 77  # as ctest is told
+SKIPPED = 77  # exit code that ctest treats as skipped
 
 
 def largest_distance(frame, other):
@@ -26,13 +26,13 @@ def largest_distance(frame, other):
 
 
 def round_off(size, sites, steps):
-    """What round-off may add up to in two programs that start with the same bits [m].
+    """Bound on the accumulated round-off in two programs that start from the same bits [m].
 
-    In a step each rounds every coordinate once, by 2^-53 of the sheet's size at most. Rounding of a bond's force, some
-    ten times 2^-53 of K d, moves a site by h^2 / m times that, less than as much again, as the step is within the limit
-    h^2 K / m < 1 and the sheet longer than ten bonds. What a rounding leaves is an oscillation about the motion: the step
-    is half of the limit, so that it never exceeds 1 / sqrt(1 - 1/4) times the rounding, by the norm over all 2 n
-    coordinates. All roundings may meet at one site.
+    In each step both round every coordinate once, by at most 2^-53 of the size of the sheet. Rounding of a bond force, about
+    ten times 2^-53 of K d, moves a site by h^2 / m times that, which is less, since the step satisfies h^2 K / m < 1 and the
+    sheet is longer than ten bonds. A rounding error oscillates about the motion. The step is half of the limit, so that in
+    the norm over all 2 n coordinates the oscillation never exceeds 1 / sqrt(1 - 1/4) times the rounding. All roundings may
+    add up at one site.
     """
     return 2 * 2. * steps * 2.**-53 * size * math.sqrt(2. * sites) / math.sqrt(0.75)
 
@@ -60,7 +60,7 @@ class Lammps(unittest.TestCase):
             bound = round_off(size, sites, steps)
             print(f"{steps} steps: moved {way / spacing:.3f} bonds, differ by {difference / spacing:.1e}, bound {bound / spacing:.1e}")
             self.assertLess(difference, bound)
-            # The sheet moves by so much that the bound says something: a constant that is off by 1e-6 shows.
+            # The sheet moves far enough for a meaningful bound: an error of 1e-6 in a constant would exceed it.
             self.assertGreater(way, 0.02 * spacing)
             self.assertLess(bound, 1e-6 * way)
 

@@ -1,4 +1,4 @@
-"""What the numbers depend on: processor, compiler, commit, date."""
+"""Description of the machine and the build: processor, compiler, commit, date."""
 import datetime
 import json
 import re
@@ -15,7 +15,7 @@ def output_of(*command):
 
 
 def processor(lscpu):
-    """Model, cores, caches and widest vectors from what `lscpu --json` says."""
+    """Model, cores, caches and widest vectors from the output of `lscpu --json`."""
     fields = {}
 
     def collect(entries):
@@ -35,7 +35,7 @@ def processor(lscpu):
 
 
 def memory():
-    """Of the machine [byte]."""
+    """Memory of the machine [byte]."""
     with open("/proc/meminfo", encoding="ascii") as file:
         return 1024 * int(re.search(r"MemTotal:\s+(\d+)", file.read()).group(1))
 

@@ -1,4 +1,4 @@
-"""Running programs and keeping what they took."""
+"""Runs programs and measures their times."""
 import json
 import os
 import pathlib
@@ -12,15 +12,15 @@ ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROO
 
 
 class Skipped(Exception):
-    """A part that cannot be measured here, and why."""
+    """Reason why a part cannot be measured on this machine."""
 
 
 class Failed(Exception):
-    """A program that did not do what it was asked."""
+    """A program failed."""
 
 
 def run(command, environment=None, folder=None):
-    """Runs a program. @return its standard output; raises Failed with the end of its words if it fails"""
+    """Runs a program. @return its standard output; raises Failed with the end of its output if it fails"""
     command = list(map(str, command))
     try:
         done = subprocess.run(command, capture_output=True, text=True, cwd=folder, env=environment or ENVIRONMENT)
@@ -44,7 +44,7 @@ def on_ranks(ranks, command):
 
 
 def interleaved(variants, rounds):
-    """Calls each of the variants (name -> function) in turn, so that what disturbs the machine disturbs all alike.
+    """Calls the variants (name -> function) alternately, so that other load on the machine affects all of them.
     @return name -> results of the rounds"""
     results = {name: [] for name in variants}
     for _ in range(rounds):
@@ -54,10 +54,10 @@ def interleaved(variants, rounds):
 
 
 def best(seconds):
-    """The shortest of several times: other work on the machine only ever adds."""
+    """The shortest of several times, since other load only lengthens them."""
     return min(seconds)
 
 
 def spread(seconds):
-    """Median over minimum, less one [-]: how much the machine was disturbed."""
+    """Median over minimum, minus one [-]: a measure of the disturbance by other load."""
     return statistics.median(seconds) / min(seconds) - 1.

@@ -1,4 +1,4 @@
-"""Tables of what was measured, for the terminal and for docs/performance.md."""
+"""Tables of measurements, for the terminal and for docs/performance.md."""
 import dataclasses
 
 import summary
@@ -16,7 +16,7 @@ class Table:
     note: str = ""
 
     def text(self):
-        """For a terminal: the first column to the left, the others to the right."""
+        """Text for a terminal: the first column left-aligned, the others right-aligned."""
         lines = [self.header, *self.rows]
         widths = [max(len(line[i]) for line in lines) for i in range(len(self.header))]
         cells = ["  ".join([line[0].ljust(widths[0]), *(c.rjust(w) for c, w in zip(line[1:], widths[1:]))]).rstrip()
@@ -49,8 +49,8 @@ def seconds_text(seconds):
 def kernel_table(part):
     rows = [[row["work"], row["target"] or row["used"], number(row["sites"]), ns(best(row["seconds_per_site"])),
              per_cent(spread(row["seconds_per_site"]))] for row in part["rows"]]
-    note = ("`everything`: Mooney-Rivlin bonds to twelve neighbours, dashpots, breaking and toughening watched; `nearest`: "
-            "the same with six; `linear`: linear bonds to twelve and nothing else; `reference`: forces alone, bond by bond.")
+    note = ("`everything`: Mooney-Rivlin bonds to twelve neighbours, dashpots, breaking and toughening; `nearest`: the same "
+            "with six neighbours; `linear`: only linear bonds to twelve neighbours; `reference`: only forces, bond by bond.")
     return [Table("Kernel, one core", ["bonds", "instruction set", "sites", "ns per site and step", "spread"], rows, note)]
 
 
@@ -65,8 +65,8 @@ def lammps_table(part):
     suffixes = ", ".join("plain" if suffix == "none" else f"`-suffix {suffix}`" for suffix in part["suffixes"])
     header = ["sites", "steps", "LAMMPS", "linear", "everything", "LAMMPS / linear", "LAMMPS / everything",
               "energies differ", "allowed"]
-    note = (f"LAMMPS {part['version']}; versions of harmonic bonds in it: {suffixes}. Times in ns per site and step. "
-            "Energies differ by no more than round-off allows.")
+    note = (f"LAMMPS {part['version']}; its versions of harmonic bonds: {suffixes}. Times in ns per site and step. "
+            "Energies agree within round-off.")
     return [Table("Against LAMMPS, one core", header, rows, note)]
 
 
@@ -78,7 +78,7 @@ def sizes_table(part):
                      f"{summary.per_site(one) / summary.per_site(two):.2f}", per_cent(spread(one["seconds"])),
                      per_cent(spread(two["seconds"])), f"{one['peak_memory_bytes'] / 2**20:.0f}"])
     header = ["sites", "1 thread [ns]", "2 threads [ns]", "speed-up", "spread, 1", "spread, 2", "peak memory [MiB]"]
-    note = (f"Everything on. {summary.bytes_per_site(part):.0f} bytes a site, from the growth of the peak memory between "
+    note = (f"All features on. {summary.bytes_per_site(part):.0f} bytes per site, from the growth of the peak memory between "
             "the two largest sheets.")
     return [Table("Sizes and threads", header, rows, note)]
 
@@ -90,7 +90,7 @@ def ranks_table(part):
         rows.append([f"`latcon {command}`, {case}", seconds_text(one), f"{one / best(times[1, 2]):.2f}",
                      f"{one / best(times[2, 1]):.2f}", per_cent(max(map(spread, times.values())))])
     header = ["command", "1 core [s]", "speed-up, 2 threads", "speed-up, 2 ranks", "largest spread"]
-    return [Table("Whole programs on threads and ranks", header, rows, "Time of the motion, without set-up.")]
+    return [Table("Whole programs on threads and ranks", header, rows, "Time of the motion, without setup.")]
 
 
 def fig1_table(part):
@@ -134,11 +134,11 @@ def messages_table(part):
     rows = [[number(entry["bytes"]), f"{1e6 * best(entry['seconds']):.2f}",
              f"{1e-9 * entry['bytes'] / best(entry['seconds']):.2f}"] for entry in part["exchanges"]]
     return [Table("Messages between two ranks of this machine", ["bytes each way", "[us]", "[GB/s]"], rows,
-                  f"Sum of one number over both: {1e6 * best(part['allreduce_seconds']):.2f} us.")]
+                  f"Sum of one number over both ranks: {1e6 * best(part['allreduce_seconds']):.2f} us.")]
 
 
 def model_tables(parts):
-    """Predictions of cost_model.py; none if a part of what it needs was not measured."""
+    """Predictions of cost_model.py; none if a measurement that it needs is missing."""
     if "sizes" not in parts or "messages" not in parts:
         return []
     exchanges = [(entry["bytes"], best(entry["seconds"])) for entry in parts["messages"]["exchanges"]]
@@ -154,10 +154,10 @@ def model_tables(parts):
             rows.append([number(columns), number(sites),
                          *(per_cent(efficiency(machine, sites, columns, ranks))
                            for machine in (here, network) for ranks in (16, 1024))])
-    note = (f"Of the model above with t_site = {ns(site_seconds)} ns (two threads at work, largest sheet), and messages as "
+    note = (f"From the model above with t_site = {ns(site_seconds)} ns (two busy threads, largest sheet), and messages as "
             f"measured here (latency {1e6 * latency:.2f} us, {1e-9 * bandwidth:.2f} GB/s, reduction "
-            f"{1e6 * here.reduction:.2f} us) or as assumed of a network (2 us, 5 GB/s, 4 us).")
-    header = ["sites a row", "sites a rank", "16 ranks", "1024 ranks", "16, network", "1024, network"]
+            f"{1e6 * here.reduction:.2f} us) or as assumed for a network (2 us, 5 GB/s, 4 us).")
+    header = ["sites per row", "sites per rank", "16 ranks", "1024 ranks", "16, network", "1024, network"]
     return [Table("Predicted efficiency on many ranks", header, rows, note)]
 
 
@@ -166,10 +166,10 @@ TABLES = {"kernel": kernel_table, "lammps": lammps_table, "sizes": sizes_table, 
 
 
 def tables(document):
-    """All tables of a document (see run.py), what is asked for first."""
+    """All tables of a document (see run.py), the targets first."""
     parts = document["parts"]
     asked = summary.rows(parts)
-    result = [Table("What is asked for", ["quantity", "measured", "aim", ""], asked)] if asked else []
+    result = [Table("Targets", ["quantity", "measured", "target", ""], asked)] if asked else []
     for name, make in TABLES.items():
         if name in parts:
             result += make(parts[name])
@@ -180,19 +180,19 @@ def machine_text(document):
     machine = document["machine"]
     processor = machine["processor"]
     caches = ", ".join(f"{name} {size}" for name, size in processor["caches"].items())
-    size = ", small versions, which say nothing" if document["quick"] else ""
+    size = ", small versions, not representative" if document["quick"] else ""
     return (f"{processor['model']} (family {processor['family']}, {processor['vectors']}), {processor['cores']} cores, "
             f"{caches}, {machine['memory_bytes'] / 2**30:.0f} GiB; {machine['compiler']}, {machine['build_type']}; commit "
             f"{machine['commit']}, {machine['date']}{size}.")
 
 
 def not_measured(document):
-    """(part, reason) of those that could not be measured and of those that failed."""
+    """(part, reason) for each part that could not be measured or failed."""
     return [*document["skipped"].items(), *document["failed"].items()]
 
 
 def text(document):
-    """For the terminal."""
+    """Text for the terminal."""
     notes = [f"{name}: not measured, {reason}" for name, reason in not_measured(document)]
     return "\n".join([machine_text(document) + "\n", *(table.text() for table in tables(document)), *notes])
 
@@ -200,13 +200,13 @@ def text(document):
 def markdown(document):
     """The generated part of docs/performance.md."""
     notes = [f"Not measured: `{name}`, {reason}.\n" for name, reason in not_measured(document)]
-    intro = ("Made by `tests/benchmarks/run --write-docs`; do not edit. Each time is the shortest of several, taken in turns "
-             "with what it is compared with; the spread is the median over the shortest, less one.\n")
+    intro = ("Made by `tests/benchmarks/run --write-docs`; do not edit. Each time is the shortest of several, measured "
+             "alternately with the other side of the comparison; the spread is the median over the shortest, minus one.\n")
     return "\n".join([intro, machine_text(document) + "\n", *(table.markdown() for table in tables(document)), *notes])
 
 
 def write_docs(path, document):
-    """Replaces the generated part of a page, and nothing else."""
+    """Replaces the generated part of a page."""
     page = path.read_text(encoding="utf-8")
     if page.count(BEGIN) != 1 or page.count(END) != 1 or page.index(BEGIN) > page.index(END):
         raise ValueError(f"{path}: needs one line {BEGIN} and one line {END} below it")

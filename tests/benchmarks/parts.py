@@ -1,6 +1,6 @@
-"""What is measured. A part returns its raw numbers, or raises Skipped where it cannot be measured.
+"""Parts of the benchmark. Each returns its raw numbers, or raises Skipped if it cannot be measured.
 
-Each takes a Plan and may write into a folder of its own, plan.folder(NAME)."""
+A part takes a Plan and may write into its own folder, plan.folder(NAME)."""
 import dataclasses
 import json
 import pathlib
@@ -16,7 +16,7 @@ CASES = ROOT / "verification" / "cases"
 @dataclasses.dataclass(frozen=True)
 class Plan:
     build: pathlib.Path   # folder of the programs
-    output: pathlib.Path  # folder for what they write
+    output: pathlib.Path  # folder for their output
     quick: bool
 
     @property
@@ -37,7 +37,7 @@ class Plan:
         return path
 
     def steps(self, sites):
-        """Steps that take LAMMPS some seconds, the same for all programs."""
+        """Number of steps, the same for all programs, that take LAMMPS a few seconds."""
         return max(5, round((1e6 if self.quick else 2e7) / sites))
 
 
@@ -47,7 +47,7 @@ def motion(plan, work, sites, steps, threads, *data):
 
 
 def kernel(plan):
-    """Steps on one thread by each kind of bonds and each instruction set, beside a force evaluation bond by bond."""
+    """Steps on one thread for each kind of bonds and instruction set, and a force evaluation bond by bond."""
     program = plan.program("lattice_kernel")
     filters = {"": "^(reference/.*|step/.*/(10000|25000))$" if plan.quick else "."}
     for target in run([program, "--targets"]).split():
@@ -65,8 +65,8 @@ def kernel(plan):
 
 
 def kernel_rows(document, target):
-    """Of Google Benchmark's output: a row for each kind of bonds and size, its repetitions as seconds a site and step.
-    @param target instruction set asked for; "" if none was, then the one that the program chose"""
+    """Rows of Google Benchmark's output, one per kind of bonds and size, with repetitions in seconds per site and step.
+    @param target requested instruction set; "" for the one chosen by the program"""
     rows = {}
     for entry in document["benchmarks"]:
         if entry["run_type"] != "iteration":
@@ -81,8 +81,8 @@ def kernel_rows(document, target):
 
 
 def against_lammps(plan):
-    """Linear bonds without dashpots in LAMMPS and in latcon, the same steps of the same sheet on one core; latcon with
-    everything on beside them."""
+    """Linear bonds without dashpots in LAMMPS and in latcon, the same steps of the same sheet on one core; also latcon with
+    all features on."""
     help_text = run(["lmp", "-h"])
     rows = []
     for sites in (1e4, 1e5) if plan.quick else (1e4, 2.5e4, 1e5, 1e6):
@@ -102,19 +102,19 @@ def against_lammps(plan):
                **{f"{work}_seconds": [r["seconds"][0] for r in ours[work]] for work in ours},
                "tolerance": lammps.energy_tolerance(first["sites"], first["columns"], 2 * steps)}
         theirs, mine = results[fastest][0], ours["linear"][0]
-        # Both as parts of the potential energy: the total is conserved, so an error in one is an error in the other.
+        # Both relative to the potential energy: the total is conserved, so an error in one is an error in the other.
         for energy in ("potential_energy", "kinetic_energy"):
             row[energy] = {"lammps": theirs[energy], "latcon": mine[energy],
                            "difference": abs(theirs[energy] - mine[energy]) / mine["potential_energy"]}
             if not row[energy]["difference"] <= row["tolerance"]:
                 raise Failed(f"{sites:g} sites: LAMMPS and latcon differ in {energy}: {row[energy]}")
         rows.append(row)
-        shutil.rmtree(folder)  # a data file has 200 bytes a site
+        shutil.rmtree(folder)  # a data file has 200 bytes per site
     return {"version": lammps.version(help_text), "suffixes": lammps.suffixes(help_text), "rows": rows}
 
 
 def sizes(plan):
-    """Steps with everything on, on one thread and two, for sheets of all sizes; memory."""
+    """Steps with all features on, on one and two threads, for sheets of all sizes; memory."""
     rows = []
     for sites in (1e4, 1e5, 2e5) if plan.quick else (2.5e4, 1e5, 1e6, 1e7):
         steps = plan.steps(sites)
@@ -135,7 +135,7 @@ def latcon(plan, command, case, folder, *arguments, ranks=1):
 
 
 def moving_sheet(plan):
-    """Arguments of `latcon lattice` for a moving sheet, and what it is."""
+    """Arguments of `latcon lattice` for a moving sheet, and its description."""
     side, steps = (100, 40) if plan.quick else (600, 400)
     entries = {"Sheet/length": f"{0.625 * side} mm", "Sheet/height": f"{0.625 * 0.866 * side} mm",
                "Lattice/solution": "motion", "Time/step": "5e-8 s", "Time/end": f"{5e-8 * steps} s",
@@ -175,7 +175,7 @@ def hyperfine(plan, folder, commands, prepare):
 
 
 def fig1(plan):
-    """The crack of Fig. 1 from the command line: alone, with the claims that come before it, and with its report."""
+    """The crack of Fig. 1 from the command line: alone, with the preceding claims, and with its report."""
     folder = plan.folder("fig1")
     case = CASES / ("quick.prm" if plan.quick else "fig1.prm")
     words = {"crack alone": "--skip-verification --no-report"}
@@ -184,7 +184,7 @@ def fig1(plan):
     outputs = {name: folder / str(i) for i, name in enumerate(words)}
     fracture = f"'{plan.program('latcon')}' fracture '{case}' --quiet --threads 2"
     commands = {name: f"{fracture} --output-dir '{outputs[name]}' {word}" for name, word in words.items()}
-    # Verdicts that are stored would be reused.
+    # Cached verdicts would be reused.
     times = hyperfine(plan, folder, commands, f"rm -rf '{folder / 'cache'}'")
     rows = []
     for name in words:
@@ -221,7 +221,7 @@ def choice(name):
 
 
 def time_stepping(text):
-    """Of what --dry-run says: {"time_step": [s], "stages": force evaluations in a step}."""
+    """Numbers printed by --dry-run: {"time_step": [s], "stages": force evaluations per step}."""
     match = re.search(r"^# time step: (\S+) s, \S+ steps at most(?: of (\d+) stages each)?$", text, re.MULTILINE)
     if not match:
         raise Failed("--dry-run states no time step")

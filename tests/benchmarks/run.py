@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Measures latcon on this machine, beside LAMMPS and dolfinx, and prints tables.
+"""Compares latcon with LAMMPS and dolfinx on this machine, and prints tables.
 
-tests/benchmarks/run installs and builds what is needed and calls this. All numbers go to benchmarks.json in the output
-directory; --write-docs puts the tables into docs/performance.md. Nothing else should run on the machine.
+tests/benchmarks/run installs and builds the prerequisites and calls this script. All numbers are written to benchmarks.json
+in the output directory; --write-docs writes the tables to docs/performance.md. Nothing else should run on the machine.
 """
 import argparse
 import json
@@ -35,7 +35,7 @@ def arguments():
 
 
 def begun(path, conditions, names):
-    """What was measured before under the same conditions, without the parts to be measured."""
+    """Earlier measurements under the same conditions, without the parts to be measured."""
     document = json.loads(path.read_text(encoding="utf-8")) if path.exists() else {}
     if any(document.get(key) != value for key, value in conditions.items()):
         document = conditions
@@ -44,7 +44,7 @@ def begun(path, conditions, names):
 
 
 def measured(options):
-    """Measures the parts one after another, whatever becomes of one; what was measured is on disk after each."""
+    """Measures the parts one after another, even if one fails, and saves the results after each."""
     output = options.output_dir.resolve()
     output.mkdir(parents=True, exist_ok=True)
     plan = Plan(options.build.resolve(), output, options.quick)

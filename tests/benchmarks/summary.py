@@ -1,9 +1,9 @@
-"""What follows from the raw numbers: times per site, ratios, growth; and what is asked of them."""
+"""Quantities derived from the raw numbers (times per site, ratios, growth), and their targets."""
 from measure import best
 
 
 def per_site(row):
-    """Of a row of the part `sizes`: seconds per site and step."""
+    """Seconds per site and step of a row of the part `sizes`."""
     return best(row["seconds"]) / (row["sites"] * row["steps"])
 
 
@@ -22,13 +22,13 @@ def bytes_per_site(part):
 
 
 def growth(part, at_least=9e4):
-    """Largest time per site over that of the smallest sheet of 10^5 sites or more, on one thread, less one [-]."""
+    """Largest time per site over that of the smallest sheet of 10^5 sites or more, on one thread, minus one [-]."""
     times = [per_site(threads[1]) for sites, threads in by_size(part).items() if sites >= at_least]
     return max(times) / times[0] - 1.
 
 
 def lammps_row(row):
-    """Of a row of the part `lammps`: seconds per site and step of each program."""
+    """Seconds per site and step of each program, of a row of the part `lammps`."""
     work = row["sites"] * row["steps"]
     return {"lammps": best(row["lammps_seconds"][row["suffix"]]) / work, "linear": best(row["linear_seconds"]) / work,
             "everything": best(row["everything_seconds"]) / work}
@@ -91,7 +91,7 @@ ROWS = {"kernel": kernel_rows, "lammps": lammps_rows, "sizes": sizes_rows, "rank
 
 
 def rows(parts):
-    """Rows (quantity, measured, aim, "" or "missed") of whatever was measured."""
+    """Rows (quantity, measured, target, "" or "missed") of the measured quantities."""
     result = []
     for name in (name for name in ROWS if name in parts):
         for quantity, value, aim, sense in ROWS[name](parts[name]):

@@ -1,4 +1,4 @@
-"""Running the programs of a part, and finding in their logs what they object to."""
+"""Runs the programs of a part and collects the findings in their logs."""
 import concurrent.futures
 import dataclasses
 import os
@@ -14,7 +14,7 @@ ENVIRONMENT = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROO
 
 
 class Failed(Exception):
-    """What a part needs could not be had."""
+    """A prerequisite of a part is not available."""
 
 
 @dataclasses.dataclass
@@ -27,7 +27,7 @@ class Job:
 
 @dataclasses.dataclass
 class Part:
-    """What to build, what to run then, and how a line of a log looks that is a finding."""
+    """Targets to build, jobs to run, and the pattern of log lines that are findings."""
     jobs: object  # a function without arguments
     finding: str
     preset: str = ""
@@ -35,11 +35,11 @@ class Part:
 
 
 def build(part):
-    """Has cmake/set-up.sh install packages and build. @return its words; raises Failed with their end"""
+    """Calls cmake/set-up.sh to install packages and build. @return its output; raises Failed with the end of it"""
     command = [ROOT / "cmake" / "set-up.sh", "--with", "tests", "--with", "clean"]
     if part.preset:
         command += [part.preset, *part.targets]
-    # Programs list their tests when they are linked, and what MPI never gives back is no mistake of theirs.
+    # Programs list their tests when they are linked; memory that MPI never frees is not their error.
     environment = dict(os.environ, ASAN_OPTIONS="detect_leaks=0")
     done = subprocess.run(command, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, cwd=ROOT, env=environment)
     if done.returncode != 0:
@@ -57,7 +57,7 @@ def run(part, job):
 
 
 def findings_in(log, pattern, name):
-    """Lines that match, each once; a program that failed without such a line is a finding too."""
+    """Matching lines without repetition; a program that fails without such a line is a finding too."""
     found = list(dict.fromkeys(line for line in log.splitlines() if re.search(pattern, line)))
     status = int(re.findall(r"^status (-?\d+)$", log, re.MULTILINE)[-1])
     if status != 0 and not found:

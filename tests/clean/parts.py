@@ -1,4 +1,4 @@
-"""The parts of tests/clean/run: which programs each runs."""
+"""The parts of tests/clean/run and the programs that each runs."""
 import pathlib
 import shutil
 
@@ -7,7 +7,7 @@ from checks import LOGS, ROOT, Job, Part
 SOURCES = ("support", "lattice", "continuum", "verification", "tests")
 CASES = ROOT / "verification" / "cases"
 HERE = ROOT / "tests" / "clean"
-# What clang, clang-tidy and cppcheck print.
+# Format of the messages of clang, clang-tidy and cppcheck.
 MESSAGE = r"^\S+:\d+:\d+: (warning|error|style|performance|portability)"
 
 
@@ -65,7 +65,7 @@ def lto():
 
 def asan():
     leaks = {"ASAN_OPTIONS": "detect_leaks=1"}
-    # MPI keeps memory until the process ends, some of it in modules unloaded by then, which no suppression can name.
+    # MPI keeps memory until the process ends, some of it in unloaded modules, which no suppression can name.
     no_leaks = {"ASAN_OPTIONS": "detect_leaks=0"}
     tests = [*tests_of("debug", leaks, *SERIAL),
              *tests_of("debug", no_leaks, "verification/verification_tests", "verification/compare_tests",

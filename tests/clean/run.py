@@ -1,18 +1,18 @@
 #!/usr/bin/python3
-"""Looks for the mistakes that tests do not show.
+"""Runs static analysers, sanitizers and valgrind.
 
-  lto       nothing optimised, with checks of the standard library: gcc links whole programs at once and compares all types
+  lto       without optimisation, with checks of the standard library: gcc links whole programs at once and compares all types
             (one definition rule), then tests and a crack run
   clang     clang++ builds everything with the warnings that gcc gets, as errors
   cppcheck  all sources
   tidy      clang-tidy over all sources, tests included, as .clang-tidy says
   asan      tests and short runs of the program under AddressSanitizer and UndefinedBehaviorSanitizer, with the debug
-            libraries of deal.II; leaks are looked for where MPI does not start
+            libraries of deal.II; leaks are detected where MPI is not started
   tsan      tests of the lattice and a crack on three threads under ThreadSanitizer, with clang++ and LLVM's OpenMP, which
-            tells the sanitizer who waits for whom; gcc's does not, and every barrier would be a finding
+            reports its synchronisation to the sanitizer; with gcc's every barrier would be a finding
   valgrind  tests of the lattice that are quick enough, in the release build
 
-Builds what it needs by cmake/set-up.sh, with the packages of cmake/packages-clean.txt. Logs go to build/clean/PART/.
+Builds its prerequisites with cmake/set-up.sh, with the packages of cmake/packages-clean.txt. Logs go to build/clean/PART/.
 """
 import argparse
 import sys

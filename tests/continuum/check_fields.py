@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Reads a series of the continuum with VTK and compares it with a homogeneous deformation worked out here.
+"""Reads a series of the continuum with VTK and compares it with a homogeneous deformation computed here.
 
 Usage: check_fields.py SERIES.pvd N_FRAMES N_CELLS
 The sheet is [0, 0.15] x [-0.05, 0.05] m, x = F(t) X with F(t) = I + t (F(1) - I), of the rubber network

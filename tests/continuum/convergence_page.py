@@ -3,8 +3,8 @@
 
 Usage: convergence_page.py FROM DOCS
 
-FROM: the program continuum_convergence_tests, which is run (minutes), or a folder with the tables that a run of it
-left where the environment variable LATCON_TABLES said. DOCS: the folder of the page, its pictures in DOCS/images.
+FROM: the program continuum_convergence_tests, which is run (minutes), or a folder with the tables that a run of this
+program wrote to the folder LATCON_TABLES. DOCS: the folder of the page; its pictures are written to DOCS/images.
 """
 import csv
 import dataclasses
@@ -50,7 +50,7 @@ class Series:
 
 
 class BadTable(Exception):
-    """A table is not what convergence_test.cc writes."""
+    """A table does not have the format written by convergence_test.cc."""
 
 
 def theory(gradient, degree):
@@ -87,7 +87,7 @@ def table_of(header, rows):
 
 
 def summary_table(series):
-    """Orders between the two finest meshes beside those of theory, a row per gradient law and degree."""
+    """Observed orders between the two finest meshes and theoretical orders, one row per gradient law and degree."""
     rows = []
     for gradient in GRADIENT:
         for degree in sorted({s.degree for s in series if s.gradient == gradient}):
@@ -116,7 +116,7 @@ def series_table(series):
 
 
 def draw(series, path):
-    """Errors over h, a panel per norm; the slope of theory below the lines of each degree."""
+    """Plots errors over h, one panel per norm, with the theoretical slope below the lines of each degree."""
     page = Page(4.1)
     for panel, norm in enumerate(NORMS):
         axes = page.axes(0.62 + panel * 3.2, 0.35, 2.62, 2.75)
@@ -162,19 +162,21 @@ def page_text(series):
 Made by `cmake --build build/release --target convergence_page` from the {len(series)} series of
 `tests/continuum/convergence_test.cc`; do not edit.
 
-A displacement is made up on the unit square (side 1 m): a stretch of 1.55 by 1.4 with a sine in each component, so that
-principal stretches run from 0.9 to 2.0. Body force, tractions and double tractions that hold it in equilibrium come from
-automatic differentiation of the energies as their definitions write them, and from none of the code under test. The solver
-gets these and the displacement on the edges; with a gradient law also the normal gradient there. Of the sheets "loaded
-above" the upper edge gets traction and double traction instead. Lengths of the gradient laws are l = 0.1 m, more than a
-cell of the finest meshes. Meshes with hanging nodes have a disc in the middle refined once more; h is the largest side.
+The manufactured displacement on the unit square (side 1 m) is a stretch of 1.55 by 1.4 with a sine in each component, so
+that principal stretches range from 0.9 to 2.0. The body force, tractions and double tractions that keep it in equilibrium
+are obtained by automatic differentiation of the energies as they are defined, without any code under test. They are
+prescribed to the solver together with the displacement on the edges and, with a gradient law, the normal gradient there.
+Sheets "loaded above" have traction and double traction prescribed on the upper edge instead. The length of the gradient
+laws is l = 0.1 m, more than a cell of the finest meshes. Meshes with hanging nodes have a disc in the middle refined once
+more; h is the largest side of a cell.
 
-For a smooth solution and h < l, theory gives the errors of displacement, gradient and second gradient (cell by cell) the
-orders 2/2/1, 4/3/2 and 5/4/3 for p = 2, 3, 4 with a gradient law, and p + 1, p, p - 1 without. `./test -L full`
-asserts them between the two finest meshes to within {TOLERANCE}, `./test` mostly between the two coarser ones.
+For a smooth solution and h < l, theory predicts that the errors of displacement, gradient and second gradient (cell by
+cell) have the orders 2/2/1, 4/3/2 and 5/4/3 for p = 2, 3, 4 with a gradient law, and p + 1, p, p - 1 without.
+`./test -L full` asserts these orders between the two finest meshes to within {TOLERANCE}, `./test` mostly between the two
+coarser ones.
 
 {summary_table(series)}
-Observed: smallest and largest over local laws, meshes and edges, between the two finest meshes.
+Observed: smallest and largest order over local laws, meshes and edges, between the two finest meshes.
 """]
     for gradient, title in GRADIENT.items():
         of_gradient = [s for s in series if s.gradient == gradient]
@@ -205,7 +207,7 @@ def main(source, docs):
         return 0
     with tempfile.TemporaryDirectory() as folder:
         run = subprocess.run([str(source.resolve()), "--gtest_filter=*/Convergence.*"], env=dict(os.environ, LATCON_TABLES=folder))
-        # A page of orders that the tests refuse would be a false statement.
+        # A page with orders that fail the tests would be wrong.
         if run.returncode != 0:
             return run.returncode
         write_page(pathlib.Path(folder), docs)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The page of convergence orders, from tables made up here whose orders are known."""
+"""Tests of the page of convergence orders, with synthetic tables of known orders."""
 import pathlib
 import sys
 import tempfile

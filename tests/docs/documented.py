@@ -1,4 +1,4 @@
-"""Whether docs/reference.md names all that is in an output directory: files, columns, keys, fields."""
+"""Checks that docs/reference.md documents the contents of an output directory: files, columns, keys, fields."""
 import csv
 import json
 import pathlib
@@ -11,7 +11,7 @@ READERS = {".vtp": vtk.vtkXMLPolyDataReader, ".vtu": vtk.vtkXMLUnstructuredGridR
 
 
 def rows_of_tables(text):
-    """(first cell, line with the header of its table) of every row of every table, headers with all of their table."""
+    """(first cell, row with the header of its table) for every row of every table; for a header, the whole table."""
     found, table = [], []
     for line in [*text.splitlines(), ""]:
         if line.startswith("|"):
@@ -30,8 +30,8 @@ class Reference:
         self.rows = rows_of_tables(self.text)
 
     def about(self, name):
-        """What is said of a file: rows and tables that begin with its name, numbers in it and runs of a
-        study by their place holders."""
+        """Documentation of a file: rows and tables that begin with its name, with place holders for numbers and for runs of
+        a study."""
         patterns = {name, re.sub(r"^.+-\d+\.prm$", "cases/NAME-SEED.prm", name), re.sub(r"\d{4}", "NNNN", name),
                     re.sub(r"-\d+\.h5$", "-STEP.h5", name)}
         return "\n".join(said for first, said in self.rows if patterns & set(re.findall(r"`([^`]+)`", first)))
@@ -57,7 +57,7 @@ OPEN = ("wall_time_s", "libraries", "set", "settings", "units")
 
 
 def keys(value):
-    """Of an object and of those in it; of lists those of the elements."""
+    """Keys of an object and of nested objects; for lists, the keys of the elements."""
     if isinstance(value, dict):
         return [*value, *(key for name, inside in value.items() if name not in OPEN for key in keys(inside))]
     return [key for inside in value for key in keys(inside)] if isinstance(value, list) else []
@@ -73,7 +73,7 @@ def arrays(path):
 
 
 def undocumented(folder, reference=None):
-    """`FILE: NAME` of all that the reference does not name."""
+    """`FILE: NAME` of all contents that the reference does not document."""
     reference = reference or Reference()
     missing = set()
     for path in sorted(path for path in pathlib.Path(folder).rglob("*") if path.is_file()):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""docs/reference.md names every file that a run leaves, and all that is in it; documented.py says how.
+"""Checks that docs/reference.md documents every output file of a run and its contents; see documented.py.
 
 Usage: outputs_test.py PATH_OF_LATCON
 """

@@ -1,4 +1,4 @@
-"""Fenced blocks of code in Markdown pages, and what is done with them.
+"""Parser of fenced code blocks in Markdown pages.
 
 A block of a page is
 
@@ -7,11 +7,11 @@ A block of a page is
     ```text    straight after commands or statements: what they print. `...` stands for anything, in a line or for lines
     ```prm, ```json    part of a case, or a study, which has `runs`; a dry run reads it
 
-and any other language is left alone. A comment on the line before a block of commands or statements says what is special about
-it; statements have no exit code:
+and any other language is ignored. A comment on the line before a block of commands or statements marks exceptions;
+statements have no exit code:
 
     <!-- not run: REASON -->  it is never run
-    <!-- exit code: N -->     its last command ends with N, which is not 0
+    <!-- exit code: N -->     its last command ends with the non-zero exit code N
 """
 import dataclasses
 import re
@@ -39,7 +39,7 @@ class Block:
 
 
 def blocks(page, text):
-    """All fenced blocks of a page, in order. @throws BadPage where a fence or a mark stands alone"""
+    """All fenced blocks of a page, in order. @throws BadPage for an unmatched fence or mark"""
     found, lines = [], text.splitlines()
     mark, i, after = None, 0, None  # after: the commands that end on the line before, blank ones left out
     while i < len(lines):
@@ -78,7 +78,7 @@ NUMBER = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
 
 
 def differences(expected, printed, relative=1e-3):
-    """Lines of `expected` that `printed` has not, in order: the same words, the same numbers to `relative`."""
+    """Lines of `expected` that `printed` lacks, in order: the same words, and the same numbers to `relative`."""
     missing, rest = [], [line.split() for line in printed.splitlines()]
     for line in expected.splitlines():
         if not line.strip() or line.strip() == "...":

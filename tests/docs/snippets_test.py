@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Commands and inputs in the documentation do what the pages say; snippets.py tells how pages are written.
+"""Runs the commands and inputs in the documentation and compares their output with the pages; snippets.py has the syntax.
 
 Usage: snippets_test.py PATH_OF_LATCON SOURCE_FOLDER [PAGE...]
 PAGE is relative to the source folder; default: README.md and all of docs/. Blocks that are not run are counted, and
@@ -28,7 +28,7 @@ CACHE = tempfile.TemporaryDirectory()
 
 
 class Clone:
-    """A folder that looks like a fresh clone in which latcon is built. What is written there goes with it."""
+    """A temporary folder that looks like a fresh clone in which latcon is built."""
 
     def __init__(self, latcon, source):
         self.temporary = tempfile.TemporaryDirectory()
@@ -55,7 +55,7 @@ class Clone:
 
 
 def try_commands(clone, block):
-    """@return what is wrong, or nothing"""
+    """@return the problem, or nothing"""
     ended = clone.run("bash", "-euo", "pipefail", "-c", block.text)
     wanted = int(block.says) if block.mark == "exit code" else 0
     if ended.returncode != wanted:
@@ -67,7 +67,7 @@ def try_commands(clone, block):
 
 
 def try_statements(clone, statements):
-    """Runs blocks of Python one after the other. @return what is wrong, or nothing"""
+    """Runs blocks of Python one after the other. @return the problem, or nothing"""
     end = "----- end of a block -----"
     script = clone.folder / "statements.py"
     script.write_text("".join(f"{block.text}\nprint({end!r}, flush=True)\n" for block in statements))
@@ -165,7 +165,7 @@ class Snippets(unittest.TestCase):
 
 if __name__ == "__main__":
     LATCON, SOURCE = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
-    # The tutorial, which shows that claims are checked, comes before those that reuse their verdicts.
+    # The tutorial, which shows that claims are checked, runs before the pages that reuse their verdicts.
     PAGES = sys.argv[3:] or ["README.md", *sorted((str(path.relative_to(SOURCE)) for path in SOURCE.glob("docs/**/*.md")),
                                                   reverse=True)]
     unittest.main(argv=sys.argv[:1], verbosity=2)

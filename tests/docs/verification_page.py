@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes the tables of docs/verification.md from the results of `latcon verify --quick`; the words around them stay.
+"""Writes the tables of docs/verification.md from the results of `latcon verify --quick`; the text around them is unchanged.
 
 Usage: verification_page.py PATH_OF_LATCON FOLDER_OF_THE_PAGE
 """
@@ -11,11 +11,11 @@ import subprocess
 import sys
 import tempfile
 
-# What sets apart rows that check the same in other states, directions and lattices.
+# Parts of a name that distinguish rows with the same check in other states, directions and lattices.
 STATES = (re.compile(r"^NN(?:\+NNN)?(?:, F = (?:I|\([^)]*\)))?(?:: |, )"), re.compile(r"^kd = [\d.]+: "),
           re.compile(r" about F = (?:I|\([^)]*\))"), re.compile(r", F = \([^)]*\)(?=,)"), re.compile(r", (?:F = I|loaded)$"),
           re.compile(r" at \d+ degrees"))
-ROUND_OFF = 1e-8  # errors below differ from machine to machine
+ROUND_OFF = 1e-8  # smaller errors differ between machines
 
 
 def shared_name(quantity):
@@ -25,14 +25,14 @@ def shared_name(quantity):
 
 
 def share(row):
-    """Of the tolerance that the error takes."""
+    """Fraction of the tolerance that the error uses."""
     if row["tolerance"] is None:
         return -1.0
     return row["error"] / row["tolerance"] if row["tolerance"] else float(row["error"] > 0)
 
 
 def worst_rows(results, claim):
-    """{name: (number of rows, the one whose error takes most of its tolerance)}, in order of appearance."""
+    """{name: (number of rows, the row with the largest error over tolerance)}, in order of appearance."""
     groups = {}
     for row in results["claims"]:
         if row["claim"] == claim:
@@ -57,7 +57,7 @@ PLACE = re.compile(r"(<!-- table: ([\w-]+) -->\n)(.*?)(<!-- end of table -->)", 
 
 
 def filled(text, results):
-    """The page with its tables made anew."""
+    """The page with regenerated tables."""
     return PLACE.sub(lambda place: f"{place[1]}\n{table(results, place[2])}\n\n{place[4]}", text)
 
 
@@ -66,8 +66,8 @@ def cells(text):
 
 
 def differences(text, results, relative=0.1):
-    """Rows of the page that these results do not bear out: another name, count, tolerance or verdict, or an error that
-    is off by more than `relative`, two digits being shown."""
+    """Rows of the page that differ from these results in name, count, tolerance or verdict, or in an error by more than
+    `relative` (two digits are shown)."""
     shown_claims = {place[2] for place in PLACE.finditer(text)}
     wrong = [f"{claim}: no table" for claim in sorted({row["claim"] for row in results["claims"]} - shown_claims)]
     for place in PLACE.finditer(text):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The tables of docs/verification.md: rows that check the same are put together, and what differs is found."""
+"""Tests of the tables of docs/verification.md: rows with the same check are merged, and differences are found."""
 import pathlib
 import sys
 import unittest

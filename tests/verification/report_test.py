@@ -239,13 +239,13 @@ class ReportTest(unittest.TestCase):
             self.assertIn(row, text)
         self.assertNotIn("asymmetry 0", text)  # not in the file
         for samples, words in ((0, "Nothing was measured: it <rested>."),
-                               (3, "Not all could be measured: it <rested>.")):
+                               (3, "Not all quantities could be measured: it <rested>.")):
             (self.folder / "near_tip.json").write_text(json.dumps({"samples": samples, "reason": "it <rested>"}))
             self.report(expect=0)
             self.assertIn(words, self.page()[1].text)
         for damaged in ({"samples": 84}, {"samples": 84, "reason": "", "wedge_angle": "wide"}):
             (self.folder / "near_tip.json").write_text(json.dumps(damaged))
-            self.assertRegex(self.report(expect=2)[1], r"near_tip.json: (gives no \"reason\"|wedge_angle is 'wide')")
+            self.assertRegex(self.report(expect=2)[1], r"near_tip.json: (\"reason\" is missing|wedge_angle is 'wide')")
         (self.folder / "near_tip.json").unlink()
         self.report(expect=0)
         self.assertNotIn("Near the tip", self.page()[1].text)
@@ -266,7 +266,7 @@ class ReportTest(unittest.TestCase):
                 write_verification(self.folder, [row])
                 self.assertRegex(self.report(expect=3)[0], r"energy: side +inf\n")
                 (self.folder / "results.json").write_text(json.dumps({"claims": [{**row, "verdict": "holds"}]}))
-                self.assertIn("its numbers say otherwise", self.report(expect=2)[1])
+                self.assertIn("contradicts its numbers", self.report(expect=2)[1])
                 shutil.rmtree(self.folder)
 
     def test_needs_nothing_beside_it(self):
@@ -337,7 +337,7 @@ class ReportTest(unittest.TestCase):
         (self.folder / "motion.pvd").unlink()
         self.report("--quiet", expect=0)
         self.assertFalse((self.folder / "animation.gif").exists())
-        self.assertIn("nothing to draw: animation.gif", self.page()[1].text)
+        self.assertIn("has no data for it: animation.gif", self.page()[1].text)
 
     def test_without_the_library_of_the_plots_pictures_take_their_place(self):
         write_fracture(self.folder, [HOLDS])
@@ -347,7 +347,7 @@ class ReportTest(unittest.TestCase):
         self.assertNotIn("new Dygraph", html)
         self.assertIn('class="viewer"', html)
         stills = html.index('id="stills-0"')
-        for name in ("The crack in the undeformed sheet", "Where the elastic energy went"):
+        for name in ("The crack in the undeformed sheet", "Energy balance per metre of sheet thickness"):
             self.assertLess(html.index(f'alt="runs: {name}'), stills)
 
     def test_pictures_show_something(self):
@@ -382,7 +382,7 @@ class ReportTest(unittest.TestCase):
         _, page = self.page()
         self.assertIn("Not complete", page.text)
         self.assertIn("no crack.json", page.text)
-        self.assertIn("nothing to draw: animation.gif, sheet.png, sheet_fields.png", page.text)
+        self.assertIn("has no data for it: animation.gif, sheet.png, sheet_fields.png", page.text)
         self.assertEqual(len(page.images), 2)
 
     def test_a_skipped_verification_is_said(self):
@@ -390,8 +390,8 @@ class ReportTest(unittest.TestCase):
         (self.folder / "run.json").write_text(json.dumps({"exit_code": 0, "skip_verification": True}))
         out, _ = self.report(expect=0)
         html, page = self.page()
-        self.assertIn("without its material and pre-stretch having been verified", page.text)
-        self.assertIn("Not verified: what was checked holds", page.text)
+        self.assertIn("without verification of its material and pre-stretch", page.text)
+        self.assertIn("Not verified: all checks made hold", page.text)
         self.assertIn('class="banner warns"', html)
         self.assertIn("holds, not verified", page.text)
         self.assertNotRegex(html, r'class="[^"]*\bholds\b')  # nothing is green
@@ -409,11 +409,11 @@ class ReportTest(unittest.TestCase):
         verification = {"hash": "abc", "reused": True, "checked_at": "2026-01-02T03:04:05Z"}
         (self.folder / "run.json").write_text(json.dumps({"exit_code": 0, "verification": verification}))
         self.report("--quiet", expect=0)
-        self.assertIn("verdicts of 2026-01-02T03:04:05Z, reused", self.page()[1].text)
+        self.assertIn("cached verdicts of 2026-01-02T03:04:05Z", self.page()[1].text)
 
     def test_refuses_a_folder_without_a_run(self):
         self.folder.mkdir()
-        self.assertIn("no run in it", self.report(expect=2)[1])
+        self.assertIn("no run found", self.report(expect=2)[1])
         self.assertIn("missing", self.report(expect=2, folder=self.folder / "missing")[1])
 
     def test_names_the_damaged_file(self):
@@ -465,7 +465,7 @@ class ReportTest(unittest.TestCase):
 
     def test_does_not_believe_a_verdict_against_its_numbers(self):
         write_verification(self.folder, [{**FAILS, "verdict": "holds"}])
-        self.assertRegex(self.report(expect=2)[1], "results.json: row 1 .* says 'holds'")
+        self.assertRegex(self.report(expect=2)[1], "results.json: row 1 .* verdict 'holds' contradicts")
 
     def test_a_file_that_cannot_be_written_exits_5(self):
         write_verification(self.folder, [HOLDS])

@@ -1,4 +1,4 @@
-"""The crack as it runs: an animation (GIF) of the sheet as it is, coloured by the speed of the material."""
+"""Animation of a crack (GIF): the deformed sheet, coloured by the speed of the material."""
 import matplotlib
 import numpy as np
 from matplotlib import font_manager
@@ -13,15 +13,15 @@ from raster import Raster
 
 COLOURS = "inferno"
 GREYS = 48  # of axes and text, from black to white
-SECONDS, LAST_SECONDS = 5.0, 2.0  # all frames but the last, and that
+SECONDS, LAST_SECONDS = 5.0, 2.0  # duration of all frames except the last, and of the last
 LARGEST = 3_000_000  # [bytes]
-# Widths [pixels] and colours of the sheet that are tried in turn until the file is small enough.
+# Widths [pixels] and numbers of colours, tried in turn until the file is small enough.
 SIZES = [(width, shades) for width in (900, 750, 600, 450) for shades in (192, 96, 48)]
 LEFT, TOP, FOOT, BAR = 0.85, 0.5, 0.62, 0.75  # margins of the axes and room of the colour bar [in]
 
 
 def draw_animation(motion, gif, still=None):
-    """Writes the animation, and its last picture as PNG."""
+    """Writes the animation as GIF and its last picture as PNG."""
     shown = durations([frame.time for frame in motion.frames])
     film = None
     for width, shades in SIZES:
@@ -36,18 +36,18 @@ def draw_animation(motion, gif, still=None):
 
 
 def durations(times):
-    """How long each frame is shown, in slow motion of one pace [ms]; GIF counts hundredths of a second."""
+    """Duration of each frame in uniform slow motion [ms], a multiple of GIF's unit of 10 ms."""
     shown = np.diff(times) / (times[-1] - times[0]) * SECONDS
     return [max(20, 10 * round(100 * seconds)) for seconds in [*shown, LAST_SECONDS]]
 
 
 class Film:
-    """The frames of a motion at one size, to be coloured."""
+    """Frames of a motion, rasterised at one size."""
 
     def __init__(self, motion, mesh, width):
         low, high = limits(motion[0].position)
         speeds = [np.linalg.norm(frame.fields["velocity"][:, :2], axis=1) for frame in motion]
-        # What snaps back at the flanks is faster than all the rest. Waves are seen by the root of their speed.
+        # Flanks that snap back are much faster than waves; the square root of the speed makes both visible.
         self.scale = PowerNorm(0.5, 0.0, max(np.percentile(speed, 99) for speed in speeds) or 1.0, clip=True)
         page, box = axes_of_sheet(low, high, self.scale)
         axes = Image.fromarray(figure_pixels(page.figure))
@@ -61,7 +61,7 @@ class Film:
                        for frame, speed in zip(motion, speeds)]
 
     def pictures(self, shades):
-        """One picture a frame, all with one palette: so many colours of the sheet, then greys."""
+        """One picture per frame, with a common palette: `shades` colours of the sheet, then greys."""
         colours = np.round(255 * matplotlib.colormaps[COLOURS](np.linspace(0, 1, shades))[:, :3]).astype(int)
         greys = np.repeat(np.round(np.linspace(0, 255, GREYS)).astype(int)[:, None], 3, axis=1)
         palette = np.concatenate((colours, greys)).astype(np.uint8).tobytes()
@@ -77,14 +77,14 @@ class Film:
             picture = Image.fromarray(pixels, "P")
             picture.putpalette(palette)
             draw = ImageDraw.Draw(picture)
-            draw.fontmode = "1"  # no shades between
+            draw.fontmode = "1"  # without antialiasing
             draw.text((self.left, self.top - 6), f"{1e3 * time:.2f} ms", fill=shades, font=self.letters, anchor="ls")
             made.append(picture)
         return made
 
 
 def axes_of_sheet(low, high, scale):
-    """Axes in cm, empty, and their place: left, top, right, bottom [pixels]."""
+    """Empty axes in cm, and their box: left, top, right, bottom [pixels]."""
     width = WIDTH - LEFT - 0.2
     height = width * (high - low)[1] / (high - low)[0]
     page = Page(TOP + height + FOOT + BAR)
@@ -101,7 +101,7 @@ def axes_of_sheet(low, high, scale):
 
 
 def write_gif(pictures, shown, path):
-    """All pictures, over and over."""
+    """Writes the pictures as a GIF that repeats for ever."""
     first, *others = pictures
     first.save(path, format="GIF", save_all=True, append_images=others, duration=shown, loop=0, disposal=1,
                optimize=False)

@@ -8,7 +8,7 @@ COLOURS = (BLUE, RED)
 
 
 def draw_steady_crack(folder, path):
-    """Speeds of steady cracks over the driving, measured and exact. @return whether the tables are there"""
+    """Draws measured and exact speeds of steady cracks over the driving. @return whether the tables exist"""
     points = read_table(folder / "steady_crack.csv", ("beta", "driving", "breaking elongation", "lattice speed",
                                                       "exact speed"))
     if points is None or not len(points["beta"]):
@@ -16,7 +16,7 @@ def draw_steady_crack(folder, path):
     curve = read_table(folder / "steady_crack_curve.csv", ("beta", "speed", "driving"), ("exists",))
     page = Page(4.1)
     axes = page.axes(0.85, 0.2, WIDTH - 1.1, 3.2)
-    driving = points["driving"] / points["breaking elongation"]  # of the bonds as they broke, a time step late
+    driving = points["driving"] / points["breaking elongation"]  # with the elongation at which bonds broke, a time step late
     for colour, beta in zip(COLOURS, np.unique(points["beta"])):
         of_series = points["beta"] == beta
         axes.plot(driving[of_series], points["exact speed"][of_series], "o", markersize=11, markerfacecolor="none",
@@ -34,11 +34,11 @@ def draw_steady_crack(folder, path):
     return True
 
 
-# By the name of the check: what draws its plot from the folder of the study, and what the plot shows.
+# By name of the check: the function that draws its plot from the folder of the study, and the caption.
 PLOTS = {
     "steady-crack": (draw_steady_crack,
-                     "Speed of a steady crack over that of shear waves, against the driving over Griffith's, for a "
-                     "weak and a strong viscosity β. Circles: exact, for the elongation at which the simulator's bonds "
-                     "broke; crosses: the simulator. Lines, in the full study: the exact solution, dotted where it "
-                     "would have other bonds break as well, or its own too early."),
+                     "Speed of a steady crack over the shear wave speed, against the driving over Griffith's "
+                     "threshold, for a low and a high viscosity β. Circles: exact solution for the elongation at which the "
+                     "simulator's bonds broke; crosses: simulator. Lines (full study only): exact solution, dotted where "
+                     "other bonds would break too, or bonds of the crack too early."),
 }

@@ -1,8 +1,8 @@
-"""The sections of the page about claims: what is claimed, its plots with their error metrics, its rows."""
+"""Sections of the page about claims: statement, plots with their error metrics, rows."""
 from html import escape
 
 from claims_text import CLAIMS, PLOTS, explanation, heading
-from markup import MARKS, figure, first_sentence, number, raised, row, table, verb
+from markup import MARKS, figure, first_sentence, number, plural, row, superscripts, table
 from summary import VERDICTS, ratio_text, tally_of
 
 # More rows than these are folded.
@@ -58,7 +58,7 @@ def claim_section(name, entries, runs, plots):
 
 def claim_line(name, tally):
     """Verdict, heading and counts of a claim."""
-    counts = ", ".join(f"{tally.count[v]} {verb(tally.count[v], one, many)}"
+    counts = ", ".join(f"{tally.count[v]} {plural(tally.count[v], one, many)}"
                        for v, one, many in (("fails", "fails", "fail"), ("holds", "holds", "hold"),
                                             ("reported", "reported", "reported")) if tally.count[v])
     worst = "" if tally.worst is None else f", worst error / tolerance {ratio_text(tally.worst)}"
@@ -98,15 +98,15 @@ def rows_of_claim(name, entries, show_runs):
     parts = [table(head, failing)] if failing else []
     if others:
         opened = " open" if len(others) <= MOST_OPEN_ROWS else ""
-        what = f"{len(others)} {verb(len(others), 'row', 'rows')}"
-        what += verb(len(others), " that does not fail", " that do not fail") if failing else ""
+        what = f"{len(others)} {plural(len(others), 'row', 'rows')}"
+        what += plural(len(others), " that does not fail", " that do not fail") if failing else ""
         parts.append(f"<details{opened}><summary>{what}</summary>{table(head, others)}</details>")
     return "\n".join(parts)
 
 
 def claim_row(check, shared, show_runs):
     """One checked quantity."""
-    cells = [("words", raised(check.quantity)), ("short", raised(check.unit))]
+    cells = [("words", superscripts(check.quantity)), ("short", superscripts(check.unit))]
     cells += [("number", number(value, ".7g")) for value in (check.lattice, check.continuum, check.theory)]
     cells += [("number", number(check.error, ".2e")), ("number", number(check.tolerance, ".3g"))]
     if show_runs:

@@ -1,4 +1,4 @@
-"""The path of a crack through the undeformed sheet: the sinusoid in it, and its picture."""
+"""The path of a crack through the undeformed sheet: its best-fitting sinusoid, and its picture."""
 import math
 from dataclasses import dataclass, replace
 
@@ -57,7 +57,7 @@ def measured_sinusoid(run):
 
 
 def draw_crack_path(run, path):
-    """Above: the tip's path and what was measured of it. Below: where bonds broke, and when."""
+    """Draws the path of the tip with the measurement (above) and positions and times of broken bonds (below)."""
     X, Y = 100 * run.tip["X"], 100 * run.tip["Y"]
     broken = run.broken if has_rows(run.broken) else None
     length = run.input_number("Sheet", "length")
@@ -65,7 +65,7 @@ def draw_crack_path(run, path):
     width, upper = WIDTH - LEFT - RIGHT, 2.6
     scale = width / (X_range[1] - X_range[0])  # [in] of picture per cm of sheet
 
-    # The largest whole exaggeration with which the path fits.
+    # The largest integer exaggeration of Y for which the path fits.
     centre, half = (Y.min() + Y.max()) / 2, max(0.6 * (Y.max() - Y.min()), 1e-2 * (X_range[1] - X_range[0]))
     exaggeration = max(1, math.floor(upper / (2 * half * scale)))
     upper = max(upper, min(2 * half * scale, 8.0)) if exaggeration == 1 else upper
@@ -80,7 +80,7 @@ def draw_crack_path(run, path):
     axes = page.axes(LEFT, TOP, width, upper)
     axes.plot(X, Y, color=BLUE, label=tip_label(run.crack))
     draw_measurement(axes, run)
-    larger = f",\n{exaggeration} times larger than X" if exaggeration > 1 else ""
+    larger = f",\n{exaggeration} times the scale of X" if exaggeration > 1 else ""
     axes.set(xlim=X_range, ylim=(centre - half, centre + half), ylabel=f"Y of the tip [cm]{larger}")
     axes.legend(loc="lower left", bbox_to_anchor=(0, 1), ncol=3, borderaxespad=0.2, fontsize=9.5, columnspacing=1.5)
     if broken is None:
@@ -90,7 +90,7 @@ def draw_crack_path(run, path):
         dots = below.scatter(100 * broken["X"], 100 * broken["Y"], c=1e3 * broken["t"], cmap=COLOUR_MAP, s=5,
                              linewidths=0)
         below.set(xlim=X_range, ylim=(-half_below, half_below), aspect="equal", ylabel="Y [cm]",
-                  xlabel="X in the undeformed sheet [cm]", title="middle of every bond that broke, equal axes")
+                  xlabel="X in the undeformed sheet [cm]", title="midpoints of broken bonds, equal axes")
         bar = page.figure.colorbar(dots, cax=page.axes(LEFT, page.height - 0.68, width, 0.13),
                                    orientation="horizontal")
         bar.set_label("time of breaking [ms]")
@@ -99,14 +99,14 @@ def draw_crack_path(run, path):
 
 
 def tip_label(crack):
-    """What the legend says of the tip."""
+    """Legend entry of the tip."""
     if crack is None or crack["speed_lagrangian"] is None:
         return "tip"
     return f"tip, {with_uncertainty(crack['speed_lagrangian'], crack['speed_lagrangian_uncertainty'])} m/s"
 
 
 def draw_measurement(axes, run):
-    """The window of the measurement, and the sinusoid of an oscillating crack."""
+    """Draws the window of the measurement, and the sinusoid of an oscillating crack."""
     crack = run.crack
     if crack is None or None in (crack["window_begin"], crack["window_end"]):
         return

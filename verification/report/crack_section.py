@@ -1,4 +1,4 @@
-"""The section of a crack: its path, the sheet over time, its energies, what was measured near its tip, still pictures."""
+"""The section of a crack: path, sheet over time, energies, measurements near the tip, still pictures."""
 from html import escape
 
 from live import energy_plot, has_dygraphs, live_plot, path_plot, viewer
@@ -6,39 +6,39 @@ from markup import figure, first_sentence
 from near_tip_table import near_tip_table
 
 CAPTIONS = {
-    "animation.gif": "The crack as it runs, in slow motion of one pace: the sheet as it is, coloured by the speed of "
-                     "the material. What is filled has all its bonds; lines are bonds of sites that have lost some.",
-    "sheet.png": "The sheet in its last frame, as it is: every unbroken bond is a line, the crack is the white "
-                 "opening; lines across it are bonds that still hold.",
-    "sheet_fields.png": "Fields of the last frame: speed and opening stress in the sheet as it is, damage where it was "
-                        "before the loading. Stress is force per current length and undeformed thickness. Scales end "
-                        "where 1 % of the sites are beyond.",
-    "crack_path.png": "The crack in the undeformed sheet. Above: its tip, the right-most site that has lost enough "
-                      "bonds; the dashed sinusoid has the measured wavelength and amplitude, its phase, offset and "
-                      "slope are least squares. Below: where bonds broke, coloured by time.",
-    "energy.png": "Where the elastic energy went, per metre of sheet thickness, from the cut of the seed crack on. The "
-                  "dashed line is what the bonds gave; the areas are what was found elsewhere; the small axis is the "
-                  "difference, over the energy given to the sheet.",
-    "near_tip_velocity.png": "Velocity of the material around the tip (cross), mean over samples; where the path "
-                             "descends, samples were mirrored first, so that the two sides of an oscillating crack "
-                             "stay apart. White: the opening, or fewer than half the samples had material there. "
-                             "Numbers are in the table below.",
-    "near_tip_stress.png": "Stress across the crack, in the same mean. Two lobes off the axis are what is called "
-                           "kidney shaped.",
+    "animation.gif": "Animation of the crack in uniform slow motion: the deformed sheet, coloured by the speed of the "
+                     "material. Filled regions have all their bonds; lines are bonds of sites that have lost some.",
+    "sheet.png": "The deformed sheet in its last frame: every intact bond is a line, the crack is the white "
+                 "opening; lines across it are intact bonds.",
+    "sheet_fields.png": "Fields of the last frame: speed and opening stress in the deformed sheet, damage in the "
+                        "undeformed sheet. Stress is force per current length and undeformed thickness. The colour "
+                        "scales exclude 1 % of the sites.",
+    "crack_path.png": "The crack in the undeformed sheet. Above: its tip, the right-most site that has lost at least a "
+                      "quarter of its bonds; the dashed sinusoid has the measured wavelength and amplitude, and phase, "
+                      "offset and slope from a least-squares fit. Below: positions of broken bonds, coloured by time.",
+    "energy.png": "Energy balance per metre of sheet thickness, since the cut of the seed crack. The dashed line is the "
+                  "energy released by the bonds; the areas are the energies that it was converted to; the small axis is "
+                  "the difference, over the energy supplied to the sheet.",
+    "near_tip_velocity.png": "Velocity of the material around the tip (cross), mean over samples. Samples where the path "
+                             "descends were mirrored first, which keeps the two sides of an oscillating crack "
+                             "separate. White: the opening, or points with material in fewer than half of the samples. "
+                             "The numbers are in the table below.",
+    "near_tip_stress.png": "Opening stress, averaged in the same way. Two off-axis lobes make the contours "
+                           "kidney-shaped.",
 }
 
 NEAR_TIP = ("near_tip_velocity.png", "near_tip_stress.png")
-PATH_CAPTION = ("Path of the tip in the undeformed sheet, Y drawn larger than X. Shaded: the window of the measurement. Drag "
-                "across the plot to enlarge it, double-click to reset.")
-ENERGY_CAPTION = ("Where the released elastic energy went, per metre of sheet thickness, since the cut of the seed crack. "
-                  "Dotted: the time of the sheet above.")
+PATH_CAPTION = ("Path of the tip in the undeformed sheet, with Y exaggerated. Shaded: the window of the measurement. Drag "
+                "across the plot to zoom in, double-click to reset.")
+ENERGY_CAPTION = ("Conversion of the released elastic energy, per metre of thickness, since the cut of the seed crack. "
+                  "Dotted: time of the sheet above.")
 
 
 def crack_section(run, position, pictures, sheet):
-    """A crack: what it did, as pictures and numbers.
+    """Pictures and numbers of a crack.
 
-    pictures: {name in CAPTIONS: (picture, still picture for print or None)}; those that a viewer or a plot shows as well are
-    folded. sheet: data of the viewer (sheet_data.py); None: there is none.
+    pictures: {name in CAPTIONS: (picture, still picture for print or None)}; those that a viewer or a plot also shows are
+    collapsed. sheet: viewer data (sheet_data.py), or None.
     """
     plots = {"path": path_plot(run), "energy": energy_plot(run)} if has_dygraphs() else {}
     live = {name: live_plot(position, name, plots[name], caption, sheet is not None)
@@ -52,18 +52,19 @@ def crack_section(run, position, pictures, sheet):
         parts += ([f'<div id="{name}-{position}">{live[name]}</div>'] if name in live
                   else drawn(run, pictures, names))
     near_tip = drawn(run, pictures, NEAR_TIP) + ([near_tip_table(run.near_tip)] if run.near_tip is not None else [])
-    parts += details(f"near-tip-{position}", "<b>Near the tip</b>: velocity, opening stress, and what was measured of them",
-                     near_tip)
-    folded = [name for name in live for name in stills[name]]
-    parts += details(f"stills-{position}", "<b>Still pictures</b> of the same", drawn(run, pictures, folded, still=True))
+    parts += expandable(f"near-tip-{position}", "<b>Near the tip</b>: velocity, opening stress, and measured quantities",
+                        near_tip)
+    collapsed = [name for name in live for name in stills[name]]
+    parts += expandable(f"stills-{position}", "<b>Still pictures</b> of the same",
+                        drawn(run, pictures, collapsed, still=True))
     missing = [name for name in CAPTIONS if name not in pictures]
     if missing:
-        parts.append(f'<p class="soft">Not drawn, for the run left nothing to draw: {", ".join(missing)}</p>')
+        parts.append(f'<p class="soft">Not drawn, because the run has no data for it: {", ".join(missing)}</p>')
     return "\n".join(parts)
 
 
 def drawn(run, pictures, names, still=False):
-    """The figures of those of some pictures that were drawn; still: without motion."""
+    """Figures of the named pictures, where they exist; still: without animation."""
     found = []
     for name in names:
         if name in pictures:
@@ -73,21 +74,21 @@ def drawn(run, pictures, names, still=False):
     return found
 
 
-def details(name, summary, parts):
-    """What unfolds below a line, in a list; an empty list if it is nothing."""
+def expandable(name, summary, parts):
+    """List with one element that expands below a summary; empty if there are no parts."""
     return [f'<details id="{name}"><summary>{summary}</summary>{"".join(parts)}</details>'] if parts else []
 
 
 def pattern_phrase(crack):
-    """The pattern of a crack in words."""
+    """Phrase that states the pattern of a crack."""
     word = escape(crack["pattern"])
     return "the pattern of the crack is <b>undecided</b>" if word == "undecided" else f"the crack is <b>{word}</b>"
 
 
 def pattern_sentence(run):
-    """What the crack did, and why it is called that."""
+    """Sentence that states the pattern of a crack and the reason."""
     if run.crack is None:
-        return "<p>The run did not get to the measurement of its crack (no crack.json).</p>"
+        return "<p>The run did not reach the measurement of its crack (no crack.json).</p>"
     phrase = pattern_phrase(run.crack)
     reason = f": {escape(run.crack['reason'])}" if run.crack.get("reason") else ""
     return f"<p>{phrase[:1].upper()}{phrase[1:]}{reason}.</p>"

@@ -1,4 +1,4 @@
-"""The fields of the sheet in a frame: speed and opening stress as it is, damage where it was before."""
+"""Fields of a frame: speed and opening stress in the deformed sheet, damage in the undeformed sheet."""
 import numpy as np
 
 from pictures import COLOUR_MAP, WIDTH, Page, limits, save
@@ -9,12 +9,12 @@ PIXELS = 160  # of the fields [1/in]
 
 
 def has_fields(frame):
-    """Whether draw_fields() finds what it needs."""
+    """Whether a frame has the fields that draw_fields() needs."""
     return {"velocity", "cauchy_stress", "damage"} <= set(frame.fields)
 
 
 def draw_fields(frame, path):
-    """Three panels of a frame."""
+    """Draws the three fields of a frame."""
     mesh = Mesh(frame)
     speed = np.linalg.norm(frame.fields["velocity"][:, :2], axis=1)
     stress = 1e-6 * frame.fields["cauchy_stress"][:, 4]
@@ -23,7 +23,7 @@ def draw_fields(frame, path):
     low, high = limits(frame.position)
     below_low, below_high = limits(frame.reference)
     height = half * (high - low)[1] / (high - low)[0]
-    # Of the undeformed sheet the part that the crack went through, and some more.
+    # The part of the undeformed sheet around the crack.
     torn = np.abs(frame.reference[damage > 0, 1])
     reach = min(below_high[1], 100 * 1.5 * (np.percentile(torn, 99) if len(torn) else 1.0))
     below_low, below_high = np.array((below_low[0], -reach)), np.array((below_high[0], reach))
@@ -37,13 +37,13 @@ def draw_fields(frame, path):
           (ends[0], max(ends[1], ends[0] + 1e-9)), "opening stress", "Cauchy stress across the crack [MPa]", "x [cm]",
           "")
     panel(page, (LEFT, TOP + height + FOOT + BAR + TOP, WIDTH - LEFT - 0.2, below), mesh, frame.reference, damage,
-          (below_low, below_high), "magma_r", (0.0, 1.0), "damage, where it was before the loading",
-          "share of its bonds that a site has lost [1]", "X in the undeformed sheet [cm]", "Y [cm]")
+          (below_low, below_high), "magma_r", (0.0, 1.0), "damage, in the undeformed sheet",
+          "fraction of its bonds that a site has lost [1]", "X in the undeformed sheet [cm]", "Y [cm]")
     save(page.figure, path, few_colours=False)
 
 
 def panel(page, box, mesh, position, values, corners, colours, ends, title, label, xlabel, ylabel):
-    """One field with its colour bar. box: left, top, width, height [in]; corners [cm]"""
+    """Draws one field with its colour bar. box: left, top, width, height [in]; corners [cm]"""
     left, top, width, height = box
     low, high = corners
     axes = page.axes(*box)

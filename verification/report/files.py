@@ -1,4 +1,4 @@
-"""Reading and writing of single files: what is wrong is said with the file's name, what is written appears whole."""
+"""Reading and writing of single files: errors name the file, and files are written atomically."""
 import csv
 import json
 import os
@@ -10,7 +10,7 @@ import numpy as np
 
 
 class DamagedFile(Exception):
-    """A file that a run wrote cannot be understood."""
+    """A file of a run is damaged."""
 
     def __init__(self, path, problem):
         super().__init__(f"{path}: {problem}")
@@ -23,16 +23,16 @@ class UnwritableFile(Exception):
         super().__init__(f"cannot write {path}: {problem}")
 
 
-# Names of the files that latcon wrote into an output directory, and of folders with those of runs before.
+# Name of the list of files that latcon wrote into an output directory, and of the folder with the files of the previous run.
 OUTPUT_LIST, EARLIER = ".latcon-files", "earlier-run"
 # Exit codes, those of latcon.
 DONE, BAD_INPUT, CLAIM_FAILS, IO_FAILED = 0, 2, 3, 5
 
 
 def exit_code_of(action, hint=""):
-    """Does what a script is for. @return its exit code, or that of a file that is damaged or cannot be written
+    """Runs the action of a script. @return its exit code, or the exit code for a damaged or unwritable file
 
-    hint: what to say after the message of a damaged file.
+    hint: text appended to the message about a damaged file.
     """
     try:
         return action()
@@ -66,14 +66,14 @@ def read_json(path):
     except ValueError as error:
         raise DamagedFile(path, f"not JSON: {error}") from error
     if not isinstance(value, dict):
-        raise DamagedFile(path, "holds no JSON object")
+        raise DamagedFile(path, "not a JSON object")
     return value
 
 
 def read_table(path, columns, texts=(), finite=True):
-    """Columns of a CSV file, {name: array}; None if there is no such file. Other columns are left out.
+    """Reads columns of a CSV file, {name: array}; None if there is no such file. Other columns are ignored.
 
-    columns: hold numbers, with `finite` none but finite ones. texts: hold words.
+    columns: columns of numbers, all finite if `finite`. texts: columns of words.
     """
     text = read_text(path)
     if text is None:
@@ -101,8 +101,8 @@ def read_table(path, columns, texts=(), finite=True):
 
 
 def write_file(path, write):
-    """Calls `write` with the name of a new file, which then takes the place of `path`. In the output directory of a run
-    the file is listed, as those of the run are (output_list.h)."""
+    """Calls `write` with the name of a temporary file, which then replaces `path`. In the output directory of a run the
+    file is added to the list of output files (output_list.h)."""
     try:
         list_output(path)
         replace_file(path, write)
@@ -111,10 +111,10 @@ def write_file(path, write):
 
 
 def replace_file(path, write):
-    """The same without listing the file.
+    """Replaces a file like write_file(), without listing it.
 
-    As in support/atomic_file.h: the part lies beside its place under a random name, is created and never opened there,
-    and is written to by its descriptor, so that no link that others put there is followed.
+    As in support/atomic_file.h, the temporary file has a random name in the same folder, must not exist before, and is
+    written through its descriptor, so that links placed there by others are not followed.
     """
     part = path.with_name(f"{path.name}.{secrets.token_hex(8)}.part")
     descriptor = os.open(part, os.O_RDWR | os.O_CREAT | os.O_EXCL | os.O_NOFOLLOW, 0o666)
@@ -129,7 +129,7 @@ def replace_file(path, write):
 
 
 def list_output(path):
-    """Puts a file into the list of its folder; nothing if the folder has none."""
+    """Adds a file to the list of its folder, if the folder has one."""
     listing = path.with_name(OUTPUT_LIST)
     if not listing.exists():
         return

@@ -1,4 +1,4 @@
-"""Frames of a lattice, as latcon writes them for ParaView."""
+"""Reader of the lattice frames that latcon writes for ParaView."""
 from dataclasses import dataclass
 from xml.etree import ElementTree
 
@@ -9,7 +9,7 @@ from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
 from files import DamagedFile, read_text
 
-FIELDS = ("velocity", "cauchy_stress", "damage", "site")  # read where they are
+FIELDS = ("velocity", "cauchy_stress", "damage", "site")  # read if present
 
 
 @dataclass(frozen=True)
@@ -19,13 +19,13 @@ class Frame:
     time: float  # [s]
     reference: np.ndarray  # (sites, 2) undeformed positions [m]
     position: np.ndarray  # (sites, 2) current positions [m]
-    bonds: np.ndarray  # (bonds, 2) sites at the ends; none in light frames
+    bonds: np.ndarray  # (bonds, 2) sites at the ends; none in reduced frames
     stretch: np.ndarray  # (bonds) current over undeformed length [-]
-    fields: dict  # of FIELDS, as they are in the file, SI units
+    fields: dict  # those of FIELDS in the file, SI units
 
 
 def read_series(path):
-    """What a .pvd names: [(time [s], file), ...]; None if there is no such file."""
+    """Frames listed in a .pvd: [(time [s], file), ...]; None if there is no such file."""
     text = read_text(path)
     if text is None:
         return None
@@ -39,7 +39,7 @@ def read_series(path):
 
 
 def read_last_frame(folder):
-    """The last frame that lattice.pvd names and that is there; None if there is none."""
+    """Reads the last existing frame listed in lattice.pvd; None if there is none."""
     for time, path in reversed(read_series(folder / "lattice.pvd") or []):
         if path.exists():
             return read_frame(path, time)
@@ -47,8 +47,8 @@ def read_last_frame(folder):
 
 
 def read_frame(path, time, with_bonds=True):
-    """One vtp file; only the arrays that the pictures need are read."""
-    vtkObject.GlobalWarningDisplayOff()  # what is wrong is said once, below
+    """Reads the arrays of a vtp file that the pictures need."""
+    vtkObject.GlobalWarningDisplayOff()  # errors are reported once, below
     reader = vtkXMLPolyDataReader()
     reader.SetFileName(str(path))
     reader.UpdateInformation()
@@ -56,7 +56,7 @@ def read_frame(path, time, with_bonds=True):
     needed += [(reader.GetCellDataArraySelection(), "stretch")] if with_bonds else []
     for selection, wanted in needed:
         if not selection.ArrayExists(wanted):
-            raise DamagedFile(path, f"no VTK file of a lattice: it has no array {wanted!r}")
+            raise DamagedFile(path, f"not a VTK file of a lattice: array {wanted!r} is missing")
         selection.DisableAllArrays()
         selection.EnableArray(wanted)
     for name in FIELDS:
@@ -64,8 +64,8 @@ def read_frame(path, time, with_bonds=True):
             reader.GetPointDataArraySelection().EnableArray(name)
     reader.Update()
     sheet = reader.GetOutput()
-    if sheet.GetNumberOfPoints() == 0 or with_bonds and sheet.GetNumberOfLines() == 0:  # VTK's answer to a broken file
-        raise DamagedFile(path, "cut short, or without sites and bonds")
+    if sheet.GetNumberOfPoints() == 0 or with_bonds and sheet.GetNumberOfLines() == 0:  # VTK's result for a damaged file
+        raise DamagedFile(path, "truncated, or without sites and bonds")
     reference = vtk_to_numpy(sheet.GetPoints().GetData())[:, :2].astype(float)
     position = reference + vtk_to_numpy(sheet.GetPointData().GetArray("displacement"))[:, :2]
     fields = {name: vtk_to_numpy(sheet.GetPointData().GetArray(name)) for name in FIELDS
@@ -73,8 +73,8 @@ def read_frame(path, time, with_bonds=True):
     ends, stretch = np.empty(0, dtype=int), np.empty(0)
     if with_bonds:
         ends = vtk_to_numpy(sheet.GetLines().GetConnectivityArray())
-        # Cell data counts the vertices first.
+        # Cell data begin with the vertices.
         stretch = vtk_to_numpy(sheet.GetCellData().GetArray("stretch"))[sheet.GetNumberOfVerts():]
     if len(ends) != 2 * len(stretch) or not np.isfinite(position).all() or not np.isfinite(stretch).all():
-        raise DamagedFile(path, "its bonds or positions make no sense")
+        raise DamagedFile(path, "its bonds or positions are inconsistent")
     return Frame(time, reference, position, ends.reshape(-1, 2), stretch, fields)

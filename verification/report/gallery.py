@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""Draws the cracks of a study and writes a page of them, gallery.md, its pictures in pictures/ beside it.
+"""Draws the cracks of a study and writes the page gallery.md, with pictures in pictures/.
 
-With --latcon it first runs what is missing: the study, and the cracks below that the study has not, or not as a film.
-Exit codes, those of latcon: 0 done; 2 no study there, or a damaged file; 4 a run failed; 5 a file cannot be written.
+With --latcon it first performs missing runs: the study, and the cracks of EXTRA_RUNS.
+Exit codes, as of latcon: 0 success; 2 no study, or a damaged file; 4 a run failed; 5 a file cannot be written.
 """
 import argparse
 import re
@@ -29,44 +29,44 @@ from study_quantities import asked_quantities, sweeps_of
 from study_runs import mean_of, read_study, value_text
 
 LARGEST_PICTURE = 250_000  # [bytes]
-SWEEPS = ("zeta", "Sheet/height")  # what cracks are plotted against
+SWEEPS = ("zeta", "Sheet/height")  # abscissas of the plots
 SHELLS = "Next-nearest neighbours/present"
 ALL_KINDS = ("sheet", "path", "velocity", "stress")
-# What is shown: heading, pattern, whether there are next-nearest neighbours, which pictures.
+# Cracks shown: heading, pattern, with next-nearest neighbours or without, pictures.
 CASES = (("Oscillating", "oscillating", True, ALL_KINDS),
          ("Straight, with next-nearest neighbours", "straight", True, ALL_KINDS),
          ("Without next-nearest neighbours", "straight", False, ALL_KINDS),
          ("Branching", "branching", True, ("sheet", "path")))
-# Cracks that are run for the gallery: what is changed of the case of Fig. 1.
+# Additional cracks for the gallery, with the entries that differ from the case of Fig. 1.
 EXTRA_RUNS = {
     "fig1": [],
     "arrested": ["Sheet/length=8 cm", "Sheet/height=4 cm", "Fracture/breaking stretch=10", "Time/end=3 ms",
                  "Output/frame interval=0", "Output/motion frames=0"],
 }
 RUN_FAILED = 4  # exit code of latcon
-# Pictures of a run in their order: what is said of each, and the numbers beside it: quantity, name, scale, unit.
+# Pictures of a run in their order: caption, and the numbers in it: quantity, name, scale, unit.
 CAPTIONS = {
     "sheet": (RUN_PICTURES["sheet"], (("speed_lagrangian", "speed", 1, " m/s"),
-                                      ("speed_over_shear", "speed over that of shear waves", 1, ""),
-                                      ("bridged_length", "length of crack that fibrils bridge", 100, " cm"),
+                                      ("speed_over_shear", "speed over shear wave speed", 1, ""),
+                                      ("bridged_length", "bridged length", 100, " cm"),
                                       ("detached_sites", "detached sites", 1, ""))),
     "path": ("Above: path of the tip in the undeformed sheet. Below: where bonds broke, coloured by time.",
-             (("wavelength", "wavelength", 100, " cm"), ("amplitude", "amplitude of the sinusoid", 100, " cm"),
+             (("wavelength", "wavelength", 100, " cm"), ("amplitude", "amplitude of the best-fitting sinusoid", 100, " cm"),
               ("crest_amplitude", "half the height from trough to crest", 100, " cm"))),
-    "velocity": (RUN_PICTURES["velocity"], (("negative_zone_area", "area that moves back ahead", 1e6, " mm²"),
-                                            ("negative_zone_depth", "most negative velocity there", 1, " m/s"),
+    "velocity": (RUN_PICTURES["velocity"], (("negative_zone_area", "area of the negative-velocity zone", 1e6, " mm²"),
+                                            ("negative_zone_depth", "most negative velocity ahead of the tip", 1, " m/s"),
                                             ("velocity_asymmetry", "asymmetry", 1, ""),
-                                            ("process_zone_length", "length of what follows the tip", 1e3, " mm"))),
+                                            ("process_zone_length", "process-zone length", 1e3, " mm"))),
     "stress": (RUN_PICTURES["stress"], (("opening_stress_ratio_4d", "peak at 4 d over the value straight ahead", 1, ""),
-                                        ("opening_stress_angle_4d", "angle of that peak", 1, "°"),
-                                        ("wedge_angle", "angle of the wedge", 1, "°"))),
+                                        ("opening_stress_angle_4d", "angle of this peak", 1, "°"),
+                                        ("wedge_angle", "wedge angle", 1, "°"))),
 }
 
 
 def cases_of(study):
-    """[(heading, seed, pictures), ...]: of each case the first run in `pictures` that shows it, of that the first seed.
+    """[(heading, seed, pictures), ...]: for each entry of CASES the first seed of the first run in `pictures` that shows it.
 
-    Without next-nearest neighbours any pattern will do if no run is straight.
+    Without next-nearest neighbours any pattern is accepted if no run is straight.
     """
     shown = [name for name in study.document["pictures"] if name in study.runs]
     found = []
@@ -80,7 +80,7 @@ def cases_of(study):
 
 
 def draw_case(seed, kinds, folder):
-    """Pictures of a run, as far as it left what they need: {kind of CAPTIONS: PNG}."""
+    """Draws the pictures of a run for which it has data: {kind of CAPTIONS: PNG}."""
     drawn = draw_run(seed, folder, LARGEST_PICTURE, kinds)
     run = read_run(seed.folder)
     if has_rows(run.tip, 2):
@@ -91,7 +91,7 @@ def draw_case(seed, kinds, folder):
 
 
 def numbers_text(seed, seeds, numbers):
-    """Numbers of one seed, and over all seeds of the run where there are more."""
+    """Numbers of one seed, and their means over all seeds of the run if there are several."""
     words = []
     for quantity, name, scale, unit in numbers:
         value, mean = seed.values[quantity], mean_of(seeds, quantity)
@@ -103,11 +103,11 @@ def numbers_text(seed, seeds, numbers):
 
 
 def case_section(study, heading, seed, drawn):
-    """A crack: what it is, its pictures with their numbers."""
+    """Section of a crack: description, pictures with their numbers."""
     about, changed, seeds = study.runs[seed.run]
     changes = ", ".join(f"{entry} = {value}" for entry, value in changed.items())
     lines = [f"## {heading}: `{seed.run}`", "", f"{about[:1].upper()}{about[1:]}{'. ' if about else ''}"
-             f"{'Changed: ' + changes + '. ' if changes else ''}Patterns of its seeds: {pattern_text(seeds)}. "
+             f"{'Changed: ' + changes + '. ' if changes else ''}Patterns over its seeds: {pattern_text(seeds)}. "
              f"Pictures of seed {seed.seed}: {seed.pattern}."]
     for kind, (text, numbers) in CAPTIONS.items():
         if kind in drawn:
@@ -118,7 +118,7 @@ def case_section(study, heading, seed, drawn):
 
 
 def sweep_sections(study, folder):
-    """Sweeps, one for each set of runs along one abscissa: [(lines, PNG), ...]."""
+    """Sections of sweeps, one for each set of runs along one abscissa: [(lines, PNG), ...]."""
     sections, known = [], set()
     for claim in study.claims:
         for rows in sweeps_of([row for row in claim["rows"] if row["against"] in SWEEPS]):
@@ -130,12 +130,12 @@ def sweep_sections(study, folder):
             words = [f"- {r['quantity']}, {r['expected'] or 'for information'}: **{r['verdict']}**. {r['measured']}"
                      for r in rows]
             sections.append(([f"## {claim['claim']}", "", f"![sweep](pictures/{png.name})", "", "Means and standard "
-                              "deviations over the seeds; open symbols at 0: the crack has none.", "", *words], png))
+                              "deviations over the seeds; open symbols at 0: not defined for this crack.", "", *words], png))
     return sections
 
 
 def claims_section(study):
-    """What the source says, what was measured, whether it holds: a line a row."""
+    """Statement of the source, measured values and verdict, one line per row."""
     lines = ["## What the paper says, and what latcon measures", ""]
     for claim in study.claims:
         lines += [f"**{claim['claim']}** ({claim['verdict']}).{' The paper: ' + claim['paper'] if claim['paper'] else ''}"
@@ -147,20 +147,20 @@ def claims_section(study):
 
 
 def film_section(run, folder):
-    """The crack of Fig. 1 as it runs: ([line, ...], [picture, ...]); nothing if there is no such run."""
+    """Animation of the crack of Fig. 1: ([line, ...], [picture, ...]), empty if there is no such run."""
     gif = folder / "fig1.gif"
     motion = read_motion(run)
     if motion is None:
         return [], []
     draw_animation(motion, gif)
-    return ["", "## Fig. 1 as it runs", "", "![the sheet of Fig. 1, torn from left to right](pictures/fig1.gif)", "",
-            "The sheet as it is, coloured by the speed of the material, in slow motion of one pace: waves run ahead of "
-            "the crack, its flanks snap back behind it. Made of the frames in `motion.pvd` of `./run fracture "
-            "verification/cases/fig1.prm`; every crack leaves such a film."], [gif]
+    return ["", "## Animation of Fig. 1", "", "![the sheet of Fig. 1, torn from left to right](pictures/fig1.gif)", "",
+            "The deformed sheet, coloured by the speed of the material, in uniform slow motion: waves run ahead of the "
+            "crack, and its flanks snap back behind it. Made from the frames in `motion.pvd` of `./run fracture "
+            "verification/cases/fig1.prm`; every crack produces such an animation."], [gif]
 
 
 def arrested_section(run, folder):
-    """A crack that stopped: ([line, ...], [picture, ...]); nothing if there is no such run."""
+    """Section of an arrested crack: ([line, ...], [picture, ...]), empty if there is no such run."""
     frame = read_last_frame(run.folder)
     if run.crack is None or frame is None:
         return [], []
@@ -170,24 +170,24 @@ def arrested_section(run, folder):
     shrink(png, LARGEST_PICTURE)
     changes = ", ".join(entry.replace("=", " = ") for entry in EXTRA_RUNS["arrested"] if not entry.startswith("Output"))
     return ["", f"## {run.crack['pattern'].capitalize()}: `arrested`", "",
-            f"Bonds too tough for the loading. Changed of Fig. 1: {changes}. "
+            f"Bonds too tough for the loading. Changed with respect to Fig. 1: {changes}. "
             f"Measured: {run.crack['pattern']}, {run.crack['reason']}.", "",
             f"![sheet of arrested](pictures/{png.name})", "", RUN_PICTURES["sheet"]], [png]
 
 
-def beside_section(folder):
-    """The picture that ParaView made of `latcon compare`: ([line, ...], [picture, ...]); nothing where it is not."""
+def comparison_section(folder):
+    """Section with ParaView's picture of `latcon compare`: ([line, ...], [picture, ...]), empty if there is no picture."""
     png = folder / "paraview-side-by-side.png"
     if not png.exists():
         return [], []
-    return ["", "## Lattice beside continuum", "", f"![lattice, continuum and difference](pictures/{png.name})", "",
-            "A sheet with a hole, pulled along y: sites of the lattice, finite elements of its continuum with gradient "
-            "energy, and what is between them, in ParaView. Made by the last commands of "
+    return ["", "## Lattice and continuum", "", f"![lattice, continuum and difference](pictures/{png.name})", "",
+            "A sheet with a hole, stretched along y, in ParaView: sites of the lattice, finite elements of its continuum "
+            "with gradient energy, and the difference. Made with the last commands of "
             "[how-to/paraview.md](how-to/paraview.md)."], [png]
 
 
 def run_missing(latcon, folder):
-    """Runs the study and the cracks of EXTRA_RUNS unless they are there. @return whether all went well"""
+    """Runs the study and the cracks of EXTRA_RUNS unless they exist. @return whether all runs succeeded"""
     wanted = [] if (folder / "study.json").exists() else [["study", "paper", "--output-dir", folder]]
     case = Path(__file__).resolve().parents[1] / "cases" / "fig1.prm"
     for name, changes in EXTRA_RUNS.items():
@@ -203,7 +203,7 @@ def run_missing(latcon, folder):
 
 
 def gallery(study, docs):
-    """Draws everything and writes the page."""
+    """Draws all pictures and writes the page."""
     folder = docs / "pictures"
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -212,8 +212,8 @@ def gallery(study, docs):
     document = study.document
     lines = ["# Gallery", "", "Made by `cmake --build build/release --target gallery` from the study "
              f"\"{document['title']}\" (latcon {document['version']}, commit {document['git_commit'][:12]}, "
-             f"{len(study.seeds)} runs{', quick version' if document['quick'] else ''}); do not edit. Numbers are those "
-             "of its `study.json`: of the seed shown, and mean ± standard deviation over all seeds."]
+             f"{len(study.seeds)} runs{', quick version' if document['quick'] else ''}); do not edit. The numbers are "
+             "from its `study.json`: values of the seed shown, and mean ± standard deviation over all seeds."]
     pictures = set()
     extra = {name: read_run(study.folder / "gallery" / name) for name in EXTRA_RUNS}
     section, drawn = film_section(extra["fig1"], folder)
@@ -223,7 +223,7 @@ def gallery(study, docs):
         drawn = draw_case(seed, kinds, folder)
         pictures |= set(drawn.values())
         lines += ["", *case_section(study, heading, seed, drawn)]
-    for section, drawn in (arrested_section(extra["arrested"], folder), beside_section(folder)):
+    for section, drawn in (arrested_section(extra["arrested"], folder), comparison_section(folder)):
         lines += section
         pictures |= set(drawn)
     for section, png in sweep_sections(study, folder):
@@ -239,18 +239,18 @@ def gallery(study, docs):
 
 
 def wrapped(lines):
-    """Text of lines that are broken where they are longer than a line of the other pages."""
+    """Text of the lines, wrapped to 120 columns."""
     return "".join(line + "\n" if line.startswith(("!", "#")) else textwrap.fill(
         line, 120, subsequent_indent="  " if line.startswith("- ") else "", break_long_words=False,
         break_on_hyphens=False) + "\n" for line in lines)
 
 
 def main(words=None):
-    """The command line; `words` in place of that of the process. @return exit code"""
+    """Runs the command line; `words` replace the arguments of the process. @return exit code"""
     parser = argparse.ArgumentParser(description="Draw the cracks of a study and write gallery.md.")
     parser.add_argument("directory", metavar="STUDY", help="output directory of latcon study")
     parser.add_argument("docs", metavar="DOCS", help="where to write gallery.md and pictures/")
-    parser.add_argument("--latcon", metavar="PROGRAM", help="run what is missing with it")
+    parser.add_argument("--latcon", metavar="PROGRAM", help="program with which to perform missing runs")
     arguments = parser.parse_args(words)
     folder = Path(arguments.directory)
     if arguments.latcon and not run_missing(arguments.latcon, folder):

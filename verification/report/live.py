@@ -1,4 +1,4 @@
-"""What moves in the report: the viewer of the sheet, the plots of the path and of the energies, and their scripts."""
+"""Interactive parts of the report: the viewer of the sheet, the plots of the path and of the energies, and their scripts."""
 import json
 from html import escape
 from pathlib import Path
@@ -10,13 +10,13 @@ from pictures import SHARES, energy_shares
 from runs import has_rows
 
 HERE = Path(__file__).parent
-# dygraphs (MIT licence), of Debian's libjs-dygraphs. Without it the plots are pictures.
+# dygraphs (MIT licence), from Debian's libjs-dygraphs. Without it the plots are pictures.
 DYGRAPHS = Path("/usr/share/javascript/dygraphs")
-MOST_ROWS = 2000  # of a plot
+MOST_ROWS = 2000  # per plot
 
 
 def has_dygraphs():
-    """Whether the library of the plots is installed."""
+    """Whether the plotting library is installed."""
     return (DYGRAPHS / "dygraph.min.js").exists() and (DYGRAPHS / "dygraph.min.css").exists()
 
 
@@ -35,7 +35,7 @@ def scripts(with_viewer, with_plots):
 
 
 def data_script(name, text):
-    """JSON in the page, under a name."""
+    """Script element with JSON data under a name."""
     return f'<script type="application/json" id="{name}">{text}</script>'
 
 
@@ -43,7 +43,7 @@ def viewer(position, run, sheet):
     """The sheet of a run over time; sheet: Sheet of sheet_data.py."""
     data, frames = sheet.contents, len(sheet.contents["times"])
     hint = ("Point at the sheet to read the values of a site and of a bond. Drag to pan; double-click, or click and "
-            "turn the wheel, to enlarge.")
+            "turn the wheel, to zoom in.")
     near_tip = ('<div class="inset"><canvas class="near-tip" role="img" aria-label="the surroundings of the crack tip, bond '
                 'by bond"></canvas><span>near the tip</span></div>') if data["tip"] else ""
     return f"""<figure class="viewer" id="viewer-{position}" data-sheet="sheet-{position}">
@@ -64,19 +64,19 @@ aria-label="{escape(run.name)}: the sheet over time, coloured by speed, stretch 
 <div class="scale"><span class="colour-name"></span>
 <div><div class="colour-bar"></div><div class="colour-ends"></div></div></div>
 <p class="values" aria-live="polite" data-hint="{hint}">{hint}</p>
-<figcaption>{frames} frames. Values are those of the files to within {precision(data)}.</figcaption>
+<figcaption>{frames} frames. Values agree with the files to within {precision(data)}.</figcaption>
 </figure>
 {data_script(f"sheet-{position}", sheet.text)}"""
 
 
 def precision(data):
-    """Half a quantum of each value, in words. Both ends of a bond may be off by that along x and y."""
+    """Half a quantum of each value, as text. Both ends of a bond may have this error along x and y."""
     return (f"{0.5e6 * data['quantum']:.2g} µm (positions), {0.5 * data['speedQuantum']:.2g} m/s (speeds), "
             f"{2**0.5 * data['quantum'] / data['spacing']:.1g} (stretch)")
 
 
 def live_plot(position, name, plot, caption, with_viewer):
-    """A plot with the values below the pointer."""
+    """A plot that shows the values below the pointer."""
     linked = f' data-viewer="viewer-{position}"' if with_viewer else ""
     return f"""<figure class="live" data-plot="{name}-data-{position}"{linked}>
 <div class="plot {name}" role="img" aria-label="{escape(caption)}"></div>
@@ -97,7 +97,7 @@ def path_plot(run):
     window = [crack.get("window_begin"), crack.get("window_end")]
     if curve is not None:
         inside = (tip["X"] >= window[0]) & (tip["X"] <= window[1])
-        curves["sinusoid as measured [mm]"] = np.where(inside, 1e3 * curve(tip["X"]), np.nan)
+        curves["measured sinusoid [mm]"] = np.where(inside, 1e3 * curve(tip["X"]), np.nan)
     return {
         "labels": list(curves), "rows": rows_of(curves), "colours": ["--first", "--second"][:len(curves) - 1],
         "dashed": [False, True][:len(curves) - 1], "x": "X in the undeformed sheet [cm]", "y": "Y [mm]", "follows": "tip",
@@ -106,7 +106,7 @@ def path_plot(run):
 
 
 def energy_plot(run):
-    """Where the elastic energy went; None without energies."""
+    """Conversion of the elastic energy; None without energies."""
     if not has_rows(run.energy, 2):
         return None
     energy = thinned(run.energy)
@@ -121,14 +121,14 @@ def energy_plot(run):
 
 
 def thinned(table):
-    """A table with at most MOST_ROWS rows, the first and the last among them."""
+    """A table reduced to at most MOST_ROWS rows, including the first and the last."""
     count = len(table["t"])
     rows = np.unique(np.round(np.linspace(0, count - 1, min(count, MOST_ROWS))).astype(int))
     return {name: values[rows] for name, values in table.items()}
 
 
 def rows_of(curves):
-    """Rows of numbers to seven digits, in the order of the first column, each value of it once; None for no number."""
+    """Rows of numbers to seven digits, sorted by the first column without repeated values; None for NaN."""
     values = np.column_stack(list(curves.values()))
     _, first = np.unique(values[:, 0], return_index=True)
     return [[None if not np.isfinite(value) else float(f"{value:.7g}") for value in row] for row in values[first]]

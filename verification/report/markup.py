@@ -1,4 +1,4 @@
-"""Pieces of HTML that the sections of the page share."""
+"""HTML elements shared by the sections of the page."""
 import base64
 import re
 from html import escape
@@ -6,15 +6,15 @@ from html import escape
 MARKS = {"holds": "✓", "fails": "✗", "reported": "·", "warns": "!", "interrupted": "!", "unfinished": "!"}
 
 
-def verb(count, one, many):
-    """The form that goes with a count."""
+def plural(count, one, many):
+    """Singular or plural form, depending on a count."""
     return one if count == 1 else many
 
 
 def table(head, rows, kind=""):
-    """A table; columns whose head begins with # hold numbers. On a phone each row is a block, its cells under their heads.
+    """A table; columns whose head begins with # contain numbers. On a phone each row is a block of cells under their heads.
 
-    rows: of `row` and `plain_row`.
+    rows: results of `row` and `plain_row`.
     """
     cells = "".join(f'<th scope="col" class="{"number" if name[0] == "#" else "words"}">{name.lstrip("#")}</th>'
                     for name in head)
@@ -25,7 +25,7 @@ def table(head, rows, kind=""):
 
 
 def row(verdict, cells, word=None):
-    """A table row in the colour of its verdict, which comes first, or `word` for it; cells are (class, HTML)."""
+    """A table row in the colour of its verdict. The first cell is the verdict, or `word`; cells are (class, HTML)."""
     cells = [("verdict", f"{MARKS[verdict]} {word or verdict}"), *cells]
     return verdict, cells
 
@@ -36,32 +36,33 @@ def plain_row(cells):
 
 
 def row_text(verdict, cells, labels):
-    """The HTML of a row."""
+    """HTML of a row."""
     names = ["" if kind == "verdict" else f' data-label="{label}"' for (kind, _), label in zip(cells, labels)]
     text = "".join(f'<td class="{kind}"{name}>{text}</td>' for (kind, text), name in zip(cells, names))
     return f'<tr class="{verdict}">{text}</tr>' if verdict else f"<tr>{text}</tr>"
 
 
 def data_url(path):
-    """A picture, in the page itself."""
+    """Data URL that embeds a picture in the page."""
     return f"data:image/{path.suffix[1:]};base64,{base64.b64encode(path.read_bytes()).decode('ascii')}"
 
 
-def folded(summary, text):
-    """Preformatted text behind a line."""
+def details(summary, text):
+    """Preformatted text that expands below a summary."""
     return (f'<details><summary>{escape(summary)}</summary><div class="scroll" tabindex="0">'
             f"<pre>{escape(text)}</pre></div></details>")
 
 
 def first_sentence(text):
-    """What a picture shows, for those who do not see it."""
+    """First sentence of a caption, as alternative text of the picture."""
     return re.split(r"(?<=[.:])\s", text, maxsplit=1)[0]
 
 
 def figure(picture, alt, caption, still=None):
     """A picture with its caption, which is HTML.
 
-    alt: what it shows, in words. still: what stands for an animation in print, and where readers asked for less motion.
+    alt: description of the picture. still: picture that replaces an animation in print and for readers who prefer reduced
+    motion.
     """
     image = f'<img alt="{escape(alt)}" src="{data_url(picture)}">'
     if still is not None:
@@ -71,10 +72,10 @@ def figure(picture, alt, caption, still=None):
 
 
 def number(value, form):
-    """A number, or a dash for none."""
+    """A formatted number, or a dash for None."""
     return "–" if value is None else format(value, form)
 
 
-def raised(text):
-    """Text with its exponents raised."""
+def superscripts(text):
+    """HTML text with exponents as superscripts."""
     return escape(text).replace("^2", "²").replace("^3", "³")

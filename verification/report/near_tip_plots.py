@@ -1,4 +1,4 @@
-"""Pictures of the fields around a crack tip, in the current configuration, as latcon averaged them."""
+"""Pictures of the averaged fields around a crack tip, in the current configuration."""
 from dataclasses import dataclass
 
 import numpy as np
@@ -12,14 +12,14 @@ from vtkmodules.vtkIOXML import vtkXMLImageDataReader
 from files import DamagedFile
 from pictures import BLACK, COLOUR_MAP, GREEN, WIDTH, Page, save
 
-LEFT, TOP, FOOT, BAR = 0.85, 0.45, 0.62, 1.25  # margins and the room of the colour bar [in]
-NEGATIVE = 0.01  # of the crack's speed: what moves back faster is outlined, as near_tip.json counts it
+LEFT, TOP, FOOT, BAR = 0.85, 0.45, 0.62, 1.25  # margins and height of the colour bar [in]
+NEGATIVE = 0.01  # fraction of the crack speed: faster backward motion is outlined, as counted in near_tip.json
 FIELDS = {"displacement": 3, "velocity": 3, "cauchy_stress": 9, "occupancy": 1}
 
 
 @dataclass(frozen=True)
 class NearTip:
-    """Means at the points of a grid, arrays (rows along Y, columns along X, components); SI units."""
+    """Mean fields at the points of a grid, arrays (rows along Y, columns along X, components); SI units."""
 
     X: np.ndarray  # (columns) undeformed, relative to the tip
     Y: np.ndarray  # (rows)
@@ -31,13 +31,13 @@ class NearTip:
 
     @property
     def holds(self):
-        """Where there was material more often than not."""
+        """Points with material in at least half of the samples."""
         return self.occupancy >= 0.5
 
 
 def read_near_tip(path):
-    """A file near_tip.vti or near_tip_folded.vti."""
-    vtkObject.GlobalWarningDisplayOff()  # what is wrong is said once, below
+    """Reads near_tip.vti or near_tip_folded.vti."""
+    vtkObject.GlobalWarningDisplayOff()  # errors are reported once, below
     reader = vtkXMLImageDataReader()
     reader.SetFileName(str(path))
     reader.Update()
@@ -47,11 +47,11 @@ def read_near_tip(path):
     for name, components in FIELDS.items():
         array = image.GetPointData().GetArray(name)
         if array is None or array.GetNumberOfComponents() != components or array.GetNumberOfTuples() != rows * columns:
-            raise DamagedFile(path, f"no VTK image of the fields near a tip: it has no array {name!r} as it should be")
+            raise DamagedFile(path, f"not a VTK image of the fields near a tip: array {name!r} is missing or of wrong size")
         arrays[name] = vtk_to_numpy(array).reshape(rows, columns, components)
     samples = image.GetFieldData().GetArray("Samples")
     if samples is None or not np.isfinite(arrays["occupancy"]).all():
-        raise DamagedFile(path, "its samples or their occupancy make no sense")
+        raise DamagedFile(path, "its samples or their occupancy are invalid")
     (X_0, Y_0, _), (dX, dY, _) = image.GetOrigin(), image.GetSpacing()
     X, Y = X_0 + dX * np.arange(columns), Y_0 + dY * np.arange(rows)
     reference = np.stack(np.meshgrid(X, Y), axis=-1)
@@ -61,9 +61,9 @@ def read_near_tip(path):
 
 
 def velocity_picture(vti_path, out_png, title="velocity around the tip", crack_speed=None):
-    """Arrows and colour of v_x; what moves against the crack is outlined.
+    """Draws velocity arrows on the colours of v_x, and outlines the zone of backward motion ahead of the tip.
 
-    crack_speed: of the laboratory [m/s]; without it the outline is where v_x changes its sign
+    crack_speed: laboratory speed [m/s]; without it the outline is where v_x changes sign
     """
     tip = read_near_tip(vti_path)
     v = tip.velocity[..., 0]
@@ -85,16 +85,16 @@ def velocity_picture(vti_path, out_png, title="velocity around the tip", crack_s
     arrows = axes.quiver(*place.T, *arrow.T, color=BLACK, angles="xy", width=0.0012, scale=22 * fastest,
                          scale_units="width")
     axes.quiverkey(arrows, 0.86, 1.025, fastest, f"{fastest:.3g} m/s", labelpos="E", fontproperties={"size": 9})
-    what = f"green: v_x < {limit:.2g} m/s ahead of the tip" if goes_back.any() else "nothing moves back ahead of it"
+    what = f"green: v_x < {limit:.2g} m/s ahead of the tip" if goes_back.any() else "no backward motion ahead of the tip"
     finish(page, axes, mesh, tip, title, f"v_x [m/s] in the laboratory, along the crack; {what}")
     save(page.figure, out_png)
 
 
 def opening_stress_picture(vti_path, out_png, title="opening stress around the tip"):
-    """Filled contours of the Cauchy stress sigma_yy."""
+    """Draws filled contours of the Cauchy stress sigma_yy."""
     tip = read_near_tip(vti_path)
     stress = 1e-6 * tip.cauchy_stress[..., 1, 1]
-    low, high = np.percentile(stress[tip.holds & (tip.X > 0)], (1, 99.9))  # flanks have extremes of their own
+    low, high = np.percentile(stress[tip.holds & (tip.X > 0)], (1, 99.9))  # without the extremes at the flanks
     levels = MaxNLocator(18).tick_values(min(low, 0.0), max(high, low + 1e-6))
     page, axes = axes_around(tip)
     cells = triangulation(tip)
@@ -106,15 +106,15 @@ def opening_stress_picture(vti_path, out_png, title="opening stress around the t
 
 
 def triangulation(tip):
-    """Two triangles for each cell of the grid that is material, in the current configuration [mm].
+    """Two triangles for each cell of the grid that contains material, in the current configuration [mm].
 
-    Cells of more than three times the area of those ahead of the tip span the opening, by fibrils or by flanks that lie
-    elsewhere in every sample.
+    Cells with more than three times the median area ahead of the tip are omitted. They span the opening, because of fibrils
+    or of flanks whose position varies between samples.
     """
     rows, columns = tip.holds.shape
     number = np.arange(rows * columns).reshape(rows, columns)
     corners = np.stack((number[:-1, :-1], number[:-1, 1:], number[1:, 1:], number[1:, :-1]))
-    x, y = position = 1e3 * np.nan_to_num(tip.position).reshape(-1, 2).T  # places without material are in no triangle
+    x, y = position = 1e3 * np.nan_to_num(tip.position).reshape(-1, 2).T  # points without material are in no triangle
     (ax, ay), (bx, by) = (position[:, corners[i + 2]] - position[:, corners[i]] for i in (0, 1))
     area = 0.5 * np.abs(ax * by - ay * bx)
     whole = tip.holds.ravel()[corners].all(axis=0)
@@ -124,9 +124,9 @@ def triangulation(tip):
 
 
 def axes_around(tip):
-    """A page and axes of equal scales for the neighbourhood of the tip."""
+    """A page with axes of equal scales for the neighbourhood of the tip."""
     x, y = 1e3 * tip.position[tip.holds].T
-    # Single points of a flank may lie anywhere; far above and below the tip there is little to see.
+    # Excludes single outlying points of a flank, and the uniform regions far above and below the tip.
     left, right = np.percentile(x, (0.2, 100))
     half_height = min(np.percentile(np.abs(y), 99.9), 0.38 * (right - left))
     bottom, top = -half_height, half_height
@@ -141,7 +141,7 @@ def axes_around(tip):
 
 
 def finish(page, axes, mesh, tip, title, label):
-    """Tip, title and colour bar."""
+    """Adds tip, title and colour bar."""
     axes.plot(0, 0, "+", color=BLACK, markersize=11, markeredgewidth=1.6)
     axes.set_title(f"{title}: mean of {tip.samples} samples, current configuration")
     bar = page.figure.colorbar(mesh, cax=page.axes(LEFT, page.height - 0.62, WIDTH - LEFT - 0.25, 0.14),

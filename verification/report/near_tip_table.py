@@ -1,14 +1,14 @@
-"""What a run measured of the fields around its running crack tip, as a table."""
+"""Table of the quantities measured near the tip of a running crack."""
 from dataclasses import dataclass
 from html import escape
 
-from markup import plain_row, raised, table
+from markup import plain_row, superscripts, table
 from summary import with_uncertainty
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """A number of near_tip.json as the table shows it."""
+    """Row of the table: a number of near_tip.json."""
 
     name: str  # in near_tip.json
     label: str
@@ -19,39 +19,39 @@ class Quantity:
 
 QUANTITIES = (
     Quantity("negative_zone_area", "negative velocity, area", "mm^2", 1e6,
-             "where material ahead of the tip moves back by more than 1 % of the crack's speed"),
-    Quantity("negative_zone_length", "negative velocity, length", "mm", 1e3, "its extent along the crack"),
+             "region ahead of the tip that moves backwards at more than 1 % of the crack speed"),
+    Quantity("negative_zone_length", "negative velocity, length", "mm", 1e3, "extent of this region along the crack"),
     Quantity("negative_zone_depth", "negative velocity, largest", "m/s", 1, "fastest backward motion ahead of the tip"),
     Quantity("velocity_asymmetry", "asymmetry", "1", 1,
-             "of the mean velocities, samples of a descending path mirrored: 0 symmetric, 2 antisymmetric"),
+             "of the mean velocity, with samples of a descending path mirrored: 0 symmetric, 2 antisymmetric"),
     Quantity("samples_with_vortex", "samples with a vortex", "%", 100,
-             "share of single samples in which material turns around a point near the tip"),
+             "share of single samples in which material rotates around a point near the tip"),
     Quantity("process_zone_length", "process zone, length", "mm", 1e3,
-             "extent of what follows the tip at more than half the speed of relaxed rubber"),
+             "extent of the material that follows the tip at more than half the speed of relaxed rubber"),
     Quantity("process_zone_share", "process zone, share", "%", 100,
-             "share of the material just behind the tip that is so fast: 3 to 14 d behind it, up to 3 d to either side"),
+             "share of such material just behind the tip: 3 to 14 d behind it, up to 3 d to either side"),
     Quantity("opening_stress_angle_4d", "opening stress, angle", "degrees", 1,
-             "of the peak at 4 d from the tip, to the direction of the crack"),
+             "of the peak at 4 d from the tip, from the direction of the crack"),
     Quantity("opening_stress_ratio_4d", "opening stress, ratio", "1", 1,
-             "of the peak to the stress straight ahead: above 1 there is a lobe on either side"),
+             "of the peak to the stress straight ahead; above 1 there is a lobe on either side"),
     Quantity("opening_stress_concentration_4d", "opening stress, concentration", "1", 1,
              "peak at 4 d from the tip over the stress of the loaded sheet"),
     Quantity("opening_stress_peak_4d", "opening stress, peak", "MPa", 1e-6, "at 4 d from the tip, Cauchy"),
     Quantity("wedge_angle", "wedge angle", "degrees", 1, "between the flanks, mean over samples"),
     Quantity("speed_over_shear", "speed over shear waves", "1", 1,
-             "waves along the crack in the loaded sheet; above 1 is what the paper calls supersonic"),
+             "waves along the crack in the loaded sheet; the paper calls cracks above 1 supersonic"),
     Quantity("speed_over_longitudinal", "speed over longitudinal waves", "1", 1,
              "waves along the crack in the loaded sheet"),
 )
 
 
 def near_tip_table(near_tip):
-    """The table of a run's near_tip.json; a sentence where there was nothing to measure."""
+    """The table of near_tip.json, or a sentence if nothing could be measured."""
     if not near_tip.get("samples"):
         return f'<h3>Near the tip</h3><p>Nothing was measured: {escape(near_tip["reason"])}.</p>'
-    reason = f'<p>Not all could be measured: {escape(near_tip["reason"])}.</p>' if near_tip["reason"] else ""
+    reason = f'<p>Not all quantities could be measured: {escape(near_tip["reason"])}.</p>' if near_tip["reason"] else ""
     rows = [plain_row([("short", escape(quantity.label)), ("number", value_text(near_tip, quantity)),
-                       ("short", raised(quantity.unit)), ("words", escape(quantity.meaning))])
+                       ("short", superscripts(quantity.unit)), ("words", escape(quantity.meaning))])
             for quantity in QUANTITIES if quantity.name in near_tip]
     return (f'<h3>Near the tip, from {near_tip["samples"]:.0f} samples</h3>{reason}'
             + table(["quantity", "#latcon", "unit", "meaning"], rows, "narrow"))

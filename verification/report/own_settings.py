@@ -1,5 +1,5 @@
-"""Imports matplotlib without a `matplotlibrc` of the current folder, which it would take before any other: the folder of
-a run may be somebody else's. To be imported before all that imports matplotlib."""
+"""Imports matplotlib without the `matplotlibrc` of the current folder, which would otherwise take precedence: the folder of
+a run may belong to somebody else. Import this module before any other that imports matplotlib."""
 import os
 from pathlib import Path
 

@@ -1,4 +1,4 @@
-"""The report as one HTML file that needs nothing beside it."""
+"""The report as one self-contained HTML file."""
 import json
 from html import escape
 from pathlib import Path
@@ -6,16 +6,16 @@ from pathlib import Path
 from claim_sections import WORDS, claim_sections
 from crack_section import crack_section, pattern_phrase
 from live import has_dygraphs, scripts, styles
-from markup import folded, number, raised, row, table, verb
+from markup import details, number, plural, row, superscripts, table
 from summary import comparisons, percent, ratio_text, tallies, tally_of, unpublished, with_uncertainty
 
 def page(title, runs, pictures, plots, sheets, unreadable=()):
     """The whole page.
 
-    unreadable: runs that cannot be shown
-    pictures: of cracks, {folder of a run: {name of crack_section.CAPTIONS: (picture, still picture for print or None)}}
-    plots: of claims, {folder of a run: {plot name: (PNG file, error metrics)}}
-    sheets: of cracks, {folder of a run: data of the viewer (sheet_data.py) or None}
+    unreadable: runs that cannot be read
+    pictures: pictures of cracks, {folder of a run: {name of crack_section.CAPTIONS: (picture, still for print or None)}}
+    plots: plots of claims, {folder of a run: {plot name: (PNG file, error metrics)}}
+    sheets: viewer data of cracks (sheet_data.py), {folder of a run: data or None}
     """
     style = (Path(__file__).parent / "style.css").read_text(encoding="utf-8")
     versions = sorted({f"latcon {run.info['version']}" for run in runs if run.info and "version" in run.info})
@@ -52,7 +52,7 @@ def page(title, runs, pictures, plots, sheets, unreadable=()):
 
 
 def contents(runs):
-    """Links to the sections, which stay in view."""
+    """Links to the sections, always in view."""
     links = [("top", "Result")]
     links += [(f"crack-{number}", f"Crack {run.name}") for number, run in enumerate(runs) if run.is_fracture]
     links += [("claims", "Claims"), ("inputs", "Inputs")]
@@ -60,7 +60,7 @@ def contents(runs):
 
 
 def banner(runs, unreadable=()):
-    """The verdict over everything, and what a reader must know first."""
+    """The overall verdict, with the most important notes."""
     checks = [check for run in runs for check in run.checks]
     total = tally_of(None, "", checks).count
     checked = total["holds"] + total["fails"]
@@ -68,14 +68,14 @@ def banner(runs, unreadable=()):
     unverified = [run for run in runs if run.skipped_verification]
     notes = []
     if total["fails"]:
-        kind, head = "fails", f"✗ Fails: {total['fails']} of {checked} checks {verb(total['fails'], 'fails', 'fail')}"
+        kind, head = "fails", f"✗ Fails: {total['fails']} of {checked} checks {plural(total['fails'], 'fails', 'fail')}"
         notes += [f'<b class="fails">{escape(run.name)}, {escape(check.claim)}: {escape(check.quantity)}</b>, '
                   f"error {number(check.error, '.3g')}, allowed {number(check.tolerance, '.3g')}"
                   for run in runs for check in run.checks if check.verdict == "fails"]
     elif incomplete or unreadable:
-        kind, head = "warns", f"! Not complete: {'what is there holds' if checked else 'nothing was checked'}"
+        kind, head = "warns", f"! Not complete: {'all checks made so far hold' if checked else 'nothing was checked'}"
     elif unverified:
-        kind, head = "warns", f"! Not verified: {'what was checked holds' if checked else 'nothing was checked'}"
+        kind, head = "warns", f"! Not verified: {'all checks made hold' if checked else 'nothing was checked'}"
     elif checked:
         kind, head = "holds", f"✓ Holds: all {checked} checks are within their tolerances"
     else:
@@ -83,19 +83,19 @@ def banner(runs, unreadable=()):
     notes += [f'<b class="fails">{escape(run.name)}: cannot be read, not shown</b>: {escape(run.problem)}'
               for run in unreadable]
     notes += [f"{escape(run.name)}: the run {'was interrupted' if run.state == 'interrupted' else 'has not ended'}; "
-              "what it had written by then is shown" for run in incomplete]
-    notes += [f"{escape(run.name)}: the crack was run without its material and pre-stretch having been verified "
+              "the results written so far are shown" for run in incomplete]
+    notes += [f"{escape(run.name)}: the crack was run without verification of its material and pre-stretch "
               "(--skip-verification)" for run in unverified]
     notes += [f"{escape(run.name)}: {pattern_phrase(run.crack)}" for run in runs if run.crack is not None]
     if total["reported"]:
-        rows = verb(total["reported"], "1 row has", f"{total['reported']} rows have")
-        notes.append(f"{rows} no tolerance and {verb(total['reported'], 'is', 'are')} for information")
+        rows = plural(total["reported"], "1 row has", f"{total['reported']} rows have")
+        notes.append(f"{rows} no tolerance and {plural(total['reported'], 'is', 'are')} for information only")
     items = "".join(f"<li>{note}</li>" for note in notes)
     return f'<div class="banner {kind}"><strong>{head}</strong>{f"<ul>{items}</ul>" if items else ""}</div>'
 
 
 def overview(runs):
-    """Counts by run and claim, folded."""
+    """Counts by run and claim, collapsed."""
     rows = []
     for position, run in enumerate(runs):
         link = f'<a href="#run-{position}">{escape(run.name)}</a>'
@@ -112,18 +112,18 @@ def overview(runs):
 
 
 def inputs_section(run, position):
-    """What a run was given, and what it ran on."""
+    """Input of a run, and the versions and machine it ran on."""
     parts = [f'<h3 id="run-{position}">{escape(run.name)}</h3>', facts(run)]
     if run.case_text is not None:
-        parts.append(folded("Inputs (case.prm, SI units)", run.case_text))
+        parts.append(details("Inputs (case.prm, SI units)", run.case_text))
     if run.info is not None:
-        parts.append(folded("Versions, machine, threads, wall times (run.json)",
+        parts.append(details("Versions, machine, threads, wall times (run.json)",
                             json.dumps(run.info, indent=2, ensure_ascii=False)))
     return "\n".join(part for part in parts if part)
 
 
 def facts(run):
-    """Version, commit, time and memory in one line, as far as run.json tells."""
+    """Version, commit, time and memory in one line, as far as run.json contains them."""
     info = run.info or {}
     found = []
     if "version" in info:
@@ -137,22 +137,22 @@ def facts(run):
         found.append(f"{info['peak_memory_bytes'] / 1e6:.0f} MB")
     verification = info.get("verification")
     if isinstance(verification, dict) and verification.get("reused"):
-        found.append(f"verdicts of {verification.get('checked_at')}, reused")
+        found.append(f"cached verdicts of {verification.get('checked_at')}")
     if run.state != "complete":
         found.append(run.state)
     return f'<p class="soft">{escape(" · ".join(found))}</p>' if found else ""
 
 
 def key_numbers(runs):
-    """What was measured of the cracks, beside what was published if anything was."""
+    """Measured values of the cracks, with published values where there are any."""
     several = sum(run.crack is not None for run in runs) > 1
     rows = [row(c.check.kind, [
-        *([("short", escape(run.name))] if several else []), ("words", raised(c.quantity)),
+        *([("short", escape(run.name))] if several else []), ("words", superscripts(c.quantity)),
         ("number", "not measured" if c.measured is None else with_uncertainty(c.measured, c.uncertainty)),
-        ("number", number(c.published, ".4g")), ("short", raised(c.unit)), ("number", percent(c.difference))],
+        ("number", number(c.published, ".4g")), ("short", superscripts(c.unit)), ("number", percent(c.difference))],
         c.check.word) for run in runs for c in comparisons(run)]
     rows += [row("reported", [
-        *([("short", escape(run.name))] if several else []), ("words", raised(quantity)),
+        *([("short", escape(run.name))] if several else []), ("words", superscripts(quantity)),
         ("number", with_uncertainty(value, uncertainty)), ("number", "–"), ("short", unit), ("number", "–")], "measured")
         for run in runs for quantity, unit, value, uncertainty in unpublished(run)]
     head = ["verdict", *(["run"] if several else []), "quantity", "#latcon", "#paper", "unit", "#difference"]

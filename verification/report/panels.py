@@ -1,4 +1,4 @@
-"""Grids of small axes for the plots of claims: theory dashed, code with markers or solid, legends outside of axes."""
+"""Grids of small axes for the plots of claims: theory dashed, simulations solid or with markers, legends outside the axes."""
 import math
 
 import matplotlib.pyplot as plt
@@ -9,7 +9,7 @@ from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
 from pictures import BLACK, BLUE, GREEN, RED, WIDTH, Page
 
 LEFT, RIGHT, GAP = 0.95, 0.2, 0.85  # margins of the grid and space between its columns [in]
-NAME, TITLE, HEIGHT, FOOT = 0.27, 0.35, 2.25, 0.6  # of a row: its name, titles of its axes, axes, below them [in]
+NAME, TITLE, HEIGHT, FOOT = 0.27, 0.35, 2.25, 0.6  # heights in a row: name, titles of axes, axes, space below [in]
 LEGEND_LINE = 0.24  # [in]
 WAVES = {"L": "longitudinal", "S": "shear"}
 MARKERS = {"L": "^", "S": "o"}
@@ -17,7 +17,7 @@ LAW_COLOURS = {"local": RED, "gradient": BLUE, "isotropic": GREEN, "filtered": G
 
 
 class Grid:
-    """Rows and columns of axes under a legend. Rows have a name, or none has."""
+    """Rows and columns of axes under a legend. Either all rows have a name or none has."""
 
     def __init__(self, row_names, columns, legend, per_line=4, gap=GAP):
         lines = -(-len(legend) // per_line)
@@ -29,7 +29,7 @@ class Grid:
         for row, name in enumerate(row_names):
             self.page.figure.text(LEFT / WIDTH, 1 - (self.row_top(row) - 0.33) / self.page.height, name, fontsize=11,
                                   fontweight="bold", va="bottom")
-        # Handles fill column by column; they are to be read line by line.
+        # matplotlib fills legends column by column; the entries are meant to be read line by line.
         legend = [legend[i] for column in range(per_line) for i in range(column, len(legend), per_line)]
         self.page.figure.legend(handles=legend, loc="upper left", bbox_to_anchor=(LEFT / WIDTH - 0.005, 1),
                                 ncol=per_line, borderaxespad=0.3, fontsize=9, columnspacing=1.6, handlelength=2.4)
@@ -44,13 +44,13 @@ class Grid:
 
 
 def entry(label, style, color=BLACK, marker=None, filled=False):
-    """A line of a legend."""
+    """Entry of a legend."""
     return Line2D([], [], linestyle=style, color=color, marker=marker, markersize=5, label=label,
                   markerfacecolor=color if filled else "white")
 
 
 def colours_of(values, name, unit=""):
-    """A colour for each of some numbers, and the entries of a legend: ({value: colour}, [entry, ...])."""
+    """Colours for numbers, and the entries of a legend: ({value: colour}, [entry, ...])."""
     values = sorted(set(values))
     shades = plt.get_cmap("viridis")(np.linspace(0, 0.85, max(len(values), 2)))
     colours = dict(zip(values, shades))
@@ -58,14 +58,14 @@ def colours_of(values, name, unit=""):
 
 
 def plain_numbers(axis):
-    """Ticks of a logarithmic axis at 1, 2, 5, written out."""
+    """Sets the ticks of a logarithmic axis to 1, 2, 5, as plain numbers."""
     axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
     axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:.4g}"))
     axis.set_minor_locator(NullLocator())
 
 
 def logarithmic(axes, x=True):
-    """Logarithmic axes: decades along y, two at least, and plain numbers along x. To be called when all is drawn."""
+    """Makes axes logarithmic: decades along y, at least two, and plain numbers along x. Call this after drawing."""
     axes.set_yscale("log")
     low, high = (math.log10(end) for end in axes.get_ylim())
     if math.floor(high) - math.ceil(low) < 1:
@@ -77,15 +77,15 @@ def logarithmic(axes, x=True):
 
 
 def logarithmic_along_x(axes):
-    """A logarithmic x axis with plain numbers."""
+    """Makes the x axis logarithmic, with plain numbers."""
     if not any(np.isfinite(np.asarray(line.get_ydata(), dtype=float)).any() for line in axes.lines):
-        axes.set_xlim(0.1, 1)  # nothing of it was computed, and nothing has no logarithm
+        axes.set_xlim(0.1, 1)  # no data: without limits the logarithm would fail
     axes.set_xscale("log")
     plain_numbers(axes.xaxis)
 
 
 def note(axes, lines, corner="upper left"):
-    """Short lines of text [(text, colour)] in a corner of a panel, on what lies below."""
+    """Writes short lines of text [(text, colour)] into a corner of a panel, on top of the curves."""
     top = corner.startswith("upper")
     left = corner.endswith("left")
     for number, (text, colour) in enumerate(lines if top else lines[::-1]):
@@ -96,6 +96,6 @@ def note(axes, lines, corner="upper left"):
 
 
 def headroom(axes, decades):
-    """Room for a note above what a logarithmic panel shows."""
+    """Extends a logarithmic panel upwards to make room for a note."""
     low, high = axes.get_ylim()
     axes.set_ylim(low, high * 10.0**decades)

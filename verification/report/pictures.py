@@ -1,4 +1,4 @@
-"""Style of all pictures, and those of the sheet and of the energies. Lengths in cm, times in ms."""
+"""Style of all pictures, and the pictures of the sheet and of the energies. Lengths in cm, times in ms."""
 import math
 
 import matplotlib
@@ -13,7 +13,7 @@ from files import write_file
 
 WIDTH = 10.0  # of every picture [in]
 PIXELS_PER_INCH = 160
-# Okabe and Ito's palette: told apart by colour-blind readers, and in print.
+# Okabe and Ito's palette, distinguishable for colour-blind readers and in print.
 BLACK, BLUE, SKY, GREEN, RED, GREY = "#222222", "#0072b2", "#56b4e9", "#009e73", "#d55e00", "#8a8a8a"
 COLOUR_MAP = "viridis"
 
@@ -23,7 +23,7 @@ plt.rcParams.update({
     "axes.labelsize": 10,
     "axes.titlesize": 11,
     "axes.titlelocation": "left",
-    "axes.titley": 1.0,  # where it goes anyway; to look for it takes as long as the rest
+    "axes.titley": 1.0,  # the automatic position, whose search takes as long as the rest of the drawing
     "axes.edgecolor": "#555555",
     "axes.linewidth": 0.7,
     "axes.formatter.useoffset": False,
@@ -40,7 +40,7 @@ plt.rcParams.update({
 
 
 def figure_pixels(figure):
-    """Draws a figure and closes it. @return its colours, (rows, columns, 3)"""
+    """Draws a figure and closes it. @return its pixels, (rows, columns, 3)"""
     figure.canvas.draw()
     pixels = np.asarray(figure.canvas.buffer_rgba())[..., :3].copy()
     plt.close(figure)
@@ -48,20 +48,20 @@ def figure_pixels(figure):
 
 
 def save(figure, path, few_colours=True):
-    """Writes a picture as PNG and closes it."""
+    """Writes a figure as PNG and closes it."""
     save_png(Image.fromarray(figure_pixels(figure)), path, few_colours)
 
 
 def save_png(picture, path, few_colours=True):
-    """Writes a PIL picture as PNG. 256 colours are a quarter of the bytes, each within 10 of 255 of what it is for;
-    smooth fields show the steps between them."""
+    """Writes a PIL picture as PNG. With 256 colours the file has a quarter of the size, and colours are within 10 of 255;
+    smooth fields then show steps."""
     if few_colours:
         picture = picture.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
     write_file(path, lambda beside: picture.save(beside, format="PNG", optimize=True))
 
 
 def shrink(path, most):
-    """Makes a PNG smaller, in pixels, until it has no more than so many bytes."""
+    """Scales a PNG down until it has at most `most` bytes."""
     with Image.open(path) as picture:
         whole = picture.convert("RGB")
     width = whole.width
@@ -71,7 +71,7 @@ def shrink(path, most):
 
 
 class Page:
-    """A figure whose axes are placed in inches from its left and top edge."""
+    """A figure with axes positioned in inches from its left and top edge."""
 
     def __init__(self, height):
         self.height = height
@@ -84,7 +84,7 @@ class Page:
 
 
 def draw_sheet(frame, breaking_stretch, path):
-    """The sheet as it is: bonds as lines, coloured by stretch up to the breaking stretch (None: not known)."""
+    """Draws the deformed sheet: bonds as lines, coloured by stretch up to the breaking stretch (None: unknown)."""
     low, high = limits(frame.position)
     width = WIDTH - 0.95
     height = min(width * (high - low)[1] / (high - low)[0], 14.0)
@@ -115,27 +115,27 @@ def draw_sheet(frame, breaking_stretch, path):
 
 
 def limits(position):
-    """Corners of the part to show [cm]: the sheet and a margin, not the fragments that flew off."""
+    """Corners of the part to show [cm]: the sheet with a margin, without fragments that flew off."""
     low, high = 100 * np.percentile(position, (0.1, 99.9), axis=0)
     margin = 0.02 * (high - low).max()
     return low - margin, high + margin
 
 
-# Where elastic energy goes: {column of energy.csv: (words, colour)}.
+# Forms into which elastic energy is converted: {column of energy.csv: (label, colour)}.
 SHARES = {"broken": ("in broken bonds", RED), "viscous": ("viscous heat", SKY), "kinetic": ("kinetic", BLUE),
           "contact": ("contact", GREEN)}
 
 
 def energy_shares(energy):
-    """Elastic energy released, with the work of the edges, and its shares that are not zero [(column, values), ...]; all
-    since the first row [J/m]."""
+    """Released elastic energy including the work of the edges, and its non-zero shares [(column, values), ...]; all relative
+    to the first row [J/m]."""
     released = energy["elastic"][0] - energy["elastic"] + energy["boundary_work"] - energy["boundary_work"][0]
     shares = [(name, energy[name] - energy[name][0]) for name in SHARES]
     return released, [(name, values) for name, values in shares if values.any()]
 
 
 def draw_energy(energy, path):
-    """What the elastic energy became: kinetic, viscous and broken on top of each other; below, what is unaccounted."""
+    """Draws the conversion of the elastic energy: kinetic, viscous and broken, stacked; below, the imbalance."""
     t = 1e3 * energy["t"]
     released, shares = energy_shares(energy)
 

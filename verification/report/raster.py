@@ -1,19 +1,19 @@
-"""A sheet as a picture of so many pixels: much faster than drawing its quarter of a million bonds one by one.
+"""Rasterisation of a sheet, much faster than drawing its quarter of a million bonds one by one.
 
-Where all three bonds around a triangle of nearest neighbours hold, the triangle is filled. Bonds of sites that have
-lost some are lines of one pixel on top, so that what is torn or bridged shows as it is.
+A triangle of nearest neighbours is filled if its three bonds are intact. Bonds of sites that have lost some are drawn on
+top as lines of one pixel, so that torn and bridged regions remain visible.
 """
 import numpy as np
 from matplotlib.tri import Triangulation
 
-LONGEST_LINE, MOST_GROUPS = 400, 12  # samples along a bond or side; up to so many, each number has its own group
+LONGEST_LINE, MOST_GROUPS = 400, 12  # samples along a bond or side; largest number of samples with a separate group
 
 
 class Mesh:
-    """Bonds and triangles of a sheet, and how long each holds."""
+    """Bonds and triangles of a sheet, and the times at which they break."""
 
     def __init__(self, frame, broken=None):
-        """frame: with all bonds. broken: table of `broken_bonds.csv`; frame.fields["site"] tells which they are."""
+        """frame: with all bonds. broken: table of `broken_bonds.csv`, whose site numbers are in frame.fields["site"]."""
         self.bonds = frame.bonds
         count = len(frame.reference)
         keys = bond_keys(frame.bonds, count)
@@ -43,13 +43,13 @@ class Mesh:
 
 
 def bond_keys(ends, count):
-    """One number for each pair of sites."""
+    """A unique number for each pair of sites."""
     ends = np.sort(ends, axis=1).astype(np.int64)
     return ends[:, 0] * count + ends[:, 1]
 
 
 def find(sorted_values, wanted):
-    """Places of values in a sorted array; -1 for what is not there."""
+    """Indices of values in a sorted array; -1 for missing values."""
     place = np.searchsorted(sorted_values, wanted)
     place[place == len(sorted_values)] = 0
     return np.where(sorted_values[place] == wanted, place, -1)
@@ -64,14 +64,14 @@ class Raster:
         self.width, self.height = width, max(1, round(width * (box[3] - box[2]) / (box[1] - box[0])))
 
     def draw(self, mesh, position, values, time=-np.inf):
-        """Values of the sites in the pixels of the sheet at a time; not a number where there is none."""
+        """Values of the sites in the pixels of the sheet at a time; NaN outside the sheet."""
         picture = np.full(self.height * self.width, np.nan, dtype=np.float32)
         place = ((position - self.low) * self.pixels_per_unit).astype(np.float32)
         inside = ((place >= 0) & (place < (self.width, self.height))).all(axis=1)
         values = values.astype(np.float32)
         triangles = mesh.triangles[mesh.triangle_end > time]
         self.put(picture, place, values, triangles[inside[triangles].all(axis=1)], triangle_weights)
-        # Bonds among sites that have lost none are within triangles.
+        # Bonds between intact sites lie within triangles.
         torn = np.ones(len(position), dtype=bool)
         torn[triangles] = False
         torn[mesh.bonds[mesh.bond_end <= time]] = True
@@ -80,7 +80,7 @@ class Raster:
         return picture.reshape(self.height, self.width)[::-1]
 
     def put(self, picture, place, values, corners, weights_for):
-        """Marks every pixel between corners; those that are far from each other are sampled more densely."""
+        """Sets every pixel between corners; larger elements are sampled more densely."""
         size = np.ptp(place[corners], axis=1).max(axis=1, initial=0.0)
         samples = np.minimum(np.ceil(size).astype(int), LONGEST_LINE)
         samples[samples > MOST_GROUPS] = samples.max(initial=0)
@@ -99,6 +99,6 @@ def triangle_weights(n):
 
 
 def line_weights(n):
-    """The same for a line."""
+    """Barycentric coordinates of points less than a pixel apart on a line of n pixels."""
     along = np.linspace(0, 1, n + 1)
     return np.column_stack((1 - along, along))

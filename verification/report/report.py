@@ -1,8 +1,8 @@
 #!/usr/bin/python3
 """Draws the pictures of latcon's runs and writes report.html.
 
-Exit codes, those of latcon: 0 done and no claim fails; 2 no run there, or one that cannot be read; 3 a claim fails; 5 a
-file cannot be written. A run that cannot be read is listed with its error and does not cost the others.
+Exit codes, as of latcon: 0 success, and no claim fails; 2 no run, or a run that cannot be read; 3 a claim fails; 5 a
+file cannot be written. A run that cannot be read is listed with its error; the others are still shown.
 """
 import argparse
 import os
@@ -28,12 +28,12 @@ from sheet_data import sheet_data
 from summary import text_summary
 
 
-# Bytes of all sheets of a page: with pictures and scripts, 3.5 MB at most for Fig. 1, the page stays below 8 MB.
+# Largest size of all sheets of a page [bytes]. With pictures and scripts, at most 3.5 MB for Fig. 1, a page is below 8 MB.
 LARGEST_SHEETS = 4_500_000
 
 
 def draw_pictures(run, motion):
-    """Pictures of a fracture run, as far as its files go: {name: (picture, still picture for print or None)}.
+    """Draws the pictures of a fracture run for which it has files: {name: (picture, still picture for print or None)}.
 
     motion: frames of the run, or None.
     """
@@ -74,13 +74,13 @@ def draw_plots(run):
 
 
 def report(directory, quiet):
-    """Everything, for the folder as the user gave it. @return exit code"""
+    """Draws and writes the report of a folder. @return exit code"""
     folder = Path(directory)
     found, unreadable = find_runs(folder)
     runs, pictures, plots, sheets = [], {}, {}, {}
     most = LARGEST_SHEETS // max(1, sum(run.is_fracture for run in found))
     for run in found:
-        try:  # frames and fields are read only now
+        try:  # frames and fields are read here
             motion = read_motion(run) if run.is_fracture else None
             pictures[run.folder] = draw_pictures(run, motion) if run.is_fracture else {}
             sheets[run.folder] = None if motion is None else sheet_data(run, motion, most)
@@ -102,7 +102,7 @@ def report(directory, quiet):
 
 
 def main(words=None):
-    """The command line; `words` in place of that of the process. @return exit code"""
+    """Runs the command line; `words` replace the arguments of the process. @return exit code"""
     parser = argparse.ArgumentParser(description="Draw the pictures of latcon's runs and write report.html.")
     parser.add_argument("directory", metavar="DIR", help="output directory of a run, or a folder of several")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")

@@ -1,4 +1,4 @@
-"""The runs of latcon that a folder holds, and what they checked and measured."""
+"""Reader of the runs in a folder: their checks and measurements."""
 import math
 import re
 from dataclasses import dataclass
@@ -7,7 +7,7 @@ from pathlib import Path
 from claim_tables import read_claim_tables
 from files import EARLIER, DamagedFile, read_json, read_table, read_text
 
-# Any of these makes a folder that of a run, whole or interrupted.
+# A folder with any of these files is the output directory of a run, complete or interrupted.
 SIGNS_OF_A_RUN = ("results.json", "run.json", "crack.json", "crack.csv", "lattice.pvd")
 # First columns of energy.csv of an equilibrium and of a motion of the continuum.
 CONTINUUM_ENERGIES = ("load_factor,", "t,elastic,kinetic,micro_inertia,")
@@ -16,7 +16,7 @@ INTERRUPTED = 130  # exit code of latcon
 
 @dataclass(frozen=True)
 class Check:
-    """A row of results.json. Values that do not apply are None."""
+    """Row of results.json. Values that do not apply are None."""
 
     claim: str
     quantity: str
@@ -27,11 +27,11 @@ class Check:
     error: float  # as the claim defines it, smaller is better
     tolerance: float  # None: for information only
     verdict: str  # "holds", "fails" or "reported"
-    verified: bool = True  # whether the material of the run was
+    verified: bool = True  # whether the material of the run was verified
 
     @property
     def kind(self):
-        """The class that colours it: nothing of a run that was not verified looks as if it held."""
+        """CSS class: rows of an unverified run are not shown as holding."""
         return "warns" if self.verdict == "holds" and not self.verified else self.verdict
 
     @property
@@ -41,8 +41,8 @@ class Check:
 
     @property
     def ratio(self):
-        """Error over tolerance, at most 1 where the claim holds; None without a tolerance, infinite where a number that is
-        given is not finite."""
+        """Error over tolerance, at most 1 if the row holds; None without a tolerance, infinite if a given number is not
+        finite."""
         if self.tolerance is None:
             return None
         given = [x for x in (self.lattice, self.continuum, self.theory, self.error, self.tolerance) if x is not None]
@@ -55,7 +55,7 @@ class Check:
 
 @dataclass(frozen=True)
 class Run:
-    """What one run left in its folder. Parts that are not there are None."""
+    """Contents of the output directory of a run. Missing parts are None."""
 
     name: str
     folder: Path
@@ -72,7 +72,7 @@ class Run:
 
     @property
     def is_fracture(self):
-        """Whether a crack was run, or at least begun."""
+        """Whether a crack was run, or at least started."""
         return self.crack is not None or has_rows(self.tip) or any(c.claim == "fracture" for c in self.checks)
 
     @property
@@ -85,11 +85,11 @@ class Run:
 
     @property
     def skipped_verification(self):
-        """Whether the crack was run without the claims of its material having been checked."""
+        """Whether the crack was run without checking the claims for its material."""
         return bool((self.info or {}).get("skip_verification"))
 
     def input_number(self, section, entry):
-        """Number in case.prm, SI unit; None if it is not there or not a number."""
+        """Number in case.prm, SI unit; None if it is missing or not a number."""
         current = None
         for line in (self.case_text or "").splitlines():
             if match := re.match(r"\s*subsection\s+(.*\S)", line):
@@ -104,7 +104,7 @@ class Run:
 
 @dataclass(frozen=True)
 class Unreadable:
-    """A run that cannot be shown."""
+    """A run that cannot be read."""
 
     name: str
     folder: Path
@@ -112,14 +112,14 @@ class Unreadable:
 
 
 def has_rows(table, at_least=1):
-    """Whether a table was read and has rows enough."""
+    """Whether a table was read and has at least `at_least` rows."""
     return table is not None and len(table["t"]) >= at_least
 
 
 def find_runs(folder):
-    """The run in `folder` and those in its sub-folders, runs without a crack first, and the runs that cannot be read.
+    """Finds the runs in `folder` and in its sub-folders, runs without a crack first, and the runs that cannot be read.
 
-    Studies have a page of their own and are left out where there is anything else.
+    Studies have their own page and are omitted if there are other runs.
     @return (list of Run, list of Unreadable)
     """
     try:
@@ -129,7 +129,7 @@ def find_runs(folder):
     except OSError as error:
         raise DamagedFile(folder, error.strerror) from error
     if not candidates:
-        raise DamagedFile(folder, "no run in it (no results.json, here or in a folder in it)")
+        raise DamagedFile(folder, "no run found (no results.json here or in a sub-folder)")
     plain = [path for path in candidates if not (path / "study.json").exists()]
     runs, unreadable = [], []
     for path in plain or candidates:
@@ -141,7 +141,7 @@ def find_runs(folder):
 
 
 def read_run(folder):
-    """Everything a run wrote but its fields."""
+    """Reads all files of a run except its fields."""
     results, info = read_json(folder / "results.json"), read_json(folder / "run.json")
     verified = not (info or {}).get("skip_verification")
     return Run(
@@ -161,8 +161,8 @@ def read_run(folder):
 
 
 def read_energy(path):
-    """energy.csv of a motion of the lattice; None if there is none, and for the two kinds that the continuum writes
-    (docs/reference.md), whose columns are others."""
+    """Reads energy.csv of a motion of the lattice. None if there is none, or for the two forms written by the continuum
+    (docs/reference.md), which have other columns."""
     text = read_text(path)
     if text is None or text.startswith(CONTINUUM_ENERGIES):
         return None
@@ -170,10 +170,10 @@ def read_energy(path):
 
 
 def read_checks(path, results, verified):
-    """The rows of results.json."""
+    """Reads the rows of results.json."""
     rows = results.get("claims")
     if not isinstance(rows, list):
-        raise DamagedFile(path, 'holds no list "claims"')
+        raise DamagedFile(path, 'the list "claims" is missing')
     checks = []
     for number, row in enumerate(rows, start=1):
         where = f"row {number} of \"claims\""
@@ -184,30 +184,30 @@ def read_checks(path, results, verified):
             raise DamagedFile(path, f"{where} lacks {error}") from error
         for key, value in texts.items():
             if not isinstance(value, str):
-                raise DamagedFile(path, f"{where}: {key} is {value!r}, no text")
+                raise DamagedFile(path, f"{where}: {key} is {value!r}, not a string")
         for key, value in numbers.items():
             numbers[key] = checked_number(path, f"{where}: {key}", value)
         check = Check(**texts, **numbers, verified=verified)
         if check.verdict != expected_verdict(check):
-            raise DamagedFile(path, f"{where} says {check.verdict!r}, its numbers say otherwise")
+            raise DamagedFile(path, f"{where}: the verdict {check.verdict!r} contradicts its numbers")
         checks.append(check)
     return checks
 
 
 def expected_verdict(check):
-    """The verdict that the numbers of a row amount to."""
+    """The verdict that follows from the numbers of a row."""
     if check.tolerance is None:
         return "reported"
     return "holds" if check.ratio <= 1 else "fails"
 
 
 def read_crack(path):
-    """crack.json, its numbers checked; None if there is none."""
+    """Reads crack.json and checks its numbers; None if there is none."""
     crack = read_json(path)
     if crack is None:
         return None
     if not isinstance(crack.get("pattern"), str):
-        raise DamagedFile(path, 'says no "pattern"')
+        raise DamagedFile(path, '"pattern" is missing')
     measured = ("speed_lagrangian", "speed_laboratory", "wavelength", "amplitude")
     for key in measured + tuple(f"{name}_uncertainty" for name in measured) + ("window_begin", "window_end"):
         crack[key] = checked_number(path, key, crack.get(key))
@@ -215,20 +215,20 @@ def read_crack(path):
 
 
 def read_near_tip(path):
-    """near_tip.json, its numbers checked; None if there is none."""
+    """Reads near_tip.json and checks its numbers; None if there is none."""
     near_tip = read_json(path)
     if near_tip is None:
         return None
     if not isinstance(near_tip.get("reason"), str):
-        raise DamagedFile(path, 'gives no "reason"')
+        raise DamagedFile(path, '"reason" is missing')
     return {key: value if key in ("reason", "units") else checked_number(path, key, value)
             for key, value in near_tip.items()}
 
 
 def checked_number(path, what, value):
-    """A number as latcon writes it: null for none, the strings "nan", "inf", "-inf" for what is not finite."""
+    """A number as written by latcon: null for none, the strings "nan", "inf", "-inf" for non-finite values."""
     if value is None:
         return None
     if value in ("nan", "inf", "-inf") or (isinstance(value, (int, float)) and not isinstance(value, bool)):
         return float(value)
-    raise DamagedFile(path, f"{what} is {value!r}, no number")
+    raise DamagedFile(path, f"{what} is {value!r}, not a number")

@@ -1,7 +1,7 @@
-"""A sheet in motion as the viewer of the report reads it (sheet_viewer.js): integers, compressed, in JSON.
+"""Data of a moving sheet for the viewer of the report (sheet_viewer.js): compressed integers in JSON.
 
-Positions are multiples of a quantum of 1/2000 of the spacing, speeds of 1/65535 of the largest: half of it is what a value
-may be off. Integers are differences to the number before, then bytes of equal weight side by side, deflated, in base64.
+Positions are multiples of a quantum of 1/2000 of the spacing, speeds of 1/65535 of the largest; values are accurate to half
+a quantum. Integers are stored as differences to the previous number, grouped by byte significance, deflated, in base64.
 """
 import base64
 import json
@@ -13,24 +13,24 @@ import matplotlib
 import numpy as np
 
 STEPS_PER_SPACING, SPEED_STEPS = 2000, 65535
-LARGEST_INTEGER = 2**29  # of a position, so that differences fit into 32 bits
-FEWEST_FRAMES = 8  # a film with fewer is not worth a viewer, unless the run left no more
-# Colour maps without their ends that vanish in white or in black.
+LARGEST_INTEGER = 2**29  # largest position, so that differences fit into 32 bits
+FEWEST_FRAMES = 8  # below this number frames are not dropped to save space
+# Colour maps without the ends that are indistinguishable from white or black.
 COLOURS = {"stretch": ("viridis", 0.0, 1.0), "speed": ("plasma", 0.06, 0.93), "damage": ("YlOrRd", 0.15, 1.0)}
 
 
 @dataclass(frozen=True)
 class Sheet:
-    """What the viewer reads."""
+    """Data for the viewer."""
 
     contents: dict
     text: str  # JSON of it
 
 
 def sheet_data(run, motion, most):
-    """The Sheet of a motion, at most so many bytes; None if that is too little.
+    """The Sheet of a motion with at most `most` bytes; None if it does not fit.
 
-    Until it fits every second frame is left out, not the first and the last.
+    Every second frame is dropped until the data fit; the first and the last frame are kept.
     """
     frames = motion.frames
     while True:
@@ -44,7 +44,7 @@ def sheet_data(run, motion, most):
 
 
 def contents(run, motion, frames):
-    """What the viewer needs of some frames; lengths in m, speeds in m/s, times in s."""
+    """Viewer data of the given frames; lengths in m, speeds in m/s, times in s."""
     mesh, whole = motion.mesh, motion.whole
     times = np.array([frame.time for frame in frames])
     positions = np.array([frame.position.T for frame in frames])
@@ -83,7 +83,7 @@ def contents(run, motion, frames):
 
 
 def box_of(positions):
-    """Ends of the sheet along x and y over all frames, fragments that flew off left out [m]."""
+    """Extent of the sheet along x and y over all frames, without fragments that flew off [m]."""
     low, high = np.percentile(positions, 0.1, axis=2).min(axis=0), np.percentile(positions, 99.9, axis=2).max(axis=0)
     low, high = np.minimum(low, positions[0].min(axis=1)), np.maximum(high, positions[0].max(axis=1))
     return np.column_stack((low, high)).tolist()
@@ -95,14 +95,14 @@ def ends_distance(position, bonds):
 
 
 def bonds_at_first(frame, mesh):
-    """Bonds that each site had before any broke: those of the frame, over the fraction that is not damaged."""
+    """Number of bonds of each site before any broke: its bonds in the frame over the undamaged fraction."""
     degree = np.bincount(mesh.bonds.ravel(), minlength=len(frame.reference))
     damage = frame.fields.get("damage", np.zeros(len(degree)))
     return np.where(damage < 1, np.round(degree / np.where(damage < 1, 1 - damage, 1)), 1)
 
 
 def tip_points(tip, times, reference):
-    """The point where the tip is in each frame; None without a path."""
+    """Index of the site at the tip in each frame; None without a path."""
     if tip is None or not len(tip["t"]):
         return None
     rows = np.maximum(np.searchsorted(tip["t"], times, side="right") - 1, 0)
@@ -111,25 +111,25 @@ def tip_points(tip, times, reference):
 
 
 def colour_table(name, low, high):
-    """256 colours (RGB), base64."""
+    """Table of 256 colours (RGB), in base64."""
     colours = np.round(255 * matplotlib.colormaps[name](np.linspace(low, high, 256))[:, :3]).astype(np.uint8)
     return base64.b64encode(colours.tobytes()).decode("ascii")
 
 
 def packed(integers):
-    """Integers of at most 31 bits; differences run along the last axis."""
+    """Compresses integers of at most 31 bits; differences are taken along the last axis."""
     integers = np.asarray(integers).astype(np.int64)
     steps = np.diff(integers, axis=-1, prepend=0)
     return deflated(((steps << 1) ^ (steps >> 63)).astype("<u4"))
 
 
 def packed_floats(values):
-    """Numbers in double precision."""
+    """Compresses numbers in double precision."""
     return deflated(np.ascontiguousarray(values, dtype="<f8"))
 
 
 def deflated(array):
-    """Bytes of equal weight side by side, deflated, and the shape they are for."""
+    """Shape of an array, and its bytes grouped by significance and deflated."""
     weights = np.ascontiguousarray(array).reshape(-1).view(np.uint8).reshape(-1, array.itemsize).T
     data = base64.b64encode(zlib.compress(weights.tobytes(), 9)).decode("ascii")
     return {"shape": list(array.shape), "data": data}

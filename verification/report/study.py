@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Draws the plots of a study and writes study.html.
 
-Exit codes, those of latcon: 0 done; 2 no study there, or a damaged file; 5 a file cannot be written.
+Exit codes, as of latcon: 0 success; 2 no study, or a damaged file; 5 a file cannot be written.
 """
 import argparse
 import sys
@@ -22,11 +22,11 @@ from study_plots import draw_paths, draw_speeds, draw_sweep
 from study_quantities import asked_quantities, sweeps_of
 from study_runs import first_measured, read_study
 
-LARGEST_PICTURE = 400_000  # [bytes], of a run: the page holds all of them
+LARGEST_PICTURE = 400_000  # [bytes] per picture of a run, since the page contains all of them
 
 
 def draw_pictures(study):
-    """All pictures, as far as the runs left what they need; see page() for the form."""
+    """Draws all pictures for which the runs have data; see page() for the result."""
     folder = study.folder / "pictures"
     try:
         folder.mkdir(exist_ok=True)
@@ -55,8 +55,7 @@ def draw_pictures(study):
 
 
 def draw_sweeps(study, number, claim, folder):
-    """One picture for each set of runs along one abscissa, of the quantities that its rows ask for: [(caption, PNG),
-    ...]."""
+    """Draws one picture for each set of runs along one abscissa, with the quantities of its rows: [(caption, PNG), ...]."""
     drawn = []
     for sweep in sweeps_of(claim["rows"]):
         quantities = asked_quantities(sweep)
@@ -64,12 +63,12 @@ def draw_sweeps(study, number, claim, folder):
         if draw_sweep(study, sweep[0], quantities, png):
             names = ", ".join(name.replace("_", " ") for name in quantities)
             drawn.append((f"{names[:1].upper()}{names[1:]} against {sweep[0]['against']}: mean and standard deviation "
-                          "over the seeds. Open symbols at 0: the crack has none.", png))
+                          "over the seeds. Open symbols at 0: not defined for this crack.", png))
     return drawn
 
 
 def draw_run(seed, folder, most, kinds=tuple(RUN_PICTURES)):
-    """The sheet of a run and the fields near its tip, as far as it left them: {kind: PNG of at most `most` bytes}."""
+    """Draws the sheet of a run and the fields near its tip, if they exist: {kind: PNG of at most `most` bytes}."""
     drawn = {}
     frame = read_last_frame(seed.folder)
     if frame is not None:
@@ -88,7 +87,7 @@ def draw_run(seed, folder, most, kinds=tuple(RUN_PICTURES)):
 
 
 def study_page(folder, quiet):
-    """Draws and writes everything."""
+    """Draws the pictures and writes the page."""
     study = read_study(folder)
     html = page(study, draw_pictures(study))
     write_file(study.folder / "study.html", lambda beside: beside.write_text(html, encoding="utf-8"))
@@ -98,7 +97,7 @@ def study_page(folder, quiet):
 
 
 def main(words=None):
-    """The command line; `words` in place of that of the process. @return exit code"""
+    """Runs the command line; `words` replace the arguments of the process. @return exit code"""
     parser = argparse.ArgumentParser(description="Draw the plots of a study and write study.html.")
     parser.add_argument("directory", metavar="DIR", help="output directory of latcon study")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")

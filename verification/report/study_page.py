@@ -1,20 +1,20 @@
-"""The page of a study: the table of its claims, their plots, its runs. One HTML file that needs nothing beside it."""
+"""The page of a study: table of its claims, their plots, its runs. One self-contained HTML file."""
 import re
 from html import escape
 from pathlib import Path
 
-from markup import figure, first_sentence, number, plain_row, row, table, verb
+from markup import figure, first_sentence, number, plain_row, plural, row, table
 from study_plots import pattern_text
 from study_quantities import MEASURED, NEAR_TIP
 from study_runs import mean_of, value_text
 
 RUN_PICTURES = {
-    "sheet": "The sheet in its last frame, as it is.",
-    "velocity": "Velocity of the material around the tip (cross), mean over samples that are mirrored where the path "
-                "descends. Blue: against the way of the crack.",
-    "stress": "Stress across the crack, in the same mean.",
+    "sheet": "The deformed sheet in its last frame.",
+    "velocity": "Velocity of the material around the tip (cross): mean over samples, mirrored where the path descends. "
+                "Blue: motion against the direction of the crack.",
+    "stress": "Opening stress, averaged in the same way.",
 }
-# Verdicts of rows, and of claims, by the class that colours them.
+# CSS class of each verdict, of rows and of claims.
 KINDS = {"holds": "holds", "does not hold": "fails", "reported": "reported", "not measured": "warns"}
 CLAIM_KINDS = {**KINDS, "incomplete": "warns"}
 
@@ -71,7 +71,7 @@ def facts(study):
 
 
 def counts(rows):
-    """How many rows have each verdict: {verdict: count}."""
+    """Number of rows with each verdict: {verdict: count}."""
     return {verdict: sum(r["verdict"] == verdict for r in rows) for verdict in KINDS}
 
 
@@ -82,36 +82,36 @@ def verdict_of(check):
 
 
 def banner(study):
-    """What all rows amount to, and what a reader must know first."""
+    """The overall verdict, with the most important notes."""
     count = counts([r for judged in (*study.claims, *study.checks) for r in judged["rows"]])
     judged = count["holds"] + count["does not hold"]
     verified = study.document.get("verified") is True
     broken = [seed for seed in study.seeds if seed.state != "measured"]
     if count["does not hold"]:
         kind = "fails"
-        head = f"✗ {count['does not hold']} of {judged} rows {verb(count['does not hold'], 'does', 'do')} not hold"
+        head = f"✗ {count['does not hold']} of {judged} rows {plural(count['does not hold'], 'does', 'do')} not hold"
     elif count["not measured"] or broken:
-        rows = verb(count["holds"], "1 row holds", f"{count['holds']} rows hold")
+        rows = plural(count["holds"], "1 row holds", f"{count['holds']} rows hold")
         kind, head = "warns", f"! Incomplete: {rows}, but not everything was measured"
     elif not judged:
         kind, head = "reported", "· Reported: no row has a rule"
     elif not verified:
-        rows = verb(judged, "the only row holds", f"all {judged} rows hold")
+        rows = plural(judged, "the only row holds", f"all {judged} rows hold")
         kind, head = "warns", f"! Not verified: {rows}, but not every run was verified"
     else:
-        kind, head = "holds", f"✓ Holds: {verb(judged, 'the only row', f'all {judged} rows')}"
+        kind, head = "holds", f"✓ Holds: {plural(judged, 'the only row', f'all {judged} rows')}"
     notes = [f'<b class="fails">{escape(seed.run)}, seed {seed.seed}: {escape(seed.state)}</b> {escape(seed.problem)}'
              for seed in broken]
     if count["not measured"]:
-        notes.append(f"{count['not measured']} {verb(count['not measured'], 'row was', 'rows were')} not measured")
+        notes.append(f"{count['not measured']} {plural(count['not measured'], 'row was', 'rows were')} not measured")
     if count["reported"]:
-        notes.append(f"{count['reported']} {verb(count['reported'], 'row has', 'rows have')} no rule, for information")
+        notes.append(f"{count['reported']} {plural(count['reported'], 'row has', 'rows have')} no rule")
     notes.append(f"verified: {escape(study.document['verification'])}")
     return f'<div class="banner {kind}"><strong>{head}</strong><ul>{"".join(f"<li>{n}</li>" for n in notes)}</ul></div>'
 
 
 def overview(study):
-    """A line for each claim and check."""
+    """One line per claim and check."""
     judged = [(f"claim-{number}", claim["claim"], claim["verdict"], claim["rows"])
               for number, claim in enumerate(study.claims)]
     judged += [(f"check-{check['name']}", f"Check {check['name']}", verdict_of(check), check["rows"])
@@ -123,7 +123,7 @@ def overview(study):
 
 
 def claim_section(number, claim, pictures):
-    """A claim: what the source says, the rows, the paths, the sweeps."""
+    """Section of a claim: statement of the source, rows, paths, sweeps."""
     lines = [row(KINDS[r["verdict"]], [
         ("short", "<br>".join(escape(name) for name in r["runs"])), ("short", escape(r["quantity"])),
         ("words", escape(r["expected"]) or "–"), ("words", broken(r["measured"])), ("words", broken(r["note"]))],
@@ -137,13 +137,13 @@ def claim_section(number, claim, pictures):
         parts.append(figure(png, first_sentence(caption), escape(caption)))
     if number in pictures["paths"]:
         parts.append(figure(pictures["paths"][number], f"Paths of the crack tip: {claim['claim']}",
-                            "Paths of the crack tip in the undeformed sheet, the seeds of a run on top of each other. "
-                            "Y is drawn larger than X."))
+                            "Paths of the crack tip in the undeformed sheet, with the seeds of a run superimposed. "
+                            "Y is exaggerated."))
     return "".join(parts) + "</section>"
 
 
 def check_section(check, pictures):
-    """A check: what it is, its plot, its rows."""
+    """Section of a check: description, plot, rows."""
     lines = [row(KINDS[r["verdict"]], [
         ("words", escape(r["quantity"])),
         *(("number", number(r[key], ".4g")) for key in ("lattice", "theory")),
@@ -158,17 +158,17 @@ def check_section(check, pictures):
 
 
 def broken(text):
-    """A list in words, an entry a line."""
+    """A list separated by semicolons, with one entry per line."""
     return escape(text).replace("; ", "<br>")
 
 
 def common_pictures(pictures):
-    """What belongs to no single claim."""
+    """Pictures that do not belong to a single claim."""
     parts = []
     if pictures["speeds"]:
         parts.append(figure(pictures["speeds"], "Speeds of all cracks by pattern",
-                            "Speed of every crack over the shear speed of the stretched sheet, by its pattern. Above "
-                            "the dashed line cracks are supersonic."))
+                            "Speed of every crack over the shear wave speed of the stretched sheet, by pattern. Cracks "
+                            "above the dashed line are supersonic."))
     for run, seed, drawn in pictures["runs"]:
         parts.append(f"<h3>{escape(run)}, seed {seed}</h3>")
         parts += [figure(png, f"{run}: {first_sentence(RUN_PICTURES[kind])}", escape(RUN_PICTURES[kind]))
@@ -177,7 +177,7 @@ def common_pictures(pictures):
 
 
 def runs_table(study):
-    """A line for each case."""
+    """One line per case."""
     lines = []
     for name, (about, changed, seeds) in study.runs.items():
         changes = "<br>".join(f"{escape(key)} = {escape(value)}" for key, value in changed.items()) or "–"
@@ -187,7 +187,7 @@ def runs_table(study):
 
 
 def measured_table(study, columns):
-    """A line for each case with its pattern and the means of some quantities."""
+    """One line per case with its pattern and the means of some quantities."""
     lines = [plain_row([
         ("short", escape(name)), ("words", escape(pattern_text(seeds))),
         *(("number", value_text(mean_of(seeds, quantity), scale)) for quantity, scale, _ in columns)])
@@ -196,8 +196,8 @@ def measured_table(study, columns):
 
 
 def settings(document):
-    """What all runs share beside the base case."""
+    """Entries that all runs change in the base case."""
     lines = [f"{key} = {value}" for key, value in document["settings"].items()]
     if document["left_out"]:
-        lines.append(f"left out in the quick version: {', '.join(document['left_out'])}")
+        lines.append(f"omitted in the quick version: {', '.join(document['left_out'])}")
     return f"<p class=\"soft\">For all runs: {escape('; '.join(lines))}</p>" if lines else ""

@@ -1,4 +1,4 @@
-"""Plots of a study: paths of cracks, what they measure along a sweep, speeds by pattern, checks."""
+"""Plots of a study: paths of cracks, quantities along a sweep, speeds by pattern."""
 import numpy as np
 from matplotlib.lines import Line2D
 
@@ -10,11 +10,11 @@ PATTERNS = {"oscillating": ("o", BLUE), "straight": ("s", GREEN), "branching": (
             "undecided": ("D", SKY)}
 LEFT, RIGHT, GAP = 0.75, 0.2, 0.75  # of a grid of panels [in]
 SEED_COLOURS = [BLUE, RED, GREEN, SKY, BLACK, GREY]
-DECADES = 30.0  # from this ratio of the largest to the smallest abscissa on, the axis is logarithmic
+DECADES = 30.0  # ratio of the largest to the smallest abscissa above which the axis is logarithmic
 
 
 class Panels:
-    """Equal axes in rows and columns, each with room for a title and labels."""
+    """Axes of equal size in rows and columns, each with room for a title and labels."""
 
     def __init__(self, count, columns, height, top=0.1):
         self.columns, self.height, self.top = columns, height, top
@@ -30,7 +30,7 @@ class Panels:
 
 
 def draw_paths(study, names, path):
-    """Paths of the tip, a panel for each run, its seeds on top of each other. @return whether there is any"""
+    """Draws paths of the tip, one panel per run with its seeds superimposed. @return whether there are any"""
     paths = {name: [(seed, way) for seed in study.runs[name][2] if (way := tip_path(seed)) is not None]
              for name in names}
     paths = {name: ways for name, ways in paths.items() if ways}
@@ -54,12 +54,12 @@ def draw_paths(study, names, path):
 
 
 def pattern_text(seeds):
-    """Patterns of a run with their counts."""
+    """Patterns over the seeds of a run, with their counts."""
     return ", ".join(f"{pattern} {count}/{len(seeds)}" for pattern, count in patterns_of(seeds).items()) or "not run"
 
 
 def draw_sweep(study, row, quantities, path):
-    """Quantities along what a row varies, a panel each. @return whether any run was measured"""
+    """Draws quantities against the abscissa of a row, one panel each. @return whether any run was measured"""
     points = [(value["against"], study.runs[value["run"]][2]) for value in row["values"]
               if value["against"] is not None]
     points = [(x, seeds) for x, seeds in points if patterns_of(seeds)]
@@ -79,7 +79,7 @@ def draw_sweep(study, row, quantities, path):
             axes.errorbar(x, y, yerr=error, marker=marker, color=colour, capsize=3, markersize=6, linestyle="none",
                           markerfacecolor=colour if found else "white")
         axes.set(xlabel=name, ylabel=label)
-        if axes.get_ylim()[0] >= 0:  # from 0 on, unless there is something below
+        if axes.get_ylim()[0] >= 0:  # the axis begins at 0 unless values are negative
             top = max(axes.get_ylim()[1], 1e-12)
             axes.set_ylim(-0.04 * top, top)
         if min(x for x, _ in points) > 0 and max(x for x, _ in points) > DECADES * min(x for x, _ in points):
@@ -92,13 +92,13 @@ def draw_sweep(study, row, quantities, path):
 
 
 def legend_entry(pattern):
-    """Symbol and colour of a pattern."""
+    """Legend entry with the symbol and colour of a pattern."""
     marker, colour = PATTERNS[pattern]
     return Line2D([], [], linestyle="none", marker=marker, color=colour, label=pattern)
 
 
 def draw_speeds(study, path):
-    """Crack speed over the shear speed of the stretched sheet, by pattern. @return whether it was measured at all"""
+    """Draws crack speed over the shear wave speed of the stretched sheet, by pattern. @return whether any was measured"""
     points = [(seed.pattern, seed.values["speed_over_shear"]) for seed in study.seeds
               if seed.pattern and seed.values["speed_over_shear"] is not None]
     if not points:

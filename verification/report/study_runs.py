@@ -1,4 +1,4 @@
-"""A study as its study.json tells it, and what its runs left in their folders."""
+"""Reader of studies: study.json and the output directories of the runs."""
 import math
 from dataclasses import dataclass
 from pathlib import Path
@@ -24,7 +24,7 @@ class Seed:
 
 @dataclass(frozen=True)
 class Study:
-    """Everything that the page shows."""
+    """Contents of the page."""
 
     folder: Path
     document: dict  # study.json
@@ -49,12 +49,12 @@ class Mean:
 
     mean: float
     deviation: float  # 0 for a single seed
-    n: int  # seeds that have it
-    n_seeds: int  # of the run
+    n: int  # number of seeds that have the quantity
+    n_seeds: int  # number of seeds of the run
 
 
 def read_study(folder):
-    """The study in a folder. @raises DamagedFile"""
+    """Reads the study in a folder. @raises DamagedFile"""
     path = folder / "study.json"
     document = read_json(path)
     if document is None:
@@ -78,13 +78,13 @@ def mean_of(seeds, quantity):
 
 
 def patterns_of(seeds):
-    """How many seeds showed each pattern, the most frequent first: {pattern: count}."""
+    """Number of seeds with each pattern, the most frequent first: {pattern: count}."""
     found = [seed.pattern for seed in seeds if seed.pattern]
     return {pattern: found.count(pattern) for pattern in sorted(set(found), key=lambda p: (-found.count(p), p))}
 
 
 def tip_path(seed):
-    """Path of the tip in the undeformed sheet, (X, Y) in m; None if the run left none."""
+    """Path of the tip in the undeformed sheet, (X, Y) in m; None if the run has none."""
     table = read_table(seed.folder / "crack.csv", ("X", "Y"))
     return None if table is None or len(table["X"]) < 2 else (table["X"], table["Y"])
 
@@ -95,7 +95,7 @@ def first_measured(study, name):
 
 
 def value_text(mean, scale=1.0):
-    """Mean and standard deviation in few words: "2.29 ± 0.04 (5)", or "(4 of 5)" if a seed lacks it; a dash for none."""
+    """Mean and standard deviation as text: "2.29 ± 0.04 (5)", or "(4 of 5)" if a seed lacks the quantity; a dash for None."""
     if mean is None:
         return "–"
     value, deviation = scale * mean.mean, scale * mean.deviation

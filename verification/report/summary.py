@@ -1,4 +1,4 @@
-"""What all runs together amount to: counts, worst errors, the comparison with published values; the table on stdout."""
+"""Summary of all runs: counts, worst errors, comparison with published values, and the table on stdout."""
 import math
 import textwrap
 from dataclasses import dataclass
@@ -10,18 +10,18 @@ VERDICTS = ("fails", "holds", "reported")
 
 @dataclass(frozen=True)
 class Tally:
-    """Rows of one claim in one run, counted."""
+    """Number of rows of one claim in one run, by verdict."""
 
     run: Run
     claim: str
     count: dict  # verdict: number of rows
-    worst: float  # largest error over tolerance; None if nothing has a tolerance
-    kind: str  # the class that colours it: "fails", "warns" (holds, but was not verified), "holds" or "reported"
+    worst: float  # largest error over tolerance; None if no row has a tolerance
+    kind: str  # CSS class: "fails", "warns" (holds, but was not verified), "holds" or "reported"
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """A measured quantity beside its published value, both in `unit`."""
+    """A measured quantity and its published value, both in `unit`."""
 
     run: Run
     quantity: str
@@ -43,7 +43,7 @@ class Comparison:
 
 
 def tallies(run):
-    """One Tally a claim, in the order in which they were checked."""
+    """One Tally per claim, in the order in which the claims were checked."""
     result = []
     for claim in dict.fromkeys(check.claim for check in run.checks):
         rows = [check for check in run.checks if check.claim == claim]
@@ -52,7 +52,7 @@ def tallies(run):
 
 
 def tally_of(run, claim, checks):
-    """Counts of some rows."""
+    """Tally of the given rows."""
     ratios = [check.ratio for check in checks if check.ratio is not None]
     count = {verdict: sum(check.verdict == verdict for check in checks) for verdict in VERDICTS}
     kind = next((kind for kind in ("fails", "warns", "holds") if any(check.kind == kind for check in checks)), "reported")
@@ -85,7 +85,7 @@ def uncertainty_of(quantity, crack):
 
 
 def unpublished(run):
-    """What crack.json measured and no published value is known of: [(quantity, unit, value, uncertainty), ...], lengths in cm."""
+    """Quantities of crack.json without a published value: [(quantity, unit, value, uncertainty), ...], lengths in cm."""
     compared = {c.quantity for c in comparisons(run)}
     found = []
     for quantity, name in NAMES.items():
@@ -97,7 +97,7 @@ def unpublished(run):
 
 
 def with_uncertainty(value, uncertainty, sign="±"):
-    """A value to the digits that its uncertainty leaves, "20.06 ± 0.23"; four digits without one."""
+    """A value to the digits that its uncertainty justifies, "20.06 ± 0.23"; four digits if there is none."""
     if uncertainty is None or not uncertainty > 0 or not math.isfinite(uncertainty):
         return f"{value:.4g}"
     digits = max(0, 1 - math.floor(math.log10(uncertainty)))
@@ -131,8 +131,8 @@ def text_table(header, rows, numbers, width=120):
 
 
 def text_summary(runs, unreadable=()):
-    """What is printed: claims of every run, what fails, and measured beside published values. `unreadable`: runs that
-    cannot be shown."""
+    """Text for the terminal: claims of every run, failing rows, measured and published values. `unreadable`: runs that
+    cannot be read."""
     parts = []
     rows = []
     for run in runs:
@@ -163,5 +163,5 @@ def text_summary(runs, unreadable=()):
 
 
 def shortened(name, length=24):
-    """A name that leaves room for the rest of the line."""
+    """A name, shortened to leave room for the rest of the line."""
     return name if len(name) <= length else name[:length - 3] + "..."
