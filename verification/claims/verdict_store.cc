@@ -152,14 +152,17 @@ output::Result row(const Json &entry)
 
 VerdictKey::VerdictKey(std::string inputs) : text(std::move(inputs)), hash(output::sha256(text)) {}
 
-VerdictKey verdict_key(const input::Case &input, const std::vector<std::string> &claims, bool quick,
-                       unsigned int n_ranks)
+VerdictKey verdict_key(const input::Case &input, const std::vector<Claim> &claims, bool quick, unsigned int n_ranks)
 {
   std::string text = "program=" + output::program_hash() + "\nlibraries=" + hash_of_libraries() + "\n";
-  for (const std::string &claim : claims)
-    text += "claim=" + claim + "\n";
+  std::vector<std::string> entries;
+  for (const Claim &claim : claims)
+  {
+    text += "claim=" + claim.name + "\n";
+    entries.insert(entries.end(), claim.entries.begin(), claim.entries.end());
+  }
   text += std::string("quick=") + (quick ? "true" : "false") + "\nranks=" + std::to_string(n_ranks) + "\n";
-  return VerdictKey(text + claim_inputs_text(input));
+  return VerdictKey(text + claim_inputs_text(input, entries));
 }
 
 Verdicts::Verdicts(const ClaimOutcome &outcome) : results(outcome.results), checked_at(now())

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "verification/claims/claim.h"
 #include "verification/claims/claim_outcome.h"
 #include "verification/input/case.h"
 #include "verification/output/results.h"
@@ -26,7 +27,7 @@ struct VerdictKey
 /// The key of a check: the bytes of the running program, the shared libraries it has loaded (name, size, time of
 /// change), which claims in which size, the number of MPI ranks, and the entries that the claims read.
 /// @throws std::runtime_error if the program cannot read itself
-[[nodiscard]] VerdictKey verdict_key(const input::Case &input, const std::vector<std::string> &claims, bool quick,
+[[nodiscard]] VerdictKey verdict_key(const input::Case &input, const std::vector<Claim> &claims, bool quick,
                                      unsigned int n_ranks);
 
 /// A complete check.
