@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <iterator>
 
 #include <nlohmann/json.hpp>
 
@@ -49,6 +50,14 @@ std::vector<std::string> names()
   return list;
 }
 
+std::string joined(const std::vector<std::string> &words, const std::string &separator)
+{
+  std::string text;
+  for (const std::string &word : words)
+    text += (text.empty() ? "" : separator) + word;
+  return text;
+}
+
 } // namespace
 
 const std::vector<Claim> &claim_registry()
@@ -76,15 +85,12 @@ std::string unknown_claim(const std::string &name)
     return "";
   const std::string nearest = input::nearest_word(name, known);
   return "unknown claim '" + name + "'" + (nearest.empty() ? "" : "; did you mean '" + nearest + "'?") +
-         " Claims: " + claim_choices();
+         " (claims: " + joined(known, ", ") + ")";
 }
 
 std::string claim_choices()
 {
-  std::string list;
-  for (const std::string &name : names())
-    list += (list.empty() ? "{" : ",") + name;
-  return list + "}";
+  return "{" + joined(names(), ",") + "}";
 }
 
 std::string claim_list()

@@ -341,9 +341,9 @@ class NoNumber : public testing::TestWithParam<Plant>
 {
 };
 INSTANTIATE_TEST_SUITE_P(Claims, NoNumber, testing::ValuesIn(every_claim_and_side()),
-                         [](const testing::TestParamInfo<Plant> &info)
+                         [](const testing::TestParamInfo<Plant> &test)
                          {
-                           std::string name = info.param.claim.name + "_" + info.param.side;
+                           std::string name = test.param.claim.name + "_" + test.param.side;
                            std::replace_if(
                              name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
                            return name;

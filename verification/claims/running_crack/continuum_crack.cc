@@ -96,7 +96,7 @@ double anisotropy(const continuum::Material &bonds, const dealii::Tensor<2, 2> &
   return (mean - bonds.first_piola_stress(F)).norm();
 }
 
-// Adds what the continuum does at the sites of a sample. @return power dissipated near the tip, of the whole sheet
+// Adds the fields of the continuum at the sites of a sample. @return power dissipated near the tip, of the whole sheet
 // [W/m]
 double add_sample(const CrackDrive &drive, const lattice::TriangularLattice &sheet, const CrackContinuum &medium,
                   const Eigen::Matrix2d &F, const continuum::DynamicSolver &solver, double X_tip, double reach,

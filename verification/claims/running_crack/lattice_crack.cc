@@ -13,14 +13,14 @@ namespace latcon::claims
 namespace
 {
 
-// A bond that crosses the line of the crack, and where.
+// Bond that crosses the line of the crack, and its position.
 struct Crossing
 {
   double X; // [m]
   std::pair<std::size_t, std::size_t> bond;
 };
 
-// In the order in which the tip passes them; those behind the start stay.
+// In the order in which the tip passes them; bonds behind the start remain.
 std::vector<Crossing> crossings(const CrackDrive &drive, const lattice::TriangularLattice &sheet,
                                 const lattice::State &state)
 {
