@@ -9,6 +9,12 @@ install(TARGETS latcon)
 foreach(folder cases studies report paraview)
   install(DIRECTORY verification/${folder} DESTINATION share/latcon PATTERN __pycache__ EXCLUDE)
 endforeach()
+# Plots of the claims in the report.
+file(GLOB files CONFIGURE_DEPENDS RELATIVE ${PROJECT_SOURCE_DIR}/verification verification/claims/*/plots.py)
+foreach(file IN LISTS files)
+  cmake_path(GET file PARENT_PATH folder)
+  install(FILES verification/${file} DESTINATION share/latcon/${folder})
+endforeach()
 install(FILES README.md LICENSE CITATION.cff cmake/copyright DESTINATION share/doc/latcon)
 # Manual page and completion say what the program says of itself. Debian wants documents compressed, always to the same bits.
 set(latcon_shell_files latcon.1.gz latcon.bash)

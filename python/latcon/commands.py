@@ -75,7 +75,7 @@ def verify(*claims: str, directory: Directory, case: CaseLike | None = None, qui
     Parameters
     ----------
     *claims
-        Names of claims, such as ``"energy"``; default: all but ``"running-crack"``.
+        Names of claims, such as ``"energy"`` (``latcon verify --help`` lists them); default: those not marked "only if named".
     directory
         Output directory.
     case

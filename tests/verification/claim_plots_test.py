@@ -20,13 +20,15 @@ sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification" / "r
 import made_up_claims
 import pictures
 import report
-from claim_tables import FORMATS, fitted_order, groups, largest_text, range_text
-from claims_text import CLAIMS, PLOTS
+from claim_plots import MODULES, TABLES, all_plots
+from claim_tables import fitted_order, groups, largest_text, range_text
 from files import DamagedFile, read_table
-from length_plots import decay_of
 from made_up_claims import DECAY, FIRST_ROW, RUN_ERROR, write_claims
 
 
+decay_of = MODULES["intrinsic-length"].decay_of
+# In the order in which they are checked.
+CLAIMS = ("energy", "wave-speeds", "intrinsic-length", "prestretch", "running-crack")
 FULL = "--full" in sys.argv  # also the layout of the plots
 
 
@@ -47,6 +49,8 @@ class ClaimSections(unittest.TestCase):
     def write_run(self, folder, rows):
         folder.mkdir(parents=True)
         (folder / "results.json").write_text(json.dumps({"claims": rows}))
+        (folder / "claims.json").write_text(json.dumps({"claims": [
+            {"name": claim, "title": f"Title of {claim}", "statement": f"Statement of {claim}."} for claim in CLAIMS]}))
         (folder / "run.json").write_text(json.dumps({"version": "1.2.3", "exit_code": 0}))
         (folder / "case.prm").write_text("subsection Sheet\nend\n")
 
@@ -79,7 +83,7 @@ class ClaimSections(unittest.TestCase):
         drawn = pictures.figure_pixels
         with mock.patch.object(pictures, "figure_pixels", measured):
             self.report()
-        self.assertEqual(len(beyond), len(PLOTS))
+        self.assertEqual(len(beyond), len(all_plots()))
         self.assertLess(max(beyond), 0)
 
     def test_each_claim_has_its_text_plots_and_error_metrics(self):
@@ -105,21 +109,22 @@ class ClaimSections(unittest.TestCase):
         }
         for claim, expected in metrics.items():
             section = self.section(html, claim)
-            self.assertIn(CLAIMS[claim][0], section)
-            plots = [plot for plot in PLOTS if plot.claim == claim]
+            self.assertIn(f"{claim}: Title of {claim}", section)
+            self.assertIn(f"Statement of {claim}.", section)
+            plots = MODULES[claim].PLOTS
             self.assertEqual(section.count("<img "), len(plots))
             for text in expected:
                 self.assertIn(text, section)
             for plot in plots:
                 self.assertIn(f"({plot.name}.csv)", section)
                 self.assertIn(plot.claimed, section.replace("&#x27;", "'"))
-        self.assertEqual({plot.name for plot in PLOTS} | {"dispersion_runs"}, set(FORMATS))
+        self.assertEqual({plot.name for plot in all_plots()} | {"dispersion_runs"}, set(TABLES))
 
     def test_plots_show_something(self):
         self.write_run(self.folder, [])
         write_claims(self.folder)
         self.report()
-        for plot in PLOTS:
+        for plot in all_plots():
             pixels = np.asarray(Image.open(self.folder / f"{plot.name}.png").convert("RGB"), dtype=float)
             self.assertEqual(pixels.shape[1], 1600)
             self.assertGreater((np.ptp(pixels, axis=2) > 60).mean(), 1e-3, f"{plot.name} has no colours")
@@ -127,22 +132,22 @@ class ClaimSections(unittest.TestCase):
     def test_what_is_missing_is_left_out(self):
         self.write_run(self.folder, [check_row("energy", 0), check_row("homemade", 0)])
         write_claims(self.folder)
-        for name in FORMATS:
+        for name in TABLES:
             if name not in ("edge_layer", "dispersion_runs"):
                 (self.folder / f"{name}.csv").unlink()
         html, _ = self.report()
         self.assertEqual(re.findall(r'<section id="claim-([^"]*)"', html), ["energy", "intrinsic-length", "homemade"])
         self.assertEqual(html.count("<img "), 1)
         # Nothing is said to be claimed of what was not looked at.
-        self.assertIn("at free edges", self.section(html, "intrinsic-length"))
-        self.assertNotIn("It shows in waves", self.section(html, "intrinsic-length"))
+        self.assertIn("At free edges", self.section(html, "intrinsic-length"))
+        self.assertNotIn("The speed of waves falls", self.section(html, "intrinsic-length"))
         self.assertIn("No quantity of this claim was checked", self.section(html, "intrinsic-length"))
         self.assertFalse((self.folder / "dispersion.png").exists())
 
     def test_values_that_were_not_computed_leave_gaps(self):
         self.write_run(self.folder, [])
         write_claims(self.folder)
-        for name, (_, numbers) in FORMATS.items():
+        for name, (_, numbers) in TABLES.items():
             lines = (self.folder / f"{name}.csv").read_text().splitlines()
             header = lines[0].split(",")
             kept = {"shells", "law", "wave", "F_xx", "F_yy", "k d", "angle [deg]", "R/d", "length/d", "row", "side", "X/d", "Y/d"}
@@ -150,12 +155,12 @@ class ClaimSections(unittest.TestCase):
                     for line in lines[1:]]
             (self.folder / f"{name}.csv").write_text("\n".join([lines[0], *rows]) + "\n")
         html, _ = self.report()
-        self.assertEqual(html.count("<img "), len(PLOTS))
+        self.assertEqual(html.count("<img "), len(all_plots()))
 
     def test_damaged_table_is_named(self):
         self.write_run(self.folder, [])
         write_claims(self.folder)
-        for name in FORMATS:
+        for name in TABLES:
             path = self.folder / f"{name}.csv"
             whole = path.read_text()
             header, first = whole.splitlines()[:2]
@@ -186,7 +191,7 @@ class ClaimSections(unittest.TestCase):
         for name in ("first", "same", "third"):
             self.write_run(self.folder / name, [check_row("intrinsic-length", 0)])
             write_claims(self.folder / name)
-            for table in FORMATS:
+            for table in TABLES:
                 if table != "edge_layer":
                     (self.folder / name / f"{table}.csv").unlink()
         path = self.folder / "third" / "edge_layer.csv"

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The gate before a crack: claims are checked once for the same inputs, reuse is said, and what fails is refused.
+"""Verification before fracture: claims are checked once for the same inputs, reuse is reported, and failing cases are refused.
 
 Usage: gate_test.py PATH_OF_LATCON [--full]     --full: each test that checks the claims once more
 """
@@ -14,7 +14,7 @@ import tempfile
 import unittest
 
 sys.dont_write_bytecode = True
-from program import CASES, LATCON, TemporaryFolder, latcon, latcon_on_ranks
+from program import CASES, LATCON, TemporaryFolder, claims_where, latcon, latcon_on_ranks
 
 # A strip on which a crack does not come far, of nearest neighbours alone, which are checked sooner.
 TINY = ["--set", "Sheet/length=2.5 cm", "--set", "Sheet/height=1.5 cm", "--set", "Time/end=0.01 ms", "--set",
@@ -71,7 +71,7 @@ class Gate(WithStore):
         self.assertIn("claims: checked now", self.first_text)
         self.assertEqual(list(first["verification"]), ["hash", "reused", "checked_at"])
         self.assertFalse(first["verification"]["reused"])
-        self.assertEqual({row["claim"] for row in rows}, {"energy", "wave-speeds", "intrinsic-length", "prestretch"})
+        self.assertEqual({row["claim"] for row in rows}, claims_where("before_fracture"))
 
         text, second = self.fracture()
         when, key = first["verification"]["checked_at"], first["verification"]["hash"]

@@ -1,5 +1,6 @@
 """Runs latcon for the tests of the command line, and reads what it wrote with readers of other people."""
 import csv
+import json
 import os
 import pathlib
 import subprocess
@@ -19,6 +20,11 @@ CASES = pathlib.Path(__file__).resolve().parents[2] / "verification" / "cases"
 
 def latcon(*arguments, program=LATCON, timeout=600, **keywords):
     return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, timeout=timeout, **keywords)
+
+
+def claims_where(property_):
+    """Names of the registered claims that have a property in `latcon schema`: "default" or "before_fracture"."""
+    return {claim["name"] for claim in json.loads(latcon("schema").stdout)["claims"] if claim[property_]}
 
 
 def latcon_on_ranks(ranks, *arguments, env=None):

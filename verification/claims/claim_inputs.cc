@@ -1,9 +1,9 @@
 #include "verification/claims/claim_inputs.h"
 
-#include <algorithm>
 #include <array>
+#include <set>
+#include <stdexcept>
 #include <variant>
-#include <vector>
 
 #include "support/full_precision.h"
 #include "verification/input/case_text.h"
@@ -13,8 +13,8 @@ namespace latcon::claims
 namespace
 {
 
-// What makes a Subject. A claim that reads a further entry adds it here; the test goes through all entries there are.
-constexpr std::array read_by_claims{
+// Entries of which a Subject is made. Further ones are in the descriptors of claims.
+constexpr std::array entries_of_subject{
   "Sheet/spacing",
   "Sheet/orientation",
   "Material/density",
@@ -41,35 +41,42 @@ constexpr std::array read_by_claims{
 constexpr double sheet_size = 12.; // spacings
 
 // Lines `Section/Name=value` of the entries that claims may read.
-std::vector<std::string> assignments(const input::Case &input)
+std::vector<std::string> assignments(const input::Case &input, const std::vector<std::string> &further)
 {
+  std::set<std::string> allowed(entries_of_subject.begin(), entries_of_subject.end());
+  allowed.insert(further.begin(), further.end());
   input::Case copy = input; // declaring binds entries to members that may be written
   input::Parameters parameters;
   copy.declare(parameters);
   std::vector<std::string> lines;
+  std::set<std::string> declared;
   for (const auto &item : input::read_prm(parameters.resolved_text(), "case"))
     if (const auto *entry = std::get_if<input::Assignment>(&item))
     {
       const std::string key = entry->section + "/" + entry->name;
-      if (std::find(read_by_claims.begin(), read_by_claims.end(), key) != read_by_claims.end())
+      if (allowed.count(key) > 0)
         lines.push_back(key + "=" + entry->value);
+      declared.insert(key);
     }
+  for (const std::string &key : further)
+    if (declared.count(key) == 0)
+      throw std::logic_error("the descriptor of a claim names `" + key + "`, which is no entry of a case");
   return lines;
 }
 
 } // namespace
 
-std::string claim_inputs_text(const input::Case &input)
+std::string claim_inputs_text(const input::Case &input, const std::vector<std::string> &further)
 {
   std::string text;
-  for (const std::string &line : assignments(input))
+  for (const std::string &line : assignments(input, further))
     text += line + "\n";
   return text;
 }
 
-input::Case claim_inputs(const input::Case &input)
+input::Case claim_inputs(const input::Case &input, const std::vector<std::string> &further)
 {
-  std::vector<std::string> lines = assignments(input);
+  std::vector<std::string> lines = assignments(input, further);
   for (const char *extent : {"length", "height"})
     lines.push_back(std::string("Sheet/") + extent + "=" + support::full_precision(sheet_size * input.spacing));
   input::Case read;

@@ -9,19 +9,19 @@
 namespace latcon::claims
 {
 
-/// What a claim found: a row for each thing checked, and the numbers behind them for plots and readers.
+/// Results of a claim: a row per checked quantity, and tables for plots.
 struct ClaimOutcome
 {
   output::Results results;
   std::map<std::string, output::Table> tables; ///< by file name without ".csv"
 
-  /// The table of that name, made with these columns if it is not there yet.
+  /// Returns the table of that name; creates it with these columns if it is missing.
   output::Table &table(const std::string &name, const std::vector<std::string> &columns)
   {
     return tables.try_emplace(name, columns).first->second;
   }
 
-  /// Appends what another claim, or the same claim about another subject, found.
+  /// Appends the results of another claim, or of the same claim for another subject.
   void add(const ClaimOutcome &other)
   {
     results.add(other.results);

@@ -17,7 +17,7 @@ struct WaveContinuum
   const continuum::Viscosity *viscosity = nullptr; ///< none: elastic
 };
 
-/// What a plane wave meets at the homogeneous state F, in closed form from the tangents of the laws
+/// Matrices of a plane wave at the homogeneous state F, in closed form from the tangents of the laws
 /// (theory-comparison.md, eq. (W.3)). @param K referential wave vector [1/m]
 bridge::WaveMatrices continuum_matrices(const WaveContinuum &medium, const Eigen::Matrix2d &F,
                                         const Eigen::Vector2d &K);
@@ -34,8 +34,8 @@ struct WaveMesh
 /// energy were that of second derivatives.
 double discretisation_bound(const WaveMesh &mesh);
 
-/// Frequencies [rad/s] of both waves as the finite elements have them: eigenvalues of tangent and mass, found by
-/// inverse iteration from the nodal values of both. Every rank computes all of it.
+/// Frequencies [rad/s] of both waves in the finite elements: eigenvalues of tangent and mass, found by inverse
+/// iteration from the nodal values of both. Every rank computes all of it.
 /// @throws continuum::LinearSolverFailed
 std::array<double, 2> discrete_frequencies(const WaveContinuum &medium, const Eigen::Matrix2d &F,
                                            const Eigen::Vector2d &K, const WaveMesh &mesh);
@@ -51,7 +51,7 @@ std::array<Oscillation, 2> finite_element_waves(const WaveContinuum &medium, con
 double sinusoidal_energy(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
                          const Eigen::Vector2d &p, double amplitude, const WaveMesh &mesh);
 
-/// Energy densities of a wave on its way through the finite element sheet [J/m^3].
+/// Energy densities of a wave that travels through the finite element sheet [J/m^3].
 struct TravellingEnergy
 {
   double elastic;       ///< above that of the homogeneous state
@@ -59,8 +59,8 @@ struct TravellingEnergy
   double micro_inertia; ///< the share of that in `kinetic`
 };
 
-/// Lets a wave amplitude * p cos(K.X - w t) of polarisation `wave` (0 longitudinal, 1 shear) travel for an eighth of a
-/// period. Every rank computes all of it. @throws what DynamicSolver throws
+/// Runs a wave amplitude * p cos(K.X - w t) of polarisation `wave` (0 longitudinal, 1 shear) for an eighth of a period.
+/// Every rank computes all of it. @throws what DynamicSolver throws
 TravellingEnergy travelling_energy(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
                                    std::size_t wave, double amplitude, const WaveMesh &mesh);
 

@@ -8,7 +8,7 @@
 namespace latcon::claims
 {
 
-/// A periodic lattice sheet into which a plane wave fits.
+/// Periodic lattice sheet for a plane wave.
 struct WaveCell
 {
   lattice::TriangularLattice sheet;
@@ -24,13 +24,13 @@ struct WaveDirection
 /// Along x, at 30 degrees to it, along y, and one off every line of symmetry.
 std::array<WaveDirection, 4> wave_directions(lattice::Orientation orientation);
 
-/// As a unit vector [-].
+/// Unit vector [-].
 Eigen::Vector2d unit_vector(const WaveDirection &direction, lattice::Orientation orientation);
 
 /// Its angle to x [degrees].
 double angle(const WaveDirection &direction, lattice::Orientation orientation);
 
-/// The smallest sheet for a wave of the length asked for, to 2 %.
+/// Smallest sheet for a wave of the requested length, to 2 %.
 /// @param kd |K| d [-], > 0
 WaveCell wave_cell(double spacing, lattice::Orientation orientation, const WaveDirection &direction, double kd);
 
@@ -40,9 +40,9 @@ double smallest_stretch(const lattice::TriangularLattice &lattice, const Eigen::
 
 /// Frequencies and decays of the longitudinal and the shear wave of a cell, measured on the moving lattice.
 ///
-/// Both stand in the sheet at once, with strains of 1e-5, polarised as the lattice's own (see bloch_waves), released
-/// from rest at the homogeneous state F; each is followed through three quarters of a period at least, and fitted. The
-/// error of the time stepping is extrapolated from two time steps, of second order, to fourth.
+/// Both are standing waves in one sheet, with strains of 1e-5, polarised as the lattice's own (see bloch_waves),
+/// released from rest at the homogeneous state F; each is followed through three quarters of a period at least, and
+/// fitted. The error of the time stepping is extrapolated from two time steps, of second order, to fourth.
 /// @throws std::runtime_error if a wave does not oscillate
 std::array<Oscillation, 2> lattice_waves(const WaveCell &cell, const lattice::Material &material,
                                          const Eigen::Matrix2d &F);

@@ -30,8 +30,8 @@ inline double fitted_order(const std::vector<double> &h, const std::vector<doubl
   return std::isfinite(mean_y) ? xy / xx : std::nan("");
 }
 
-/// Order of the errors of many waves at once, each at the same sizes: that of their root mean square. A single wave
-/// whose leading error happens to vanish does not hide it, and a single one of a lower order shows.
+/// Order of the errors of many waves, each at the same sizes: order of their root mean square. A wave whose leading
+/// error vanishes does not hide the order, and a single wave of lower order shows.
 class CommonOrder
 {
 public:

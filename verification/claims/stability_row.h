@@ -10,8 +10,8 @@
 namespace latcon::claims
 {
 
-/// The row by which a claim says whether the loaded lattice is stable against waves of every length, which all that is
-/// compared about the loaded sheet takes for granted. The error is how far below zero the smallest w^2 / k^2 falls.
+/// Row of a claim on the stability of the loaded lattice against waves of every length, which every comparison of the
+/// loaded sheet assumes. The error is the distance of the smallest w^2 / k^2 below zero.
 inline output::Result stability_row(const bridge::Subject &subject, const std::string &claim)
 {
   std::ostringstream quantity;
@@ -23,7 +23,7 @@ inline output::Result stability_row(const bridge::Subject &subject, const std::s
              << std::lround(std::atan2(K.y(), K.x()) * 180. / M_PI) << " degrees";
   }
   const double smallest = subject.slowest_wave.squared_speed / std::pow(subject.theory.shear_speed, 2);
-  // At zero the lattice is about to buckle, which is no stability either.
+  // At zero the lattice is about to buckle, and counts as unstable.
   const double error = subject.is_stable() ? 0. : support::largest_of({-smallest, 1e-15});
   return {claim, quantity.str(), "1", smallest, {}, {}, error, 0.};
 }

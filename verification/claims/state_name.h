@@ -8,7 +8,7 @@
 namespace latcon::claims
 {
 
-/// What rows and plots call a homogeneous state: "F = I", "F = (2.3, 2.8)", "F = (1, 1, shear 0.5)".
+/// Name of a homogeneous state in rows and plots: "F = I", "F = (2.3, 2.8)", "F = (1, 1, shear 0.5)".
 inline std::string state_name(const Eigen::Matrix2d &F)
 {
   if (F.isIdentity(1e-12))

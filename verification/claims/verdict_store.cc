@@ -38,7 +38,7 @@ constexpr std::uintmax_t largest_file = 256UL << 20UL; // [byte]; no check leave
 
 constexpr mode_t writable_by_others = S_IWGRP | S_IWOTH;
 
-// All bytes of a file that this user alone can have written; none if it cannot be read.
+// Content of a file that only this user can have written; none if it cannot be read.
 std::optional<std::string> content_of_own_file(const std::string &path)
 {
   const int descriptor = open(path.c_str(), O_RDONLY | O_NOFOLLOW | O_NONBLOCK | O_CLOEXEC);
@@ -56,7 +56,7 @@ std::optional<std::string> content_of_own_file(const std::string &path)
   return file ? std::optional(bytes) : std::nullopt;
 }
 
-// A name that leads out of no folder.
+// Names of files in the folder itself, without path components.
 bool is_table_name(const std::string &name)
 {
   return !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_-") == std::string::npos;
@@ -71,7 +71,7 @@ std::string build_id(const dl_phdr_info &library)
     const ElfW(Phdr) &segment = library.dlpi_phdr[i];
     if (segment.p_type != PT_NOTE)
       continue;
-    // Where the loader put it, which is known as an address.
+    // Address at which the loader mapped the note.
     const auto *bytes = reinterpret_cast<const char *>(library.dlpi_addr + segment.p_vaddr); // NOLINT
     for (std::size_t at = 0; at + sizeof(ElfW(Nhdr)) <= segment.p_memsz;)
     {
@@ -86,8 +86,8 @@ std::string build_id(const dl_phdr_info &library)
   return {};
 }
 
-// The program is one static file but for the libraries of the system, which are named by what their linker made of
-// their content: the same on all nodes of a cluster.
+// Hash of the system's shared libraries, identified by their build IDs, which are the same on all nodes of a cluster.
+// The rest of the program is linked statically.
 std::string hash_of_libraries()
 {
   std::vector<std::string> libraries;
@@ -96,14 +96,14 @@ std::string hash_of_libraries()
     {
       const std::filesystem::path file = library->dlpi_name;
       if (!file.has_parent_path())
-        return 0; // the program itself, and what the kernel brings
+        return 0; // the program itself, and the vdso
       const std::string id = build_id(*library);
       static_cast<std::vector<std::string> *>(list)->push_back(file.filename().string() + ' ' +
                                                                (id.empty() ? output::sha256_of_file(file) : id) + '\n');
       return 0;
     },
     &libraries);
-  std::sort(libraries.begin(), libraries.end()); // the order of loading is not that of the disk
+  std::sort(libraries.begin(), libraries.end()); // independent of the order of loading
   std::string text;
   for (const std::string &library : libraries)
     text += library;
@@ -126,7 +126,7 @@ std::string checksum(Json document)
   return output::sha256(document.dump());
 }
 
-// A number as results.json holds it.
+// Parses a number of results.json.
 std::optional<double> number(const Json &value)
 {
   if (value.is_null())
@@ -152,14 +152,17 @@ output::Result row(const Json &entry)
 
 VerdictKey::VerdictKey(std::string inputs) : text(std::move(inputs)), hash(output::sha256(text)) {}
 
-VerdictKey verdict_key(const input::Case &input, const std::vector<std::string> &claims, bool quick,
-                       unsigned int n_ranks)
+VerdictKey verdict_key(const input::Case &input, const std::vector<Claim> &claims, bool quick, unsigned int n_ranks)
 {
   std::string text = "program=" + output::program_hash() + "\nlibraries=" + hash_of_libraries() + "\n";
-  for (const std::string &claim : claims)
-    text += "claim=" + claim + "\n";
+  std::vector<std::string> entries;
+  for (const Claim &claim : claims)
+  {
+    text += "claim=" + claim.name + "\n";
+    entries.insert(entries.end(), claim.entries.begin(), claim.entries.end());
+  }
   text += std::string("quick=") + (quick ? "true" : "false") + "\nranks=" + std::to_string(n_ranks) + "\n";
-  return VerdictKey(text + claim_inputs_text(input));
+  return VerdictKey(text + claim_inputs_text(input, entries));
 }
 
 Verdicts::Verdicts(const ClaimOutcome &outcome) : results(outcome.results), checked_at(now())
@@ -220,7 +223,7 @@ Verdicts read_verdicts(const VerdictKey &key, const std::string &text)
 std::optional<std::string> VerdictStore::folder_of_user()
 {
   const char *cache = std::getenv("XDG_CACHE_HOME");
-  if (cache != nullptr && cache[0] == '/') // others than absolute names are to be ignored
+  if (cache != nullptr && cache[0] == '/') // relative paths must be ignored
     return std::string(cache) + "/latcon/verdicts";
   const char *home = std::getenv("HOME");
   if (home != nullptr && home[0] == '/')
@@ -256,10 +259,10 @@ void VerdictStore::write(const VerdictKey &key, const std::string &text) const
   std::filesystem::create_directories(folder_, error);
   if (error)
     throw support::OutputError(folder_, error.message());
-  // Other runs may write here now, in milliseconds: what is older was left by killed ones.
+  // Other runs may be writing here, for milliseconds; older parts were left by killed runs.
   support::remove_stale_parts(folder_, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
   output::write_file(path(key), text);
-  chmod(path(key).c_str(), S_IRUSR | S_IWUSR); // whatever the umask: read() takes no other
+  chmod(path(key).c_str(), S_IRUSR | S_IWUSR); // read() refuses other modes, whatever the umask
 }
 
 } // namespace latcon::claims

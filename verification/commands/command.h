@@ -15,6 +15,11 @@
 #include "verification/output/results.h"
 #include "verification/output/run_info.h"
 
+namespace latcon::claims
+{
+struct Claim;
+}
+
 namespace latcon::output
 {
 class Checkpoints;
@@ -33,12 +38,6 @@ struct CompareOptions
   bool overlap = false;                ///< whether the sheets may cover each other in part
   std::vector<std::string> excluded;   ///< `X,Y,R` of circles
 };
-
-/// Names of the claims, in the order in which they are checked.
-const std::vector<std::string> &claim_names();
-
-/// Claims on material and pre-stretch that a crack of the lattice needs: all but those about cracks.
-const std::vector<std::string> &claims_before_fracture();
 
 // The commands. Each runs on every MPI rank and returns what the program should exit with, or throws.
 support::ExitCode verify(const input::Options &options);                                       ///< `latcon verify`
@@ -144,10 +143,10 @@ enum class Shells
   own_and_nearest, ///< also that of its nearest neighbours alone, if the case has next-nearest ones
 };
 
-/// Runs the claims named, or all of them, on the subject of a case, small versions if `quick`. Collective.
+/// Checks claims on the subject of a case, small versions if `quick`. Collective.
 /// @param laws those that are judged; what is found about others is reported
 /// @param frames folder for frames of sheets in motion, on one rank; empty: none are written
-claims::ClaimOutcome run_claims(const input::Case &input, const std::vector<std::string> &names, bool quick,
+claims::ClaimOutcome run_claims(const input::Case &input, const std::vector<claims::Claim> &claims, bool quick,
                                 Shells shells, const bridge::Laws &laws, const std::string &frames = {});
 
 /// Checks the claims, in their small versions, on the case's own material, shells and pre-stretch, or takes the

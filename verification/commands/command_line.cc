@@ -20,6 +20,7 @@
 #include "continuum/solver_report.h"
 #include "support/atomic_file.h"
 #include "support/available_cores.h"
+#include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/commands/signals.h"
 #include "verification/input/data_folder.h"
@@ -145,14 +146,15 @@ support::ExitCode run_program(int argc, char **argv)
 
   options.case_file = input::data_folder() + "/cases/fig1.prm";
   CLI::App *verify_command = app.add_subcommand("verify", "check that lattice and continuum agree, claim by claim");
-  verify_command->add_option("CLAIM", options.claims, "claims to check; default: all but running-crack")
-    ->check(CLI::IsMember(claim_names()))
+  verify_command->add_option("CLAIM", options.claims, "claims to check, see below")
+    ->check(CLI::Validator([](const std::string &name) { return unknown_claim(name); }, claim_choices()))
     ->type_name("");
   verify_command
     ->add_option("--case", options.case_file,
                  "case whose material, loading and laws to verify; default: every law on the rubber of Fig. 1")
     ->type_name("FILE");
   verify_command->add_flag("--quick", options.quick, "small versions");
+  verify_command->footer(claim_list());
   verify_command->callback(
     [&]
     {

@@ -7,6 +7,7 @@
 #include "verification/bridge/subject.h"
 #include "verification/claims/gate_rows.h"
 #include "verification/claims/verdict_store.h"
+#include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 
 namespace latcon::commands
@@ -14,14 +15,14 @@ namespace latcon::commands
 namespace
 {
 
-constexpr bool quick = true; // a gate must be passed in seconds
+constexpr bool quick = true; // a few seconds before every crack
 
-// What the first rank finds, and every rank must know to do the same.
+// Cached verdicts, as found by the root rank.
 struct Stored
 {
-  std::string key;  // inputs that the verdicts depend on; empty: they cannot be told
-  std::string text; // of the stored file; empty: there is none that can be read
-  std::string note; // for the user; empty: nothing went wrong
+  std::string key;  // inputs that the verdicts depend on; empty: not known
+  std::string text; // content of the stored file; empty: none that can be read
+  std::string note; // message for the user; empty: no problem
 };
 
 std::string unused(const std::string &path, const std::string &reason)
@@ -56,8 +57,8 @@ Stored look_up(const input::Case &input, const std::optional<std::string> &folde
   return stored;
 }
 
-// The same on all ranks.
-Stored look_up_on_first_rank(const input::Case &input, const Run &run, const std::optional<std::string> &folder)
+// Returns the same on all ranks.
+Stored look_up_on_root_rank(const input::Case &input, const Run &run, const std::optional<std::string> &folder)
 {
   const Stored stored = run.is_root() ? look_up(input, folder) : Stored();
   const auto shared = [](const std::string &text) { return dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, text); };
@@ -75,7 +76,7 @@ output::Results require_verified(const input::Case &input, Run &run)
 {
   const auto phase = run.info().stopwatch().phase("claims");
   const std::optional<std::string> folder = claims::VerdictStore::folder_of_user();
-  Stored stored = look_up_on_first_rank(input, run, folder);
+  Stored stored = look_up_on_root_rank(input, run, folder);
   const claims::VerdictKey key(stored.key);
   const std::string path = folder ? claims::VerdictStore(*folder).path(key) : "";
 
@@ -84,8 +85,9 @@ output::Results require_verified(const input::Case &input, Run &run)
     try
     {
       verdicts = claims::read_verdicts(key, stored.text);
-      // What refuses a crack needs no rows but its own.
-      if (const std::string problem = claims::row_problem(verdicts->results, bridge::shells_name(input.material()));
+      // Verdicts that refuse a crack need not be complete.
+      if (const std::string problem =
+            claims::row_problem(verdicts->results, bridge::shells_name(input.material()), claims_before_fracture());
           verdicts->results.all_hold() && !problem.empty())
       {
         verdicts.reset();
@@ -128,7 +130,10 @@ output::Results require_verified(const input::Case &input, Run &run)
     std::cout << "claims: " << origin << std::endl;
   }
   if (run.is_root())
+  {
+    write_claims(claims_before_fracture(), run.directory());
     verdicts->write_tables(run.directory());
+  }
   if (!verdicts->results.all_hold())
   {
     run.end(verdicts->results, support::ExitCode::claim_failed);

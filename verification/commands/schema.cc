@@ -6,6 +6,7 @@
 #include <deal.II/base/mpi.h>
 #include <nlohmann/json.hpp>
 
+#include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/input/case_text.h"
 #include "verification/input/data_folder.h"
@@ -155,6 +156,11 @@ support::ExitCode print_schema(const input::Options &options)
   document["cases"] = shipped_cases();
   for (const study::StudyQuantity &quantity : study::quantities())
     document["quantities"][quantity.name] = quantity.unit;
+  for (const claims::Claim &claim : claim_registry())
+    document["claims"].push_back({{"name", claim.name},
+                                  {"title", claim.title},
+                                  {"default", claim.is_default},
+                                  {"before_fracture", claim.is_before_fracture()}});
   for (const input::Declaration &entry : entries)
     document["entries"].push_back(describe(entry));
   if (options.case_is_given)

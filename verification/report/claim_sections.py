@@ -1,7 +1,7 @@
 """Sections of the page about claims: statement, plots with their error metrics, rows."""
 from html import escape
 
-from claims_text import CLAIMS, PLOTS, explanation, heading
+from claim_plots import PLOTS
 from markup import MARKS, figure, first_sentence, number, plural, row, superscripts, table
 from summary import VERDICTS, ratio_text, tally_of
 
@@ -10,29 +10,43 @@ MOST_OPEN_ROWS = 8
 # Verdicts of a claim by the class that colours them.
 WORDS = {"fails": "fails", "holds": "holds", "warns": "holds, not verified", "reported": "reported"}
 
+# Title and statement of the rows that compare a crack with published values. No claim of the program computes them.
+FRACTURE = (
+    "the crack beside the published one",
+    "The crack of the lattice is measured and compared with the published values. No continuum is involved, and no "
+    "agreement between lattice and continuum is claimed beyond the onset of fracture. Pictures of the crack are in the "
+    "section of its run.")
+
 
 def claim_sections(runs, plots):
-    """A section a claim, those that fail first. `plots`: {folder of a run: {plot name: (PNG file, metrics)}}."""
-    entries = shared_rows(runs)
-    parts = [claim_section(name, entries.get(name, []), runs, plots) for name in claim_order(entries, plots)]
+    """A section per claim, failing claims first. `plots`: {folder of a run: {plot name: (PNG file, metrics)}}."""
+    entries, texts = shared_rows(runs), claim_texts(runs)
+    parts = [claim_section(name, entries.get(name, []), runs, plots, texts)
+             for name in claim_order(entries, plots, texts)]
     return "\n".join(parts) or "<p>Nothing was checked.</p>"
 
 
-def claim_order(entries, plots):
-    """Claims that have rows or plots: those that fail first, then as they are known, then as they came."""
-    drawn = [plot.claim for plot in PLOTS if any(plot.name in made for made in plots.values())]
+def claim_texts(runs):
+    """{name: (title, statement)} of the claims that the runs checked, in the order in which they are checked."""
+    return {**{name: text for run in runs for name, text in run.claims.items()}, "fracture": FRACTURE}
+
+
+def claim_order(entries, plots, texts):
+    """Claims that have rows or plots: failing claims first, then in the order of `texts`, then in that of the rows."""
+    made = {name for drawn in plots.values() for name in drawn}
+    drawn = [claim for claim, own in PLOTS.items() if any(plot.name in made for plot in own)]
     names = list(dict.fromkeys([*entries, *drawn]))
-    known = list(CLAIMS)
+    known = list(texts)
     return sorted(names, key=lambda name: (not any(check.verdict == "fails" for check, _ in entries.get(name, [])),
                                            known.index(name) if name in known else len(known)))
 
 
 def shared_rows(runs):
-    """Rows by claim, those that several runs share once: {claim: [(check, names of runs), ...]}, failing ones first."""
+    """Rows per claim, {claim: [(check, names of runs), ...]}, failing rows first; a row of several runs is listed once."""
     runs_of = {}
     for run in runs:
         for check in run.checks:
-            # By text, for nan is not equal to itself.
+            # Compared as text, because nan is not equal to itself.
             runs_of.setdefault(repr(check), (check, []))[1].append(run.name)
     entries = {}
     for check, names in runs_of.values():
@@ -40,34 +54,45 @@ def shared_rows(runs):
     return {claim: sorted(rows, key=lambda entry: VERDICTS.index(entry[0].verdict)) for claim, rows in entries.items()}
 
 
-def claim_section(name, entries, runs, plots):
-    """One claim: a line that unfolds; unfolded already if it fails."""
+def claim_section(name, entries, runs, plots, texts):
+    """Section of one claim: a line that unfolds, open if the claim fails."""
     tally = tally_of(None, name, [check for check, _ in entries])
     opened = " open" if tally.kind == "fails" else ""
     parts = [f'<section id="claim-{escape(name)}"><details class="claim"{opened}>'
-             f"<summary>{claim_line(name, tally)}</summary>"]
-    text = explanation(name, {plot for made in plots.values() for plot in made})
+             f"<summary>{claim_line(name, tally, texts)}</summary>"]
+    text = explanation(name, {plot for made in plots.values() for plot in made}, texts)
     if text:
         parts.append(f"<p>{escape(text)}</p>")
     if not entries:
         parts.append('<p class="soft">No quantity of this claim was checked.</p>')
-    parts += [plot_figures(plot, runs, plots) for plot in PLOTS if plot.claim == name]
+    parts += [plot_figures(plot, runs, plots) for plot in PLOTS.get(name, ())]
     parts.append(rows_of_claim(name, entries, len(runs) > 1))
     return "\n".join(part for part in parts if part) + "</details></section>"
 
 
-def claim_line(name, tally):
+def explanation(name, drawn, texts):
+    """Statement of a claim, given the names of the plots that were drawn; empty for a claim without texts."""
+    parts = [texts[name][1]] if name in texts else []
+    return " ".join(parts + [plot.claimed for plot in PLOTS.get(name, ()) if plot.name in drawn])
+
+
+def heading(name, texts):
+    """Heading of a claim's section."""
+    return f"{name}: {texts[name][0]}" if name in texts else name
+
+
+def claim_line(name, tally, texts):
     """Verdict, heading and counts of a claim."""
     counts = ", ".join(f"{tally.count[v]} {plural(tally.count[v], one, many)}"
                        for v, one, many in (("fails", "fails", "fail"), ("holds", "holds", "hold"),
                                             ("reported", "reported", "reported")) if tally.count[v])
     worst = "" if tally.worst is None else f", worst error / tolerance {ratio_text(tally.worst)}"
-    return (f'<span class="tally {tally.kind}">{MARKS[tally.kind]} {WORDS[tally.kind]}</span> <h3>{escape(heading(name))}</h3> '
+    return (f'<span class="tally {tally.kind}">{MARKS[tally.kind]} {WORDS[tally.kind]}</span> <h3>{escape(heading(name, texts))}</h3> '
             f'<span class="soft">{counts}{worst}</span>')
 
 
 def plot_figures(plot, runs, plots):
-    """A plot of the first run that has it; those of other runs, where they differ, are folded below."""
+    """A plot of the first run that has it; different ones of other runs are folded below."""
     made = [(run, *plots[run.folder][plot.name]) for run in runs if plot.name in plots.get(run.folder, {})]
     if not made:
         return ""
@@ -89,7 +114,7 @@ def plot_figure(plot, run, png, metrics, name_run):
 
 
 def rows_of_claim(name, entries, show_runs):
-    """A table of the rows that fail, and one of the others, folded if it is long."""
+    """A table of the failing rows, and a table of the others, folded if it is long."""
     head = ["verdict", "quantity", "unit", "#lattice", "#continuum",
             "#published" if name == "fracture" else "#theory", "#error", "#tolerance"]
     head += ["run"] if show_runs else []

@@ -1,54 +1,25 @@
-"""The tables that claims leave beside results.json: what is in each, and how its rows are taken apart."""
+"""Formats of the tables that claims write beside results.json, and functions that evaluate their rows."""
+from dataclasses import dataclass
+from typing import Callable
+
 import numpy as np
 
-from files import DamagedFile, read_table
-
-# Errors below this are round-off and say nothing of an order.
+# Errors below this are round-off and have no order.
 ROUND_OFF = 1e-12
 
+# Columns that several tables have.
 STATE = ("F_xx", "F_yy")
 WAVE = STATE + ("angle [deg]", "k d")
-CUT = STATE + ("displacement", "stress", "energy", "reaction", "shape")
-
-# File name without ".csv": {column of words: words allowed, None for any}, columns of numbers. Further columns may be
-# there.
-FORMATS = {
-    "wave_speeds": ({"shells": None, "wave": ("L", "S")},
-                    WAVE + ("local [m/s]", "bloch [m/s]", "lattice [m/s]", "gradient [m/s]", "isotropic [m/s]",
-                            "fem [m/s]")),
-    "attenuation": ({"shells": None, "wave": ("L", "S")},
-                    WAVE + tuple(f"{side}_{what}" for side in ("theory", "lattice", "continuum", "fem")
-                                 for what in ("frequency [rad/s]", "decay [1/s]"))),
-    "dispersion": ({"shells": None}, ("angle [deg]", "alpha_L", "alpha_S", "nearest_L", "nearest_S", "isotropic_L",
-                                      "isotropic_S")),
-    "dispersion_runs": ({"shells": None}, ("angle [deg]", "alpha_L", "alpha_S")),
-    "edge_layer": ({"shells": None}, ("row", "deviation", "theory")),
-    "hole": ({"shells": None, "law": None}, CUT + ("R/d",)),
-    "notch": ({"shells": None, "law": None}, CUT + ("length/d",)),
-    "running_crack": ({"shells": None, "side": ("lattice", "local", "gradient")},
-                      ("X/d", "Y/d", "v_x [m/s]", "v_y [m/s]", "opening_stress [Pa]", "excess_y [m]")),
-    "sinusoidal_energy": ({"shells": None, "wave": ("L", "S")},
-                          WAVE + ("lattice", "local", "gradient", "filtered", "fem")),
-    "travelling_waves": ({"shells": None, "wave": ("L", "S")},
-                         WAVE + ("lattice_elastic [J/m^3]", "lattice_kinetic [J/m^3]", "fem_elastic [J/m^3]",
-                                 "fem_kinetic [J/m^3]", "fem_micro_inertia [J/m^3]", "theory [J/m^3]")),
-}
 
 
-def read_claim_tables(folder):
-    """The tables of a folder that have rows: {name: {column: array}}. Numbers may be nan: not computed."""
-    tables = {}
-    for name, (texts, numbers) in FORMATS.items():
-        path = folder / f"{name}.csv"
-        table = read_table(path, numbers, texts=tuple(texts), finite=False)
-        if table is None or not len(table["shells"]):
-            continue
-        for column, allowed in texts.items():
-            strange = [word for word in table[column] if allowed is not None and word not in allowed]
-            if strange:
-                raise DamagedFile(path, f"{column} is {strange[0]!r}, allowed: {', '.join(allowed)}")
-        tables[name] = table
-    return tables
+@dataclass(frozen=True)
+class Plot:
+    """Picture NAME.png of the table NAME.csv."""
+
+    name: str
+    draw: Callable  # (tables, PNG file) -> error metrics as text
+    claimed: str  # statement of the claim where it wrote this table
+    caption: str  # content of the picture
 
 
 def groups(table, *columns):
@@ -114,3 +85,8 @@ def not_computed(values):
     """How many values are not finite: " (1 of 32 not computed)"; nothing if all are."""
     missing = np.count_nonzero(~np.isfinite(values))
     return f" ({missing} of {len(values)} not computed)" if missing else ""
+
+
+def off(what, values, reference, of):
+    """The largest relative difference as text."""
+    return f"{what} off {of} by {largest_text(values / reference - 1)}"

@@ -14,7 +14,7 @@ sys.dont_write_bytecode = True  # this folder stays as it is
 import own_settings  # before matplotlib
 
 from animation import draw_animation
-from claims_text import PLOTS
+from claim_plots import all_plots
 from crack_path import draw_crack_path
 from field_pictures import draw_fields, has_fields
 from files import BAD_INPUT, CLAIM_FAILS, DONE, DamagedFile, exit_code_of, write_file
@@ -64,9 +64,9 @@ def draw_pictures(run, motion):
 
 
 def draw_plots(run):
-    """Plots of the claims that a run left tables of: {plot name: (PNG file, error metrics)}."""
+    """Plots of the tables that claims wrote in a run: {plot name: (PNG file, error metrics)}."""
     made = {}
-    for plot in PLOTS:
+    for plot in all_plots():
         if plot.name in run.tables:
             path = run.folder / f"{plot.name}.png"
             made[plot.name] = (path, plot.draw(run.tables, path))

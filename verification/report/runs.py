@@ -4,7 +4,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from claim_tables import read_claim_tables
+from claim_plots import read_claim_tables
 from files import EARLIER, DamagedFile, read_json, read_table, read_text
 
 # A folder with any of these files is the output directory of a run, complete or interrupted.
@@ -68,6 +68,7 @@ class Run:
     tip: dict  # crack.csv: t [s], X, Y [m] in the undeformed sheet
     broken: dict  # broken_bonds.csv: t [s], the two sites, X, Y [m] in the undeformed sheet
     energy: dict  # energy.csv of a motion of the lattice: t [s], the rest in J per metre of sheet thickness
+    claims: dict  # claims.json: {name: (title, statement)}, in the order in which they are checked; empty without it
     tables: dict  # of the claims, {file name without ".csv": {column: array}}; those that are there
 
     @property
@@ -156,6 +157,7 @@ def read_run(folder):
         tip=read_table(folder / "crack.csv", ("t", "X", "Y")),
         broken=read_table(folder / "broken_bonds.csv", ("t", "site", "other_site", "X", "Y")),
         energy=read_energy(folder / "energy.csv"),
+        claims=read_claims(folder / "claims.json"),
         tables=read_claim_tables(folder),
     )
 
@@ -192,6 +194,15 @@ def read_checks(path, results, verified):
             raise DamagedFile(path, f"{where}: the verdict {check.verdict!r} contradicts its numbers")
         checks.append(check)
     return checks
+
+
+def read_claims(path):
+    """Titles and statements in claims.json."""
+    claims = (read_json(path) or {"claims": []}).get("claims")
+    try:
+        return {claim["name"]: (str(claim["title"]), str(claim["statement"])) for claim in claims}
+    except (KeyError, TypeError) as error:
+        raise DamagedFile(path, f"holds no list of claims with name, title and statement: {error!r}") from error
 
 
 def expected_verdict(check):

@@ -25,7 +25,7 @@ namespace
 {
 
 // Entries that no claim reads: they may change without a new check. A new entry of a case must be put either here or
-// into the list of claim_inputs.cc.
+// into the list of claim_inputs.cc, or into the descriptor of the claim that reads it.
 const std::set<std::string> no_claim_reads{
   "Sheet/length",
   "Sheet/height",
@@ -197,6 +197,16 @@ TEST(ClaimInputs, MakeTheSubjectOfTheCase)
   EXPECT_EQ(read.theory.shear_speed, whole.theory.shear_speed);
   EXPECT_EQ(read.mooney_rivlin->ratio, whole.mooney_rivlin->ratio);
   EXPECT_EQ(read.mooney_rivlin->energy_residual, whole.mooney_rivlin->energy_residual);
+}
+
+TEST(ClaimInputs, HaveTheEntriesThatAClaimDeclares)
+{
+  Case input = some_case();
+  input.noise_seed = 42;
+  EXPECT_EQ(claims::claim_inputs(input, {"Lattice/noise seed"}).noise_seed, 42u);
+  EXPECT_EQ(claims::claim_inputs_text(input, {"Lattice/noise seed"}).size(),
+            claims::claim_inputs_text(input).size() + std::string("Lattice/noise seed=42\n").size());
+  EXPECT_THROW((void)claims::claim_inputs(input, {"Lattice/noise sed"}), std::logic_error);
 }
 
 // A claim that read an entry that is not listed would find its default, whatever the case says.

@@ -1,13 +1,18 @@
 // Claim by claim and side by side: a side that is no number, or throws, fails the claim with a row that says so.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <atomic>
+#include <cctype>
 #include <cmath>
 #include <limits>
 #include <memory>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "tests/verification/claims/faults.h"
+#include "verification/claims/claim_inputs.h"
 #include "verification/claims/energy/energy_claim.h"
 #include "verification/claims/energy/wave_energy.h"
 #include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
@@ -15,6 +20,7 @@
 #include "verification/claims/prestretch/prestretch_claim.h"
 #include "verification/claims/steady_crack/steady_crack_study.h"
 #include "verification/claims/wave_speeds/wave_speeds_claim.h"
+#include "verification/commands/claim_registry.h"
 
 using namespace latcon;
 
@@ -164,7 +170,7 @@ WaveSpeedsOptions waves(const Subject &subject)
 
 struct ClaimPart
 {
-  const char *name;
+  std::string name;
   std::function<Results(const Subject &)> check;
   friend std::ostream &operator<<(std::ostream &out, const ClaimPart &part) { return out << part.name; }
 };
@@ -220,6 +226,25 @@ const ClaimPart notch{"prestretch, notch", [](const Subject &s)
                         return cut_claim(s, study).results;
                       }};
 
+// Quick versions of the claims before fracture for which there are no parts above.
+std::vector<ClaimPart> claims_without_parts()
+{
+  std::vector<ClaimPart> list;
+  for (const Claim &claim : latcon::commands::claims_before_fracture())
+  {
+    bool has_part = false;
+    for (const ClaimPart &part : {energy, wave_energy, wave_speeds, damped_waves, intrinsic_length, prestretch})
+      has_part = has_part || part.name == claim.name;
+    if (!has_part)
+      list.push_back({claim.name, [claim](const Subject &s)
+                      {
+                        const latcon::input::Case entries = claim_inputs(subjects::paper_case(), claim.entries);
+                        return claim.check({s, entries, true, {}}).results;
+                      }});
+  }
+  return list;
+}
+
 struct Plant
 {
   ClaimPart claim;
@@ -249,6 +274,11 @@ std::vector<Plant> every_claim_and_side()
   std::vector<Plant> plants;
   for (const ClaimPart &claim :
        {energy, wave_energy, wave_speeds, damped_waves, intrinsic_length, prestretch, hole, notch})
+  {
+    plants.push_back({claim, "lattice", all_bonds});
+    plants.push_back({claim, "Cauchy-Born", overflow_cauchy_born});
+  }
+  for (const ClaimPart &claim : claims_without_parts())
   {
     plants.push_back({claim, "lattice", all_bonds});
     plants.push_back({claim, "Cauchy-Born", overflow_cauchy_born});
@@ -310,7 +340,14 @@ std::vector<Plant> every_claim_and_side()
 class NoNumber : public testing::TestWithParam<Plant>
 {
 };
-INSTANTIATE_TEST_SUITE_P(Claims, NoNumber, testing::ValuesIn(every_claim_and_side()));
+INSTANTIATE_TEST_SUITE_P(Claims, NoNumber, testing::ValuesIn(every_claim_and_side()),
+                         [](const testing::TestParamInfo<Plant> &test)
+                         {
+                           std::string name = test.param.claim.name + "_" + test.param.side;
+                           std::replace_if(
+                             name.begin(), name.end(), [](unsigned char c) { return std::isalnum(c) == 0; }, '_');
+                           return name;
+                         });
 
 TEST_P(NoNumber, FailsTheClaim)
 {

@@ -15,8 +15,8 @@ namespace latcon::claims
 namespace
 {
 
-// Sums over some ten bonds of terms that the subtraction of constants in psi makes larger than the sum: a few hundred
-// round-offs of the largest term. The smallest W here is some 1e-2 of the moduli.
+// Sums over about ten bonds of terms that the subtraction of constants in psi makes larger than the sum: a few hundred
+// round-offs of the largest term. The smallest W here is about 1e-2 of the moduli.
 constexpr double equal_formulas = bridge::NetworkComparison::equal_formulas;
 
 // Fourth-order differences of the stress at +-h and +-2h, exact but for h^4 times higher moduli and round-off over h.
@@ -121,8 +121,8 @@ void moduli_rows(const bridge::Subject &subject, const Moduli &lattice_side, bri
   row("c_L", "m/s", &Moduli::longitudinal_speed, theory.longitudinal_speed);
 }
 
-// The residual about the calibrated ratio. The least residual has no slope: a wrong ratio has neighbours that are
-// better. At an end of what can be searched it may fall outwards, and only a slope inwards is an error.
+// Residual about the calibrated ratio. The smallest residual has no slope, and a wrong ratio has better neighbours. At
+// an end of the search interval the residual may fall outwards; only an inward slope is an error.
 struct Optimum
 {
   double slope; // error, per unit of the ratio
@@ -152,8 +152,8 @@ Optimum optimum(const bridge::Subject &subject, const lattice::TriangularLattice
   return {support::one_sided((residual(ratio) - (below < above ? below : above)) / step), true};
 }
 
-// The law fitted along the loading path. At finite strain the difference is what the fit leaves, and is reported; but
-// the law must be the best there is, and one that finite elements can solve.
+// The law fitted along the loading path. At finite strain the residual of the fit is reported; but the law must be the
+// best one, and elliptic, so that finite elements can solve it.
 void mooney_rivlin_rows(const bridge::Subject &subject, const lattice::TriangularLattice &sheet,
                         const Moduli &lattice_side, Rows &rows)
 {
@@ -187,14 +187,14 @@ void mooney_rivlin_rows(const bridge::Subject &subject, const lattice::Triangula
   }
   else
     rows.add("given ratio r = C2 / (C1 + C2)", "1", {}, fit.ratio, {}, {}, {});
-  // Strong ellipticity: the slowest wave on the path has rho c^2 > 0; the error is how far below zero it falls.
+  // Strong ellipticity: the slowest wave on the path has rho c^2 > 0; the error is its distance below zero.
   const double slowest = fit.smallest_acoustic_eigenvalue;
   rows.add(std::string("slowest rho c^2 / mu on the path, plane-stress Mooney-Rivlin") +
              (slowest < 0. ? ": the law loses ellipticity" : ""),
            "1", {}, slowest, {}, support::one_sided(-slowest), judged(0.));
 }
 
-// The lattice against its own law of the continuum.
+// The lattice against its own continuum law.
 void random_deformations(const bridge::Subject &subject, const lattice::TriangularLattice &sheet, unsigned int samples,
                          Rows &rows)
 {
@@ -216,8 +216,8 @@ void random_deformations(const bridge::Subject &subject, const lattice::Triangul
            equal_formulas);
 }
 
-// The network law leaves out the lattice's dependence on direction and nothing else: it is the mean over rotations of
-// the lattice, and no farther from the lattice than that dependence goes (theory-comparison.md, eq. (H.15)).
+// The network law neglects only the lattice's dependence on direction: it is the mean over rotations of the lattice,
+// and differs from the lattice by no more than that dependence (theory-comparison.md, eq. (H.15)).
 void network_rows(const bridge::Subject &subject, const lattice::TriangularLattice &sheet, const Moduli &lattice_side,
                   unsigned int samples, Rows &rows)
 {

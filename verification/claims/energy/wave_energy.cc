@@ -22,14 +22,14 @@ namespace
 constexpr double strain = 1e-3;
 constexpr double lattice_tolerance = 1e-6;
 constexpr double order_tolerance = 0.2;
-// Of the travelling waves that rows are about.
+// Travelling waves that are judged.
 constexpr double judged_kd = 0.25;
 // As for the wave speeds.
 const std::vector<double> order_kd{0.05, 0.1, 0.2, 0.4};
 
 constexpr const char *wave_names[] = {"L", "S"};
 
-// (1/2) d2E/de2 at e = 0 of an energy whose odd terms vanish.
+// (1/2) d2E/de2 at e = 0 of an energy without odd terms.
 template <class Energy>
 double half_second_derivative(const Energy &energy, double e)
 {
@@ -174,7 +174,7 @@ struct Densities
   double elastic, kinetic; // [J/m^3]
 };
 
-// A wave amplitude * p cos(K.X - w t) on its way through the lattice for an eighth of a period.
+// A wave amplitude * p cos(K.X - w t) that travels through the lattice for an eighth of a period.
 Densities travelling_lattice(const WaveCell &cell, const lattice::Material &material, const Eigen::Matrix2d &F,
                              const bridge::PlaneWave &wave, double amplitude)
 {
@@ -212,7 +212,7 @@ void travelling(const bridge::Subject &subject, const Eigen::Matrix2d &F, double
   const lattice::Material material = lattice::without_dashpots(subject.material);
   const double d = subject.spacing, rho = material.density;
   const WaveCell cell = wave_cell(d, subject.orientation, {1, 0}, wanted_kd);
-  // The second harmonic that grows on the way has an amplitude of the strain times the ratio of third to second moduli,
+  // The second harmonic that develops has an amplitude of the strain times the ratio of third to second moduli,
   // a few tens for slow waves of a stretched sheet; kinetic energy in it has sixteen times the micro-inertia. Round-off
   // of the energy of the stretched sheet, up to 1e11 times that of the wave, bounds the strain from below.
   constexpr double travelling_strain = 1e-4;
@@ -221,7 +221,7 @@ void travelling(const bridge::Subject &subject, const Eigen::Matrix2d &F, double
   const auto bloch = bridge::bloch_waves(cell.sheet, material, F, cell.K),
              closed =
                bridge::plane_waves(continuum_matrices(media.gradient, F, cell.K), bridge::wave_normal(F, cell.K));
-  // Both sides are followed for an eighth of a period, if there is one.
+  // Both sides are followed for an eighth of a period, if the wave has one.
   for (const auto &waves : {bloch, closed})
     static_cast<void>(bridge::fastest_frequency(waves));
   output::Table &table =

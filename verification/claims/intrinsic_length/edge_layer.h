@@ -15,7 +15,7 @@ struct EdgeLayer
   double residual;                ///< largest force left on a site [N/m]
 };
 
-/// Relaxes an endless strip, periodic along its rows, and measures its upper edge.
+/// Relaxes a strip, periodic along its rows, and measures its upper edge.
 /// @param stretch along the rows [-]
 /// @param rows number of row spacings to measure; the strip has four times as many rows
 /// @throws std::runtime_error if the lattice does not relax

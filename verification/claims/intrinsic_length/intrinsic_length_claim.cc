@@ -13,11 +13,11 @@ namespace latcon::claims
 namespace
 {
 
-// What the extrapolation of Bloch's frequencies leaves (dispersion.h).
+// Error of the extrapolation of Bloch's frequencies (dispersion.h).
 constexpr double bloch_tolerance = 1e-7;
-// What the fit to four waves leaves, 3e-6, and their own errors of 2e-7, which it multiplies by some twenty.
+// Error of the fit to four waves, 3e-6, and their own errors of 2e-7, multiplied by about twenty.
 constexpr double run_tolerance = 1e-5;
-// Two closed forms of one number.
+// Two closed forms of the same number.
 constexpr double equal_formulas = 1e-10;
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
@@ -107,7 +107,7 @@ void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &op
     const Eigen::Vector2d N = unit_vector(direction, subject.orientation);
     const double degrees = angle(direction, subject.orientation);
     const std::string at = " at " + std::to_string(std::lround(degrees)) + " degrees";
-    Alpha run{nothing, nothing}; // without waves there is no number, and the rows fail
+    Alpha run{nothing, nothing}; // if no wave oscillates, the rows fail
     rows.attempt("lattice run, waves" + at,
                  [&] { run = running_alpha(d, subject.orientation, direction, material, I); });
     runs.add({subject.name, degrees, run[0], run[1]});
@@ -181,7 +181,7 @@ void positivity(const bridge::Subject &subject, ClaimOutcome &outcome)
                support::one_sided(*critical / subject.lengths.lattice - 1.),
                subject.gradient_tolerance(F, equal_formulas));
     else
-      // What gradient_tolerance() says of such states: the law leaves out what makes it negative.
+      // See gradient_tolerance(): the law neglects the terms that make it negative.
       rows.add(shortest + ": there is none, bonds are compressed", "m", {}, subject.lengths.lattice, {}, {}, {});
     const double at_length = smallest_eigenvalue(*subject.lattice_gradient, F) / unit;
     rows.add("smallest eigenvalue of the gradient energy over mu d^2 at l_d" + where, "1", {}, at_length, {},
@@ -202,7 +202,7 @@ void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &op
 {
   Rows rows(subject, outcome);
   const lattice::Material material = lattice::without_dashpots(subject.material);
-  // Without an equilibrium there is no number, and the rows fail.
+  // Without an equilibrium the rows fail.
   EdgeLayer layer{nothing, std::vector<double>(options.edge_rows, nothing), nothing};
   rows.attempt("edge layer, relaxed strip",
                [&] { layer = relaxed_edge(subject.spacing, material, options.edge_stretch, options.edge_rows); });
@@ -221,7 +221,7 @@ void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &op
     support::LargestError largest;
     for (const double deviation : layer.deviations)
       largest.add_difference(deviation, 0.);
-    // Statics of nearest neighbours know no length: every row feels the next one alone.
+    // Statics of nearest neighbours have no length: every row interacts with the next one only.
     rows.add("no edge layer: largest deviation of a row spacing at a free edge", "1", largest.error(), {}, 0.,
              largest.error(), 1e-10);
     return;
@@ -235,7 +235,7 @@ void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &op
   const bool alternates = layer.deviations[first] * layer.deviations[first + 1] < 0.;
   rows.add("edge layer: decay from row to row, against its characteristic equation", "1", alternates ? decay : -decay,
            {}, root, support::relative_error(alternates ? decay : -decay, root), 0.01);
-  // What a continuum with that gradient energy can have: exp(-Y / l), of one sign.
+  // Layer of a continuum with that gradient energy: exp(-Y / l), of one sign.
   const WaveContinuum gradient{{subject.cauchy_born, *subject.lattice_gradient}, {subject.material.density, 0.}};
   Eigen::Matrix2d F = Eigen::Matrix2d::Identity();
   F(0, 0) = options.edge_stretch;

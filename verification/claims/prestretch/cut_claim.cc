@@ -15,7 +15,7 @@ namespace
 
 constexpr double unknown = std::numeric_limits<double>::quiet_NaN();
 
-// Student's t that a sample with so many degrees of freedom, one or more, exceeds in one case out of forty.
+// Student's t, 97.5 % quantile, for one degree of freedom or more.
 double students_t(std::size_t freedom)
 {
   return boost::math::quantile(boost::math::students_t(static_cast<double>(freedom)), 0.975);
@@ -47,7 +47,7 @@ public:
   }
 
   double order() const { return -slope_; }
-  // By which the order may be off, in 39 cases out of 40.
+  // Largest error of the order, in 39 cases out of 40.
   double order_uncertainty() const { return students_t(freedom()) * scatter_ / std::sqrt(xx_); }
   double expected(double size) const { return std::exp(y_ + slope_ * (std::log(size) - x_)); }
   // Largest geometric mean of n errors about a size, in 39 cases out of 40.
@@ -95,7 +95,7 @@ public:
   output::Results judged() const
   {
     output::Results rows;
-    // Without an equilibrium of the local law there is no number, and the rows fail.
+    // Without an equilibrium of the local law the rows fail.
     for (const CutResult &result : results_)
       if (!result.errors && result.law.rfind("local", 0) == 0 && result.law != "local-nominal")
         rows.add(output::not_computed("prestretch", where_ + "local law at " + size_text(result.size), result.failure));
@@ -116,7 +116,7 @@ public:
     }
     rows.add(order);
     const double allowed = add_expected(rows, "displacement, rms at " + judged_sizes(), displacement);
-    // About a tip stresses and the reactions that they leave fall too slowly for a fit to foretell them.
+    // About a tip stresses and the reactions that they leave fall too slowly to be extrapolated by a fit.
     const double allowed_stress = add_expected(rows, "stress, rms", series("local", &CutErrors::stress), is_hole_);
 
     for (const Scalar &scalar : scalars)
@@ -142,7 +142,7 @@ public:
     return rows;
   }
 
-  // Says which laws have an equilibrium, and how far off they are.
+  // Reports which laws have an equilibrium, and their errors.
   output::Results reported() const
   {
     output::Results rows;
@@ -154,7 +154,7 @@ public:
   }
 
 private:
-  // Numbers of the whole sheet, and by what two continua differ in them.
+  // Quantities of the whole sheet, and differences of two continua in them.
   struct Scalar
   {
     const char *name;
@@ -179,15 +179,15 @@ private:
     return found != nullptr && found->from_local ? (*found->from_local).*part : unknown;
   }
 
-  // By what the local law changes if rim or tip move by what their place is not known better than: half the recession,
-  // half a spacing.
+  // Change of the local law if rim or tip move by the uncertainty of their position: half the recession, half a
+  // spacing.
   double place_allowance(const Scalar &scalar) const
   {
     return (is_hole_ ? 0.5 : 1.) * distance_from_local("local-moved", scalar.distance);
   }
 
-  // The network beside the lattice: what the local law is allowed, and what the lattice's dependence on direction may
-  // leave (theory-comparison.md, eqs. (H.17) and (H.18)).
+  // The network against the lattice: tolerance of the local law, plus the bound of the dependence on direction
+  // (theory-comparison.md, eqs. (H.17) and (H.18)).
   void add_network(output::Results &rows, double allowed, double allowed_stress) const
   {
     const auto judged = [&](double CutDistance::*part, double of_local)
@@ -252,9 +252,8 @@ private:
     return text.str();
   }
 
-  // The errors at the largest sizes beside what the others let one expect there, as far as their scatter makes it
-  // uncertain.
-  // @return what is allowed at the largest size alone
+  // The errors at the largest sizes against the extrapolation of the others, within its scatter.
+  // @return tolerance at the largest size
   double add_expected(output::Results &rows, const std::string &quantity, const std::vector<double> &errors,
                       bool checked = true) const
   {

@@ -47,8 +47,8 @@ continuum::BoundaryConditions conditions(const CutSheet &sheet)
   return continuum::BoundaryConditions(list);
 }
 
-// Where the continuum is asked, in its own coordinates, and from where it is continued linearly to the site: sites
-// stand where the rim of a hole has receded from them, or before a free edge.
+// Point of the continuum at which fields are evaluated, in its own coordinates, and continued linearly to the site: the
+// rim of a hole recedes from sites, and sites stand outside of free edges.
 class Points
 {
 public:
@@ -99,7 +99,7 @@ double rms_difference(const std::vector<Eigen::Vector2d> &a, const std::vector<E
   return std::sqrt(sum / static_cast<double>(a.size()));
 }
 
-// How far the cut has opened [m]: of a hole, the factors of n_x and n_y that fit u_x and u_y over the sites at its rim,
+// Opening of the cut [m]: of a hole, the factors of n_x and n_y that fit u_x and u_y over the sites at its rim,
 // n pointing from the centre to the site; of a notch, the mean of u_y over the sites next to the mouth, above less
 // below.
 Eigen::Vector2d opening(const CutLattice &cut, const CutSheet &sheet, const std::vector<Eigen::Vector2d> &u)
@@ -132,7 +132,7 @@ double relative(const Eigen::Vector2d &a, const Eigen::Vector2d &b)
   return (a - b).norm() / b.norm();
 }
 
-// What displacements are compared with [m].
+// Scale of the displacements [m].
 double displacement_scale(const CutSheet &sheet)
 {
   return sheet.size * (sheet.F - Eigen::Matrix2d::Identity()).norm();

@@ -12,14 +12,14 @@
 namespace latcon::claims
 {
 
-/// A law of the continuum that a claim sets beside the lattice.
+/// Law of the continuum that a claim compares with the lattice.
 struct NamedLaw
 {
   std::string name; ///< "local", "lattice", "isotropic" (gradient energies beside the local law), "mooney-rivlin"
   continuum::Constitution constitution;
 };
 
-/// How the finite element sheet is solved.
+/// Mesh and refinement of the finite element sheet.
 struct CutMesh
 {
   unsigned int degree = 3;
@@ -29,7 +29,7 @@ struct CutMesh
   double fraction = 0.3;            ///< of the cells, in each cycle [-]
 };
 
-/// Differences between a lattice and a continuum that hold the same sheet, all relative [-]. Positive where the lattice
+/// Differences between a lattice and a continuum of the same sheet, all relative [-]. Positive where the lattice
 /// has more, if they have a sign. Energy and reaction are compared as theory-comparison.md, eq. (H.12), has them.
 struct CutErrors
 {
@@ -66,8 +66,8 @@ struct CutDistance
 /// @param a, b whose errors are against `lattice`
 CutDistance distance(const CutLattice &lattice, const CutSheet &sheet, const CutSolution &a, const CutSolution &b);
 
-/// The finite element sheet of a law beside a lattice; empty if it finds no equilibrium, with the reason in `failure`.
-/// Collective.
+/// Solves the finite element sheet of a law and compares it with a lattice; none without an equilibrium, with the
+/// reason in `failure`. Collective.
 std::optional<CutSolution> compare(const CutLattice &lattice, const CutSheet &sheet,
                                    const bridge::EquivalentSheet &domain, const continuum::Constitution &law,
                                    const CutMesh &mesh, std::string &failure);

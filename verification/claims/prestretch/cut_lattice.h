@@ -10,7 +10,7 @@
 namespace latcon::claims
 {
 
-/// A sheet with something cut out, between edges that are held at a homogeneous deformation.
+/// Sheet with a cut, between edges held at a homogeneous deformation.
 struct CutSheet
 {
   lattice::Cutout cutout;
@@ -30,7 +30,7 @@ CutSheet sheet_with_hole(const bridge::Subject &subject, double R, const Eigen::
 /// ends a little behind a site, so that all lattices have the same tip.
 CutSheet sheet_with_notch(const bridge::Subject &subject, double a, const Eigen::Matrix2d &F);
 
-/// The lattice of a CutSheet in equilibrium, and what of it is compared.
+/// Lattice of a CutSheet in equilibrium, and the quantities that are compared.
 struct CutLattice
 {
   lattice::TriangularLattice lattice;
@@ -38,7 +38,7 @@ struct CutLattice
   lattice::SiteFields fields;
   lattice::Relaxation relaxation;
 
-  /// A site of which something is compared.
+  /// A site whose fields are compared.
   struct Site
   {
     std::size_t place;
@@ -46,11 +46,10 @@ struct CutLattice
   };
   std::vector<Site> sites; ///< those that are free to move
 
-  // Of the sheet that is homogeneously deformed and whole.
+  // Reference: the whole sheet, homogeneously deformed.
   double homogeneous_energy;     ///< W of a site with all its bonds [J/m^3]
   Eigen::Matrix2d homogeneous_P; ///< first Piola stress of such a site [Pa]
-  // Of the sheet in equilibrium, less the same of the one that is homogeneously deformed and whole: in the difference
-  // bonds between held sites, which stand for no certain area, do not count.
+  // Sheet in equilibrium less the reference: bonds between held sites, which represent no definite area, cancel.
   double energy_change;            ///< [J/m]
   Eigen::Vector2d reaction_change; ///< force on the held right edge along x, on the top edge along y [N/m]
   // X [m] to which the homogeneous sheet reaches on its left if that is free: by its bonds' energy, and by their force
@@ -61,7 +60,7 @@ struct CutLattice
 /// Residual to which the lattice is relaxed, over mu d [-]: largest force on a free site.
 inline constexpr double cut_lattice_residual = 1e-8;
 
-/// @throws std::runtime_error if the lattice does not come to rest
+/// @throws std::runtime_error if the lattice does not relax
 CutLattice relaxed_lattice(const bridge::Subject &subject, const CutSheet &sheet);
 
 } // namespace latcon::claims

@@ -117,7 +117,7 @@ CutStudy notch_study(bool quick)
 
 CutStudy loaded_hole_study(const Eigen::Matrix2d &F)
 {
-  // Coarse, since a law without an equilibrium takes many attempts to say so.
+  // Coarse, since a law without an equilibrium takes many attempts.
   CutStudy study = hole_study(true);
   study.states = {F};
   study.sizes = study.other_sizes = {8.};

@@ -11,7 +11,7 @@
 namespace latcon::claims
 {
 
-/// Which sheets with a hole or a notch the claim `prestretch` compares, and how.
+/// Sheets with a hole or a notch that the claim `prestretch` compares, and parameters of the comparison.
 struct CutStudy
 {
   std::string name; ///< "hole" or "notch", also of the table
@@ -23,26 +23,26 @@ struct CutStudy
   CutMesh mesh;
   /// Largest sizes whose errors are judged together, in the geometric mean, by what the smaller ones let one expect.
   std::size_t n_judged = 1;
-  /// Only say what is found, since not every law need have an equilibrium.
+  /// Report without judging, since not every law need have an equilibrium.
   bool is_reported = false;
-  /// What a test does to a lattice before it is compared; none otherwise.
+  /// Fault that a test introduces into a lattice before the comparison; none otherwise.
   std::function<void(CutLattice &)> spoil;
 };
 
-/// Sheets with a round hole, the small version for a quick look.
+/// Sheets with a round hole.
 CutStudy hole_study(bool quick);
-/// The same for a lattice of nearest neighbours, in one state and with more radii: its rim scatters more from one to
-/// the next.
+/// Sheets with a round hole of a lattice of nearest neighbours, in one state and with more radii: the errors scatter
+/// more from one radius to the next.
 CutStudy nearest_hole_study(bool quick);
 /// Sheets with a notch from a free edge, for both sets of shells.
 CutStudy notch_study(bool quick);
-/// A hole in the loaded sheet of the subject, to say which laws have an equilibrium there.
+/// A hole in the loaded sheet of the subject, to report which laws have an equilibrium there.
 CutStudy loaded_hole_study(const Eigen::Matrix2d &F);
 
-/// In the place of a law: the lattice itself did not come to rest, and there is nothing to compare a law with.
+/// Name in place of a law if the lattice itself did not relax.
 inline constexpr const char *no_lattice = "lattice that does not come to rest";
 
-/// One law beside one lattice.
+/// Comparison of a law with a lattice.
 struct CutResult
 {
   double size; ///< over d [-]
@@ -54,17 +54,17 @@ struct CutResult
   double network_bound;                  ///< relative, that (H.18) sets to the energy of the network [-]
 };
 
-/// Everything that is compared in one state, laws in the order in which tables have them: "local", "local-nominal" (the
+/// All comparisons in one state, laws in the order in which tables have them: "local", "local-nominal" (the
 /// same in the sheet as a case describes it), "local-moved" (the same at the largest size, the rim or tip moved by what
 /// its place is known to, twice), "local-turned" (likewise, the lattice turned by 30 degrees, theory-comparison.md, eq.
 /// (H.17)), "network" and "network-gradient" (at the largest size and those of `other_sizes`), "lattice", "isotropic",
 /// "mooney-rivlin". Collective.
-/// @throws std::runtime_error if a lattice does not come to rest, unless the study is only reported
+/// @throws std::runtime_error if a lattice does not relax, unless the study is only reported
 std::vector<CutResult> compare_sizes(const bridge::Subject &subject, const CutStudy &study, const Eigen::Matrix2d &F);
 
-/// The part of the claim `prestretch` on fields that are not homogeneous: rows for each state, and a table named after
-/// the study with a row for each size and law (reference.md). Rows fail where a lattice does not come to rest, or a law
-/// that is judged finds no equilibrium. Collective.
+/// The part of the claim `prestretch` on inhomogeneous fields: rows for each state, and a table named after
+/// the study with a row for each size and law (reference.md). Rows fail where a lattice does not relax, or a judged
+/// law has no equilibrium. Collective.
 ClaimOutcome cut_claim(const bridge::Subject &subject, const CutStudy &study);
 
 } // namespace latcon::claims

@@ -20,7 +20,7 @@ namespace latcon::claims
 namespace
 {
 
-// Both solvers stop at 1e-10 or below of the forces at work, and both errors are multiplied by no more than the number
+// Both solvers stop at 1e-10 of the forces or below, and both errors are multiplied by no more than the number
 // of sites across the sheet on the way to displacements.
 constexpr double solver_tolerance = 1e-10;
 
@@ -66,7 +66,7 @@ LatticeSide relaxed_lattice(const bridge::Subject &subject, const lattice::Trian
   LatticeSide side;
   side.state = lattice::homogeneous_state(sheet, subject.material, subject.deformation, lattice::Edges::held);
   lattice::add_noise(side.state, sheet, noise * sheet.spacing(), 1);
-  // Bond forces are of the order mu d; the sum of twelve is known to some 1e-15 of that.
+  // Bond forces are of the order mu d; the sum of twelve has an error of about 1e-15 of that.
   lattice::relax(side.state, sheet, subject.material, 1e-12 * subject.theory.shear_modulus * sheet.spacing());
 
   side.fields = lattice::site_fields(side.state, sheet, subject.material);
@@ -142,8 +142,8 @@ std::vector<Row> compare(const bridge::Subject &subject, const lattice::Triangul
     {"first Piola stress, largest difference / largest", "1", {}, {}, stress_error.error() / stress_scale.largest()}};
 }
 
-// The same with the network, whose energy and stress are off the lattice's by what the lattice depends on direction,
-// within its bound (theory-comparison.md, eq. (H.15)); whose fields are as homogeneous as the lattice's.
+// Comparison with the network, whose energy and stress differ from the lattice's by the dependence on direction, within
+// its bound (theory-comparison.md, eq. (H.15)), and whose fields are as homogeneous as the lattice's.
 output::Results network_rows(const bridge::Subject &subject, const lattice::TriangularLattice &sheet,
                              const LatticeSide &side, const PrestretchOptions &options)
 {
@@ -152,7 +152,7 @@ output::Results network_rows(const bridge::Subject &subject, const lattice::Tria
   const bridge::NetworkComparison loaded(subject, small, subject.deformation);
   const double of_stress = loaded.stress.bound;
   const std::vector<Row> found = compare(subject, sheet, side, subject.network, options);
-  // In the order in which compare() has them.
+  // In the order of compare().
   const std::array<double, 6> bounds{loaded.energy.bound / std::abs(loaded.network_energy),
                                      of_stress / std::abs(loaded.network_stress(0, 0)),
                                      of_stress / std::abs(loaded.network_stress(1, 1)),
@@ -172,7 +172,7 @@ output::Results network_rows(const bridge::Subject &subject, const lattice::Tria
   return results;
 }
 
-// The same with the law that was fitted along the loading path, for information: it is not the lattice's, and need not
+// Comparison with the law fitted along the loading path, for information: the law is not the lattice's, and need not
 // have an equilibrium.
 output::Results mooney_rivlin_rows(const bridge::Subject &subject, const lattice::TriangularLattice &sheet,
                                    const LatticeSide &side, const PrestretchOptions &options)

@@ -9,7 +9,7 @@ namespace latcon::claims
 {
 
 /// Claim `prestretch`: a lattice sheet between held edges, relaxed from noise, and a finite element sheet of the same
-/// size whose edges are displaced alike, agree in energy density, edge tractions and fields; exactly (to solver
+/// size with the same edge displacements, agree in energy density, edge tractions and fields; exactly (to solver
 /// tolerance) with the Cauchy-Born law, reported with the calibrated Mooney-Rivlin law. A loaded lattice that buckles
 /// fails and is not compared. Collective over MPI_COMM_WORLD.
 struct PrestretchOptions
@@ -20,7 +20,7 @@ struct PrestretchOptions
   unsigned int cells_x = 8, cells_y = 6, degree = 2;
 };
 
-/// Runs the claim. Where the lattice does not relax, or the finite elements with the Cauchy-Born law find no
+/// Checks the claim. Where the lattice does not relax, or the finite elements with the Cauchy-Born law find no
 /// equilibrium, a row fails; an equilibrium that the Mooney-Rivlin law lacks is reported.
 output::Results prestretch_claim(const bridge::Subject &subject, const PrestretchOptions &options);
 

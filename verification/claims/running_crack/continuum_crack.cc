@@ -22,7 +22,7 @@ constexpr dealii::types::boundary_id crack = 10; // the part of the lower edge t
 // Parts of an interval: equal ones of `pitch` from `to` backwards, the first of them longer or shorter by up to a half.
 std::vector<double> parts(double extent, double pitch)
 {
-  const auto n = std::max(1L, std::lround(extent / pitch));
+  const auto n = std::max<long>(1, std::lround(extent / pitch));
   std::vector<double> list(static_cast<std::size_t>(n), pitch);
   list.front() = extent - static_cast<double>(n - 1) * pitch;
   return list;
@@ -38,7 +38,7 @@ void make_mesh(Mesh &mesh, const CrackDrive &drive, const HalfSheet &half, const
     ++levels;
   std::vector<double> x = parts(start - half.left, coarsest), right = parts(half.right - start, coarsest);
   x.insert(x.end(), right.rbegin(), right.rend());
-  const auto n_y = static_cast<std::size_t>(std::max(1L, std::lround(half.height / coarsest)));
+  const auto n_y = static_cast<std::size_t>(std::max<long>(1, std::lround(half.height / coarsest)));
   const std::vector<double> y(n_y, half.height / static_cast<double>(n_y));
   dealii::GridGenerator::subdivided_hyper_rectangle(mesh, std::vector<std::vector<double>>{x, y},
                                                     dealii::Point<2>(half.left, drive.axis()),
@@ -96,7 +96,7 @@ double anisotropy(const continuum::Material &bonds, const dealii::Tensor<2, 2> &
   return (mean - bonds.first_piola_stress(F)).norm();
 }
 
-// Adds what the continuum does at the sites of a sample. @return power dissipated near the tip, of the whole sheet
+// Adds the fields of the continuum at the sites of a sample. @return power dissipated near the tip, of the whole sheet
 // [W/m]
 double add_sample(const CrackDrive &drive, const lattice::TriangularLattice &sheet, const CrackContinuum &medium,
                   const Eigen::Matrix2d &F, const continuum::DynamicSolver &solver, double X_tip, double reach,

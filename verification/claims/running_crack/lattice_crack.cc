@@ -5,6 +5,7 @@
 #include "lattice/simulation.h"
 #include "lattice/site_fields.h"
 #include "lattice/time_step.h"
+#include "support/largest_error.h"
 #include "verification/output/field_writer.h"
 
 namespace latcon::claims
@@ -12,14 +13,14 @@ namespace latcon::claims
 namespace
 {
 
-// A bond that crosses the line of the crack, and where.
+// Bond that crosses the line of the crack, and its position.
 struct Crossing
 {
   double X; // [m]
   std::pair<std::size_t, std::size_t> bond;
 };
 
-// In the order in which the tip passes them; those behind the start stay.
+// In the order in which the tip passes them; bonds behind the start remain.
 std::vector<Crossing> crossings(const CrackDrive &drive, const lattice::TriangularLattice &sheet,
                                 const lattice::State &state)
 {
@@ -45,9 +46,9 @@ lattice::TimeStepping time_stepping(const CrackDrive &drive, const lattice::Tria
   constexpr double safety = 0.8;
   const lattice::TimeStepLimits limits = lattice::time_step_limits(sheet, material, shortest_bond);
   const double chebyshev = safety * lattice::chebyshev_step(sheet, material, shortest_bond);
-  const double longest = std::max(chebyshev, safety * limits.combined);
+  const double longest = support::largest_of({chebyshev, safety * limits.combined});
   const double step =
-    drive.stride_time() / std::ceil(drive.stride_time() / std::min(longest, drive.stride_time() / 4.));
+    drive.stride_time() / std::ceil(drive.stride_time() / support::smallest_of({longest, drive.stride_time() / 4.}));
   return chebyshev > safety * limits.combined ? lattice::chebyshev_time_stepping(step, limits, 0)
                                               : lattice::TimeStepping(step);
 }

@@ -16,7 +16,7 @@ namespace
 {
 
 constexpr double far_from = 5.;                 // inner radius of the far field [d]
-constexpr double near_from = 1.5, near_to = 4.; // of what is reported near the tip [d]
+constexpr double near_from = 1.5, near_to = 4.; // annulus of the reported fields near the tip [d]
 constexpr double tip_resolution = 0.5;          // of a lattice: half a spacing [d]
 
 // A compared field at a point.
@@ -58,7 +58,7 @@ public:
         sum += f(point).squaredNorm();
         ++n;
       }
-    return std::sqrt(sum / static_cast<double>(n)); // of no point: not a number
+    return std::sqrt(sum / static_cast<double>(n)); // NaN without points
   }
 
   double size(const TipField &field, const Quantity &quantity) const
@@ -155,7 +155,7 @@ private:
                          tolerance});
   }
 
-  // What the law leaves out of the bonds at the strains of the far field, over the stress that drives the motion.
+  // Error of the law at the strains of the far field, relative to the stress that drives the motion.
   double anisotropy(const TipField &field) const
   {
     const Quantity all{"", {}};

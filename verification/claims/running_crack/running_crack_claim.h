@@ -18,7 +18,7 @@ struct RunningCrackOptions
   double start = 12.;   ///< distance of the start from the left edge
   double advance = 21.; ///< of the tip
   double far = 9.;      ///< outer radius of the far field, whose inner radius is 5
-  double finest = 1.;   ///< cells along the path, about; a second mesh has cells of twice that
+  double finest = 1.;   ///< approximate size of cells along the path; a second mesh has cells twice as large
   unsigned degree = 2;  ///< of the elements
   std::string frames;   ///< folder for a frame of each side at the end of the drive; empty: none
 };
@@ -46,10 +46,10 @@ CrackSides crack_sides(const bridge::Subject &subject, const RunningCrackOptions
 /// without and with its gradient energy and micro-inertia (theory-comparison.md, section "A running crack"). The sheet
 /// must be loaded without shear, and open the crack. Frames of the sides are NAME-lattice.pvd, NAME-local.pvd and
 /// NAME-gradient.pvd, NAME being that of the subject in lower case ("crack-nn-nnn"); the table `running_crack_frames`
-/// has the position of the tip in them. Of other sheets the claim reports that there is no such crack.
+/// has the position of the tip in them. For other sheets the claim reports that there is no such crack.
 ClaimOutcome running_crack_claim(const bridge::Subject &subject, const RunningCrackOptions &options);
 
-/// The same for sides that a test has changed.
+/// Checks the claim for sides that a test has changed.
 ClaimOutcome running_crack_claim(const bridge::Subject &subject, const CrackSides &sides,
                                  const RunningCrackOptions &options);
 

@@ -113,7 +113,7 @@ BackwardZone backward_zone(const TipField &field, double limit, double reach)
       return {v, v};
     if (point.xi < 0. || point.radius() > reach)
       continue;
-    zone.depth = std::min(zone.depth, v);
+    zone.depth = support::smallest_of({zone.depth, v});
     if (v < -limit)
       zone.area += 2. * field.point_area();
   }

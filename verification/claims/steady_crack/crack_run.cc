@@ -16,7 +16,7 @@ namespace latcon::claims
 namespace
 {
 
-// Any will do: results are pure numbers.
+// Arbitrary: results are dimensionless.
 constexpr double spacing = 1e-3, density = 1e3, modulus = 1e6, area_factor = 2. / 3.;
 
 struct Scales
@@ -112,7 +112,7 @@ void Run::cut(lattice::State &state, double length) const
                          });
 }
 
-// Near the tip alone, where it is.
+// Only near the tip.
 double Run::largest_elsewhere(const lattice::State &state, std::size_t tip) const
 {
   const std::size_t reach = std::min<std::size_t>(4, options_.strip.free_rows);

@@ -19,12 +19,12 @@ namespace
 
 constexpr const char *claim = "steady-crack";
 constexpr std::size_t free_rows = 9;      // on each side: 20 rows with the held ones
-constexpr double fastest = 0.6;           // of the speeds looked for, close to that of shear waves
+constexpr double fastest = 0.6;           // of the speeds searched, close to that of shear waves
 constexpr double record_duration = 1024.; // all motion behind these cracks has died out after half of it
 constexpr std::size_t record_samples = std::size_t(1) << 15;
 
-// A run beside the exact solution for the elongation at which its bonds broke: a time step after they came to the
-// breaking elongation, in the mean half of one, so that the lattice is a little tougher than it was told to be.
+// A run and the exact solution for the elongation at which its bonds broke: up to a time step after they reached the
+// breaking elongation, on average half a step, so that the lattice is slightly tougher than specified.
 struct Comparison
 {
   Comparison(const CrackRunOptions &options)
@@ -43,7 +43,7 @@ struct Comparison
   std::array<double, 3> errors;
 };
 
-// What the finite time step, breaking strain and length of strip and run are worth, in each of the errors. They are of
+// Errors of the finite time step, breaking strain, and length of strip and run. They are of
 // first order or better in the first two, so that halving these takes away half of the error at least; the strip is
 // longer by six heights. A linear theory cannot be better than the strains that it neglects against 1.
 std::array<double, 3> tolerances(const CrackRunOptions &options, const Comparison &reference)

@@ -13,7 +13,7 @@ namespace latcon::claims
 namespace
 {
 
-// Squares of speeds: twice the error at which the lattice's own gradient continuum is held (wave_speeds_claim.cc).
+// Squares of speeds: twice the tolerance of the lattice's own gradient continuum (wave_speeds_claim.cc).
 constexpr double compared_kd = 0.25;
 constexpr double matrix_tolerance = 2e-4;
 constexpr double order_tolerance = 0.2;

@@ -17,7 +17,7 @@ namespace latcon::claims
 namespace
 {
 
-// Extrapolated time stepping leaves 2e-7 (lattice_waves.cc), nonlinear terms 1e-10.
+// Errors: extrapolated time stepping 2e-7 (lattice_waves.cc), nonlinear terms 1e-10.
 constexpr double lattice_tolerance = 1e-6;
 // The claim: at this wave number the gradient continuum has the lattice's speed to 1e-4.
 constexpr double compared_kd = 0.25;
@@ -35,7 +35,7 @@ std::array<double, 2> frequencies(const std::array<bridge::PlaneWave, 2> &waves)
   return {waves[0].frequency, waves[1].frequency};
 }
 
-// Everything about waves of one direction at one state.
+// Waves of one direction at one state.
 class Waves
 {
 public:
@@ -105,7 +105,7 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
       const double k = cell.K.norm();
       const auto local = waves.local(cell.K), bloch = waves.bloch(cell.K), gradient = waves.gradient(cell.K),
                  isotropic = waves.isotropic(cell.K);
-      // Without a wave there is no number, and the rows that ask for one fail.
+      // If a wave does not oscillate, its rows fail.
       std::array<double, 2> run{nothing, nothing}, elements = run;
       const auto attempt = [&](const std::string &side, const std::function<void()> &compute)
       {
@@ -217,7 +217,7 @@ void attenuation_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, Cl
                                                                       bridge::wave_normal(F, cell.K));
   std::ostringstream where;
   where << subject.name << ", " << state_name(F) << ", kd = " << std::round(1e4 * k * subject.spacing) / 1e4 << ": ";
-  // Without a wave there is no number, and the rows that ask for one fail.
+  // If a wave does not oscillate, its rows fail.
   std::array<Oscillation, 2> run{{{nothing, nothing, 0.}, {nothing, nothing, 0.}}}, elements = run;
   const auto attempt = [&](const std::string &side, const std::function<void()> &compute)
   { outcome.results.attempt("wave-speeds", where.str() + side + ", damped waves", compute); };
@@ -285,7 +285,7 @@ ClaimOutcome wave_speeds_claim(const bridge::Subject &subject, const WaveSpeedsO
     attempt(F, "waves", [&] { speeds_at(subject, F, options, outcome); });
     attempt(F, "waves in the network", [&] { network_waves(subject, F, options.mesh, outcome); });
   }
-  // Not `> 0.`: a viscosity that is no number is not left out.
+  // Not `> 0.`, which would skip a viscosity that is NaN.
   const auto has_dashpot = [](const lattice::Shell &shell) { return shell.viscosity != 0.; };
   if (has_dashpot(subject.material.nearest) ||
       (subject.material.next_nearest && has_dashpot(*subject.material.next_nearest)))

@@ -1,12 +1,17 @@
-"""Plot of the claim on a running crack. Draws a PNG file and returns error metrics in words."""
+"""Table and plot of the claim on a running crack."""
 import numpy as np
 from matplotlib.colors import TwoSlopeNorm
 
-from claim_tables import groups
+from claim_tables import Plot, groups
 from panels import Grid, entry
 from pictures import BLACK, save
 
 SIDES = {"lattice": "lattice", "local": "local continuum", "gradient": "gradient continuum"}
+
+TABLES = {
+    "running_crack": ({"shells": None, "side": ("lattice", "local", "gradient")},
+                      ("X/d", "Y/d", "v_x [m/s]", "v_y [m/s]", "opening_stress [Pa]", "excess_y [m]")),
+}
 
 
 def draw_running_crack(tables, path):
@@ -59,3 +64,13 @@ def field(X, Y, values):
     upper = np.full((len(y), len(x)), np.nan)
     upper[row, column] = values
     return x, np.concatenate((-y[::-1], y)), np.ma.masked_invalid(np.concatenate((upper[::-1], upper)))
+
+
+PLOTS = (
+    Plot("running_crack", draw_running_crack,
+         "The pictures show the fields near the tip in the lattice and in the continua with and without gradient "
+         "energy.",
+         "Fields around the tip of a driven crack in the reference configuration, mean of four samples: lattice, network "
+         "continuum, and the same with gradient energy and micro-inertia, with one scale of colours for each row. Blue "
+         "ahead of the tip: material that moves against the crack."),
+)

@@ -1,14 +1,22 @@
-"""Plots of waves: speeds, attenuation, energies. Each draws into a PNG file and returns its error metrics in words."""
+"""Tables and plots of the claim on wave speeds."""
 import numpy as np
 
-from claim_tables import fitted_order, groups, largest, largest_text, range_text, sorted_by, states
-from panels import (LAW_COLOURS, MARKERS, WAVES, Grid, colours_of, entry, headroom, logarithmic, logarithmic_along_x,
-                    note)
-from pictures import BLACK, BLUE, GREY, save
+from claim_tables import WAVE, Plot, fitted_order, groups, largest, off, range_text, sorted_by, states
+from panels import LAW_COLOURS, MARKERS, WAVES, Grid, colours_of, entry, headroom, logarithmic, logarithmic_along_x, note
+from pictures import BLUE, save
+
+TABLES = {
+    "wave_speeds": ({"shells": None, "wave": ("L", "S")},
+                    WAVE + ("local [m/s]", "bloch [m/s]", "lattice [m/s]", "gradient [m/s]", "isotropic [m/s]",
+                            "fem [m/s]")),
+    "attenuation": ({"shells": None, "wave": ("L", "S")},
+                    WAVE + tuple(f"{side}_{what}" for side in ("theory", "lattice", "continuum", "fem")
+                                 for what in ("frequency [rad/s]", "decay [1/s]"))),
+}
 
 
 def draw_wave_speeds(tables, path):
-    """Phase velocities of both waves, less that of long ones, and what the continua's are off the exact ones."""
+    """Phase velocities of both waves relative to that of long waves, and errors of the continua."""
     table = tables["wave_speeds"]
     colours, angles = colours_of(table["angle [deg]"], "waves along", "°")
     laws = [law for law in ("local", "isotropic", "gradient") if np.isfinite(table[f"{law} [m/s]"]).any()]
@@ -65,13 +73,8 @@ def draw_speed_errors(axes, state, laws):
     return orders
 
 
-def off(what, values, reference, of):
-    """The largest relative difference in words."""
-    return f"{what} off {of} by {largest_text(values / reference - 1)}"
-
-
 def draw_attenuation(tables, path):
-    """Decay rate and frequency of damped waves against k d, and what is off the theory."""
+    """Decay rate and frequency of damped waves against k d, and differences from the theory."""
     table = tables["attenuation"]
     sides = {"lattice": "o", "continuum": "+", "fem": "x"}
     words = {"lattice": "lattice, run in time", "continuum": "continuum", "fem": "finite elements"}
@@ -114,46 +117,18 @@ def rate_error(part, side):
     return distance / np.hypot(part[f"theory_{frequency}"], part[f"theory_{decay}"])
 
 
-def draw_travelling_waves(tables, path):
-    """Mean energies in a travelling wave over the theory's, and the finite elements' against the lattice's."""
-    table = tables["travelling_waves"]
-    colours, angles = colours_of(table["angle [deg]"], "waves along", "°")
-    legend = [entry("theory", "--"), entry("lattice", "", marker="o"), entry("finite elements", "-", marker="x"),
-              entry("longitudinal", "", GREY, marker=MARKERS["L"]), entry("shear", "", GREY, marker=MARKERS["S"])]
-    rows = states(table)
-    grid = Grid([name for name, _ in rows], 3, legend + angles, per_line=5)
-    metrics = []
-    for number, (name, state) in enumerate(rows):
-        titles = ("elastic energy / theory [1]", "kinetic energy / theory [1]", "elements off lattice, relative [1]")
-        elastic, kinetic, error = (grid.axes(number, column, title=title, xlabel="k d [1]")
-                                   for column, title in enumerate(titles))
-        for (wave, angle), part in groups(state, "wave", "angle [deg]"):
-            part = sorted_by(part, "k d")
-            k, colour, theory = part["k d"], colours[angle], part["theory [J/m^3]"]
-            for axes, lattice, fem in ((elastic, *elastic_energies(part)), (kinetic, *kinetic_energies(part))):
-                axes.plot(k, lattice / theory, MARKERS[wave], color=colour, markerfacecolor="none", markersize=6)
-                axes.plot(k, fem / theory, "-x", color=colour, linewidth=1, markersize=5)
-                difference = np.abs(fem / lattice - 1)
-                error.plot(k, np.where(difference > 0, difference, np.nan), "-" if axes is elastic else ":",
-                           marker=MARKERS[wave], color=colour, markersize=4, linewidth=1)
-        for axes in (elastic, kinetic):
-            axes.axhline(1, linestyle="--", color=BLACK, linewidth=1.2)
-        logarithmic(error)
-        headroom(error, 1.2)
-        note(error, [("solid: elastic, dotted: kinetic", BLACK)])
-        parts = (("elastic", elastic_energies(state)), ("kinetic", kinetic_energies(state)))
-        metrics.append(f"{name}: " + "; ".join(filter(None, (
-            off(f"{what} energy of the finite elements", fem, lattice, "the lattice's")
-            for what, (lattice, fem) in parts))))
-    save(grid.page.figure, path)
-    return metrics
-
-
-def elastic_energies(part):
-    """Mean elastic energy density of lattice and finite elements [J/m^3]."""
-    return part["lattice_elastic [J/m^3]"], part["fem_elastic [J/m^3]"]
-
-
-def kinetic_energies(part):
-    """Mean kinetic energy density of lattice and finite elements [J/m^3], micro-inertia included."""
-    return part["lattice_kinetic [J/m^3]"], part["fem_kinetic [J/m^3]"] + part["fem_micro_inertia [J/m^3]"]
+PLOTS = (
+    Plot("wave_speeds", draw_wave_speeds,
+         "The local continuum has one speed for all wavelengths; with the lattice's gradient energy and "
+         "micro-inertia the speed falls with shorter waves as it does in the lattice.",
+         "Phase velocity, in percent off that of long waves, against k d, both per undeformed length. Dashed: exact "
+         "dispersion of the lattice; dotted: closed formula of the gradient continuum; circles: measured in a run of "
+         "the lattice; solid with crosses: finite elements. Right: relative difference from the exact dispersion, "
+         "triangles longitudinal, circles shear; the order is the slope over the half of the points with the "
+         "smallest k d."),
+    Plot("attenuation", draw_attenuation,
+         "Dashpots on the bonds and the viscosity of the continuum make waves decay at the same rate.",
+         "Decay rate γ and frequency ω of damped waves against k d, a colour for each multiple of the dashpots' "
+         "viscosity. Dashed: theory; circles: measured in a run of the lattice; plus signs: continuum; crosses: "
+         "finite elements. Right: distance from the theory in the complex plane, |Δω + iΔγ| over |ω + iγ|."),
+)

@@ -1,0 +1,43 @@
+#include "verification/claims/symmetry/descriptor.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/verification/claims/faults.h"
+#include "tests/verification/claims/subjects.h"
+
+using namespace latcon;
+
+namespace
+{
+
+output::Results symmetry(const bridge::Subject &subject)
+{
+  return claims::symmetry_descriptor().check({subject, subjects::paper_case(), true, {}}).results;
+}
+
+TEST(Symmetry, HoldsForBothShellSetsAndOrientations)
+{
+  for (const auto orientation : {lattice::Orientation::rows_along_crack, lattice::Orientation::rows_across_crack})
+  {
+    input::Case input = subjects::paper_case();
+    input.orientation = orientation;
+    for (const lattice::Material &material : {input.material(), subjects::nearest_only(input)})
+    {
+      const output::Results results = symmetry(bridge::subject(input, material));
+      EXPECT_TRUE(results.all_hold()) << results.verdict_text(8);
+      EXPECT_EQ(results.rows().size(), 4u);
+    }
+  }
+}
+
+TEST(Symmetry, FailsForALawWithOneStifferDirection)
+{
+  bridge::Subject wrong = bridge::subject(subjects::paper_case());
+  std::vector<continuum::FibreFamily> families = wrong.cauchy_born.families();
+  families.front().weight *= 1.01;
+  wrong.cauchy_born = continuum::CauchyBorn(families);
+  EXPECT_EQ(faults::failing(symmetry(wrong), "rotated undeformed sheet"), 2u);
+  EXPECT_EQ(faults::failing(symmetry(wrong), "rotated deformed sheet"), 0u);
+}
+
+} // namespace

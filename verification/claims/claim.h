@@ -1,0 +1,51 @@
+/// Descriptor of a claim.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "verification/bridge/subject.h"
+#include "verification/claims/claim_outcome.h"
+#include "verification/input/case.h"
+
+namespace latcon::claims
+{
+
+/// Input of the function that checks a claim.
+struct ClaimInput
+{
+  const bridge::Subject &subject; ///< a lattice, and the laws that should agree with it
+  const input::Case &entries;     ///< has the values of Claim::entries; every other entry has its default
+  bool quick;                     ///< small version, a few seconds
+  std::string frames;             ///< folder for frames of sheets in motion, on one rank; empty: none are written
+};
+
+/// Everything that the program and the report know of a claim. The folder of a claim has its name, with `_` for `-`,
+/// and may hold a `plots.py` with the plots of its tables in the report.
+struct Claim
+{
+  std::string name;      ///< on the command line and in results: "wave-speeds"
+  std::string title;     ///< one line for the help and the report
+  std::string statement; ///< what the claim asserts, for the report
+
+  /// Computes the rows and tables. Collective.
+  std::function<ClaimOutcome(const ClaimInput &)> check;
+
+  bool is_default = true; ///< part of `latcon verify` without names
+
+  /// Quantities, without the name of the shells in front, that the quick version compares with a tolerance for every
+  /// lattice. If there are any, the claim is part of the verification before fracture, and cached verdicts that lack
+  /// one of these rows are not used. Empty: a crack does not need the claim.
+  std::vector<std::string> required_rows = {};
+
+  /// Entries `Section/Name` that the claim reads besides those of a Subject.
+  std::vector<std::string> entries = {};
+
+  /// The quick version is run on the shells of the case, and not also on the nearest neighbours alone.
+  bool quick_on_own_shells_only = false;
+
+  [[nodiscard]] bool is_before_fracture() const { return !required_rows.empty(); }
+};
+
+} // namespace latcon::claims

@@ -1,0 +1,117 @@
+"""Tables and plots of the claim on energy."""
+import numpy as np
+
+from claim_tables import WAVE, Plot, fitted_order, groups, largest_text, off, range_text, sorted_by, states
+from panels import LAW_COLOURS, MARKERS, Grid, colours_of, entry, headroom, logarithmic, note
+from pictures import BLACK, GREY, save
+
+TABLES = {
+    "sinusoidal_energy": ({"shells": None, "wave": ("L", "S")},
+                          WAVE + ("lattice", "local", "gradient", "filtered", "fem")),
+    "travelling_waves": ({"shells": None, "wave": ("L", "S")},
+                         WAVE + ("lattice_elastic [J/m^3]", "lattice_kinetic [J/m^3]", "fem_elastic [J/m^3]",
+                                 "fem_kinetic [J/m^3]", "fem_micro_inertia [J/m^3]", "theory [J/m^3]")),
+}
+
+
+def draw_sinusoidal_energy(tables, path):
+    """Energy of a sheet displaced along a sinusoid over that of the local continuum, and differences from the lattice."""
+    table = tables["sinusoidal_energy"]
+    colours, angles = colours_of(table["angle [deg]"], "waves along", "°")
+    laws = ("local", "gradient", "filtered")
+    legend = [entry("lattice", "", marker="o"), entry("gradient energy", "--"), entry("filtered", ":"),
+              entry("finite elements", "-", marker="x")] + angles
+    rows = states(table)
+    grid = Grid([name for name, _ in rows], 3, legend)
+    metrics = []
+    for number, (name, state) in enumerate(rows):
+        panels = {wave: grid.axes(number, column, title=f"{word} waves", xlabel="k d [1]") for column, (wave, word) in
+                  enumerate((("L", "longitudinal"), ("S", "shear")))}
+        panels["L"].set_ylabel("energy / local [1]")
+        error = grid.axes(number, 2, title="off the lattice's, relative [1]", xlabel="k d [1]")
+        found = {law: [] for law in laws}
+        for (wave, angle), part in groups(state, "wave", "angle [deg]"):
+            part = sorted_by(part, "k d")
+            k, axes, colour = part["k d"], panels[wave], colours[angle]
+            axes.plot(k, part["gradient"], "--", color=colour)
+            axes.plot(k, part["filtered"], ":", color=colour)
+            done = np.isfinite(part["fem"])
+            axes.plot(k[done], part["fem"][done], "-x", color=colour, linewidth=1, markersize=5)
+            axes.plot(k, part["lattice"], "o", color=colour, markerfacecolor="none", markersize=6)
+            for law in laws:
+                difference = np.abs(part[law] / part["lattice"] - 1)
+                error.plot(k, np.where(difference > 0, difference, np.nan), "-", marker=MARKERS[wave], markersize=3,
+                           color=LAW_COLOURS[law], linewidth=0.8)
+                found[law].append(fitted_order(k, difference, share=0.5))
+        logarithmic(error)
+        headroom(error, 2.2)
+        orders = {law: range_text(found[law]) for law in laws}
+        note(error, [(f"{law}{f': order {orders[law]}' if orders[law] else ''}", LAW_COLOURS[law]) for law in laws])
+        found = [f"order of the {law} energy {orders[law]}" for law in laws if orders[law]]
+        found.append(f"finite elements off the gradient energy by {largest_text(state['fem'] / state['gradient'] - 1)}")
+        metrics.append(f"{name}: {'; '.join(found)}")
+    save(grid.page.figure, path)
+    return metrics
+
+
+def draw_travelling_waves(tables, path):
+    """Mean energies in a travelling wave over the theory's, and the finite elements' against the lattice's."""
+    table = tables["travelling_waves"]
+    colours, angles = colours_of(table["angle [deg]"], "waves along", "°")
+    legend = [entry("theory", "--"), entry("lattice", "", marker="o"), entry("finite elements", "-", marker="x"),
+              entry("longitudinal", "", GREY, marker=MARKERS["L"]), entry("shear", "", GREY, marker=MARKERS["S"])]
+    rows = states(table)
+    grid = Grid([name for name, _ in rows], 3, legend + angles, per_line=5)
+    metrics = []
+    for number, (name, state) in enumerate(rows):
+        titles = ("elastic energy / theory [1]", "kinetic energy / theory [1]", "elements off lattice, relative [1]")
+        elastic, kinetic, error = (grid.axes(number, column, title=title, xlabel="k d [1]")
+                                   for column, title in enumerate(titles))
+        for (wave, angle), part in groups(state, "wave", "angle [deg]"):
+            part = sorted_by(part, "k d")
+            k, colour, theory = part["k d"], colours[angle], part["theory [J/m^3]"]
+            for axes, lattice, fem in ((elastic, *elastic_energies(part)), (kinetic, *kinetic_energies(part))):
+                axes.plot(k, lattice / theory, MARKERS[wave], color=colour, markerfacecolor="none", markersize=6)
+                axes.plot(k, fem / theory, "-x", color=colour, linewidth=1, markersize=5)
+                difference = np.abs(fem / lattice - 1)
+                error.plot(k, np.where(difference > 0, difference, np.nan), "-" if axes is elastic else ":",
+                           marker=MARKERS[wave], color=colour, markersize=4, linewidth=1)
+        for axes in (elastic, kinetic):
+            axes.axhline(1, linestyle="--", color=BLACK, linewidth=1.2)
+        logarithmic(error)
+        headroom(error, 1.2)
+        note(error, [("solid: elastic, dotted: kinetic", BLACK)])
+        parts = (("elastic", elastic_energies(state)), ("kinetic", kinetic_energies(state)))
+        metrics.append(f"{name}: " + "; ".join(filter(None, (
+            off(f"{what} energy of the finite elements", fem, lattice, "the lattice's")
+            for what, (lattice, fem) in parts))))
+    save(grid.page.figure, path)
+    return metrics
+
+
+def elastic_energies(part):
+    """Mean elastic energy density of lattice and finite elements [J/m^3]."""
+    return part["lattice_elastic [J/m^3]"], part["fem_elastic [J/m^3]"]
+
+
+def kinetic_energies(part):
+    """Mean kinetic energy density of lattice and finite elements [J/m^3], micro-inertia included."""
+    return part["lattice_kinetic [J/m^3]"], part["fem_kinetic [J/m^3]"] + part["fem_micro_inertia [J/m^3]"]
+
+
+PLOTS = (
+    Plot("sinusoidal_energy", draw_sinusoidal_energy,
+         "Where the deformation varies along a sinusoid, the energies differ by a power of k d (k: wave number, d: "
+         "spacing of the lattice).",
+         "Energy of a sheet displaced along a sinusoid, over what the local continuum has for it, against k d. "
+         "Dashed: with the lattice's gradient energy; dotted: that over 1 + l_d² k², for loads without their "
+         "gradient; solid with crosses: finite elements with the gradient energy; circles: lattice. Right: "
+         "relative difference from the lattice, triangles longitudinal, circles shear; the order is the slope over "
+         "the half of the points with the smallest k d."),
+    Plot("travelling_waves", draw_travelling_waves,
+         "A travelling wave stores the same energy on both sides, half of it elastic and half kinetic.",
+         "Mean energies per undeformed volume in a travelling wave, over that of the theory (dashed), against k d; "
+         "the kinetic energy of the finite elements includes that of micro-inertia. Triangles longitudinal, "
+         "circles shear waves of the lattice; solid with crosses: finite elements. Right: finite elements against "
+         "the lattice."),
+)

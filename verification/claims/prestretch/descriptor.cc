@@ -1,0 +1,58 @@
+#include "verification/claims/prestretch/descriptor.h"
+
+#include "verification/claims/prestretch/cut_study.h"
+#include "verification/claims/prestretch/prestretch_claim.h"
+
+namespace latcon::claims
+{
+namespace
+{
+
+ClaimOutcome check(const ClaimInput &input)
+{
+  const bridge::Subject &subject = input.subject;
+  const bool quick = input.quick;
+  PrestretchOptions options;
+  if (!quick)
+  {
+    options.length = 120.;
+    options.height = 80.;
+    options.cells_x = 24;
+    options.cells_y = 16;
+  }
+  ClaimOutcome outcome{prestretch_claim(subject, options), {}};
+  if (!subject.material.next_nearest)
+  {
+    outcome.add(cut_claim(subject, nearest_hole_study(quick)));
+    if (!quick)
+      outcome.add(cut_claim(subject, notch_study(false)));
+    return outcome;
+  }
+  outcome.add(cut_claim(subject, hole_study(quick)));
+  outcome.add(cut_claim(subject, notch_study(quick)));
+  if (!quick && subject.is_stable() && (subject.deformation - Eigen::Matrix2d::Identity()).norm() > 0.01)
+    outcome.add(cut_claim(subject, loaded_hole_study(subject.deformation)));
+  return outcome;
+}
+
+} // namespace
+
+Claim prestretch_descriptor()
+{
+  Claim claim;
+  claim.name = "prestretch";
+  claim.title = "stretched sheets agree, also around holes and notches";
+  claim.statement = "Stretched between held edges, the relaxed lattice and the finite elements have the same energy, "
+                    "tractions and fields.";
+  claim.check = check;
+  claim.required_rows = {": stability of the loaded lattice, smallest w^2/k^2 of all waves over c_S^2 at F = I",
+                         ": mean energy density, Cauchy-Born",
+                         ": traction on the right edge, Cauchy-Born",
+                         ": traction on the top edge, Cauchy-Born",
+                         ": displacement, largest difference / length, Cauchy-Born",
+                         ": deformation gradient, largest relative difference, Cauchy-Born",
+                         ": first Piola stress, largest difference / largest, Cauchy-Born"};
+  return claim;
+}
+
+} // namespace latcon::claims

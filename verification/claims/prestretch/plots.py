@@ -1,0 +1,80 @@
+"""Tables and plots of the claim on pre-stretch: errors around holes and notches."""
+import numpy as np
+
+from claim_tables import STATE, Plot, fitted_order, groups, sorted_by, states
+from panels import LAW_COLOURS, Grid, entry, logarithmic, note
+from pictures import BLACK, GREY, SKY, save
+
+PARTS = ("displacement", "stress", "energy", "reaction", "shape")
+OTHER_COLOURS = ("#cc79a7", SKY, BLACK, GREY)
+CUT = STATE + PARTS
+
+TABLES = {
+    "hole": ({"shells": None, "law": None}, CUT + ("R/d",)),
+    "notch": ({"shells": None, "law": None}, CUT + ("length/d",)),
+}
+
+
+def draw_hole(tables, path):
+    """Errors of the continua around a hole against d/R."""
+    return draw_cut(tables["hole"], "R/d", "d / R [1]", path)
+
+
+def draw_notch(tables, path):
+    """Errors of the continua around a notch against d over its length."""
+    return draw_cut(tables["notch"], "length/d", "d / length [1]", path)
+
+
+def draw_cut(table, size, label, path):
+    """A row of panels per state, a panel per quantity, a line per law."""
+    laws = list(dict.fromkeys(table["law"]))
+    others = iter(OTHER_COLOURS)
+    colours = {law: next((colour for word, colour in LAW_COLOURS.items() if word in law), None) for law in laws}
+    for law in laws:  # laws without a colour, or two laws with the same
+        if colours[law] is None or list(colours.values()).count(colours[law]) > 1:
+            colours[law] = next(others, BLACK)
+    rows = states(table)
+    shown = [part for part in PARTS if np.isfinite(table[part]).any()] or PARTS
+    legend = [entry(law, "-", colours[law], "o", True) for law in laws]
+    grid = Grid([name for name, _ in rows], max(3, len(shown)), legend, gap=0.2)
+    metrics = []
+    for number, (name, state) in enumerate(rows):
+        first, panels, orders = None, [], {law: [] for law in laws}
+        for column, what in enumerate(shown):
+            axes = grid.axes(number, column, title=what, xlabel=label, sharey=first)
+            panels.append((axes, []))
+            for (law,), part in groups(state, "law"):
+                part = sorted_by(part, size)
+                error = np.abs(part[what])
+                axes.plot(1 / part[size], np.where(error > 0, error, np.nan), "-o", color=colours[law], markersize=4)
+                order = fitted_order(1 / part[size], error)
+                if order is not None:
+                    orders[law].append(f"{what} {order:.2f}")
+                    if law == laws[0]:  # the others' are below the picture
+                        panels[-1][1].append((f"{law}: order {order:.2f}", colours[law]))
+            if first is None:
+                first = axes
+                axes.set_ylabel("relative difference\nfrom the lattice [1]")
+            else:
+                axes.tick_params(labelleft=False)
+        errors = np.abs(np.concatenate([state[what] for what in shown]))
+        errors = errors[np.isfinite(errors) & (errors > 0)]
+        first.set_ylim(*((errors.min() / 2, errors.max() * 6) if len(errors) else (1e-3, 1)))  # room for the note
+        for axes, lines in panels:
+            logarithmic(axes)
+            note(axes, lines)
+        metrics += [f"{name}, {law}: order of {', '.join(orders[law])}" for law in laws if orders[law]]
+    save(grid.page.figure, path)
+    return metrics
+
+
+PLOTS = (
+    Plot("hole", draw_hole,
+         "Around a hole, where the deformation varies, they differ by a power of d over its radius.",
+         "Stretched sheets with a round hole of radius R: relative differences between finite elements and lattice "
+         "against d/R, a line for each law of the finite elements. The order is the slope of a line."),
+    Plot("notch", draw_notch,
+         "At a notch they differ by a power of d over its length.",
+         "Stretched sheets with a notch: relative differences between finite elements and lattice against d over "
+         "its length, a line for each law of the finite elements. The order is the slope of a line."),
+)

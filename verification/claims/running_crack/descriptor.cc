@@ -1,0 +1,34 @@
+#include "verification/claims/running_crack/descriptor.h"
+
+#include "verification/claims/running_crack/running_crack_claim.h"
+
+namespace latcon::claims
+{
+namespace
+{
+
+ClaimOutcome check(const ClaimInput &input)
+{
+  RunningCrackOptions options = input.quick ? RunningCrackOptions() : full_running_crack();
+  options.frames = input.frames;
+  return running_crack_claim(input.subject, options);
+}
+
+} // namespace
+
+Claim running_crack_descriptor()
+{
+  Claim claim;
+  claim.name = "running-crack";
+  claim.title = "fields around a crack driven at the same speed agree";
+  claim.statement =
+    "A straight crack is driven through lattice and continuum at the same speed. Five spacings from its tip and "
+    "beyond, velocity, opening stress and opening agree within the uncertainty of the tip position in a lattice; "
+    "differences nearer to the tip are reported.";
+  claim.check = check;
+  claim.is_default = false;
+  claim.quick_on_own_shells_only = true;
+  return claim;
+}
+
+} // namespace latcon::claims

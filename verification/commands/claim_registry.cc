@@ -1,0 +1,117 @@
+#include "verification/commands/claim_registry.h"
+
+#include <algorithm>
+#include <filesystem>
+#include <iterator>
+
+#include <nlohmann/json.hpp>
+
+#include "verification/claims/energy/descriptor.h"
+#include "verification/claims/intrinsic_length/descriptor.h"
+#include "verification/claims/prestretch/descriptor.h"
+#include "verification/claims/running_crack/descriptor.h"
+#include "verification/claims/wave_speeds/descriptor.h"
+#include "verification/input/spelling.h"
+#include "verification/output/output_file.h"
+
+namespace latcon::commands
+{
+
+using claims::Claim;
+
+namespace
+{
+
+// In the order in which they are checked and shown.
+std::vector<Claim> all_claims()
+{
+  std::vector<Claim> list;
+  list.push_back(claims::energy_descriptor());
+  list.push_back(claims::wave_speeds_descriptor());
+  list.push_back(claims::intrinsic_length_descriptor());
+  list.push_back(claims::prestretch_descriptor());
+  list.push_back(claims::running_crack_descriptor());
+  return list;
+}
+
+template <typename Condition>
+std::vector<Claim> claims_where(const Condition &condition)
+{
+  std::vector<Claim> list;
+  std::copy_if(claim_registry().begin(), claim_registry().end(), std::back_inserter(list), condition);
+  return list;
+}
+
+std::vector<std::string> names()
+{
+  std::vector<std::string> list;
+  for (const Claim &claim : claim_registry())
+    list.push_back(claim.name);
+  return list;
+}
+
+std::string joined(const std::vector<std::string> &words, const std::string &separator)
+{
+  std::string text;
+  for (const std::string &word : words)
+    text += (text.empty() ? "" : separator) + word;
+  return text;
+}
+
+} // namespace
+
+const std::vector<Claim> &claim_registry()
+{
+  static const std::vector<Claim> claims = all_claims();
+  return claims;
+}
+
+std::vector<Claim> selected_claims(const std::vector<std::string> &names)
+{
+  return claims_where(
+    [&](const Claim &claim)
+    { return names.empty() ? claim.is_default : std::find(names.begin(), names.end(), claim.name) != names.end(); });
+}
+
+std::vector<Claim> claims_before_fracture()
+{
+  return claims_where([](const Claim &claim) { return claim.is_before_fracture(); });
+}
+
+std::string unknown_claim(const std::string &name)
+{
+  const std::vector<std::string> known = names();
+  if (std::find(known.begin(), known.end(), name) != known.end())
+    return "";
+  const std::string nearest = input::nearest_word(name, known);
+  return "unknown claim '" + name + "'" + (nearest.empty() ? "" : "; did you mean '" + nearest + "'?") +
+         " (claims: " + joined(known, ", ") + ")";
+}
+
+std::string claim_choices()
+{
+  return "{" + joined(names(), ",") + "}";
+}
+
+std::string claim_list()
+{
+  std::size_t width = 0;
+  for (const Claim &claim : claim_registry())
+    width = std::max(width, claim.name.size());
+  std::string text = "Claims:\n";
+  for (const Claim &claim : claim_registry())
+    text += "  " + claim.name + std::string(width - claim.name.size() + 2, ' ') + claim.title +
+            (claim.is_default ? "" : " (only if named)") + "\n";
+  return text;
+}
+
+void write_claims(const std::vector<Claim> &claims, const std::string &folder)
+{
+  nlohmann::ordered_json document;
+  document["claims"] = nlohmann::ordered_json::array();
+  for (const Claim &claim : claims)
+    document["claims"].push_back({{"name", claim.name}, {"title", claim.title}, {"statement", claim.statement}});
+  output::write_file((std::filesystem::path(folder) / "claims.json").string(), document.dump(2) + "\n");
+}
+
+} // namespace latcon::commands
