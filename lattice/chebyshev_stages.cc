@@ -39,11 +39,16 @@ ChebyshevStages::ChebyshevStages(unsigned int stages)
   b[0] = b[1] = b[2];
 
   first_ = b[1] * w1;
+  double elapsed_before = 0., elapsed = first_; // as for y' = 1
   real_limit_ = (1. + w0) / w1;
   for (unsigned int j = 2; j <= stages; ++j)
   {
     const double now = 2. * b[j] / b[j - 1] * w1;
-    stages_.push_back({2. * b[j] / b[j - 1] * w0, -b[j] / b[j - 2], now, -(1. - b[j - 1] * at.T[j - 1]) * now});
+    const Stage stage{2. * b[j] / b[j - 1] * w0, -b[j] / b[j - 2], now, -(1. - b[j - 1] * at.T[j - 1]) * now, elapsed};
+    stages_.push_back(stage);
+    const double next = stage.mu * elapsed + stage.nu * elapsed_before + (stage.now + stage.start);
+    elapsed_before = elapsed;
+    elapsed = next;
   }
 }
 

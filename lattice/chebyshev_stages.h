@@ -18,6 +18,7 @@ public:
   {
     double mu, nu;
     double now, start; ///< weights of F_{j-1} and of F_0
+    double elapsed;    ///< time of Y_{j-1} after the start of the step, over h
   };
 
   /// @param stages s, number of force evaluations a step, >= 2

@@ -20,6 +20,30 @@ double elastic_energy(const State &state, const RowPartition &band, const Materi
   return band.sum(of_rows);
 }
 
+double memory_energy(const State &state, const RowPartition &band, const Material &material)
+{
+  const TriangularLattice &lattice = band.lattice();
+  std::vector<double> of_rows(lattice.rows(), 0.);
+  if (!state.history.empty())
+    for_each_bond(state, lattice, band.rows(),
+                  [&](std::size_t place, std::size_t kind, std::size_t)
+                  { of_rows[lattice.row_of(place)] += memory_energy(state, lattice, material, place, kind); });
+  return band.sum(of_rows);
+}
+
+double memory_energy(const State &state, const TriangularLattice &lattice, const Material &material, std::size_t place,
+                     std::size_t kind)
+{
+  const BondHistory::Kind &history = state.history.kinds[kind];
+  if (history.variables.empty())
+    return 0.;
+  const Shell &shell = *material.shell(kind);
+  std::array<double, max_history_variables> variables{};
+  state.history.variables_of(place, kind, variables.data());
+  return cross_section(shell, lattice) * lattice.rest_length(kind) *
+         stored_energy(shell.memory, history.stretch[place], variables.data());
+}
+
 double kinetic_energy(const State &state, const RowPartition &band)
 {
   const TriangularLattice &lattice = band.lattice();

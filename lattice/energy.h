@@ -8,8 +8,15 @@ namespace latcon::lattice
 // Sums over a sheet are sums over its rows, added from the lowest up, so that their bits do not depend on who moves
 // which row.
 
-/// Elastic energy of all bonds, per sheet thickness [J/m]. Collective.
+/// Elastic energy of all bonds, per sheet thickness [J/m], that of their memory excluded. Collective.
 double elastic_energy(const State &state, const RowPartition &band, const Material &material);
+
+/// Energy stored in the memory of all bonds as of its last update, per sheet thickness [J/m]. Collective.
+double memory_energy(const State &state, const RowPartition &band, const Material &material);
+
+/// The same for one bond.
+double memory_energy(const State &state, const TriangularLattice &lattice, const Material &material, std::size_t place,
+                     std::size_t kind);
 
 /// Kinetic energy of all free sites, per sheet thickness [J/m]. Collective.
 double kinetic_energy(const State &state, const RowPartition &band);
@@ -23,9 +30,9 @@ double boundary_power(const State &state, const TriangularLattice &lattice, cons
 /// Where the energy of a sheet is and where it went, all per sheet thickness [J/m] (theory.md, eq. (L.11)).
 struct EnergyBalance
 {
-  double elastic;       ///< of the bonds present
+  double elastic;       ///< of the bonds present, stored in their memory included
   double kinetic;       ///< of the free sites
-  double viscous;       ///< dissipated by the dashpots since the start
+  double viscous;       ///< dissipated by the dashpots, those in the memory of bonds included, since the start
   double broken;        ///< elastic energy that bonds held when they broke or were cut
   double contact;       ///< that contacts took from the motion since the start: stored in them or dissipated by them
   double boundary_work; ///< done on the sheet by held sites and by loads on its ends since the start

@@ -11,6 +11,16 @@ namespace
 
 constexpr std::ptrdiff_t reach = 2; // of bonds, in rows
 
+// What the bonds of one kind that start at some place and those after it remember.
+template <class Pointer, class Kind>
+kernels::RememberedRow<Pointer> remembered_from(Kind &kind, std::size_t place)
+{
+  kernels::RememberedRow<Pointer> row{kind.stretch.data() + place, {}};
+  for (std::size_t v = 0; v < kind.variables.size(); ++v)
+    row.variable[v] = kind.variables[v].data() + place;
+  return row;
+}
+
 } // namespace
 
 Forces::Forces(const RowPartition &band, const Material &material)
@@ -26,7 +36,45 @@ Forces::Forces(const RowPartition &band, const Material &material)
     {
       const double rest_length = lattice_.rest_length(kind), section = cross_section(*shell, lattice_);
       constants_.shells[kind / n_nearest_kinds] = {rest_length, section, section * shell->viscosity / rest_length};
+      memories_[kind / n_nearest_kinds] = shell->memory;
     }
+  set_elapsed(0.);
+}
+
+void Forces::set_elapsed(double duration)
+{
+  for (std::size_t shell = 0; shell < memories_.size(); ++shell)
+    memory_steps_[shell] = memory_step(memories_[shell], duration);
+}
+
+void Forces::update_memory(State &state)
+{
+  if (state.history.empty())
+    return;
+  const std::vector<std::size_t> rows = BondHistory::rows(band_);
+  const auto n = static_cast<std::ptrdiff_t>(rows.size());
+#pragma omp parallel for schedule(static) if (lattice_.n_places() >= min_places_for_threads)
+  for (std::ptrdiff_t i = 0; i < n; ++i)
+  {
+    const std::size_t row = rows[static_cast<std::size_t>(i)];
+    const kernels::RowOfBonds bonds = row_of_bonds({state, state.vx, state.vy}, row);
+    for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+      if (BondHistory::Kind &history = state.history.kinds[kind]; !history.variables.empty())
+        kernels::update_memory(memory_steps_[kind / n_nearest_kinds], constants_.shell(kind), bonds, kind,
+                               remembered_from<double *>(history, lattice_.index(row, 0)));
+  }
+  set_elapsed(0.);
+}
+
+// Adds the overstress of the bonds that start in row `from` to what their laws give.
+void Forces::add_overstress(const State &state, std::size_t from, const kernels::RowOfBonds &bonds,
+                            kernels::RowSums &sums) const
+{
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+    if (const BondHistory::Kind &history = state.history.kinds[kind]; !history.variables.empty())
+      sums.viscous_power +=
+        kernels::add_overstress(memory_steps_[kind / n_nearest_kinds], constants_.shell(kind), bonds, kind,
+                                remembered_from<const double *>(history, lattice_.index(from, 0)));
 }
 
 void Forces::evaluate(const State &state, const Field &vx, const Field &vy, const RowCallbacks &work)
@@ -135,7 +183,8 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
     for (std::size_t component = 0; component < 2; ++component)
       all.force[kind][component] = bonds.at(row, kind, component);
-  const kernels::RowSums sums = kernels::bonds_of_row(laws_, constants_, all);
+  kernels::RowSums sums = kernels::bonds_of_row(laws_, constants_, all);
+  add_overstress(motion.state, from, all, sums);
   // A site gathers from the places around it, so bonds that start beyond a periodic edge must be there.
   const std::size_t columns = lattice_.columns();
   if (columns_repeat_)
@@ -189,9 +238,20 @@ kernels::BondForce Forces::single_bond(const Motion &motion, std::size_t place, 
 {
   const State &state = motion.state;
   const std::size_t far = place + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(place)));
-  return kernels::bond_force(laws_[kind / n_nearest_kinds], constants_.shell(kind), state.x[far] - state.x[place],
-                             state.y[far] - state.y[place], motion.vx[far] - motion.vx[place],
-                             motion.vy[far] - motion.vy[place]);
+  kernels::BondForce bond =
+    kernels::bond_force(laws_[kind / n_nearest_kinds], constants_.shell(kind), state.x[far] - state.x[place],
+                        state.y[far] - state.y[place], motion.vx[far] - motion.vx[place],
+                        motion.vy[far] - motion.vy[place]);
+  if (const BondHistory::Kind &history = state.history.kinds[kind]; !history.variables.empty())
+  {
+    const kernels::Overstress over =
+      kernels::overstress(memory_steps_[kind / n_nearest_kinds], constants_.shell(kind), bond.stretch, place,
+                          remembered_from<const double *>(history, 0));
+    bond.x += over.axial * bond.nx;
+    bond.y += over.axial * bond.ny;
+    bond.viscous_power += over.dissipation;
+  }
+  return bond;
 }
 
 Eigen::Vector2d Forces::on_site(const State &state, const Field &vx, const Field &vy, std::size_t place) const

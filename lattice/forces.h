@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "lattice/memory_kernels.h"
 #include "lattice/row_kernels.h"
 #include "lattice/state.h"
 
@@ -12,7 +13,8 @@ namespace latcon::lattice
 
 /// Forces on all sites from all bonds. The loops over a row are in row_kernels.h.
 ///
-/// A bond pulls with A0 psi'(lam) + A0 eta (v_rel . n) / l along its current direction n (theory.md, eq. (L.3)).
+/// A bond pulls with A0 psi'(lam) + A0 eta (v_rel . n) / l along its current direction n (theory.md, eq. (L.3)), and with
+/// the overstress A0 q of its memory (eq. (L.27)) if the state has a history.
 /// Every thread takes some of the rows from its lower to its upper end. It computes the bonds that start in a row,
 /// keeps those of the last three rows, and lets the sites of the row gather their twelve bonds while these are in
 /// cache. Bonds that reach into these from below are computed once more there. The order of a gather is symmetric under
@@ -34,6 +36,14 @@ public:
   /// Enables row_has_short_bonds() for bonds whose stretch is below `stretch` [-], but for linear ones; 0: for none,
   /// the default.
   void watch_short_bonds(double stretch) { constants_.shortness_limit = 1. / stretch; }
+
+  /// Sets the time since the last update of the memory of bonds, in which they reached the positions at which forces are
+  /// evaluated next [s], >= 0; 0 by default.
+  void set_elapsed(double duration);
+
+  /// Updates the memory of bonds to the present positions, which they reached in the time that was set; that is 0 from
+  /// then on.
+  void update_memory(State &state);
 
   /// What an integrator does with each row of the band during an evaluation, while it is in cache: once, in any order
   /// of rows, by several threads.
@@ -61,7 +71,7 @@ public:
   Eigen::Vector2d on_site(const State &state, const Field &vx, const Field &vy, std::size_t place) const;
 
   /// Power the dashpots dissipated at the last evaluation, sum of A0 eta (v_rel . n)^2 / l [W/m] over the bonds that
-  /// start in a row of the band.
+  /// start in a row of the band, those in the memory of bonds included.
   double viscous_power(std::size_t row) const { return row_viscous_power_[row]; }
   /// The same over all its rows.
   double viscous_power() const;
@@ -126,11 +136,15 @@ private:
   kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, BondRows &bonds,
                                 const std::vector<const double *> &ahead = {}) const;
   void gather_row(std::ptrdiff_t row, Scratch &scratch) const;
+  void add_overstress(const State &state, std::size_t from, const kernels::RowOfBonds &bonds,
+                      kernels::RowSums &sums) const;
   kernels::BondForce single_bond(const Motion &motion, std::size_t place, std::size_t kind) const;
 
   RowPartition band_;
   const TriangularLattice &lattice_;
   kernels::BondLaws laws_;
+  std::array<BondMemory, 2> memories_;
+  std::array<MemoryStep, 2> memory_steps_;
   kernels::SheetConstants constants_;
   bool rows_repeat_;    // periodic across the rows
   bool columns_repeat_; // periodic along them

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
+#include "lattice/energy.h"
 #include "lattice/integrator.h"
 
 namespace latcon::lattice
@@ -93,8 +94,9 @@ Fracture::Event Fracture::event(const State &state, std::size_t place, std::size
 double Fracture::bond_energy(const State &state, std::size_t place, std::size_t kind) const
 {
   const Shell &shell = *material_.shell(kind);
-  return cross_section(shell, lattice_) * lattice_.rest_length(kind) *
-         energy(shell.law, stretch(state, lattice_, place, kind));
+  const double elastic = cross_section(shell, lattice_) * lattice_.rest_length(kind) *
+                         energy(shell.law, stretch(state, lattice_, place, kind));
+  return elastic + memory_energy(state, lattice_, material_, place, kind);
 }
 
 // What ranks tell each other of a bond that is lost.

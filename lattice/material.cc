@@ -3,11 +3,21 @@
 namespace latcon::lattice
 {
 
+bool Material::has_memory() const
+{
+  return n_variables(nearest.memory) > 0 || (next_nearest && n_variables(next_nearest->memory) > 0);
+}
+
 Material without_dashpots(Material material)
 {
-  material.nearest.viscosity = 0.;
+  const auto remove = [](Shell &shell)
+  {
+    shell.viscosity = 0.;
+    shell.memory = NoMemory();
+  };
+  remove(material.nearest);
   if (material.next_nearest)
-    material.next_nearest->viscosity = 0.;
+    remove(*material.next_nearest);
   return material;
 }
 

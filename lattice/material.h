@@ -2,7 +2,8 @@
 
 #include <optional>
 
-#include "lattice/bond_law.h"
+#include "lattice/bonds/bond_law.h"
+#include "lattice/bonds/bond_memory.h"
 #include "lattice/triangular_lattice.h"
 
 namespace latcon::lattice
@@ -16,6 +17,8 @@ struct Shell
   double area_factor;
   /// eta [Pa s], >= 0: viscosity of the Kelvin dashpot along the bond.
   double viscosity;
+  /// Overstress that depends on the past of a bond; none by default.
+  BondMemory memory = NoMemory();
 };
 
 /// What the sheet is made of. All extensive quantities of the lattice are per unit sheet thickness h, which cancels
@@ -34,11 +37,14 @@ struct Material
     return next_nearest ? &*next_nearest : nullptr;
   }
 
+  /// Returns whether bonds of some kind have a memory.
+  bool has_memory() const;
+
   /// Bonds of a site inside the sheet: 6 or 12.
   unsigned int coordination() const { return next_nearest ? 12 : 6; }
 };
 
-/// The same bonds without their dashpots.
+/// The same bonds without their dashpots and memories: what they are in equilibrium.
 Material without_dashpots(Material material);
 
 /// A0 / h = s (sqrt3 / 2) d [m], cross-section of a bond per sheet thickness (theory.md, eq. (L.4)).

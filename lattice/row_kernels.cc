@@ -6,9 +6,8 @@
 #include <type_traits>
 #include <variant>
 
-// This file is compiled once per instruction set. Those between SSSE3, AVX2 and AVX-512 would gain nothing. Vectors of
-// SVE have no size known to the compiler, so no struct can hold one; processors with SVE use NEON.
-#define HWY_DISABLED_TARGETS (HWY_SSE4 | HWY_AVX3_DL | HWY_SVE | HWY_SVE2 | HWY_SVE_256 | HWY_SVE2_128)
+#include "lattice/instruction_sets.h"
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "lattice/row_kernels.cc"
 #include <hwy/cache_control.h>
@@ -19,63 +18,16 @@ HWY_BEFORE_NAMESPACE();
 namespace latcon::lattice::kernels::HWY_NAMESPACE
 {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-// At most a block, so that sums over a block are the same for all widths.
-constexpr std::size_t block = TriangularLattice::row_alignment;
-using D = hn::CappedTag<double, block>;
-using Bits = hn::RebindToUnsigned<D>;
-using HalfBits = hn::Rebind<std::uint32_t, D>;
-using Words = hn::Rebind<BondStates::Word, D>;
-using Vector = hn::Vec<D>;
-HWY_INLINE std::size_t width()
-{
-  return hn::Lanes(D());
-}
-
 #include "lattice/lanes.inc"
 
-#include "lattice/bond_force.inc"
+#include "lattice/bond_geometry.inc"
 
-HWY_INLINE Lanes force(const MooneyRivlinBond &law, Lanes stretch, Lanes inverse)
-{
-  return mooney_rivlin_force(law.a, law.b, stretch, inverse);
-}
-HWY_INLINE Lanes force(const LinearBond &law, Lanes stretch, Lanes)
-{
-  return linear_force(law.modulus, stretch);
-}
-// A law from outside knows one stretch at a time.
-HWY_INLINE Lanes force(const CustomBond &law, Lanes stretch, Lanes inverse)
-{
-  alignas(64) double each[block], each_inverse[block];
-  store(stretch, each);
-  store(inverse, each_inverse);
-  for (std::size_t i = 0; i < width(); ++i)
-    each[i] = law.force(each[i], each_inverse[i]);
-  return load(each);
-}
+} // namespace latcon::lattice::kernels::HWY_NAMESPACE
 
-HWY_INLINE auto mask_of_bit(hn::Vec<Bits> words, unsigned int bit)
-{
-  return hn::RebindMask(D(), hn::TestBit(words, hn::Set(Bits(), bit)));
-}
+#include "lattice/bonds/formulas_for_vectors.inc"
 
-// As many sites as a vector holds, from one on: near ends of bonds.
-struct Sites
+namespace latcon::lattice::kernels::HWY_NAMESPACE
 {
-  Sites(const RowOfBonds &row, std::size_t site)
-    : first(site), x(load(row.x + site)), y(load(row.y + site)),
-      bonds(hn::PromoteTo(Bits(), hn::PromoteTo(HalfBits(), hn::LoadU(Words(), row.bonds + site))))
-  {
-  }
-  auto present(std::size_t kind) const { return mask_of_bit(bonds, BondStates::bit(kind)); }
-  auto toughened(std::size_t kind) const { return mask_of_bit(bonds, BondStates::toughened_bit(kind)); }
-
-  std::size_t first;
-  Lanes x, y;
-  hn::Vec<Bits> bonds;
-};
 
 // Lengths and inverse lengths of the bonds that start at these sites, both 0 for an absent one: it has no direction,
 // hence no force. Root and quotient take as long as all the rest, in units of the processor that do nothing
@@ -141,8 +93,8 @@ HWY_INLINE Lanes bonds_of_kind(const Law &law, const SheetConstants &sheet, cons
   store(axial * nx, row.force[kind][0] + near.first);
   store(axial * ny, row.force[kind][1] + near.first);
   power = power + viscous * rate;
-  // It is 0 for absent bonds; the stiffness of linear bonds does not depend on their stretch.
-  if constexpr (!std::is_same_v<Law, LinearBond>)
+  // It is 0 for absent bonds.
+  if constexpr (Law::stiffens_when_short)
     shortness.v = hn::Max(shortness.v, inverse_stretch.v);
   return stretch;
 }
@@ -457,9 +409,10 @@ BondForce bond_force(const BondLaw &law, const BondConstants &bond, double dx, d
   const double viscous = bond.damping * rate;
   const double axial =
     bond.cross_section *
-      std::visit([&](const auto &of_kind) { return of_kind.force(stretch, bond.rest_length * inverse); }, law) +
+      std::visit([&](const auto &of_kind) { return formulas::force(of_kind, stretch, bond.rest_length * inverse); },
+                 law) +
     viscous;
-  return {axial * nx, axial * ny, stretch, viscous * rate};
+  return {axial * nx, axial * ny, nx, ny, stretch, viscous * rate};
 }
 
 } // namespace latcon::lattice::kernels

@@ -7,8 +7,9 @@
 #include <string>
 #include <vector>
 
-#include "lattice/bond_law.h"
 #include "lattice/bond_states.h"
+#include "lattice/bonds/bond_law.h"
+#include "lattice/bonds/bond_memory.h"
 #include "lattice/chebyshev_stages.h"
 
 /// @file
@@ -16,6 +17,13 @@
 /// instruction set, from SSSE3 to AVX-512; the best that the processor has is chosen at run time, and all give the same
 /// bits. Rows begin at multiples of TriangularLattice::row_alignment and are worked on in blocks of as many places, so
 /// arrays must be readable, and those written to writable, to the end of the last block.
+namespace latcon::lattice
+{
+
+#include "lattice/bond_geometry.inc"
+
+} // namespace latcon::lattice
+
 namespace latcon::lattice::kernels
 {
 
@@ -108,6 +116,7 @@ std::string instruction_set();
 struct BondForce
 {
   double x, y; ///< on the near end [N/m], the opposite on the far end
+  double nx, ny; ///< direction from the near to the far end
   double stretch;
   double viscous_power; ///< [W/m]
 };

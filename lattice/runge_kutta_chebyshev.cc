@@ -50,6 +50,7 @@ void RungeKuttaChebyshev::step(State &state)
       kernels::next_stage(stage, h, n, fy, inverse_mass, &state.ay[i], &start_.y[i], &start_.vy[i], &state.y[i],
                           &state.vy[i], &previous_.y[i], &previous_.vy[i]);
     };
+    forces_.set_elapsed(stage.elapsed * h);
     forces_.evaluate(state, state.vx, state.vy, {{}, {}, next});
     evaluate_site_forces(state);
     state.x.swap(previous_.x);
@@ -59,7 +60,9 @@ void RungeKuttaChebyshev::step(State &state)
     kick_sites(state, h * stage.now);
     exchange_ghosts(state);
   }
+  forces_.set_elapsed(h);
   accelerate(state);
+  forces_.update_memory(state);
   state.time += h;
 }
 

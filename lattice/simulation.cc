@@ -28,11 +28,14 @@ Simulation::Simulation(const RowPartition &band, const Material &material, State
     time_stepping_(time_stepping), forces_(band, material), integrator_(integrator(band, forces_, time_stepping)),
     fracture_(std::move(fracture)), powers_(lattice_.rows()), work_(lattice_.rows())
 {
+  if (material_.has_memory() && state_.history.empty())
+    relax_memory(state_, band_, material_);
   if (fracture_)
     fracture_->configure(state_, forces_);
   forces_.watch_short_bonds(watched_stretch(time_stepping, lattice_, material_, state_.toughened_stretch));
+  forces_.update_memory(state_);
   reinitialize_forces();
-  initial_energy_ = elastic_energy(state_, band_, material_) + kinetic_energy(state_, band_);
+  initial_energy_ = stored_energy() + kinetic_energy(state_, band_);
 }
 
 void Simulation::reinitialize_forces()
@@ -55,8 +58,8 @@ int Simulation::needed_parts() const
   int parts = 1;
   const auto divide_for = [&](std::size_t near, std::size_t kind, std::size_t far)
   {
-    if (std::holds_alternative<LinearBond>(material_.shell(kind)->law))
-      return; // as stiff at any length
+    if (!stiffens_when_short(material_.shell(kind)->law))
+      return;
     const Eigen::Vector2d bond(state_.x[far] - state_.x[near], state_.y[far] - state_.y[near]);
     const double now = stretch(state_, lattice_, near, kind);
     const double rate =
@@ -291,9 +294,15 @@ void Simulation::check_loaded(const BondStates::Words &bonds, double energy) con
                        "`lost_bonds` are more than a site has");
 }
 
+double Simulation::stored_energy() const
+{
+  const double elastic = elastic_energy(state_, band_, material_);
+  return material_.has_memory() ? elastic + memory_energy(state_, band_, material_) : elastic;
+}
+
 EnergyBalance Simulation::energies() const
 {
-  return {elastic_energy(state_, band_, material_),
+  return {stored_energy(),
           kinetic_energy(state_, band_),
           band_.sum(work_.viscous),
           broken_,

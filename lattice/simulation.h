@@ -104,6 +104,7 @@ private:
     explicit Ledger(std::size_t rows) : viscous(rows, 0.), contact(rows, 0.), boundary(rows, 0.) {}
   };
 
+  double stored_energy() const; // in bonds and their memory [J/m]
   void reinitialize_forces();
   void note_powers();
   void add_work(const Ledger &before, double duration);
@@ -152,6 +153,15 @@ void Simulation::archive(Archive &archive)
         std::pair("ax", &state_.ax), std::pair("ay", &state_.ay)})
     archive_rows(archive, name, *field, band_, known);
   archive_rows(archive, "bonds", state_.bonds.storage(), band_, known);
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  {
+    BondHistory::Kind &history = state_.history.kinds[kind];
+    const std::string name = "memory_" + std::to_string(kind) + "_";
+    for (std::size_t v = 0; v < history.variables.size(); ++v)
+      archive_rows(archive, name + std::to_string(v), history.variables[v], band_, known);
+    if (!history.variables.empty())
+      archive_rows(archive, name + "stretch", history.stretch, band_, known);
+  }
   archive_rows(archive, "lost_bonds", state_.lost_bonds, band_, all);
   for (const auto &[name, ledger] : {std::pair<std::string, Ledger *>("powers", &powers_), {"work", &work_}})
   {

@@ -134,6 +134,27 @@ void add_noise(State &state, const RowPartition &band, double amplitude, std::ui
   update_images(state, band);
 }
 
+void relax_memory(State &state, const RowPartition &band, const Material &material)
+{
+  const TriangularLattice &lattice = band.lattice();
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  {
+    const Shell *shell = material.shell(kind);
+    const std::size_t n = shell != nullptr ? n_variables(shell->memory) : 0;
+    state.history.kinds[kind] = {Field(n > 0 ? lattice.n_places() : 0), {}};
+    for (std::size_t v = 0; v < n; ++v)
+      state.history.kinds[kind].variables.emplace_back(lattice.n_places());
+  }
+  if (!state.history.empty())
+    for (const std::size_t row : BondHistory::rows(band))
+      for_each_bond(state, lattice, {row, row + 1},
+                    [&](std::size_t place, std::size_t kind, std::size_t)
+                    {
+                      if (!state.history.kinds[kind].variables.empty())
+                        state.history.kinds[kind].stretch[place] = stretch(state, lattice, place, kind);
+                    });
+}
+
 double stretch(const State &state, const TriangularLattice &lattice, std::size_t place, std::size_t kind)
 {
   const std::size_t far = place + static_cast<std::size_t>(lattice.shift(kind, lattice.row_of(place)));

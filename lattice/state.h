@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "lattice/bond_history.h"
 #include "lattice/bond_states.h"
 #include "lattice/material.h"
 #include "lattice/row_partition.h"
@@ -34,6 +35,7 @@ struct State
   Field vx, vy;                           ///< velocity [m/s]
   Field ax, ay;                           ///< acceleration [m/s^2]; 0 at held sites and in the margin
   BondStates bonds;                       ///< by the place where they start
+  BondHistory history;                    ///< of bonds with a memory; see relax_memory()
   double breaking_stretch = unbreakable;  ///< lam_f [-], beyond which a bond breaks; set by Fracture::configure()
   double toughened_stretch = unbreakable; ///< that of toughened bonds [-]; set likewise
   Field inverse_mass;                     ///< h / m [m/kg]; 0 at held and removed sites and in the margin
@@ -74,6 +76,11 @@ inline double limit(const State &state, std::size_t place, std::size_t kind)
 /// any order.
 /// @param amplitude [m], >= 0
 void add_noise(State &state, const RowPartition &band, double amplitude, std::uint64_t seed);
+
+/// Puts the memory of all bonds at rest at their present stretches, as after a long time; a Simulation does so with a
+/// state that remembers nothing yet. Positions that change from here on without time passing strain all memories at
+/// once. Positions and images in the halo must be up to date.
+void relax_memory(State &state, const RowPartition &band, const Material &material);
 
 /// Current stretch |x_j - x_i| / l of a bond [-].
 double stretch(const State &state, const TriangularLattice &lattice, std::size_t place, std::size_t kind);

@@ -36,6 +36,12 @@ TimeStepLimits limits(const Rates &rates)
 // The smallest stretch of the bonds of each shell.
 using SmallestStretch = std::array<double, 2>;
 
+// Largest stiffness in motions that leave memories no time to relax [Pa].
+double fast_stiffness(const Shell &shell, double smallest_stretch)
+{
+  return largest_stiffness(shell.law, smallest_stretch) + largest_stiffness(shell.memory);
+}
+
 Rates bound_of_bonds(const TriangularLattice &lattice, const Material &material,
                      const SmallestStretch &smallest_stretch)
 {
@@ -46,7 +52,7 @@ Rates bound_of_bonds(const TriangularLattice &lattice, const Material &material,
     {
       // A site has two bonds of each kind, and the bound is twice the sum over its bonds.
       const double per_length = 4. * cross_section(*shell, lattice) / (lattice.rest_length(kind) * mass);
-      rates.omega_square += per_length * largest_stiffness(shell->law, smallest_stretch[kind / n_nearest_kinds]);
+      rates.omega_square += per_length * fast_stiffness(*shell, smallest_stretch[kind / n_nearest_kinds]);
       rates.gamma += per_length * shell->viscosity;
     }
   return rates;
@@ -58,7 +64,7 @@ double damped_step(const Material &material, const SmallestStretch &smallest_str
   double step = std::numeric_limits<double>::infinity();
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
     if (const Shell *shell = material.shell(kind))
-      step = std::min(step, shell->viscosity / largest_stiffness(shell->law, smallest_stretch[kind / n_nearest_kinds]));
+      step = std::min(step, shell->viscosity / fast_stiffness(*shell, smallest_stretch[kind / n_nearest_kinds]));
   return step;
 }
 
@@ -142,9 +148,13 @@ double watched_stretch(const TimeStepping &stepping, const TriangularLattice &la
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
     if (const Shell *shell = material.shell(kind))
     {
-      site_energy += cross_section(*shell, lattice) * lattice.rest_length(kind) * energy(shell->law, breaking_stretch);
+      // No overstress exceeds that of a bond that is stretched at once.
+      const double overstress = largest_stiffness(shell->memory) * breaking_stretch;
+      site_energy += cross_section(*shell, lattice) * lattice.rest_length(kind) *
+                     (energy(shell->law, breaking_stretch) + 0.5 * overstress * breaking_stretch);
       of_forces =
-        std::max(of_forces, 0.5 * material.coordination() * force(shell->law, breaking_stretch) / shell->viscosity);
+        std::max(of_forces, 0.5 * material.coordination() * (force(shell->law, breaking_stretch) + overstress) /
+                              shell->viscosity);
     }
   const double of_energy = std::sqrt(8. * site_energy / site_mass(material, lattice)) / lattice.spacing();
   const double loss = stepping.step * std::min(of_energy, of_forces);

@@ -42,6 +42,7 @@ void VelocityVerlet::step(State &state)
   const auto drift_row = [&](std::size_t row) { drift(state, row); };
   const auto after = [&](std::size_t row, const double *fx, const double *fy)
   { kick(state, row, fx, fy, 0.5 * time_step()); };
+  forces_.set_elapsed(time_step());
   const Rows own = band_.rows(), interior = halo_.interior();
   for_each_row(lattice_, {own.begin, interior.begin}, drift_row);
   for_each_row(lattice_, {interior.end, own.end}, drift_row);
@@ -67,6 +68,7 @@ void VelocityVerlet::step(State &state)
     update_all_images(state);
     forces_.evaluate(state, predicted_vx_, predicted_vy_, {{}, {}, after});
   }
+  forces_.update_memory(state);
   evaluate_site_forces(state);
   accelerate_sites(state);
   kick_sites(state, 0.5 * time_step());

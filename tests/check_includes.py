@@ -14,15 +14,16 @@ import subprocess
 import sys
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
-SIDES = ("support", "lattice", "continuum")
+SIDES = ("support", "lattice/bonds", "lattice", "continuum")
 MODELS = (*SIDES, "verification/input", "verification/bridge", "verification/analysis", "verification/output")
 # The folders that a folder may include in addition to itself; `claims/*` is the folder of any one claim.
 ALLOWED = {
     "support": (),
-    "lattice": ("support",),
+    "lattice/bonds": (),
+    "lattice": ("support", "lattice/bonds"),
     "continuum": ("support",),
-    "verification/analysis": ("support", "lattice"),
-    "verification/input": ("support", "lattice"),
+    "verification/analysis": ("support", "lattice/bonds", "lattice"),
+    "verification/input": ("support", "lattice/bonds", "lattice"),
     "verification/bridge": (*SIDES, "verification/input"),
     "verification/output": (*SIDES, "verification/input", "verification/bridge", "verification/analysis"),
     "verification/compare": ("support", "verification/output"),
@@ -36,24 +37,26 @@ ALLOWED = {
     "verification": ("continuum", "support", "verification/commands"),
     # Tests of one side must not depend on the other either.
     "tests/support": ("support",),
-    "tests/lattice": ("support", "lattice", "tests/support"),
+    "tests/lattice": ("support", "lattice/bonds", "lattice", "tests/support"),
     "tests/continuum": ("support", "continuum", "tests/support"),
     "tests/verification/analysis": ("support", "lattice", "verification/analysis", "tests/support", "tests/lattice"),
 }
 # Folders that may not include a library, by the beginning of its headers' names.
 LIBRARIES = {
-    "deal.II/": ("support", "lattice", "verification/analysis", "tests/support", "tests/lattice", "tests/verification/analysis"),
+    "deal.II/": ("support", "lattice/bonds", "lattice", "verification/analysis", "tests/support", "tests/lattice", "tests/verification/analysis"),
     "vtk": [folder for folder in ALLOWED if folder not in ("verification/output", "verification/compare")],
 }
 PLANTED = [
-    ("support", '#include "lattice/bond_law.h"'),
+    ("support", '#include "lattice/bonds/bond_law.h"'),
     ("support", "#include <deal.II/base/mpi.h>"),
     ("lattice", '#include "continuum/material.h"'),
     ("lattice", "#include <deal.II/base/tensor.h>"),
     ("lattice", "#include <vtkPolyData.h>"),
+    ("lattice/bonds", '#include "lattice/state.h"'),
+    ("lattice/bonds", "#include <deal.II/base/tensor.h>"),
     ("lattice", '  #  include "../verification/input/case.h"'),
     ("lattice", '#include "verification/analysis/path_fit.h"'),
-    ("continuum", '#include "lattice/bond_law.h"'),
+    ("continuum", '#include "lattice/bonds/bond_law.h"'),
     ("continuum", '#include "verification/input/case.h"'),
     ("verification/analysis", '#include "continuum/dynamic_solver.h"'),
     ("verification/analysis", '#include "verification/output/csv.h"'),

@@ -1,4 +1,4 @@
-#include "lattice/bond_law.h"
+#include "lattice/bonds/bond_law.h"
 
 #include <cmath>
 #include <limits>
@@ -81,13 +81,18 @@ TEST(BondLaw, RestIsFreeOfEnergyAndForce)
   }
 }
 
+TEST(BondLaw, SaysWhetherShortBondsAreStiffer)
+{
+  for (const BondLaw &law : laws)
+    EXPECT_EQ(stiffens_when_short(law), stiffness(law, 0.1) > stiffness(law, 1.));
+}
+
 // By hand at lam = 2: psi = a + 5/8 b, psi' = 7/4 a + 7/8 b, psi'' = 5/4 a + 3/16 b; at rest psi'' = 3 (a + b).
 TEST(MooneyRivlinBond, HasHandComputedValues)
 {
   const lattice::MooneyRivlinBond law{8., 16.};
   EXPECT_DOUBLE_EQ(law.energy(2.), 8. + 10.);
-  EXPECT_DOUBLE_EQ(law.force(2.), 14. + 14.);
-  EXPECT_DOUBLE_EQ(law.force(2., 0.5), 28.);
+  EXPECT_DOUBLE_EQ(force(law, 2.), 14. + 14.);
   EXPECT_DOUBLE_EQ(law.stiffness(2.), 10. + 3.);
   EXPECT_DOUBLE_EQ(law.stiffness(1.), 72.);
 }
@@ -96,7 +101,7 @@ TEST(LinearBond, HasHandComputedValues)
 {
   const lattice::LinearBond law{4.};
   EXPECT_DOUBLE_EQ(law.energy(1.5), 0.5);
-  EXPECT_DOUBLE_EQ(law.force(1.5), 2.);
+  EXPECT_DOUBLE_EQ(force(law, 1.5), 2.);
   EXPECT_DOUBLE_EQ(law.stiffness(1.5), 4.);
 }
 

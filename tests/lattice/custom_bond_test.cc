@@ -1,4 +1,6 @@
-#include "lattice/custom_bond.h"
+#include "lattice/bonds/custom_bond.h"
+
+#include "lattice/bonds/bond_law.h"
 
 #include <cmath>
 #include <limits>
@@ -56,7 +58,7 @@ TEST(CustomBond, HasTheValuesOfItsLaw)
   for (const double stretch : {0.4, 1., 1.7, 3.05})
   {
     EXPECT_EQ(energy(outside, stretch), inside.energy(stretch));
-    EXPECT_EQ(force(outside, stretch), inside.force(stretch));
+    EXPECT_EQ(force(outside, stretch), force(inside, stretch));
     EXPECT_EQ(stiffness(outside, stretch), inside.stiffness(stretch));
     EXPECT_EQ(largest_stiffness(outside, stretch), inside.largest_stiffness(stretch));
   }

@@ -206,6 +206,15 @@ Material mixed()
   return material;
 }
 
+// Branches in both shells, of different numbers.
+Material with_branches()
+{
+  Material material = sheets::rubber();
+  material.nearest.memory = MaxwellMemory({{2e5, 2e-5}, {1e5, 2e-4}, {3e4, 1e-3}});
+  material.next_nearest->memory = MaxwellMemory({{1.5e5, 5e-5}});
+  return material;
+}
+
 std::vector<Subject> subjects()
 {
   std::vector<Subject> all;
@@ -213,7 +222,8 @@ std::vector<Subject> subjects()
   for (const double columns : {3., 10., 11., 12., 13., 14., 15., 16., 17., 40.})
     for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
       for (const Material &material :
-           {sheets::rubber(), sheets::nearest_only(), linear(), sheets::rubber_from_outside(), mixed()})
+           {sheets::rubber(), sheets::nearest_only(), linear(), sheets::rubber_from_outside(), mixed(),
+            with_branches()})
         for (const Periodic periodic : {Periodic{}, Periodic{true, false}, Periodic{false, true}, Periodic{true, true}})
           all.push_back({material, orientation, periodic, columns});
   return all;
@@ -235,6 +245,11 @@ State random_state(const TriangularLattice &sheet, const Material &material, uns
   std::mt19937 random(seed);
   const auto uniform = [&] { return std::uniform_real_distribution<double>(0., 1.)(random); };
   State state = homogeneous_state(sheet, material, sheets::stretched(1.6, 1.9), Edges::free);
+  relax_memory(state, sheet, material);
+  for (BondHistory::Kind &history : state.history.kinds)
+    for (Field &variable : history.variables)
+      for (double &overstress : variable)
+        overstress = 1e5 * (uniform() - 0.5);
   state.breaking_stretch = first_limit;
   state.toughened_stretch = toughened_limit;
   for (std::size_t place = 0; place < sheet.n_places(); ++place)

@@ -1,7 +1,9 @@
 #pragma once
 
+#include <cmath>
 #include <memory>
 #include <ostream>
+#include <type_traits>
 
 #include "lattice/simulation.h"
 
@@ -27,7 +29,13 @@ class FromOutside : public latcon::lattice::CustomBondLaw
 public:
   explicit FromOutside(const Law &law) : law_(law) {}
   double energy(double stretch) const noexcept override { return law_.energy(stretch); }
-  double force(double stretch) const noexcept override { return law_.force(stretch); }
+  double force(double stretch) const noexcept override
+  {
+    if constexpr (std::is_convertible_v<Law, latcon::lattice::BondLaw>)
+      return latcon::lattice::force(law_, stretch);
+    else
+      return law_.force(stretch);
+  }
   double stiffness(double stretch) const noexcept override { return law_.stiffness(stretch); }
   double largest_stiffness(double smallest_stretch) const noexcept override
   {
@@ -42,6 +50,37 @@ template <class Law>
 latcon::lattice::CustomBond from_outside(const Law &law)
 {
   return latcon::lattice::CustomBond(std::make_shared<FromOutside<Law>>(law));
+}
+
+/// A Maxwell branch as a memory from outside, with one variable per bond: its overstress.
+class BranchFromOutside : public latcon::lattice::CustomMemoryLaw
+{
+public:
+  explicit BranchFromOutside(const latcon::lattice::MaxwellMemory::Branch &branch) : branch_(branch) {}
+  std::size_t n_variables() const noexcept override { return 1; }
+  double advance(double duration, double before, double now, double *overstress) const noexcept override
+  {
+    const double r = duration / branch_.relaxation_time;
+    const double mean = r > 0. ? -std::expm1(-r) / r : 1.;
+    return *overstress = std::exp(-r) * *overstress + branch_.modulus * mean * (now - before);
+  }
+  double stored_energy(double, const double *overstress) const noexcept override
+  {
+    return 0.5 * *overstress * *overstress / branch_.modulus;
+  }
+  double dissipation(double, const double *overstress) const noexcept override
+  {
+    return *overstress * *overstress / (branch_.modulus * branch_.relaxation_time);
+  }
+  double largest_stiffness() const noexcept override { return branch_.modulus; }
+
+private:
+  latcon::lattice::MaxwellMemory::Branch branch_;
+};
+
+inline latcon::lattice::CustomMemory memory_from_outside(const latcon::lattice::MaxwellMemory::Branch &branch)
+{
+  return latcon::lattice::CustomMemory(std::make_shared<BranchFromOutside>(branch));
 }
 
 /// The rubber of the source paper's Fig. 1; viscosity of the nearest neighbours in Pa s, three times that for the next.
@@ -65,6 +104,15 @@ inline latcon::lattice::Material rubber_from_outside()
   latcon::lattice::Material material = rubber();
   material.nearest.law = from_outside(latcon::lattice::MooneyRivlinBond{1e5, 1.5e5});
   material.next_nearest->law = material.nearest.law;
+  return material;
+}
+
+/// The same rubber with two Maxwell branches in the bonds of nearest neighbours and one from outside in the others.
+inline latcon::lattice::Material rubber_with_memory(double viscosity = 65.625)
+{
+  latcon::lattice::Material material = rubber(viscosity);
+  material.nearest.memory = latcon::lattice::MaxwellMemory({{2e5, 2e-5}, {1e5, 2e-4}});
+  material.next_nearest->memory = memory_from_outside({1.5e5, 5e-5});
   return material;
 }
 

@@ -31,7 +31,7 @@ build tests/CMakeFiles/lattice_tests.dir/bond_law_test.cc.o: compile {root}/test
 build tests/lattice_tests: link tests/CMakeFiles/lattice_tests.dir/bond_law_test.cc.o
 build lattice_tests: phony tests/lattice_tests
 """
-EMPTY = """#include "lattice/bond_law.h"
+EMPTY = """#include "lattice/bonds/bond_law.h"
 #include <gtest/gtest.h>
 TEST(BondLaw, IsCompiled)
 {
@@ -141,7 +141,7 @@ class Project(unittest.TestCase):
         place = tempfile.TemporaryDirectory()
         self.addCleanup(place.cleanup)
         self.root = pathlib.Path(place.name).resolve()
-        for name in ("lattice/bond_law.h", "lattice/custom_bond.h", "lattice/bond_force.inc",
+        for name in (*(str(path.relative_to(ROOT)) for path in (ROOT / "lattice/bonds").glob("*.h")),
                      "tests/lattice/bond_law_test.cc"):
             (self.root / name).parent.mkdir(parents=True, exist_ok=True)
             shutil.copy(ROOT / name, self.root / name)
@@ -157,7 +157,7 @@ class Project(unittest.TestCase):
         record = self.root / "record.json"
         before = {path: path.read_bytes() for path in self.root.glob("*/**/*.*") if "build" not in path.parts}
         done = subprocess.run([sys.executable, str(pathlib.Path(__file__).with_name("run.py")), "--root", str(self.root),
-                               "--only", "lattice/bond_law.h", "--programs", "lattice_tests", "--output", str(record),
+                               "--only", "lattice/bonds/mooney_rivlin_bond.h", "--programs", "lattice_tests", "--output", str(record),
                                *arguments],
                               stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, check=False)
         self.assertIn(done.returncode, (0, 1), done.stderr)
@@ -183,14 +183,14 @@ class Project(unittest.TestCase):
         self.assertEqual((status, record["score"]), (1, 0.), text)
         for mutant in record["mutants"]:
             self.assertEqual(mutant["outcome"], "survived")
-            self.assertIn(f"survived: lattice/bond_law.h:{mutant['line']}", text)
+            self.assertIn(f"survived: lattice/bonds/mooney_rivlin_bond.h:{mutant['line']}", text)
             self.assertIn("+ " + mutant["after"], text)
 
     def test_what_does_not_compile_is_no_fault(self):
         scratch = Scratch(self.root, self.build, self.root / "scratch", {"lattice_tests": testing.GoogleTests()})
-        text = (self.root / "lattice/bond_law.h").read_text(encoding="utf-8").split("\n")
+        text = (self.root / "lattice/bonds/mooney_rivlin_bond.h").read_text(encoding="utf-8").split("\n")
         line = next(n for n, line in enumerate(text, 1) if "double energy(" in line)
-        mutant = mutants.Mutant("lattice/bond_law.h", line, text[line - 1], "  no program", "sign")
+        mutant = mutants.Mutant("lattice/bonds/mooney_rivlin_bond.h", line, text[line - 1], "  no program", "sign")
         self.assertEqual(scratch.test(mutant, ["lattice_tests"], self.root / "mutant"), testing.Verdict("no program"))
 
 

@@ -41,6 +41,7 @@ class Installed(unittest.TestCase):
             self.assertIn("-ffp-contract=off", entry["command"])
             self.assertNotIn("-W", entry["command"])  # latcon's warnings are its own affair
         self.assertIn("all agree", run(own / "build/bond_law"))
+        self.assertIn("all agree", run(own / "build/bond_memory"))
         self.assertIn("they agree", run(own / "build/gradient_energy"))
 
     def test_other_versions_are_refused(self):

@@ -41,7 +41,7 @@ public:
   void set_last_stretch(double stretch) { last_stretch_ = stretch; }
 
   double energy(double stretch) const noexcept override { return at(stretch, bond_.energy(stretch)); }
-  double force(double stretch) const noexcept override { return at(stretch, bond_.force(stretch)); }
+  double force(double stretch) const noexcept override { return at(stretch, lattice::force(bond_, stretch)); }
   double stiffness(double stretch) const noexcept override { return at(stretch, bond_.stiffness(stretch)); }
   double largest_stiffness(double smallest_stretch) const noexcept override
   {

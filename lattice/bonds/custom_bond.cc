@@ -1,4 +1,4 @@
-#include "lattice/custom_bond.h"
+#include "lattice/bonds/custom_bond.h"
 
 #include <cmath>
 #include <stdexcept>

@@ -1,0 +1,59 @@
+// The list of bond memories, for each type of number; see formulas.h.
+#include "lattice/bonds/custom_memory.h"
+#include "lattice/bonds/maxwell_memory.h"
+
+#ifndef LATCON_LATTICE_BOND_MEMORY
+#define LATCON_LATTICE_BOND_MEMORY
+
+#include <variant>
+
+/// @file
+/// Memories of bonds: overstresses q that depend on the past of a bond through a number of variables per bond,
+///   sigma = psi'(lam) + eta lam' + q   (theory.md, eq. (L.27)).
+///
+/// A memory declares its number of variables, its energy and a bound on its stiffness; its `Step` has what an update
+/// over one duration needs, and `advance` is its formula for any type of number. Variables are 0 at rest and are stored
+/// by BondHistory.
+namespace latcon::lattice
+{
+
+/// No memory: costs nothing.
+struct NoMemory
+{
+  std::size_t n_variables() const { return 0; }
+  double largest_stiffness() const { return 0.; }
+  double stored_energy(double /*stretch*/, const double * /*variables*/) const { return 0.; }
+  struct Step
+  {
+  };
+  Step step(double /*duration*/) const { return {}; }
+};
+
+/// Memory of the bonds of one shell.
+using BondMemory = std::variant<NoMemory, MaxwellMemory, CustomMemory>;
+/// Its update over one duration.
+using MemoryStep = std::variant<NoMemory::Step, MaxwellMemory::Step, CustomMemory::Step>;
+
+/// Number of variables per bond.
+inline std::size_t n_variables(const BondMemory &memory)
+{
+  return std::visit([](const auto &m) { return m.n_variables(); }, memory);
+}
+/// Bound on dq/dlam in fast motion [Pa].
+inline double largest_stiffness(const BondMemory &memory)
+{
+  return std::visit([](const auto &m) { return m.largest_stiffness(); }, memory);
+}
+/// Energy stored per reference volume of a bond [Pa].
+inline double stored_energy(const BondMemory &memory, double stretch, const double *variables)
+{
+  return std::visit([&](const auto &m) { return m.stored_energy(stretch, variables); }, memory);
+}
+/// Update over `duration` [s], >= 0.
+inline MemoryStep memory_step(const BondMemory &memory, double duration)
+{
+  return std::visit([duration](const auto &m) { return MemoryStep(m.step(duration)); }, memory);
+}
+
+} // namespace latcon::lattice
+#endif

@@ -1,0 +1,84 @@
+#include <memory>
+
+#include "lattice/bonds/formulas.h"
+
+#ifndef LATCON_LATTICE_CUSTOM_BOND
+namespace latcon::lattice
+{
+
+/// User-defined bond law: derive from it, and construct a Shell with a CustomBond of it.
+///
+/// The law gives psi and its derivatives as functions of the stretch lam [-] alone, as bond_law.h defines them. They
+/// must be smooth for every lam > 0 that a bond may reach before it breaks, and the bond must be free of energy and
+/// force at rest and stiff there: psi(1) = psi'(1) = 0, psi''(1) > 0.
+///
+/// Several threads call the functions at once, with any lam > 0, also beyond the stretch at which bonds break: they may
+/// not change anything, nor throw. Where the law has no value they return NaN or infinity. That spreads to the sites of
+/// the bond and from there through the sheet; State::x and energies() show it, relax() and the program's commands stop
+/// at it.
+class CustomBondLaw
+{
+public:
+  virtual ~CustomBondLaw() = default;
+
+  /// psi(lam) [Pa], energy per reference volume of the bond.
+  virtual double energy(double stretch) const noexcept = 0;
+
+  /// psi'(lam) [Pa], axial force per reference cross-section, tension positive. The loop over all bonds calls this.
+  virtual double force(double stretch) const noexcept = 0;
+
+  /// psi''(lam) [Pa], axial tangent stiffness per reference cross-section.
+  virtual double stiffness(double stretch) const noexcept = 0;
+
+  /// A bound [Pa] on psi'' and on psi' / lam for every lam >= `smallest_stretch` [-] that an unbroken bond reaches;
+  /// limits of the time step follow from it. `stiffness(smallest_stretch)` for a law that is stiffer the shorter the
+  /// bond.
+  virtual double largest_stiffness(double smallest_stretch) const noexcept = 0;
+};
+
+/// A bond with a user-defined law.
+class CustomBond
+{
+public:
+  /// @throws std::invalid_argument without a law, or for one that is not free of energy and force (to 1e-12 of its
+  /// stiffness) or not stiff at rest
+  explicit CustomBond(std::shared_ptr<const CustomBondLaw> law);
+
+  static constexpr bool stiffens_when_short = true; ///< whether short bonds may require divided steps
+
+  double energy(double stretch) const { return law_->energy(stretch); }       ///< psi(lam) [Pa]
+  double stiffness(double stretch) const { return law_->stiffness(stretch); } ///< psi''(lam) [Pa]
+  double largest_stiffness(double smallest_stretch) const { return law_->largest_stiffness(smallest_stretch); }
+
+  /// psi'(lam) [Pa]; 0 for absent bonds, which have no length.
+  double force(double stretch) const { return stretch > 0. ? law_->force(stretch) : 0.; }
+
+private:
+  std::shared_ptr<const CustomBondLaw> law_;
+};
+
+} // namespace latcon::lattice
+#endif
+
+#if !defined(LATCON_LATTICE_CUSTOM_BOND) || defined(LATCON_VECTORS)
+#define LATCON_LATTICE_CUSTOM_BOND
+namespace latcon::lattice::LATCON_FORMULAS
+{
+
+#ifndef LATCON_VECTORS
+/// The law of one bond; for vectors of bonds see lanes.inc.
+inline double force_of_each(const CustomBond &law, double stretch)
+{
+  return law.force(stretch);
+}
+#endif
+
+/// psi'(lam) [Pa], bond by bond.
+template <class Number>
+inline Number force(const CustomBond &law, Number stretch, Number /*inverse*/)
+{
+  return force_of_each(law, stretch);
+}
+
+} // namespace latcon::lattice::LATCON_FORMULAS
+#endif

@@ -1,0 +1,84 @@
+#include "lattice/bonds/maxwell_memory.h"
+
+#include <cmath>
+#include <stdexcept>
+#include <string>
+
+namespace latcon::lattice
+{
+namespace
+{
+
+struct Decay
+{
+  double factor; // e^-r
+  double mean;   // (1 - e^-r) / r, mean of e^-s for s from 0 to r
+};
+
+// By basic operations, whose bits do not depend on the processor: Taylor's series where it converges fast, then
+// e^-2r = (e^-r)^2.
+Decay decay(double r)
+{
+  constexpr double vanished = 750.; // e^-r is below the smallest double
+  if (r > vanished)
+    return {0., 1. / r};
+  constexpr double small = 0.5;
+  constexpr int n_terms = 14; // the next one is below 0.5^14 / 15! = 5e-17
+  int n_doublings = 0;
+  for (; r > small; r *= 0.5)
+    ++n_doublings;
+  double mean = 1.;
+  for (int n = n_terms; n >= 2; --n)
+    mean = 1. - r / n * mean;
+  Decay result{1. - r * mean, mean};
+  for (; n_doublings > 0; --n_doublings)
+    result = {result.factor * result.factor, 0.5 * result.mean * (1. + result.factor)};
+  return result;
+}
+
+} // namespace
+
+MaxwellMemory::MaxwellMemory(std::vector<Branch> branches) : branches_(std::move(branches))
+{
+  if (branches_.empty() || branches_.size() > max_history_variables)
+    throw std::invalid_argument("a Maxwell memory has 1 to " + std::to_string(max_history_variables) +
+                                " branches, not " + std::to_string(branches_.size()));
+  for (const Branch &branch : branches_)
+    for (const double constant : {branch.modulus, branch.relaxation_time})
+      if (!(constant > 0. && std::isfinite(constant)))
+        throw std::invalid_argument("a Maxwell branch needs a modulus > 0 and a relaxation time > 0, not " +
+                                    std::to_string(branch.modulus) + " Pa and " +
+                                    std::to_string(branch.relaxation_time) + " s");
+}
+
+double MaxwellMemory::largest_stiffness() const
+{
+  double sum = 0.;
+  for (const Branch &branch : branches_)
+    sum += branch.modulus;
+  return sum;
+}
+
+double MaxwellMemory::stored_energy(double /*stretch*/, const double *overstress) const
+{
+  double sum = 0.;
+  for (std::size_t i = 0; i < branches_.size(); ++i)
+    sum += 0.5 * overstress[i] * overstress[i] / branches_[i].modulus;
+  return sum;
+}
+
+MaxwellMemory::Step MaxwellMemory::step(double duration) const
+{
+  Step step{branches_.size(), {}, {}, {}};
+  for (std::size_t i = 0; i < branches_.size(); ++i)
+  {
+    const auto &[modulus, time] = branches_[i];
+    const Decay of_branch = decay(duration / time);
+    step.decay[i] = of_branch.factor;
+    step.gain[i] = modulus * of_branch.mean;
+    step.fluency[i] = 1. / (modulus * time);
+  }
+  return step;
+}
+
+} // namespace latcon::lattice

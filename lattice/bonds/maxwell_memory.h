@@ -1,0 +1,82 @@
+#include <array>
+#include <vector>
+
+#include "lattice/bonds/formulas.h"
+#include "lattice/bonds/memory_limits.h"
+
+#ifndef LATCON_LATTICE_MAXWELL_MEMORY
+namespace latcon::lattice
+{
+
+/// Generalised Maxwell branches parallel to the elastic law and the dashpot of a bond (theory.md, eq. (L.27)):
+///   q_i' = E_i lam' - q_i / tau_i,   sigma = psi'(lam) + eta lam' + sum_i q_i.
+/// The variables of a bond are its overstresses q_i [Pa]. An update is exact for a stretch that changes linearly in
+/// time.
+class MaxwellMemory
+{
+public:
+  /// A spring E in series with a dashpot E tau.
+  struct Branch
+  {
+    double modulus;         ///< E [Pa], > 0
+    double relaxation_time; ///< tau [s], > 0
+  };
+
+  /// @param branches 1 to max_history_variables of them
+  /// @throws std::invalid_argument for another number of branches, or one whose constants are not positive and finite
+  explicit MaxwellMemory(std::vector<Branch> branches);
+
+  const std::vector<Branch> &branches() const { return branches_; }
+  std::size_t n_variables() const { return branches_.size(); }
+
+  /// Axial stiffness that the branches add to that of the law in fast motion, sum E_i [Pa].
+  double largest_stiffness() const;
+
+  /// Energy in the springs per reference volume of the bond, sum q_i^2 / (2 E_i) [Pa].
+  double stored_energy(double stretch, const double *overstress) const;
+
+  /// Coefficients of an update over one duration.
+  struct Step
+  {
+    std::size_t n;
+    std::array<double, max_history_variables> decay;   ///< e^(-h/tau) [-]
+    std::array<double, max_history_variables> gain;    ///< E tau/h (1 - e^(-h/tau)) [Pa]; E for h = 0
+    std::array<double, max_history_variables> fluency; ///< 1 / (E tau) [1 / (Pa s)]
+  };
+  /// @param duration h [s], >= 0
+  Step step(double duration) const;
+
+private:
+  std::vector<Branch> branches_;
+};
+
+} // namespace latcon::lattice
+#endif
+
+#if !defined(LATCON_LATTICE_MAXWELL_MEMORY) || defined(LATCON_VECTORS)
+#define LATCON_LATTICE_MAXWELL_MEMORY
+namespace latcon::lattice::LATCON_FORMULAS
+{
+
+/// Updates the overstresses of a bond while its stretch changes from `before` to `now`.
+/// @param dissipation power of the dashpots per reference volume of the bond at the end, sum q_i^2 / (E_i tau_i) [Pa/s]
+/// @return sum q_i [Pa]
+template <class Number>
+inline Number advance(const MaxwellMemory::Step &step, Number before, Number now, Number *overstress,
+                      Number &dissipation)
+{
+  const Number change = now - before;
+  overstress[0] = step.decay[0] * overstress[0] + step.gain[0] * change;
+  Number sum = overstress[0];
+  dissipation = step.fluency[0] * (overstress[0] * overstress[0]);
+  for (std::size_t i = 1; i < step.n; ++i)
+  {
+    overstress[i] = step.decay[i] * overstress[i] + step.gain[i] * change;
+    sum = sum + overstress[i];
+    dissipation = dissipation + step.fluency[i] * (overstress[i] * overstress[i]);
+  }
+  return sum;
+}
+
+} // namespace latcon::lattice::LATCON_FORMULAS
+#endif

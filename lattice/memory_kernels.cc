@@ -1,0 +1,167 @@
+#include "lattice/memory_kernels.h"
+
+#include <variant>
+
+#include "lattice/instruction_sets.h"
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "lattice/memory_kernels.cc"
+#include <hwy/foreach_target.h>
+#include <hwy/highway.h>
+
+HWY_BEFORE_NAMESPACE();
+namespace latcon::lattice::kernels::HWY_NAMESPACE
+{
+
+#include "lattice/lanes.inc"
+
+} // namespace latcon::lattice::kernels::HWY_NAMESPACE
+
+#include "lattice/bonds/formulas_for_vectors.inc"
+
+namespace latcon::lattice::kernels::HWY_NAMESPACE
+{
+
+// Stretches and directions of bonds as bonds_of_row computes them; both 0 for absent bonds.
+struct Directions
+{
+  HWY_INLINE Directions(const BondConstants &bond, const RowOfBonds &row, std::size_t site, std::size_t kind)
+  {
+    const Sites near(row, site);
+    const std::size_t far = site + static_cast<std::size_t>(row.shift[kind]);
+    const Lanes dx = load(row.x + far) - near.x, dy = load(row.y + far) - near.y;
+    const Lanes distance = square_root(dx * dx + dy * dy);
+    present = hn::VecFromMask(D(), near.present(kind));
+    const Lanes inverse = where_present(reciprocal(distance));
+    nx = dx * inverse;
+    ny = dy * inverse;
+    stretch = (1. / bond.rest_length) * where_present(distance);
+  }
+  HWY_INLINE Lanes where_present(Lanes value) const { return {hn::IfThenElseZero(hn::MaskFromVec(present), value.v)}; }
+
+  Vector present;
+  Lanes nx, ny, stretch;
+};
+
+// Variables of bonds at the last update.
+template <class Pointer>
+HWY_INLINE void load_variables(const RememberedRow<Pointer> &remembered, std::size_t n, std::size_t site, Lanes *to)
+{
+  for (std::size_t v = 0; v < n; ++v)
+    to[v] = load(remembered.variable[v] + site);
+}
+
+template <class Step>
+double add_overstress_of(const Step &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+                         const RememberedRow<const double *> &remembered)
+{
+  Lanes power[block];
+  for (Lanes &sum : power)
+    sum = lanes(0.);
+  const double volume = bond.cross_section * bond.rest_length;
+  double *const fx = row.force[kind][0], *const fy = row.force[kind][1];
+  const std::size_t end = (row.n + block - 1) / block * block;
+  for (std::size_t site = 0; site < end; site += width())
+  {
+    const Directions bonds(bond, row, site, kind);
+    Lanes variables[max_history_variables], dissipation;
+    load_variables(remembered, step.n, site, variables);
+    const Lanes stress = advance(step, load(remembered.stretch + site), bonds.stretch, variables, dissipation);
+    const Lanes axial = bond.cross_section * bonds.where_present(stress);
+    store(load(fx + site) + axial * bonds.nx, fx + site);
+    store(load(fy + site) + axial * bonds.ny, fy + site);
+    Lanes &sum = power[site % block / width()];
+    sum = sum + volume * bonds.where_present(dissipation);
+  }
+  alignas(64) double sums[block];
+  for (std::size_t part = 0; part < block / width(); ++part)
+    store(power[part], sums + part * width());
+  double total = 0.;
+  for (const double sum : sums)
+    total += sum;
+  return total;
+}
+double add_overstress_of(const NoMemory::Step &, const BondConstants &, const RowOfBonds &, std::size_t,
+                         const RememberedRow<const double *> &)
+{
+  return 0.;
+}
+
+template <class Step>
+void update_memory_of(const Step &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+                      const RememberedRow<double *> &remembered)
+{
+  const std::size_t end = (row.n + block - 1) / block * block;
+  for (std::size_t site = 0; site < end; site += width())
+  {
+    const Directions bonds(bond, row, site, kind);
+    Lanes variables[max_history_variables], dissipation;
+    load_variables(remembered, step.n, site, variables);
+    advance(step, load(remembered.stretch + site), bonds.stretch, variables, dissipation);
+    for (std::size_t v = 0; v < step.n; ++v)
+      store(bonds.where_present(variables[v]), remembered.variable[v] + site);
+    store(bonds.stretch, remembered.stretch + site);
+  }
+}
+void update_memory_of(const NoMemory::Step &, const BondConstants &, const RowOfBonds &, std::size_t,
+                      const RememberedRow<double *> &)
+{
+}
+
+double AddOverstress(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+                     const RememberedRow<const double *> &remembered)
+{
+  return std::visit([&](const auto &of_kind) { return add_overstress_of(of_kind, bond, row, kind, remembered); }, step);
+}
+
+void UpdateMemory(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+                  const RememberedRow<double *> &remembered)
+{
+  std::visit([&](const auto &of_kind) { update_memory_of(of_kind, bond, row, kind, remembered); }, step);
+}
+
+} // namespace latcon::lattice::kernels::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace latcon::lattice::kernels
+{
+
+HWY_EXPORT(AddOverstress);
+HWY_EXPORT(UpdateMemory);
+
+double add_overstress(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+                      const RememberedRow<const double *> &remembered)
+{
+  return HWY_DYNAMIC_DISPATCH(AddOverstress)(step, bond, row, kind, remembered);
+}
+
+void update_memory(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+                   const RememberedRow<double *> &remembered)
+{
+  HWY_DYNAMIC_DISPATCH(UpdateMemory)(step, bond, row, kind, remembered);
+}
+
+Overstress overstress(const MemoryStep &step, const BondConstants &bond, double stretch, std::size_t place,
+                      const RememberedRow<const double *> &remembered)
+{
+  const auto of_bond = [&](const auto &s) -> Overstress
+  {
+    if constexpr (std::is_same_v<std::decay_t<decltype(s)>, NoMemory::Step>)
+      return {0., 0.};
+    else
+    {
+      std::array<double, max_history_variables> variables{};
+      for (std::size_t v = 0; v < s.n; ++v)
+        variables[v] = remembered.variable[v][place];
+      double dissipation = 0.;
+      const double stress =
+        formulas::advance(s, remembered.stretch[place], stretch, variables.data(), dissipation);
+      return {bond.cross_section * stress, bond.cross_section * bond.rest_length * dissipation};
+    }
+  };
+  return std::visit(of_bond, step);
+}
+
+} // namespace latcon::lattice::kernels
+#endif

@@ -1,0 +1,40 @@
+#pragma once
+
+#include "lattice/bonds/bond_memory.h"
+#include "lattice/row_kernels.h"
+
+/// @file
+/// The loops over the bonds of a row that have a memory, for each instruction set as in row_kernels.h. Rows whose bonds
+/// have none do not come here.
+namespace latcon::lattice::kernels
+{
+
+/// What the bonds of one kind that start in a row remember, by places counted from its first site.
+template <class Pointer>
+struct RememberedRow
+{
+  Pointer stretch;                                     ///< at the last update [-]
+  std::array<Pointer, max_history_variables> variable; ///< of BondMemory
+};
+
+/// Adds the overstress of the bonds of one kind that start in a row to `row.force`, the present stretch being reached
+/// in the duration of `step` since the last update.
+/// @return power that they dissipate [W/m]
+double add_overstress(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+                      const RememberedRow<const double *> &remembered);
+
+/// Updates what the bonds remember to the present stretch. Absent bonds remember 0.
+void update_memory(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+                   const RememberedRow<double *> &remembered);
+
+/// Overstress of one bond.
+struct Overstress
+{
+  double axial;       ///< [N/m], tension positive
+  double dissipation; ///< [W/m]
+};
+/// By the operations of add_overstress, so that both have the same bits. @param place of the remembered row
+Overstress overstress(const MemoryStep &step, const BondConstants &bond, double stretch, std::size_t place,
+                      const RememberedRow<const double *> &remembered);
+
+} // namespace latcon::lattice::kernels

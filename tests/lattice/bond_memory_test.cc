@@ -1,0 +1,435 @@
+#include "lattice/bonds/bond_memory.h"
+
+#include <any>
+#include <cmath>
+#include <cstring>
+#include <functional>
+#include <limits>
+#include <map>
+#include <stdexcept>
+
+#include <gtest/gtest.h>
+#include <omp.h>
+
+#include "lattice/simulation.h"
+#include "lattice/time_step.h"
+#include "tests/lattice/sheets.h"
+
+using namespace latcon;
+
+namespace
+{
+
+using namespace lattice;
+using Branch = MaxwellMemory::Branch;
+
+TEST(MaxwellMemory, HasPositiveConstantsAndARoomForItsBranches)
+{
+  EXPECT_NO_THROW(MaxwellMemory({{1e5, 1e-4}}));
+  EXPECT_NO_THROW(MaxwellMemory(std::vector<Branch>(max_history_variables, {1e5, 1e-4})));
+  EXPECT_THROW(MaxwellMemory({}), std::invalid_argument);
+  EXPECT_THROW(MaxwellMemory(std::vector<Branch>(max_history_variables + 1, {1e5, 1e-4})), std::invalid_argument);
+  const double infinity = std::numeric_limits<double>::infinity();
+  for (const Branch &branch : {Branch{0., 1.}, Branch{-1., 1.}, Branch{1., 0.}, Branch{1., -1.}, Branch{infinity, 1.},
+                               Branch{1., infinity}, Branch{std::nan(""), 1.}, Branch{1., std::nan("")}})
+    EXPECT_THROW(MaxwellMemory({branch}), std::invalid_argument);
+}
+
+// theory.md, eq. (L.28): at most a dozen roundings, of numbers up to 1, and their growth in log2(r / 0.5) squarings.
+TEST(MaxwellMemory, DecaysExponentially)
+{
+  for (const double r : {0., 1e-12, 1e-3, 0.3, 0.5, 0.51, 1., 7., 100., 749., 751., 1e9})
+  {
+    const double modulus = 2e5, time = 1e-4;
+    const MaxwellMemory::Step step = MaxwellMemory({{modulus, time}}).step(r * time);
+    const double gain = r > 0. ? modulus * -std::expm1(-r) / r : modulus;
+    EXPECT_NEAR(step.decay[0], std::exp(-r), 2e-15) << r;
+    EXPECT_NEAR(step.gain[0], gain, 4e-15 * gain) << r;
+  }
+  // No time, no change of any bit.
+  EXPECT_EQ(MaxwellMemory({{2e5, 1e-4}}).step(0.).decay[0], 1.);
+}
+
+// The law has a stretch that changes linearly, however long the steps: q = E tau rate (1 - e^(-t/tau)).
+// theory.md, eq. (L.28).
+TEST(MaxwellMemory, IsExactOnARamp)
+{
+  const std::vector<Branch> branches{{2e5, 1e-5}, {1e5, 1e-3}};
+  const MaxwellMemory memory(branches);
+  const double rate = 300.;
+  for (const double h : {1e-7, 3e-6, 2e-4})
+  {
+    const MaxwellMemory::Step step = memory.step(h);
+    double q[2] = {0., 0.}, dissipation = 0., sum = 0.;
+    const int n = 50;
+    for (int i = 0; i < n; ++i)
+      sum = formulas::advance(step, 1. + i * h * rate, 1. + (i + 1) * h * rate, q, dissipation);
+    double exact = 0., exact_dissipation = 0.;
+    for (const auto &[modulus, time] : branches)
+    {
+      const double of_branch = -modulus * time * rate * std::expm1(-n * h / time);
+      exact += of_branch;
+      exact_dissipation += of_branch * of_branch / (modulus * time);
+    }
+    // Each difference of stretches is off by the round-off of 1.
+    const double round_off = 4. * 3e5 * n * 2.3e-16 + 1e-13 * exact;
+    EXPECT_NEAR(sum, exact, round_off) << h;
+    EXPECT_NEAR(dissipation, exact_dissipation, 2. * exact_dissipation * round_off / exact) << h;
+    EXPECT_NEAR(memory.stored_energy(1., q), 0.5 * (q[0] * q[0] / 2e5 + q[1] * q[1] / 1e5), 1e-15 * sum);
+  }
+}
+
+TEST(CustomMemory, HasToBeAtRestWithoutAPast)
+{
+  struct Mistaken : sheets::BranchFromOutside
+  {
+    Mistaken(std::size_t n_, double stress_, double stiffness_)
+      : BranchFromOutside({1e5, 1e-4}), n(n_), stress(stress_), stiffness(stiffness_)
+    {
+    }
+    std::size_t n_variables() const noexcept override { return n; }
+    double advance(double, double, double, double *) const noexcept override { return stress; }
+    double largest_stiffness() const noexcept override { return stiffness; }
+    std::size_t n;
+    double stress, stiffness;
+  };
+  const auto with = [](std::size_t n, double stress, double stiffness)
+  { return CustomMemory(std::make_shared<Mistaken>(n, stress, stiffness)); };
+  EXPECT_THROW(CustomMemory(nullptr), std::invalid_argument);
+  EXPECT_NO_THROW(with(1, 0., 1e5));
+  EXPECT_THROW(with(0, 0., 1e5), std::invalid_argument);
+  EXPECT_THROW(with(max_history_variables + 1, 0., 1e5), std::invalid_argument);
+  EXPECT_THROW(with(1, 1., 1e5), std::invalid_argument);
+  EXPECT_THROW(with(1, 0., -1.), std::invalid_argument);
+  EXPECT_THROW(with(1, 0., std::nan("")), std::invalid_argument);
+}
+
+// Velocity Verlet, and Runge-Kutta-Chebyshev of five stages.
+const TimeStepping verlet{2e-7}, chebyshev{1e-6, 5};
+
+// A sheet at rest in the reference configuration that is stretched at once and held: its sites stay where they are, in
+// equilibrium by symmetry, and each branch of a bond decays with its own time.
+struct HeldSheet
+{
+  HeldSheet(const TimeStepping &stepping, const Material &material_)
+    : sheet(sheets::square(12)), material(material_), F(sheets::stretched(1.4, 1.3))
+  {
+    State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
+    relax_memory(state, sheet, material);
+    const State loaded = homogeneous_state(sheet, material, F, Edges::held);
+    state.x = loaded.x;
+    state.y = loaded.y;
+    simulation = std::make_unique<Simulation>(sheet, material, std::move(state), stepping);
+  }
+  // Sum over bonds and branches of A0 l (E e^2 / 2) e^(-2 t / tau), e being the stretch that came at once.
+  double stored_at(double time) const
+  {
+    double sum = 0.;
+    for_each_bond(simulation->state(), sheet,
+                  [&](std::size_t, std::size_t kind, std::size_t)
+                  {
+                    const Shell &shell = *material.shell(kind);
+                    const double l = sheet.rest_length(kind), e = (F * sheet.bond_vector(kind)).norm() / l - 1.;
+                    const std::vector<Branch> branches =
+                      TriangularLattice::is_nearest(kind)
+                        ? std::get<MaxwellMemory>(shell.memory).branches()
+                        : std::vector<Branch>{{1.5e5, 5e-5}}; // sheets::rubber_with_memory
+                    for (const auto &[modulus, tau] : branches)
+                      sum += cross_section(shell, sheet) * l * 0.5 * modulus * e * e * std::exp(-2. * time / tau);
+                  });
+    return sum;
+  }
+  TriangularLattice sheet;
+  Material material;
+  Eigen::Matrix2d F;
+  std::unique_ptr<Simulation> simulation;
+};
+
+// theory.md, eqs. (L.27) and (L.29).
+TEST(BondMemory, RelaxesInAHeldSheet)
+{
+  for (const TimeStepping &stepping : {verlet, chebyshev})
+  {
+    HeldSheet held(stepping, sheets::rubber_with_memory());
+    Simulation &simulation = *held.simulation;
+    const double stored = held.stored_at(0.), elastic = elastic_energy(simulation.state(), held.sheet, held.material);
+    EXPECT_NEAR(simulation.energies().elastic, elastic + stored, 1e-12 * elastic);
+    const auto steps = static_cast<int>(std::lround(1e-4 / stepping.step));
+    for (int step = 1; step <= steps; ++step)
+    {
+      simulation.step();
+      // One rounding a step; sites move by the round-off of their forces.
+      const double now = memory_energy(simulation.state(), held.sheet, held.material);
+      ASSERT_NEAR(now, held.stored_at(step * stepping.step), 1e-11 * stored) << step;
+    }
+    ASSERT_LT(held.stored_at(1e-4), 0.2 * stored);
+    // The trapezoidal rule is off by (h^2 / 12) (4 / tau^2) of each e^(-2t/tau), at most by that of the shortest time.
+    const EnergyBalance e = simulation.energies();
+    const double trapezoidal = std::pow(stepping.step / 2e-5, 2) / 3.;
+    EXPECT_NEAR(e.viscous, stored - held.stored_at(1e-4), trapezoidal * stored);
+    EXPECT_LT(std::abs(e.imbalance()), trapezoidal * stored);
+    EXPECT_EQ(e.initial, e.elastic + e.kinetic + e.viscous - e.imbalance());
+    EXPECT_LT(e.kinetic, 1e-20 * stored);
+  }
+}
+
+// Oscillations of a noisy sheet, in which stretches do not change linearly: energies at a time that all steps meet.
+double observed_order(const std::function<TimeStepping(double)> &with_step, double h,
+                      const std::function<double(const Simulation &)> &quantity)
+{
+  const TriangularLattice sheet = sheets::square(10);
+  const Material material = sheets::rubber_with_memory(5.);
+  std::vector<double> results;
+  for (const double step : {h, h / 2., h / 4.})
+  {
+    State state = homogeneous_state(sheet, material, sheets::stretched(1.3, 1.4), Edges::held);
+    add_noise(state, sheet, 0.05 * sheets::spacing, 5);
+    Simulation simulation(sheet, material, std::move(state), with_step(step));
+    for (int i = 0; i < static_cast<int>(std::lround(4e-5 / step)); ++i)
+      simulation.step();
+    results.push_back(quantity(simulation));
+  }
+  return std::log2(std::abs(results[0] - results[1]) / std::abs(results[1] - results[2]));
+}
+
+TEST(BondMemory, LeavesIntegratorsAtSecondOrder)
+{
+  const auto of_verlet = [](double h) { return TimeStepping(h); };
+  const auto of_chebyshev = [](double h) { return TimeStepping(h, 6); };
+  const auto stored = [](const Simulation &s) { return memory_energy(s.state(), s.lattice(), s.material()); };
+  const auto kinetic = [](const Simulation &s) { return kinetic_energy(s.state(), s.lattice()); };
+  for (const auto &quantity : {std::function<double(const Simulation &)>(stored), {kinetic}})
+  {
+    EXPECT_NEAR(observed_order(of_verlet, 1e-7, quantity), 2., 0.1);
+    EXPECT_NEAR(observed_order(of_chebyshev, 2e-7, quantity), 2., 0.15);
+  }
+}
+
+// A running crack in a sheet with branches.
+std::unique_ptr<Simulation> crack(const TriangularLattice &sheet, const Material &material, unsigned int stages = 0)
+{
+  const Eigen::Matrix2d F = sheets::stretched(2.3, 2.9);
+  State state = homogeneous_state(sheet, material, F, Edges::held);
+  add_noise(state, sheet, 0.05 * sheets::spacing, 1);
+  const double step = 0.5 * time_step_limits(sheet, material, 0.3).combined;
+  const TimeStepping stepping = stages > 0 ? TimeStepping(3. * step, stages) : TimeStepping(step);
+  auto simulation = std::make_unique<Simulation>(sheet, material, std::move(state), stepping,
+                                                 Fracture(sheet, material, 3.05, BehindTipToughening{2.5e-3, 3.}, F));
+  simulation->cut(sheets::middle_row(sheet, 4, 8));
+  return simulation;
+}
+TriangularLattice cracked_sheet()
+{
+  return {sheets::spacing, 40. * sheets::spacing, 16. * sheets::spacing, Orientation::rows_along_crack};
+}
+
+// theory.md, eq. (L.29).
+TEST(BondMemory, ClosesTheEnergyBalanceThroughFracture)
+{
+  const TriangularLattice sheet = cracked_sheet();
+  for (const unsigned int stages : {0u, 8u})
+  {
+    const auto simulation = crack(sheet, sheets::rubber_with_memory(), stages);
+    for (int step = 0; step < 2000; ++step)
+      simulation->step();
+    const EnergyBalance e = simulation->energies();
+    EXPECT_GT(simulation->n_broken(), 30u);
+    const double stored = memory_energy(simulation->state(), sheet, simulation->material());
+    EXPECT_GT(stored, 1e-3 * e.initial) << "too quiet to show anything";
+    EXPECT_LT(std::abs(e.imbalance()), (stages == 0 ? 1e-5 : 1e-4) * e.initial);
+  }
+}
+
+bool same_bits(const Field &a, const Field &b)
+{
+  return a.size() == b.size() && std::memcmp(a.data(), b.data(), a.size() * sizeof(double)) == 0;
+}
+
+void expect_same_bits(const Simulation &one, const Simulation &other)
+{
+  const State &a = one.state(), &b = other.state();
+  EXPECT_TRUE(same_bits(a.x, b.x));
+  EXPECT_TRUE(same_bits(a.vy, b.vy));
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  {
+    EXPECT_TRUE(same_bits(a.history.kinds[kind].stretch, b.history.kinds[kind].stretch));
+    for (std::size_t v = 0; v < a.history.kinds[kind].variables.size(); ++v)
+      EXPECT_TRUE(same_bits(a.history.kinds[kind].variables[v], b.history.kinds[kind].variables[v]));
+  }
+  EXPECT_EQ(one.n_broken(), other.n_broken());
+  EXPECT_EQ(one.energies().viscous, other.energies().viscous);
+  EXPECT_EQ(one.energies().imbalance(), other.energies().imbalance());
+}
+
+// An archive in memory.
+using Stored = std::map<std::string, std::any>;
+template <bool is_loading>
+class Archive
+{
+public:
+  static constexpr bool loads = is_loading;
+  explicit Archive(Stored &stored, std::string prefix = "") : stored_(stored), prefix_(std::move(prefix)) {}
+
+  void operator()(const std::string &name, Fracture &part) const
+  {
+    Archive inner(stored_, prefix_ + name + "/");
+    part.archive(inner);
+  }
+  template <class Value>
+  void operator()(const std::string &name, Value &value) const
+  {
+    if constexpr (loads)
+      value = std::any_cast<Value>(stored_.at(prefix_ + name));
+    else
+      stored_[prefix_ + name] = value;
+  }
+
+private:
+  Stored &stored_;
+  std::string prefix_;
+};
+
+TEST(BondMemory, GoesOnWithTheSameBitsFromAnArchive)
+{
+  const TriangularLattice sheet = cracked_sheet();
+  for (const unsigned int stages : {0u, 8u})
+  {
+    const auto whole = crack(sheet, sheets::rubber_with_memory(), stages);
+    Stored stored;
+    for (int step = 0; step < 1200; ++step)
+    {
+      if (step == 600)
+      {
+        Archive<false> saving(stored);
+        whole->archive(saving);
+      }
+      whole->step();
+    }
+    const auto resumed = crack(sheet, sheets::rubber_with_memory(), stages);
+    Archive<true> loading(stored);
+    resumed->archive(loading);
+    for (int step = 600; step < 1200; ++step)
+      resumed->step();
+    EXPECT_GT(whole->n_broken(), 20u);
+    expect_same_bits(*resumed, *whole);
+  }
+}
+
+TEST(BondMemory, HasTheSameBitsForAllThreadsAndInstructionSets)
+{
+  // Of more than min_places_for_threads.
+  const TriangularLattice sheet(sheets::spacing, 90. * sheets::spacing, 60. * sheets::spacing,
+                                Orientation::rows_along_crack);
+  ASSERT_GE(sheet.n_places(), min_places_for_threads);
+  const int threads_before = omp_get_max_threads();
+  const auto run = [&](int threads, const std::string &set)
+  {
+    omp_set_num_threads(threads);
+    kernels::use_instruction_set(set);
+    auto simulation = crack(sheet, sheets::rubber_with_memory());
+    for (int step = 0; step < 60; ++step)
+      simulation->step();
+    return simulation;
+  };
+  const std::vector<std::string> sets = kernels::instruction_sets();
+  const auto one = run(1, sets.front());
+  for (const int threads : {2, 3, 40})
+    expect_same_bits(*run(threads, sets.front()), *one);
+  for (const std::string &set : sets)
+    expect_same_bits(*run(2, set), *one);
+  kernels::use_instruction_set(sets.front());
+  omp_set_num_threads(threads_before);
+}
+
+// Forces that bonds between an update and the next have by the kernel of a row and by that of one bond.
+TEST(BondMemory, ActsOnOneSiteAsInTheLoop)
+{
+  for (const Periodic periodic : {Periodic{}, Periodic{true, true}})
+  {
+    const TriangularLattice sheet(sheets::spacing, 13. * sheets::spacing, 9. * sheets::spacing,
+                                  Orientation::rows_along_crack, periodic);
+    const Material material = sheets::rubber_with_memory();
+    State state = homogeneous_state(sheet, material, sheets::stretched(1.6, 1.9), Edges::free);
+    relax_memory(state, sheet, material);
+    Forces forces(sheet, material), without(sheet, sheets::rubber());
+    for (const unsigned int seed : {1u, 2u})
+    {
+      forces.update_memory(state);
+      add_noise(state, sheet, 0.1 * sheets::spacing, seed);
+      state.bonds.remove(sheet.index(4, 4 + seed), 1);
+      forces.set_elapsed(3e-5);
+    }
+    forces.evaluate(state, state.vx, state.vy);
+    without.evaluate(state, state.vx, state.vy);
+    double difference = 0.;
+    for (std::size_t place = 0; place < sheet.n_places(); ++place)
+      if (sheet.is_site(place))
+      {
+        const Eigen::Vector2d force = forces.on_site(state, state.vx, state.vy, place);
+        ASSERT_EQ(force.x(), forces.fx()[place]);
+        ASSERT_EQ(force.y(), forces.fy()[place]);
+        difference = std::max(difference, std::abs(force.x() - without.fx()[place]));
+      }
+    EXPECT_GT(difference, 0.);
+    // An update changes neither forces nor power.
+    const Field fx = forces.fx();
+    const double power = forces.viscous_power();
+    EXPECT_GT(power, 0.);
+    forces.update_memory(state);
+    forces.evaluate(state, state.vx, state.vy);
+    EXPECT_TRUE(same_bits(forces.fx(), fx));
+    EXPECT_EQ(forces.viscous_power(), power);
+  }
+}
+
+// Branches from outside give latcon's own to the round-off of std::exp, step by step.
+TEST(CustomMemory, RelaxesAsTheSameBranchInTheHotLoop)
+{
+  const Branch branch{1.5e5, 5e-5};
+  Material inside = sheets::nearest_only(5.), outside = inside;
+  inside.nearest.memory = MaxwellMemory({branch});
+  outside.nearest.memory = sheets::memory_from_outside(branch);
+  const TriangularLattice sheet = sheets::square(10);
+  const auto run = [&](const Material &material)
+  {
+    State state = homogeneous_state(sheet, material, sheets::stretched(1.3, 1.4), Edges::held);
+    add_noise(state, sheet, 0.05 * sheets::spacing, 5);
+    Simulation simulation(sheet, material, std::move(state), 2e-7);
+    for (int step = 0; step < 100; ++step)
+      simulation.step();
+    return simulation.energies();
+  };
+  const EnergyBalance in = run(inside), out = run(outside);
+  EXPECT_GT(in.viscous, 0.);
+  // 100 steps of some 1e-15 each.
+  EXPECT_NEAR(in.viscous, out.viscous, 1e-12 * in.viscous);
+  EXPECT_NEAR(in.elastic, out.elastic, 1e-12 * in.elastic);
+  EXPECT_NEAR(in.kinetic, out.kinetic, 1e-11 * in.kinetic);
+}
+
+// Fast motion sees the springs of all branches.
+TEST(BondMemory, BoundsTheTimeStepByItsStiffness)
+{
+  const TriangularLattice sheet = sheets::square(6);
+  Material material = sheets::nearest_only(0.);
+  material.nearest.law = LinearBond{2e5};
+  const double elastic = time_step_limits(sheet, material, 0.5).elastic;
+  material.nearest.memory = MaxwellMemory({{4e5, 1e-4}, {2e5, 1e-3}});
+  EXPECT_DOUBLE_EQ(time_step_limits(sheet, material, 0.5).elastic, 0.5 * elastic);
+  material.nearest.viscosity = 1e-3;
+  EXPECT_DOUBLE_EQ(chebyshev_step(sheet, material, 0.5), 1e-3 / 8e5);
+}
+
+// A material without memory stores nothing, and statics is that of the law alone.
+TEST(BondMemory, IsLeftOutOfEquilibrium)
+{
+  const TriangularLattice sheet = sheets::square(6);
+  State state = homogeneous_state(sheet, sheets::rubber(), sheets::stretched(1.2, 1.2), Edges::held);
+  const Simulation simulation(sheet, sheets::rubber(), state, 1e-7);
+  EXPECT_TRUE(simulation.state().history.empty());
+  EXPECT_FALSE(sheets::rubber().has_memory());
+  EXPECT_TRUE(sheets::rubber_with_memory().has_memory());
+  EXPECT_FALSE(without_dashpots(sheets::rubber_with_memory()).has_memory());
+}
+
+} // namespace
