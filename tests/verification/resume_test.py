@@ -28,7 +28,7 @@ STRIP = ["fracture", CASES / "quick.prm", "--skip-verification", "--no-report", 
 
 
 def files(folder):
-    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file() and path.name != "run.json"}
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file() and path.name not in ("run.json", "log.txt")}
 
 
 class Resume(TemporaryFolder):

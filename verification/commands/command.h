@@ -50,9 +50,22 @@ support::ExitCode report(const input::Options &options, const std::string &direc
 support::ExitCode run_study(const input::Options &options, const std::string &study);          ///< `latcon study`
 support::ExitCode print_schema(const input::Options &options);                                 ///< `latcon schema`
 
+/// `latcon entries`: lists the entries of a section, or of all if it is empty. @throws InputError for an unknown section
+support::ExitCode print_entries(const std::string &section);
+
+/// `latcon help TOPIC` for a section or an entry. @param commands names of the commands, for typing errors
+/// @throws InputError for an unknown topic
+support::ExitCode print_topic(const std::string &topic, const std::vector<std::string> &commands);
+
+/// `latcon init`: creates the folder and a commented case in it. @throws InputError if the case exists @throws OutputError
+support::ExitCode init(const std::string &directory);
+
 /// Draws pictures and report.html of a run, or of a folder of several, in a directory that this process has locked. On
-/// rank 0. @return the exit code of the script @throws OutputError
-support::ExitCode draw_report(const std::string &directory, bool quiet);
+/// rank 0.
+/// @param quiet whether the script prints nothing
+/// @param shows_progress whether a progress line is shown meanwhile
+/// @return the exit code of the script @throws OutputError
+support::ExitCode draw_report(const std::string &directory, bool quiet, bool shows_progress = false);
 
 /// Draws the page of a study, study.html, from the files in its output directory. @throws OutputError
 void study_page(const std::string &directory);
@@ -86,7 +99,7 @@ public:
   /// The same for a run without a case: run.json alone.
   explicit Run(const input::Options &options) : Run(options, nullptr) {}
 
-  /// Says from which checkpoint the run goes on, in words and in run.json.
+  /// Reports the checkpoint from which the run continues, in words and in run.json.
   void note(const output::Checkpoints &checkpoints);
 
   const std::string &directory() const { return directory_; }
@@ -95,11 +108,11 @@ public:
   /// Whether to print: on rank 0, unless --quiet.
   bool is_verbose() const { return is_verbose_; }
 
-  /// Writes results.json, results.csv, the final run.json, prints the table and then the rows that fail, and says how
-  /// the run ended.
+  /// Writes results.json, results.csv and the final run.json, and prints the rows. Of many rows it prints the number of
+  /// each claim and those that fail, unless --verbose.
   support::ExitCode finish(const output::Results &results);
 
-  /// The same for a run that was stopped by a signal: what is known is written.
+  /// Does the same for a run that was stopped by a signal.
   support::ExitCode interrupted(const output::Results &results);
 
   /// Writes results.json, results.csv and the final run.json, prints nothing. @return `exit_code`
@@ -114,27 +127,33 @@ private:
   struct Record
   {
     explicit Record(const input::Options &options) : directory(options.output_dir), info(options.arguments) {}
-    void write(std::optional<support::ExitCode> with) const;
+    void write(std::optional<support::ExitCode> with) const; // also the log
+    void write_log() const;
 
     std::string directory;
     std::unique_ptr<support::FolderLock> lock; // on rank 0
     output::RunInfo info;
     std::string verdict;
     std::optional<support::ExitCode> exit_code; // the one written last
+    std::string log_header;                     // what precedes the output of this program in log.txt
+    std::string log_end;                        // the message that it ends with, if any
+    bool keeps_log = true;                      // false if standard output is log.txt already
   };
-  friend void record_exit_code(support::ExitCode exit_code);
+  void begin_log(const input::Options &options);
+  friend void record_exit_code(support::ExitCode exit_code, const std::string &message);
   static std::shared_ptr<Record> last; // on rank 0, the record of the last run that began
 
   std::shared_ptr<Record> record_;
   std::string directory_;
-  bool is_root_, is_verbose_, resumes_;
+  bool is_root_, is_verbose_, prints_all_, resumes_;
 };
 
-/// Writes what the program ends with into the run.json of the run that began, if any, and forgets the run. To be called
-/// once signals have no effect. @throws OutputError
-void record_exit_code(support::ExitCode exit_code);
+/// Writes the exit code of the program into run.json, and its output into log.txt, of the run that began, if any, and
+/// releases the run. To be called once signals have no effect.
+/// @param message printed to standard error, if any @throws OutputError
+void record_exit_code(support::ExitCode exit_code, const std::string &message = {});
 
-/// What the program ends with if nothing but the results decides.
+/// Exit code of a program whose results alone decide.
 support::ExitCode exit_code_of(const output::Results &results);
 
 /// On which lattices claims are checked.

@@ -12,6 +12,7 @@
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/continuum_model.h"
 #include "verification/commands/command.h"
+#include "verification/commands/cost.h"
 #include "verification/commands/signals.h"
 #include "verification/output/checkpoints.h"
 #include "verification/output/continuum_record.h"
@@ -382,7 +383,7 @@ support::ExitCode run_continuum(const input::Options &options)
   const resources::MemoryNeed memory = resources::continuum_memory(input, size);
   if (options.dry_run)
     print_dry_run(options, parameters.resolved_text() + resources::memory_text(memory));
-  resources::require_memory(memory);
+  require_memory(options, memory);
   bridge::ContinuumModel model(input);
   if (moves && !input.continuum.time_step)
   {
@@ -392,6 +393,10 @@ support::ExitCode run_continuum(const input::Options &options)
   std::optional<Motion> motion;
   if (moves)
     motion.emplace(input, model);
+  const double steps = moves ? std::ceil(input.end_time / motion_time_step(input, model)) : 0.;
+  const double frames =
+    2. + (moves && input.frame_interval > 0. ? std::floor(input.end_time / input.frame_interval) : 0.);
+  const double seconds = resources::continuum_seconds(input, size, steps, frames);
   if (options.dry_run)
   {
     const continuum::Sheet sheet(model.mesh(), model.constitution(), input.continuum.degree, model.conditions());
@@ -400,18 +405,14 @@ support::ExitCode run_continuum(const input::Options &options)
          << " unknowns\n";
     if (input.continuum.gradient != input::ContinuumGradient::none)
       text << "# lengths: static " << model.static_length() << " m, inertia " << model.inertia_length() << " m\n";
-    double steps = 0., frames = 2.;
     if (moves)
-    {
-      const double step = motion_time_step(input, model);
-      steps = std::ceil(input.end_time / step);
-      frames += input.frame_interval > 0. ? std::floor(input.end_time / input.frame_interval) : 0.;
-      text << "# motion: time step " << step << " s, " << steps << " steps\n";
-    }
-    text << "# time: about " << std::ceil(resources::continuum_seconds(input, size, steps, frames)) << " s\n";
+      text << "# motion: time step " << motion_time_step(input, model) << " s, " << steps << " steps\n";
+    text << "# time: about " << std::ceil(seconds) << " s\n";
     print_dry_run(options, text.str());
+    require_time(options, seconds);
     return support::ExitCode::done;
   }
+  require_time(options, seconds);
   output::Checkpoints checkpoints(options, parameters, input, "continuum");
   Run run(options, parameters);
   run.note(checkpoints);

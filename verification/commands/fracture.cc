@@ -4,6 +4,7 @@
 #include "support/largest_error.h"
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/commands/command.h"
+#include "verification/commands/cost.h"
 #include "verification/commands/crack_summary.h"
 #include "verification/commands/dry_run.h"
 #include "verification/commands/lattice_motion.h"
@@ -137,24 +138,26 @@ Crack run_crack(const input::Case &input, const lattice::TriangularLattice &shee
   return {crack, measured_results(input, record, crack)};
 }
 
-// Pictures and page of a run, and where the page is. Collective: an exception on one rank would end the others, rank 0
-// as it draws. @return whether they could be made, on rank 0
-support::ExitCode draw_page(const Run &run)
+// Draws pictures and page of a run, then prints the seconds of each phase and the path of the page. Collective: an
+// exception on one rank would end the others while rank 0 draws. @return exit code of the drawing, on rank 0
+support::ExitCode draw_page(Run &run)
 {
   support::ExitCode exit_code = support::ExitCode::done;
   if (run.is_root())
   {
-    const support::ExitCode drawn = draw_report(run.directory(), true);
+    auto phase = run.info().stopwatch().phase("report");
+    const support::ExitCode drawn = draw_report(run.directory(), true, run.is_verbose());
+    phase.stop();
     if (drawn != support::ExitCode::claim_failed)
       exit_code = drawn;
     if (run.is_verbose() && exit_code == support::ExitCode::done)
-      std::cout << run.directory() << "/report.html" << std::endl;
+      std::cout << times_text(run.info().stopwatch().times()) << "; " << run.directory() << "/report.html" << std::endl;
   }
   MPI_Barrier(MPI_COMM_WORLD);
   return exit_code;
 }
 
-// The claims on the case's own material and pre-stretch. A crack that they refuse leaves its page all the same.
+// Checks the claims on the case's own material and pre-stretch. A crack that they refuse leaves its page all the same.
 output::Results passed_or_reported(const input::Case &input, const input::Options &options, Run &run)
 {
   try
@@ -168,7 +171,7 @@ output::Results passed_or_reported(const input::Case &input, const input::Option
       {
         draw_page(run);
       }
-      catch (const support::OutputError &error) // what the claims say weighs more
+      catch (const support::OutputError &error) // the failed claims are the message that matters
       {
         std::cerr << "latcon: " << error.what() << std::endl;
       }
@@ -190,18 +193,21 @@ support::ExitCode run_fracture(const input::Options &options)
 
   const lattice::TriangularLattice sheet = input.lattice();
   const lattice::Material material = input.material();
+  const lattice::TimeStepping stepping = input.fracture_time_stepping();
+  const double seconds = rough_seconds(input, stepping, resources::expected_steps(input, stepping));
   const bool claims = !options.skip_verification;
   const resources::MemoryNeed memory = resources::lattice_memory(input, resources::RunKind::fracture, claims);
   if (options.dry_run)
   {
     print_dry_run(options, parameters.resolved_text() + resources::memory_text(memory));
-    resources::require_memory(memory);
+    require_memory(options, memory);
     if (!options.quiet)
-      print_dry_run(options, lattice_text(input, input.fracture_time_stepping(), resources::RunKind::fracture, claims,
-                                          !options.no_report));
+      print_dry_run(options, lattice_text(input, stepping, resources::RunKind::fracture, claims, !options.no_report));
+    require_time(options, seconds);
     return support::ExitCode::done;
   }
-  resources::require_memory(memory);
+  require_memory(options, memory);
+  require_time(options, seconds);
 
   output::Checkpoints checkpoints(options, parameters, input, "fracture");
   Run run(options, parameters);
@@ -221,8 +227,12 @@ support::ExitCode run_fracture(const input::Options &options)
     std::cout << crack_summary(input, crack.measurement, results) << std::flush;
   }
   if (options.no_report || exit_code == support::ExitCode::interrupted)
+  {
+    if (run.is_verbose())
+      std::cout << times_text(run.info().stopwatch().times()) << "; " << run.directory() << std::endl;
     return exit_code;
-  // The verdict in the page is the one returned here; a crack without its page did not end well.
+  }
+  // The verdict in the page is the one returned here; a crack without its page has failed.
   const support::ExitCode drawn = draw_page(run);
   return exit_code == support::ExitCode::done ? drawn : exit_code;
 }

@@ -5,6 +5,7 @@
 #include "verification/bridge/homogenisation.h"
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/commands/command.h"
+#include "verification/commands/cost.h"
 #include "verification/commands/dry_run.h"
 #include "verification/commands/lattice_motion.h"
 #include "verification/commands/signals.h"
@@ -94,16 +95,20 @@ support::ExitCode run_lattice(const input::Options &options)
   const lattice::Material material = input.material();
   const resources::RunKind kind = moves ? resources::RunKind::dynamics : resources::RunKind::equilibrium;
   const resources::MemoryNeed memory = resources::lattice_memory(input, kind);
+  const lattice::TimeStepping stepping = input.lattice_time_stepping();
+  const double seconds = moves ? rough_seconds(input, stepping, input.end_time / stepping.step) : 0.;
   if (options.dry_run)
   {
     print_dry_run(options, parameters.resolved_text() + resources::memory_text(memory));
-    resources::require_memory(memory);
+    require_memory(options, memory);
     if (!options.quiet)
-      print_dry_run(options, lattice_text(input, input.lattice_time_stepping(), kind));
+      print_dry_run(options, lattice_text(input, stepping, kind));
+    require_time(options, seconds);
     return support::ExitCode::done;
   }
   output::Checkpoints checkpoints(options, parameters, input, "lattice");
-  resources::require_memory(memory);
+  require_memory(options, memory);
+  require_time(options, seconds);
   Run run(options, parameters);
   run.note(checkpoints);
   output::Results results;

@@ -11,6 +11,7 @@
 #include "support/folder_lock.h"
 #include "support/machine_memory.h"
 #include "verification/commands/command.h"
+#include "verification/commands/cost.h"
 #include "verification/commands/signals.h"
 #include "verification/input/input_file.h"
 #include "verification/output/output_file.h"
@@ -248,10 +249,10 @@ support::ExitCode run_study(const input::Options &options, const std::string &na
       study::print_plan(std::cout, results.study, results.plan, n_cores);
       std::cout << resources::memory_text(memory);
     }
-    resources::require_memory(memory);
+    require_memory(options, memory);
     return support::ExitCode::done;
   }
-  resources::require_memory(memory);
+  require_memory(options, memory);
 
   Run run(options);
   run.info().add("skip_verification", options.skip_verification);

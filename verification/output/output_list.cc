@@ -70,12 +70,12 @@ std::vector<fs::path> files_of(const fs::path &folder, const Names &names)
   return files;
 }
 
-// The first name that is free, or of a folder to which files were moved before.
+// The first name that is free.
 fs::path folder_for_earlier(const fs::path &folder)
 {
   const fs::path plain = folder / "earlier-run";
   fs::path aside = plain;
-  for (int i = 2; fs::exists(aside) && !fs::exists(aside / output_list_name); ++i)
+  for (int i = 2; fs::exists(fs::symlink_status(aside)); ++i)
     aside = plain.string() + "-" + std::to_string(i);
   return aside;
 }
@@ -126,12 +126,6 @@ fs::path set_earlier_output_aside(const fs::path &folder, const fs::path &keep)
       return {};
     const fs::path aside = folder_for_earlier(folder);
     fs::create_directory(aside);
-    // The list is there only while the folder is whole: files that a killed run had moved by half are nobody's to
-    // remove, and the next run takes another folder.
-    const std::vector<fs::path> older = files_of(aside, names_in(aside));
-    fs::remove(aside / output_list_name);
-    for (const fs::path &file : older)
-      fs::remove(file);
     for (const fs::path &file : files)
       fs::rename(file, aside / file.filename());
     write_names(aside, names);

@@ -22,8 +22,8 @@ void begin_output_list(const std::filesystem::path &folder);
 /// @throws OutputError
 void list_output(const std::filesystem::path &file);
 
-/// Moves the files that the list of an output directory names into a folder `earlier-run` in it, in the place of those
-/// that were moved there before. Files that are not listed stay, also in that folder.
+/// Moves the files that the list of an output directory names into a folder in it: `earlier-run`, or if that exists
+/// `earlier-run-2` and so on. Files that are not listed stay.
 /// @param keep a file that stays where it is, listed or not; may be empty
 /// @return the folder, or an empty path if there was nothing to move
 /// @throws OutputError
