@@ -151,7 +151,7 @@ support::ExitCode print_help(const CLI::App &app, const std::string &topic)
   if (!topic.empty() && !is_command)
     return print_topic(topic, names);
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-    std::cout << (is_command ? app.get_subcommand(topic)->help() : app.help());
+    std::cout << (is_command ? app.get_subcommand(topic)->help(app.get_name()) : app.help());
   return support::ExitCode::done;
 }
 
