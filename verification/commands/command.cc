@@ -106,12 +106,12 @@ Run::Run(const input::Options &options, const input::Parameters *parameters)
     if (parameters != nullptr)
       output::write_file(directory_ + "/case.prm", parameters->resolved_text());
     begin_log(options);
-    const SignalDeferral deferral; // a run.json that is there gets the exit code
+    const SignalDeferral deferral; // once run.json exists, it gets the exit code
     record_->write(std::nullopt);
     last = record_;
     on_interruption([record = record_] { record->write(support::ExitCode::interrupted); });
   }
-  // No rank writes beside rank 0 before the directory is there.
+  // No other rank writes before the directory exists.
   MPI_Barrier(MPI_COMM_WORLD);
 }
 
@@ -131,7 +131,7 @@ void Run::clear(const input::Options &options, bool has_case) const
   output::begin_output_list(directory_);
 }
 
-// A log that a resumed run finds is continued.
+// A resumed run appends to the existing log.
 void Run::begin_log(const input::Options &options)
 {
   const std::string file = directory_ + "/log.txt";

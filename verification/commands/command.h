@@ -23,24 +23,24 @@ class Checkpoints;
 namespace latcon::commands
 {
 
-/// What `latcon compare` was asked. Times are texts, with a unit or in s, or load factors; empty: the last frame.
+/// Options of `latcon compare`. Times are texts, with a unit or in s, or load factors; empty: the last frame.
 struct CompareOptions
 {
-  std::string lattice, continuum; ///< frames, series or output directories
+  std::string lattice, continuum; ///< frames, series or output directories; or output directories of two cracks
   std::string time;               ///< of both frames
   std::string lattice_time, continuum_time;
   std::vector<std::string> tolerances; ///< `FIELD=VALUE`
-  bool overlap = false;                ///< whether the sheets may cover each other in part
+  bool overlap = false;                ///< whether the sheets may overlap only in part
   std::vector<std::string> excluded;   ///< `X,Y,R` of circles
 };
 
 /// Names of the claims, in the order in which they are checked.
 const std::vector<std::string> &claim_names();
 
-/// Claims on material and pre-stretch that a crack of the lattice needs: all but those about cracks.
+/// Claims on material and pre-stretch that are verified before fracture: all but those about cracks.
 const std::vector<std::string> &claims_before_fracture();
 
-// The commands. Each runs on every MPI rank and returns what the program should exit with, or throws.
+// The commands. Each runs on every MPI rank and returns the exit code of the program, or throws.
 support::ExitCode verify(const input::Options &options);                                       ///< `latcon verify`
 support::ExitCode run_lattice(const input::Options &options);                                  ///< `latcon lattice`
 support::ExitCode run_continuum(const input::Options &options);                                ///< `latcon continuum`
@@ -73,7 +73,7 @@ void study_page(const std::string &directory);
 /// Reads and checks the case that the options name. @throws InputError
 void read_case(const input::Options &options, input::Case &input, input::Parameters &parameters);
 
-/// Prints a part of what --dry-run says, on the first rank, unless --quiet.
+/// Prints a part of the output of --dry-run, on the root rank, unless --quiet.
 void print_dry_run(const input::Options &options, const std::string &text);
 
 /// Locks an existing directory, and removes the unfinished files that killed runs left in it and in its checkpoints.
@@ -82,21 +82,19 @@ void print_dry_run(const input::Options &options, const std::string &text);
 std::unique_ptr<support::FolderLock> lock_directory(const std::string &directory,
                                                     std::chrono::milliseconds patience = std::chrono::seconds(1));
 
-/// The output directory of a run, locked until the run has ended, and the record of how it came about. Rank 0 alone
-/// writes.
+/// Output directory of a run, locked until the run has ended, and its provenance. Rank 0 alone writes.
 ///
-/// While it is under way, and until the program ends, run.json gets the exit code of the program however that ends: see
-/// record_exit_code().
+/// Until the program ends, run.json gets its exit code however it ends: see record_exit_code().
 class Run
 {
 public:
-  /// Creates and locks the directory, moves what a run before left in it aside (see output_list.h) unless this one
-  /// resumes, and writes case.prm and run.json. To be made once the input is known to be good.
+  /// Creates and locks the directory, moves files of an earlier run aside (see output_list.h) unless this one resumes,
+  /// and writes case.prm and run.json. To be constructed once the input is known to be valid.
   /// @throws InputError if another process writes to the directory, or case.prm would replace the user's own case:
   /// nothing is written then @throws OutputError
   Run(const input::Options &options, const input::Parameters &parameters);
 
-  /// The same for a run without a case: run.json alone.
+  /// Creates the directory of a run without a case: run.json alone.
   explicit Run(const input::Options &options) : Run(options, nullptr) {}
 
   /// Reports the checkpoint from which the run continues, in words and in run.json.
@@ -105,7 +103,7 @@ public:
   const std::string &directory() const { return directory_; }
   output::RunInfo &info() { return record_->info; }
   bool is_root() const { return is_root_; } ///< true on rank 0
-  /// Whether to print: on rank 0, unless --quiet.
+  /// Returns whether to print: on rank 0, unless --quiet.
   bool is_verbose() const { return is_verbose_; }
 
   /// Writes results.json, results.csv and the final run.json, and prints the rows. Of many rows it prints the number of
@@ -120,7 +118,7 @@ public:
 
 private:
   Run(const input::Options &options, const input::Parameters *parameters);
-  // Makes room in the directory: the files of a run before are moved aside, unless this run resumes.
+  // Moves the files of an earlier run aside, unless this run resumes.
   void clear(const input::Options &options, bool has_case) const;
   void print(const output::Results &results) const;
 
@@ -156,22 +154,22 @@ void record_exit_code(support::ExitCode exit_code, const std::string &message = 
 /// Exit code of a program whose results alone decide.
 support::ExitCode exit_code_of(const output::Results &results);
 
-/// On which lattices claims are checked.
+/// Lattices on which claims are checked.
 enum class Shells
 {
-  own,             ///< that of the case
-  own_and_nearest, ///< also that of its nearest neighbours alone, if the case has next-nearest ones
+  own,             ///< the lattice of the case
+  own_and_nearest, ///< also the one with nearest-neighbour bonds alone, if the case has next-nearest ones
 };
 
-/// Runs the claims named, or all of them, on the subject of a case, small versions if `quick`. Collective.
-/// @param laws those that are judged; what is found about others is reported
+/// Runs the named claims, or all of them, on the subject of a case, small versions if `quick`. Collective.
+/// @param laws laws that are judged; results for others are reported
 /// @param frames folder for frames of sheets in motion, on one rank; empty: none are written
 claims::ClaimOutcome run_claims(const input::Case &input, const std::vector<std::string> &names, bool quick,
                                 Shells shells, const bridge::Laws &laws, const std::string &frames = {});
 
-/// Checks the claims, in their small versions, on the case's own material, shells and pre-stretch, or takes the
-/// verdicts that are stored for exactly these inputs and this program. Says which of the two, in words and in run.json,
-/// and writes the tables. Collective; all ranks return the same.
+/// Checks the claims, in their small versions, on the case's own material, shells and pre-stretch, or reuses the
+/// verdicts cached for exactly these inputs and this program. Reports which of the two, in words and in run.json, and
+/// writes the tables. Collective; all ranks return the same.
 /// @return the rows, at least one of them checked and none failing
 /// @throws ClaimFailed that names the rows which fail, if any; results.json and run.json are then written
 output::Results require_verified(const input::Case &input, Run &run);

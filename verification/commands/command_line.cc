@@ -40,7 +40,7 @@ struct Failure
   std::string message;
 };
 
-// What an exception means to the user. The libraries throw their own types; this is where they get their exit codes.
+// Exit code and message of an exception. The libraries throw their own types; here they get their exit codes.
 Failure describe(const std::exception &error)
 {
   if (const auto *known = dynamic_cast<const support::Error *>(&error))
@@ -60,18 +60,18 @@ Failure describe(const std::exception &error)
   return {support::ExitCode::internal_error, std::string("internal error: ") + error.what()};
 }
 
-// As many threads on each rank as said, or as there are cores for it.
+// Sets the threads of each rank; 0: as many as there are cores for it.
 void set_threads(unsigned int threads)
 {
   const unsigned int wanted = threads > 0 ? threads : support::available_cores_per_rank();
   omp_set_num_threads(static_cast<int>(wanted));
   dealii::MultithreadInfo::set_thread_limit(1);
-  // A threaded BLAS sums in an order that depends on the number of threads. OpenBLAS is asked if it is the one in use.
+  // A threaded BLAS sums in an order that depends on the number of threads. The call exists if OpenBLAS is in use.
   if (void *const symbol = dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))
     reinterpret_cast<void (*)(int)>(symbol)(1);
 }
 
-// Throws if what was printed could not be written. A reader that closed its end of a pipe has what it wanted.
+// Throws if standard output could not be written. A reader that closed its end of a pipe is not an error.
 void require_printed()
 {
   if (std::cout.flush() && std::fflush(stdout) == 0)
@@ -81,7 +81,7 @@ void require_printed()
     throw support::OutputError("standard output", "it is closed or full");
 }
 
-// Runs a command, and sees to it that the exit code is the same wherever it is read.
+// Runs a command; its exit code, messages, run.json and log.txt agree.
 support::ExitCode run_command(const std::function<support::ExitCode()> &command)
 {
   try
@@ -105,15 +105,15 @@ support::ExitCode run_command(const std::function<support::ExitCode()> &command)
     }
     catch (const std::exception &)
     {
-      // A disk that is full is most likely the failure itself.
+      // Most likely a full disk, which is then the failure itself.
     }
-    // Most errors are met by all ranks alike: the first one reports them. One met by another rank alone is reported a
-    // moment later.
+    // Most errors occur on all ranks: the root rank reports them. An error on another rank alone is reported a moment
+    // later.
     if (rank != 0)
       std::this_thread::sleep_for(std::chrono::seconds(1));
     std::cerr << "latcon: " << (n_ranks > 1 ? "rank " + std::to_string(rank) + ": " : "") << failure.message
               << std::endl;
-    // Ranks that wait for this one in a collective call would wait for ever.
+    // Ranks that wait for this one in a collective call would wait forever.
     if (n_ranks > 1)
       MPI_Abort(MPI_COMM_WORLD, static_cast<int>(failure.exit_code));
     return failure.exit_code;
@@ -128,7 +128,7 @@ constexpr const char *shared_options =
   "Also, with every command (described by latcon --help): --set, --output-dir, --threads, --quiet,\n"
   "--verbose, --resume, --dry-run, --yes.\n";
 
-// Words with blanks between them, so that names with blanks need no quotes.
+// Joins words with blanks, so that names with blanks need no quotes.
 std::string joined(const std::vector<std::string> &words)
 {
   std::string text;

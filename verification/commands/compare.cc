@@ -86,7 +86,7 @@ std::vector<compare::Circle> read_circles(const std::vector<std::string> &texts)
   return circles;
 }
 
-// A run's results.json and run.json would be replaced by those of the comparison.
+// Refuses an output directory whose results.json and run.json would be replaced by those of the comparison.
 void require_own_directory(const std::string &directory, const compare::Frame &frame)
 {
   std::error_code ignored;
@@ -127,7 +127,7 @@ support::ExitCode compare_cracks(const input::Options &options, const CompareOpt
   return support::ExitCode::done;
 }
 
-// Says how two cracks are compared to who gives one crack and something else. @throws InputError
+// Refuses one crack and something else, and explains what can be compared. @throws InputError
 void refuse_mixture(const CompareOptions &chosen)
 {
   const auto crack = [](const std::string &name) { return name + " holds a crack (crack.json)"; };

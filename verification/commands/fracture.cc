@@ -30,8 +30,8 @@ lattice::EndLoads::End end_load(input::Case::End end)
   }
 }
 
-// The imbalance of the energy ledger that a run may end with, over the energy it was given. Powers are taken at the
-// ends of steps: long ones pass over what breaking bonds set off.
+// Largest imbalance of the energy ledger with which a run holds, over the energy supplied. Powers are evaluated at the
+// ends of steps: long steps miss waves emitted by breaking bonds.
 double allowed_imbalance(const input::Case &input)
 {
   return input.integrator == input::Case::Integrator::velocity_verlet ? 1e-4 : 1e-3;
@@ -50,7 +50,7 @@ output::Results measured_results(const input::Case &input, const output::CrackRe
     if (published)
     {
       row.tolerance = input.reference_tolerance;
-      // A quantity that was published but could not be measured does not agree.
+      // A published quantity that could not be measured does not agree.
       row.error =
         measured ? support::relative_error(measured->value, *published) : std::numeric_limits<double>::quiet_NaN();
     }
@@ -86,7 +86,8 @@ struct Crack
   output::Results results;
 };
 
-// Moves the sheet until the crack is through or the time is up. On every rank, with the same results.
+// Moves the sheet until the crack reaches the stop position or the time ends. Collective, with the same results on
+// every rank.
 Crack run_crack(const input::Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
                 bool skip_verification, output::Checkpoints &checkpoints, Run &run)
 {

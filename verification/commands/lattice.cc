@@ -16,7 +16,7 @@ namespace latcon::commands
 namespace
 {
 
-// Static equilibrium. @return its energy and residual
+// Computes the static equilibrium. @return its energy and residual
 output::Results relaxed(const input::Case &input, const lattice::TriangularLattice &sheet,
                         const lattice::Material &material, lattice::State state, Run &run)
 {
@@ -48,7 +48,7 @@ output::Results relaxed(const input::Case &input, const lattice::TriangularLatti
   return results;
 }
 
-// On every rank, with the same results.
+// Moves the sheet until the end time. Collective, with the same results on every rank.
 output::Results moved(const input::Case &input, const lattice::RowPartition &band, const lattice::Material &material,
                       lattice::State state, output::Checkpoints &checkpoints, Run &run)
 {
@@ -123,7 +123,7 @@ support::ExitCode run_lattice(const input::Options &options)
     const lattice::RowPartition band(sheet, MPI_COMM_WORLD);
     results = moved(input, band, material, state_of(band), checkpoints, run);
   }
-  else if (run.is_root()) // equilibrium is a matter of the first rank
+  else if (run.is_root()) // the root rank computes the equilibrium
     results = relaxed(input, sheet, material, state_of(sheet), run);
   return interrupted() ? run.interrupted(results) : run.finish(results);
 }
