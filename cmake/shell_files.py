@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes what a shell's user has of latcon, the manual page and the completion for bash, from what latcon says itself.
+"""Writes the manual page and the completion for bash from the help of latcon.
 
 Usage: shell_files.py LATCON DATA_FOLDER OUTPUT_FOLDER
 """
@@ -45,13 +45,23 @@ _latcon() {
     '') COMPREPLY=($(compgen -W $'@command_words@' -- "$cur")) ;;
     verify) COMPREPLY=($(compgen -W $'@claims@' -- "$cur")) ;;
     study) _latcon_files -f; COMPREPLY+=($(compgen -W $'@studies@' -- "$cur")) ;;
-    report) _latcon_files -d ;;
+    report|init) _latcon_files -d ;;
+    fracture|lattice|continuum|schema) _latcon_files -f; _latcon_words @cases@ ;;
+    entries) _latcon_words @sections@ ;;
+    help) _latcon_words @topics@ ;;
     *) _latcon_files -f ;;
   esac
 }
 _latcon_files() {
   COMPREPLY=($(compgen "$1" -- "$cur"))
   compopt -o filenames 2>/dev/null
+}
+# Words with blanks, which are escaped.
+_latcon_words() {
+  local word
+  for word; do
+    [[ $(printf %q "$word") != "$cur"* && $word != "$cur"* ]] || COMPREPLY+=("$(printf %q "$word")")
+  done
 }
 complete -F _latcon latcon
 """
@@ -72,7 +82,9 @@ if that is set.
 .SH EXAMPLES
 .nf
 latcon verify --quick
-latcon fracture /usr/share/latcon/cases/fig1.prm --set "Lattice/noise seed=7" --output-dir seed7
+latcon fracture fig1 --set "Lattice/noise seed=7" --output-dir seed7
+latcon compare output/fig1 seed7
+latcon help Fracture/toughening
 mpirun -n 4 latcon fracture case.prm
 latcon study paper --quick
 .fi
@@ -83,7 +95,7 @@ latcon study paper --quick
 
 
 class Help:
-    """The help of latcon or of one of its commands, taken apart."""
+    """Parts of the help of latcon or of one of its commands."""
 
     def __init__(self, latcon, *command):
         text = subprocess.run([latcon, *command, "--help"], check=True, capture_output=True, text=True).stdout
@@ -115,7 +127,7 @@ class Help:
 def plain(what):
     """An option or argument without what CLI11 says of its type."""
     what = re.sub(r":UINT in \[.*?\]", "", what)
-    what = re.sub(r" :\{.*?\}| REQUIRED|=output", "", what)
+    what = re.sub(r" :\{.*?\}| REQUIRED", "", what)
     return what.replace(",", ", ")
 
 
@@ -140,10 +152,8 @@ def manual(program, commands, version):
     return page + MAN_END.lstrip("\n")
 
 
-def entries(latcon):
-    """Section/Name= of every entry of a case."""
-    schema = json.loads(subprocess.run([latcon, "schema"], check=True, capture_output=True, text=True).stdout)
-    return [f"{entry['section']}/{entry['name']}=" for entry in schema["entries"]]
+def quoted(words):
+    return " ".join(f"'{word}'" for word in words)
 
 
 def completion(latcon, data, program, commands):
@@ -153,10 +163,16 @@ def completion(latcon, data, program, commands):
         return "|".join(sorted({what.split()[0] for what, _ in every if re.search(pattern, what)}))
 
     shared = program.option_names()
+    schema = json.loads(subprocess.run([latcon, "schema"], check=True, capture_output=True, text=True).stdout)
+    keys = [f"{entry['section']}/{entry['name']}" for entry in schema["entries"]]
+    sections = list(dict.fromkeys(entry["section"] for entry in schema["entries"]))
     words = {
         "commands": "|".join(commands),
         "command_words": r"\n".join(commands),
-        "entries": " ".join(f"'{entry}'" for entry in entries(latcon)),
+        "entries": quoted(f"{key}=" for key in keys),
+        "sections": quoted(sections),
+        "topics": quoted([*commands, *sections, *keys]),
+        "cases": quoted(schema["cases"]),
         "folder_options": of_type(r" DIR"),
         "file_options": of_type(r" FILE"),
         "other_options": of_type(r" (N:|TIME|FIELD=VALUE)"),

@@ -21,7 +21,8 @@ def fracture(case: CaseLike, directory: Directory, *, threads: int | None = None
     case
         The case, or what :class:`Case` accepts.
     directory
-        Output directory; created if needed. Files of an earlier run are moved to `earlier-run` in it, unless `resume`.
+        Output directory; created if needed. Files of earlier runs are moved to `earlier-run`, `earlier-run-2`, ... in it,
+        unless `resume`.
     threads
         Threads; default: all cores that this process may use.
     resume

@@ -168,7 +168,7 @@ class Runner:
         dry, said, printed = self.run([*self.arguments(command, chosen), "--dry-run"])
         # As many steps as make sense, whatever their length.
         step = re.search(r"time step:? (\S+) s", printed)
-        if dry == "exit 0" and step and "Time/end" in chosen:
+        if (dry == "exit 0" or "--yes" in said) and step and "Time/end" in chosen:
             chosen["Time/end"] = repr(min(float(chosen["Time/end"].split()[0]) * (1e-3 if chosen["Time/end"].endswith("ms") else 1.),
                                           MOST_STEPS * float(step[1])))
             if float(chosen["Time/end"]) > 0.:

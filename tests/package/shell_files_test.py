@@ -64,6 +64,8 @@ class Shell(unittest.TestCase):
         self.assertEqual(complete("verify", "--case", "my"), ["my case.prm"])
         (FOLDER / "results").mkdir()
         self.assertEqual(complete("report", "re"), ["results"])
+        self.assertEqual(complete("init", "re"), ["results"])
+        self.assertEqual(complete("fracture", "fig1"), ["fig1", "fig1-wide"])
         self.assertEqual(complete("fracture", "--output-dir", "re"), ["results"])
         self.assertEqual(complete("fracture", "--threads", ""), [])
 
@@ -73,6 +75,10 @@ class Shell(unittest.TestCase):
         self.assertEqual(complete("fracture", "--set", '"Lattice/noise s'), ["Lattice/noise seed="])
         self.assertGreater(len(complete("fracture", "--set", "")), 50)
         self.assertEqual(complete("fracture", "--set", "Sheet/spacing", "="), [])
+        self.assertEqual(complete("entries", "Fra"), ["Fracture"])
+        self.assertEqual(complete("entries", "Near\\ t"), ["Near\\ tip"])
+        self.assertEqual(complete("help", "comp"), ["compare"])
+        self.assertEqual(complete("help", "Sheet/sp"), ["Sheet/spacing"])
 
 
 if __name__ == "__main__":

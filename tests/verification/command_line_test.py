@@ -40,7 +40,7 @@ class Fracture(unittest.TestCase):
         self.assertEqual(self.run_.returncode, 0, self.run_.stderr)
         names = {path.name for path in self.out.iterdir()}
         wanted = {"case.prm", "run.json", "results.json", "results.csv", "crack.csv", "crack.json", "broken_bonds.csv",
-                  "energy.csv", "lattice.pvd", "motion.pvd", "sheet.png", "sheet_fields.png", "crack_path.png",
+                  "log.txt", "energy.csv", "lattice.pvd", "motion.pvd", "sheet.png", "sheet_fields.png", "crack_path.png",
                   "energy.png", "animation.gif", "report.html"}
         self.assertLessEqual(wanted, names)
         self.assertFalse([name for name in names if name.endswith(".part")])
@@ -51,22 +51,30 @@ class Fracture(unittest.TestCase):
         self.assertNotIn("\r", self.run_.stderr)  # no progress line off a terminal
         first = next(number for number, line in enumerate(lines) if " crack is " in line)
         end = lines[first:]
-        self.assertLessEqual(len(end), 12)
+        self.assertLessEqual(len(end), 12)  # all that follows the claims
         crack = json.loads((self.out / "crack.json").read_text())
         self.assertIn(f"is {crack['pattern']}: {crack['reason'][:40]}", end[0])
         speed = next(line for line in end if "Lagrangian crack speed" in line)
         self.assertRegex(speed, r"\d ± \d\S* m/s$")
         self.assertAlmostEqual(float(speed.split()[3]), crack["speed_lagrangian"], delta=crack["speed_lagrangian_uncertainty"])
-        judged = [row["verdict"] for row in json.loads((self.out / "results.json").read_text())["claims"]]
-        self.assertEqual(end[-2:], [f"{judged.count('holds')} checks hold", f"{self.out}/report.html"])
-        self.assertNotIn("prestretch", self.run_.stdout)  # rows are for those who ask for them
+        rows = json.loads((self.out / "results.json").read_text())["claims"]
+        for claim in ("energy", "wave-speeds", "intrinsic-length", "prestretch", "fracture"):
+            held = sum(row["claim"] == claim and row["verdict"] == "holds" for row in rows)
+            self.assertIn(f"  {claim:<26}{held} check{'s hold' if held > 1 else ' holds'}", end)
+        self.assertRegex(end[-1], rf"^claims \S+ s, fracture \S+ s, report \S+ s; {self.out}/report\.html$")
+        self.assertNotIn("NN+NNN", self.run_.stdout)  # rows are printed with --verbose alone
+
+    def test_log_has_what_the_terminal_showed(self):
+        command, *lines = (self.out / "log.txt").read_text().splitlines()
+        self.assertTrue(command.startswith("$ ") and " fracture " in command, command)
+        self.assertEqual(lines, self.run_.stdout.splitlines())
 
     def test_verbose_prints_every_row(self):
         out = pathlib.Path(self.folder.name) / "verbose"
         run = latcon("fracture", CASES / "quick.prm", "--output-dir", out, *BARE, "--skip-verification", "--verbose")
         self.assertEqual(run.returncode, 0, run.stderr)
-        for word in ("energy imbalance", "tolerance", "checks hold"):
-            self.assertIn(word, run.stdout.replace("check holds", "checks hold"))
+        for word in ("energy imbalance", "tolerance", "1 check holds"):
+            self.assertIn(word, run.stdout)
 
     def test_results_agree_between_json_and_csv(self):
         results = json.loads((self.out / "results.json").read_text())

@@ -23,7 +23,7 @@ MOTION = ["lattice", CASES / "quick.prm", "--quiet", "--threads", "1", "--set", 
 
 def files(folder):
     """Contents by name, but for that which tells how the run went."""
-    return {path.name: path.read_bytes() for path in folder.iterdir() if path.name != "run.json"}
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.name not in ("run.json", "log.txt")}
 
 
 def children(pid):

@@ -45,7 +45,7 @@ def command(case, folder, *more):
 
 
 def files(folder):
-    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file() and path.name != "run.json"}
+    return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file() and path.name not in ("run.json", "log.txt")}
 
 
 class Resume(TemporaryFolder):

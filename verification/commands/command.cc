@@ -8,7 +8,10 @@
 #include <deal.II/base/mpi.h>
 
 #include "support/atomic_file.h"
+#include "verification/commands/crack_summary.h"
+#include "verification/commands/recorded_output.h"
 #include "verification/commands/signals.h"
+#include "verification/input/input_file.h"
 #include "verification/output/checkpoints.h"
 #include "verification/output/output_file.h"
 #include "verification/output/output_list.h"
@@ -62,20 +65,33 @@ std::shared_ptr<Run::Record> Run::last;
 void Run::Record::write(std::optional<support::ExitCode> with) const
 {
   info.write(directory + "/run.json", with, verdict);
+  write_log();
 }
 
-void record_exit_code(support::ExitCode exit_code)
+void Run::Record::write_log() const
+{
+  if (keeps_log)
+    output::write_file(directory + "/log.txt", log_header + RecordedOutput::text() + log_end);
+}
+
+void record_exit_code(support::ExitCode exit_code, const std::string &message)
 {
   const std::shared_ptr<Run::Record> record = std::exchange(Run::last, nullptr);
-  if (record && record->exit_code != exit_code)
+  if (!record)
+    return;
+  record->log_end = message;
+  if (record->exit_code != exit_code)
     record->write(exit_code);
+  else
+    record->write_log();
 }
 
 Run::Run(const input::Options &options, const input::Parameters &parameters) : Run(options, &parameters) {}
 
 Run::Run(const input::Options &options, const input::Parameters *parameters)
   : record_(std::make_shared<Record>(options)), directory_(options.output_dir), is_root_(first_rank()),
-    is_verbose_(is_root_ && !options.quiet), resumes_(options.resume)
+    is_verbose_(is_root_ && !options.quiet), prints_all_(options.verbose),
+    resumes_(options.resume)
 {
   if (parameters != nullptr)
     info().add("case_hash", output::sha256(input::case_lines(*parameters)));
@@ -89,12 +105,13 @@ Run::Run(const input::Options &options, const input::Parameters *parameters)
     clear(options, parameters != nullptr);
     if (parameters != nullptr)
       output::write_file(directory_ + "/case.prm", parameters->resolved_text());
-    const SignalDeferral deferral; // a run.json that is there gets the exit code
+    begin_log(options);
+    const SignalDeferral deferral; // once run.json exists, it gets the exit code
     record_->write(std::nullopt);
     last = record_;
     on_interruption([record = record_] { record->write(support::ExitCode::interrupted); });
   }
-  // No rank writes beside rank 0 before the directory is there.
+  // No other rank writes before the directory exists.
   MPI_Barrier(MPI_COMM_WORLD);
 }
 
@@ -109,9 +126,22 @@ void Run::clear(const input::Options &options, bool has_case) const
   {
     const std::filesystem::path aside = output::archive_earlier_output(directory_, options.case_file);
     if (is_verbose_ && !aside.empty())
-      std::cout << "The files of the run before in " << directory_ << " are now in " << aside.string() << std::endl;
+      std::cout << "The files of an earlier run in " << directory_ << " are now in " << aside.string() << std::endl;
   }
   output::begin_output_list(directory_);
+}
+
+// A resumed run appends to the existing log.
+void Run::begin_log(const input::Options &options)
+{
+  const std::string file = directory_ + "/log.txt";
+  std::error_code none;
+  record_->keeps_log = !std::filesystem::equivalent("/proc/self/fd/1", file, none);
+  if (resumes_)
+    record_->log_header = input::read_input_file(file).text;
+  for (const std::string &argument : options.arguments)
+    record_->log_header += (&argument == options.arguments.data() ? "$ " : " ") + argument;
+  record_->log_header += "\n";
 }
 
 void Run::note(const output::Checkpoints &checkpoints)
@@ -127,13 +157,13 @@ void Run::note(const output::Checkpoints &checkpoints)
     return;
   if (!found)
   {
-    std::cout << "There is no checkpoint in " << directory_ << ": starting from the beginning\n";
+    std::cout << "No checkpoint in " << directory_ << ": starting from the beginning\n";
     return;
   }
-  std::cout << "Going on from " << found->file.string() << ": step " << found->step << ", t = " << found->time
+  std::cout << "Resuming from " << found->file.string() << ": step " << found->step << ", t = " << found->time
             << " s\n";
   if (found->program_hash != output::program_hash())
-    std::cout << "Another program wrote it, of commit " << found->commit << "; run.json names both\n";
+    std::cout << "It was written by another build of latcon, commit " << found->commit << "; run.json names both\n";
 }
 
 support::ExitCode Run::end(const output::Results &results, support::ExitCode exit_code)
@@ -158,10 +188,14 @@ void Run::print(const output::Results &results) const
 {
   if (!is_verbose_)
     return;
-  results.print(std::cout);
-  // What fails is said last as well, where a reader looks first.
-  constexpr std::size_t most_failing_rows = 20;
-  if (results.count(output::Verdict::fails) > 0)
+  constexpr std::size_t longest_table = 20, most_failing_rows = 20;
+  const bool is_long = results.rows().size() > longest_table && !prints_all_;
+  if (is_long)
+    std::cout << claim_lines(results) << "all rows: " << directory_ << "/results.csv, or --verbose\n";
+  else
+    results.print(std::cout);
+  // Failures come last, where a reader looks first.
+  if (is_long || results.count(output::Verdict::fails) > 0)
     std::cout << "\n" << results.verdict_text(most_failing_rows);
 }
 

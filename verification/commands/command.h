@@ -28,18 +28,18 @@ class Checkpoints;
 namespace latcon::commands
 {
 
-/// What `latcon compare` was asked. Times are texts, with a unit or in s, or load factors; empty: the last frame.
+/// Options of `latcon compare`. Times are texts, with a unit or in s, or load factors; empty: the last frame.
 struct CompareOptions
 {
-  std::string lattice, continuum; ///< frames, series or output directories
+  std::string lattice, continuum; ///< frames, series or output directories; or output directories of two cracks
   std::string time;               ///< of both frames
   std::string lattice_time, continuum_time;
   std::vector<std::string> tolerances; ///< `FIELD=VALUE`
-  bool overlap = false;                ///< whether the sheets may cover each other in part
+  bool overlap = false;                ///< whether the sheets may overlap only in part
   std::vector<std::string> excluded;   ///< `X,Y,R` of circles
 };
 
-// The commands. Each runs on every MPI rank and returns what the program should exit with, or throws.
+// The commands. Each runs on every MPI rank and returns the exit code of the program, or throws.
 support::ExitCode verify(const input::Options &options);                                       ///< `latcon verify`
 support::ExitCode run_lattice(const input::Options &options);                                  ///< `latcon lattice`
 support::ExitCode run_continuum(const input::Options &options);                                ///< `latcon continuum`
@@ -49,9 +49,22 @@ support::ExitCode report(const input::Options &options, const std::string &direc
 support::ExitCode run_study(const input::Options &options, const std::string &study);          ///< `latcon study`
 support::ExitCode print_schema(const input::Options &options);                                 ///< `latcon schema`
 
+/// `latcon entries`: lists the entries of a section, or of all if it is empty. @throws InputError for an unknown section
+support::ExitCode print_entries(const std::string &section);
+
+/// `latcon help TOPIC` for a section or an entry. @param commands names of the commands, for typing errors
+/// @throws InputError for an unknown topic
+support::ExitCode print_topic(const std::string &topic, const std::vector<std::string> &commands);
+
+/// `latcon init`: creates the folder and a commented case in it. @throws InputError if the case exists @throws OutputError
+support::ExitCode init(const std::string &directory);
+
 /// Draws pictures and report.html of a run, or of a folder of several, in a directory that this process has locked. On
-/// rank 0. @return the exit code of the script @throws OutputError
-support::ExitCode draw_report(const std::string &directory, bool quiet);
+/// rank 0.
+/// @param quiet whether the script prints nothing
+/// @param shows_progress whether a progress line is shown meanwhile
+/// @return the exit code of the script @throws OutputError
+support::ExitCode draw_report(const std::string &directory, bool quiet, bool shows_progress = false);
 
 /// Draws the page of a study, study.html, from the files in its output directory. @throws OutputError
 void study_page(const std::string &directory);
@@ -59,7 +72,7 @@ void study_page(const std::string &directory);
 /// Reads and checks the case that the options name. @throws InputError
 void read_case(const input::Options &options, input::Case &input, input::Parameters &parameters);
 
-/// Prints a part of what --dry-run says, on the first rank, unless --quiet.
+/// Prints a part of the output of --dry-run, on the root rank, unless --quiet.
 void print_dry_run(const input::Options &options, const std::string &text);
 
 /// Locks an existing directory, and removes the unfinished files that killed runs left in it and in its checkpoints.
@@ -68,37 +81,35 @@ void print_dry_run(const input::Options &options, const std::string &text);
 std::unique_ptr<support::FolderLock> lock_directory(const std::string &directory,
                                                     std::chrono::milliseconds patience = std::chrono::seconds(1));
 
-/// The output directory of a run, locked until the run has ended, and the record of how it came about. Rank 0 alone
-/// writes.
+/// Output directory of a run, locked until the run has ended, and its provenance. Rank 0 alone writes.
 ///
-/// While it is under way, and until the program ends, run.json gets the exit code of the program however that ends: see
-/// record_exit_code().
+/// Until the program ends, run.json gets its exit code however it ends: see record_exit_code().
 class Run
 {
 public:
-  /// Creates and locks the directory, moves what a run before left in it aside (see output_list.h) unless this one
-  /// resumes, and writes case.prm and run.json. To be made once the input is known to be good.
+  /// Creates and locks the directory, moves files of an earlier run aside (see output_list.h) unless this one resumes,
+  /// and writes case.prm and run.json. To be constructed once the input is known to be valid.
   /// @throws InputError if another process writes to the directory, or case.prm would replace the user's own case:
   /// nothing is written then @throws OutputError
   Run(const input::Options &options, const input::Parameters &parameters);
 
-  /// The same for a run without a case: run.json alone.
+  /// Creates the directory of a run without a case: run.json alone.
   explicit Run(const input::Options &options) : Run(options, nullptr) {}
 
-  /// Says from which checkpoint the run goes on, in words and in run.json.
+  /// Reports the checkpoint from which the run continues, in words and in run.json.
   void note(const output::Checkpoints &checkpoints);
 
   const std::string &directory() const { return directory_; }
   output::RunInfo &info() { return record_->info; }
   bool is_root() const { return is_root_; } ///< true on rank 0
-  /// Whether to print: on rank 0, unless --quiet.
+  /// Returns whether to print: on rank 0, unless --quiet.
   bool is_verbose() const { return is_verbose_; }
 
-  /// Writes results.json, results.csv, the final run.json, prints the table and then the rows that fail, and says how
-  /// the run ended.
+  /// Writes results.json, results.csv and the final run.json, and prints the rows. Of many rows it prints the number of
+  /// each claim and those that fail, unless --verbose.
   support::ExitCode finish(const output::Results &results);
 
-  /// The same for a run that was stopped by a signal: what is known is written.
+  /// Does the same for a run that was stopped by a signal.
   support::ExitCode interrupted(const output::Results &results);
 
   /// Writes results.json, results.csv and the final run.json, prints nothing. @return `exit_code`
@@ -106,52 +117,58 @@ public:
 
 private:
   Run(const input::Options &options, const input::Parameters *parameters);
-  // Makes room in the directory: the files of a run before are moved aside, unless this run resumes.
+  // Moves the files of an earlier run aside, unless this run resumes.
   void clear(const input::Options &options, bool has_case) const;
   void print(const output::Results &results) const;
 
   struct Record
   {
     explicit Record(const input::Options &options) : directory(options.output_dir), info(options.arguments) {}
-    void write(std::optional<support::ExitCode> with) const;
+    void write(std::optional<support::ExitCode> with) const; // also the log
+    void write_log() const;
 
     std::string directory;
     std::unique_ptr<support::FolderLock> lock; // on rank 0
     output::RunInfo info;
     std::string verdict;
     std::optional<support::ExitCode> exit_code; // the one written last
+    std::string log_header;                     // what precedes the output of this program in log.txt
+    std::string log_end;                        // the message that it ends with, if any
+    bool keeps_log = true;                      // false if standard output is log.txt already
   };
-  friend void record_exit_code(support::ExitCode exit_code);
+  void begin_log(const input::Options &options);
+  friend void record_exit_code(support::ExitCode exit_code, const std::string &message);
   static std::shared_ptr<Record> last; // on rank 0, the record of the last run that began
 
   std::shared_ptr<Record> record_;
   std::string directory_;
-  bool is_root_, is_verbose_, resumes_;
+  bool is_root_, is_verbose_, prints_all_, resumes_;
 };
 
-/// Writes what the program ends with into the run.json of the run that began, if any, and forgets the run. To be called
-/// once signals have no effect. @throws OutputError
-void record_exit_code(support::ExitCode exit_code);
+/// Writes the exit code of the program into run.json, and its output into log.txt, of the run that began, if any, and
+/// releases the run. To be called once signals have no effect.
+/// @param message printed to standard error, if any @throws OutputError
+void record_exit_code(support::ExitCode exit_code, const std::string &message = {});
 
-/// What the program ends with if nothing but the results decides.
+/// Exit code of a program whose results alone decide.
 support::ExitCode exit_code_of(const output::Results &results);
 
-/// On which lattices claims are checked.
+/// Lattices on which claims are checked.
 enum class Shells
 {
-  own,             ///< that of the case
-  own_and_nearest, ///< also that of its nearest neighbours alone, if the case has next-nearest ones
+  own,             ///< the lattice of the case
+  own_and_nearest, ///< also the one with nearest-neighbour bonds alone, if the case has next-nearest ones
 };
 
 /// Checks claims on the subject of a case, small versions if `quick`. Collective.
-/// @param laws those that are judged; what is found about others is reported
+/// @param laws laws that are judged; results for others are reported
 /// @param frames folder for frames of sheets in motion, on one rank; empty: none are written
 claims::ClaimOutcome run_claims(const input::Case &input, const std::vector<claims::Claim> &claims, bool quick,
                                 Shells shells, const bridge::Laws &laws, const std::string &frames = {});
 
-/// Checks the claims, in their small versions, on the case's own material, shells and pre-stretch, or takes the
-/// verdicts that are stored for exactly these inputs and this program. Says which of the two, in words and in run.json,
-/// and writes the tables. Collective; all ranks return the same.
+/// Checks the claims, in their small versions, on the case's own material, shells and pre-stretch, or reuses the
+/// verdicts cached for exactly these inputs and this program. Reports which of the two, in words and in run.json, and
+/// writes the tables. Collective; all ranks return the same.
 /// @return the rows, at least one of them checked and none failing
 /// @throws ClaimFailed that names the rows which fail, if any; results.json and run.json are then written
 output::Results require_verified(const input::Case &input, Run &run);

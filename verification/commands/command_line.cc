@@ -1,5 +1,6 @@
 #include "verification/commands/command_line.h"
 
+#include <algorithm>
 #include <chrono>
 #include <cstdio>
 #include <filesystem>
@@ -22,8 +23,11 @@
 #include "support/available_cores.h"
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
+#include "verification/commands/recorded_output.h"
 #include "verification/commands/signals.h"
-#include "verification/input/data_folder.h"
+#include "verification/commands/usage_error.h"
+#include "verification/input/case_text.h"
+#include "verification/input/shipped_cases.h"
 #include "verification/study/study_file.h"
 
 namespace latcon::commands
@@ -37,7 +41,7 @@ struct Failure
   std::string message;
 };
 
-// What an exception means to the user. The libraries throw their own types; this is where they get their exit codes.
+// Exit code and message of an exception. The libraries throw their own types; here they get their exit codes.
 Failure describe(const std::exception &error)
 {
   if (const auto *known = dynamic_cast<const support::Error *>(&error))
@@ -57,18 +61,18 @@ Failure describe(const std::exception &error)
   return {support::ExitCode::internal_error, std::string("internal error: ") + error.what()};
 }
 
-// As many threads on each rank as said, or as there are cores for it.
+// Sets the threads of each rank; 0: as many as there are cores for it.
 void set_threads(unsigned int threads)
 {
   const unsigned int wanted = threads > 0 ? threads : support::available_cores_per_rank();
   omp_set_num_threads(static_cast<int>(wanted));
   dealii::MultithreadInfo::set_thread_limit(1);
-  // A threaded BLAS sums in an order that depends on the number of threads. OpenBLAS is asked if it is the one in use.
+  // A threaded BLAS sums in an order that depends on the number of threads. The call exists if OpenBLAS is in use.
   if (void *const symbol = dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))
     reinterpret_cast<void (*)(int)>(symbol)(1);
 }
 
-// Throws if what was printed could not be written. A reader that closed its end of a pipe has what it wanted.
+// Throws if standard output could not be written. A reader that closed its end of a pipe is not an error.
 void require_printed()
 {
   if (std::cout.flush() && std::fflush(stdout) == 0)
@@ -78,7 +82,7 @@ void require_printed()
     throw support::OutputError("standard output", "it is closed or full");
 }
 
-// Runs a command, and sees to it that the exit code is the same wherever it is read.
+// Runs a command; its exit code, messages, run.json and log.txt agree.
 support::ExitCode run_command(const std::function<support::ExitCode()> &command)
 {
   try
@@ -98,54 +102,103 @@ support::ExitCode run_command(const std::function<support::ExitCode()> &command)
     const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
     try
     {
-      record_exit_code(failure.exit_code);
+      record_exit_code(failure.exit_code, "latcon: " + failure.message + "\n");
     }
     catch (const std::exception &)
     {
-      // A disk that is full is most likely the failure itself.
+      // Most likely a full disk, which is then the failure itself.
     }
-    // Most errors are met by all ranks alike: the first one reports them. One met by another rank alone is reported a
-    // moment later.
+    // Most errors occur on all ranks: the root rank reports them. An error on another rank alone is reported a moment
+    // later.
     if (rank != 0)
       std::this_thread::sleep_for(std::chrono::seconds(1));
     std::cerr << "latcon: " << (n_ranks > 1 ? "rank " + std::to_string(rank) + ": " : "") << failure.message
               << std::endl;
-    // Ranks that wait for this one in a collective call would wait for ever.
+    // Ranks that wait for this one in a collective call would wait forever.
     if (n_ranks > 1)
       MPI_Abort(MPI_COMM_WORLD, static_cast<int>(failure.exit_code));
     return failure.exit_code;
   }
 }
 
+constexpr const char *exit_codes =
+  "Exit codes: 0 done, every claim holds; 1 internal error; 2 bad input; 3 a claim does not hold;\n"
+  "4 a solver did not converge or the state blew up; 5 a file could not be written; 130 interrupted.";
+
+constexpr const char *shared_options =
+  "Also, with every command (described by latcon --help): --set, --output-dir, --threads, --quiet,\n"
+  "--verbose, --resume, --dry-run, --yes.\n";
+
+// Joins words with blanks, so that names with blanks need no quotes.
+std::string joined(const std::vector<std::string> &words)
+{
+  std::string text;
+  for (const std::string &word : words)
+    text += (text.empty() ? "" : " ") + word;
+  return text;
+}
+
+std::string case_choices()
+{
+  return "case file, .prm or .json, or a shipped case: " + input::comma_separated(input::shipped_cases());
+}
+
+support::ExitCode print_help(const CLI::App &app, const std::string &topic)
+{
+  std::vector<std::string> names;
+  for (const CLI::App *command : app.get_subcommands([](const CLI::App *) { return true; }))
+    names.push_back(command->get_name());
+  const bool is_command = std::find(names.begin(), names.end(), topic) != names.end();
+  if (!topic.empty() && !is_command)
+    return print_topic(topic, names);
+  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+    std::cout << (is_command ? app.get_subcommand(topic)->help(app.get_name()) : app.help());
+  return support::ExitCode::done;
+}
+
 } // namespace
 
 support::ExitCode run_program(int argc, char **argv)
 {
+  const RecordedOutput recorded;
   input::Options options;
   options.arguments.assign(argv, argv + argc);
   std::function<support::ExitCode()> command;
 
-  CLI::App app("latcon: dynamic fracture of rubber on a triangular lattice, and the continuum beside it", "latcon");
+  CLI::App app("latcon: dynamic fracture of rubber on a triangular lattice, and the continuum it approximates", "latcon");
   app.set_version_flag("--version", "latcon " + output::program_version() + " (" + output::git_commit() + ")");
   app.require_subcommand(1);
   app.fallthrough();
-  app.footer("Exit codes: 0 done, every claim holds; 1 internal error; 2 bad input; 3 a claim does not hold;\n"
-             "4 a solver did not converge or the state blew up; 5 a file could not be written; 130 interrupted.");
+  app.footer(exit_codes);
   app.add_option("--set", options.overrides, "Section/Name=value, replaces an entry of the case; repeatable")
     ->allow_extra_args(false)
     ->type_name("ENTRY");
-  app.add_option("--output-dir", options.output_dir, "where to write")->capture_default_str()->type_name("DIR");
+  app.add_option("--output-dir", options.output_dir, "output directory; default: output/CASE, or as the command says")
+    ->type_name("DIR");
   app.add_option("--threads", options.threads, "threads of the lattice on each rank; default: all cores")
     ->check(CLI::Range(1u, 4096u))
     ->type_name("N");
   app.add_flag("--quiet", options.quiet, "print errors only");
-  app.add_flag("--verbose", options.verbose, "of a crack, print every row that was checked, not only those that fail");
-  app.add_flag("--resume", options.resume,
-               "go on from the last checkpoint, or keep the runs of a study that are there");
+  app.add_flag("--verbose", options.verbose, "print every row that was checked before and during a crack");
+  app.add_flag("--resume", options.resume, "continue from the last checkpoint, or keep the finished runs of a study");
   app.add_flag("--dry-run", options.dry_run, "check the input, print the resolved case and its cost, run nothing");
+  app.add_flag("--yes", options.yes, "run also what would take more than 10 days or the memory of the machine");
 
-  options.case_file = input::data_folder() + "/cases/fig1.prm";
-  CLI::App *verify_command = app.add_subcommand("verify", "check that lattice and continuum agree, claim by claim");
+  const auto add_command = [&app](const std::string &name, const std::string &help, const std::string &example)
+  {
+    CLI::App *subcommand = app.add_subcommand(name, help);
+    subcommand->footer(std::string(shared_options) + "Example: " + example + "\n\n" + exit_codes);
+    return subcommand;
+  };
+  const auto default_folder = [&options](const std::string &name)
+  {
+    if (options.output_dir.empty())
+      options.output_dir = "output/" + name;
+  };
+
+  options.case_file = input::shipped_case_file("fig1");
+  CLI::App *verify_command = add_command("verify", "check that lattice and continuum agree, claim by claim",
+                                         "latcon verify energy --quick --output-dir output/energy");
   verify_command->add_option("CLAIM", options.claims, "claims to check, see below")
     ->check(CLI::Validator([](const std::string &name) { return unknown_claim(name); }, claim_choices()))
     ->type_name("");
@@ -159,38 +212,60 @@ support::ExitCode run_program(int argc, char **argv)
     [&]
     {
       options.case_is_given = verify_command->count("--case") > 0 || !options.overrides.empty();
+      default_folder("verify");
       command = [&] { return verify(options); };
     });
 
-  const auto add_case_command =
-    [&](const std::string &name, const std::string &help, support::ExitCode (*run)(const input::Options &))
+  const auto add_case_command = [&](const std::string &name, const std::string &help, const std::string &example,
+                                    const std::string &suffix, support::ExitCode (*run)(const input::Options &))
   {
-    CLI::App *subcommand = app.add_subcommand(name, help);
-    subcommand->add_option("CASE", options.case_file, "case file, .prm or .json")->required()->type_name("");
-    subcommand->callback([&command, &options, run] { command = [&options, run] { return run(options); }; });
+    CLI::App *subcommand = add_command(name, help, example);
+    subcommand->add_option("CASE", options.case_file, case_choices())->required()->type_name("");
+    subcommand->callback(
+      [&command, &options, default_folder, suffix, run]
+      {
+        default_folder(std::filesystem::path(options.case_file).stem().string() + suffix);
+        command = [&options, run] { return run(options); };
+      });
     return subcommand;
   };
-  add_case_command("lattice", "equilibrium or motion of the unbroken lattice sheet", run_lattice);
-  add_case_command("continuum", "equilibrium or motion of the finite element sheet", run_continuum);
-  add_case_command("fracture", "verify the case's material and pre-stretch, then run its crack", run_fracture)
-    ->add_flag("--skip-verification", options.skip_verification, "run the crack unverified; noted in every output");
-  app.get_subcommand("fracture")->add_flag("--no-report", options.no_report, "draw neither pictures nor page");
+  add_case_command("lattice", "equilibrium or motion of the unbroken lattice sheet", "latcon lattice hole", "-lattice",
+                   run_lattice);
+  add_case_command("continuum", "equilibrium or motion of the finite element sheet", "latcon continuum hole",
+                   "-continuum", run_continuum);
+  CLI::App *fracture_command =
+    add_case_command("fracture", "verify the case's material and pre-stretch, then run its crack",
+                     "latcon fracture quick --set \"Loading/strain y=1.7\"", "", run_fracture);
+  fracture_command->add_flag("--skip-verification", options.skip_verification,
+                             "run the crack unverified; noted in every output");
+  fracture_command->add_flag("--no-report", options.no_report, "draw neither pictures nor page");
 
   std::string study;
-  CLI::App *study_command = app.add_subcommand("study", "a sweep of cracks, set beside what a source states");
+  CLI::App *study_command = add_command("study", "a sweep of cracks, compared with what a source states",
+                                        "latcon study paper --quick");
   study_command->add_option("STUDY", study, study::study_choices())->required()->type_name("");
   study_command->add_flag("--quick", options.quick, "small version");
   study_command->add_flag("--skip-verification", options.skip_verification,
                           "run the cracks unverified; noted in every output");
-  study_command->callback([&] { command = [&] { return run_study(options, study); }; });
+  study_command->callback(
+    [&]
+    {
+      default_folder(std::filesystem::path(study).stem());
+      command = [&] { return run_study(options, study); };
+    });
 
   CompareOptions chosen;
-  CLI::App *compare_command = app.add_subcommand("compare", "a lattice frame beside a continuum frame, site by site");
-  compare_command->add_option("LATTICE", chosen.lattice, "frame (.vtp), series (.pvd) or output directory of a lattice")
+  CLI::App *compare_command = add_command("compare", "two cracks, or a lattice frame and a continuum frame site by site",
+                                          "latcon compare output/strip output/thin");
+  compare_command
+    ->add_option("LATTICE", chosen.lattice,
+                 "output directory of a crack; or frame (.vtp), series (.pvd) or output directory of a lattice")
     ->required()
     ->type_name("");
   compare_command
-    ->add_option("CONTINUUM", chosen.continuum, "frame (.vtu, .pvtu), series (.pvd) or output directory of a continuum")
+    ->add_option("CONTINUUM", chosen.continuum,
+                 "output directory of a second crack; or frame (.vtu, .pvtu), series (.pvd) or output directory of a "
+                 "continuum")
     ->required()
     ->type_name("");
   const auto add_time = [&](const std::string &name, std::string &time, const std::string &help)
@@ -204,23 +279,47 @@ support::ExitCode run_program(int argc, char **argv)
     ->allow_extra_args(false)
     ->type_name("FIELD=VALUE");
   compare_command->add_flag("--overlap", chosen.overlap,
-                            "compare where both sheets are; one may be a part of the other, as beside a crack");
+                            "compare where both sheets are; one may be a part of the other, as around a crack");
   compare_command
     ->add_option("--exclude", chosen.excluded,
                  "X,Y,R, centre and radius of a circle in the undeformed sheet whose sites are not compared, as at a "
                  "crack tip; repeatable")
     ->allow_extra_args(false)
     ->type_name("X,Y,R");
-  compare_command->callback([&] { command = [&] { return compare_frames(options, chosen); }; });
+  compare_command->callback(
+    [&]
+    {
+      default_folder("compare");
+      command = [&] { return compare_frames(options, chosen); };
+    });
 
-  std::string report_directory;
-  CLI::App *report_command = app.add_subcommand("report", "summary table, pictures and report.html of a finished run");
-  report_command->add_option("DIR", report_directory, "output directory of a run, or a folder of several")
+  std::string directory;
+  CLI::App *report_command = add_command("report", "summary table, pictures and report.html of finished runs",
+                                         "latcon report output/quick");
+  report_command->add_option("DIR", directory, "output directory of a run, or a folder of several")
     ->required()
     ->type_name("");
-  report_command->callback([&] { command = [&] { return report(options, report_directory); }; });
+  report_command->callback([&] { command = [&] { return report(options, directory); }; });
 
-  CLI::App *schema_command = app.add_subcommand("schema", "all entries of a case as JSON, with the values of one");
+  CLI::App *init_command =
+    add_command("init", "a folder with a commented case to start from", "latcon init my-strip");
+  init_command->add_option("DIR", directory, "folder; the case in it has its name")->required()->type_name("");
+  init_command->callback([&] { command = [&] { return init(directory); }; });
+
+  std::string section;
+  CLI::App *entries_command = add_command("entries", "entries of a case: name, unit, default, meaning",
+                                          "latcon entries Fracture");
+  entries_command->add_option("SECTION", section, "section whose entries to list; default: all")->type_name("");
+  entries_command->callback([&] { command = [&] { return print_entries(section); }; });
+
+  std::vector<std::string> topic;
+  CLI::App *help_command = add_command("help", "help on a command, a section or an entry of a case",
+                                       "latcon help Fracture/toughening");
+  help_command->add_option("TOPIC", topic, "command, section, or entry (Section/Name or its name alone)")->type_name("");
+  help_command->callback([&] { command = [&] { return print_help(app, joined(topic)); }; });
+
+  CLI::App *schema_command = add_command("schema", "all entries of a case as JSON, with the values of one",
+                                         "latcon schema quick");
   schema_command->add_option("CASE", options.case_file, "case whose values to print; default: declarations only")
     ->type_name("");
   schema_command->callback(
@@ -240,10 +339,13 @@ support::ExitCode run_program(int argc, char **argv)
       catch (const CLI::ParseError &error)
       {
         // Help and version are exceptions of CLI11 as well, with exit code 0.
+        if (error.get_exit_code() != 0)
+          throw support::InputError(usage_error(app, error));
         if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
           app.exit(error);
-        return error.get_exit_code() == 0 ? support::ExitCode::done : support::ExitCode::bad_input;
+        return support::ExitCode::done;
       }
+      options.case_file = input::case_path(options.case_file);
       set_threads(options.threads);
       return command();
     });

@@ -7,8 +7,10 @@
 #include <deal.II/base/mpi.h>
 
 #include "verification/commands/command.h"
+#include "verification/commands/run_comparison.h"
 #include "verification/compare/difference_writer.h"
 #include "verification/input/units.h"
+#include "verification/output/output_file.h"
 
 namespace latcon::commands
 {
@@ -84,7 +86,7 @@ std::vector<compare::Circle> read_circles(const std::vector<std::string> &texts)
   return circles;
 }
 
-// A run's results.json and run.json would be replaced by those of the comparison.
+// Refuses an output directory whose results.json and run.json would be replaced by those of the comparison.
 void require_own_directory(const std::string &directory, const compare::Frame &frame)
 {
   std::error_code ignored;
@@ -94,12 +96,68 @@ void require_own_directory(const std::string &directory, const compare::Frame &f
                               " is from, whose run.json and results.json would be lost: give another");
 }
 
+// Two output directories of cracks.
+support::ExitCode compare_cracks(const input::Options &options, const CompareOptions &chosen)
+{
+  if (!(chosen.time.empty() && chosen.lattice_time.empty() && chosen.continuum_time.empty() &&
+        chosen.tolerances.empty() && chosen.excluded.empty()) ||
+      chosen.overlap)
+    throw support::InputError("--time, --lattice-time, --continuum-time, --tolerance, --overlap and --exclude are for frames, and " +
+                              chosen.lattice + " and " + chosen.continuum +
+                              " are two cracks; to compare frames, give their files");
+  for (const std::string &run : {chosen.lattice, chosen.continuum})
+    if (std::error_code none; std::filesystem::equivalent(options.output_dir, run, none))
+      throw support::InputError("--output-dir " + options.output_dir +
+                                " is one of the runs, whose run.json would be lost: give another");
+  const RunComparison comparison = compare_runs(chosen.lattice, chosen.continuum);
+  print_dry_run(options, comparison.text());
+  if (options.dry_run)
+    return support::ExitCode::done;
+  Run run(options);
+  run.info().add("first_run", chosen.lattice);
+  run.info().add("second_run", chosen.continuum);
+  if (run.is_root())
+  {
+    output::write_file(run.directory() + "/compare.json", comparison.json());
+    output::write_file(run.directory() + "/compare.csv", comparison.csv());
+  }
+  run.end({}, support::ExitCode::done);
+  if (run.is_verbose())
+    std::cout << "\n" << run.directory() << "/compare.json, compare.csv" << std::endl;
+  return support::ExitCode::done;
+}
+
+// Refuses one crack and something else, and explains what can be compared. @throws InputError
+void refuse_mixture(const CompareOptions &chosen)
+{
+  const auto crack = [](const std::string &name) { return name + " holds a crack (crack.json)"; };
+  const auto none = [](const std::string &name) { return name + " holds no crack.json"; };
+  const bool first = holds_crack(chosen.lattice);
+  throw support::InputError((first ? crack(chosen.lattice) + ", " + none(chosen.continuum)
+                                   : none(chosen.lattice) + ", " + crack(chosen.continuum)) +
+                            "; give two output directories of cracks, or a lattice frame and a continuum frame in this "
+                            "order");
+}
+
+// Returns whether a name is that of a folder without frames of a side.
+bool is_folder_without(const std::string &name, const char *series)
+{
+  std::error_code none;
+  return std::filesystem::is_directory(name, none) &&
+         !std::filesystem::exists(std::filesystem::path(name) / series, none);
+}
+
 } // namespace
 
 support::ExitCode compare_frames(const input::Options &options, const CompareOptions &chosen)
 {
   if (!options.overrides.empty())
     throw support::InputError("latcon compare has no case that --set could change");
+  const bool first = holds_crack(chosen.lattice), second = holds_crack(chosen.continuum);
+  if (first && second)
+    return compare_cracks(options, chosen);
+  if ((first && is_folder_without(chosen.continuum, "continuum.pvd")) || second)
+    refuse_mixture(chosen);
   if (!chosen.time.empty() && !(chosen.lattice_time.empty() && chosen.continuum_time.empty()))
     throw support::InputError("--time is for both sides: give it, or --lattice-time and --continuum-time");
   const std::map<std::string, double> tolerances = read_tolerances(chosen.tolerances);

@@ -12,6 +12,7 @@
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/continuum_model.h"
 #include "verification/commands/command.h"
+#include "verification/commands/cost.h"
 #include "verification/commands/signals.h"
 #include "verification/output/checkpoints.h"
 #include "verification/output/continuum_record.h"
@@ -34,7 +35,7 @@ continuum::StaticSettings static_settings(const input::Case &input)
   return settings;
 }
 
-// Newton iterations and conjugate-gradient iterations in them, for people, and times for the record.
+// Prints Newton iterations with their linear iterations, and records times.
 void note(Run &run, const continuum::SolverReport &report)
 {
   output::Stopwatch &stopwatch = run.info().stopwatch();
@@ -45,7 +46,7 @@ void note(Run &run, const continuum::SolverReport &report)
     std::cout << report.text();
 }
 
-// An equilibrium leaves no checkpoints, so there are none to go on from.
+// An equilibrium writes no checkpoints to resume from.
 output::Results equilibrium(const input::Case &input, bridge::ContinuumModel &model, output::Checkpoints &checkpoints,
                             Run &run)
 {
@@ -78,7 +79,7 @@ output::Results equilibrium(const input::Case &input, bridge::ContinuumModel &mo
     }
     catch (const continuum::SolverFailed &failure)
     {
-      // What was found up to here is kept.
+      // Keeps the results so far.
       record.newton(failure.report());
       write_tables();
       throw;
@@ -138,7 +139,7 @@ output::Results equilibrium(const input::Case &input, bridge::ContinuumModel &mo
   return results;
 }
 
-// Nodal displacement of the equilibrium under the conditions of the case.
+// Nodal displacement of the equilibrium under the boundary conditions of the case.
 continuum::Sheet::Vector equilibrium_displacement(const input::Case &input, const bridge::ContinuumModel &model,
                                                   const continuum::Sheet &sheet, Run &run)
 {
@@ -175,7 +176,7 @@ continuum::DynamicSettings dynamic_settings(const input::Case &input, bridge::Co
   return settings;
 }
 
-// A motion before its first step: everything that the case says of it is known to be good.
+// Motion before its first step, whose input is valid.
 struct Motion
 {
   continuum::DynamicSettings settings;
@@ -194,7 +195,7 @@ struct Motion
   {
     continuum::Sheet::Vector u = solver.sheet().make_owned();
     if (input.continuum.initial_base == input::ContinuumCase::Base::equilibrium)
-      u = solver.prescribed_displacement(); // which an equilibrium has
+      u = solver.prescribed_displacement(); // as of an equilibrium
     else
       add_loading(input, u);
     u += added;
@@ -228,7 +229,7 @@ private:
   }
 };
 
-// What a motion that has come to its end, or as far as it came, is known by.
+// Results of a motion at its end, or where it was interrupted.
 output::Results motion_results(const continuum::DynamicSolver &solver, double time_step)
 {
   output::Results results;
@@ -296,7 +297,7 @@ output::Results move(const input::Case &input, const bridge::ContinuumModel &mod
   const SignalDeferral deferral;
   if (resumed)
   {
-    // What was written after the checkpoint goes.
+    // Removes what was written after the checkpoint.
     write_tables();
     fields.write_collection();
   }
@@ -305,7 +306,7 @@ output::Results move(const input::Case &input, const bridge::ContinuumModel &mod
     write_frame();
     record.motion(solver);
   }
-  // The state as it is now, wherever the motion ends.
+  // Writes the present state, wherever the motion ends.
   const auto write_last_state = [&]
   {
     record.motion(solver);
@@ -319,7 +320,7 @@ output::Results move(const input::Case &input, const bridge::ContinuumModel &mod
     const auto phase = run.info().stopwatch().phase("motion");
     while (step < n_steps)
     {
-      // A step takes far longer than to agree on this.
+      // A step takes far longer than this communication.
       const bool is_stopped = any_rank_interrupted();
       if (is_stopped || checkpoints.due(step))
         checkpoints.write(step, solver.time(), parts);
@@ -382,7 +383,7 @@ support::ExitCode run_continuum(const input::Options &options)
   const resources::MemoryNeed memory = resources::continuum_memory(input, size);
   if (options.dry_run)
     print_dry_run(options, parameters.resolved_text() + resources::memory_text(memory));
-  resources::require_memory(memory);
+  require_memory(options, memory);
   bridge::ContinuumModel model(input);
   if (moves && !input.continuum.time_step)
   {
@@ -392,6 +393,10 @@ support::ExitCode run_continuum(const input::Options &options)
   std::optional<Motion> motion;
   if (moves)
     motion.emplace(input, model);
+  const double steps = moves ? std::ceil(input.end_time / motion_time_step(input, model)) : 0.;
+  const double frames =
+    2. + (moves && input.frame_interval > 0. ? std::floor(input.end_time / input.frame_interval) : 0.);
+  const double seconds = resources::continuum_seconds(input, size, steps, frames);
   if (options.dry_run)
   {
     const continuum::Sheet sheet(model.mesh(), model.constitution(), input.continuum.degree, model.conditions());
@@ -400,18 +405,14 @@ support::ExitCode run_continuum(const input::Options &options)
          << " unknowns\n";
     if (input.continuum.gradient != input::ContinuumGradient::none)
       text << "# lengths: static " << model.static_length() << " m, inertia " << model.inertia_length() << " m\n";
-    double steps = 0., frames = 2.;
     if (moves)
-    {
-      const double step = motion_time_step(input, model);
-      steps = std::ceil(input.end_time / step);
-      frames += input.frame_interval > 0. ? std::floor(input.end_time / input.frame_interval) : 0.;
-      text << "# motion: time step " << step << " s, " << steps << " steps\n";
-    }
-    text << "# time: about " << std::ceil(resources::continuum_seconds(input, size, steps, frames)) << " s\n";
+      text << "# motion: time step " << motion_time_step(input, model) << " s, " << steps << " steps\n";
+    text << "# time: about " << std::ceil(seconds) << " s\n";
     print_dry_run(options, text.str());
+    require_time(options, seconds);
     return support::ExitCode::done;
   }
+  require_time(options, seconds);
   output::Checkpoints checkpoints(options, parameters, input, "continuum");
   Run run(options, parameters);
   run.note(checkpoints);
@@ -425,7 +426,7 @@ support::ExitCode run_continuum(const input::Options &options)
   {
     throw;
   }
-  // The input was good as far as it could be tried, so it is the computed state that is not.
+  // The input has been checked, so the computed state is wrong.
   catch (const continuum::NonPhysicalState &failure)
   {
     throw support::SolverError(failure.what());

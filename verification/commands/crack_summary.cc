@@ -15,7 +15,7 @@ namespace
 {
 
 constexpr std::size_t columns = 120;
-// Few enough to leave room for what was measured; results.csv has all.
+// Leaves room for the measured quantities; results.csv has all rows.
 constexpr std::size_t most_failing_rows = 4;
 
 std::string padded(const std::string &text, std::size_t width)
@@ -43,7 +43,52 @@ std::string line_of(const std::string &name, const std::optional<analysis::Measu
   return line + "\n";
 }
 
+std::string counted(std::size_t n)
+{
+  return std::to_string(n) + (n == 1 ? " check" : " checks");
+}
+
+// One claim: "  energy                    12 checks hold".
+std::string line_of_claim(const std::string &claim, const output::Results &rows)
+{
+  const std::size_t fail = rows.count(output::Verdict::fails), hold = rows.count(output::Verdict::holds);
+  std::string line = "  " + padded(claim, 26);
+  if (fail > 0)
+    return line + std::to_string(fail) + " of " + counted(fail + hold) + (fail == 1 ? " fails\n" : " fail\n");
+  if (hold > 0)
+    return line + counted(hold) + (hold == 1 ? " holds\n" : " hold\n");
+  return line + "nothing was checked\n";
+}
+
 } // namespace
+
+std::string claim_lines(const output::Results &results)
+{
+  std::vector<std::pair<std::string, output::Results>> claims; // in the order of their first rows
+  for (const output::Result &row : results.rows())
+  {
+    auto claim = std::find_if(claims.begin(), claims.end(), [&](const auto &known) { return known.first == row.claim; });
+    if (claim == claims.end())
+      claim = claims.insert(claims.end(), {row.claim, {}});
+    claim->second.add(row);
+  }
+  std::string text;
+  for (const auto &[claim, rows] : claims)
+    text += line_of_claim(claim, rows);
+  return text;
+}
+
+std::string times_text(const std::vector<std::pair<std::string, double>> &times)
+{
+  std::string text;
+  for (const auto &[phase, seconds] : times)
+  {
+    std::array<char, 32> number{};
+    std::snprintf(number.data(), number.size(), seconds < 10. ? " %.1f s" : " %.0f s", seconds);
+    text += (text.empty() ? "" : ", ") + phase + number.data();
+  }
+  return text;
+}
 
 std::string crack_summary(const input::Case &input, const analysis::CrackMeasurement &crack,
                           const output::Results &results)
@@ -59,7 +104,8 @@ std::string crack_summary(const input::Case &input, const analysis::CrackMeasure
   text += line_of("laboratory crack speed", crack.speed_laboratory, "m/s", {});
   text += line_of("wavelength, undeformed", crack.wavelength, "m", input.reference_wavelength);
   text += line_of("amplitude, undeformed", crack.amplitude, "m", input.reference_amplitude);
-  return text + results.verdict_text(most_failing_rows);
+  text += claim_lines(results);
+  return results.count(output::Verdict::fails) > 0 ? text + results.verdict_text(most_failing_rows) : text;
 }
 
 } // namespace latcon::commands

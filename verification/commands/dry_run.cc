@@ -12,10 +12,10 @@ namespace latcon::commands
 namespace
 {
 
-// Of a light frame, over that of one with all fields.
+// Cost of a reduced frame over that of one with all fields.
 constexpr double cost_of_motion_frame = 0.1;
 
-// Frames of a run that moves: the first, the last, and those between.
+// Number of frames of a motion: the first, the last, and those in between.
 double frames_of(const input::Case &input, double duration)
 {
   return 2. + (input.frame_interval > 0. ? std::floor(duration / input.frame_interval) : 0.);
@@ -43,7 +43,7 @@ std::string lattice_text(const input::Case &input, const lattice::TimeStepping &
   std::ostringstream out;
   out << "# lattice: " << sites << " sites, " << bonds << " bonds, " << 2 * sites << " unknowns, " << sheet.length()
       << " m x " << sheet.height() << " m\n";
-  double steps = 0., frames = 2., at_most = 1.; // the last: all steps, over those that are expected
+  double steps = 0., frames = 2., at_most = 1.; // at_most: maximum number of steps over the expected one
   if (run != resources::RunKind::equilibrium)
   {
     steps = std::ceil(input.end_time / stepping.step);

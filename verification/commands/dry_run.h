@@ -8,9 +8,9 @@
 namespace latcon::commands
 {
 
-/// What `--dry-run` says of the lattice of a case beside memory: sites, bonds, time step, stages, steps and time it
-/// will take. Collective; the sheet must fit into the memory.
-/// @param claims, report whether a crack has its claims checked before, and its page drawn afterwards
+/// Output of `--dry-run` for the lattice of a case, without memory: sites, bonds, time step, stages, steps and estimated
+/// time. Collective; the sheet must fit into the memory.
+/// @param claims, report whether claims are checked before the crack, and its page is drawn afterwards
 std::string lattice_text(const input::Case &input, const lattice::TimeStepping &stepping, resources::RunKind run,
                          bool claims = false, bool report = false);
 

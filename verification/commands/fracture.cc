@@ -4,6 +4,7 @@
 #include "support/largest_error.h"
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/commands/command.h"
+#include "verification/commands/cost.h"
 #include "verification/commands/crack_summary.h"
 #include "verification/commands/dry_run.h"
 #include "verification/commands/lattice_motion.h"
@@ -29,8 +30,8 @@ lattice::EndLoads::End end_load(input::Case::End end)
   }
 }
 
-// The imbalance of the energy ledger that a run may end with, over the energy it was given. Powers are taken at the
-// ends of steps: long ones pass over what breaking bonds set off.
+// Largest imbalance of the energy ledger with which a run holds, over the energy supplied. Powers are evaluated at the
+// ends of steps: long steps miss waves emitted by breaking bonds.
 double allowed_imbalance(const input::Case &input)
 {
   return input.integrator == input::Case::Integrator::velocity_verlet ? 1e-4 : 1e-3;
@@ -49,7 +50,7 @@ output::Results measured_results(const input::Case &input, const output::CrackRe
     if (published)
     {
       row.tolerance = input.reference_tolerance;
-      // A quantity that was published but could not be measured does not agree.
+      // A published quantity that could not be measured does not agree.
       row.error =
         measured ? support::relative_error(measured->value, *published) : std::numeric_limits<double>::quiet_NaN();
     }
@@ -85,7 +86,8 @@ struct Crack
   output::Results results;
 };
 
-// Moves the sheet until the crack is through or the time is up. On every rank, with the same results.
+// Moves the sheet until the crack reaches the stop position or the time ends. Collective, with the same results on
+// every rank.
 Crack run_crack(const input::Case &input, const lattice::TriangularLattice &sheet, const lattice::Material &material,
                 bool skip_verification, output::Checkpoints &checkpoints, Run &run)
 {
@@ -137,24 +139,26 @@ Crack run_crack(const input::Case &input, const lattice::TriangularLattice &shee
   return {crack, measured_results(input, record, crack)};
 }
 
-// Pictures and page of a run, and where the page is. Collective: an exception on one rank would end the others, rank 0
-// as it draws. @return whether they could be made, on rank 0
-support::ExitCode draw_page(const Run &run)
+// Draws pictures and page of a run, then prints the seconds of each phase and the path of the page. Collective: an
+// exception on one rank would end the others while rank 0 draws. @return exit code of the drawing, on rank 0
+support::ExitCode draw_page(Run &run)
 {
   support::ExitCode exit_code = support::ExitCode::done;
   if (run.is_root())
   {
-    const support::ExitCode drawn = draw_report(run.directory(), true);
+    auto phase = run.info().stopwatch().phase("report");
+    const support::ExitCode drawn = draw_report(run.directory(), true, run.is_verbose());
+    phase.stop();
     if (drawn != support::ExitCode::claim_failed)
       exit_code = drawn;
     if (run.is_verbose() && exit_code == support::ExitCode::done)
-      std::cout << run.directory() << "/report.html" << std::endl;
+      std::cout << times_text(run.info().stopwatch().times()) << "; " << run.directory() << "/report.html" << std::endl;
   }
   MPI_Barrier(MPI_COMM_WORLD);
   return exit_code;
 }
 
-// The claims on the case's own material and pre-stretch. A crack that they refuse leaves its page all the same.
+// Checks the claims on the case's own material and pre-stretch. A crack that they refuse leaves its page all the same.
 output::Results passed_or_reported(const input::Case &input, const input::Options &options, Run &run)
 {
   try
@@ -168,7 +172,7 @@ output::Results passed_or_reported(const input::Case &input, const input::Option
       {
         draw_page(run);
       }
-      catch (const support::OutputError &error) // what the claims say weighs more
+      catch (const support::OutputError &error) // the failed claims are the message that matters
       {
         std::cerr << "latcon: " << error.what() << std::endl;
       }
@@ -190,18 +194,21 @@ support::ExitCode run_fracture(const input::Options &options)
 
   const lattice::TriangularLattice sheet = input.lattice();
   const lattice::Material material = input.material();
+  const lattice::TimeStepping stepping = input.fracture_time_stepping();
+  const double seconds = rough_seconds(input, stepping, resources::expected_steps(input, stepping));
   const bool claims = !options.skip_verification;
   const resources::MemoryNeed memory = resources::lattice_memory(input, resources::RunKind::fracture, claims);
   if (options.dry_run)
   {
     print_dry_run(options, parameters.resolved_text() + resources::memory_text(memory));
-    resources::require_memory(memory);
+    require_memory(options, memory);
     if (!options.quiet)
-      print_dry_run(options, lattice_text(input, input.fracture_time_stepping(), resources::RunKind::fracture, claims,
-                                          !options.no_report));
+      print_dry_run(options, lattice_text(input, stepping, resources::RunKind::fracture, claims, !options.no_report));
+    require_time(options, seconds);
     return support::ExitCode::done;
   }
-  resources::require_memory(memory);
+  require_memory(options, memory);
+  require_time(options, seconds);
 
   output::Checkpoints checkpoints(options, parameters, input, "fracture");
   Run run(options, parameters);
@@ -221,8 +228,12 @@ support::ExitCode run_fracture(const input::Options &options)
     std::cout << crack_summary(input, crack.measurement, results) << std::flush;
   }
   if (options.no_report || exit_code == support::ExitCode::interrupted)
+  {
+    if (run.is_verbose())
+      std::cout << times_text(run.info().stopwatch().times()) << "; " << run.directory() << std::endl;
     return exit_code;
-  // The verdict in the page is the one returned here; a crack without its page did not end well.
+  }
+  // The verdict in the page is the one returned here; a crack without its page has failed.
   const support::ExitCode drawn = draw_page(run);
   return exit_code == support::ExitCode::done ? drawn : exit_code;
 }

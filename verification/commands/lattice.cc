@@ -5,6 +5,7 @@
 #include "verification/bridge/homogenisation.h"
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/commands/command.h"
+#include "verification/commands/cost.h"
 #include "verification/commands/dry_run.h"
 #include "verification/commands/lattice_motion.h"
 #include "verification/commands/signals.h"
@@ -15,7 +16,7 @@ namespace latcon::commands
 namespace
 {
 
-// Static equilibrium. @return its energy and residual
+// Computes the static equilibrium. @return its energy and residual
 output::Results relaxed(const input::Case &input, const lattice::TriangularLattice &sheet,
                         const lattice::Material &material, lattice::State state, Run &run)
 {
@@ -47,7 +48,7 @@ output::Results relaxed(const input::Case &input, const lattice::TriangularLatti
   return results;
 }
 
-// On every rank, with the same results.
+// Moves the sheet until the end time. Collective, with the same results on every rank.
 output::Results moved(const input::Case &input, const lattice::RowPartition &band, const lattice::Material &material,
                       lattice::State state, output::Checkpoints &checkpoints, Run &run)
 {
@@ -94,16 +95,20 @@ support::ExitCode run_lattice(const input::Options &options)
   const lattice::Material material = input.material();
   const resources::RunKind kind = moves ? resources::RunKind::dynamics : resources::RunKind::equilibrium;
   const resources::MemoryNeed memory = resources::lattice_memory(input, kind);
+  const lattice::TimeStepping stepping = input.lattice_time_stepping();
+  const double seconds = moves ? rough_seconds(input, stepping, input.end_time / stepping.step) : 0.;
   if (options.dry_run)
   {
     print_dry_run(options, parameters.resolved_text() + resources::memory_text(memory));
-    resources::require_memory(memory);
+    require_memory(options, memory);
     if (!options.quiet)
-      print_dry_run(options, lattice_text(input, input.lattice_time_stepping(), kind));
+      print_dry_run(options, lattice_text(input, stepping, kind));
+    require_time(options, seconds);
     return support::ExitCode::done;
   }
   output::Checkpoints checkpoints(options, parameters, input, "lattice");
-  resources::require_memory(memory);
+  require_memory(options, memory);
+  require_time(options, seconds);
   Run run(options, parameters);
   run.note(checkpoints);
   output::Results results;
@@ -118,7 +123,7 @@ support::ExitCode run_lattice(const input::Options &options)
     const lattice::RowPartition band(sheet, MPI_COMM_WORLD);
     results = moved(input, band, material, state_of(band), checkpoints, run);
   }
-  else if (run.is_root()) // equilibrium is a matter of the first rank
+  else if (run.is_root()) // the root rank computes the equilibrium
     results = relaxed(input, sheet, material, state_of(sheet), run);
   return interrupted() ? run.interrupted(results) : run.finish(results);
 }

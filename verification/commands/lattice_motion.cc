@@ -29,7 +29,7 @@ void LatticeMotion::write_tables() const
     record_.write_tables(run_.directory());
 }
 
-// Refuses what a checkpoint says of the callbacks of the motion before any of it is used. @throws std::invalid_argument
+// Checks the state of the motion in a checkpoint before it is used. @throws std::invalid_argument
 void LatticeMotion::check_loaded()
 {
   const double time = simulation_.state().time, step = simulation_.time_step(), done = static_cast<double>(step_);
@@ -37,7 +37,7 @@ void LatticeMotion::check_loaded()
   output::require_matching_time(*checkpoints_.found(), step_, time, done * step,
                                 done * std::numeric_limits<double>::epsilon() * time);
   lattice::require_archived(time <= input_.end_time + step, "`time` is after the end");
-  // A frame at the start, and one an interval, but no more than one a step.
+  // One frame at the start and one per interval, but at most one per step.
   if (run_.is_root() && input_.frame_interval > 0.)
   {
     const double frames = static_cast<double>(frames_.n_frames());
@@ -53,7 +53,7 @@ void LatticeMotion::go(const StepCallbacks &callbacks, bool resumed, const std::
   const SignalDeferral deferral;
   if (resumed)
   {
-    // What was written after the checkpoint goes.
+    // Removes what was written after the checkpoint.
     write_tables();
     if (run_.is_root())
       frames_.write_collection();
@@ -87,7 +87,7 @@ void LatticeMotion::go(const StepCallbacks &callbacks, bool resumed, const std::
         record_.energies();
       if (input_.frame_interval > 0. && simulation_.state().time >= next_frame_)
       {
-        // What is known so far is on disk from here on.
+        // All results so far are on disk from here on.
         add_frame();
         write_tables();
         next_frame_ += input_.frame_interval;
@@ -103,7 +103,7 @@ void LatticeMotion::go(const StepCallbacks &callbacks, bool resumed, const std::
   }
   catch (const support::SolverError &)
   {
-    // The last sound state, and what was noted until then.
+    // The last valid state, and the records until then.
     add_frame();
     write_tables();
     throw;

@@ -15,27 +15,27 @@
 namespace latcon::commands
 {
 
-/// What every motion of a lattice does as it goes, with a crack or without: frames, tables, the energy ledger,
-/// checkpoints, signals, progress. On every rank alike; the first writes.
+/// Output of a moving lattice between steps, with or without a crack: frames, tables, the energy ledger, checkpoints,
+/// signals, progress. On every rank alike; the root rank writes.
 class LatticeMotion
 {
 public:
   /// @param simulation at its first step; must outlive the motion
   LatticeMotion(const input::Case &input, lattice::Simulation &simulation, output::Checkpoints &checkpoints, Run &run);
 
-  /// What a motion calls, and asks, at each step.
+  /// Functions that a motion calls at each step.
   struct StepCallbacks
   {
-    std::string phase;             ///< under which its time is noted in run.json
+    std::string phase;             ///< name of its time in run.json
     std::function<bool()> goes_on; ///< whether there is a further step
     std::function<void(const std::vector<lattice::BrokenBond> &)> after_step; ///< given the bonds that broke in it
-    std::function<std::pair<std::string, double>()> progress;                 ///< in words, and the part that is done
+    std::function<std::pair<std::string, double>()> progress;                 ///< text, and the completed fraction
     std::function<void(bool resumed)> begin = {};                             ///< before the first step, if given
   };
 
-  /// Moves the sheet from its first step, or the checkpoint found, until it does not go on or a signal comes. Then, and
-  /// if it blows up, the last frame shows where it got to, and the tables tell what was noted.
-  /// @param extra_state archives what else belongs to the motion, given an archive
+  /// Moves the sheet from its first step, or from the checkpoint found, until `goes_on` is false or a signal comes. Then,
+  /// and if it blows up, writes the last frame and the tables.
+  /// @param extra_state archives further state of the motion, given an archive
   /// @throws SolverError if the sheet blows up, OutputError
   template <class ExtraState>
   void go(const StepCallbacks &callbacks, const ExtraState &extra_state)

@@ -1,5 +1,7 @@
+#include <chrono>
 #include <filesystem>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <unistd.h>
@@ -9,6 +11,7 @@
 #include "support/child_process.h"
 #include "verification/commands/command.h"
 #include "verification/input/data_folder.h"
+#include "verification/output/progress.h"
 
 namespace latcon::commands
 {
@@ -16,7 +19,7 @@ namespace latcon::commands
 namespace
 {
 
-// The environment of the user but for what would change the report: python and matplotlib have their own defaults.
+// The environment of the user without variables that would change the report: those of python and matplotlib.
 std::vector<std::string> environment_of_scripts()
 {
   std::vector<std::string> kept;
@@ -29,15 +32,37 @@ std::vector<std::string> environment_of_scripts()
   return kept;
 }
 
-// Runs a script of the folder report/ on an output directory. @return its exit status
-int run_script(const std::string &script, const std::string &directory, const std::string &page, bool quiet)
+// Waits for a child with a progress line. @return its exit status
+int wait_with_progress(pid_t child, const std::string &what)
 {
-  // Debian's interpreter, the one that sees the packages the script needs, and no packages of the user.
+  using Clock = std::chrono::steady_clock;
+  output::Progress progress(true);
+  const Clock::time_point start = Clock::now();
+  while (true)
+  {
+    const int status = support::poll_child(child);
+    if (status != -1)
+      return status;
+    if (progress.due())
+      progress.show(what + ", " +
+                      std::to_string(std::chrono::duration_cast<std::chrono::seconds>(Clock::now() - start).count()) +
+                      " s so far",
+                    0.);
+    std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  }
+}
+
+// Runs a script of the folder report/ on an output directory. @return its exit status
+int run_script(const std::string &script, const std::string &directory, const std::string &page, bool quiet,
+               bool shows_progress = false)
+{
+  // Debian's interpreter, which finds the packages that the script needs, without packages of the user.
   const std::string python = "/usr/bin/python3";
   std::vector<std::string> command{python, "-s", input::data_folder() + "/report/" + script, directory};
   if (quiet)
     command.emplace_back("--quiet");
-  const int status = support::wait_for_child(support::start_child({command, environment_of_scripts(), ""}));
+  const pid_t child = support::start_child({command, environment_of_scripts(), ""});
+  const int status = shows_progress ? wait_with_progress(child, "drawing " + page) : support::wait_for_child(child);
   if (status == support::not_started)
     throw support::OutputError(directory + "/" + page, "cannot start " + python);
   if (status > 128)
@@ -61,10 +86,10 @@ support::ExitCode report(const input::Options &options, const std::string &direc
   return draw_report(directory, options.quiet);
 }
 
-support::ExitCode draw_report(const std::string &directory, bool quiet)
+support::ExitCode draw_report(const std::string &directory, bool quiet, bool shows_progress)
 {
   // The script uses the exit codes of this program.
-  return static_cast<support::ExitCode>(run_script("report.py", directory, "report.html", quiet));
+  return static_cast<support::ExitCode>(run_script("report.py", directory, "report.html", quiet, shows_progress));
 }
 
 void study_page(const std::string &directory)

@@ -1,6 +1,5 @@
 #include <charconv>
 #include <cmath>
-#include <filesystem>
 #include <iostream>
 
 #include <deal.II/base/mpi.h>
@@ -9,7 +8,7 @@
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/input/case_text.h"
-#include "verification/input/data_folder.h"
+#include "verification/input/shipped_cases.h"
 #include "verification/study/quantities.h"
 
 namespace latcon::commands
@@ -124,15 +123,12 @@ Json describe(const input::Declaration &entry)
 }
 
 // Files of the shipped cases by name.
-Json shipped_cases()
+Json shipped_case_files()
 {
   Json cases = Json::object();
-  const std::filesystem::path folder = input::data_folder() + "/cases";
-  std::error_code none;
-  for (const auto &file : std::filesystem::directory_iterator(folder, none))
-    if (file.path().extension() == ".prm")
-      cases[file.path().stem()] = file.path();
-  return Json(nlohmann::json(cases)); // by name
+  for (const std::string &name : input::shipped_cases())
+    cases[name] = input::shipped_case_file(name);
+  return cases;
 }
 
 } // namespace
@@ -153,7 +149,7 @@ support::ExitCode print_schema(const input::Options &options)
   document["format_version"] = format_version;
   document["version"] = output::program_version();
   document["git_commit"] = output::git_commit();
-  document["cases"] = shipped_cases();
+  document["cases"] = shipped_case_files();
   for (const study::StudyQuantity &quantity : study::quantities())
     document["quantities"][quantity.name] = quantity.unit;
   for (const claims::Claim &claim : claim_registry())

@@ -1,4 +1,4 @@
-/// Signals that end a run: of the keyboard, of `kill`, of terminals that close, and of batch systems.
+/// Signals that end a run, from the keyboard, `kill`, closed terminals, and batch systems.
 #pragma once
 
 #include <cstddef>
@@ -31,11 +31,11 @@ bool any_rank_interrupted();
 /// Returns whether any_rank_interrupted() has been true: the run ends early. The same on all ranks.
 bool interrupted();
 
-/// Sets what the thread that waits for signals does before it ends the process: saves what is known, without MPI, while
-/// the other threads continue. Exceptions of it are ignored.
+/// Sets the action of the waiting thread before it ends the process: save the results so far, without MPI, while the
+/// other threads continue. Its exceptions are ignored.
 void on_interruption(std::function<void()> action);
 
-/// From here on signals have no effect: the exit code is decided. Does not return if one is ending the process.
+/// From here on signals have no effect: the exit code is decided. Does not return while a signal ends the process.
 void disregard_signals();
 
 /// Time steps of a lattice between two calls of any_rank_interrupted(): less than some milliseconds, or a few steps of

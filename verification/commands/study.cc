@@ -11,6 +11,7 @@
 #include "support/folder_lock.h"
 #include "support/machine_memory.h"
 #include "verification/commands/command.h"
+#include "verification/commands/cost.h"
 #include "verification/commands/signals.h"
 #include "verification/input/input_file.h"
 #include "verification/output/output_file.h"
@@ -26,10 +27,10 @@ namespace
 
 namespace fs = std::filesystem;
 
-// Runs of a killed study get SIGTERM, and write a checkpoint before they end.
+// The runs of a killed study get SIGTERM, and write a checkpoint before they end.
 constexpr std::chrono::seconds patience_with_orphans(10);
 
-// A run's directory, and the one beside it that takes its place once the run has ended.
+// Directory of a run, and the directory that replaces it once the run has ended.
 struct Folders
 {
   std::string whole, part;
@@ -56,7 +57,7 @@ std::string case_file_of(const Run &run, const study::PlannedRun &planned)
 std::vector<std::string> command_of(const std::string &case_file, const std::string &folder, bool skip_verification,
                                     bool resume)
 {
-  // This program, whatever has become of its file since it was started.
+  // This program, even if its file has been replaced since it was started.
   std::vector<std::string> command{"/proc/self/exe", "fracture",  case_file, "--output-dir",
                                    folder,           "--threads", "1",       "--no-report"};
   if (skip_verification)
@@ -73,7 +74,7 @@ std::string result_line(const study::RunOutcome &outcome)
   return outcome.pattern;
 }
 
-// Shows how far the pool is: by the cost of the runs that have ended, for they differ.
+// Progress of the pool, weighted by the cost of the runs.
 class PoolProgress
 {
 public:
@@ -116,7 +117,7 @@ private:
   double done_ = 0., total_ = 0.;
 };
 
-// Runs what is not there yet. @return whether all of it ended
+// Runs what is missing. @return whether all runs have ended
 bool run_children(study::StudyResults &results, const input::Options &options, bool skip_verification,
                   std::size_t n_cores, Run &run)
 {
@@ -183,7 +184,7 @@ void run_checks(study::StudyResults &results, bool quick, Run &run)
   }
 }
 
-// Checks the claims on the base case, small version, in the place of the runs. @throws ClaimFailed
+// Checks the claims on the base case, small version, instead of on each run. @throws ClaimFailed
 void verify_base(const study::Study &study, const input::InputFile &base, const std::vector<std::string> &settings,
                  Run &run)
 {
@@ -203,7 +204,7 @@ void verify_base(const study::Study &study, const input::InputFile &base, const 
   (void)require_verified(input, run);
 }
 
-// Of as many of the largest runs as go at once, each a program of its own.
+// Memory of the largest runs that can run concurrently, each in its own process.
 resources::MemoryNeed memory_of(const std::vector<study::PlannedRun> &plan, std::size_t n_cores)
 {
   std::vector<double> needs;
@@ -248,10 +249,10 @@ support::ExitCode run_study(const input::Options &options, const std::string &na
       study::print_plan(std::cout, results.study, results.plan, n_cores);
       std::cout << resources::memory_text(memory);
     }
-    resources::require_memory(memory);
+    require_memory(options, memory);
     return support::ExitCode::done;
   }
-  resources::require_memory(memory);
+  require_memory(options, memory);
 
   Run run(options);
   run.info().add("skip_verification", options.skip_verification);

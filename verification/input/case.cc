@@ -33,9 +33,9 @@ void check_seed(const Case &input, Parameters &p, const lattice::TriangularLatti
   }
 }
 
-// More spacings along an edge would be no sheet of rubber, and their number no whole number in places.
+// More spacings along an edge exceed any sheet of rubber, and the integers of some indices.
 constexpr double most_spacings = 1e6;
-// A step of more force evaluations is no gain: the time that one takes grows as the square of their number.
+// More force evaluations per step gain nothing: the stable step grows as their square, limited by accuracy.
 constexpr unsigned int most_stages = 200;
 
 void check_size(const Case &input, Parameters &p)
@@ -74,7 +74,7 @@ void check_cutout(const Case &input, Parameters &p)
               {"Sheet/spacing"});
 }
 
-// Bonds that the loading alone would break.
+// Reports a breaking stretch at which the loading alone would break bonds.
 void check_breaking_stretch(const Case &input, Parameters &p, const lattice::TriangularLattice &sheet)
 {
   double longest = 0.;
@@ -85,7 +85,7 @@ void check_breaking_stretch(const Case &input, Parameters &p, const lattice::Tri
       continue;
     const Eigen::Vector2d R = sheet.bond_vector(kind);
     const double stretch = (input.deformation() * R).norm() / R.norm();
-    // Equal ones differ by rounding.
+    // Equal stretches differ by rounding.
     if (stretch > longest * (1. + 1e-12))
     {
       longest = stretch;
@@ -103,7 +103,7 @@ void check_breaking_stretch(const Case &input, Parameters &p, const lattice::Tri
           {"Loading/strain x", "Loading/strain y", "Loading/shear"});
 }
 
-// As many stages as the dashpots ask for; what the user has given less of is told.
+// Reports a time step for which the dashpots require more stages than are allowed.
 void check_stages(const Case &input, Parameters &p)
 {
   if (input.stages > 0)
@@ -114,19 +114,19 @@ void check_stages(const Case &input, Parameters &p)
   const double step = input.time_step ? *input.time_step : input.chebyshev_step(breaks);
   if (!(step <= longest))
     p.error("Time/step",
-            "the dashpots allow runge-kutta-chebyshev no more than " + support::full_precision(longest) + " s in " +
-              std::to_string(most_stages) + " stages, and this step is one of " + support::full_precision(step) + " s",
+            "the viscosity limits runge-kutta-chebyshev to steps of " + support::full_precision(longest) + " s with " +
+              std::to_string(most_stages) + " stages; this step is " + support::full_precision(step) + " s",
             {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity", "Contact/viscosity", "Sheet/spacing",
              "Time/integrator"});
 }
 
-// Refuses a stated step with which the oscillation of two sites in contact grows.
+// Reports a given time step with which the oscillation of two sites in contact grows.
 void check_contact_step(const Case &input, Parameters &p)
 {
   if (input.breaking_stretch && input.has_contact &&
       lattice::amplifies_contact(input.fracture_time_stepping(), input.lattice(), input.material(),
                                  input.contact_law()))
-    p.error("Time/step", "two sites in contact would gain energy in every step; omit it, or give a smaller one",
+    p.error("Time/step", "two sites in contact would gain energy in every step; omit `step`, or give a smaller one",
             {"Contact/stiffness", "Contact/viscosity", "Time/integrator", "Time/stages"});
 }
 
@@ -142,7 +142,7 @@ void check_time_step(const Case &input, Parameters &p)
     limit = 2. * lattice::ChebyshevStages(input.stages).real_limit() * limits.viscous;
   }
   if (*input.time_step > limit)
-    p.error("Time/step", "beyond " + support::full_precision(limit) + " s the time stepping is unstable; auto is safe",
+    p.error("Time/step", "the time stepping is unstable beyond " + support::full_precision(limit) + " s; omit `step`, or give a smaller one",
             {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity", "Sheet/spacing", "Time/integrator",
              "Time/stages"});
 }
@@ -154,15 +154,15 @@ void check_time_stepping(const Case &input, Parameters &p)
     p.error("Time/stages", "velocity-verlet has no stages; give 0, or integrator = runge-kutta-chebyshev",
             {"Time/integrator"});
   if (chebyshev && input.stages == 1)
-    p.error("Time/stages", "a method of second order has two stages or more; give 0 to have them chosen");
+    p.error("Time/stages", "a second-order method has at least two stages; give 0 for an automatic number");
   if (chebyshev && (input.nearest.viscosity == 0. || (input.has_next_nearest && input.next_nearest.viscosity == 0.)))
     p.error("Time/integrator",
-            "runge-kutta-chebyshev is for sheets whose bonds all have dashpots; give velocity-verlet",
+            "runge-kutta-chebyshev requires a viscosity for all bonds; give one, or velocity-verlet",
             {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity"});
   else if (chebyshev && input.breaking_stretch && input.has_contact && input.contact_viscosity == 0.)
     p.error(
       "Contact/viscosity",
-      "runge-kutta-chebyshev amplifies oscillations that have no dashpot, in contacts as well; give more than 0, or "
+      "runge-kutta-chebyshev amplifies undamped oscillations, also in contacts; give more than 0, or "
       "integrator = velocity-verlet",
       {"Time/integrator"});
   else if (input.density > 0. && input.has_sheet() && input.nearest.has_stiffness() &&
@@ -183,12 +183,12 @@ void check_time_stepping(const Case &input, Parameters &p)
 void ShellCase::declare(Parameters &parameters, const std::string &section)
 {
   parameters.add(section, "law", law, {{"mooney-rivlin", Law::mooney_rivlin}, {"linear", Law::linear}},
-                 "law of a bond: rod of incompressible Mooney-Rivlin rubber with constants a and b, or linear spring");
+                 "bond law: rod of incompressible Mooney-Rivlin rubber with constants a and b, or linear spring");
   parameters.add(section, "a", a, MagnitudeOrZero{}, "Pa", "a = 2 C1 of a Mooney-Rivlin bond");
   parameters.add(section, "b", b, MagnitudeOrZero{}, "Pa", "b = 2 C2 of a Mooney-Rivlin bond");
   parameters.add(section, "modulus", modulus, Magnitude{}, "Pa", "modulus e of a linear bond");
   parameters.add(section, "area factor", area_factor, Magnitude{}, "1",
-                 "s: cross-section of a bond over (sqrt3 / 2) d h; the source paper leaves it open");
+                 "s: cross-section of a bond over (sqrt3 / 2) d h, with the thickness h");
   parameters.add(section, "viscosity", viscosity, MagnitudeOrZero{}, "Pa s",
                  "eta of the Kelvin dashpot along the bond");
 }
@@ -208,123 +208,124 @@ lattice::Shell ShellCase::shell() const
 
 void Case::declare(Parameters &p)
 {
-  p.add("Sheet", "spacing", spacing, Magnitude{}, "m", "distance d of nearest sites, undeformed", Presence::required);
+  p.add("Sheet", "spacing", spacing, Magnitude{}, "m", "lattice spacing d: undeformed distance between nearest sites", Presence::required);
   p.add("Sheet", "length", length, Magnitude{}, "m",
-        "extent along x, the way of the crack, undeformed; rounded to whole lattice rows or columns",
+        "undeformed length along x, the direction of the crack; rounded to whole rows or columns of sites",
         Presence::required);
-  p.add("Sheet", "height", height, Magnitude{}, "m", "extent along y, undeformed; rounded likewise",
+  p.add("Sheet", "height", height, Magnitude{}, "m", "undeformed height along y; rounded to whole rows or columns of sites",
         Presence::required);
   p.add("Sheet", "orientation", orientation,
         {{"rows-along-crack", lattice::Orientation::rows_along_crack},
          {"rows-across-crack", lattice::Orientation::rows_across_crack}},
-        "rows of nearest neighbours along x, or turned by 30 degrees so that they run along y");
+        "orientation of the lattice: close-packed rows along x, or along y (rotated by 30 degrees)");
 
   p.add("Sheet", "hole radius", hole_radius, MagnitudeOrZero{}, "m",
-        "of a round hole in the middle of the sheet, undeformed; 0: none");
+        "undeformed radius of a circular hole in the centre of the sheet; 0: no hole");
   p.add("Sheet", "notch length", notch_length, MagnitudeOrZero{}, "m",
-        "of a slit from the left edge along y = 0, undeformed; 0: none");
+        "undeformed length of a slit from the left edge along y = 0; 0: no slit");
 
-  p.add("Material", "density", density, Magnitude{}, "kg/m^3", "rho of the rubber", Presence::required);
+  p.add("Material", "density", density, Magnitude{}, "kg/m^3", "mass density rho of the rubber, undeformed", Presence::required);
   nearest.declare(p, "Nearest neighbours");
-  p.add("Next-nearest neighbours", "present", has_next_nearest, "whether there are next-nearest-neighbour bonds");
+  p.add("Next-nearest neighbours", "present", has_next_nearest, "include bonds between next-nearest neighbours");
   next_nearest.declare(p, "Next-nearest neighbours");
 
   p.add("Loading", "strain x", strain_x, Range({-1., false}, {1000., true}), "1",
-        "eps_x: the sheet is stretched by 1 + eps_x along x", Presence::required);
+        "eps_x: engineering strain along x; the stretch is 1 + eps_x", Presence::required);
   p.add("Loading", "strain y", strain_y, Range({-1., false}, {1000., true}), "1",
-        "eps_y: the sheet is stretched by 1 + eps_y along y", Presence::required);
+        "eps_y: engineering strain along y; the stretch is 1 + eps_y", Presence::required);
 
   p.add("Loading", "shear", shear, Between{-1000., 1000.}, "1",
-        "F_xy: points move along x by this times their undeformed y");
+        "F_xy: displacement along x over undeformed y");
 
   p.add("Lattice", "solution", solution, {{"relaxed", Solution::relaxed}, {"motion", Solution::motion}},
-        "what `latcon lattice` computes: static equilibrium, or the motion up to the end time");
+        "what `latcon lattice` computes: static equilibrium, or the motion until the end time");
   p.add("Lattice", "noise amplitude", noise_amplitude, Between{0., 0.3}, "1",
-        "largest initial displacement of a site along x and along y, over d");
-  p.add("Lattice", "noise seed", noise_seed, Any{}, "seed of the random numbers");
+        "amplitude of the uniform random initial displacement of each site along x and y, over d");
+  p.add("Lattice", "noise seed", noise_seed, Any{}, "seed of the random displacements");
 
   p.add("Fracture", "breaking stretch", breaking_stretch, Range({1., false}, {1e6, true}), "1",
-        "lam_f: a bond breaks for good beyond this stretch; needed by `latcon fracture`");
+        "lam_f: bonds break irreversibly above this stretch; required by `latcon fracture`");
   p.add("Fracture", "toughening", toughening,
         {{"none", Toughening::none}, {"behind-tip", Toughening::behind_tip}, {"retraction", Toughening::retraction}},
-        "which bonds have lam_f multiplied by the factor: none, those behind the tip, or those that have retracted");
+        "bonds whose lam_f is multiplied by the factor: none, bonds behind the tip, or bonds that have retracted");
   p.add("Fracture", "distance", toughening_distance, MagnitudeOrZero{}, "m",
-        "delta: behind-tip toughens bonds whose undeformed midpoint is farther than this behind the tip");
+        "delta: behind-tip toughens bonds whose undeformed midpoint is more than this behind the tip");
   p.add("Fracture", "fraction", toughening_fraction, Between{0.01, 0.999}, "1",
-        "retraction toughens bonds that come below this fraction of their stretch in the loaded sheet");
-  p.add("Fracture", "factor", toughening_factor, Between{1., 1e6}, "1", "toughened bonds break at this times lam_f");
+        "retraction toughens bonds whose stretch falls below this fraction of that in the loaded sheet");
+  p.add("Fracture", "factor", toughening_factor, Between{1., 1e6}, "1", "toughened bonds break at this multiple of lam_f");
   p.add("Fracture", "seed shape", seed_shape, {{"sites", SeedShape::sites}, {"slit", SeedShape::slit}},
-        "what is removed as seed crack: sites in a line along x, or all sites in a rectangle");
-  p.add("Fracture", "seed sites", seed_sites, Between{1., 1000.}, "number of sites of a seed of sites");
-  p.add("Fracture", "seed length", seed_length, MagnitudeOrZero{}, "m", "extent of a slit along x, undeformed");
-  p.add("Fracture", "seed height", seed_height, MagnitudeOrZero{}, "m", "extent of a slit along y, undeformed");
+        "shape of the seed crack: a line of removed sites along x, or a rectangle of removed sites");
+  p.add("Fracture", "seed sites", seed_sites, Between{1., 1000.}, "number of sites removed by the shape sites");
+  p.add("Fracture", "seed length", seed_length, MagnitudeOrZero{}, "m", "undeformed length of the slit along x");
+  p.add("Fracture", "seed height", seed_height, MagnitudeOrZero{}, "m", "undeformed height of the slit along y");
   p.add("Fracture", "seed position", seed_position, Between{0.01, 0.9}, "1",
-        "left end of the seed crack, as a fraction of the length");
+        "position of the left end of the seed crack, as a fraction of the length");
   p.add("Fracture", "seed offset", seed_offset, Between{-1e20, 1e20}, "m",
-        "undeformed y of the centre line of the seed crack; a seed of sites takes the line of sites nearest to it");
+        "undeformed y of the centre line of the seed crack; the shape sites uses the nearest line of sites");
   p.add("Fracture", "stop position", stop_position, Between{0.05, 0.99}, "1",
-        "the run ends when the tip has come this fraction of the length");
+        "tip position at which the run ends, as a fraction of the length");
   const std::vector<std::pair<std::string, End>> ends{
     {"held", End::held}, {"free", End::free}, {"absorbing", End::absorbing}};
   p.add(
     "Fracture", "left end", left_end, ends,
-    "short end on the left: held, free under the dead load of the loaded sheet, or, besides, with dashpots that take "
-    "up waves");
-  p.add("Fracture", "right end", right_end, ends, "short end on the right, likewise");
+    "left end: held at the loading, free under the dead load of the loaded sheet, or free with dashpots that absorb "
+    "waves");
+  p.add("Fracture", "right end", right_end, ends, "right end, as the left end");
 
   p.add("Contact", "present", has_contact,
-        "whether sites of a breaking sheet that are not bonded repel each other when they come close");
+        "include repulsion between sites of a breaking sheet that are close but not bonded");
   // Next-nearest neighbours of a lattice without bonds between them stand at 1.73 d.
   p.add("Contact", "distance", contact_distance, Range({1e-20, true}, {1.7, false}), "1",
-        "distance below which sites touch, over d");
+        "distance below which sites are in contact, over d");
   p.add("Contact", "stiffness", contact_stiffness, Magnitude{}, "1",
-        "stiffness of a contact over that of a nearest-neighbour bond at rest");
+        "stiffness of a contact over that of an undeformed nearest-neighbour bond");
   p.add("Contact", "viscosity", contact_viscosity, MagnitudeOrZero{}, "1",
-        "dashpot of a contact over that of a nearest-neighbour bond");
+        "viscosity of a contact over that of a nearest-neighbour bond");
 
-  p.add("Time", "end", end_time, MagnitudeOrZero{}, "s", "the motion ends here at the latest");
+  p.add("Time", "end", end_time, MagnitudeOrZero{}, "s", "latest end time of the motion");
   p.add("Time", "step", time_step, Magnitude{}, "s",
-        "time step of the lattice; auto: safety factor times the stable one");
+        "time step of the lattice; auto: the safety factor times the stability limit");
   p.add(
     "Time", "integrator", integrator,
     {{"velocity-verlet", Integrator::velocity_verlet}, {"runge-kutta-chebyshev", Integrator::runge_kutta_chebyshev}},
-    "of the lattice: velocity Verlet, whose step the dashpots limit, or longer steps of several stages each");
+    "time integrator of the lattice: velocity Verlet, with a step limited by the viscosity, or longer steps of several "
+    "stages");
   p.add("Time", "stages", stages, Between{0., most_stages},
-        "force evaluations in a step of runge-kutta-chebyshev, 2 or more; 0: as few as are stable");
+        "number of force evaluations per step of runge-kutta-chebyshev, at least 2; 0: the smallest stable number");
   p.add(
     "Time", "safety factor", safety_factor, Between{0.01, 1.}, "1",
-    "automatic time step over the one that is stable in every configuration, or, of runge-kutta-chebyshev, over the "
-    "one that resolves the motion");
+    "automatic time step over the limit that is stable in every configuration or, for runge-kutta-chebyshev, over the "
+    "step that resolves the motion");
 
   continuum.declare(p);
 
   p.add("Output", "frame interval", frame_interval, MagnitudeOrZero{}, "s",
-        "time between frames of the lattice; 0: first and last frame alone");
+        "time between full frames; 0: only the first and the last frame");
   p.add("Output", "motion frames", motion_frames, Between{0., 1e4},
-        "light frames of a crack, for animations, evenly spread over the way of its tip from the seed to the stop "
+        "number of reduced frames of a crack for animations, equally spaced in tip position between the seed and the stop "
         "position; 0: none");
-  p.add("Output", "energy interval", energy_interval, AtLeast{1.}, "time steps between rows of energy.csv");
+  p.add("Output", "energy interval", energy_interval, AtLeast{1.}, "number of time steps between rows of energy.csv");
   p.add("Checkpoints", "steps", checkpoint_steps, AtLeast{0.},
-        "time steps between checkpoints of a motion; 0: none by steps");
+        "number of time steps between checkpoints of a motion; 0: not by steps");
   p.add("Checkpoints", "interval", checkpoint_interval, NonNegative{}, "s",
-        "wall time between checkpoints of a motion; 0: none by time");
+        "wall time between checkpoints of a motion; 0: not by time");
 
   p.add("Near tip", "ahead", near_tip_ahead, MagnitudeOrZero{}, "m",
-        "how far the window in which fields are averaged reaches ahead of the tip, undeformed; 0: 32 spacings");
-  p.add("Near tip", "behind", near_tip_behind, MagnitudeOrZero{}, "m", "how far behind it; 0: 40 spacings");
+        "undeformed length of the averaging window ahead of the tip; 0: 32 spacings");
+  p.add("Near tip", "behind", near_tip_behind, MagnitudeOrZero{}, "m", "undeformed length of the averaging window behind the tip; 0: 40 spacings");
   p.add("Near tip", "half height", near_tip_half_height, MagnitudeOrZero{}, "m",
-        "how far to either side; 0: 32 spacings");
+        "undeformed half height of the averaging window; 0: 32 spacings");
   p.add("Near tip", "interval", near_tip_interval, MagnitudeOrZero{}, "s",
-        "time between samples of the fields near the tip; 0: none are taken; auto: that in which a shear wave of the "
+        "time between samples of the fields near the tip; 0: no samples; auto: time in which a shear wave in the "
         "undeformed sheet travels half a spacing");
 
   p.add("Reference", "wavelength", reference_wavelength, Magnitude{}, "m",
-        "published wavelength of the crack path, undeformed, to set the measured one beside; auto: none");
+        "published undeformed wavelength of the crack path, compared with the measured value; auto: none");
   p.add("Reference", "amplitude", reference_amplitude, Magnitude{}, "m",
-        "published amplitude of the crack path, undeformed, likewise");
-  p.add("Reference", "speed", reference_speed, Magnitude{}, "m/s", "published Lagrangian speed of the crack, likewise");
+        "published undeformed amplitude of the crack path, compared with the measured value; auto: none");
+  p.add("Reference", "speed", reference_speed, Magnitude{}, "m/s", "published Lagrangian crack speed, compared with the measured value; auto: none");
   p.add("Reference", "tolerance", reference_tolerance, Magnitude{}, "1",
-        "relative difference from the published values within which a measured one counts as agreeing");
+        "largest relative difference between measured and published values that counts as agreement");
 }
 
 void Case::check(Parameters &p) const

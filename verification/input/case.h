@@ -19,7 +19,7 @@ struct ContactLaw;
 namespace latcon::input
 {
 
-/// One shell of bonds as a case states it.
+/// Entries of a case for one shell of bonds.
 struct ShellCase
 {
   enum class Law
@@ -37,20 +37,20 @@ struct ShellCase
 
   void declare(Parameters &parameters, const std::string &section);
   void check(Parameters &parameters, const std::string &section) const;
-  /// Whether shell() has a law to make.
+  /// Returns whether the bonds have stiffness, as shell() requires.
   bool has_stiffness() const { return law == Law::linear || a + b > 0.; }
   lattice::Shell shell() const;
 };
 
-/// Everything that a run is told: one rubber sheet, its loading, what breaks it, and how it is computed. Every command
-/// reads the same entries, so that one file describes one sheet on both sides.
+/// All input parameters of a run: the rubber sheet, its loading, fracture, and numerical parameters. All commands read
+/// the same entries, so that one file describes one sheet on both sides.
 struct Case
 {
   // Sheet
   double spacing = 0.;      ///< d [m]
   double length = 0.;       ///< [m]
   double height = 0.;       ///< [m]
-  double hole_radius = 0.;  ///< [m], in the middle of the sheet; 0 for none
+  double hole_radius = 0.;  ///< [m], in the centre of the sheet; 0 for none
   double notch_length = 0.; ///< [m], from the left edge along y = 0; 0 for none
   lattice::Orientation orientation = lattice::Orientation::rows_along_crack;
 
@@ -69,7 +69,7 @@ struct Case
   enum class Solution
   {
     relaxed, ///< static equilibrium
-    motion   ///< motion with dashpots up to the end time
+    motion   ///< motion with dashpots until the end time
   };
   Solution solution = Solution::relaxed;
   double noise_amplitude = 0.01; ///< in units of d [-]
@@ -99,17 +99,17 @@ struct Case
   double seed_position = 0.1;  ///< left end, of the length [-]
   double seed_offset = 0.;     ///< Y of the seed's centre line [m]
   double stop_position = 0.93; ///< of the length [-]
-  /// What stands at a short end of a sheet that breaks.
+  /// Boundary condition at a short end of a sheet that breaks.
   enum class End
   {
     held,
     free,     ///< pulled as in the loaded, unbroken sheet
-    absorbing ///< likewise, with dashpots that take up waves
+    absorbing ///< like free, with dashpots that absorb waves
   };
   End left_end = End::held;
   End right_end = End::held;
 
-  // Contact, of sheets that break
+  // Contact, in sheets that break
   bool has_contact = true;
   double contact_distance = 1.;  ///< of d [-]
   double contact_stiffness = 1.; ///< of that of a nearest bond at rest [-]
@@ -123,8 +123,8 @@ struct Case
     runge_kutta_chebyshev
   };
   Integrator integrator = Integrator::velocity_verlet;
-  unsigned int stages = 0;         ///< of Runge-Kutta-Chebyshev; 0: as few as are stable
-  std::optional<double> time_step; ///< [s]; none: safety factor times the stable one
+  unsigned int stages = 0;         ///< of Runge-Kutta-Chebyshev; 0: the smallest stable number
+  std::optional<double> time_step; ///< [s]; none: safety factor times the stability limit
   double safety_factor = 0.9;
 
   // Continuum
@@ -135,7 +135,7 @@ struct Case
   unsigned int motion_frames = 48; ///< in motion.pvd while a crack runs all the way; 0: none
   unsigned int energy_interval = 200;
 
-  // Checkpoints: none of these changes what a run finds
+  // Checkpoints: these do not affect results
   unsigned int checkpoint_steps = 0; ///< time steps between two; 0: not by steps
   double checkpoint_interval = 600.; ///< wall time between two [s]; 0: not by time
 
@@ -145,7 +145,7 @@ struct Case
   double near_tip_half_height = 0.;        ///< [m]
   std::optional<double> near_tip_interval; ///< time between samples [s]; 0: none are taken; none: near_tip_interval()
 
-  // Reference: published values to set the measured ones beside; none where there are none
+  // Reference: published values that measured ones are compared with; none if there are none
   std::optional<double> reference_wavelength; ///< [m]
   std::optional<double> reference_amplitude;  ///< [m]
   std::optional<double> reference_speed;      ///< [m/s], Lagrangian
@@ -154,27 +154,27 @@ struct Case
   void declare(Parameters &parameters);
   void check(Parameters &parameters) const;
 
-  /// Whether length and height are such that lattice() has a sheet to make.
+  /// Returns whether length and height are in the range that lattice() requires.
   bool has_sheet() const;
   /// The lattice of the sheet, periodic where its edges are.
   lattice::TriangularLattice lattice() const;
   lattice::Material material() const;
-  /// Whether the sheet has an edge inside: of a hole or a notch.
+  /// Returns whether the sheet has an inner edge, that of a hole or a notch.
   bool has_inner_edge() const { return hole_radius > 0. || notch_length > 0.; }
   /// F = [1 + eps_x, F_xy; 0, 1 + eps_y] of the loaded sheet [-].
   Eigen::Matrix2d deformation() const;
   lattice::Toughening toughening_rule() const;
-  /// Places of the sites that the seed crack removes, by increasing X. @throws std::invalid_argument if there are none
+  /// Indices of the sites that the seed crack removes, by increasing X. @throws std::invalid_argument if there are none
   std::vector<std::size_t> seed(const lattice::TriangularLattice &sheet) const;
   lattice::ContactLaw contact_law() const;
-  /// Limits of the time step of a sheet, or of one that breaks, whose sites may touch.
+  /// Time step limits of a sheet. @param breaks whether bonds break, so that sites may touch
   lattice::TimeStepLimits time_step_limits(bool breaks) const;
-  /// Time stepping of the lattice: the stated step, or safety factor times the limit.
+  /// Time stepping of the lattice: the given step, or the safety factor times the limit.
   lattice::TimeStepping lattice_time_stepping() const;
-  /// The same for a sheet that breaks, whose sites may touch.
+  /// Time stepping of a sheet that breaks, whose sites may touch.
   lattice::TimeStepping fracture_time_stepping() const;
 
-  /// Automatic step of Runge-Kutta-Chebyshev of a sheet, or of one that breaks, whose sites may touch [s].
+  /// Automatic step of Runge-Kutta-Chebyshev [s]. @param breaks whether bonds break, so that sites may touch
   double chebyshev_step(bool breaks) const;
 
 private:
@@ -184,11 +184,11 @@ private:
 /// Stretch down to which the automatic time step is stable [-]; shorter bonds do not occur in a sheet under tension.
 inline constexpr double smallest_stable_stretch = 0.3;
 
-/// The same for the oscillating modes under Runge-Kutta-Chebyshev [-].
+/// Stretch down to which the automatic step of Runge-Kutta-Chebyshev is stable for oscillating modes [-].
 inline constexpr double smallest_chebyshev_stretch = 0.45;
 
-/// What a run computes, as a line `key = value` for each entry, those of Checkpoints left out, which say only how often
-/// it is saved. Its SHA-256 is `case_hash` in run.json and in checkpoints.
+/// Lines `key = value` of all entries that affect results, that is all but those of Checkpoints. Their SHA-256 is
+/// `case_hash` in run.json and in checkpoints.
 [[nodiscard]] std::string case_lines(const Parameters &parameters);
 
 } // namespace latcon::input

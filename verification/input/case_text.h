@@ -1,4 +1,4 @@
-/// The two ways to write a case down, taken apart into assignments with the place of each.
+/// Parser for .prm and .json case files: assignments and their positions.
 #pragma once
 
 #include <cstddef>
@@ -10,7 +10,7 @@
 namespace latcon::input
 {
 
-/// One value given to one entry; what the words mean is not known here.
+/// One assignment of a value to an entry, not yet interpreted.
 struct Assignment
 {
   std::string place;   ///< "FILE:LINE", or "FILE:/Section/Name" in JSON
@@ -19,49 +19,49 @@ struct Assignment
   std::string value; ///< without blanks around it; lists with commas
 };
 
-/// The beginning of a section.
+/// Beginning of a section.
 struct SectionStart
 {
   std::string place;
   std::string section;
 };
 
-/// A line, or a piece of JSON, that cannot be understood.
+/// Line, or piece of JSON, that cannot be parsed.
 struct SyntaxProblem
 {
   std::string place;
   std::string text;
 };
 
-/// A case as it was written down, in the order of its lines (what is found missing at the end of the file comes last).
+/// Parsed case in the order of its lines; problems found at the end of the file come last.
 using CaseText = std::vector<std::variant<SectionStart, Assignment, SyntaxProblem>>;
 
-/// What is wrong with a text that holds a zero byte, with the line of the first; nothing if it holds none.
-/// @param name what the place calls the file
+/// Problem of a text that holds a zero byte, with the line of the first; none if it holds none.
+/// @param name name of the file in positions
 [[nodiscard]] std::optional<SyntaxProblem> zero_byte(const std::string &text, const std::string &name);
 
-/// Takes deal.II's parameter format apart: `subsection X`, `set name = value`, `end` (or all of these words in
+/// Parses deal.II's parameter format: `subsection X`, `set name = value`, `end` (or all of these words in
 /// capitals), `#` comments, of a line of their own or after a blank, `\` at the end of a line to continue it. Line ends
-/// may be those of any system. What follows a problem is still read.
+/// may be those of any system. Parsing continues after a problem.
 /// @param text content of the file; text that is not (it holds zero bytes) gives one problem
-/// @param name what the places call the file
+/// @param name name of the file in positions
 [[nodiscard]] CaseText read_prm(const std::string &text, const std::string &name);
 
-/// Takes JSON apart: an object of objects (the sections) of numbers, strings, booleans, and arrays of those. Repeated
+/// Parses JSON: an object of objects (the sections) of numbers, strings, booleans, and arrays of those. Repeated
 /// keys are kept. The digits of numbers are kept as they are. Text that is not (it holds zero bytes) gives one problem.
 [[nodiscard]] CaseText read_json(const std::string &text, const std::string &name);
 
-/// A text without the blanks and line ends around it.
+/// Returns a text without leading and trailing blanks and line ends.
 [[nodiscard]] std::string trimmed(const std::string &text);
 
-/// Words with ", " between them.
+/// Joins words with ", ".
 [[nodiscard]] std::string comma_separated(const std::vector<std::string> &words);
 
-/// Why a text cannot stand in a case file as a value; empty if it can.
+/// Reason why a text cannot be a value in a case file; empty if it can.
 [[nodiscard]] std::string unwritable(const std::string &text);
 
-/// A text fit for a message: on one line, bytes that are not printable UTF-8 as `\xNN`, the middle left out if it has
-/// more than `longest` bytes.
+/// Formats a text for a message: on one line, bytes that are not printable UTF-8 as `\xNN`, the middle omitted if it
+/// has more than `longest` bytes.
 [[nodiscard]] std::string printable(const std::string &text, std::size_t longest = 80);
 
 } // namespace latcon::input

@@ -15,7 +15,7 @@ namespace latcon::input
 namespace
 {
 
-// deal.II prints what muparser says before it throws it; the user is told once, with the entry.
+// Silences std::cerr: deal.II prints the errors of muparser that it throws, and they are reported with the entry.
 class SilentErrors
 {
 public:
@@ -28,7 +28,7 @@ private:
   std::streambuf *buffer_;
 };
 
-// Words that muparser and deal.II know and a case may not use: a sheet must be the same in every run and on every rank.
+// Returns whether an expression uses random numbers: a sheet must be the same in every run and on every rank.
 bool draws_numbers(const std::string &expression)
 {
   const auto is_part = [](const char c) { return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_'; };
@@ -40,7 +40,7 @@ bool draws_numbers(const std::string &expression)
   return false;
 }
 
-// `x = 1`, which muparser takes for 1; comparisons are none.
+// Returns whether an expression assigns, as in `x = 1`, which muparser evaluates to 1. Comparisons are allowed.
 bool assigns(const std::string &expression)
 {
   for (std::size_t at = expression.find('='); at != std::string::npos; at = expression.find('=', at + 1))
@@ -51,7 +51,7 @@ bool assigns(const std::string &expression)
   return false;
 }
 
-// A function whose values are numbers.
+// Function that throws for values that are not finite.
 class Expressions : public dealii::FunctionParser<2>
 {
 public:
@@ -186,10 +186,10 @@ bool is_word(const std::string &text)
 void check_expression(Parameters &parameters, const std::string &key, const std::string &text)
 {
   if (text == "0")
-    return; // nearly all of them, and a parser takes long to make
+    return; // the most frequent value; constructing a parser is slow
   const std::string problem = problem_with(text);
   if (!problem.empty())
-    parameters.error(key, "it is no expression in x, y and pi: " + problem);
+    parameters.error(key, "not an expression in x, y and pi: " + problem);
 }
 
 } // namespace
@@ -200,7 +200,7 @@ void FieldCase::declare(Parameters &p, const std::string &section, const std::st
   for (std::string *component : {&x, &y})
     p.add(section, name + (component == &x ? " x" : " y"), *component,
           documentation + ", component " + (component == &x ? "x" : "y") + " [" + unit +
-            "]: expression in the undeformed x and y [m], and pi");
+            "]: expression in the undeformed x, y [m] and pi");
 }
 
 void FieldCase::check(Parameters &p, const std::string &section, const std::string &name) const
@@ -224,19 +224,19 @@ void EdgeCase::declare(Parameters &p, const bool can_be_periodic)
   if (can_be_periodic)
     words.emplace_back("periodic", Condition::periodic);
   p.add(name, "condition", condition, words,
-        "held where the displacement is given, free where the traction is" +
-          std::string(can_be_periodic ? ", periodic where it follows the opposite edge" : ""));
+        "boundary condition: held (displacement prescribed), free (traction prescribed)" +
+          std::string(can_be_periodic ? ", periodic with the opposite edge" : ""));
   for (std::string *component : {&displacement_x, &displacement_y})
     p.add(name, component == &displacement_x ? "displacement x" : "displacement y", *component,
-          std::string("of a held edge, component ") + (component == &displacement_x ? "x" : "y") +
-            " [m]: `loading` for that of the homogeneous loading, `free`, or an expression in x, y [m] and pi");
+          std::string("prescribed displacement of a held edge, component ") + (component == &displacement_x ? "x" : "y") +
+            " [m]: `loading` for the homogeneous loading, `free`, or an expression in x, y [m] and pi");
   p.add(
     name, "normal gradient", normal_gradient,
     {{"free", NormalGradient::free}, {"clamped", NormalGradient::clamped}, {"loading", NormalGradient::loading}},
-    "derivative of displacement along the outward normal, which a gradient law can hold: free, zero, or that of the "
-    "homogeneous loading");
-  traction.declare(p, name, "traction", "Pa", "dead load per undeformed length and thickness");
-  double_traction.declare(p, name, "double traction", "Pa m", "dead load on the normal gradient of displacement");
+    "normal derivative of the displacement, for gradient laws: free, clamped to zero, or prescribed by the homogeneous "
+    "loading");
+  traction.declare(p, name, "traction", "Pa", "dead load per undeformed area");
+  double_traction.declare(p, name, "double traction", "Pa m", "dead load conjugate to the normal derivative of the displacement");
 }
 
 void EdgeCase::check(Parameters &p) const
@@ -278,70 +278,70 @@ void ContinuumCase::declare(Parameters &p)
     {{"cauchy-born", ContinuumLaw::cauchy_born},
      {"mooney-rivlin-network", ContinuumLaw::mooney_rivlin_network},
      {"mooney-rivlin", ContinuumLaw::mooney_rivlin}},
-    "law of the finite element sheet: Cauchy-Born law of the lattice, its mean over all directions of bonds, or the "
-    "plane-stress Mooney-Rivlin law of the textbooks, calibrated along the loading path");
+    "material law of the finite element sheet: Cauchy-Born law of the lattice, its mean over all bond directions, or the "
+    "plane-stress Mooney-Rivlin law calibrated along the loading path");
   p.add("Continuum", "ratio", mooney_rivlin_ratio, Between{-0.9, 0.9}, "1",
-        "r = C2 / (C1 + C2) of the plane-stress law mooney-rivlin; auto: calibrated along the loading path");
+        "r = C2 / (C1 + C2) of the law mooney-rivlin; auto: calibrated along the loading path");
   p.add(
     "Continuum", "gradient", gradient,
     {{"none", ContinuumGradient::none},
      {"isotropic", ContinuumGradient::isotropic},
      {"lattice", ContinuumGradient::lattice},
      {"network", ContinuumGradient::network}},
-    "energy of the gradient of deformation: none, (mu l_s^2 / 2) |Grad F|^2, that of the lattice's bonds, or its mean "
-    "over all directions, which goes with the law mooney-rivlin-network");
+    "strain-gradient energy: none, (mu l_s^2 / 2) |Grad F|^2, the energy of the lattice's bonds, or its mean over all bond "
+    "directions, for the law mooney-rivlin-network");
   p.add(
     "Continuum", "static length", static_length, MagnitudeOrZero{}, "m",
-    "l_s of the isotropic gradient energy; auto: fitted to the dispersion of the lattice, averaged over directions");
+    "l_s of the isotropic gradient energy; auto: fitted to the direction-averaged dispersion of the lattice");
   p.add("Continuum", "inertia length", inertia_length, MagnitudeOrZero{}, "m",
-        "l_d of the micro-inertia and of the lattice's gradient energy or its mean; auto: 0 without a gradient energy, "
-        "fitted with l_s for the isotropic one, the longest bond over sqrt(12) for the others");
+        "l_d of the micro-inertia and of the gradient energies lattice and network; auto: 0 without a gradient energy, "
+        "fitted together with l_s for isotropic, the longest bond over sqrt(12) for the others");
   p.add("Continuum", "penalty", penalty, Between{0.5, 1000.}, "1",
-        "gamma of the interior penalty gamma p (p + 1) / h on jumps of the normal derivative");
-  p.add("Continuum", "cells x", cells_x, Between{1., 65536.}, "cells along x of a sheet without hole or notch");
-  p.add("Continuum", "cells y", cells_y, Between{1., 65536.}, "cells along y of a sheet without hole or notch");
+        "gamma: interior penalty gamma p (p + 1) / h on jumps of the normal derivative");
+  p.add("Continuum", "cells x", cells_x, Between{1., 65536.}, "number of cells along x of a sheet without hole or notch");
+  p.add("Continuum", "cells y", cells_y, Between{1., 65536.}, "number of cells along y of a sheet without hole or notch");
   p.add("Continuum", "refinements", refinements, Between{0., 12.},
-        "halvings of the coarse mesh of a sheet with a hole or a notch, or from a file");
+        "number of uniform refinements of the mesh of a sheet with a hole or a notch, or of a mesh from a file");
   p.add(
     "Continuum", "mesh file", mesh_file,
-    "Gmsh mesh of quadrilaterals [m] in place of the sheet; physical curves 0 left, 1 right, 2 bottom, 3 top, 4 inner");
+    "Gmsh mesh of quadrilaterals [m] that replaces the sheet; physical curves 0 left, 1 right, 2 bottom, 3 top, 4 inner");
   p.add("Continuum", "degree", degree, Between{1., 5.},
         "polynomial degree p of the elements; at least 2 with a gradient energy");
   p.add("Continuum", "adaptive cycles", adaptive_cycles, Between{0., 30.},
-        "times that the mesh is refined where the error seems largest, after the loading");
+        "number of adaptive mesh refinements after the loading");
   p.add("Continuum", "refined fraction", refined_fraction, Between{0.001, 1.}, "1",
-        "of the cells, in each adaptive cycle");
+        "fraction of the cells refined in each adaptive cycle");
   p.add("Continuum", "reaction tolerance", reaction_tolerance, Magnitude{}, "1",
-        "largest relative change of the largest reaction in the last adaptive cycle with which it counts as converged; "
-        "auto: reported, not judged");
+        "largest relative change of the largest reaction in the last adaptive cycle that counts as converged; "
+        "auto: the change is reported without a verdict");
   p.add("Continuum", "first load step", first_load_step, Between{0.001, 1.}, "1",
-        "rise of the load factor with which the loading starts");
+        "first increment of the load factor");
   p.add("Continuum", "relative tolerance", relative_tolerance, Between{1e-14, 1e-4}, "1",
-        "residual over the forces at work at which Newton stops; its round-off is never undercut");
+        "relative residual at which Newton's method stops, not below its round-off");
   p.add(
     "Continuum", "direct limit", direct_limit, Between{0., 1e7},
-    "unknowns up to which linear systems are solved directly; beyond, conjugate gradients or, with dashpots, GMRES, "
-    "with multigrid");
+    "largest number of unknowns for the direct solver; above it multigrid with conjugate gradients or, with viscosity, "
+    "GMRES");
   p.add("Continuum", "solution", solution, {{"equilibrium", Solution::equilibrium}, {"motion", Solution::motion}},
-        "what `latcon continuum` computes: static equilibrium, or the motion up to the end time");
+        "what `latcon continuum` computes: static equilibrium, or the motion until the end time");
   p.add("Continuum", "time step", time_step, Magnitude{}, "s",
-        "of the motion; auto: a tenth of the time that a shear wave takes across a cell");
+        "time step of the motion; auto: a tenth of the time in which a shear wave crosses a cell");
   p.add("Continuum", "rule", rule,
         {{"average-acceleration", Rule::average_acceleration}, {"generalised-alpha", Rule::generalised_alpha}},
-        "of time integration");
+        "time integration scheme");
   p.add("Continuum", "spectral radius", spectral_radius, Between{0., 1.}, "1",
-        "of generalised-alpha at high frequencies: 1 keeps their energy, 0 removes it in a step");
+        "spectral radius of generalised-alpha at high frequencies: 1 conserves their energy, 0 removes it in one step");
   for (std::size_t id = 0; id < edges.size(); ++id)
     edges[id].declare(p, id < 4);
-  body_force.declare(p, "Body force", "force", "N/m^3", "dead load of the finite element sheet");
+  body_force.declare(p, "Body force", "force", "N/m^3", "dead load per undeformed volume of the finite element sheet");
   p.add("Body force", "corrected", body_force_corrected,
-        "apply (1 - l_d^2 Laplace) of the force, as the lattice's continuum with micro-inertia needs");
+        "apply (1 - l_d^2 Laplace) to the force, as required to match the lattice with micro-inertia");
   p.add("Initial state", "base", initial_base,
         {{"undeformed", Base::undeformed}, {"loading", Base::loading}, {"equilibrium", Base::equilibrium}},
-        "where a motion of the finite elements starts: undeformed, homogeneously loaded, or in equilibrium under the "
-        "conditions of the case");
-  initial_displacement.declare(p, "Initial state", "displacement", "m", "added to the base, zero where edges are held");
-  initial_velocity.declare(p, "Initial state", "velocity", "m/s", "at the start of a motion of the finite elements");
+        "initial state of a motion of the finite elements: undeformed, homogeneously loaded, or in equilibrium with the "
+        "boundary conditions");
+  initial_displacement.declare(p, "Initial state", "displacement", "m", "initial displacement added to the base, zero on held edges");
+  initial_velocity.declare(p, "Initial state", "velocity", "m/s", "initial velocity of the finite elements");
 }
 
 void ContinuumCase::check(Parameters &p, const bool has_inner_edge) const

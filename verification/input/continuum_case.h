@@ -12,24 +12,24 @@
 namespace latcon::input
 {
 
-/// Which constitutive law the finite element sheet is made of.
+/// Material law of the finite element sheet.
 enum class ContinuumLaw
 {
   cauchy_born,           ///< exact continuum of the lattice in homogeneous deformation
   mooney_rivlin_network, ///< mean of cauchy_born over all directions
-  mooney_rivlin          ///< compressible Mooney-Rivlin of the textbooks, calibrated along the loading path
+  mooney_rivlin          ///< compressible Mooney-Rivlin law, calibrated along the loading path
 };
 
-/// Which gradient energy is added to it.
+/// Strain-gradient energy that is added to the material law.
 enum class ContinuumGradient
 {
   none,
   isotropic, ///< (mu l_s^2 / 2) |Grad F|^2
-  lattice,   ///< that of the lattice's own bonds
+  lattice,   ///< gradient energy of the lattice's bonds
   network    ///< mean of lattice over all directions
 };
 
-/// A vector field as a case states it: a text for each component, in x and y [m] of the undeformed sheet.
+/// Vector field of a case: an expression for each component, in x and y [m] of the undeformed sheet.
 struct FieldCase
 {
   std::string x = "0";
@@ -41,20 +41,20 @@ struct FieldCase
   bool is_zero() const { return x == "0" && y == "0"; }
   /// "x" or "y": the first component that is not zero.
   const char *given() const { return x != "0" ? "x" : "y"; }
-  /// The field; its values are finite, or @throws InputError with the place of one that is not.
+  /// Returns the field, which throws InputError with the position where a value is not finite.
   /// @param extent a length of the sheet [m], the scale on which the field varies
   std::shared_ptr<dealii::FunctionParser<2>> field(double extent) const;
 };
 
-/// The shape of a sheet: X from 0 to length, Y from -height / 2 to height / 2.
+/// Shape of a sheet: X from 0 to length, Y from -height / 2 to height / 2.
 struct Outline
 {
   double length, height; ///< [m], > 0
-  double hole_radius;    ///< [m], in the middle; 0 for none
+  double hole_radius;    ///< [m], in the centre; 0 for none
   double notch_length;   ///< [m], from the left edge along y = 0; 0 for none
 };
 
-/// What is done to one edge of the sheet. The lattice takes a part of it, see require_lattice_sheet.
+/// Boundary conditions on one edge of the sheet. The lattice supports some of them, see require_lattice_sheet.
 struct EdgeCase
 {
   enum class Condition
@@ -63,7 +63,7 @@ struct EdgeCase
     free,    ///< traction given
     periodic ///< follows the opposite edge
   };
-  /// Of the normal gradient of displacement; only a gradient law can be told.
+  /// Condition on the normal gradient of the displacement, for gradient laws only.
   enum class NormalGradient
   {
     free,    ///< double traction given
@@ -83,14 +83,14 @@ struct EdgeCase
   void check(Parameters &parameters) const;
 };
 
-/// The entries of a case that concern the finite element side alone.
+/// Entries of a case for the finite element side alone.
 struct ContinuumCase
 {
   ContinuumLaw law = ContinuumLaw::cauchy_born;
   std::optional<double> mooney_rivlin_ratio; ///< r = C2 / (C1 + C2) [-]; none: calibrated
   ContinuumGradient gradient = ContinuumGradient::none;
   std::optional<double> static_length;  ///< l_s [m]; none: that of the lattice, averaged over directions
-  std::optional<double> inertia_length; ///< l_d [m]; none: likewise, or half the longest bond over sqrt3
+  std::optional<double> inertia_length; ///< l_d [m]; none: fitted with l_s, or the longest bond over sqrt(12)
   double penalty = 2.;                  ///< gamma [-]
   unsigned int cells_x = 12;
   unsigned int cells_y = 8;
@@ -110,7 +110,7 @@ struct ContinuumCase
     motion
   };
   Solution solution = Solution::equilibrium;
-  std::optional<double> time_step; ///< [s]; none: a tenth of what a shear wave needs across a cell
+  std::optional<double> time_step; ///< [s]; none: a tenth of the time in which a shear wave crosses a cell
   enum class Rule
   {
     average_acceleration,
@@ -135,7 +135,7 @@ struct ContinuumCase
   ContinuumCase();
   void declare(Parameters &parameters);
   void check(Parameters &parameters, bool has_inner_edge) const;
-  /// Refuses expressions that are not finite somewhere: they are tried in points all over the sheet and its edges.
+  /// Reports expressions that are not finite at one of many points of the sheet and its edges.
   void check_values(Parameters &parameters, const Outline &outline) const;
 };
 

@@ -5,9 +5,9 @@
 namespace latcon::input
 {
 
-/// The folder that holds what latcon reads: cases/, studies/, report/, paraview/. It is the nearest share/latcon above
-/// the running program, wherever that was installed to; the build folder has one that leads to the sources. Where there
-/// is none, the place where an installation would have it.
+/// Folder of the data files: cases/, studies/, report/, paraview/. It is the nearest share/latcon above the running
+/// program; the build folder has one that links to the sources. If none exists, the folder where an installation would
+/// have it.
 std::string data_folder();
 
 } // namespace latcon::input

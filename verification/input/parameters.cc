@@ -3,11 +3,13 @@
 #include "support/errors.h"
 #include "verification/input/case_text.h"
 #include "verification/input/input_file.h"
+#include "verification/input/shipped_cases.h"
 #include "verification/input/spelling.h"
 
 #include <deal.II/base/parameter_handler.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <sstream>
 #include <stdexcept>
 
@@ -41,7 +43,9 @@ void Parameters::read_file(const std::string &path)
   else
   {
     unreadable_ = true;
-    report(file_, "cannot read the case: " + input.problem);
+    std::error_code none;
+    report(file_, "cannot read the case: " + input.problem +
+                    (std::filesystem::exists(path, none) ? "" : shipped_case_hint(path)));
   }
 }
 
@@ -106,7 +110,9 @@ void Parameters::take_override(const std::string &text)
   const std::size_t slash = text.find('/');
   if (equals == std::string::npos || slash == std::string::npos || slash > equals)
   {
-    report("--set", "not understood: '" + printable(text) + "'; allowed: --set Section/Name=value");
+    const std::string name = trimmed(text.substr(0, equals));
+    report("--set",
+           "not understood: '" + printable(text) + "'" + nearest_key("", name) + "; allowed: --set Section/Name=value");
     return;
   }
   const std::string section = trimmed(text.substr(0, slash));
@@ -171,6 +177,8 @@ bool Parameters::is_set(const std::string &key) const
 
 void Parameters::error(const std::string &key, const std::string &text, const std::vector<std::string> &also)
 {
+  if (unreadable_)
+    return; // without the file these are defaults
   const auto bad = [this](const std::string &k)
   {
     const Entry &entry = find(k);

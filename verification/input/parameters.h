@@ -23,7 +23,7 @@ namespace latcon::input
 struct Assignment;
 struct SectionStart;
 
-/// The numbers an entry may have. In the unit of the entry, which is an SI unit.
+/// Range of numbers that an entry allows, in its SI unit.
 class Range
 {
 public:
@@ -71,13 +71,13 @@ struct NonNegative : Range
   NonNegative() : Range({0., true}, {infinity, false}) {}
 };
 
-/// 1e-20 <= x <= 1e20: what has a size, in any system of units. Products of a dozen such numbers are finite.
+/// 1e-20 <= x <= 1e20: positive quantities in any system of units. Products of a dozen such numbers are finite.
 struct Magnitude : Range
 {
   Magnitude() : Range({1e-20, true}, {1e20, true}) {}
 };
 
-/// 0 <= x <= 1e20: likewise, or nothing.
+/// 0 <= x <= 1e20: as Magnitude, or zero.
 struct MagnitudeOrZero : Range
 {
   MagnitudeOrZero() : Range({0., true}, {1e20, true}) {}
@@ -101,11 +101,11 @@ struct Between : Range
   Between(double lower, double upper) : Range({lower, true}, {upper, true}) {}
 };
 
-/// Whether an entry may be left out.
+/// Whether an entry may be omitted.
 enum class Presence
 {
-  optional, ///< if left out, the member keeps the value it had when it was declared
-  required  ///< no default would be honest: leaving it out is an error
+  optional, ///< if omitted, the member keeps the value that it had when it was declared
+  required  ///< no default is meaningful: omitting it is an error
 };
 
 /// Type of the value of an entry.
@@ -216,17 +216,17 @@ public:
   /// same key twice among them is a problem. Problems are kept for finish().
   void read_overrides(const std::vector<std::string> &overrides);
 
-  /// Whether the file or an override gave this entry a value, good or bad.
+  /// Returns whether the file or an override gave this entry a value, valid or not.
   [[nodiscard]] bool is_set(const std::string &key) const;
 
-  /// Reports that an entry is wrong in view of others. Dropped if `key` or one of `also` is itself wrong or missing,
-  /// for then the cause is already reported.
-  /// @param key  the entry to blame, as "Section/Name": the message says where it was set, and to what
-  /// @param text what is wrong and what would be right
+  /// Reports that an entry is wrong in combination with others. Ignored if `key` or one of `also` is itself wrong or
+  /// missing: the cause is then already reported.
+  /// @param key  the wrong entry, as "Section/Name": the message states its value and position
+  /// @param text what is wrong and what is allowed
   /// @param also the other entries that the check used
   void error(const std::string &key, const std::string &text, const std::vector<std::string> &also = {});
 
-  /// Whether nothing has been found wrong so far: checks that compute with many entries need that.
+  /// Returns whether no problem has been found so far, as checks that compute with many entries require.
   [[nodiscard]] bool good() const;
 
   /// Ends reading.

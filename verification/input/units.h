@@ -1,4 +1,4 @@
-/// Units of measurement: reading "0.625 mm" where metres are wanted.
+/// Units of measurement: parsing of "0.625 mm" where metres are expected.
 #pragma once
 
 #include <array>
@@ -8,7 +8,7 @@
 namespace latcon::input
 {
 
-/// A unit, as what one of it is in SI: factor * 10^power m^dimension[0] kg^dimension[1] s^dimension[2]
+/// Unit of measurement in terms of SI units: factor * 10^power m^dimension[0] kg^dimension[1] s^dimension[2]
 /// rad^dimension[3]. The power of ten is kept apart so that decimal prefixes cost no rounding. Angles have a dimension
 /// of their own here, so that degrees are not taken for a pure number.
 struct Unit
@@ -18,7 +18,7 @@ struct Unit
   double factor = 1.;             ///< for units that are no power of ten of the SI unit: degree, minute, hour
 };
 
-/// Understands products and quotients of m, g, s, min, h, rad, deg, N, Pa, bar, J, W, Hz, 1 and %, with prefixes n u m
+/// Parses products and quotients of m, g, s, min, h, rad, deg, N, Pa, bar, J, W, Hz, 1 and %, with prefixes n u m
 /// c d k M G where they are usual, and exponents: "mm", "kg/m^3", "N s/m", "N*s/m", "m s^-1". A quotient divides by one
 /// factor only.
 /// @return nothing if the text is not a unit
@@ -30,14 +30,14 @@ struct Unit
 /// Result of reading a number with a unit.
 struct ParsedNumber
 {
-  double value = 0.;     ///< in the SI unit that was asked for
-  bool has_unit = false; ///< whether the text had a unit of its own
-  std::string wrong;     ///< what is wrong with the text; empty if nothing is, and only then is `value` one
+  double value = 0.;     ///< in the requested SI unit
+  bool has_unit = false; ///< whether the text had a unit
+  std::string wrong;     ///< error in the text; `value` is valid only if this is empty
 };
 
 /// Reads a finite number, followed by a unit or not.
 /// @param text the number, e.g. "0.625 mm", "1e-3", "0.1MPa"; a plain number is in `unit`
-/// @param unit the SI unit wanted, one that parse_unit() understands as having power 0 and factor 1
+/// @param unit the expected SI unit, which parse_unit() gives power 0 and factor 1
 [[nodiscard]] ParsedNumber read_quantity(const std::string &text, const std::string &unit);
 
 } // namespace latcon::input

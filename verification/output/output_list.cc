@@ -70,12 +70,12 @@ std::vector<fs::path> files_of(const fs::path &folder, const Names &names)
   return files;
 }
 
-// Returns the first name that is free or belongs to a folder to which files were moved before.
+// Returns the first name that is free.
 fs::path folder_for_earlier(const fs::path &folder)
 {
   const fs::path plain = folder / "earlier-run";
   fs::path aside = plain;
-  for (int i = 2; fs::exists(aside) && !fs::exists(aside / output_list_name); ++i)
+  for (int i = 2; fs::exists(fs::symlink_status(aside)); ++i)
     aside = plain.string() + "-" + std::to_string(i);
   return aside;
 }
@@ -126,12 +126,6 @@ fs::path archive_earlier_output(const fs::path &folder, const fs::path &keep)
       return {};
     const fs::path aside = folder_for_earlier(folder);
     fs::create_directory(aside);
-    // The list exists only while the folder is complete: files that a killed run has moved in part are never removed,
-    // and the next run uses another folder.
-    const std::vector<fs::path> older = files_of(aside, names_in(aside));
-    fs::remove(aside / output_list_name);
-    for (const fs::path &file : older)
-      fs::remove(file);
     for (const fs::path &file : files)
       fs::rename(file, aside / file.filename());
     write_names(aside, names);

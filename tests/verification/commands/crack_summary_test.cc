@@ -1,4 +1,4 @@
-// What a crack ends with on the terminal.
+// Summary of a crack for the terminal.
 #include "verification/commands/crack_summary.h"
 
 #include <algorithm>
@@ -48,7 +48,36 @@ TEST(CrackSummary, SaysWhatWasMeasuredBesideTheReference)
   EXPECT_HAS(text, "reference 2.3 cm, +2.6 %");
   EXPECT_HAS(text, "0.154 ± 0.014 cm\n"); // has no reference
   EXPECT_EQ(text.find("laboratory"), std::string::npos);
-  EXPECT_HAS(text, "2 checks hold\n");
+  EXPECT_HAS(text, "  energy                    2 checks hold\n");
+}
+
+TEST(CrackSummary, HasALineForEachClaim)
+{
+  Results results;
+  results.add(checked("one", 0.));
+  results.add({"prestretch", "far", "1", {}, {}, {}, 0.5, 0.01});
+  results.add(checked("two", 0.));
+  results.add({"fracture", "speed", "m/s", 3., {}, {}, {}, {}});
+  EXPECT_EQ(claim_lines(results), "  energy                    2 checks hold\n"
+                                  "  prestretch                1 of 1 check fails\n"
+                                  "  fracture                  nothing was checked\n");
+}
+
+TEST(CrackSummary, NamesNoRowsThatHold)
+{
+  Results results;
+  for (int i = 0; i < 30; ++i)
+    results.add(checked("row " + std::to_string(i), 0.));
+  const std::string text = crack_summary({}, oscillating(), results);
+  EXPECT_HAS(text, "30 checks hold\n");
+  EXPECT_EQ(text.find("row"), std::string::npos);
+  EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 11);
+}
+
+TEST(CrackSummary, TimesHaveTwoDigits)
+{
+  EXPECT_EQ(times_text({{"claims", 8.06}, {"fracture", 61.4}}), "claims 8.1 s, fracture 61 s");
+  EXPECT_EQ(times_text({}), "");
 }
 
 TEST(CrackSummary, SaysWhatCouldNotBeMeasured)
@@ -77,7 +106,8 @@ TEST(CrackSummary, NamesRowsThatFailAndStaysShort)
   const std::string text = crack_summary(input, crack, results);
   EXPECT_HAS(text, "15 of 30 checks fail:\n  energy: row 1: error 0.25, tolerance 0.01\n");
   EXPECT_HAS(text, "and 11 more");
-  EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 14);
+  EXPECT_HAS(text, "  energy                    15 of 30 checks fail\n");
+  EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 15);
 }
 
 } // namespace

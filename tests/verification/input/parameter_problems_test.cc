@@ -231,8 +231,11 @@ TEST(Parameters, LinesThatAreNotUnderstoodAreTold)
 
 TEST(Parameters, OverridesThatAreNotUnderstoodAreTold)
 {
-  for (const std::string text : {"spacing=1", "Lattice/spacing", "", "=", "/", "spacing=1/2"})
+  for (const std::string text : {"Lattice/spacing", "", "=", "/", "nothing=1"})
     EXPECT_EQ(problem(good, {text}), "--set: not understood: '" + text + "'; allowed: --set Section/Name=value");
+  for (const std::string text : {"spacing=1", "spacing=1/2", "spacin=1"})
+    EXPECT_EQ(problem(good, {text}), "--set: not understood: '" + text +
+                                       "'; nearest known key: Lattice/spacing; allowed: --set Section/Name=value");
   EXPECT_EQ(problem(good, {"Run/title=a#b"}),
             "--set: Run/title = a#b: '#' begins a comment; allowed: a text on one line");
   EXPECT_EQ(

@@ -75,9 +75,12 @@ TEST_F(OutputList, FilesOfTheRunBeforeAreMovedAndNoOthers)
   put("earlier-run/mine.txt");
   begin_output_list(folder);
   written("crack.csv", "second");
-  EXPECT_EQ(archive_earlier_output(folder, {}), folder / "earlier-run");
-  EXPECT_EQ(content(folder / "earlier-run/crack.csv"), "second");
-  EXPECT_FALSE(has("earlier-run/lattice-0000.vtp")); // of the run before the previous one
+  EXPECT_EQ(archive_earlier_output(folder, {}), folder / "earlier-run-2");
+  EXPECT_EQ(content(folder / "earlier-run-2/crack.csv"), "second");
+  EXPECT_FALSE(has("earlier-run-2/lattice-0000.vtp"));
+  // Those of the first run are still there.
+  EXPECT_EQ(content(folder / "earlier-run/crack.csv"), "first");
+  EXPECT_TRUE(has("earlier-run/lattice-0000.vtp"));
   EXPECT_TRUE(has("earlier-run/mine.txt"));
 }
 

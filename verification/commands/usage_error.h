@@ -1,0 +1,18 @@
+#pragma once
+
+#include <string>
+
+namespace CLI
+{
+class App;
+class ParseError;
+} // namespace CLI
+
+namespace latcon::commands
+{
+
+/// Message for a command line that could not be parsed: the unknown command, option or argument with the nearest known
+/// one, otherwise the words of the parser; and which help to read.
+[[nodiscard]] std::string usage_error(const CLI::App &app, const CLI::ParseError &error);
+
+} // namespace latcon::commands
