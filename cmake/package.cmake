@@ -35,5 +35,5 @@ set(CPACK_DEBIAN_PYTHON_DESCRIPTION "The Python package: it runs latcon and read
 uncertainties, tables and arrays.")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "latcon (= ${PROJECT_VERSION}), python3, python3-numpy, python3-pandas")
 set(CPACK_DEBIAN_PYTHON_PACKAGE_RECOMMENDS "python3-matplotlib, python3-vtk9, python3-xarray")
-set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-tqdm")
+set(CPACK_DEBIAN_PYTHON_PACKAGE_SUGGESTS "python3-optuna, python3-scipy, python3-tqdm")
 include(CPack)

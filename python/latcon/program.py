@@ -104,7 +104,7 @@ def run(arguments: Sequence[str], directory: pathlib.Path, progress: Progress) -
                                      stderr=end_of_child, start_new_session=True)
             os.close(end_of_child)
             end_of_child = -1
-            lines = _Lines(_shower(progress))
+            lines = _Lines(progress_indicator(progress))
             try:
                 _follow(child, terminal, lines)
             finally:
@@ -260,7 +260,8 @@ class _Bar(_Shower):
         self._bar.close()
 
 
-def _shower(progress: Progress) -> _Shower:
+def progress_indicator(progress: Progress) -> _Shower:
+    """Indicator of progress lines: a bar of tqdm if it is installed, a function's, or none."""
     if callable(progress):
         return _Function(progress)
     if not progress:

@@ -64,7 +64,7 @@ class Packages(unittest.TestCase):
         self.assertLessEqual((names(depends) | names(recommends)) - {"latcon"}, listed)
         packages = {"matplotlib": "python3-matplotlib", "numpy": "python3-numpy", "pandas": "python3-pandas",
                     "vtkmodules": "python3-vtk9", "xarray": "python3-xarray"}
-        for path in (SOURCE / "python/latcon").glob("*.py"):
+        for path in (SOURCE / "python/latcon").rglob("*.py"):
             for indent, module in re.findall(r"^(\s*)(?:import|from) (\w+)", path.read_text(), re.M):
                 if module in packages:
                     self.assertIn(packages[module], names(recommends if indent.strip("\n") else depends), path)

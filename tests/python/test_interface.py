@@ -4,15 +4,16 @@ import pathlib
 import re
 
 import latcon
+import latcon.fit
 
 PAGE = (pathlib.Path(__file__).resolve().parents[2] / "docs" / "python.md").read_text(encoding="utf-8")
-PUBLIC = [*latcon.__all__, "open"]
+PUBLIC = {**{name: getattr(latcon, name) for name in (*latcon.__all__, "open")},
+          **{name: getattr(latcon.fit, name) for name in latcon.fit.__all__}}
 
 
 def members():
     """(name, object) of public functions, classes and their own public members."""
-    for name in PUBLIC:
-        thing = getattr(latcon, name)
+    for name, thing in PUBLIC.items():
         yield name, thing
         if inspect.isclass(thing):
             for member, value in vars(thing).items():

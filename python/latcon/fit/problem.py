@@ -1,0 +1,224 @@
+"""Problem of a fit: parameters with bounds, and observations with uncertainties."""
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from ..case import Case, Settable
+from ..commands import CaseLike
+from ..frames import Floats
+from ..quantities import Quantities, Value
+from ..results import Run
+from ..schema import schema
+
+SEED = "Lattice/noise seed"
+COMMANDS = ("fracture", "lattice", "continuum")
+
+Measurement = tuple[float | str | bool, float]
+"""Quantity of one run, and its uncertainty; both not-a-number if undetermined."""
+
+
+@dataclasses.dataclass(frozen=True)
+class Parameter:
+    """Entry of the case that the fit varies.
+
+    Attributes
+    ----------
+    key : str
+        ``Section/Name`` of a number or an integer.
+    lower, upper : float or str
+        Bounds: numbers in the SI unit of the entry, or texts with a unit (``"5 cm"``) with which the program accepts the case.
+    logarithmic : bool
+        Whether the parameter is searched on a logarithmic scale; then both bounds are positive.
+    """
+
+    key: str
+    lower: float | str
+    upper: float | str
+    logarithmic: bool = False
+
+
+@dataclasses.dataclass(frozen=True)
+class Observation:
+    """Observed value of a quantity of the run.
+
+    Attributes
+    ----------
+    quantity : str
+        ``crack.NAME`` or ``near_tip.NAME``, a quantity of `crack.json` or `near_tip.json`; with `measure` any name.
+    value : float or str or bool
+        Observed mean in the SI unit of the quantity. A word or truth value, such as ``"oscillating"``, is compared with the
+        fraction of seeds that have it.
+    uncertainty : float
+        One standard deviation of `value`, in its unit; of the fraction for a word. Required for a number.
+    measure : callable, optional
+        Function that returns the quantity of a :class:`latcon.Run` as a :class:`latcon.Value`, number, word or truth value.
+    """
+
+    quantity: str
+    value: float | str | bool
+    uncertainty: float = 0.0
+    measure: Callable[[Run], Any] | None = None
+
+    @property
+    def is_word(self) -> bool:
+        """Whether the quantity is a word or truth value."""
+        return isinstance(self.value, (str, bool))
+
+    @property
+    def sigma(self) -> float:
+        """Uncertainty, or its default for a word: 0.2 of the seeds."""
+        return self.uncertainty or 0.2
+
+    def of(self, run: Run) -> Measurement:
+        """Quantity of a run, and its uncertainty.
+
+        Raises
+        ------
+        ValueError
+            If the run has no such quantity, or it is of another type than the observation.
+        """
+        found = self.measure(run) if self.measure else _lookup(run, self.quantity)
+        uncertainty = math.nan
+        if isinstance(found, Value):
+            found, uncertainty = found.value, found.uncertainty
+        if isinstance(found, np.generic):
+            found = found.item()
+        if isinstance(found, (str, bool)):
+            if not self.is_word:
+                raise ValueError(f"{self.quantity} is {found!r} in {run.directory}, but the observed value is {self.value!r}")
+            return found, math.nan
+        if self.is_word or not isinstance(found, (int, float)):
+            raise ValueError(f"{self.quantity} is {found!r} in {run.directory}, but the observed value is {self.value!r}")
+        return float(found), uncertainty
+
+
+def _lookup(run: Run, quantity: str) -> Any:
+    file, _, path = quantity.partition(".")
+    found: Any = run.crack if file == "crack" else run.near_tip
+    for name in path.split("."):
+        if not isinstance(found, Quantities) or name not in found:
+            raise ValueError(f"no quantity {quantity!r} in {run.directory}")
+        found = found[name]
+    return found
+
+
+@dataclasses.dataclass(frozen=True)
+class Axis:
+    """Parameter with its bounds in SI units; coordinate 0 at the lower bound, 1 at the upper."""
+
+    key: str
+    unit: str
+    lower: float
+    upper: float
+    logarithmic: bool
+    integer: bool
+
+    def value(self, coordinate: float) -> float | int:
+        """Value at a coordinate."""
+        if self.logarithmic:
+            found = self.lower * (self.upper / self.lower) ** coordinate
+        else:
+            found = self.lower + coordinate * (self.upper - self.lower)
+        found = min(max(found, self.lower), self.upper)
+        return round(found) if self.integer else found
+
+    def coordinate(self, value: float) -> float:
+        """Coordinate of a value."""
+        if self.logarithmic:
+            return math.log(value / self.lower) / math.log(self.upper / self.lower)
+        return (value - self.lower) / (self.upper - self.lower)
+
+
+@dataclasses.dataclass(frozen=True)
+class Problem:
+    """Resolved problem of a fit."""
+
+    command: str
+    case: str  # text of the resolved base case
+    axes: tuple[Axis, ...]
+    observations: tuple[Observation, ...]
+    seeds: tuple[int, ...]
+    skip_verification: bool
+
+    def coordinates(self, values: Mapping[str, float]) -> Floats:
+        """Coordinates of a set of values."""
+        return np.array([axis.coordinate(values[axis.key]) for axis in self.axes])
+
+    def values(self, coordinates: Sequence[float] | Floats) -> dict[str, float | int]:
+        """Values at coordinates, by key."""
+        return {axis.key: axis.value(float(at)) for axis, at in zip(self.axes, coordinates)}
+
+    def identity(self) -> dict[str, Any]:
+        """Everything that the evaluated points of a fit depend on, except the base case."""
+        return {"command": self.command, "skip_verification": self.skip_verification, "seeds": list(self.seeds),
+                "parameters": [dataclasses.asdict(axis) for axis in self.axes],
+                "quantities": [observation.quantity for observation in self.observations]}
+
+
+def resolve_problem(case: CaseLike, parameters: Sequence[Parameter], observations: Sequence[Observation], command: str,
+                    seeds: Sequence[int] | None, skip_verification: bool) -> Problem:
+    """Checks a problem of a fit and converts its bounds.
+
+    Raises
+    ------
+    ValueError
+        If parameters, observations, seeds or the command are wrong.
+    BadInput
+        If the case or a bound is wrong.
+    """
+    base = case if isinstance(case, Case) else Case(case)
+    if command not in COMMANDS:
+        raise ValueError(f"command {command!r}: must be one of {', '.join(COMMANDS)}")
+    for what, names in (("parameter", [parameter.key for parameter in parameters]),
+                        ("observation", [observation.quantity for observation in observations])):
+        if not names:
+            raise ValueError(f"a fit needs at least one {what}")
+        if twice := {name for name in names if names.count(name) > 1}:
+            raise ValueError(f"{what} {min(twice)!r} is given twice")
+    if seeds is not None and SEED in [parameter.key for parameter in parameters]:
+        raise ValueError(f"{SEED} cannot be a parameter: the means are over seeds")
+    for observation in observations:
+        _check(observation, command)
+    own_seed = base[SEED]
+    chosen = [own_seed] if seeds is None else list(seeds)
+    if not chosen or len(set(chosen)) < len(chosen) or not all(isinstance(seed, int) for seed in chosen):
+        raise ValueError("seeds must be different integers, at least one")
+    return Problem(command, base.text(), tuple(_axis(base, parameter) for parameter in parameters), tuple(observations),
+                   tuple(seed for seed in chosen if isinstance(seed, int)), skip_verification)
+
+
+def _check(observation: Observation, command: str) -> None:
+    name = observation.quantity
+    if observation.measure is None:
+        file, _, path = name.partition(".")
+        if file not in ("crack", "near_tip") or not path or command != "fracture":
+            raise ValueError(f"observation {name!r}: must be crack.NAME or near_tip.NAME of a crack, or have the function "
+                             "`measure`")
+    if not math.isfinite(observation.uncertainty) or observation.uncertainty < 0:
+        raise ValueError(f"observation {name!r}: the uncertainty {observation.uncertainty} must be positive")
+    if not observation.is_word and not (math.isfinite(float(observation.value)) and observation.uncertainty > 0):
+        raise ValueError(f"observation {name!r}: needs a finite value and a positive uncertainty")
+
+
+def _axis(base: Case, parameter: Parameter) -> Axis:
+    base = base.set(parameter.key, parameter.lower)  # raises UnknownEntry
+    entry = schema()[parameter.key]
+    if entry.type not in ("number", "integer"):
+        raise ValueError(f"parameter {parameter.key}: is of the type {entry.type}; only numbers and integers can be fitted")
+    lower, upper = (_bound(base, parameter.key, bound) for bound in (parameter.lower, parameter.upper))
+    if not lower < upper or (parameter.logarithmic and lower <= 0):
+        raise ValueError(f"parameter {parameter.key}: the bounds {lower} and {upper} must increase"
+                         + (" and be positive" if parameter.logarithmic else ""))
+    return Axis(parameter.key, entry.unit or "1", lower, upper, parameter.logarithmic, entry.type == "integer")
+
+
+def _bound(base: Case, key: str, bound: Settable) -> float:
+    value = base.set(key, bound)[key] if isinstance(bound, str) else bound
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        raise ValueError(f"parameter {key}: the bound {bound!r} is no finite number")
+    return float(value)

@@ -1,0 +1,184 @@
+"""Evaluated points of a fit in its directory, one line per point."""
+from __future__ import annotations
+
+import dataclasses
+import fcntl
+import json
+import math
+import os
+import pathlib
+import secrets
+from collections.abc import Mapping
+from types import TracebackType
+from typing import Any
+
+from ..errors import LatconError, UnreadableFile
+from ..files import read_json, read_text
+from .problem import Measurement, Problem
+
+FORMAT_VERSION = 1
+
+
+@dataclasses.dataclass(frozen=True)
+class Outcome:
+    """End of one run of a point.
+
+    Attributes
+    ----------
+    seed : int
+        Its noise seed.
+    ended : str
+        ``done``, ``refused`` (bad input, or a claim does not hold) or ``failed``.
+    message : str
+        Message of the program unless done.
+    measured : mapping
+        Quantities by name.
+    """
+
+    seed: int
+    ended: str
+    message: str
+    measured: Mapping[str, Measurement]
+
+
+@dataclasses.dataclass(frozen=True)
+class Evaluation:
+    """Evaluated point: values of the parameters, and its runs."""
+
+    number: int
+    stage: str
+    values: Mapping[str, float]
+    outcomes: tuple[Outcome, ...]
+
+    @property
+    def ended(self) -> str:
+        """``done`` if all runs are, otherwise the end of the first that is not."""
+        return next((outcome.ended for outcome in self.outcomes if outcome.ended != "done"), "done")
+
+
+class Record:
+    """Directory of a fit: the problem, and the evaluated points so far.
+
+    Files: `case.prm`, the resolved base case; `fit.json`, the problem; `evaluations.jsonl`, a line of JSON per evaluated point,
+    appended when its runs have ended.
+
+    Raises
+    ------
+    LatconError
+        If the directory holds another fit, or one that another process works on.
+    UnreadableFile
+        If a file is damaged. An incomplete last line, which a killed process leaves, is removed.
+    """
+
+    def __init__(self, directory: pathlib.Path, problem: Problem) -> None:
+        self.directory = directory
+        self.problem = problem
+        directory.mkdir(parents=True, exist_ok=True)
+        self._lock = os.open(directory / "fit.lock", os.O_RDWR | os.O_CREAT, 0o666)
+        try:
+            try:
+                fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                raise LatconError(f"{directory}: another process works on the fit in this directory") from None
+            self._open_problem()
+            self.evaluations = read_evaluations(directory, remove_incomplete=True)
+        except BaseException:
+            os.close(self._lock)
+            raise
+
+    def __enter__(self) -> Record:
+        return self
+
+    def __exit__(self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None) -> None:
+        os.close(self._lock)
+
+    @property
+    def case(self) -> pathlib.Path:
+        """File of the resolved base case."""
+        return self.directory / "case.prm"
+
+    def add(self, evaluation: Evaluation) -> None:
+        """Appends an evaluated point."""
+        line = json.dumps(_plain(dataclasses.asdict(evaluation)), separators=(",", ":"), allow_nan=False) + "\n"
+        with open(self.directory / "evaluations.jsonl", "ab", buffering=0) as file:
+            end = file.seek(0, os.SEEK_END)
+            try:
+                data = line.encode()
+                while data:
+                    data = data[file.write(data):]
+                os.fsync(file.fileno())
+            except BaseException:
+                file.truncate(end)  # a full disk: no half line
+                raise
+        self.evaluations[evaluation.number] = evaluation
+
+    def _open_problem(self) -> None:
+        path = self.directory / "fit.json"
+        wanted = {"format": "latcon-fit", "format_version": FORMAT_VERSION, **self.problem.identity()}
+        if not path.exists():
+            replace(self.case, self.problem.case)
+            replace(path, json.dumps(wanted, indent=1) + "\n")  # last: a fit without it has no evaluations
+            return
+        held = read_json(path)
+        different = [name for name in wanted if held.get(name) != wanted[name]]
+        if read_text(self.case) != self.problem.case:
+            different.append("case")
+        if different:
+            raise LatconError(f"{self.directory}: holds another fit; different: {', '.join(different)}; choose another directory")
+
+
+def replace(path: pathlib.Path, text: str) -> None:
+    """Writes a file as a whole."""
+    part = path.with_name(f"{path.name}.{secrets.token_hex(8)}.part")
+    try:
+        part.write_text(text, encoding="utf-8")
+        os.replace(part, path)
+    finally:
+        part.unlink(missing_ok=True)
+
+
+def read_evaluations(directory: pathlib.Path, remove_incomplete: bool = False) -> dict[int, Evaluation]:
+    """Evaluated points of a fit by number.
+
+    Raises
+    ------
+    UnreadableFile
+        If a complete line is damaged.
+    """
+    path = directory / "evaluations.jsonl"
+    if not path.exists():
+        return {}
+    text = read_text(path)
+    complete = text[:text.rfind("\n") + 1]
+    if remove_incomplete and complete != text:
+        os.truncate(path, len(complete.encode()))
+    found = {}
+    for number, line in enumerate(complete.splitlines(), start=1):
+        try:
+            evaluation = _evaluation(json.loads(line))
+        except (ValueError, TypeError, KeyError, AttributeError) as error:
+            raise UnreadableFile(path, f"line {number} is no evaluated point: {error}") from error
+        found[evaluation.number] = evaluation
+    return dict(sorted(found.items()))
+
+
+def _evaluation(line: Mapping[str, Any]) -> Evaluation:
+    outcomes = tuple(Outcome(item["seed"], item["ended"], item["message"],
+                             {name: (_read(value), _read(uncertainty)) for name, (value, uncertainty) in item["measured"].items()})
+                     for item in line["outcomes"])
+    return Evaluation(int(line["number"]), line["stage"], {key: float(value) for key, value in line["values"].items()}, outcomes)
+
+
+def _read(value: Any) -> Any:
+    return math.nan if value is None else value
+
+
+def _plain(value: Any) -> Any:
+    """Value for JSON: not-a-number and infinity become null."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_plain(item) for item in value]
+    return value
