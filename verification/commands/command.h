@@ -34,6 +34,26 @@ struct CompareOptions
   std::vector<std::string> excluded;   ///< `X,Y,R` of circles
 };
 
+/// Options of `latcon study`.
+struct StudyOptions
+{
+  std::string study; ///< file, or name of a shipped study
+  std::string shard; ///< `I/N`: run this share alone, judge nothing; empty: run all
+  bool collect = false; ///< run nothing, judge what the shards left
+};
+
+/// Options of `latcon batch`.
+struct BatchOptions
+{
+  std::string study;     ///< file, or name of a shipped study
+  bool slurm = false;    ///< write scripts for Slurm, the one batch system supported
+  bool submit = false;   ///< hand the scripts to sbatch
+  std::size_t tasks = 0; ///< of the job array; 0: one per run, at most 1000
+  std::size_t cpus_per_task = 1;
+  std::string time = "1-00:00:00"; ///< limit per task, in the form of sbatch
+  std::string partition;           ///< empty: the default of the cluster
+};
+
 /// Names of the claims, in the order in which they are checked.
 const std::vector<std::string> &claim_names();
 
@@ -47,7 +67,8 @@ support::ExitCode run_continuum(const input::Options &options);                 
 support::ExitCode run_fracture(const input::Options &options);                                 ///< `latcon fracture`
 support::ExitCode compare_frames(const input::Options &options, const CompareOptions &chosen); ///< `latcon compare`
 support::ExitCode report(const input::Options &options, const std::string &directory);         ///< `latcon report`
-support::ExitCode run_study(const input::Options &options, const std::string &study);          ///< `latcon study`
+support::ExitCode run_study(const input::Options &options, const StudyOptions &chosen);        ///< `latcon study`
+support::ExitCode write_batch(const input::Options &options, const BatchOptions &chosen);      ///< `latcon batch`
 support::ExitCode print_schema(const input::Options &options);                                 ///< `latcon schema`
 
 /// Draws pictures and report.html of a run, or of a folder of several, in a directory that this process has locked. On

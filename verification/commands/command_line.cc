@@ -174,13 +174,38 @@ support::ExitCode run_program(int argc, char **argv)
     ->add_flag("--skip-verification", options.skip_verification, "run the crack unverified; noted in every output");
   app.get_subcommand("fracture")->add_flag("--no-report", options.no_report, "draw neither pictures nor page");
 
-  std::string study;
-  CLI::App *study_command = app.add_subcommand("study", "a sweep of cracks, set beside what a source states");
-  study_command->add_option("STUDY", study, study::study_choices())->required()->type_name("");
-  study_command->add_flag("--quick", options.quick, "small version");
-  study_command->add_flag("--skip-verification", options.skip_verification,
-                          "run the cracks unverified; noted in every output");
+  StudyOptions study;
+  BatchOptions batch;
+  const auto add_study_command = [&](const std::string &name, const std::string &help, std::string &place)
+  {
+    CLI::App *subcommand = app.add_subcommand(name, help);
+    subcommand->add_option("STUDY", place, study::study_choices())->required()->type_name("");
+    subcommand->add_flag("--quick", options.quick, "small version");
+    subcommand->add_flag("--skip-verification", options.skip_verification,
+                         "run the cracks unverified; noted in every output");
+    return subcommand;
+  };
+  CLI::App *study_command = add_study_command("study", "a sweep of cracks, compared with what a source states", study.study);
+  study_command->add_option("--shard", study.shard, "run one of N shares of the runs, without verdict; then --collect")
+    ->type_name("I/N");
+  study_command->add_flag("--collect", study.collect, "run nothing: judge the runs of all shards");
   study_command->callback([&] { command = [&] { return run_study(options, study); }; });
+
+  CLI::App *batch_command = add_study_command("batch", "a study as a job array of a cluster", batch.study);
+  batch_command->add_flag("--slurm", batch.slurm, "write job scripts for Slurm")->required();
+  batch_command->add_flag("--submit", batch.submit, "submit them with sbatch");
+  batch_command->add_option("--tasks", batch.tasks, "tasks of the array; default: one per run, at most 1000")
+    ->check(CLI::Range(1u, 100000u))
+    ->type_name("N");
+  batch_command->add_option("--cpus-per-task", batch.cpus_per_task, "runs at once in each task")
+    ->check(CLI::Range(1u, 4096u))
+    ->capture_default_str()
+    ->type_name("N");
+  batch_command->add_option("--time", batch.time, "limit per task, [days-]hours:minutes:seconds")
+    ->capture_default_str()
+    ->type_name("TIME");
+  batch_command->add_option("--partition", batch.partition, "partition; default: that of the cluster")->type_name("NAME");
+  batch_command->callback([&] { command = [&] { return write_batch(options, batch); }; });
 
   CompareOptions chosen;
   CLI::App *compare_command = app.add_subcommand("compare", "a lattice frame beside a continuum frame, site by site");
