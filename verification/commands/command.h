@@ -39,6 +39,26 @@ struct CompareOptions
   std::vector<std::string> excluded;   ///< `X,Y,R` of circles
 };
 
+/// Options of `latcon study`.
+struct StudyOptions
+{
+  std::string study;    ///< file, or name of a shipped study
+  std::string shard;    ///< `I/N`: run this share alone, without verdict; empty: run all
+  bool collect = false; ///< run nothing, judge the runs of all shards
+};
+
+/// Options of `latcon batch`.
+struct BatchOptions
+{
+  std::string study;               ///< file, or name of a shipped study
+  bool slurm = false;              ///< write scripts for Slurm, the only batch system supported
+  bool submit = false;             ///< pass the scripts to sbatch
+  std::size_t tasks = 0;           ///< tasks of the job array; 0: one per run, at most 1000
+  std::size_t cpus_per_task = 1;   ///< runs at once in each task
+  std::string time = "1-00:00:00"; ///< limit per task, in the form of sbatch
+  std::string partition;           ///< empty: the default of the cluster
+};
+
 // The commands. Each runs on every MPI rank and returns the exit code of the program, or throws.
 support::ExitCode verify(const input::Options &options);                                       ///< `latcon verify`
 support::ExitCode run_lattice(const input::Options &options);                                  ///< `latcon lattice`
@@ -46,17 +66,20 @@ support::ExitCode run_continuum(const input::Options &options);                 
 support::ExitCode run_fracture(const input::Options &options);                                 ///< `latcon fracture`
 support::ExitCode compare_frames(const input::Options &options, const CompareOptions &chosen); ///< `latcon compare`
 support::ExitCode report(const input::Options &options, const std::string &directory);         ///< `latcon report`
-support::ExitCode run_study(const input::Options &options, const std::string &study);          ///< `latcon study`
+support::ExitCode run_study(const input::Options &options, const StudyOptions &chosen);        ///< `latcon study`
+support::ExitCode write_batch(const input::Options &options, const BatchOptions &chosen);      ///< `latcon batch`
 support::ExitCode print_schema(const input::Options &options);                                 ///< `latcon schema`
 
-/// `latcon entries`: lists the entries of a section, or of all if it is empty. @throws InputError for an unknown section
+/// `latcon entries`: lists the entries of a section, or of all if it is empty. @throws InputError for an unknown
+/// section
 support::ExitCode print_entries(const std::string &section);
 
 /// `latcon help TOPIC` for a section or an entry. @param commands names of the commands, for typing errors
 /// @throws InputError for an unknown topic
 support::ExitCode print_topic(const std::string &topic, const std::vector<std::string> &commands);
 
-/// `latcon init`: creates the folder and a commented case in it. @throws InputError if the case exists @throws OutputError
+/// `latcon init`: creates the folder and a commented case in it. @throws InputError if the case exists @throws
+/// OutputError
 support::ExitCode init(const std::string &directory);
 
 /// Draws pictures and report.html of a run, or of a folder of several, in a directory that this process has locked. On

@@ -165,7 +165,8 @@ support::ExitCode run_program(int argc, char **argv)
   options.arguments.assign(argv, argv + argc);
   std::function<support::ExitCode()> command;
 
-  CLI::App app("latcon: dynamic fracture of rubber on a triangular lattice, and the continuum it approximates", "latcon");
+  CLI::App app("latcon: dynamic fracture of rubber on a triangular lattice, and the continuum it approximates",
+               "latcon");
   app.set_version_flag("--version", "latcon " + output::program_version() + " (" + output::git_commit() + ")");
   app.require_subcommand(1);
   app.fallthrough();
@@ -240,23 +241,57 @@ support::ExitCode run_program(int argc, char **argv)
                              "run the crack unverified; noted in every output");
   fracture_command->add_flag("--no-report", options.no_report, "draw neither pictures nor page");
 
-  std::string study;
-  CLI::App *study_command = add_command("study", "a sweep of cracks, compared with what a source states",
-                                        "latcon study paper --quick");
-  study_command->add_option("STUDY", study, study::study_choices())->required()->type_name("");
-  study_command->add_flag("--quick", options.quick, "small version");
-  study_command->add_flag("--skip-verification", options.skip_verification,
-                          "run the cracks unverified; noted in every output");
+  StudyOptions study;
+  BatchOptions batch;
+  const auto add_study_command =
+    [&](const std::string &name, const std::string &help, const std::string &example, std::string &place)
+  {
+    CLI::App *subcommand = add_command(name, help, example);
+    subcommand->add_option("STUDY", place, study::study_choices())->required()->type_name("");
+    subcommand->add_flag("--quick", options.quick, "small version");
+    subcommand->add_flag("--skip-verification", options.skip_verification,
+                         "run the cracks unverified; noted in every output");
+    return subcommand;
+  };
+  CLI::App *study_command = add_study_command("study", "a sweep of cracks, compared with what a source states",
+                                              "latcon study paper --quick", study.study);
+  study_command->add_option("--shard", study.shard, "run one of N shares of the runs, without verdict; then --collect")
+    ->type_name("I/N");
+  study_command->add_flag("--collect", study.collect, "run nothing: judge the runs of all shards");
   study_command->callback(
     [&]
     {
-      default_folder(std::filesystem::path(study).stem());
+      default_folder(std::filesystem::path(study.study).stem());
       command = [&] { return run_study(options, study); };
     });
 
+  CLI::App *batch_command = add_study_command("batch", "a study as a job array of a cluster",
+                                              "latcon batch paper --slurm --tasks 50", batch.study);
+  batch_command->add_flag("--slurm", batch.slurm, "write job scripts for Slurm")->required();
+  batch_command->add_flag("--submit", batch.submit, "submit them with sbatch");
+  batch_command->add_option("--tasks", batch.tasks, "tasks of the array; default: one per run, at most 1000")
+    ->check(CLI::Range(1u, 100000u))
+    ->type_name("N");
+  batch_command->add_option("--cpus-per-task", batch.cpus_per_task, "runs at once in each task")
+    ->check(CLI::Range(1u, 4096u))
+    ->capture_default_str()
+    ->type_name("N");
+  batch_command->add_option("--time", batch.time, "limit per task, [days-]hours:minutes:seconds")
+    ->capture_default_str()
+    ->type_name("TIME");
+  batch_command->add_option("--partition", batch.partition, "partition; default: that of the cluster")
+    ->type_name("NAME");
+  batch_command->callback(
+    [&]
+    {
+      default_folder(std::filesystem::path(batch.study).stem());
+      command = [&] { return write_batch(options, batch); };
+    });
+
   CompareOptions chosen;
-  CLI::App *compare_command = add_command("compare", "two cracks, or a lattice frame and a continuum frame site by site",
-                                          "latcon compare output/strip output/thin");
+  CLI::App *compare_command =
+    add_command("compare", "two cracks, or a lattice frame and a continuum frame site by site",
+                "latcon compare output/strip output/thin");
   compare_command
     ->add_option("LATTICE", chosen.lattice,
                  "output directory of a crack; or frame (.vtp), series (.pvd) or output directory of a lattice")
@@ -294,32 +329,32 @@ support::ExitCode run_program(int argc, char **argv)
     });
 
   std::string directory;
-  CLI::App *report_command = add_command("report", "summary table, pictures and report.html of finished runs",
-                                         "latcon report output/quick");
+  CLI::App *report_command =
+    add_command("report", "summary table, pictures and report.html of finished runs", "latcon report output/quick");
   report_command->add_option("DIR", directory, "output directory of a run, or a folder of several")
     ->required()
     ->type_name("");
   report_command->callback([&] { command = [&] { return report(options, directory); }; });
 
-  CLI::App *init_command =
-    add_command("init", "a folder with a commented case to start from", "latcon init my-strip");
+  CLI::App *init_command = add_command("init", "a folder with a commented case to start from", "latcon init my-strip");
   init_command->add_option("DIR", directory, "folder; the case in it has its name")->required()->type_name("");
   init_command->callback([&] { command = [&] { return init(directory); }; });
 
   std::string section;
-  CLI::App *entries_command = add_command("entries", "entries of a case: name, unit, default, meaning",
-                                          "latcon entries Fracture");
+  CLI::App *entries_command =
+    add_command("entries", "entries of a case: name, unit, default, meaning", "latcon entries Fracture");
   entries_command->add_option("SECTION", section, "section whose entries to list; default: all")->type_name("");
   entries_command->callback([&] { command = [&] { return print_entries(section); }; });
 
   std::vector<std::string> topic;
-  CLI::App *help_command = add_command("help", "help on a command, a section or an entry of a case",
-                                       "latcon help Fracture/toughening");
-  help_command->add_option("TOPIC", topic, "command, section, or entry (Section/Name or its name alone)")->type_name("");
+  CLI::App *help_command =
+    add_command("help", "help on a command, a section or an entry of a case", "latcon help Fracture/toughening");
+  help_command->add_option("TOPIC", topic, "command, section, or entry (Section/Name or its name alone)")
+    ->type_name("");
   help_command->callback([&] { command = [&] { return print_help(app, joined(topic)); }; });
 
-  CLI::App *schema_command = add_command("schema", "all entries of a case as JSON, with the values of one",
-                                         "latcon schema quick");
+  CLI::App *schema_command =
+    add_command("schema", "all entries of a case as JSON, with the values of one", "latcon schema quick");
   schema_command->add_option("CASE", options.case_file, "case whose values to print; default: declarations only")
     ->type_name("");
   schema_command->callback(

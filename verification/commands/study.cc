@@ -1,7 +1,9 @@
 #include <algorithm>
 #include <chrono>
 #include <filesystem>
+#include <fstream>
 #include <iostream>
+#include <iterator>
 #include <numeric>
 #include <system_error>
 
@@ -18,6 +20,7 @@
 #include "verification/output/progress.h"
 #include "verification/resources/resources.h"
 #include "verification/study/process_pool.h"
+#include "verification/study/shard.h"
 #include "verification/study/study_output.h"
 
 namespace latcon::commands
@@ -30,15 +33,18 @@ namespace fs = std::filesystem;
 // The runs of a killed study get SIGTERM, and write a checkpoint before they end.
 constexpr std::chrono::seconds patience_with_orphans(10);
 
+// Each shard holds the lock of the study for the time that writing its plan takes.
+constexpr std::chrono::seconds patience_with_shards(60);
+
 // Directory of a run, and the directory that replaces it once the run has ended.
 struct Folders
 {
   std::string whole, part;
 };
 
-Folders folders_of(const Run &run, const study::PlannedRun &planned)
+Folders folders_of(const std::string &directory, const study::PlannedRun &planned)
 {
-  const std::string whole = run.directory() + "/runs/" + planned.folder();
+  const std::string whole = directory + "/runs/" + planned.folder();
   return {whole, whole + ".part"};
 }
 
@@ -49,9 +55,9 @@ void replace(const Folders &folders)
 }
 
 // The resolved case of a run, which the study wrote before its first run started.
-std::string case_file_of(const Run &run, const study::PlannedRun &planned)
+std::string case_file_of(const std::string &directory, const study::PlannedRun &planned)
 {
-  return run.directory() + "/cases/" + planned.folder() + ".prm";
+  return directory + "/cases/" + planned.folder() + ".prm";
 }
 
 std::vector<std::string> command_of(const std::string &case_file, const std::string &folder, bool skip_verification,
@@ -117,30 +123,37 @@ private:
   double done_ = 0., total_ = 0.;
 };
 
-// Runs what is missing. @return whether all runs have ended
-bool run_children(study::StudyResults &results, const input::Options &options, bool skip_verification,
-                  std::size_t n_cores, Run &run)
+// Which runs of a study to start, and where they are.
+struct Selection
+{
+  std::string directory;         // output directory of the study
+  std::vector<std::size_t> runs; // indices in the plan, in the order of their start
+  bool resume;                   // keep measured runs, continue runs with a checkpoint
+};
+
+// Runs the selected runs that are not measured yet. @return whether all of them ended
+bool run_children(study::StudyResults &results, const Selection &selection, bool skip_verification, std::size_t n_cores,
+                  Run &run)
 {
   const auto phase = run.info().stopwatch().phase("runs");
+  const std::string &directory = selection.directory;
   std::vector<std::size_t> jobs;
-  for (const std::size_t i : study::longest_first(results.plan))
+  for (const std::size_t i : selection.runs)
   {
     const study::PlannedRun &planned = results.plan[i];
-    const std::string folder = folders_of(run, planned).whole;
-    results.outcomes[i].run = planned.run;
-    results.outcomes[i].seed = planned.seed;
-    if (options.resume && study::is_finished(planned, folder, skip_verification))
+    const std::string folder = folders_of(directory, planned).whole;
+    if (selection.resume && study::is_finished(planned, folder, skip_verification))
       results.outcomes[i] = study::read_outcome(planned, folder);
     else
       jobs.push_back(i);
   }
   if (run.is_verbose())
-    std::cout << jobs.size() << " runs, " << results.plan.size() - jobs.size() << " are there already" << std::endl;
+    std::cout << jobs.size() << " runs, " << selection.runs.size() - jobs.size() << " are there already" << std::endl;
 
   for (const char *folder : {"/cases", "/runs"})
-    fs::create_directory(run.directory() + folder);
-  for (const study::PlannedRun &planned : results.plan)
-    output::write_file(case_file_of(run, planned), planned.case_text);
+    fs::create_directory(directory + folder);
+  for (const std::size_t i : selection.runs)
+    output::write_file(case_file_of(directory, results.plan[i]), results.plan[i].case_text);
   PoolProgress progress(results.plan, jobs, run.is_verbose());
   study::ProcessPool pool;
   pool.n_jobs = jobs.size();
@@ -148,20 +161,20 @@ bool run_children(study::StudyResults &results, const input::Options &options, b
   pool.start = [&](std::size_t job) -> study::ProcessPool::Job
   {
     const study::PlannedRun &planned = results.plan[jobs[job]];
-    const std::string folder = folders_of(run, planned).part;
+    const std::string folder = folders_of(directory, planned).part;
     support::require_in_place(folder);
     if (fs::exists(folder))
       lock_directory(folder, patience_with_orphans); // released at once: the run locks it for itself
-    const bool goes_on = options.resume && study::is_begun(planned, folder, skip_verification);
+    const bool goes_on = selection.resume && study::is_begun(planned, folder, skip_verification);
     if (!goes_on)
       fs::remove_all(folder);
     fs::create_directory(folder);
-    return {command_of(case_file_of(run, planned), folder, skip_verification, goes_on), folder + "/log.txt"};
+    return {command_of(case_file_of(directory, planned), folder, skip_verification, goes_on), folder + "/log.txt"};
   };
   pool.ended = [&](std::size_t job, int status)
   {
     const study::PlannedRun &planned = results.plan[jobs[job]];
-    const Folders folders = folders_of(run, planned);
+    const Folders folders = folders_of(directory, planned);
     support::require_in_place(folders.whole);
     replace(folders);
     results.outcomes[jobs[job]] = study::read_outcome(planned, folders.whole, status);
@@ -228,48 +241,58 @@ support::ExitCode exit_code_of(const study::StudyResults &results, const output:
                                                                                    : support::ExitCode::done;
 }
 
-} // namespace
-
-support::ExitCode run_study(const input::Options &options, const std::string &name)
+// Records the plan of a study that runs in shards in its output directory, or checks that it is the recorded one.
+// @throws InputError if the directory belongs to another study
+void share_plan(const std::string &directory, const std::string &plan, bool create)
 {
-  if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
-    throw support::InputError("`latcon study` starts its own processes, one a core; run it without mpirun");
-  study::StudyResults results;
-  results.study = study::read_study_file(study::study_path(name), options.quick);
-  const input::InputFile base = input::read_input_file(results.study.base);
-  results.plan = study::plan_runs(results.study, base, options.overrides);
-  results.outcomes.resize(results.plan.size());
-  results.quick = options.quick;
-  const std::size_t n_cores = options.threads > 0 ? options.threads : support::available_cores();
-  const resources::MemoryNeed memory = memory_of(results.plan, n_cores);
-  if (options.dry_run)
+  const fs::path file = fs::path(directory) / study::plan_file_name;
+  if (create)
+    fs::create_directories(directory);
+  std::string stored;
   {
-    if (!options.quiet)
-    {
-      study::print_plan(std::cout, results.study, results.plan, n_cores);
-      std::cout << resources::memory_text(memory);
-    }
-    require_memory(options, memory);
-    return support::ExitCode::done;
+    // Shards start at the same moment.
+    const auto lock = create ? lock_directory(directory, patience_with_shards) : nullptr;
+    if (create && !fs::exists(file))
+      output::write_file(file.string(), plan);
+    std::ifstream stream(file, std::ios::binary);
+    stored.assign(std::istreambuf_iterator<char>(stream), {});
+    if (!stream)
+      throw support::InputError(file.string() + " cannot be read: no shard of this study was run in " + directory);
   }
-  require_memory(options, memory);
+  if (const std::string difference = study::plan_difference(stored, plan); !difference.empty())
+    throw support::InputError(directory + " belongs to the runs of another plan: " + difference +
+                              "; choose another folder (--output-dir)");
+}
 
-  Run run(options);
-  run.info().add("skip_verification", options.skip_verification);
-  run.info().add("study", results.study.title);
-  const bool skip_verification = options.skip_verification || options.quick;
-  results.verification = options.skip_verification ? "none (--skip-verification)"
-                         : options.quick           ? "material and pre-stretch of the base case alone (--quick)"
-                                                   : "material and pre-stretch of every run";
-  results.is_verified = !skip_verification;
-  if (options.quick && !options.skip_verification)
-    verify_base(results.study, base, options.overrides, run);
+// Reads the outcomes of all runs. @throws InputError if some have not ended
+void collect_outcomes(study::StudyResults &results, const std::string &directory, bool skip_verification)
+{
+  constexpr std::size_t max_named = 8;
+  std::string missing;
+  std::size_t n_missing = 0;
+  for (std::size_t i = 0; i < results.plan.size(); ++i)
+  {
+    const study::PlannedRun &planned = results.plan[i];
+    const std::string folder = folders_of(directory, planned).whole;
+    if (study::is_begun(planned, folder, skip_verification))
+      results.outcomes[i] = study::read_outcome(planned, folder);
+    else if (++n_missing <= max_named)
+      missing += (missing.empty() ? "" : ", ") + planned.folder();
+  }
+  if (n_missing > 0)
+    throw support::InputError("--collect: " + std::to_string(n_missing) + " of " + std::to_string(results.plan.size()) +
+                              " runs have not ended: " + missing + (n_missing > max_named ? ", ..." : "") +
+                              "; run their shards again");
+}
+
+// Judges the runs, writes the tables and the page, and ends the run.
+support::ExitCode judge_runs(study::StudyResults &results, const input::Options &options, bool complete, Run &run)
+{
   const auto write_tables = [&]
   {
     output::write_file(run.directory() + "/study.json", study::study_json(results));
     output::write_file(run.directory() + "/study.csv", study::study_csv(results));
   };
-  const bool complete = run_children(results, options, skip_verification, n_cores, run);
   results.claims = study::judge(results.study, results.plan, results.outcomes);
   write_tables();
   if (complete && !results.study.checks.empty())
@@ -289,6 +312,75 @@ support::ExitCode run_study(const input::Options &options, const std::string &na
       std::cout << run.directory() << "/study.html" << std::endl;
   }
   return exit_code;
+}
+
+} // namespace
+
+support::ExitCode run_study(const input::Options &options, const StudyOptions &chosen)
+{
+  if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+    throw support::InputError("`latcon study` starts its own processes, one a core; run it without mpirun");
+  if (chosen.collect && !chosen.shard.empty())
+    throw support::InputError("--collect judges the runs of all shards; give it without --shard");
+  const study::Shard shard = chosen.shard.empty() ? study::Shard() : study::parse_shard(chosen.shard);
+  study::StudyResults results;
+  results.study = study::read_study_file(study::study_path(chosen.study), options.quick);
+  const input::InputFile base = input::read_input_file(results.study.base);
+  results.plan = study::plan_runs(results.study, base, options.overrides);
+  for (const study::PlannedRun &planned : results.plan)
+  {
+    results.outcomes.emplace_back();
+    results.outcomes.back().run = planned.run;
+    results.outcomes.back().seed = planned.seed;
+  }
+  results.quick = options.quick;
+  const std::size_t n_cores = options.threads > 0 ? options.threads : support::available_cores();
+  const resources::MemoryNeed memory = memory_of(results.plan, n_cores);
+  if (options.dry_run)
+  {
+    if (!options.quiet)
+    {
+      study::print_plan(std::cout, results.study, results.plan, n_cores);
+      std::cout << resources::memory_text(memory);
+    }
+    require_memory(options, memory);
+    return support::ExitCode::done;
+  }
+  require_memory(options, memory);
+
+  const bool skip_verification = options.skip_verification || options.quick;
+  results.verification = options.skip_verification ? "none (--skip-verification)"
+                         : options.quick           ? "material and pre-stretch of the base case alone (--quick)"
+                                                   : "material and pre-stretch of every run";
+  results.is_verified = !skip_verification;
+
+  Selection selection{options.output_dir, study::runs_of_shard(results.plan, shard), options.resume};
+  input::Options own = options; // those of the record in run.json
+  if (!chosen.shard.empty())
+  {
+    share_plan(options.output_dir, study::plan_text(results.study.title, results.plan, options.skip_verification),
+               true);
+    // A shard has a record and a lock of its own.
+    own.output_dir += "/shards/" + std::to_string(shard.index) + "-of-" + std::to_string(shard.count);
+    own.resume = selection.resume = true;
+  }
+  else if (chosen.collect)
+  {
+    share_plan(options.output_dir, study::plan_text(results.study.title, results.plan, options.skip_verification),
+               false);
+    collect_outcomes(results, options.output_dir, skip_verification);
+    own.resume = true;
+    selection.runs.clear();
+  }
+  Run run(own);
+  run.info().add("skip_verification", options.skip_verification);
+  run.info().add("study", results.study.title);
+  if (options.quick && !options.skip_verification && !chosen.collect)
+    verify_base(results.study, base, options.overrides, run);
+  const bool complete = chosen.collect || run_children(results, selection, skip_verification, n_cores, run);
+  if (!chosen.shard.empty())
+    return run.end({}, complete ? exit_code_of(results, {}) : support::ExitCode::interrupted);
+  return judge_runs(results, options, complete, run);
 }
 
 } // namespace latcon::commands

@@ -1,0 +1,155 @@
+#!/usr/bin/python3
+"""latcon study --shard and --collect, and latcon batch: files, exit codes, signals, and a job array of a real Slurm.
+
+Usage: shards_test.py PATH_OF_LATCON
+"""
+import copy
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+sys.dont_write_bytecode = True
+from program import CASES, LATCON, TemporaryFolder, latcon
+from slurm import Slurm, missing
+from study_test import TINY
+
+RUNS = 4  # of TINY: base twice, low, thin
+
+
+class Shards(TemporaryFolder):
+    def write_study(self, document=None):
+        path = self.folder / "tiny.json"
+        path.write_text(json.dumps(document or TINY))
+        return path
+
+    def words(self, *arguments, study=None, out=None, command="study"):
+        return [command, str(study or self.write_study()), "--output-dir", str(out or self.out), "--skip-verification",
+                *arguments]
+
+    def study(self, *arguments, expect=0, **choices):
+        run = latcon(*self.words(*arguments, **choices))
+        self.assertEqual(run.returncode, expect, run.stdout + run.stderr)
+        return run.stdout + run.stderr
+
+    def result(self, folder):
+        """What the study found, as bytes."""
+        return [(folder / name).read_bytes() for name in ("study.json", "study.csv", "results.csv")]
+
+    def undisturbed(self):
+        folder = self.folder / "undisturbed"
+        self.study(out=folder)
+        return self.result(folder)
+
+    def files(self):
+        return {path: path.read_bytes() for path in self.out.rglob("*") if path.is_file()}
+
+    def test_shards_leave_what_the_whole_study_leaves(self):
+        shards = [subprocess.Popen([LATCON, *self.words("--shard", f"{i}/3", "--threads", "1")], text=True,
+                                   stdout=subprocess.PIPE, stderr=subprocess.STDOUT) for i in (1, 2, 3)]
+        for shard in shards:
+            printed, _ = shard.communicate(timeout=600)
+            self.assertEqual(shard.returncode, 0, printed)
+        self.assertFalse((self.out / "study.json").exists())
+        self.assertEqual(json.loads((self.out / "shards/2-of-3/run.json").read_text())["exit_code"], 0)
+        self.study("--collect")
+        self.assertEqual(self.result(self.out), self.undisturbed())
+        self.assertTrue((self.out / "study.html").exists())
+
+    def test_stopped_shard_continues(self):
+        shard = subprocess.Popen([LATCON, *self.words("--shard", "1/1", "--threads", "1")], stdout=subprocess.DEVNULL)
+        end = time.monotonic() + 300
+        while not list((self.out / "runs").glob("*[0-9]")) and time.monotonic() < end:
+            time.sleep(0.02)
+        shard.send_signal(signal.SIGTERM)
+        self.assertEqual(shard.wait(120), 130)
+        measured = [path for path in (self.out / "runs").glob("*[0-9]")]
+        self.assertIn(len(measured), range(1, RUNS))
+        before = measured[0].stat().st_mtime_ns
+        printed = self.study("--collect", expect=2)
+        self.assertIn(f"of {RUNS} runs have not ended", printed)
+        self.assertFalse((self.out / "study.json").exists())
+        self.study("--shard", "1/1")
+        self.assertEqual(measured[0].stat().st_mtime_ns, before)
+        self.study("--collect")
+        self.assertEqual(self.result(self.out), self.undisturbed())
+
+    def test_folder_of_another_plan_is_refused_untouched(self):
+        self.study("--shard", "1/4", "--quiet")
+        before = self.files()
+        other = copy.deepcopy(TINY)
+        other["title"] = "Another study"
+        fewer = copy.deepcopy(TINY)
+        del fewer["runs"]["thin"]
+        edited = copy.deepcopy(TINY)
+        edited["set"]["Sheet/length"] = "2.6 cm"
+        for document, reason in ((other, "another study, 'A tiny study'"), (fewer, "4 runs, now there are 3"),
+                                 (edited, "the case of run base-1 differs")):
+            for choice in (["--shard", "2/4"], ["--collect"]):
+                printed = self.study(*choice, study=self.write_study(document), expect=2)
+                self.assertIn(reason, printed)
+                self.assertIn("--output-dir", printed)
+        self.assertEqual(self.files(), before)
+
+    def test_collect_without_shards_and_wrong_shards_are_bad_input(self):
+        self.assertIn("no shard", self.study("--collect", expect=2))
+        for text in ("0/2", "3/2", "1", "1/0", "a/b", "1/2/3", "-1/2", "1.5/2", "/", "1/1000000"):
+            self.assertIn("I/N", self.study(f"--shard={text}", expect=2), text)
+        self.assertIn("without --shard", self.study("--collect", "--shard", "1/2", expect=2))
+        self.assertFalse(self.out.exists())
+
+    def test_batch_writes_scripts_that_a_shell_understands(self):
+        study = self.write_study()
+        run = latcon(*self.words("--slurm", "--tasks", "2", "--cpus-per-task", "2", "--time", "0:30:00", "--set",
+                                 "Sheet/length=2.4 cm", study=study, command="batch"))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        for name in ("runs.sh", "collect.sh"):
+            script = self.out / "batch" / name
+            subprocess.run(["bash", "-n", script], check=True)
+            self.assertIn("--set 'Sheet/length=2.4 cm'", script.read_text())
+            self.assertIn(str(script), run.stdout)
+        self.assertIn("#SBATCH --array=1-2\n", (self.out / "batch/runs.sh").read_text())
+
+    def test_batch_refuses_what_would_break_a_script(self):
+        for words, reason in ((["--time", "1h"], "--time"), (["--partition", "a b"], "--partition"),
+                              (["--tasks", "0"], "--tasks")):
+            run = latcon(*self.words("--slurm", *words, command="batch"))
+            self.assertEqual(run.returncode, 2, words)
+            self.assertIn(reason, run.stderr)
+        run = latcon(*self.words("--slurm", command="batch", out=self.folder / "with blank"))
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("--slurm", latcon(*self.words(command="batch")).stderr)
+
+    def test_batch_without_slurm_says_so(self):
+        empty = self.folder / "bin"
+        empty.mkdir()
+        run = latcon(*self.words("--slurm", "--submit", command="batch"), env={**os.environ, "PATH": str(empty)})
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("no sbatch on this machine", run.stderr)
+        self.assertTrue((self.out / "batch/runs.sh").exists())
+
+    @unittest.skipIf(missing() or os.geteuid() != 0, "needs Slurm and root, which slurmd requires")
+    def test_array_cancelled_half_way_continues_in_slurm(self):
+        with Slurm(self.folder / "slurm") as cluster:
+            def submit():
+                run = latcon(*self.words("--slurm", "--submit", "--tasks", "2", "--time", "10", command="batch"),
+                             env=cluster.environment)
+                self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+
+            runs = self.out / "runs"
+            submit()
+            cluster.wait_for(lambda: list(runs.glob("*[0-9]")), "the first run", limit=300)
+            cluster.run("scancel", "--user=root")
+            cluster.wait_for(lambda: not cluster.jobs(), "the end of the cancelled jobs", limit=120)
+            self.assertIn(len(list(runs.glob("*[0-9]"))), range(1, RUNS))
+            self.assertFalse((self.out / "study.json").exists())
+            submit()
+            cluster.wait_for(lambda: not cluster.jobs(), "the end of the jobs", limit=600)
+            self.assertEqual(self.result(self.out), self.undisturbed(), (self.out / "batch/collect.log").read_text())
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

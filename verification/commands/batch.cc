@@ -1,0 +1,157 @@
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <regex>
+#include <sstream>
+
+#include <unistd.h>
+
+#include "support/child_process.h"
+#include "verification/commands/command.h"
+#include "verification/input/case_text.h"
+#include "verification/input/input_file.h"
+#include "verification/output/output_file.h"
+#include "verification/study/study_output.h"
+
+namespace latcon::commands
+{
+namespace
+{
+
+namespace fs = std::filesystem;
+
+constexpr std::size_t max_default_tasks = 1000; // MaxArraySize of Slurm is 1001 unless configured
+
+// A word for a POSIX shell.
+std::string quoted(const std::string &word)
+{
+  static const std::regex plain("[A-Za-z0-9_./:=+,@%-]+");
+  if (std::regex_match(word, plain))
+    return word;
+  return "'" + std::regex_replace(word, std::regex("'"), "'\\''") + "'";
+}
+
+// `latcon study` with the choices of the user, from any folder.
+std::string study_command(const input::Options &options, const BatchOptions &chosen)
+{
+  const bool is_file = fs::exists(chosen.study);
+  std::string command = quoted(fs::read_symlink("/proc/self/exe").string()) + " study " +
+                        quoted(is_file ? fs::absolute(chosen.study).string() : chosen.study);
+  for (const std::string &setting : options.overrides)
+    command += " --set " + quoted(setting);
+  if (options.quick)
+    command += " --quick";
+  if (options.skip_verification)
+    command += " --skip-verification";
+  return command + " --output-dir " + quoted(fs::absolute(options.output_dir).lexically_normal().string());
+}
+
+std::string directives(const BatchOptions &chosen, const std::string &name, const std::string &log)
+{
+  std::ostringstream text;
+  text << "#!/bin/bash\n#SBATCH --job-name=" << name << "\n#SBATCH --ntasks=1\n#SBATCH --time=" << chosen.time
+       << "\n#SBATCH --output=" << log << "\n#SBATCH --open-mode=append\n";
+  if (!chosen.partition.empty())
+    text << "#SBATCH --partition=" << chosen.partition << "\n";
+  return text.str();
+}
+
+std::string array_script(const std::string &command, const BatchOptions &chosen, std::size_t n_tasks,
+                         const std::string &folder)
+{
+  std::ostringstream text;
+  text << directives(chosen, "latcon-runs", folder + "/runs-%a.log") << "#SBATCH --array=1-" << n_tasks
+       << "\n#SBATCH --cpus-per-task=" << chosen.cpus_per_task << "\n#SBATCH --requeue\n#SBATCH --signal=B:USR1@120\n"
+       << R"(
+# Two minutes before the time limit the runs write checkpoints, and the task is requeued to continue from them.
+requeue=no
+trap 'requeue=yes; kill -TERM "$runs"' USR1
+trap 'kill -TERM "$runs"' TERM
+)" << command
+       << " --shard \"$SLURM_ARRAY_TASK_ID/" << n_tasks << "\" --threads " << chosen.cpus_per_task << " --quiet &\n"
+       << R"(runs=$!
+# A signal ends `wait` before the program ends.
+wait "$runs"
+code=$?
+while kill -0 "$runs" 2>/dev/null; do
+  wait "$runs"
+  code=$?
+done
+if [ "$requeue" = yes ] && [ "$code" -eq 130 ]; then
+  scontrol requeue "${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID"
+fi
+exit "$code"
+)";
+  return text.str();
+}
+
+// Submits a script. @return the number of the job
+std::string submit(const std::vector<std::string> &arguments, const std::string &log)
+{
+  std::vector<std::string> command{"/usr/bin/env", "sbatch", "--parsable"};
+  command.insert(command.end(), arguments.begin(), arguments.end());
+  std::vector<std::string> variables;
+  for (char **variable = environ; *variable != nullptr; ++variable)
+    variables.emplace_back(*variable);
+  const int status = support::wait_for_child(support::start_child({command, variables, log}));
+  std::ifstream file(log);
+  const std::string printed = input::trimmed({std::istreambuf_iterator<char>(file), {}});
+  if (status == support::not_started)
+    throw support::InputError("--submit: there is no sbatch on this machine; copy the scripts to one with Slurm, or "
+                              "submit them there");
+  if (status != 0)
+    throw support::InputError("--submit: sbatch ended with " + std::to_string(status) + ": " +
+                              input::printable(printed, 300));
+  return printed.substr(printed.find_last_of('\n') + 1, std::string::npos); // warnings come first
+}
+
+} // namespace
+
+support::ExitCode write_batch(const input::Options &options, const BatchOptions &chosen)
+{
+  static const std::regex time("([0-9]+-)?[0-9]+(:[0-9]{2}){0,2}"), name("[A-Za-z0-9_.,-]*");
+  if (!std::regex_match(chosen.time, time))
+    throw support::InputError("--time '" + input::printable(chosen.time) +
+                              "': expected [days-]hours:minutes:seconds, for example 1-00:00:00");
+  if (!std::regex_match(chosen.partition, name))
+    throw support::InputError("--partition '" + input::printable(chosen.partition) + "': expected a name");
+  const study::Study study = study::read_study_file(study::study_path(chosen.study), options.quick);
+  const std::vector<study::PlannedRun> plan =
+    study::plan_runs(study, input::read_input_file(study.base), options.overrides);
+  const std::size_t n_tasks = std::min(plan.size(), chosen.tasks > 0 ? chosen.tasks : max_default_tasks);
+  if (options.dry_run)
+  {
+    if (!options.quiet)
+      study::print_plan(std::cout, study, plan, n_tasks * chosen.cpus_per_task);
+    return support::ExitCode::done;
+  }
+
+  const fs::path folder = fs::absolute(options.output_dir).lexically_normal() / "batch";
+  if (!std::regex_match(folder.string(), std::regex("[^\\s%\\\\]+")))
+    throw support::InputError("--output-dir '" + input::printable(folder.string()) +
+                              "': sbatch does not support folders with blanks, % or \\ for its log files");
+  fs::create_directories(folder);
+  const std::string command = study_command(options, chosen);
+  const std::string runs = (folder / "runs.sh").string(), collect = (folder / "collect.sh").string();
+  output::write_file(runs, array_script(command, chosen, n_tasks, folder.string()));
+  output::write_file(collect, directives(chosen, "latcon-collect", (folder / "collect.log").string()) + "\nexec " +
+                                command + " --collect\n");
+  if (!chosen.submit)
+  {
+    if (!options.quiet)
+      std::cout << plan.size() << " runs in " << n_tasks << " tasks. To submit them:\n  runs=$(sbatch --parsable "
+                << quoted(runs) << ")\n  sbatch --dependency=afterany:$runs " << quoted(collect) << std::endl;
+    return support::ExitCode::done;
+  }
+  const std::string log = (folder / "sbatch.log").string();
+  const std::string array = submit({runs}, log);
+  const std::string judge = submit({"--dependency=afterany:" + array, collect}, log);
+  if (!options.quiet)
+    std::cout << plan.size() << " runs in " << n_tasks << " tasks: job " << array << ", then the verdict: job " << judge
+              << std::endl;
+  return support::ExitCode::done;
+}
+
+} // namespace latcon::commands

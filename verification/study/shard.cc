@@ -1,0 +1,78 @@
+#include "verification/study/shard.h"
+
+#include <charconv>
+
+#include <nlohmann/json.hpp>
+
+#include "support/errors.h"
+#include "verification/input/case_text.h"
+#include "verification/output/sha256.h"
+
+namespace latcon::study
+{
+namespace
+{
+
+using Json = nlohmann::ordered_json;
+
+constexpr std::size_t max_shards = 100000;
+
+// A whole number in all of the text; 0 if it is none.
+std::size_t whole_number(const std::string &text)
+{
+  std::size_t number = 0;
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), number);
+  return error == std::errc() && end == text.data() + text.size() ? number : 0;
+}
+
+} // namespace
+
+Shard parse_shard(const std::string &text)
+{
+  const std::size_t slash = text.find('/');
+  if (slash != std::string::npos)
+  {
+    const Shard shard{whole_number(text.substr(0, slash)), whole_number(text.substr(slash + 1))};
+    if (shard.index >= 1 && shard.index <= shard.count && shard.count <= max_shards)
+      return shard;
+  }
+  throw support::InputError("--shard '" + input::printable(text) +
+                            "': expected I/N with 1 <= I <= N <= " + std::to_string(max_shards) + ", for example 3/8");
+}
+
+std::vector<std::size_t> runs_of_shard(const std::vector<PlannedRun> &plan, const Shard &shard)
+{
+  const std::vector<std::size_t> order = longest_first(plan);
+  std::vector<std::size_t> runs;
+  for (std::size_t i = shard.index - 1; i < order.size(); i += shard.count)
+    runs.push_back(order[i]);
+  return runs;
+}
+
+std::string plan_text(const std::string &title, const std::vector<PlannedRun> &plan, const bool skip_verification)
+{
+  Json runs = Json::array();
+  for (const PlannedRun &run : plan)
+    runs.push_back({{"run", run.folder()}, {"case_sha256", output::sha256(run.case_text)}});
+  return Json{{"study", title}, {"skip_verification", skip_verification}, {"runs", std::move(runs)}}.dump(1) + "\n";
+}
+
+std::string plan_difference(const std::string &stored, const std::string &wanted)
+{
+  if (stored == wanted)
+    return "";
+  const Json there = Json::parse(stored, nullptr, false), here = Json::parse(wanted);
+  if (!there.is_object() || !there.contains("runs") || !there["runs"].is_array())
+    return std::string(plan_file_name) + " is damaged";
+  if (there.value("study", "") != here.value("study", ""))
+    return "it is of another study, '" + input::printable(there.value("study", "")) + "'";
+  if (there.value("skip_verification", false) != here.value("skip_verification", false))
+    return "it was begun with other choices of --quick or --skip-verification";
+  const Json &old_runs = there["runs"], &new_runs = here["runs"];
+  for (std::size_t i = 0; i < std::min(old_runs.size(), new_runs.size()); ++i)
+    if (old_runs[i] != new_runs[i])
+      return "the case of run " + new_runs[i].value("run", "") + " differs";
+  return "it has " + std::to_string(old_runs.size()) + " runs, now there are " + std::to_string(new_runs.size());
+}
+
+} // namespace latcon::study
