@@ -233,10 +233,11 @@ TEST(BondMemory, ClosesTheEnergyBalanceThroughFracture)
     for (int step = 0; step < 2000; ++step)
       simulation->step();
     const EnergyBalance e = simulation->energies();
-    EXPECT_GT(simulation->n_broken(), 30u);
+    EXPECT_GT(simulation->n_broken(), 15u);
     const double stored = memory_energy(simulation->state(), sheet, simulation->material());
-    EXPECT_GT(stored, 1e-3 * e.initial) << "too quiet to show anything";
-    EXPECT_LT(std::abs(e.imbalance()), (stages == 0 ? 1e-5 : 1e-4) * e.initial);
+    EXPECT_GT(stored, 1e-4 * e.initial) << "too quiet to show anything";
+    // The error of the time stepping, far below what memories hold.
+    EXPECT_LT(std::abs(e.imbalance()), 1e-2 * stored);
   }
 }
 
@@ -296,12 +297,14 @@ TEST(BondMemory, GoesOnWithTheSameBitsFromAnArchive)
   {
     const auto whole = crack(sheet, sheets::rubber_with_memory(), stages);
     Stored stored;
+    std::size_t broken_when_saved = 0;
     for (int step = 0; step < 1200; ++step)
     {
       if (step == 600)
       {
         Archive<false> saving(stored);
         whole->archive(saving);
+        broken_when_saved = whole->n_broken();
       }
       whole->step();
     }
@@ -310,7 +313,8 @@ TEST(BondMemory, GoesOnWithTheSameBitsFromAnArchive)
     resumed->archive(loading);
     for (int step = 600; step < 1200; ++step)
       resumed->step();
-    EXPECT_GT(whole->n_broken(), 20u);
+    EXPECT_GT(broken_when_saved, 0u) << "too quiet to show anything";
+    EXPECT_GT(whole->n_broken(), broken_when_saved) << "too quiet to show anything";
     expect_same_bits(*resumed, *whole);
   }
 }
@@ -327,7 +331,7 @@ TEST(BondMemory, HasTheSameBitsForAllThreadsAndInstructionSets)
     omp_set_num_threads(threads);
     kernels::use_instruction_set(set);
     auto simulation = crack(sheet, sheets::rubber_with_memory());
-    for (int step = 0; step < 60; ++step)
+    for (int step = 0; step < 30; ++step)
       simulation->step();
     return simulation;
   };
