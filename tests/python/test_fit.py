@@ -403,6 +403,15 @@ def test_all_points_are_in_the_box_and_later_ones_around_the_minimum():
     assert model.degree == 2
 
 
+def test_quantities_may_jump_where_a_word_changes():
+    problem = made_problem(1, [Observation("a", 0.45, 0.01), Observation("b", True)], seeds=1)
+    positions = np.linspace(0.3, 0.6, 13)
+    evaluations = [made_evaluation(problem, number, [at], [(at if at < 0.5 else at + 5, bool(at < 0.5))])
+                   for number, at in enumerate(positions)]
+    model = fit_local_model(tabulate(problem, evaluations))
+    assert model.center[0] == pytest.approx(0.45, abs=1e-6) and (positions[model.rows] < 0.5).all()
+
+
 def test_integers_and_logarithmic_parameters(small_fit, crack, tmp_path):
     parameters = [*PARAMETERS[:1], Parameter(DENSITY, 100, 10000, True), Parameter("Fracture/seed sites", 4, 9)]
     result = small_fit(tmp_path / "fit", parameters=parameters, keep_runs=True, evaluations=8)
