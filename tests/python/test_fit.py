@@ -5,7 +5,6 @@ A function stands in for the crack.
 import fcntl
 import json
 import math
-import threading
 import time
 
 import numpy as np
@@ -33,7 +32,7 @@ SOLUTION = {STRETCH: 3.03417, DENSITY: 1000}  # of 20 - 30 e + 20 e^2 = 19
 class Crack:
     """Stands in for `latcon.fracture`: two quantities, of which each seed has its own error; notes its runs.
 
-    `body` is called first, with the values of the case and the directory.
+    `body` is called first, with the values of the case and the directory. An error that it returns is raised last.
     """
 
     def __init__(self):
@@ -45,14 +44,17 @@ class Crack:
         stretch, density, seed = (float(case.overrides[key]) for key in (STRETCH, DENSITY, SEED))
         directory.mkdir(parents=True, exist_ok=True)
         self.runs.append((directory.name, resume, case.overrides))
+        problem = None
         if self.body:
-            self.body(stretch=stretch, density=density, seed=seed, directory=directory, progress=progress)
+            problem = self.body(stretch=stretch, density=density, seed=seed, directory=directory, progress=progress)
         speed = 20 - 30 * (stretch - 3) + 20 * (stretch - 3)**2 + 0.1 * (-1)**seed
         crack = {"speed_lagrangian": speed, "speed_lagrangian_uncertainty": 0.3,
                  "wavelength": density / 1e5 if density < 1150 else None,
                  "pattern": "oscillating" if density < 1200 else "straight"}
         (directory / "crack.json").write_text(json.dumps(crack))
         (directory / "run.json").write_text("{}")
+        if problem:
+            raise problem
         return latcon.open(directory)
 
 
@@ -157,6 +159,17 @@ def test_refused_failed_and_undetermined_points_are_recorded_and_worse(small_fit
     assert f"{refused.sum()} refused" in str(result) and f"{failed.sum()} failed" in str(result)
 
 
+def test_a_crack_that_misses_its_reference_values_is_measured(small_fit, crack, tmp_path):
+    crack.body = lambda **_: error_of(3, "the wavelength differs")
+    assert set(small_fit(tmp_path / "fit", evaluations=4).points["ended"]) == {"done"}
+
+    def refuse(**_):
+        raise error_of(3, "no rubber")
+    crack.body = refuse
+    with pytest.raises(latcon.LatconError, match="was refused: no rubber"):
+        small_fit(tmp_path / "refused", evaluations=4)
+
+
 def test_a_first_batch_without_result_is_an_error(small_fit, crack, tmp_path):
     def refuse(**_):
         raise error_of(2, "no rubber")
@@ -231,7 +244,7 @@ def test_a_stopped_fit_stops_its_runs_and_a_folder_with_another_case_is_removed(
     assert len(lines(tmp_path / "fit")) == 4
 
 
-def test_a_run_that_a_killed_fit_left_is_waited_for_and_continued(small_fit, crack, base, tmp_path):
+def test_a_run_that_a_killed_fit_left_is_waited_for_and_continued(small_fit, crack, base, tmp_path, monkeypatch):
     small_fit(tmp_path / "fit", evaluations=4)
     kept = lines(tmp_path / "fit")
     (tmp_path / "fit" / "evaluations.jsonl").write_text("\n".join(kept[:3]) + "\n")
@@ -243,9 +256,21 @@ def test_a_run_that_a_killed_fit_left_is_waited_for_and_continued(small_fit, cra
     held = open(folder / ".latcon.lock", "w")
     fcntl.flock(held, fcntl.LOCK_EX)
     before = len(crack.runs)
-    threading.Timer(0.5, held.close).start()
+    free = []
+    crack.body = lambda **_: free.append(held.closed)
+    lock, refused = fcntl.flock, []
+
+    def lock_until_refused_twice(file, operation):
+        try:
+            lock(file, operation)
+        except BlockingIOError:
+            refused.append(file)
+            if len(refused) == 2:
+                held.close()  # the run ends
+            raise
+    monkeypatch.setattr(fcntl, "flock", lock_until_refused_twice)
     small_fit(tmp_path / "fit", evaluations=4)
-    assert held.closed and lines(tmp_path / "fit") == kept
+    assert free == [True, True] and lines(tmp_path / "fit") == kept
     assert [(name, resume) for name, resume, _ in crack.runs[before:]] == [("00003-1", True), ("00003-2", False)]
 
 
@@ -376,6 +401,15 @@ def test_all_points_are_in_the_box_and_later_ones_around_the_minimum():
     np.testing.assert_allclose(model.center, [0.95, 0.02], atol=1e-6)
     np.testing.assert_allclose(model.covariance, np.eye(2) / (1e4 + 1 / PRIOR**2), rtol=1e-3, atol=1e-9)
     assert model.degree == 2
+
+
+def test_quantities_may_jump_where_a_word_changes():
+    problem = made_problem(1, [Observation("a", 0.45, 0.01), Observation("b", True)], seeds=1)
+    positions = np.linspace(0.3, 0.6, 13)
+    evaluations = [made_evaluation(problem, number, [at], [(at if at < 0.5 else at + 5, bool(at < 0.5))])
+                   for number, at in enumerate(positions)]
+    model = fit_local_model(tabulate(problem, evaluations))
+    assert model.center[0] == pytest.approx(0.45, abs=1e-6) and (positions[model.rows] < 0.5).all()
 
 
 def test_integers_and_logarithmic_parameters(small_fit, crack, tmp_path):
