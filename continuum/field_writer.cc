@@ -3,6 +3,7 @@
 #include "continuum/collective.h"
 #include "continuum/errors.h"
 #include "support/atomic_file.h"
+#include "support/pvd.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/numerics/data_out.h>
@@ -216,14 +217,10 @@ void FieldWriter::write_collection() const
                {
                  if (Utilities::MPI::this_mpi_process(communicator_) != 0)
                    return;
-                 std::ostringstream out;
-                 out << std::setprecision(17);
-                 out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n";
+                 std::vector<support::PvdFile> files;
                  for (std::size_t frame = 0; frame < frames_.size(); ++frame)
-                   out << "    <DataSet timestep=\"" << frames_[frame].time << "\" part=\"0\" file=\"" << file_of(frame)
-                       << "\"/>\n";
-                 out << "  </Collection>\n</VTKFile>\n";
-                 write_whole(collection(), out.str());
+                   files.push_back({frames_[frame].time, file_of(frame)});
+                 write_whole(collection(), support::pvd_text(files));
                });
 }
 

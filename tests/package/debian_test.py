@@ -39,7 +39,7 @@ class Packages(unittest.TestCase):
         by_hand = {name for name in runtime if name.startswith(("libjs", "python3"))} | names(field(self.program, "Recommends"))
         self.assertLessEqual(by_hand | names(field(self.libraries, "Depends")), listed)
         # Modules of others that the report imports.
-        imported = {module for path in (SOURCE / "verification/report").glob("*.py")
+        imported = {module for path in [*SOURCE.glob("verification/report/*.py"), *SOURCE.glob("verification/claims/*/*.py")]
                     for module in re.findall(r"^\s*(?:import|from) (\w+)", path.read_text(), re.M)}
         packages = {"matplotlib": "python3-matplotlib", "numpy": "python3-numpy", "vtkmodules": "python3-vtk9",
                     "vtk": "python3-vtk9", "PIL": "python3-pil", "h5py": "python3-h5py"}

@@ -48,7 +48,7 @@ class OwnClaim(TemporaryFolder):
         self.assertIn(f"  {CLAIM} ", latcon("verify", "--help").stdout)
         wrong = latcon("verify", "symetry", "--dry-run")
         self.assertEqual(wrong.returncode, 2)
-        self.assertIn(f"unknown claim 'symetry'; did you mean '{CLAIM}'?", wrong.stderr)
+        self.assertIn(f"unknown claim 'symetry'; nearest: {CLAIM}", wrong.stderr)
         claim, = (claim for claim in json.loads(latcon("schema").stdout)["claims"] if claim["name"] == CLAIM)
         self.assertTrue(claim["default"] and claim["before_fracture"])
 

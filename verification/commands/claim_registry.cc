@@ -11,6 +11,7 @@
 #include "verification/claims/prestretch/descriptor.h"
 #include "verification/claims/running_crack/descriptor.h"
 #include "verification/claims/wave_speeds/descriptor.h"
+#include "verification/input/case_text.h"
 #include "verification/input/spelling.h"
 #include "verification/output/output_file.h"
 
@@ -50,14 +51,6 @@ std::vector<std::string> names()
   return list;
 }
 
-std::string joined(const std::vector<std::string> &words, const std::string &separator)
-{
-  std::string text;
-  for (const std::string &word : words)
-    text += (text.empty() ? "" : separator) + word;
-  return text;
-}
-
 } // namespace
 
 const std::vector<Claim> &claim_registry()
@@ -84,13 +77,16 @@ std::string unknown_claim(const std::string &name)
   if (std::find(known.begin(), known.end(), name) != known.end())
     return "";
   const std::string nearest = input::nearest_word(name, known);
-  return "unknown claim '" + name + "'" + (nearest.empty() ? "" : "; did you mean '" + nearest + "'?") +
-         " (claims: " + joined(known, ", ") + ")";
+  return "unknown claim '" + input::printable(name) + "'; " +
+         (nearest.empty() ? "claims: " + input::comma_separated(known) : "nearest: " + nearest);
 }
 
 std::string claim_choices()
 {
-  return "{" + joined(names(), ",") + "}";
+  std::string list;
+  for (const std::string &name : names())
+    list += (list.empty() ? "{" : ",") + name;
+  return list + "}";
 }
 
 std::string claim_list()

@@ -208,7 +208,7 @@ support::ExitCode run_program(int argc, char **argv)
                  "case whose material, loading and laws to verify; default: every law on the rubber of Fig. 1")
     ->type_name("FILE");
   verify_command->add_flag("--quick", options.quick, "small versions");
-  verify_command->footer(claim_list() + "\n" + verify_command->get_footer());
+  verify_command->footer(claim_list() + verify_command->get_footer());
   verify_command->callback(
     [&]
     {

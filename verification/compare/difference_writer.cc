@@ -8,7 +8,7 @@
 #include <vtkXMLUnstructuredGridWriter.h>
 
 #include "support/errors.h"
-#include "support/full_precision.h"
+#include "support/pvd.h"
 #include "verification/compare/quiet_vtk.h"
 #include "verification/output/output_file.h"
 
@@ -80,13 +80,8 @@ void write_difference(const std::string &directory, const LatticeFrame &lattice,
   write_data<vtkXMLPolyDataWriter>(directory + "/" + sites_file, sites.Get());
   write_data<vtkXMLUnstructuredGridWriter>(directory + "/" + continuum_file, continuum.data.Get());
 
-  std::string series = "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" "
-                       "byte_order=\"LittleEndian\">\n  <Collection>\n";
-  int part = 0;
-  for (const char *file : {sites_file, continuum_file})
-    series += "    <DataSet timestep=\"" + support::full_precision(lattice.time) + "\" part=\"" +
-              std::to_string(part++) + "\" file=\"" + file + "\"/>\n";
-  output::write_file(directory + "/difference.pvd", series + "  </Collection>\n</VTKFile>\n");
+  output::write_file(directory + "/difference.pvd",
+                     support::pvd_text({{lattice.time, sites_file, 0}, {lattice.time, continuum_file, 1}}));
 }
 
 } // namespace latcon::compare

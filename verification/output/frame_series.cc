@@ -1,6 +1,5 @@
 #include "verification/output/frame_series.h"
 
-#include <charconv>
 #include <cstdio>
 
 #include <vtkDoubleArray.h>
@@ -10,22 +9,12 @@
 #include <vtkXMLPolyDataWriter.h>
 
 #include "support/atomic_file.h"
+#include "support/pvd.h"
 #include "verification/output/field_units.h"
 #include "verification/output/vtk_file.h"
 
 namespace latcon::output
 {
-namespace
-{
-
-std::string shortest(double value)
-{
-  char text[32];
-  const auto result = std::to_chars(text, text + sizeof(text), value);
-  return {text, result.ptr};
-}
-
-} // namespace
 
 FrameSeries::FrameSeries(std::filesystem::path directory, std::string name)
   : directory_(std::move(directory)), name_(std::move(name))
@@ -59,14 +48,10 @@ void FrameSeries::add(vtkPolyData &frame, double time)
 
 void FrameSeries::write_collection() const
 {
-  std::string text =
-    "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n"
-    "  <Collection>\n";
+  std::vector<support::PvdFile> files;
   for (std::size_t frame = 0; frame < times_.size(); ++frame)
-    text +=
-      "    <DataSet timestep=\"" + shortest(times_[frame]) + "\" part=\"0\" file=\"" + file_name(frame) + "\"/>\n";
-  text += "  </Collection>\n</VTKFile>\n";
-  support::write_atomically(directory_ / (name_ + ".pvd"), text, support::Sync::no);
+    files.push_back({times_[frame], file_name(frame)});
+  support::write_atomically(directory_ / (name_ + ".pvd"), support::pvd_text(files), support::Sync::no);
 }
 
 } // namespace latcon::output

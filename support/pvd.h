@@ -1,0 +1,21 @@
+/// Series of frames for ParaView.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace latcon::support
+{
+
+/// A file of a series, relative to the folder of the .pvd.
+struct PvdFile
+{
+  double time; ///< [s], or another parameter of the series
+  std::string name;
+  unsigned int part = 0; ///< number among the files of one time
+};
+
+/// Returns the text of a .pvd file. Times are in full precision.
+[[nodiscard]] std::string pvd_text(const std::vector<PvdFile> &files);
+
+} // namespace latcon::support
