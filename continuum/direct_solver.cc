@@ -56,7 +56,7 @@ MatrixRows own_rows(const Epetra_CrsMatrix &matrix)
 }
 
 template <class T>
-std::vector<T> concatenated(std::vector<std::vector<T>> &&parts)
+std::vector<T> concatenate(std::vector<std::vector<T>> &&parts)
 {
   std::vector<T> all;
   if (!parts.empty())
@@ -72,9 +72,9 @@ MatrixRows gather_rows(const Epetra_CrsMatrix &matrix, const MPI_Comm communicat
   MatrixRows own = own_rows(matrix);
   if (Utilities::MPI::n_mpi_processes(communicator) == 1)
     return own;
-  return {concatenated(Utilities::MPI::gather(communicator, own.lengths)),
-          concatenated(Utilities::MPI::gather(communicator, own.columns)),
-          concatenated(Utilities::MPI::gather(communicator, own.values))};
+  return {concatenate(Utilities::MPI::gather(communicator, own.lengths)),
+          concatenate(Utilities::MPI::gather(communicator, own.columns)),
+          concatenate(Utilities::MPI::gather(communicator, own.values))};
 }
 } // namespace
 

@@ -11,7 +11,7 @@ namespace latcon::continuum
 void DynamicSolver::update_energies(EnergyLedger &ledger, const Vector &u, const Vector &v,
                                     const double load_factor) const
 {
-  ledger.stored = sheet_.energy(ghosted(u), load_factor);
+  ledger.stored = sheet_.energy(with_ghosts(u), load_factor);
   Vector momenta = sheet_.make_owned();
   multiply_by_mass(full_mass_, v, momenta);
   ledger.kinetic = 0.5 * (momenta * v);
@@ -31,10 +31,10 @@ EnergyLedger DynamicSolver::ledger_after(const Step &step, const Vector &u, cons
 
   Vector rise = u;
   rise -= step.u;
-  const Vector middle = ghosted(Step::mean(0.5, step.u, u));
+  const Vector middle = with_ghosts(Step::mean(0.5, step.u, u));
   Vector rate = rise;
   rate *= 1. / step.dt;
-  const Vector middle_velocity = ghosted(rate);
+  const Vector middle_velocity = with_ghosts(rate);
   ledger.dissipated += step.dt * viscous_forces_.dissipation(middle, middle_velocity);
 
   const double factor = 0.5 * (step.first_load_factor + step.last_load_factor);

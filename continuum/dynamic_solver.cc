@@ -173,7 +173,7 @@ double DynamicSolver::load_factor_at(const double time) const
   return factor;
 }
 
-DynamicSolver::Vector DynamicSolver::ghosted(const Vector &owned) const
+DynamicSolver::Vector DynamicSolver::with_ghosts(const Vector &owned) const
 {
   Vector x = sheet_.make_ghosted();
   x = owned;
@@ -304,8 +304,8 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time)
   sheet_.conformity_constraints().distribute(a);
 
   // Solve M a = lambda L - internal and viscous forces, with prescribed a where the displacement is prescribed.
-  const Vector u_ghosted = ghosted(u);
-  const Vector v_ghosted = ghosted(v);
+  const Vector u_ghosted = with_ghosts(u);
+  const Vector v_ghosted = with_ghosts(v);
   Vector rhs = sheet_.make_owned();
   Vector forces = sheet_.make_owned();
   Vector magnitude = sheet_.make_owned();

@@ -189,7 +189,7 @@ private:
   Vector interpolate(const VectorField &field) const;
   bool is_prescribed(dealii::types::global_dof_index i) const;
   void begin(Vector &u, Vector &v, double time);
-  Vector ghosted(const Vector &owned) const;
+  Vector with_ghosts(const Vector &owned) const;
   void multiply_by_mass(const Sheet::Matrix &M, const Vector &x, Vector &product) const;
   Residual evaluate(const Step &step, const Vector &u) const;
   Residual best_residual(const Step &step, const Vector &first, const Vector &second, Vector &u) const;

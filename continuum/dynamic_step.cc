@@ -21,8 +21,8 @@ DynamicSolver::Residual DynamicSolver::evaluate(const Step &step, const Vector &
 {
   const Vector a_1 = step.last_acceleration(u);
   const double factor = step.mean_load_factor();
-  Residual state{ghosted(Step::mean(step.rule.alpha_f, step.u, u)),
-                 ghosted(Step::mean(step.rule.alpha_f, step.v, step.last_velocity(a_1))),
+  Residual state{with_ghosts(Step::mean(step.rule.alpha_f, step.u, u)),
+                 with_ghosts(Step::mean(step.rule.alpha_f, step.v, step.last_velocity(a_1))),
                  sheet_.make_owned(),
                  sheet_.make_owned(),
                  0.,

@@ -144,7 +144,7 @@ private:
   void start(const unsigned int n_sides)
   {
     const auto n = static_cast<unsigned int>(nodes_.size());
-    stride_ = padded(n);
+    stride_ = padded_size(n);
     nodal_.assign(2 * stride_, 0.);
     for (unsigned int a = 0; a < n; ++a)
       for (unsigned int i = 0; i < 2; ++i)

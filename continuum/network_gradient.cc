@@ -8,7 +8,7 @@ namespace latcon::continuum
 namespace
 {
 // Merges families with the same potential into one with their mean squared length.
-std::vector<BondFamily> merged(const std::vector<BondFamily> &families)
+std::vector<BondFamily> merge_families(const std::vector<BondFamily> &families)
 {
   std::vector<BondFamily> result;
   for (const BondFamily &family : families)
@@ -34,7 +34,7 @@ std::vector<BondFamily> merged(const std::vector<BondFamily> &families)
 std::vector<BondFamily> in_all_directions(const std::vector<BondFamily> &families)
 {
   std::vector<BondFamily> result;
-  for (BondFamily family : merged(families))
+  for (BondFamily family : merge_families(families))
   {
     family.fibre.weight /= NetworkGradient::n_directions;
     for (unsigned int k = 0; k < NetworkGradient::n_directions; ++k)
@@ -55,6 +55,6 @@ NetworkGradient::NetworkGradient(const std::vector<BondFamily> &families, const 
 
 double NetworkGradient::smallest_length(const std::vector<BondFamily> &families)
 {
-  return LatticeGradient::smallest_length(merged(families));
+  return LatticeGradient::smallest_length(merge_families(families));
 }
 } // namespace latcon::continuum

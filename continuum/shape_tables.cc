@@ -57,7 +57,7 @@ void ShapeTables::fill(const FEValuesBase<2> &values, const bool is_face, ShapeT
 {
   const unsigned int n = element_.n_dofs_per_cell();
   table.n_points = values.n_quadrature_points;
-  table.stride = padded(n);
+  table.stride = padded_size(n);
   table.derivatives.assign(table.n_points * n_derivatives * table.stride, 0.);
   table.JxW = values.get_JxW_values();
   if (is_face)

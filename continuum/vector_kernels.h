@@ -15,7 +15,7 @@ typedef float SingleLanes __attribute__((vector_size(16)));
 constexpr unsigned int n_lanes = 4; ///< number of entries of both types
 
 /// Returns the smallest multiple of the number of lanes that is at least n.
-constexpr unsigned int padded(const unsigned int n)
+constexpr unsigned int padded_size(const unsigned int n)
 {
   return (n + n_lanes - 1) / n_lanes * n_lanes;
 }

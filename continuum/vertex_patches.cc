@@ -29,7 +29,7 @@ constexpr unsigned int nowhere = numbers::invalid_unsigned_int;
 // Returns the number of entries of a lower triangle of n rows in blocks of 4 by 4, with full diagonal blocks.
 std::size_t packed_size(const std::size_t n)
 {
-  const std::size_t n_blocks = padded(n) / n_lanes;
+  const std::size_t n_blocks = padded_size(n) / n_lanes;
   return n_blocks * (n_blocks + 1) / 2 * n_lanes * n_lanes;
 }
 
@@ -109,12 +109,12 @@ LATCON_CLONES void add_patches(const std::size_t n_patches, const std::size_t *f
     const unsigned int *there = dofs + first_dof[p];
     const auto n = static_cast<unsigned int>(first_dof[p + 1] - first_dof[p]);
     double *patch_r = work;
-    double *patch_z = work + padded(n);
+    double *patch_z = work + padded_size(n);
     for (unsigned int i = 0; i < n; ++i)
       patch_r[i] = r[there[i]];
-    for (unsigned int i = n; i < padded(n); ++i)
+    for (unsigned int i = n; i < padded_size(n); ++i)
       patch_r[i] = 0.;
-    multiply(inverses + first_entry[p], padded(n), patch_r, patch_z);
+    multiply(inverses + first_entry[p], padded_size(n), patch_r, patch_z);
     for (unsigned int i = 0; i < n; ++i)
       z[there[i]] += patch_z[i];
   }
@@ -353,7 +353,7 @@ void VertexPatches::vmult(Vector &z, const Vector &r) const
 {
   z = 0.;
   r.update_ghost_values();
-  std::vector<double> work(2 * padded(largest_patch_));
+  std::vector<double> work(2 * padded_size(largest_patch_));
   add_patches(first_dof_.size() - 1, first_dof_.data(), dofs_.data(), first_entry_.data(), inverses_.data(),
               work.data(), r.begin(), z.begin());
   r.zero_out_ghost_values();

@@ -200,7 +200,7 @@ class DryRun(TemporaryFolder):
         run = latcon(*arguments, "--dry-run")
         self.assertEqual(run.returncode, 0, run.stderr)
         line, = re.findall("^# memory: .*$", run.stdout, re.M)
-        peak, own = re.fullmatch(r"# memory: about (\d+) bytes .* itself (\d+) bytes; available .*", line).groups()
+        peak, own = re.fullmatch(r"# memory: about (\d+) bytes .* itself takes (\d+) bytes; available: .*", line).groups()
         return int(peak), int(own)
 
     def assert_foreseen(self, *arguments):

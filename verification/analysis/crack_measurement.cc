@@ -209,14 +209,14 @@ CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vec
   }
   const double X_last = tip.empty() ? options.seed_tip_X : std::max(options.seed_tip_X, tip.back().X);
   const double advance = X_last - options.seed_tip_X;
-  const double least_advance = 0.5 * options.arrest_fraction * options.strip_length;
-  if (advance < least_advance && (tip.empty() || tip.back().t < 0.5 * options.end_time))
+  const double min_advance = 0.5 * options.arrest_fraction * options.strip_length;
+  if (advance < min_advance && (tip.empty() || tip.back().t < 0.5 * options.end_time))
   {
     m.pattern = CrackPattern::arrested;
     m.reason = text("the tip advanced %.3g mm from the seed and stood for at least half of the run", 1e3 * advance);
     return m;
   }
-  if (advance < least_advance)
+  if (advance < min_advance)
   {
     m.reason =
       text("the tip has advanced %.3g mm from the seed and was still moving: too short to decide", 1e3 * advance);

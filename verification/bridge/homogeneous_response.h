@@ -14,7 +14,6 @@ struct LatticeResponse
 
 /// Computes the response of a lattice with its simulator. @param sheet at least 12 by 12 spacings, so that the sites in
 /// the middle have all their neighbours
-/// @throws std::invalid_argument if a bond has length zero at F
 LatticeResponse homogeneous_response(const lattice::TriangularLattice &sheet, const lattice::Material &material,
                                      const Eigen::Matrix2d &F);
 

@@ -63,7 +63,7 @@ int n_threads()
 #endif
 }
 
-std::string dotted(const int major, const int minor, const int third)
+std::string version_text(const int major, const int minor, const int third)
 {
   return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(third);
 }
@@ -97,9 +97,9 @@ Json common_facts(const std::vector<std::string> &command_line, const int n_thre
   document["libraries"] = {
     {"deal.II", DEAL_II_PACKAGE_VERSION},
     {"Trilinos", TRILINOS_VERSION_STRING},
-    {"p4est", dotted(DEAL_II_P4EST_VERSION_MAJOR, DEAL_II_P4EST_VERSION_MINOR, DEAL_II_P4EST_VERSION_SUBMINOR)},
+    {"p4est", version_text(DEAL_II_P4EST_VERSION_MAJOR, DEAL_II_P4EST_VERSION_MINOR, DEAL_II_P4EST_VERSION_SUBMINOR)},
     {"VTK", LATCON_VTK_VERSION},
-    {"Eigen", dotted(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
+    {"Eigen", version_text(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
     {"MPI", mpi_version()}};
   document["hardware_threads"] = std::thread::hardware_concurrency();
   document["threads"] = n_threads;

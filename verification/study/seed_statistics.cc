@@ -30,7 +30,7 @@ Display display(const std::string &unit)
   return {1., unit == "1" ? "" : " " + unit};
 }
 
-std::string formatted(const char *format, int digits, double value)
+std::string format_number(const char *format, int digits, double value)
 {
   std::array<char, 64> text{};
   std::snprintf(text.data(), text.size(), format, digits, value);
@@ -135,13 +135,14 @@ std::string quantity_text(const double value, const std::optional<double> deviat
 {
   const Display shown = display(unit);
   if (!deviation || !(*deviation > 0.))
-    return formatted("%.*g", 4, shown.scale * value) + shown.unit;
+    return format_number("%.*g", 4, shown.scale * value) + shown.unit;
   // Two digits of the deviation, and the value to the same decimal place.
   const double spread = shown.scale * *deviation;
   const int digits = std::clamp(1 - static_cast<int>(std::floor(std::log10(spread))), 0, 12);
   if (digits > 6 && std::abs(shown.scale * value) < 1e-3)
-    return formatted("%.*e", 1, shown.scale * value) + " ± " + formatted("%.*e", 1, spread) + shown.unit;
-  return formatted("%.*f", digits, shown.scale * value) + " ± " + formatted("%.*f", digits, spread) + shown.unit;
+    return format_number("%.*e", 1, shown.scale * value) + " ± " + format_number("%.*e", 1, spread) + shown.unit;
+  return format_number("%.*f", digits, shown.scale * value) + " ± " + format_number("%.*f", digits, spread) +
+         shown.unit;
 }
 
 } // namespace latcon::study

@@ -133,7 +133,7 @@ std::optional<TrendTest> isotonic_test(const std::vector<SampleMean> &samples, c
     means.push_back(sample.mean);
     total += n;
     weighted_mean += n * sample.mean;
-    least += n * sample.least_variance;
+    least += n * sample.min_variance;
     if (sample.n < 2)
       continue;
     freedom += n - 1.;

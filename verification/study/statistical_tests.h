@@ -15,14 +15,14 @@ inline constexpr double significance = 0.05;
 struct SampleMean
 {
   double mean;
-  std::size_t n;              ///< number of measurements, >= 1
-  double variance = 0.;       ///< sample variance of one measurement, n - 1 degrees of freedom; unused if n is 1
-  double least_variance = 0.; ///< squared uncertainty of one measurement; 0: unknown
+  std::size_t n;            ///< number of measurements, >= 1
+  double variance = 0.;     ///< sample variance of one measurement, n - 1 degrees of freedom; unused if n is 1
+  double min_variance = 0.; ///< squared uncertainty of one measurement; 0: unknown
 
-  /// Returns the variance of one measurement, at least `least_variance`. The sample variance includes the uncertainty
+  /// Returns the variance of one measurement, at least `min_variance`. The sample variance includes the uncertainty
   /// of single measurements, so it is smaller only by chance. With the larger value tests find fewer differences, never
   /// more.
-  double floored_variance() const { return variance > least_variance ? variance : least_variance; }
+  double floored_variance() const { return variance > min_variance ? variance : min_variance; }
 };
 
 /// Returns the one-sided p-value of Welch's t-test for samples with different variances (B. L. Welch, Biometrika 34, 28

@@ -75,7 +75,7 @@ void judge_beside(RowOutcome &outcome, const SeedStatistics &other)
     const std::optional<double> p = welch_p_value((above ? other : run).sample(), (above ? run : other).sample());
     if (!p)
     {
-      append(outcome.note, run.run + " beside " + other.run + ": " + no_scatter);
+      append(outcome.note, run.run + " compared with " + other.run + ": " + no_scatter);
       return;
     }
     worst.add(*p, *run.mean);

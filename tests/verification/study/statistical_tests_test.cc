@@ -61,7 +61,7 @@ double share_found(std::size_t n, std::size_t m, double difference, double first
   for (std::size_t draw = 0; draw < n_draws; ++draw)
   {
     SampleMean first = drawn(generator, 0., n, first_deviation), second = drawn(generator, difference, m);
-    first.least_variance = second.least_variance = floor;
+    first.min_variance = second.min_variance = floor;
     found += welch_p_value(first, second).value() <= significance;
   }
   return static_cast<double>(found) / n_draws;
@@ -86,7 +86,7 @@ Shares shares_of(const std::vector<double> &means, const std::vector<std::size_t
     for (std::size_t i = 0; i < means.size(); ++i)
     {
       samples.push_back(drawn(generator, means[i], n[i], deviations.empty() ? 1. : deviations[i]));
-      samples.back().least_variance = floor;
+      samples.back().min_variance = floor;
     }
     const TrendTest test = isotonic_test(samples, levels).value();
     shares.rise += (test.p_rise <= significance ? 1. : 0.) / n_draws;

@@ -167,7 +167,7 @@ TEST(StudyTable, ARunBesideAnotherMustDifferClearly)
   EXPECT_EQ(table.judged(row).verdict, RowVerdict::does_not_hold);
   row.bound_run = "one";
   EXPECT_EQ(table.judged(row).verdict, RowVerdict::not_measured);
-  EXPECT_HAS(table.judged(row).note, "a beside one: the scatter of the seeds is unknown");
+  EXPECT_HAS(table.judged(row).note, "a compared with one: the scatter of the seeds is unknown");
   row.runs = {"same"};
   row.rule = Rule::above;
   row.bound_run = "same";
