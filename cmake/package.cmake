@@ -24,7 +24,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "The libraries: headers, static libraries and CMake targets, for programs that
 give the lattice a bond law, or the continuum a material or gradient law, of
 their own.")
-# What latconConfig.cmake looks for.
+# Dependencies of latconConfig.cmake.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libdeal.ii-dev, libeigen3-dev, libhwy-dev, libopenmpi-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "latcon, cmake")
 

@@ -83,7 +83,7 @@ class Program:
                                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 
     def run(self, arguments, out, timeout=600, **how):
-        """@return exit status, "hangs" past the timeout [s]; what it said on standard error"""
+        """@return exit status, "hangs" past the timeout [s]; standard error"""
         process = self.start(arguments, out, **how)
         try:
             _, said = process.communicate(timeout=timeout)
