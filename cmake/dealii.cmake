@@ -1,7 +1,6 @@
-# deal.II as one imported target, latcon::dealii, for latcon's build and for those who use its libraries. deal.II's own macro
-# would add -g and a second set of optimisation flags to theirs. Takes latcon_dealii_target and latcon_dealii_definitions.
-
-# The configuration leaves the imported libraries, and so all that they need at link time, to be read on demand.
+# deal.II as one imported target, latcon::dealii, for latcon's build and for users of its libraries. deal.II's own macro
+# would add -g and a second set of optimisation flags. Input: latcon_dealii_target and latcon_dealii_definitions.
+# The configuration of deal.II defers the import of the libraries and of their link dependencies.
 include(${DEAL_II_TARGET_CONFIG})
 set_target_properties(${latcon_dealii_target} PROPERTIES IMPORTED_GLOBAL TRUE)
 

@@ -1,10 +1,10 @@
-# Which source and which compiler a program was built from, as headers in the build folder.
+# Generates headers in the build folder that record the source and the compiler of a build.
 #
-# latcon_build_facts(TARGET) gives TARGET two headers:
+# latcon_build_facts(TARGET) adds two headers to TARGET:
 #   latcon_build_facts.h   version, compiler, flags, versions of libraries; written when CMake configures
-#   latcon_git_commit.h    the commit; looked up at every build, rewritten only when it changed, so that only the sources that
-#                          include it are compiled again
-# The second half of this file is the look-up, run by `cmake -P` with SOURCE and HEADER.
+#   latcon_git_commit.h    the commit; determined at every build, rewritten only when it has changed, so that only the sources
+#                          that include it are recompiled
+# The second half of this file determines the commit; it is run by `cmake -P` with SOURCE and HEADER.
 
 if(CMAKE_SCRIPT_MODE_FILE AND SOURCE AND HEADER)
   cmake_minimum_required(VERSION 3.25)
@@ -13,11 +13,11 @@ if(CMAKE_SCRIPT_MODE_FILE AND SOURCE AND HEADER)
   if(git)
     # A hook or a caller may point git at another repository.
     set(in_source ${CMAKE_COMMAND} -E env --unset=GIT_DIR --unset=GIT_WORK_TREE --unset=GIT_INDEX_FILE ${git} --no-optional-locks -C ${SOURCE})
-    # Not empty if an unpacked archive lies somewhere inside of another project's checkout.
+    # Not empty if an unpacked archive is inside another project's checkout.
     execute_process(COMMAND ${in_source} rev-parse --show-prefix
       RESULT_VARIABLE failed OUTPUT_VARIABLE prefix ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
     if(NOT failed AND prefix STREQUAL "")
-      # No tag is looked for: the hash alone, and the mark of changed tracked files.
+      # The hash without tags, and a suffix if tracked files have changed.
       execute_process(COMMAND ${in_source} describe --always --abbrev=40 --dirty "--exclude=*"
         RESULT_VARIABLE failed OUTPUT_VARIABLE described ERROR_QUIET OUTPUT_STRIP_TRAILING_WHITESPACE)
       if(NOT failed AND described MATCHES "^[0-9a-f]+(-dirty)?$")

@@ -1,5 +1,5 @@
-# What `cmake --install` puts where, for any prefix: nothing that is installed knows the prefix or the folder of the sources.
-# Three components: `runtime`, the program with all that it reads, `development`, the libraries, and `python`, the Python package.
+# Rules for `cmake --install`, for any prefix: installed files contain neither the prefix nor the source folder.
+# There are three components: `runtime` (the program and its data), `development` (the libraries) and `python` (the Python package).
 include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
@@ -16,7 +16,7 @@ foreach(file IN LISTS files)
   install(FILES verification/${file} DESTINATION share/latcon/${folder})
 endforeach()
 install(FILES README.md LICENSE CITATION.cff cmake/copyright DESTINATION share/doc/latcon)
-# Manual page and completion say what the program says of itself. Debian wants documents compressed, always to the same bits.
+# Manual page and completion are generated from the program's help. Debian requires compressed documents, with reproducible bits.
 set(latcon_shell_files latcon.1.gz latcon.bash)
 add_custom_command(OUTPUT ${latcon_shell_files}
   COMMAND ${Python3_EXECUTABLE} ${PROJECT_SOURCE_DIR}/cmake/shell_files.py $<TARGET_FILE:latcon> ${PROJECT_SOURCE_DIR}/verification .
@@ -37,13 +37,13 @@ install(TARGETS latcon_options latcon_support latcon_lattice latcon_continuum EX
 install(EXPORT latconTargets NAMESPACE latcon:: DESTINATION ${latcon_cmake_folder})
 install(DIRECTORY support lattice continuum DESTINATION include/latcon FILES_MATCHING PATTERN "*.h" PATTERN "*.inc" PATTERN precompiled.h EXCLUDE)
 configure_package_config_file(cmake/latconConfig.cmake.in latconConfig.cmake INSTALL_DESTINATION ${latcon_cmake_folder})
-# Before 1.0 a minor version may change what programs are written for.
+# Before 1.0 a minor version may change the interface.
 write_basic_package_version_file(latconConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${PROJECT_BINARY_DIR}/latconConfig.cmake ${PROJECT_BINARY_DIR}/latconConfigVersion.cmake cmake/dealii.cmake
         DESTINATION ${latcon_cmake_folder})
 install(DIRECTORY examples/own-laws DESTINATION share/doc/latcon-dev/examples)
 install(FILES docs/library.md cmake/copyright ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION share/doc/latcon-dev)
 
-# Where Debian's interpreter looks below /usr.
+# Module path of Debian's interpreter below /usr.
 install(DIRECTORY python/latcon DESTINATION lib/python3/dist-packages COMPONENT python PATTERN __pycache__ EXCLUDE)
 install(FILES docs/python.md cmake/copyright ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION share/doc/python3-latcon COMPONENT python)

@@ -1,7 +1,7 @@
-# Compile options of latcon. Those of latcon_options hold for whoever uses the libraries as well, the warnings do not.
+# Compile options of latcon. Those of latcon_options apply to users of the libraries as well, the warnings do not.
 set(latcon_warnings -Wall -Wextra -Wpedantic -Wshadow)
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
-  # gcc takes uninitialised lanes of Eigen's SSE packets for a mistake.
+  # gcc warns about uninitialised lanes of Eigen's SSE packets.
   list(APPEND latcon_warnings -Wno-maybe-uninitialized)
 endif()
 add_compile_options(${latcon_warnings})
@@ -10,8 +10,8 @@ get_filename_component(latcon_root ${CMAKE_CURRENT_LIST_DIR} DIRECTORY)
 add_library(latcon_options INTERFACE)
 target_include_directories(latcon_options INTERFACE $<BUILD_INTERFACE:${latcon_root}> $<INSTALL_INTERFACE:include/latcon>)
 target_compile_features(latcon_options INTERFACE cxx_std_17)
-# Contraction to fused multiply-add would make the bits of a result depend on the instruction set. A user's laws are part of
-# the result, and so are the functions that headers bring into a user's program.
+# Contraction to fused multiply-add would make results depend on the instruction set. This includes a user's laws, and inline
+# functions compiled into a user's program.
 target_compile_options(latcon_options INTERFACE -ffp-contract=off)
 
 if(LATCON_SANITIZE)

@@ -13,7 +13,7 @@ set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME latcon)
 set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "The program: it simulates cracks in stretched rubber on a triangular lattice
 of bonds, sets the finite element continuum that the lattice stands for beside
 it, and runs a crack only after both have been shown to agree.")
-# Libraries, and what the report is drawn with.
+# Libraries, and the Python modules of the report.
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS "libjs-dygraphs, python3, python3-matplotlib, python3-numpy, python3-pil, python3-vtk9")
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_RECOMMENDS "libopenblas0-pthread, openmpi-bin")
@@ -24,7 +24,7 @@ set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SECTION libdevel)
 set(CPACK_DEBIAN_DEVELOPMENT_DESCRIPTION "The libraries: headers, static libraries and CMake targets, for programs that
 give the lattice a bond law, or the continuum a material or gradient law, of
 their own.")
-# What latconConfig.cmake looks for.
+# Dependencies of latconConfig.cmake.
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS "libdeal.ii-dev, libeigen3-dev, libhwy-dev, libopenmpi-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "latcon, cmake")
 

@@ -1,9 +1,9 @@
 #!/usr/bin/env bash
-# Installs the Debian packages that are missing, then configures and builds.
+# Installs missing Debian packages, then configures and builds.
 # Usage: cmake/set-up.sh [--with LIST]... [PRESET [TARGET...]]   (run from anywhere; ./run, ./test and tests/*/run call it)
 # --with LIST: also the packages of cmake/packages-LIST.txt; with `tests` the build has tests, benchmarks, documentation and
 # Debian packages. Without PRESET nothing is built.
-# With every package in place nothing is installed and no privilege is needed.
+# If all packages are installed, no privilege is needed.
 set -euo pipefail
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 lists=("$root/cmake/packages.txt")
@@ -36,8 +36,8 @@ if [ ${#missing[@]} -gt 0 ]; then
   rm -f "$log"
 fi
 
-# ParaView's own VTK for Python cannot be installed beside the one that libvtk9-dev asks for, so it is unpacked in the build
-# folder. Only the test and the use of verification/paraview/ need it: nothing fails where it cannot be had.
+# ParaView's VTK for Python conflicts with the one required by libvtk9-dev, so it is unpacked in the build folder. It is needed
+# only for testing and using verification/paraview/, so a failure is not an error.
 modules="$root/build/paraview"
 if [ $tests = ON ] && [ ! -d "$modules" ]; then
   part=$(mktemp -d)
@@ -58,12 +58,12 @@ preset=$1
 shift
 build="$root/build/$preset"
 cd "$root"
-# A build folder that came along when the clone was copied or moved still names the old place, and would build there.
+# The build folder of a copied or moved clone still refers to the original folder, and would build there.
 cached() { sed -n "s/^$1:[A-Z]*=//p" "$build/CMakeCache.txt" 2>/dev/null || true; }
 configure=()
 if [ ! -f "$build/build.ninja" ] || [ ! "$(cached CMAKE_HOME_DIRECTORY)" -ef "$root" ]; then
   configure=(--fresh)
-  # The presets are those of developers.
+  # The presets are for developers.
   [ $tests = ON ] || configure+=(-D BUILD_TESTING=OFF -D LATCON_BENCHMARKS=OFF -D LATCON_DOCS=OFF -D LATCON_PACKAGE=OFF)
 elif [ $tests = ON ] && [ "$(cached BUILD_TESTING)" = OFF ]; then
   configure=(-D BUILD_TESTING=ON)
@@ -73,7 +73,7 @@ if [ ${#configure[@]} -gt 0 ]; then
   cmake "${configure[@]}" --preset "$preset" >"$root/configure.log" 2>&1 || { cat "$root/configure.log" >&2; exit 1; }
   rm -f "$root/configure.log"
 fi
-# Two compilers at once: a deal.II translation unit takes up to 2 GB. The steps of every build, which look for new files and
-# for the commit, are not shown.
+# Two compilers at a time: a deal.II translation unit takes up to 2 GB. The steps of every build that look for added files and
+# for the commit are not shown.
 cmake --build "$build" --parallel 2 ${1:+--target "$@"} |
   sed -u -e '/Re-checking globbed directories/d' -e '/git_commit\.cmake/d' -e '/^ninja: no work to do/d' >&2

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes the manual page and the completion for bash from the help of latcon.
+"""Writes the manual page and the bash completion from the help of latcon.
 
 Usage: shell_files.py LATCON DATA_FOLDER OUTPUT_FOLDER
 """
@@ -73,7 +73,7 @@ MAN_END = r"""
 Cases, above the folder of the program (/usr/share/latcon/cases).
 .TP
 .I share/latcon/studies
-Studies that have a name.
+Studies that can be run by name.
 .TP
 .I ~/.cache/latcon
 Verdicts on claims, reused for the same inputs by the same program; in
@@ -95,7 +95,7 @@ latcon study paper --quick
 
 
 class Help:
-    """Parts of the help of latcon or of one of its commands."""
+    """Parsed help of latcon or of one of its commands."""
 
     def __init__(self, latcon, *command):
         text = subprocess.run([latcon, *command, "--help"], check=True, capture_output=True, text=True).stdout
@@ -107,7 +107,7 @@ class Help:
 
     @staticmethod
     def list_of(text, title):
-        """(what, text) of each item below a title. Texts begin in a column of their own, after a long `what` in the
+        """(name, text) of each item below a title. Texts begin in a separate column; after a long name they begin on the
         next line."""
         column = 30
         block = re.search(rf"^{title}:\n((?:  .*\n)*)", text, re.M)
@@ -125,7 +125,7 @@ class Help:
 
 
 def plain(what):
-    """An option or argument without what CLI11 says of its type."""
+    """An option or argument without the type that CLI11 appends."""
     what = re.sub(r":UINT in \[.*?\]", "", what)
     what = re.sub(r" :\{.*?\}| REQUIRED", "", what)
     return what.replace(",", ", ")

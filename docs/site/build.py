@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Builds the documentation as a web site and fails if Doxygen has anything to say.
+"""Builds the documentation as a web site and fails if Doxygen prints a warning.
 
-Usage: build.py DOXYFILE SITE   (SITE/index.html is where it begins; what was in SITE before is gone)
+Usage: build.py DOXYFILE SITE   (the first page is SITE/index.html; previous contents of SITE are removed)
 
-What stands in a namespace needs a docstring; members of a class may speak for themselves by their names.
+Everything in a namespace needs a docstring; members of a class may be explained by their names alone.
 """
 import pathlib
 import re
@@ -12,19 +12,19 @@ import subprocess
 import sys
 
 MATHJAX = pathlib.Path("/usr/share/javascript/mathjax")
-# Sources, other ways of loading it, words of other languages, other outputs than the one the pages ask for.
+# Unused parts of MathJax: sources, other loaders, translations, output formats that the pages do not use.
 MATHJAX_UNUSED = ("unpacked", "test", "docs", "config", "localization", "SVG", "CommonHTML", "NativeMML", "PreviewHTML",
                   "PlainSource", "otf", "svg", "AsciiMath")
 SILENT = re.compile(r"warning: Member .* of (class|struct|union) .* is not documented\.$")
 
 
 def warnings(log):
-    """What Doxygen said, without members of classes that have no docstring."""
+    """Warnings of Doxygen, except those about class members without a docstring."""
     return [line for line in log.splitlines() if line.strip() and not SILENT.search(line)]
 
 
 def drop_links_to_nothing(page):
-    """A class whose nested classes are all private gets a link to the list of them, and no list."""
+    """Removes links to the list of nested classes of a class whose nested classes are all private."""
     text = page.read_text()
     if '"#nested-classes"' in text and 'name="nested-classes"' not in text:
         page.write_text(re.sub(r'<a href="#nested-classes">[^<]*</a>( &#124;)?', "", text))

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Hands a file to Doxygen as Doxygen wants it: pages as viewers on the web read them, and headers.
+"""Doxygen input filter: converts pages from GitHub's Markdown to Doxygen's, and headers.
 
 Usage: filter.py ROOT SITE FILE   (to standard output; files that a page links to are copied into SITE/files)
 
@@ -19,7 +19,7 @@ TAG = re.compile(r"\\tag\{([^}]+)\}")
 FENCE = re.compile(r"(^ *```.*?^ *```$)", re.DOTALL | re.MULTILINE)
 MATHS = re.compile(r"^\$(?! )([^$]+)(?<! )\$$")
 LINK = re.compile(r"^(!?)\[([^\]]*)\]\(([^)\s]+)\)$")
-# What is no prose in a line: code, formulas, links, pictures.
+# Parts of a line that are not prose: code, formulas, links, pictures.
 VERBATIM = re.compile(r"(`[^`]+`|\$[^$]+\$|!?\[[^\]]*\]\([^)\s]+\))")
 
 
@@ -31,7 +31,7 @@ def page_name(path):
 
 
 def heading_name(text):
-    """The anchor that viewers on the web give to a heading."""
+    """The anchor that GitHub gives to a heading."""
     plain = re.sub(r"\[([^\]]*)\]\([^)]*\)", r"\1", text).strip().lower()
     return re.sub(r"[^\w\- ]", "", plain).replace(" ", "-")
 
@@ -47,7 +47,7 @@ class Page:
         self.seen = {}
 
     def target(self, link):
-        """Where a link of the page leads in the documentation, or None where nothing is left of it but its text."""
+        """Target of a link of the page in the documentation, or None if only its text is kept."""
         if re.match(r"\w+:", link):
             return link
         file, _, heading = link.partition("#")
@@ -57,7 +57,7 @@ class Page:
             return f"@ref {name}-{heading}" if heading else f"@ref {name}"
         if not (self.root / path).is_file():
             return None if (self.root / path).is_dir() else link
-        # Text that browsers show and do not save.
+        # Text, which browsers should display and not download.
         copy = "files/" + path + ("" if path.endswith((".html", ".png", ".svg", ".webm", ".mp4", ".gif")) else ".txt")
         (self.site / copy).parent.mkdir(parents=True, exist_ok=True)
         shutil.copyfile(self.root / path, self.site / copy)
@@ -65,7 +65,7 @@ class Page:
 
     def link(self, match):
         image, text, link = match.groups()
-        if image:  # with a path that Doxygen finds, whatever the page's folder
+        if image:  # with a path that Doxygen finds from any folder
             path = posixpath.normpath(posixpath.join(posixpath.dirname(self.path), link))
             return f"![{text}]({path})"
         target = self.target(link)
@@ -74,7 +74,7 @@ class Page:
     def heading(self, marks, text):
         name = heading_name(text)
         count = self.seen[name] = self.seen.get(name, -1) + 1
-        text = text.replace("`", "")  # which Doxygen's tables of contents would show
+        text = text.replace("`", "")  # which would appear in Doxygen's tables of contents
         if len(marks) == 1 and len(self.seen) == 1:
             return f"{marks} {text} {{#{self.name}}}\n[TOC]"
         return f"{marks} {text} {{#{self.name}-{name}" + (f"-{count}" if count else "") + "}"
@@ -123,7 +123,7 @@ def link_equations(text):
 
 
 def without_stops(text):
-    """Text without the full stops that end no sentence, since the first one ends the brief description."""
+    """Text without full stops inside sentences, since the first full stop ends the brief description."""
     text = re.sub(r"\beq(s?)\.(?= |$)", r"equation\1", text)
     return text.replace(" . ", " \u00b7 ").replace("...", "\u2026")
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Checkpoints that are damaged, or whose contents somebody made up: a short version of what tests/faults/run tries.
+"""Tests of damaged and forged checkpoints: a short version of tests/faults/run.
 
 Usage: checkpoints_test.py PATH_OF_THE_FUZZ_SERVER
 """
@@ -15,7 +15,7 @@ import hostile
 from forked import Forked
 
 PROGRAM = Forked(sys.argv.pop(1))
-# One for each number or list of a checkpoint that has a size, or that says where, when, or how many.
+# One change for each number or list of a checkpoint with a size, an index, a time or a count.
 CRACK = {
     "run/command": [hostile.many], "run/case": [hostile.unterminated], "run/commit": [hostile.elsewhere],
     "run/step": [hostile.LARGE], "run/time": [hostile.value(1e308)],
@@ -70,7 +70,7 @@ class Checkpoints(unittest.TestCase):
 
     def test_harness_sees_what_is_accepted(self):
         with self.assertRaises(hostile.Accepted):
-            self.check_refused("lattice in motion", {"run/program": [hostile.another_type]})  # which nobody reads
+            self.check_refused("lattice in motion", {"run/program": [hostile.another_type]})  # which is not read
 
 
 if __name__ == "__main__":

@@ -1,6 +1,6 @@
-"""Checkpoints that a disk, a copy or a hand has damaged: refused, or passed over for the one before, with a word of it.
+"""Damaged checkpoints: they must be refused, or skipped in favour of the previous one, with a message.
 
-Never may a run that resumes end with anything but what the undisturbed one found.
+A resumed run must never end with other results than the uninterrupted one.
 """
 import shutil
 
@@ -9,7 +9,7 @@ from kills import Failure
 
 
 def flip(content, rng):
-    """One bit."""
+    """Flips one bit."""
     content[rng.randrange(len(content))] ^= 1 << rng.randrange(8)
 
 
@@ -18,7 +18,7 @@ def cut(content, rng):
 
 
 def blank(content, rng):
-    """Zeros in the place of up to a sector."""
+    """Overwrites up to one sector with zeros."""
     at = rng.randrange(len(content))
     n = min(rng.choice((1, 8, 512, 4096)), len(content) - at)
     content[at:at + n] = bytes(n)
@@ -29,7 +29,7 @@ def lengthen(content, rng):
 
 
 def swap(content, rng):
-    """Two pieces in each other's places."""
+    """Swaps two pieces."""
     n = min(512, len(content) // 4)
     one, two = rng.randrange(len(content) // 2 - n), len(content) // 2 + rng.randrange(len(content) // 2 - n)
     content[one:one + n], content[two:two + n] = content[two:two + n], content[one:one + n]
@@ -66,19 +66,19 @@ def damage_at_random(program, name, folder, rng, variants):
         status, said = program.run([*arguments, "--resume"], out)
         what = f"{name}: {damage.__name__}, {left} left: exit {status}: {said}"
         if status == 2:
-            # Nothing but the damaged one was left.
+            # Only the damaged checkpoint is left.
             if left != 1 or str(victim) not in said:
                 raise Failure(what)
             told["refused"] += 1
             continue
         if status not in victims.DONE:
             raise Failure(what)
-        # Frames of before the checkpoint are not there: what the run writes itself is compared.
+        # Frames from before the checkpoint do not exist: only the output of the resumed run is compared.
         found = {key: value for key, value in expected.items() if (out / key).exists()}
         different = [key for key, value in found.items() if (out / key).read_bytes() != value]
         if different or not found:
             raise Failure(f"{what}: not what the undisturbed run wrote: {', '.join(different)}")
-        # The file begins with a line that holds the hash, and bytes that nobody reads.
+        # The file begins with a line that contains the hash, and unused bytes.
         if str(victim) in said:
             told["fell back"] += 1
         elif bytes(content[512:]) == before[512:] and content[:content.find(b"\n")] == before[:before.find(b"\n")]:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A short version of the harness of faults, and whether that notices what is not whole.
+"""A short version of the fault harness, and tests that the harness detects incomplete files.
 
 Usage: faults_test.py PATH_OF_LATCON PATH_OF_THE_LIBRARY_OF_FILE_FAULTS
 """
@@ -58,7 +58,7 @@ class Faults(Folder):
 
     @unittest.skipUnless(CAN_MOUNT, "no disk can be mounted here")
     def test_small_disk(self):
-        """The same with a real one, which fills in the middle of a file."""
+        """The same with a real disk, which becomes full in the middle of a file."""
         arguments = victims.VICTIMS["crack"]
         expected, _ = victims.undisturbed(PROGRAM, arguments, self.folder / "undisturbed")
         disk, kept = self.folder / "disk", self.folder / "kept"
@@ -87,7 +87,7 @@ class Faults(Folder):
         self.assertIn(f"{self.folder}/out", run.stderr)
 
     def test_folder_of_somebody_else(self):
-        """Without permission to write: as nobody where the test runs as root."""
+        """A folder without write permission; as user nobody if the test runs as root."""
         folder = self.folder / "locked"
         folder.mkdir(mode=0o555)
         self.folder.chmod(0o755)
@@ -101,7 +101,7 @@ class Faults(Folder):
 
 
 class Harness(Folder):
-    """Whether it sees what it looks for."""
+    """Tests that the harness detects the faults it looks for."""
 
     @classmethod
     def setUpClass(cls):

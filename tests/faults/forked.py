@@ -1,4 +1,4 @@
-"""latcon behind a fork, as fuzzing has it: what takes half a second to start, MPI and the libraries, starts once."""
+"""Runs latcon in forks of one process, as for fuzzing: MPI and the libraries, which take half a second, start once."""
 import pathlib
 import sys
 import tempfile
@@ -8,14 +8,14 @@ import mutate
 
 
 class Forked:
-    """A program of victims.Program's kind, for runs on one thread that nothing disturbs."""
+    """Program like victims.Program, for uninterrupted runs on one thread."""
 
     def __init__(self, server):
         self.folder = tempfile.TemporaryDirectory()
         self.server = mutate.Server(server, pathlib.Path(self.folder.name))
 
     def run(self, arguments, out, timeout=600):
-        """@return exit status, minus the number of a signal, or "hangs"; what it said on standard error"""
+        """@return exit status, minus the number of a signal, or "hangs"; standard error"""
         folder = pathlib.Path(self.folder.name)
         how, _, number = self.server.run([*arguments, "--output-dir", str(out)], folder, timeout).partition(" ")
         status = {"exit": lambda: int(number), "signal": lambda: -int(number), "limit": lambda: "hangs"}[how]()

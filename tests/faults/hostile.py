@@ -1,6 +1,6 @@
-"""Checkpoints with the hash that their bytes have, and contents that no run left: what somebody may put into a folder.
+"""Forged checkpoints: their hash is correct, but no run wrote their contents.
 
-Each is to be refused with exit code 2 and a message that names the file, whatever it says of sizes and places.
+Each must be refused with exit code 2 and a message that names the file, whatever sizes and indices it contains.
 """
 import hashlib
 import shutil
@@ -11,17 +11,17 @@ import numpy
 import victims
 import whole
 
-TIME_LIMIT = 60  # [s]; what is refused is refused as soon as it is read
-# Lists of any length: nothing else in the file or the case tells how many there are.
+TIME_LIMIT = 60  # [s]; refusals happen while the file is read
+# Lists of arbitrary length: nothing else in the file or the case determines their length.
 OF_ANY_LENGTH = ("near_tip/sampler/path", "/sites")
 
 
 class Accepted(Exception):
-    """A checkpoint that was not refused as it should be."""
+    """A checkpoint was not refused as expected."""
 
 
 def make_right(path):
-    """Gives a checkpoint the hash of its bytes."""
+    """Updates the hash of a checkpoint to that of its bytes."""
     content = path.read_bytes()
     line = content[:content.index(b"\n")]
     told = line[:line.rindex(b" ") + 1] + hashlib.sha256(content[whole.USER_BLOCK:]).hexdigest().encode() + b"\n"
@@ -29,7 +29,7 @@ def make_right(path):
 
 
 def replace(file, name, values):
-    """Puts an array in the place of another, of the type that `values` have."""
+    """Replaces an array by another with the type of `values`."""
     del file[name]
     file.create_dataset(name, data=values)
 
@@ -56,20 +56,20 @@ def shorter(file, name):
 
 
 def many(file, name):
-    """Ten thousand texts in the place of one; of numbers the list, very long."""
+    """Replaces one string by ten thousand, or a list of numbers by a very long one."""
     values = file[name][:]
     replace(file, name, numpy.resize(values if len(values) else numpy.zeros(1, values.dtype), 10000 + 7 * len(values)))
 
 
 def endless(file, name):
-    """More than any memory holds, of which nothing is in the file."""
+    """Declares an array larger than any memory, with no data in the file."""
     kind = file[name].dtype
     del file[name]
     file.create_dataset(name, shape=(1 << 40,), dtype=kind, chunks=(1 << 16,))
 
 
 def elsewhere(file, name):
-    """In another file."""
+    """Stores an array in another file."""
     kind, n = file[name].dtype, len(file[name])
     del file[name]
     file.create_dataset(name, shape=(n,), dtype=kind, external=[("/dev/zero", 0, h5py.h5f.UNLIMITED)])
@@ -102,7 +102,7 @@ def value(number):
 
 
 def unterminated(file, name):
-    """A text that fills its room, so that no zero ends it."""
+    """Writes a string that fills its space, without a terminating zero."""
     text = bytes(file[name][0])
     del file[name]
     kind = h5py.h5t.C_S1.copy()
@@ -117,9 +117,9 @@ EVERYWHERE = (remove, another_type, longer, many, endless, elsewhere, linked, gr
 
 
 def of_array(name, values):
-    """What can be wrong with an array, by what it is."""
+    """Possible defects of an array, depending on its kind."""
     if is_text(values):
-        # What program wrote it is not compared.
+        # The program that wrote it is not compared.
         return [*EVERYWHERE, unterminated]
     changes = [change for change in EVERYWHERE
                if not (name.endswith(OF_ANY_LENGTH) and change in (longer, many))]
@@ -130,7 +130,7 @@ def of_array(name, values):
     return changes
 
 
-# Numbers that count, point to something or end a loop, by the end of their names, and values that they cannot have.
+# Counts, indices and loop limits, by the end of their names, and values that they cannot have.
 NUMBERS = {
     "run/step": [LARGE], "run/time": [value(-1e308), value(1e308)], "run/schema": [LARGE],
     "simulation/time": [value(-1e308), value(1e308), value(0.)], "simulation/parts": [value(0), value(3), value(1 << 30)],
@@ -154,14 +154,14 @@ NUMBERS = {
 
 
 def variants(path):
-    """(name of the array, change) of all that can be wrong with a checkpoint."""
+    """(name of the array, change) for all possible defects of a checkpoint."""
     found = []
     with h5py.File(path, "r") as file:
         names = []
         file.visititems(lambda name, item: names.append(name) if isinstance(item, h5py.Dataset) else None)
         for name in names:
             if name in ("run/program", "run/case_hash"):
-                continue  # for people: the program does not read them
+                continue  # for readers only: the program does not read them
             values = file[name][:]
             found += [(name, change) for change in of_array(name, values)]
             ends = [end for end in NUMBERS if name == end or name.endswith("/" + end.lstrip("/"))]
@@ -172,7 +172,7 @@ def variants(path):
 
 
 def prepared(program, name, folder):
-    """Runs a victim, and stops it where it has much to keep. @return its folder, the path of its only checkpoint"""
+    """Runs a victim, and stops it when its state is large. @return its folder, the path of its only checkpoint"""
     out = folder / name.replace(" ", "-")
     status, said = program.run([*victims.VICTIMS[name], "--threads", "1"], out)
     if status not in victims.DONE:
@@ -184,7 +184,7 @@ def prepared(program, name, folder):
 
 
 def require_refused(program, name, left, checkpoint, changes):
-    """Resumes from a checkpoint to which the changes were made, in copies of a folder. @return how many were refused"""
+    """Resumes from changed checkpoints, in copies of a folder. @return number of refusals"""
     good = checkpoint.read_bytes()
     out = left.with_name("resumed")
     wrong = []

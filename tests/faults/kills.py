@@ -1,4 +1,4 @@
-"""Kills the program at random moments, lets it go on, and compares what it found with the undisturbed run."""
+"""Kills the program at random times, resumes it, and compares its results with those of the uninterrupted run."""
 import shutil
 import time
 
@@ -7,11 +7,11 @@ import whole
 
 
 class Failure(Exception):
-    """What must never happen."""
+    """Results were lost or differ."""
 
 
 def kill_at_random(program, name, folder, rng, kills, ranks=(1,)):
-    """@return statistics: kills, files read, runs finished, and kills that came before the first checkpoint"""
+    """@return statistics: kills, files read, completed runs, kills before the first checkpoint"""
     arguments = {**victims.VICTIMS, **victims.WITHOUT_CHECKPOINTS}[name]
     expected, duration = victims.undisturbed(program, arguments, folder / "killed", name)  # pages name their folder
     out = folder / "killed"
@@ -35,22 +35,22 @@ def kill_at_random(program, name, folder, rng, kills, ranks=(1,)):
 
 
 def advance(program, arguments, out, rng, duration, ranks, told):
-    """Starts the run again and kills it, or now and then asks it to stop. @return whether it had ended before"""
+    """Resumes the run and kills it, or occasionally sends SIGTERM. @return whether it had ended before"""
     on = rng.choice(ranks)
     before = victims.time_of_change(out / "run.json")
     process = program.start(victims.on_threads(victims.resumed(arguments), rng.choice((1, 2))), out, ranks=on)
-    # Most of what there is to lose is lost after the start, and some starts are hit as well.
+    # Most kills are after the start, when there is more to lose; some are during the start.
     if arguments[0] != "report" and rng.random() < 0.9:
         victims.wait_until_it_runs(process, out, before)
     end = time.monotonic() + rng.uniform(0., duration)
     while time.monotonic() < end and process.poll() is None:
         time.sleep(0.005)
-    # A signal that mpirun gets before it has started the ranks is no matter of latcon's.
+    # A signal that mpirun receives before it has started the ranks does not concern latcon.
     if process.poll() is None and on == 1 and rng.random() < 0.1:
         told["asked_to_stop"] += 1
         process.terminate()
         _, said = process.communicate(timeout=120)
-        # It may end before it looks, and before it listens a signal just ends it.
+        # It may end before it checks for signals; before the handlers are installed a signal simply ends it.
         if process.returncode not in (130, -15, *victims.DONE):
             raise Failure(f"exit {process.returncode} when asked to stop: {said}")
     elif process.poll() is None:

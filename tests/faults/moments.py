@@ -1,4 +1,4 @@
-"""Kills the program, or lets the disk be full, at one after the other of the calls by which it changes files."""
+"""Kills the program, or simulates a full disk, at each of the calls that change files."""
 import functools
 import shutil
 
@@ -9,7 +9,7 @@ from kills import Failure, compare
 
 @functools.lru_cache(maxsize=None)
 def counted(program, name, folder):
-    """@return the contents of an undisturbed run, and how many such calls it makes"""
+    """@return the contents of an uninterrupted run, and its number of such calls"""
     arguments = victims.VICTIMS[name]
     log = folder / "calls"
     out = folder / "counted"
@@ -23,7 +23,7 @@ def counted(program, name, folder):
 
 
 def at_moments(program, name, folder, fault, moments):
-    """Lets a fault happen at some of the calls, given as a function of their number. @return statistics"""
+    """Injects a fault at some of the calls, selected by a function of their number. @return statistics"""
     arguments = victims.VICTIMS[name]
     folder.mkdir(parents=True, exist_ok=True)
     expected, calls = counted(program, name, folder)
@@ -34,7 +34,7 @@ def at_moments(program, name, folder, fault, moments):
         status, said = program.run([*arguments, "--threads", "1"], out,
                                    fault={"LATCON_FAULT": fault, "LATCON_FAULT_AT": str(call)})
         if fault == "full" and status in victims.DONE:
-            compare(name, out, expected)  # nothing that needs room came after
+            compare(name, out, expected)  # no call after it needed space
             continue
         if status != {"kill": -9, "full": 5}[fault]:
             raise Failure(f"{name}: exit {status} with `{fault}` at call {call} of {calls}: {said}")

@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Kills, full disks, damaged and made-up checkpoints: nothing that was computed is lost, and the run goes on to what it would have found.
+"""Kills, full disks, damaged and forged checkpoints: no results are lost, and resumed runs reach the same results.
 
-Every run is stopped again and again and goes on with --resume, on other numbers of threads and ranks. After each stop
-every file is read with VTK, h5py, and the readers of Python; at the end all files are compared with those of the
-undisturbed run, byte for byte.
+Every run is stopped repeatedly and resumed with --resume on other numbers of threads and ranks. After each stop every file
+is read with VTK, h5py, and Python's readers; at the end all files are compared with those of the uninterrupted run, byte for
+byte.
 """
 import argparse
 import json

@@ -1,4 +1,4 @@
-"""Small runs of every kind that leaves checkpoints: what the harness of faults stops, kills and starves."""
+"""Small runs of every kind that writes checkpoints, on which the fault harness acts."""
 import os
 import pathlib
 import shutil
@@ -30,7 +30,7 @@ VICTIMS = {
                                     Output__frame_interval="0.02 ms", Output__energy_interval=30,
                                     Checkpoints__steps=32)],
 }
-# Those whose bits do not depend on the number of ranks.
+# Runs that are bitwise identical for any number of ranks.
 ON_RANKS = list(VICTIMS)
 VICTIMS["sheet in motion"] = [
     "continuum", str(CASES / "shear_layer.prm"), "--quiet",
@@ -38,7 +38,7 @@ VICTIMS["sheet in motion"] = [
               Left_edge__condition="held", Right_edge__condition="held", Continuum__direct_limit=0,
               Loading__shear=0.1, Initial_state__velocity_x="6*sin(pi*y/0.02)^2*sin(pi*x/0.01)^2",
               Time__end="0.1 ms", Output__frame_interval="0.02 ms", Output__energy_interval=2, Checkpoints__steps=3)]
-# Those that leave no checkpoints: after a kill they start again, and a study with the runs that it has not finished.
+# Runs without checkpoints: after a kill they start from the beginning, and a study with its incomplete runs.
 WITHOUT_CHECKPOINTS = {
     "relaxation": ["lattice", str(CASES / "quick.prm"), "--quiet",
                    *settings(Lattice__solution="relaxed", Sheet__length="5 cm", Sheet__height="3 cm")],
@@ -46,9 +46,9 @@ WITHOUT_CHECKPOINTS = {
     "verify": ["verify", "intrinsic-length", "--quick", "--quiet"],
     "report": ["report"],  # of a crack that has run before
 }
-# They tell how a run went, and when.
+# Files that record the circumstances of a run.
 NOT_RESULTS = ("run.json", "log.txt", ".latcon.lock", "study.json", "study.html")
-DONE = (0, 3)  # 3: strips this small need not be in balance to the last digit that a crack is held to
+DONE = (0, 3)  # 3: the energy balance of such small strips may exceed the tolerance
 
 
 def on_threads(arguments, threads):
@@ -56,7 +56,7 @@ def on_threads(arguments, threads):
 
 
 def descendants(process):
-    """A process and all that it has started, directly or not."""
+    """A process and all its descendants."""
     found = [process]
     for started in found:
         for task in pathlib.Path(f"/proc/{started}/task").glob("*/children"):
@@ -68,7 +68,7 @@ def descendants(process):
 
 
 class Program:
-    """latcon, and how it is started."""
+    """latcon and the command that starts it."""
 
     def __init__(self, latcon, preloaded=None):
         self.latcon, self.preloaded = str(latcon), preloaded
@@ -83,7 +83,7 @@ class Program:
                                 stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
 
     def run(self, arguments, out, timeout=600, **how):
-        """@return exit status, "hangs" past the timeout [s]; what it said on standard error"""
+        """@return exit status, "hangs" past the timeout [s]; standard error"""
         process = self.start(arguments, out, **how)
         try:
             _, said = process.communicate(timeout=timeout)
@@ -94,7 +94,7 @@ class Program:
 
 
 def renew(program, name, out):
-    """Makes the folder as it is before a run starts."""
+    """Creates the folder in its state before a run."""
     shutil.rmtree(out, ignore_errors=True)
     if name != "report":
         return
@@ -108,7 +108,7 @@ def renew(program, name, out):
 
 
 def resumed(arguments):
-    """The arguments with which a run goes on."""
+    """The arguments that resume a run."""
     return arguments if arguments[0] in ("verify", "report") else [*arguments, "--resume"]
 
 
@@ -122,20 +122,20 @@ def kill(process):
 
 
 def contents(folder):
-    """What a run found, by the names of files; what tells how it went left out."""
+    """Results of a run by file name, without the files that record its circumstances."""
     return {str(path.relative_to(folder)): path.read_bytes() for path in sorted(folder.rglob("*"))
             if path.is_file() and path.suffix != ".part" and path.name not in NOT_RESULTS
             and not {"checkpoints", "earlier-run"} & set(path.parts)}
 
 
 def differences(found, expected):
-    """Names of files that are not the same."""
+    """Names of files that differ."""
     return sorted(name for name in found.keys() | expected.keys() if found.get(name) != expected.get(name))
 
 
 def wait_until_it_runs(process, out, before):
-    """Waits until a program has read its input and begins: it writes run.json then. @return whether it got there
-    @param before time of change of that file when the program was started; 0: there was none"""
+    """Waits until a program has read its input and writes run.json. @return whether it did
+    @param before modification time of that file when the program was started; 0 if it did not exist"""
     while process.poll() is None:
         if time_of_change(out / "run.json") != before:
             return True
@@ -148,7 +148,7 @@ def time_of_change(path):
 
 
 def undisturbed(program, arguments, out, name=None):
-    """@return the contents of the folder, the wall time of what comes after the start of the program [s]"""
+    """@return the contents of the folder, the wall time after the start of the program [s]"""
     renew(program, name, out)
     process = program.start(on_threads(arguments, 1), out)
     if name != "report":

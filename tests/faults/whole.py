@@ -1,4 +1,4 @@
-"""Whether every file that a run left behind is whole, looked at with readers of other people."""
+"""Checks with independent readers that all files of a run are complete."""
 import csv
 import hashlib
 import json
@@ -11,7 +11,7 @@ USER_BLOCK = 512
 
 
 class Broken(Exception):
-    """A file that is not whole."""
+    """A file is incomplete."""
 
 
 def read_vtk(reader, path):
@@ -39,7 +39,7 @@ def read_collection(path):
 
 
 def read_checkpoint(path):
-    """The hash of its bytes is right, and HDF5 reads it."""
+    """Checks the hash of a checkpoint, and reads it with HDF5."""
     content = path.read_bytes()
     told = content[:content.index(b"\n")].decode().rpartition(" ")[2]
     if hashlib.sha256(content[USER_BLOCK:]).hexdigest() != told:
@@ -80,13 +80,13 @@ READERS = {
     ".png": lambda path: read_vtk(vtk.vtkPNGReader(), path),
     ".gif": read_animation,
     ".svg": lambda path: xml.etree.ElementTree.parse(path),
-    ".latcon-files": read_list,  # which has no ending
+    ".latcon-files": read_list,  # which has no suffix
 }
 
 
 def check(folder):
-    """Reads all files in a folder and those below it. Parts of files beside their places do not count, nor locks, nor
-    what a program said while it ran. @return how many were read"""
+    """Reads all files in a folder and below it, except temporary files, locks and terminal output. @return number of files
+    read"""
     n = 0
     for path in sorted(folder.rglob("*")):
         inside = path.relative_to(folder)
@@ -99,7 +99,7 @@ def check(folder):
             READERS[kind](path)
         except Broken:
             raise
-        except Exception as error:  # each reader has its own
+        except Exception as error:  # each reader has its own exceptions
             raise Broken(f"{inside}: {error}") from error
         n += 1
     return n

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Writes what libFuzzer starts from: the shipped cases and studies, options of --set, and a dictionary of all words of a case.
+"""Writes the seed corpus of libFuzzer: the shipped cases and studies, options of --set, and a dictionary of all words of a case.
 
 Usage: corpus.py FUZZ_SERVER CORPUS DICTIONARY
 """

@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Runs tiny sheets for real, with entries anywhere in the ranges that latcon documents for them.
+"""Runs tiny sheets with entries anywhere in their documented ranges.
 
 Usage: extremes.py FUZZ_SERVER [--runs N] [--seed S] [--only NUMBER] [--failures DIR]
 
-Allowed ends are the exit codes 0, 2 (the dry run ends likewise, and nothing is written), 3, 4, 5. Others, signals, time beyond
-the limit, and numbers that are not finite in a file of a run that ended with 0 are findings. A run follows from seed and number
-alone. What fails is left in DIR, with the command that repeats it.
+Allowed outcomes are the exit codes 0, 2 (the dry run ends likewise, and nothing is written), 3, 4, 5. Other codes, signals,
+timeouts, and non-finite numbers in a file of a run that ended with 0 are findings. A run is determined by seed and number alone.
+Failing runs are saved in DIR, with the command that repeats them.
 """
 import argparse
 import collections
@@ -27,7 +27,7 @@ import numpy
 import mutate
 
 BASE = mutate.ROOT / "verification" / "cases" / "quick.prm"
-# About 180 sites, or some finite elements; a crack is seeded in them.
+# About 180 sites, or a few finite elements, with a seed crack.
 TINY = {"Sheet/spacing": "0.4 mm", "Sheet/length": "6 mm", "Sheet/height": "4 mm", "Time/end": "0.004 ms", "Continuum/cells x": "3",
         "Continuum/cells y": "2", "Continuum/refinements": "0", "Continuum/degree": "2", "Fracture/seed sites": "2",
         "Fracture/seed position": "0.2", "Output/frame interval": "0.002 ms", "Near tip/behind": "2 mm", "Near tip/ahead": "2 mm",
@@ -36,18 +36,18 @@ COMMANDS = (["lattice"], ["lattice"], ["continuum"], ["continuum"], ["fracture",
             ["fracture", "--skip-verification", "--no-report"])
 MOVES = {"lattice": "Lattice/solution", "continuum": "Continuum/solution"}
 EXPRESSIONS = ["0", "loading", "1e-5*x", "1e-3*y", "0.2*x+0.1*y", "1e-5*sin(1000*x)", "1e3", "-1e3*y", "1e-12", "if(x>0.003,1e-5,0)"]
-MOST_STEPS = 60  # of a run whose automatic step is known; others are left to their time limit
-LARGE = re.compile(r"^(length|height|spacing|cells [xy]|refinements|mesh file|adaptive cycles)$")  # of the cost of a run
+MOST_STEPS = 60  # of a run whose automatic step is known; other runs are limited by time
+LARGE = re.compile(r"^(length|height|spacing|cells [xy]|refinements|mesh file|adaptive cycles)$")  # they set the cost
 RANGE = re.compile(r"(>=|>|<=|<) (\S+)")
-# By definition not finite where no site ever was.
+# By definition not finite where no sample has a site.
 MAY_HAVE_GAPS = {"near_tip.vti", "near_tip_folded.vti"}
-# Likewise, where too few bonds are left.
+# By definition not finite where too few bonds are left.
 MAY_BE_UNKNOWN = {"strain_gradient_x", "strain_gradient_y"}
 ENDS = {"exit 0", "exit 2", "exit 3", "exit 4", "exit 5"}
 
 
 def bounds(rule):
-    """The least and the largest number that a range allows, and whether each may be taken itself."""
+    """Lower and upper bound of a range, and whether each is included."""
     low, high = (-math.inf, True), (math.inf, True)
     for sign, number in RANGE.findall(rule):
         if sign[0] == ">":
@@ -58,7 +58,7 @@ def bounds(rule):
 
 
 def number_in(rule, middle, pick):
-    """Anywhere in a range, as often at its ends as within, on a logarithmic scale about a number."""
+    """Random number in a range, as often at its ends as inside, on a logarithmic scale around a number."""
     (low, with_low), (high, with_high) = bounds(rule)
     is_whole = "whole number" in rule
     kind = pick.random()
@@ -81,7 +81,7 @@ def number_in(rule, middle, pick):
 
 
 def value_of(entry, value, pick):
-    """@param value that of the base case"""
+    """@param value value in the base case"""
     rule = entry["allowed"]
     if rule.startswith("one of "):
         return pick.choice(rule[len("one of "):].split(", "))
@@ -95,7 +95,7 @@ def value_of(entry, value, pick):
 def make(schema, seed, number):
     """A command, and the entries that it sets.
 
-    @param schema what `latcon schema` prints of the base case
+    @param schema output of `latcon schema` for the base case
     """
     pick = random.Random(f"{seed}/{number}")
     command = pick.choice(COMMANDS)
@@ -120,7 +120,7 @@ READERS = {".vtp": vtk.vtkXMLPolyDataReader, ".vtu": vtk.vtkXMLUnstructuredGridR
 
 
 def not_finite(folder):
-    """Files that hold a number that is not finite."""
+    """Files that contain a non-finite number."""
     found = []
     for path in sorted(folder.rglob("*")):
         if path.suffix in (".csv", ".json", ".pvd", ".prm"):
@@ -166,7 +166,7 @@ class Runner:
     def check(self, number):
         command, chosen = make(self.schema, self.options.seed, number)
         dry, said, printed = self.run([*self.arguments(command, chosen), "--dry-run"])
-        # As many steps as make sense, whatever their length.
+        # A limited number of steps, whatever their length.
         step = re.search(r"time step:? (\S+) s", printed)
         if (dry == "exit 0" or "--yes" in said) and step and "Time/end" in chosen:
             chosen["Time/end"] = repr(min(float(chosen["Time/end"].split()[0]) * (1e-3 if chosen["Time/end"].endswith("ms") else 1.),

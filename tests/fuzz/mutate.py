@@ -1,11 +1,11 @@
 #!/usr/bin/python3
-"""Mutates the shipped cases and studies, options of the command line with them, and checks how latcon ends.
+"""Mutates the shipped cases and studies and command-line options, and checks the outcome of latcon.
 
 Usage: mutate.py FUZZ_SERVER [--inputs N] [--seed S] [--only NUMBER] [--failures DIR]
 
-Allowed are the exit codes 0, 2, 3, 4; 1 (a defect), 5 (a file that cannot be written), signals, reports of sanitizers and
-time beyond the limit are findings, and so is any file after exit code 2 or a dry run. Inputs follow from the seed alone.
-What fails is left in DIR, with the command that repeats it.
+Exit codes 0, 2, 3 and 4 are allowed; 1 (a defect), 5 (a file that cannot be written), signals, reports of sanitizers and
+timeouts are findings, as is any file after exit code 2 or a dry run. Inputs are determined by the seed alone. Failing inputs
+are saved in DIR, with the command that repeats them.
 """
 import argparse
 import collections
@@ -25,10 +25,10 @@ STUDIES = sorted((ROOT / "verification" / "studies").glob("*.json"))
 ALLOWED = {"exit 0", "exit 2", "exit 3", "exit 4"}
 ALARMS = ("internal error", "runtime error:", "AddressSanitizer", "terminate called")
 
-# Small enough to run whatever else a case says; less so, and a run is left at its dry run.
+# Sizes small enough to run any case; larger cases are only run dry.
 TINY = ["Sheet/length=9 mm", "Sheet/height=7 mm", "Time/end=0.02 ms", "Continuum/cells x=2", "Continuum/cells y=2",
         "Continuum/degree=2", "Fracture/seed sites=2", "Fracture/seed position=0.2"]
-SHORT = 2.  # longest estimated time of what is run [s]
+SHORT = 2.  # largest estimated time of a run [s]
 
 NUMBERS = ["0", "1", "-1", "2", "0.5", "1e-3", "1e3", "1e9", "1e12", "1e20", "1e-20", "1e21", "1e-300", "1e300", "4.9e-324",
            "1.7976931348623157e308", "1e400", "1e-400", "-0", "nan", "inf", "-inf", "0x10", "1,5", "1.5.2", "1e", "--1", "+3",
@@ -80,7 +80,7 @@ class Mutator:
     def value(self, old):
         words = old.split()
         number = words[0] if words else "1"
-        if self.random.random() < 0.5:  # something that may be meant
+        if self.random.random() < 0.5:  # a plausible value
             try:
                 changed = float(number) * self.pick([0.5, 0.9, 0.99, 1., 1.01, 1.1, 1.5, 2.])
                 return " ".join([f"{changed:.6g}" if "." in number or "e" in number else str(round(changed)), *words[1:]])
@@ -92,7 +92,7 @@ class Mutator:
                           lambda: old + "0", lambda: old.replace(".", ","), lambda: "1" + old])()
 
     def entries(self, entries):
-        """A step that knows what a case is."""
+        """A mutation that respects the structure of a case."""
         entries = list(entries)
         at = self.random.randrange(len(entries)) if entries else 0
         kind = self.random.randrange(9)
@@ -118,7 +118,7 @@ class Mutator:
         return entries
 
     def bytes(self, data):
-        """A step that knows nothing."""
+        """A mutation of arbitrary bytes."""
         at = self.random.randrange(len(data) + 1)
         end = min(len(data), at + self.pick([1, 1, 2, 10, 100]))
         return self.pick([lambda: data[:at] + self.pick(BYTES) + data[at:], lambda: data[:at] + data[end:], lambda: data[:at],
@@ -126,7 +126,7 @@ class Mutator:
                           lambda: data.replace(b"\n", b"\r\n"), lambda: data.replace(b"=", b" = = ", 1)])()
 
     def json_value(self, value):
-        """A JSON value of any kind in the place of another."""
+        """A JSON value of any kind that replaces another."""
         text = str(value)
         return self.pick([lambda: self.value(text), lambda: None, lambda: True, lambda: [], lambda: {}, lambda: [value, value],
                           lambda: {"a": value}, lambda: self.pick([0, -1, 1e300, 1e-300, 2**63, 2**64, 0.1, -0.0]),
@@ -177,7 +177,7 @@ class Mutator:
                           f"{section}/{self.typo(name)}={old}", "A/B=C", f" {section} / {name} = {old} "])
 
     def steps(self, step, what, likely):
-        """`step` some times: seldom none, mostly once."""
+        """Applies `step` a random number of times, mostly once."""
         for _ in range(self.pick(likely)):
             what = step(what)
         return what
@@ -200,7 +200,7 @@ def case_input(mutator):
         data = mutator.json_of_case(entries).encode("utf8", "surrogateescape")
     if random_.random() < 0.1:
         data = mutator.steps(mutator.bytes, data, [1, 1, 2, 4])
-    # Mostly one that the case is for.
+    # Mostly a command for which the case is intended.
     command = mutator.pick(["lattice", "continuum", "fracture", "verify"] if random_.random() < 0.2 else
                            {"hole": ["lattice", "continuum"], "shear_layer": ["continuum"]}.get(case.stem, ["lattice", "continuum", "fracture"]))
     arguments = [command, "case.prm"] if command != "verify" else [command, "--case", "case.prm"]
@@ -236,7 +236,7 @@ def study_input(mutator):
 
 
 def odd_input(mutator):
-    """Options and files that are none."""
+    """Options and files that do not exist."""
     words = ["", "-", "--", "--set", "--set=", "--threads", "0", "-1", "1e9", "--threads=0", "--output-dir", "--output-dir=", "--quiet",
              "--dry-run", "--case", ".", "/", "/dev/null", "none.prm", "case.prm", "lattice", "continuum", "fracture", "verify", "study",
              "compare", "paper", "energy", "--quick", "--help", "--version", "--tolerance", "displacement=1", "--time", "nan",
@@ -346,7 +346,7 @@ class Fuzzer:
 
     @staticmethod
     def is_short(printed):
-        """Whether the estimate of a dry run is for some seconds and frames at most."""
+        """Whether a dry run estimates at most a few seconds and frames."""
         words = [line.split() for line in printed.splitlines() if line.startswith("# time: about ")]
         steps = [float(line.split(" steps")[0].split()[-1]) for line in printed.splitlines() if " steps" in line and line[0] == "#"]
         frames = [line.split("=")[1].split("#")[0].strip() for line in printed.splitlines() if "set frame interval" in line]

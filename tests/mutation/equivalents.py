@@ -1,4 +1,4 @@
-"""Faults that no test can see, as reviewed: equivalents.txt."""
+"""Reader of equivalents.txt, the reviewed mutants that no test can detect."""
 import re
 
 
@@ -6,7 +6,7 @@ class Equivalents:
     """Entries are blocks of four lines, with empty lines between them:
 
         file: lattice/forces.cc
-        - the line as it is
+        - the original line
         + the line with the fault
         reason: why nothing that can be observed changes
     """
@@ -16,7 +16,7 @@ class Equivalents:
 
     @classmethod
     def read(cls, path):
-        """@throws ValueError for an entry that is not whole"""
+        """@throws ValueError for an incomplete entry"""
         reasons = {}
         text = re.sub(r"^#.*\n?", "", path.read_text(encoding="utf-8"), flags=re.MULTILINE)
         for block in filter(None, (block.strip() for block in re.split(r"\n\s*\n", text))):
@@ -28,7 +28,7 @@ class Equivalents:
         return cls(reasons)
 
     def outdated(self, mutants_of):
-        """Entries that are no faults of their file (any more). @param mutants_of gives the faults of a file by its name"""
+        """Entries that are not mutants of their file. @param mutants_of returns the mutants of a file by its name"""
         known = {file: {(m.before.strip(), m.after.strip()) for m in mutants_of(file)} for file, _, _ in self._reasons}
         return [entry for entry in self._reasons if entry[1:] not in known[entry[0]]]
 

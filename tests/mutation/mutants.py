@@ -1,7 +1,6 @@
-"""Small faults that can be planted in C++ sources that clang-format has laid out.
+"""Generator of mutants, small faults in C++ sources formatted by clang-format.
 
-The layout tells operators from what looks like them: binary operators stand between spaces, template brackets, pointers
-and signs do not.
+The format distinguishes operators: binary operators are surrounded by spaces; template brackets, pointers and signs are not.
 """
 import dataclasses
 import random
@@ -13,8 +12,8 @@ class Mutant:
     """One fault in one line of one file."""
     file: str    # relative to the root
     line: int    # from 1
-    before: str  # the line as it is
-    after: str   # and with the fault
+    before: str  # the original line
+    after: str   # the line with the fault
     kind: str    # of fault
 
     def planted(self, text):
@@ -33,24 +32,24 @@ def _blank(match):
 
 
 def code_only(text):
-    """The text with comments, strings and characters blanked, place by place."""
+    """The text with comments, strings and characters replaced by blanks, at unchanged positions."""
     return re.sub(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', _blank, text, flags=re.DOTALL)
 
 
-# What is no arithmetic of the program: declarations of names, checks of invariants, what is only said.
+# Lines without arithmetic of the program: declarations of names, checks of invariants, messages.
 _NO_CODE = re.compile(r"^\s*(?:#|(?:using|namespace|template|class|friend|static_assert|throw|HWY_EXPORT|HWY_UNROLL)\b|"
                       r"(?:public|private|protected):|[{}();]*\s*$)|\bassert\(")
 
 
 def _literal(number):
-    """A number with which a literal is exchanged: a whole one by a neighbour, any other by its double."""
+    """The number that replaces a literal: for an integer its neighbour, otherwise its double."""
     if re.fullmatch(r"\d+", number):
         return "0" if number == "1" else str(int(number) + 1)
     value = float(number)
     return "1." if value == 0. else repr(2. * value)
 
 
-# kind, pattern, what takes the place of the match (a text, or a function of the match).
+# kind, pattern, replacement (a string, or a function of the match).
 _EXCHANGES = [
     ("arithmetic", r" \+ ", " - "),
     ("arithmetic", r" - ", " + "),
@@ -91,7 +90,7 @@ _EXCHANGES = [
     ("factor 2", r"(?<=return )(?=[\w(-][^;{]*;$)", "2. * "),
 ]
 _EXCHANGES = [(kind, re.compile(pattern), to) for kind, pattern, to in _EXCHANGES]
-_TEMPLATE_NUMBERS = re.compile(r"<[\w:]*(?:(?:, )?\d+)+>|, \d+> ")  # sizes of types: others are no program
+_TEMPLATE_NUMBERS = re.compile(r"<[\w:]*(?:(?:, )?\d+)+>|, \d+> ")  # sizes of types: other values do not compile
 # A whole statement on a line of its own: a call, an assignment to what exists, a jump.
 _STATEMENT = re.compile(r"^\s*(?:(?:\+\+|--|\*)?[A-Za-z_][\w:.\->\[\]() *+%,]*(?:\([^{}]*\)| [-+*/|&]?= [^{}]+)|\+\+[^{};]+|"
                         r"continue|break);$")
@@ -101,7 +100,7 @@ _DECLARATION = re.compile(r"^\s*(?:const|static|constexpr|auto|double|bool|int|u
 
 
 def _closing(line, begin):
-    """Where the bracket that opens before `begin` closes; None where it does so in another line."""
+    """Position at which the bracket that opens before `begin` closes; None if that is on another line."""
     depth = 1
     for place in range(begin, len(line)):
         depth += {"(": 1, ")": -1}.get(line[place], 0)
@@ -111,7 +110,7 @@ def _closing(line, begin):
 
 
 def _faults_of_line(code, whole):
-    """(kind, line with the fault) for all faults of a line of code; `whole`: no statement goes on into or out of it."""
+    """(kind, line with the fault) for all faults of a line of code; `whole`: no statement extends across its ends."""
     for kind, pattern, to in _EXCHANGES:
         for match in pattern.finditer(_TEMPLATE_NUMBERS.sub(_blank, code) if kind == "constant" else code):
             exchange = to if isinstance(to, str) else to(match)
@@ -127,7 +126,7 @@ def _faults_of_line(code, whole):
 
 
 def of_file(path, file):
-    """All faults that can be planted in a file, in its order.
+    """All mutants of a file, in order.
     @param path of the file @param file its name in the report"""
     text = path.read_text(encoding="utf-8")
     lines, codes = text.split("\n"), code_only(text).split("\n")
@@ -155,5 +154,5 @@ def of_file(path, file):
 
 
 def in_random_order(mutants, seed):
-    """So that the first N are a sample of all, each as likely as any other. A mutant's place depends on the seed and itself alone."""
+    """Shuffles mutants so that the first N are a uniform sample. The position of each depends only on the seed and on itself."""
     return sorted(mutants, key=lambda m: random.Random(f"{seed} {m.file} {m.line} {m.before} {m.after}").random())

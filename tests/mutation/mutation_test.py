@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""The mutation harness kills faults that tests see and reports those that they do not: mutation_test.py [CXX] [--full].
+"""Tests that the mutation harness kills faults that tests detect, and reports the others: mutation_test.py [CXX] [--full].
 
-With --full a small project of the bond laws and their test is built directly with the compiler, and run.py plants faults in it.
+With --full a small project of the bond laws and their test is compiled directly, and run.py introduces faults into it.
 """
 import json
 import pathlib
@@ -63,7 +63,7 @@ class Faults(unittest.TestCase):
                                     '  throw Failed("a - b",\n               1 - 2);\n  assert(a < b);\n'
                                     '  static_assert(a < 1);\n  std::array<double, 6> a;\n  using A = B<1>;\n'), [])
         self.assertEqual([after for _, _, after in self.found('  const char *text = "1 - 2"; // 3\n')], [])
-        # A statement that goes on from the line before is none.
+        # The continuation of a statement is not a statement.
         self.assertNotIn("dropped", [kind for _, kind, _ in self.found("  const double sum = a[0] +\n    f(1);\n")])
 
     def test_are_drawn_by_seed(self):
@@ -73,10 +73,10 @@ class Faults(unittest.TestCase):
         self.assertEqual(drawn, mutants.in_random_order(many[::-1], "1"))
         self.assertNotEqual(drawn, mutants.in_random_order(many, "2"))
         self.assertEqual(set(drawn), set(many))
-        # The place of each depends on itself alone.
+        # The position of each depends on itself alone.
         some = [m for m in many if m.line % 2]
         self.assertEqual(mutants.in_random_order(some, "1"), [m for m in drawn if m in some])
-        # As many of a file as it has a share in all: 20 of 200, give or take three standard deviations.
+        # A file is represented in proportion to its share: 20 of 200, within three standard deviations.
         self.assertLess(abs(sum(m.file == "lattice/b.cc" for m in drawn[:200]) - 20), 3 * (200 * 0.1 * 0.9) ** 0.5)
 
     def test_each_source_has_its_programs(self):
@@ -135,7 +135,7 @@ class Limited(unittest.TestCase):
 
 @unittest.skipUnless(FULL, "in full only")
 class Project(unittest.TestCase):
-    """Of the bond laws alone."""
+    """Project with the bond laws alone."""
 
     def setUp(self):
         place = tempfile.TemporaryDirectory()

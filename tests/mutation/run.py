@@ -1,9 +1,9 @@
 #!/usr/bin/python3
-"""Plants small faults in the sources, one at a time, and sees whether a test fails.
+"""Introduces small faults into the sources, one at a time, and checks whether a test fails.
 
-tests/mutation/run installs and builds what is needed and calls this. Faults are planted in a copy; nothing in the
-checkout changes. A fault that no test sees is printed with its place: either a test is missing, or the fault changes
-nothing that can be observed, which equivalents.txt says of it with the reason.
+tests/mutation/run installs and builds the prerequisites and calls this script. Faults are introduced into a copy; the
+checkout is not changed. A fault that no test detects is printed with its position: either a test is missing, or the fault has
+no observable effect, which equivalents.txt then records with the reason.
 """
 import argparse
 import collections
@@ -27,7 +27,7 @@ from testing import Failed, GoogleTests, Ranks
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 EQUIVALENTS = pathlib.Path(__file__).with_name("equivalents.txt")
 
-# Where faults are planted, by the longest of these beginnings of a file's name; and the test programs that are to see them.
+# Sources to mutate, by the longest matching prefix, and the test programs that should detect the faults.
 PLACES = {
     "support/": ["support_tests"],
     "lattice/": ["lattice_tests", "lattice_ranks_tests"],
@@ -41,7 +41,7 @@ PLACES = {
                      "verification/claims/prestretch/", "verification/claims/steady_crack/",
                      "verification/claims/wave_speeds/"], ["claims_tests", "verification_tests"]),
     "verification/compare/": ["compare_tests"],
-    # What scripts test: commands, files of results, and messages.
+    # Tested by scripts: commands, result files, messages.
     **dict.fromkeys(["support/child_process.", "support/mpi_session.", "verification/bridge/continuum_model.",
                      "verification/commands/", "verification/compare/difference_writer.", "verification/compare/quiet_vtk.",
                      "verification/main.cc", "verification/output/continuum_record.", "verification/output/crack_film.",
@@ -56,7 +56,7 @@ PROGRAMS = {"support_tests": GoogleTests(), "lattice_tests": GoogleTests(), "lat
 
 
 def programs_for(file):
-    """Names of the test programs that are to see faults of a source."""
+    """Names of the test programs that should detect faults of a source."""
     return PLACES[max(filter(file.startswith, PLACES), key=len)]
 
 
@@ -84,7 +84,7 @@ def arguments():
 
 
 def files(root, only):
-    """Names of the sources to plant faults in. @throws Failed for a name that is none"""
+    """Names of the sources to mutate. @throws Failed for an unknown name"""
     known = [str(path.relative_to(root)) for folder in sorted({place.split("/")[0] for place in PLACES})
              for path in sorted((root / folder).rglob("*")) if path.suffix in SOURCE_NAMES]
     if not only:
@@ -99,13 +99,13 @@ def files(root, only):
 
 
 class Report:
-    """What came out so far, on the screen and in a file."""
+    """Results so far, on the terminal and in a file."""
 
     def __init__(self, path, equivalents, chosen, n_all):
         self._path, self._equivalents, self._n_mutants, self._n_all = path, equivalents, len(chosen), n_all
         self._records = []
         self.survivors = []
-        self.rest = list(chosen)  # still to be planted
+        self.rest = list(chosen)  # mutants not yet tested
         if path and path.exists():
             known = {(r["file"], r["line"], r["before"], r["after"]): r
                      for r in json.loads(path.read_text(encoding="utf-8"))["mutants"] if r["outcome"] in ("killed", "no program")}
@@ -133,14 +133,14 @@ class Report:
                                   encoding="utf-8")
 
     def score(self, folder=""):
-        """Killed among those that can be seen; None if there are none. Equivalent ones and those that do not compile do
-        not count."""
+        """Killed mutants over detectable ones; None if there are none. Equivalent mutants and those that do not compile are
+        excluded."""
         outcomes = collections.Counter(r["outcome"] for r in self._records if r["file"].startswith(folder))
         seen = outcomes["killed"] + outcomes["survived"]
         return outcomes["killed"] / seen if seen else None
 
     def uncertainty(self):
-        """Wilson's interval of 95 % for the score of all faults of which these are a sample."""
+        """Wilson's 95 % interval for the score of the population of which these mutants are a sample."""
         n, p, z = sum(r["outcome"] in ("killed", "survived") for r in self._records), self.score(), 1.96
         centre, half = p + z**2 / (2 * n), z * math.sqrt(p * (1 - p) / n + z**2 / (4 * n**2))
         return [(centre + sign * half) / (1 + z**2 / n) for sign in (-1, 1)]
@@ -163,7 +163,7 @@ class Report:
 
 
 def tested(chosen, options, report, deadline):
-    """Plants the mutants and has the report take note of each."""
+    """Tests the mutants and records each result in the report."""
     stages = {mutant.file: options.programs or programs_for(mutant.file) for mutant in chosen}
     names = {name for programs in stages.values() for name in programs}
     with tempfile.TemporaryDirectory(prefix="mutation-", dir=options.build.parent) as place:
@@ -192,7 +192,7 @@ def tested(chosen, options, report, deadline):
 
 
 def main():
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that the copy goes
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(143))  # so that the copy is deleted
     options = arguments()
     deadline = math.inf if options.hours is None else time.monotonic() + 3600. * options.hours
     try:

@@ -1,7 +1,7 @@
-"""A copy of the sources and of what was built from them, in which faults are planted, built and tested.
+"""A copy of the sources and of their build, in which mutants are built and tested.
 
-Built are the objects alone that depend on the file with the fault; they go to the linker before the archives, which hold
-the same objects without it.
+Only the objects that depend on the mutated file are rebuilt; they precede the archives on the linker's command line, which
+contain the original objects.
 """
 import json
 import pathlib
@@ -15,18 +15,18 @@ from testing import Failed, Verdict
 SOURCES = ("support", "lattice", "continuum", "verification", "tests")
 SOURCE_NAMES = (".h", ".cc", ".inc")
 BUILT_NAMES = (".o", ".a", ".gch", ".hxx", ".h")
-FEW = 8  # objects that are built at once
+FEW = 8  # number of objects that are built first
 
 
 class Scratch:
-    """Its sources stay as they are: a fault is in a folder of its own, where the compiler looks first."""
+    """The copied sources are not changed: a mutated file is in a separate folder, which the compiler searches first."""
 
     def __init__(self, root, build, folder, programs):
-        """@param root of the sources @param build the finished build folder @param folder that gets the copy
-        @param programs {name of the target: how it is run}"""
+        """@param root source folder @param build complete build folder @param folder folder for the copy
+        @param programs {name of the target: test program}"""
         self._root, self._origin = root.resolve(), build.resolve()
         self.tree, self._build, self._programs = folder / "tree", folder / "build", programs
-        self._ninja(*programs)  # what is copied is to be that of the sources as they are
+        self._ninja(*programs)  # the build must be up to date before it is copied
         for name in filter(lambda name: (root / name).is_dir(), SOURCES):
             _copy(root / name, self.tree / name, lambda n: n.endswith(SOURCE_NAMES))
         _copy(build, self._build, lambda n: n.endswith(BUILT_NAMES) or n in programs)
@@ -60,13 +60,13 @@ class Scratch:
         return shlex.split(line.split("&&")[1])
 
     def measure(self, folder):
-        """Times of all tests without a fault. @param folder keeps them until a program is built anew"""
+        """Measures the times of all tests without a fault. @param folder stores them until a program is rebuilt"""
         folder.mkdir(exist_ok=True)
         for name, program in self._programs.items():
             program.measure(self._build / _output(self._links[name]), folder / f"{name}.json")
 
     def test(self, mutant, stages, folder):
-        """Plants a mutant, builds and tests it.
+        """Builds and tests a mutant.
         @param stages names of programs in the order in which to run them @param folder that does not exist yet
         @return Verdict"""
         overlay = folder / "tree"
@@ -76,7 +76,7 @@ class Scratch:
         suites = self._suites_that_know(mutant.file)
         dependents = self._dependents.get(mutant.file, [])
         built = {}
-        # A header is in nearly all objects: a few of them may show the fault already.
+        # Nearly all objects depend on a header: a few of them may already reveal the fault.
         plans = [(stages, dependents)]
         few = [name for name in dependents if self._knows(self._source(name), mutant.file)]
         if len(dependents) > FEW and 0 < len(few) <= FEW:
@@ -103,7 +103,7 @@ class Scratch:
         return pathlib.Path(self._compile[name][-1]).relative_to(self._root)
 
     def _knows(self, source, file):
-        """Whether a source is named after a file, or is the test of that name, or includes the file itself."""
+        """Whether a source has the name of a file, is its test, or includes it directly."""
         stem = pathlib.Path(file).stem
         if source.stem in (stem, stem + "_test"):
             return True
@@ -130,7 +130,7 @@ class Scratch:
         return done.returncode == 0
 
     def _linked(self, name, objects, folder):
-        """A test program with these objects in place of those without the fault. @return its path"""
+        """Links a test program with these objects in place of the originals. @return its path"""
         link = self._links[name]
         program = folder / _output(link)
         program.parent.mkdir(parents=True, exist_ok=True)
@@ -146,7 +146,7 @@ class Scratch:
 
 
 def _copy(source, target, wanted):
-    """The files of a folder whose names are wanted."""
+    """The files of a folder with given names."""
     shutil.copytree(source, target, ignore=lambda where, names: [
       n for n in names if not pathlib.Path(where, n).is_dir() and not wanted(n)])
 
@@ -156,6 +156,6 @@ def _output(link):
 
 
 def _archive(name):
-    """The archive that holds an object: lattice/CMakeFiles/latcon_lattice.dir/... is in lattice/liblatcon_lattice.a."""
+    """The archive that contains an object: lattice/CMakeFiles/latcon_lattice.dir/... is in lattice/liblatcon_lattice.a."""
     match = re.match(r"(.*)/CMakeFiles/(\w+)\.dir/", name)
     return f"{match.group(1)}/lib{match.group(2)}.a"

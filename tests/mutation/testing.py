@@ -1,4 +1,4 @@
-"""Test programs and how they are run on a fault: in parts, those that know the file first, within limits."""
+"""Runs test programs on a mutant: in stages, beginning with the tests of the mutated file, within limits."""
 import dataclasses
 import json
 import os
@@ -9,11 +9,11 @@ import signal
 import subprocess
 import time
 
-MEMORY = 6 << 30  # address space of a test [bytes]: a fault may allocate without end
+MEMORY = 6 << 30  # address space of a test [bytes], since a fault may allocate without end
 
 
 class Failed(Exception):
-    """The harness, not a mutant, is at fault."""
+    """The harness itself failed."""
 
 
 @dataclasses.dataclass(frozen=True)
@@ -24,11 +24,11 @@ class Verdict:
 
 @dataclasses.dataclass(frozen=True)
 class Limits:
-    """Of the time of a test, in its time without a fault. Processor time counts, so that other load does not; a test
-    that sleeps for ever is ended by the clock."""
+    """Limits of the time of a test, relative to its time without a fault. Processor time is limited, which is independent of
+    other load; a test that sleeps for ever is ended by wall time."""
     factor: float = 4.
-    seconds: float = 20.  # besides
-    wall: float = 20.     # times as long by the clock
+    seconds: float = 20.  # in addition
+    wall: float = 20.     # factor for wall time
 
 
 def run_limited(command, folder, seconds, limits=Limits()):
@@ -54,7 +54,7 @@ def run_limited(command, folder, seconds, limits=Limits()):
             status = None
         finally:
             try:
-                os.killpg(process.pid, signal.SIGKILL)  # and what it started
+                os.killpg(process.pid, signal.SIGKILL)  # with its children
             except ProcessLookupError:
                 pass
             process.wait()
@@ -78,7 +78,7 @@ class GoogleTests:
         self._seconds = {}  # test: time without a fault
 
     def measure(self, path, record):
-        """Runs the program without a fault, unless that was done since it was built. @param record file that keeps the
+        """Runs the program without a fault, unless it was run since it was built. @param record file that stores the
         times @throws Failed if it fails"""
         if not is_newer(record, path):
             written = path.parent / "times.json"
@@ -91,15 +91,15 @@ class GoogleTests:
                 self._seconds[f"{suite['name']}.{test['name']}"] = float(test["time"].rstrip("s"))
 
     def _parts(self, suites):
-        """What is run before what: all that is quick, then one test after another; first the suites named."""
-        # Names of tests with parameters have theirs before and after them.
+        """Order of the tests: all quick tests, then one test after another, beginning with the given suites."""
+        # Names of parametrised tests have prefixes and suffixes.
         named = {t for t in self._seconds if suites.intersection(re.split(r"[/.]", t))}
         quick = {t for t in self._seconds if self._seconds[t] < 0.5}
         slow = sorted(self._seconds.keys() - quick, key=lambda t: (t not in named, self._seconds[t]))
         return [sorted(part) for part in (quick & named, quick - named) if part] + [[test] for test in slow]
 
     def run(self, path, suites):
-        """@param suites names of test suites that know the fault's file @return Verdict"""
+        """@param suites names of test suites of the mutated file @return Verdict"""
         for part in self._parts(suites):
             verdict = run_limited([str(path), "--gtest_brief=1", "--gtest_fail_fast", "--gtest_filter=" + ":".join(part)],
                                   path.parent, sum(self._seconds[test] for test in part))
@@ -109,7 +109,7 @@ class GoogleTests:
 
 
 class Ranks:
-    """The same on several ranks; starting them takes longer than the tests."""
+    """A program of GoogleTest on several ranks; starting them takes longer than the tests."""
 
     def __init__(self, ranks):
         self._start = ["env", f"LATCON_RANKS={ranks}", "mpirun", "--oversubscribe", "-np", str(ranks)]

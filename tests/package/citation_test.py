@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""CITATION.cff names the version of CMakeLists.txt, and has what the format 1.2.0 asks for and nothing it does not know.
+"""Checks that CITATION.cff has the version of CMakeLists.txt and conforms to the format 1.2.0.
 
 Usage: citation_test.py SOURCE_FOLDER BUILD_FOLDER
 """

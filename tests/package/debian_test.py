@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The Debian packages: what they ask for, and that what they hold runs from where it is unpacked.
+"""Tests of the Debian packages: their dependencies, and that their contents run where they are unpacked.
 
 Usage: debian_test.py SOURCE_FOLDER BUILD_FOLDER
 """
@@ -20,7 +20,7 @@ def names(dependencies):
 class Packages(unittest.TestCase):
     @classmethod
     def setUpClass(cls):
-        # As fast as it can be packed.
+        # Fastest compression.
         run("cpack", "--config", BUILD / "CPackConfig.cmake", "-B", FOLDER / "packages", "-D",
             "CPACK_DEBIAN_COMPRESSION_TYPE=gzip")
         cls.program, cls.libraries, cls.python = (next((FOLDER / "packages").glob(f"{name}_*_*.deb"))
@@ -38,7 +38,7 @@ class Packages(unittest.TestCase):
         listed = set((SOURCE / "cmake/packages.txt").read_text().split("\n"))
         by_hand = {name for name in runtime if name.startswith(("libjs", "python3"))} | names(field(self.program, "Recommends"))
         self.assertLessEqual(by_hand | names(field(self.libraries, "Depends")), listed)
-        # Modules of others that the report imports.
+        # Third-party modules that the report imports.
         imported = {module for path in [*SOURCE.glob("verification/report/*.py"), *SOURCE.glob("verification/claims/*/*.py")]
                     for module in re.findall(r"^\s*(?:import|from) (\w+)", path.read_text(), re.M)}
         packages = {"matplotlib": "python3-matplotlib", "numpy": "python3-numpy", "vtkmodules": "python3-vtk9",

@@ -1,4 +1,4 @@
-"""What the tests of the installed project share: the folders of sources and build, and how programs are run."""
+"""Utilities of the tests of the installed project: folders of sources and build, running of programs."""
 import os
 import pathlib
 import subprocess
@@ -15,7 +15,7 @@ TINY = ["--set", "Sheet/length=2.5 cm", "--set", "Sheet/height=1.5 cm", "--set",
 
 
 def run(*command, fails=False, **keywords):
-    """Runs a command outside of the sources; its output, once it has ended as it should."""
+    """Runs a command outside the source folder and checks its exit code. @return its output"""
     done = subprocess.run([str(word) for word in command], capture_output=True, text=True, cwd=FOLDER, timeout=600,
                           env=ENVIRONMENT, **keywords)
     if (done.returncode != 0) != fails:
@@ -28,13 +28,13 @@ def files_below(folder):
 
 
 def mentions_of_sources(folder):
-    """Files that hold the path of the sources (which that of the build folder begins with as a rule)."""
+    """Files that contain the path of the sources (usually the beginning of the path of the build folder)."""
     paths = [str(SOURCE).encode(), str(BUILD).encode()]
     return [path for path in files_below(folder) if any(word in path.read_bytes() for word in paths)]
 
 
 def check_program(test, prefix):
-    """The program below a prefix runs, reads what lies beside it, and draws its report."""
+    """Checks that the program below a prefix runs, reads its data files, and draws its report."""
     latcon, data = prefix / "bin" / "latcon", prefix / "share" / "latcon"
     test.assertRegex(run(latcon, "--version"), r"^latcon \d+\.\d+\.\d+")
     quick = data / "cases" / "quick.prm"
@@ -51,6 +51,6 @@ def check_program(test, prefix):
 
 
 def python(prefix, statements):
-    """What statements about the Python package below a prefix print."""
+    """Output of Python statements that use the package below a prefix."""
     return run("env", "-u", "LATCON", f"PYTHONPATH={prefix}/lib/python3/dist-packages", "/usr/bin/python3", "-B", "-c",
                f"import latcon; {statements}")

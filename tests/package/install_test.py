@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""latcon installed below some prefix needs neither its sources nor its build folder: the program runs, and programs of
-others are built on its libraries.
+"""Checks that an installed latcon needs neither its sources nor its build folder: the program runs, and other programs can be
+built on its libraries.
 
 Usage: install_test.py SOURCE_FOLDER BUILD_FOLDER
 """
@@ -32,14 +32,14 @@ class Installed(unittest.TestCase):
         own = FOLDER / "own-laws"
         shutil.copytree(PREFIX / "share/doc/latcon-dev/examples/own-laws", own)
         run("cmake", "-S", own, "-B", own / "build", "-G", "Ninja", "-D", "CMAKE_BUILD_TYPE=Release",
-            "-D", "CMAKE_CXX_FLAGS_RELEASE=-O0",  # built sooner
+            "-D", "CMAKE_CXX_FLAGS_RELEASE=-O0",  # faster to build
             "-D", f"CMAKE_PREFIX_PATH={PREFIX}", "-D", "CMAKE_EXPORT_COMPILE_COMMANDS=ON")
         run("cmake", "--build", own / "build", "--parallel", "2")
         self.assertEqual(mentions_of_sources(own), [])
         for entry in json.loads((own / "build/compile_commands.json").read_text()):
             self.assertIn(str(PREFIX / "include/latcon"), entry["command"])
             self.assertIn("-ffp-contract=off", entry["command"])
-            self.assertNotIn("-W", entry["command"])  # latcon's warnings are its own affair
+            self.assertNotIn("-W", entry["command"])  # latcon's warning flags are not exported
         self.assertIn("all agree", run(own / "build/bond_law"))
         self.assertIn("all agree", run(own / "build/bond_memory"))
         self.assertIn("they agree", run(own / "build/gradient_energy"))

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The Python package is installed into a fresh virtual environment from the sources alone, and runs the program.
+"""Checks that the Python package can be installed from its sources into a new virtual environment, and runs the program.
 
 Usage: python_test.py SOURCE_FOLDER BUILD_FOLDER
 """
@@ -16,7 +16,7 @@ CHECK = "import importlib.metadata as m, latcon; print(m.version('latcon'), latc
 
 class PythonPackage(unittest.TestCase):
     def test_is_installed_without_network(self):
-        # Building leaves files beside the sources.
+        # Building creates files in the source folder.
         shutil.copytree(SOURCE / "python", FOLDER / "python", ignore=shutil.ignore_patterns("__pycache__", "build", "*.egg-info"))
         run("/usr/bin/python3", "-m", "venv", "--system-site-packages", FOLDER / "own")
         run(FOLDER / "own/bin/pip", "install", "--quiet", "--no-build-isolation", "--no-index", FOLDER / "python")

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""cmake/set-up.sh builds in its own clone and says nothing where nothing is built; ./run ends with the status of what it ran.
+"""Checks that cmake/set-up.sh builds in its own clone and is silent if there is nothing to build, and the exit codes of ./run.
 
 Usage: set_up_test.py SOURCE_FOLDER BUILD_FOLDER
 """
@@ -13,7 +13,7 @@ import unittest
 
 from folders import SOURCE
 
-# A project with the steps that every build of latcon has: files are looked for, and the commit.
+# A project with the steps of every build of latcon: search for added files, and for the commit.
 PROJECT = """\
 cmake_minimum_required(VERSION 3.25)
 project(small C)
@@ -44,7 +44,7 @@ class Clone(unittest.TestCase):
         self.folder = pathlib.Path(folder.name).resolve()
         self.clone = self.folder / "clone"
         (self.clone / "cmake").mkdir(parents=True)
-        (self.clone / "build" / "paraview").mkdir(parents=True)  # is not fetched
+        (self.clone / "build" / "paraview").mkdir(parents=True)  # so that it is not downloaded
         for name in ("set-up.sh", "git_commit.cmake"):
             shutil.copy(SOURCE / "cmake" / name, self.clone / "cmake")
         for name in ("packages.txt", "packages-tests.txt"):
@@ -130,7 +130,7 @@ class SetUp(Clone):
 
 
 class Run(Clone):
-    """./run with a program that ends as it is asked to."""
+    """./run with a program that ends with a given exit code."""
 
     def setUp(self):
         super().setUp()
@@ -143,7 +143,7 @@ class Run(Clone):
             path.chmod(0o755)
 
     def test_ends_with_the_status_of_its_runs_and_of_their_report(self):
-        # 3 of the report is about whatever other runs lie in the folder.
+        # Exit code 3 of the report may refer to other runs in the folder.
         for verify, fracture, report, status in ((0, 0, 0, 0), (3, 0, 3, 3), (0, 4, 0, 4), (0, 0, 2, 2), (0, 0, 5, 5),
                                                  (0, 0, 3, 0), (0, 3, 2, 3)):
             with self.subTest(verify=verify, fracture=fracture, report=report):

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The manual page and the completion for bash have every command and option that the program has.
+"""Checks that the manual page and the bash completion have all commands and options of the program.
 
 Usage: shell_files_test.py SOURCE_FOLDER BUILD_FOLDER
 """
@@ -16,7 +16,7 @@ LATCON = BUILD / "verification" / "latcon"
 
 
 def complete(*words):
-    """What bash proposes for the last of some words after `latcon`."""
+    """Completions that bash proposes for the last of some words after `latcon`."""
     script = f'source {BUILD}/latcon.bash; COMP_WORDS=(latcon "$@"); COMP_CWORD=$#; _latcon; printf "%s\\n" "${{COMPREPLY[@]}}"'
     done = subprocess.run(["bash", "-c", script, "bash", *words], cwd=FOLDER, capture_output=True, text=True, check=True)
     return [line for line in done.stdout.split("\n") if line]

@@ -1,4 +1,4 @@
-"""What the tests of the Python package share: caches of their own, stand-ins for the program, and one small crack."""
+"""Fixtures of the tests of the Python package: separate caches, scripts in place of the program, and one small crack."""
 import os
 import pathlib
 import sys
@@ -8,11 +8,11 @@ import pytest
 
 import latcon
 
-# Verdicts and fonts of the tests stay out of the user's caches; pictures need no screen.
+# The tests do not use the user's caches of verdicts and fonts; pictures do not need a display.
 CACHE = tempfile.TemporaryDirectory()
 os.environ.update(XDG_CACHE_HOME=CACHE.name, MPLCONFIGDIR=f"{CACHE.name}/matplotlib", MPLBACKEND="Agg")
 
-# A strip so short that a crack runs through it in a second.
+# A strip so short that a crack runs through it within a second.
 TINY = {"Sheet/length": "2.5 cm", "Sheet/height": "1.5 cm", "Time/end": "1.5 ms", "Output/frame interval": "0.5 ms"}
 
 
@@ -32,7 +32,7 @@ def crack(tmp_path_factory):
 
 @pytest.fixture
 def stand_in(tmp_path, monkeypatch):
-    """Makes a Python script the program that the package runs."""
+    """Substitutes a Python script for the program that the package runs."""
     def make(body):
         program = tmp_path / "latcon-stand-in"
         program.write_text(f"#!{sys.executable}\nimport pathlib, signal, sys, time\n{body}\n")

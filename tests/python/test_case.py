@@ -1,4 +1,4 @@
-"""A case is read by the program, and changed without changing others."""
+"""Tests of cases: they are read by the program, and are immutable."""
 import numpy as np
 import pytest
 
@@ -20,7 +20,7 @@ def test_shipped_cases_have_names_and_files_have_paths(tmp_path, monkeypatch):
     own.write_text(latcon.Case("quick").file.read_text().replace("length = 4 cm", "length = 3 cm"))
     assert latcon.Case(own)["Sheet/length"] == 0.03
     monkeypatch.chdir(tmp_path)
-    assert latcon.Case("quick.prm").file == own  # a file of the user goes first
+    assert latcon.Case("quick.prm").file == own  # a file of the user takes precedence
     with pytest.raises(latcon.BadInput, match=r"fig2\.prm: no such case file; .*\bfig1\b"):
         latcon.Case("fig2.prm")
     for name in latcon.schema().cases:

@@ -1,4 +1,4 @@
-"""Every public name has a docstring that describes its parameters, and is on the page of the package."""
+"""Checks that every public name has a docstring that describes its parameters, and is on the page of the package."""
 import inspect
 import pathlib
 import re
@@ -32,7 +32,7 @@ def test_docstrings_describe_all_parameters():
             continue
         parameters = [key for key in inspect.signature(thing).parameters if key != "self"]
         elsewhere = "are those of :func:`fracture`" in text
-        # One parameter whose meaning the first sentence gives needs no section.
+        # A single parameter that the first sentence explains needs no section.
         if len(parameters) > 1 and not elsewhere:
             section = text.partition("Parameters\n----------\n")[2]
             for parameter in parameters:

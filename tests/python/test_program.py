@@ -1,4 +1,4 @@
-"""How the program is found, run and stopped, and what its exit codes become. A script stands in for it where it can."""
+"""Tests of finding, running and stopping the program, and of its exit codes, mostly with a script in place of the program."""
 import io
 import os
 import pathlib

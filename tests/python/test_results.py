@@ -1,4 +1,4 @@
-"""What a run of the real program left is read as it was written."""
+"""Tests that the results of a run of the program are read as they were written."""
 import csv
 import json
 import math

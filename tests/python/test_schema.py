@@ -1,4 +1,4 @@
-"""`latcon schema` holds every entry of a case, with types, ranges and defaults that the program keeps to."""
+"""Checks that `latcon schema` has every entry of a case, with the types, ranges and defaults that the program uses."""
 import json
 import math
 import os
@@ -11,7 +11,7 @@ from latcon.program import ask
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 TYPES = {"number": (int, float), "integer": int, "numbers": list, "boolean": bool, "word": str, "text": str}
-# The program shows no more problems than this.
+# Largest number of problems that the program reports.
 MOST_PROBLEMS = 50
 
 
@@ -20,7 +20,7 @@ def run(*arguments):
 
 
 def refused(overrides):
-    """Keys that the program refuses, with its words."""
+    """Keys that the program refuses, with its messages."""
     found = {}
     items = list(overrides.items())
     for at in range(0, len(items), MOST_PROBLEMS):

@@ -1,4 +1,4 @@
-"""Chromium without a window, driven through its DevTools protocol on a pair of pipes."""
+"""Headless Chromium, controlled through its DevTools protocol on a pair of pipes."""
 import base64
 import json
 import os
@@ -15,7 +15,7 @@ class Browser:
 
     def __init__(self, width=1280, height=800):
         self.size = width, height
-        self.said = []  # on the console, and exceptions
+        self.said = []  # console messages and exceptions
         self.requested = []  # addresses
         self.number, self.session = 0, None
 
@@ -25,7 +25,7 @@ class Browser:
         self.from_browser, theirs_out = os.pipe()
 
         def connect():
-            # The browser reads commands from 3 and answers on 4; both may be among the four that are given away.
+            # The browser reads commands from descriptor 3 and answers on 4; both may be among the four open descriptors.
             low, high = os.dup2(theirs_in, 63), os.dup2(theirs_out, 64)
             os.dup2(low, 3)
             os.dup2(high, 4)
@@ -72,7 +72,7 @@ class Browser:
                 return answer["result"]
 
     def read(self):
-        """Next message; events are noted."""
+        """Next message; events are recorded."""
         while b"\0" not in self.buffer:
             part = os.read(self.from_browser, 1 << 20)
             if not part:

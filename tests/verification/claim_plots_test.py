@@ -138,7 +138,7 @@ class ClaimSections(unittest.TestCase):
         html, _ = self.report()
         self.assertEqual(re.findall(r'<section id="claim-([^"]*)"', html), ["energy", "intrinsic-length", "homemade"])
         self.assertEqual(html.count("<img "), 1)
-        # Nothing is said to be claimed of what was not looked at.
+        # Claims that were not checked are not shown.
         self.assertIn("At free edges", self.section(html, "intrinsic-length"))
         self.assertNotIn("The speed of waves falls", self.section(html, "intrinsic-length"))
         self.assertIn("No quantity of this claim was checked", self.section(html, "intrinsic-length"))
@@ -167,7 +167,7 @@ class ClaimSections(unittest.TestCase):
             damaged = [whole.replace(header.split(",")[-1] + "\n", "other\n", 1), whole[:whole.rindex(",")],
                        header + "\n" + first.rpartition(",")[0] + ",many\n"]
             if name == "wave_speeds":
-                damaged[0] = whole.replace("bloch [m/s]", "bloch", 1)  # its last column is one that may be there
+                damaged[0] = whole.replace("bloch [m/s]", "bloch", 1)  # its last column is optional
                 damaged[2] = whole.replace(",L,", ",P,", 1)
             for text in damaged:
                 path.write_text(text)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The command line's contract: commands, exit codes, output files and what independent readers find in them.
+"""Tests of the command line: commands, exit codes, output files and their contents as read by independent readers.
 
 Usage: command_line_test.py PATH_OF_LATCON
 """
@@ -48,7 +48,7 @@ class Fracture(unittest.TestCase):
     def test_ends_with_its_result(self):
         lines = self.run_.stdout.splitlines()
         self.assertLessEqual(max(map(len, lines[1:])), 120)
-        self.assertNotIn("\r", self.run_.stderr)  # no progress line off a terminal
+        self.assertNotIn("\r", self.run_.stderr)  # no progress line without a terminal
         first = next(number for number, line in enumerate(lines) if " crack is " in line)
         end = lines[first:]
         self.assertLessEqual(len(end), 12)  # all that follows the claims
@@ -132,7 +132,7 @@ class Fracture(unittest.TestCase):
         rows = read_csv(self.out / "energy.csv")
         self.assertEqual(list(rows[0]), ["t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact",
                                          "imbalance"])
-        # The seed's bonds are in `broken` from the start, so the first row holds all there is.
+        # The bonds of the seed are in `broken` from the start, so the first row contains the total energy.
         first = {name: float(value) for name, value in rows[0].items()}
         initial = first["elastic"] + first["broken"]
         for row in rows:
@@ -169,7 +169,7 @@ class Fracture(unittest.TestCase):
             if broken_before is not None:
                 self.assertLessEqual(lines, broken_before)
             broken_before = lines
-        # Bonds of the last frame: those of the first less the broken ones.
+        # Bonds of the last frame: those of the first minus the broken ones.
         first = read(vtk.vtkXMLPolyDataReader(), series[0][1]).GetNumberOfLines()
         self.assertEqual(first - broken_before, len(read_csv(self.out / "broken_bonds.csv")))
 
@@ -193,10 +193,10 @@ def settings(*entries):
 
 
 class DryRun(TemporaryFolder):
-    """What a run will take is said before, and refused where the machine has not got it."""
+    """Dry runs estimate memory and time, and runs that exceed the memory of the machine are refused."""
 
     def memory(self, *arguments):
-        """Estimated peak and the part of it that the program has before it starts, both in bytes."""
+        """Estimated peak memory and the part that the program uses before the run, both in bytes."""
         run = latcon(*arguments, "--dry-run")
         self.assertEqual(run.returncode, 0, run.stderr)
         line, = re.findall("^# memory: .*$", run.stdout, re.M)
@@ -204,12 +204,12 @@ class DryRun(TemporaryFolder):
         return int(peak), int(own)
 
     def assert_foreseen(self, *arguments):
-        """To a factor of two, libraries not counted, so that it is the run that is estimated."""
+        """Checks the estimate to a factor of two, without the memory of the libraries."""
         peak, own = self.memory(*arguments)
         run = latcon(*arguments, "--output-dir", self.out, "--quiet")
         self.assertEqual(run.returncode, 0, run.stderr)
         taken = json.loads((self.out / "run.json").read_text())["peak_memory_bytes"]
-        self.assertGreater(taken - own, 5e7)  # enough for the difference to mean something
+        self.assertGreater(taken - own, 5e7)  # large enough for a meaningful difference
         self.assertGreater(peak - own, 0.5 * (taken - own))
         self.assertLess(peak - own, 2. * (taken - own))
 
@@ -253,7 +253,7 @@ class DryRun(TemporaryFolder):
                     self.assertEqual(run.stdout.count(line), 0 if command == "verify" else 1)
 
     def test_dry_run_says_the_time_at_most(self):
-        """A crack that does not run takes all steps, a thousand times those of one that does."""
+        """A crack that does not run takes all steps, a thousand times as many as one that runs."""
         run = latcon("fracture", CASES / "quick.prm", "--dry-run", "--threads", 1, "--set", "Time/end=10 s")
         steps = re.search(r"s, (\S+) steps at most, (\S+) if the crack is as fast", run.stdout)
         seconds = re.search(r"^# time: about (\S+) s on 1 threads of each rank, at most (\S+) s if", run.stdout, re.M)
@@ -332,13 +332,13 @@ class BothSides(TemporaryFolder):
         sheet = read(vtk.vtkXMLPolyDataReader(), frames(self.out / "lattice.pvd")[-1][1])
         removed = 97 * 75 - 37 - sheet.GetNumberOfPoints()  # 75 rows of 97 and 96 sites in turn
         self.assertIn(f"# lattice: {sheet.GetNumberOfPoints()} sites, ", dry.stdout)
-        # Its area, to a third of the sites along the rim.
+        # The area of the hole, to a third of the sites along the rim.
         self.assertAlmostEqual(removed * math.sqrt(0.75), math.pi * 64, delta=2 * math.pi * 8 / 3)
         held = vtk_to_numpy(sheet.GetPointData().GetArray("held")) == 1
         y = vtk_to_numpy(sheet.GetPoints().GetData())[:, 1]
         self.assertEqual(held.sum(), 2 * (97 + 96))
         self.assertGreater(abs(y[held]).min(), 0.019)
-        # The sides draw in where nothing holds them: the rim of the hole is stretched along y, and so are they.
+        # The free sides contract, since they are stretched along y, as is the rim of the hole.
         u = vtk_to_numpy(sheet.GetPointData().GetArray("displacement"))
         x = vtk_to_numpy(sheet.GetPoints().GetData())[:, 0]
         side = (x > x.max() - 1e-6) & (abs(y) < 1e-3)
@@ -357,7 +357,7 @@ class BothSides(TemporaryFolder):
         latcon("continuum", CASES / "quick.prm", "--output-dir", self.folder / "serial")
         serial = {row["quantity"]: float(row["continuum"]) for row in read_csv(self.folder / "serial" / "results.csv")}
         self.assertEqual(list(serial), list(ranks))
-        # Forces along an edge are none but round-off of those across it.
+        # Forces along an edge are round-off of the forces across it.
         largest = max(abs(value) for name, value in serial.items() if name.startswith("force"))
         for name, value in serial.items():
             noise = 1e-10 * largest if name.startswith("force") else 0.

@@ -49,7 +49,7 @@ class Compare(TemporaryFolder):
         cls.runs = tempfile.TemporaryDirectory()
         runs = pathlib.Path(cls.runs.name)
         cls.lattice, cls.continuum = runs / "lattice", runs / "continuum"
-        # Free sides on the continuum, which the lattice does not have: something to find.
+        # The continuum has free sides and the lattice has not, which produces a difference.
         for command, out, ranks, entries in [
                 ("lattice", cls.lattice, 1, []), ("continuum", cls.continuum, 1, []),
                 ("continuum", runs / "free", 1, ["--set", "Left edge/condition=free", "--set", "Right edge/condition=free"]),
@@ -124,7 +124,7 @@ class Compare(TemporaryFolder):
             np.testing.assert_array_equal(values(out, name), values(sites, name))
             np.testing.assert_array_equal(values(out, name + "_difference"),
                                           values(out, name) - values(out, name + "_continuum"))
-        # Norms, again by other means.
+        # Norms, computed independently.
         difference = values(out, "displacement_difference")[values(out, "held") == 0]
         row = found(self.out)["displacement, rms difference"]
         scale = max(float(row["lattice"]), float(row["continuum"]))
@@ -135,7 +135,7 @@ class Compare(TemporaryFolder):
         row = found(self.out)["cauchy_stress, largest difference"]
         scale = max(float(row["lattice"]), float(row["continuum"]))
         self.assertAlmostEqual(float(row["error"]), np.sqrt((difference**2).sum(axis=1)).max() / scale, delta=1e-12)
-        # The continuum as it was.
+        # The continuum is unchanged.
         copy = read(vtk.vtkXMLUnstructuredGridReader(), self.out / "difference_continuum.vtu")
         np.testing.assert_array_equal(values(copy, "displacement"), values(cells, "displacement"))
 

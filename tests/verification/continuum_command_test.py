@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Finite element cases from the command line: closed forms, files, refusals, motion, meshes from Gmsh.
+"""Tests of finite element cases from the command line: closed forms, files, refusals, motion, meshes from Gmsh.
 
 Usage: continuum_command_test.py PATH_OF_LATCON
 """
@@ -18,7 +18,7 @@ sys.dont_write_bytecode = True
 from program import CASES, TemporaryFolder, frames, latcon, latcon_on_ranks, read, read_csv
 
 LAYER, HOLE = CASES / "shear_layer.prm", CASES / "hole.prm"
-# Of both cases. Two shells with s = 2/3 and a + b = 0.25 MPa have the small-strain modulus of theory.md.
+# Constants of both cases. Two shells with s = 2/3 and a + b = 0.25 MPa have the small-strain modulus of theory.md.
 SPACING = 0.625e-3  # [m]
 DENSITY = 944.  # [kg/m^3]
 MODULUS = 2. / 3. * 9. / 8. * (1. + math.sqrt(3.)) * 0.25e6  # [Pa]
@@ -34,7 +34,7 @@ def results(folder):
 
 
 def numbers(path):
-    """Columns of a table, all of whose cells must be finite numbers."""
+    """Columns of a table; checks that all cells are finite numbers."""
     rows = read_csv(path)
     columns = {name: np.array([float(row[name]) for row in rows]) for name in rows[0]}
     assert all(np.isfinite(column).all() for column in columns.values()), path
@@ -78,7 +78,7 @@ class ShearLayer(TemporaryFolder):
         self.assertEqual(run.returncode, 0, run.stderr)
         mesh = last_mesh(self.out)
         points = points_of(mesh)
-        # Whole rows of the lattice, of which the file knows seven digits.
+        # Whole rows of the lattice; the file has seven digits.
         pitch = np.array([0.5 * SPACING, 0.5 * math.sqrt(3.) * SPACING])
         extent = np.round(np.ptp(points, axis=0) / pitch) * pitch
         np.testing.assert_allclose(np.ptp(points, axis=0), extent, rtol=1e-6)
@@ -112,7 +112,7 @@ class ShearLayer(TemporaryFolder):
     def test_stiffening_by_size(self):
         _, height, *_ = self.sheared()
         for ratio in (0.05, 0.1, 0.2):
-            # Measured: 7.7e-6, 1.2e-6, 1.9e-7; the boundary layer of the first is 1.6 cells thick.
+            # Measured: 7.7e-6, 1.2e-6, 1.9e-7; in the first, the boundary layer is 1.6 cells thick.
             force = self.force(f"Continuum/static length={ratio * height!r}", "Continuum/cells y=32")
             self.assertLess(abs(force / stiffening(ratio) - 1.), 1.5e-5, ratio)
 
@@ -120,16 +120,16 @@ class ShearLayer(TemporaryFolder):
         free = ["Bottom edge/normal gradient=free", "Top edge/normal gradient=free"]
         # Linear elements hold a uniform shear exactly; Newton stops at 1e-10.
         self.assertAlmostEqual(self.force("Continuum/gradient=none", "Continuum/degree=1", *free), 1., delta=1e-9)
-        # Unclamped there is no boundary layer, whatever the length.
+        # Without clamping there is no boundary layer for any length.
         self.assertAlmostEqual(self.force(*free), 1., delta=1e-9)
-        # At most the stiffening 2 l/H of a layer that the mesh does not see.
+        # At most the stiffening 2 l/H due to a layer that the mesh does not resolve.
         self.assertAlmostEqual(self.force("Continuum/static length=1e-6"), 1., delta=2e-6 / 0.0194)
         self.assertAlmostEqual(self.force("Continuum/static length=0", *free), 1., delta=1e-9)
 
 
 def mean_rod(F, a, b):
     """Mean over directions of energy and first Piola stress [Pa] of rods a (l - l^-2) + b (1 - l^-3)."""
-    angle = np.pi * np.arange(64) / 64  # of stretches 2.3 and 2.8 exact to rounding
+    angle = np.pi * np.arange(64) / 64  # exact to rounding for stretches of 2.3 and 2.8
     N = np.array([np.cos(angle), np.sin(angle)])
     f = F @ N
     l = np.hypot(*f)
@@ -154,12 +154,12 @@ class NetworkLaw(TemporaryFolder):
         energy, P = mean_rod(np.diag([2.3, 2.8]), 1e5, 1.5e5)
         weight = 3. * (0.72 + math.sqrt(3.) * 0.81)  # A0 l / V of the six bonds of a site
         network, lattice = found["mooney-rivlin-network"], found["cauchy-born"]
-        # Newton stops at 1e-10; the file with the points knows seven digits.
+        # Newton stops at 1e-10; the file with the points has seven digits.
         names = ["elastic energy per thickness", "force on the right edge per thickness, x",
                  "force on the top edge per thickness, y"]
         expected = weight * np.array([energy * extent.prod(), P[0, 0] * extent[1], P[1, 1] * extent[0]])
         np.testing.assert_allclose([network[name] for name in names], expected, rtol=2e-6)
-        # The sixfold dependence on direction that the law leaves out (theory-comparison.md, after eq. (H.13)).
+        # The sixfold anisotropy that the law neglects (theory-comparison.md, after eq. (H.13)).
         np.testing.assert_allclose(network[names[0]], lattice[names[0]], rtol=1e-6)
         np.testing.assert_allclose([network[name] for name in names[1:]], [lattice[name] for name in names[1:]], rtol=1e-4)
 
@@ -188,10 +188,10 @@ class Hole(unittest.TestCase):
         self.assertEqual(len(meshes["cells"]), 9)
         self.assertTrue((np.diff(meshes["cells"]) > 0).all())
         self.assertTrue((np.diff(meshes["unknowns"]) > 0).all())
-        largest = meshes["top_y"]  # the bottom's but for the sign and round-off
+        largest = meshes["top_y"]  # equal to the bottom except for sign and round-off
         change = abs(np.diff(largest)) / largest[1:]
         self.assertLess(change[-1], 1e-5)
-        # From the mesh on that sees the rim, the changes fall by an order of magnitude and more.
+        # Once a mesh resolves the rim, the changes decrease by an order of magnitude or more.
         self.assertLess(change[-1], 0.1 * change.max())
         row = read_csv(self.out / "results.csv")[-1]
         # Newton stops at 1e-10 of the reactions.
@@ -204,7 +204,7 @@ class Hole(unittest.TestCase):
         reactions, energy = numbers(self.out / "reactions.csv"), numbers(self.out / "energy.csv")
         self.assertEqual(list(energy), ["load_factor", "elastic"])
         self.assertEqual((reactions["load_factor"][-1], energy["load_factor"][-1]), (1., 1.))
-        # Full load is that of the last mesh.
+        # The row at full load is that of the last mesh.
         self.assertEqual(energy["elastic"][-1], meshes["elastic"][-1])
         self.assertEqual(reactions["top_y"][-1], meshes["top_y"][-1])
         self.assertEqual(results(self.out)["elastic energy per thickness"], meshes["elastic"][-1])
@@ -283,7 +283,7 @@ class Hole(unittest.TestCase):
 
 class BadInput(TemporaryFolder):
     def refused(self, command, case, parts, *entries):
-        """Exit 2, with a message that holds the parts, and not a file touched."""
+        """Checks exit code 2, a message with the given parts, and that no file is changed."""
         self.out.mkdir(exist_ok=True)
         (self.out / "case.prm").write_text("of an earlier run")
         run = latcon(command, case, "--output-dir", self.out, *settings(*entries))
@@ -353,11 +353,11 @@ class Motion(TemporaryFolder):
                                         "imbalance"])
         np.testing.assert_allclose(energy["t"], 5e-6 * np.arange(11), rtol=1e-12)
         total = energy["elastic"] + energy["kinetic"] + energy["viscous"] - energy["boundary_work"]
-        # Average acceleration conserves the energy of a linear problem, and strains of 4e-4 are next to linear: measured
+        # Average acceleration conserves the energy of a linear problem, and strains of 4e-4 are nearly linear: measured
         # 1e-9.
         self.assertLess(abs(total - total[0]).max(), 1e-8 * total[0])
         np.testing.assert_allclose(energy["imbalance"], total - total[0], atol=1e-12 * total[0])
-        # Of which micro-inertia is a part: (l_d k)^2 to 1.
+        # Micro-inertia contributes in the ratio (l_d k)^2 to 1.
         inertia = (2. * math.pi * self.INERTIA / self.LENGTH) ** 2
         np.testing.assert_allclose(energy["micro_inertia"] / energy["kinetic"], inertia / (1. + inertia), rtol=1e-4)
         self.assertGreater(energy["elastic"][-1], 0.3 * total[0])
@@ -383,7 +383,7 @@ class Motion(TemporaryFolder):
         two = numbers(self.folder / "ranks" / "energy.csv")
         self.assertEqual(list(one), list(two))
         for name, column in one.items():
-            # Sums in another order; displacements are 1e-7 of the size of a cell, so strains keep nine digits.
+            # The order of summation differs; displacements are 1e-7 of the size of a cell, so strains keep nine digits.
             np.testing.assert_allclose(two[name], column, rtol=0., atol=1e-9 * max(abs(column).max(), one["kinetic"][0]))
         time, path = frames(self.folder / "ranks" / "continuum.pvd")[-1]
         whole = read(vtk.vtkXMLPUnstructuredGridReader(), path)
@@ -417,19 +417,19 @@ class Motion(TemporaryFolder):
         self.assertEqual(run.returncode, 0, run.stderr)
         steps = np.diff(numbers(self.out / "energy.csv")["t"])
         self.assertAlmostEqual(steps.sum() / 5e-5, 1., delta=1e-12)
-        # A tenth of the time that a shear wave takes across the smaller side of a cell, or somewhat less.
+        # A tenth of the time in which a shear wave crosses the smaller side of a cell, or slightly less.
         self.assertLess(steps.max(), 0.1 * (self.LENGTH / 8) / math.sqrt(MODULUS / DENSITY))
 
 
 class Gmsh(TemporaryFolder):
-    # Four quadrilaterals about a node off the middle, one of them halved, in a rectangle of 3 by 2 cm.
+    # Four quadrilaterals around an off-centre node, one of them bisected, in a rectangle of 3 by 2 cm.
     NODES = [(0, 0), (1.7, 0), (3, 0), (0, 1.2), (1.3, 0.8), (3, 0.9), (0, 2), (1.2, 2), (3, 2)]
     QUADS = [(1, 2, 5, 4), (2, 3, 6, 5), (4, 5, 8, 7), (5, 6, 9, 8)]
     # Physical curve and its nodes: left, right, bottom, top.
     LINES = [(0, 1, 4), (0, 4, 7), (1, 3, 6), (1, 6, 9), (2, 1, 2), (2, 2, 3), (3, 7, 8), (3, 8, 9)]
 
     def write_mesh(self, shift=0):
-        """@param shift added to the numbers of the curves"""
+        """@param shift offset of the numbers of the curves"""
         nodes = [f"{i} {0.01 * x!r} {0.01 * y!r} 0" for i, (x, y) in enumerate(self.NODES, 1)]
         lines = [f"1 2 {tag + shift} 1 {a} {b}" for tag, a, b in self.LINES]
         quads = ["3 2 9 1 " + " ".join(map(str, quad)) for quad in self.QUADS]
@@ -449,7 +449,7 @@ class Gmsh(TemporaryFolder):
         self.assertAlmostEqual(cells_of(mesh)[1].sum(), 6e-4, delta=1e-9)
         F, P = field(mesh, "deformation_gradient"), field(mesh, "first_piola_stress")
         self.assertLess(abs(F - np.diag([1.2, 1.4])).max(), 1e-6)
-        # Forces of the edges by their names, that is by the numbers of the curves; fields in single precision.
+        # Forces on the edges by name, that is by the numbers of the curves; fields in single precision.
         found = results(self.out)
         for edge, i, force in [("left", 0, -0.02 * P[0, 0, 0]), ("right", 0, 0.02 * P[0, 0, 0]),
                                ("bottom", 1, -0.03 * P[0, 1, 1]), ("top", 1, 0.03 * P[0, 1, 1])]:

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A dry run refuses what the run would refuse, with the same exit code and reason, and neither leaves a file.
+"""Checks that a dry run and the run refuse the same cases, with the same exit code and reason and without output files.
 
 Usage: dry_run_test.py PATH_OF_THE_FUZZ_SERVER
 """

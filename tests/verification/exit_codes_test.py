@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The exit code of the program and that in run.json agree, whatever fails last.
+"""Checks that the exit code of the program agrees with that in run.json, whatever fails last.
 
 Usage: exit_codes_test.py PATH_OF_LATCON
 """

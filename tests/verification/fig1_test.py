@@ -1,11 +1,11 @@
 #!/usr/bin/python3
 """The paper's Fig. 1 at full size: an oscillating crack for every seed of the noise, whose numbers are the published ones
 within the case's tolerance, and more closely in the mean of ten; a report below 8 MB; a zone of backward motion ahead of it.
-Without next-nearest neighbours, in a lattice turned by 30 degrees, it runs straight and has no such zone. docs/limits.md says how the constants
-of the case were chosen.
+Without next-nearest neighbours, in a lattice rotated by 30 degrees, it runs straight and has no such zone. docs/limits.md describes how the
+constants of the case were chosen.
 
 Usage: fig1_test.py PATH_OF_LATCON [--full]     --full: ten seeds, not one
-Prints the measured numbers, one line a seed.
+Prints the measured numbers, one line per seed.
 """
 import json
 import os
@@ -15,16 +15,16 @@ import sys
 import tempfile
 from concurrent.futures import ThreadPoolExecutor
 
-# Published values, and tolerances of the means. The paper does not say whether its amplitude is that of a sinusoid or half
-# the height from trough to crest; the path is a zigzag, which is higher than its sinusoid.
+# Published values, and tolerances of the means. The paper does not state whether its amplitude is that of a sinusoid or half
+# the height from trough to crest; the path is a zigzag, which is higher than its best-fitting sinusoid.
 PAPER = {"wavelength": (2.3e-2, 0.1), "amplitude": (0.17e-2, 0.15), "crest_amplitude": (0.17e-2, 0.1),
          "speed_lagrangian": (20.9, 0.1)}
-BRIDGED = 1e-2  # longest part of the crack that may be bridged, in the mean [m]
+BRIDGED = 1e-2  # largest mean bridged length [m]
 TOLERANCE = 0.2  # of each seed
 FULL = "--full" in sys.argv
 SEEDS = range(6, 16) if FULL else [6]
-ZONE = 5e-6  # of backward motion in single samples, the least in the mean [m^2]
-NO_ZONE = 1e-6  # its limit without next-nearest neighbours: three sites [m^2]
+ZONE = 5e-6  # smallest mean area of the zone of backward motion in single samples [m^2]
+NO_ZONE = 1e-6  # largest area without next-nearest neighbours: three sites [m^2]
 LARGEST_REPORT = 8_000_000  # [bytes]
 LOCAL = ["Next-nearest neighbours/present=false", "Sheet/orientation=rows-across-crack"]
 
@@ -33,7 +33,7 @@ def run(latcon, case, seed, *settings):
     """Runs one seed on one thread. @return exit code, crack.json with the area of near_tip.json and the bytes of a report"""
     with tempfile.TemporaryDirectory() as folder:
         environment = dict(os.environ, XDG_CACHE_HOME=f"{folder}/cache")  # no verdicts of an earlier run
-        # Seeds differ in noise alone: the material is verified with the first, and by the page of the tutorial.
+        # Seeds differ only in the noise: the material is verified with the first, and by the page of the tutorial.
         first = seed == SEEDS[0] and not settings
         skip = [] if first and FULL else ["--skip-verification"]
         report = pathlib.Path(folder) / "report.html"  # of the first

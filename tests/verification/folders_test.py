@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Folders that several processes want, that vanish, or in which others have put something.
+"""Tests of output directories that several processes use, that are removed, or that contain files of others.
 
 Usage: folders_test.py PATH_OF_LATCON
 """
@@ -16,12 +16,12 @@ from program import CASES, Started, TemporaryFolder, frames, latcon, latcon_on_r
 
 QUICK = str(CASES / "quick.prm")
 TINY = [QUICK, "--set", "Sheet/length=10 mm", "--set", "Sheet/height=6 mm", "--set", "Time/end=0.01 ms"]
-# Begins in no time and lasts until it is killed.
+# Starts at once and runs until it is killed.
 LONG = ["fracture", QUICK, "--skip-verification", "--no-report", "--quiet", "--threads", "1",
         "--set", "Output/frame interval=0.02 ms", "--set", "Checkpoints/steps=64"]
 ENDLESS = [*LONG, "--set", "Sheet/length=30 cm"]
 LOCK = ".latcon.lock"
-# A crack runs through it in a second.
+# A case in which a crack runs through within a second.
 STRIP = ["--set", "Sheet/length=2.5 cm", "--set", "Sheet/height=1.5 cm", "--set", "Time/end=1.5 ms"]
 
 
@@ -189,13 +189,13 @@ class EarlierRuns(TemporaryFolder):
         self.assertEqual(lattice_frames(self.out / "earlier-run"), before)
         self.assertEqual((self.out / "earlier-run" / "crack.csv").read_bytes(), first)
         self.assertTrue((self.out / "notes.txt").exists())
-        # A crack that is refused leaves nothing of the one before beside its own files, and the report shows one run.
+        # A refused crack leaves no files of the previous run among its own, and the report shows one run.
         refused = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, *STRIP, "--set", "Loading/strain x=-0.3",
-                         "--set", "Next-nearest neighbours/present=false")  # checked sooner
+                         "--set", "Next-nearest neighbours/present=false")  # faster to check
         self.assertEqual(refused.returncode, 3)
         self.assertFalse(any((self.out / name).exists() for name in ("crack.json", "crack.csv", "crack_path.png")))
         self.assertNotIn("earlier-run", latcon("report", self.out).stdout)
-        # A case that lies there stays, one's own is not overwritten.
+        # An existing case file remains; the user's own file is not overwritten.
         again = latcon("lattice", self.out / "case.prm", "--output-dir", self.out, "--set", "Loading/strain x=0.1",
                        "--set", "Fracture/breaking stretch=auto")
         self.assertEqual(again.returncode, 0, again.stderr)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Options that libraries would read from the current folder, from the home folder, or from the arguments of latcon.
+"""Checks that libraries do not read options from the current folder, from the home folder, or from latcon's arguments.
 
 Usage: foreign_options_test.py PATH_OF_LATCON
 """
@@ -24,7 +24,7 @@ class Planted(TemporaryFolder):
         self.program = self.folder / "gdb"
         self.program.write_text(f"#!/bin/sh\ntouch {self.marker}\n")
         self.program.chmod(0o755)
-        # PETSc: a debugger of the file's choice, files of its choice. Each would be in place within a second.
+        # PETSc options that start a debugger and write files, all within a second.
         self.options = (f"-debug_terminal {self.program}\n-start_in_debugger gdb\n-debugger_pause 1\n"
                         f"-info {self.folder}/info\n-log_view :{self.folder}/log\n")
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Frames of a crack: the light ones of its motion, and what ParaView shows first of the others.
+"""Tests of the frames of a crack: reduced frames of its motion, and the default view of the others in ParaView.
 
 Usage: frames_test.py PATH_OF_LATCON
 """
@@ -50,8 +50,8 @@ class Frames(unittest.TestCase):
         self.assertEqual(times[-1], frames(self.out / "lattice.pvd")[-1][0])  # to the last digit
         tip = read_csv(self.out / "crack.csv")
         reached = [max(float(row["X"]) for row in tip if float(row["t"]) <= time) for time in times]
-        self.assertGreater(reached[-1], STOP)  # so it passed all
-        # One each time the tip passes another tenth of its way; it hops over some of them.
+        self.assertGreater(reached[-1], STOP)  # so it passed all positions
+        # One frame each time the tip passes another tenth of its way; a jump may skip some of them.
         pitch = (STOP - reached[0]) / MOTION_FRAMES
         self.assertGreater(len(motion), 0.7 * MOTION_FRAMES)
         self.assertLessEqual(len(motion), MOTION_FRAMES + 2)

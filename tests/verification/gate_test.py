@@ -16,10 +16,10 @@ import unittest
 sys.dont_write_bytecode = True
 from program import CASES, LATCON, TemporaryFolder, claims_where, latcon, latcon_on_ranks
 
-# A strip on which a crack does not come far, of nearest neighbours alone, which are checked sooner.
+# A strip in which a crack does not advance far, with nearest neighbours alone, which are faster to check.
 TINY = ["--set", "Sheet/length=2.5 cm", "--set", "Sheet/height=1.5 cm", "--set", "Time/end=0.01 ms", "--set",
         "Next-nearest neighbours/present=false"]
-# A sheet that is pushed together along x, and buckles.
+# A sheet that is compressed along x, and buckles.
 FAILING = ["--set", "Loading/strain x=-0.3"]
 FULL = "--full" in sys.argv
 # Seconds each. What they show is shown of the store and of its keys by verdict_store_test.cc, of the claims by claims_test.cc.
@@ -27,7 +27,7 @@ in_full = unittest.skipUnless(FULL, "in full only")
 
 
 class WithStore(TemporaryFolder):
-    """Every test finds the verdicts of one run that was checked before, in a store of its own."""
+    """Every test starts with the cached verdicts of one verified run, in its own cache."""
     MORE, EXPECT = [], 0  # entries of that run, its exit code
 
     @classmethod
@@ -56,7 +56,7 @@ class WithStore(TemporaryFolder):
         return run.stdout + run.stderr, json.loads((self.out / "run.json").read_text())
 
     def stored(self):
-        """The files of the store."""
+        """The files of the cache."""
         return sorted((self.cache / "latcon" / "verdicts").glob("*"))
 
     def claims(self):
@@ -106,7 +106,7 @@ class Gate(WithStore):
     def test_another_program_checks_again(self):
         other = self.folder / "latcon"
         with open(LATCON, "rb") as file:
-            other.write_bytes(file.read() + b"\0")  # behind its end, where nothing looks
+            other.write_bytes(file.read() + b"\0")  # behind its end, which is not read
         other.chmod(0o755)
         words = ["fracture", CASES / "quick.prm", "--no-report", "--output-dir", self.out, *TINY]
         self.assertEqual(latcon(*words, program=other, env=self.environment).returncode, 0)
@@ -143,7 +143,7 @@ class Gate(WithStore):
         printed, info = self.fracture()
         self.assertIn("is not used: it belongs to another user, or others may write it", printed)
         self.assertFalse(info["verification"]["reused"])
-        path = self.stored()[0]  # written anew
+        path = self.stored()[0]  # rewritten
         self.assertEqual(path.stat().st_mode & 0o022, 0)
         self.assertTrue(self.fracture()[1]["verification"]["reused"])
         if FULL and os.geteuid() == 0:

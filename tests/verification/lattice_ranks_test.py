@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A lattice that ranks share leaves the files of one rank, byte for byte, and stops on all ranks at once.
+"""Checks that a distributed lattice writes the same files as one rank, byte for byte, and stops on all ranks at once.
 
 Usage: lattice_ranks_test.py PATH_OF_LATCON
 """
@@ -13,7 +13,7 @@ import unittest
 
 from program import CASES, LATCON, TemporaryFolder, latcon, latcon_on_ranks, read_csv
 
-# Everything at once: toughening, contact, an end that absorbs, samples near the tip, frames.
+# All features: toughening, contact, an absorbing end, samples near the tip, frames.
 STRIP = ["fracture", CASES / "quick.prm", "--skip-verification", "--no-report", "--quiet", "--threads", "1", "--set",
          "Sheet/length=3 cm", "--set", "Sheet/height=1.5 cm", "--set", "Fracture/right end=absorbing", "--set",
          "Contact/present=true", "--set", "Near tip/interval=4e-6", "--set", "Output/energy interval=50"]
@@ -22,7 +22,7 @@ MOTION = ["lattice", CASES / "quick.prm", "--quiet", "--threads", "1", "--set", 
 
 
 def files(folder):
-    """Contents by name, but for that which tells how the run went."""
+    """Contents of files by name, without those that record the circumstances of the run."""
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.name not in ("run.json", "log.txt")}
 
 

@@ -1,7 +1,7 @@
-"""Whether a loaded lattice is stable, worked out apart from the program. Equations are those of docs/theory-comparison.md."""
+"""Stability of a loaded lattice, computed independently of the program. Equations are those of docs/theory-comparison.md."""
 import numpy as np
 
-SPACING = 1.0  # of the lattice; all that is asked here has no length
+SPACING = 1.0  # of the lattice; the results do not depend on it
 SECTIONS = {"nearest": 0.72, "next": 0.81}  # of quick.prm
 
 
@@ -11,7 +11,7 @@ def rod(a, b):
 
 
 def spring(modulus):
-    """Those of a linear bond."""
+    """Force and stiffness of a linear bond."""
     return (lambda s: modulus * (s - 1)), (lambda s: modulus)
 
 
@@ -42,7 +42,7 @@ class Lattice:
         return (np.linalg.eigvalsh(matrices)[:, 0] / (K**2).sum(axis=1)).min()
 
     def outcome(self):
-        """What becomes of a crack in a sheet loaded like this: accepted, or refused because the sheet buckles."""
+        """Expected outcome for a crack in this loaded sheet: accepted, or refused because the sheet buckles."""
         return BUCKLES if self.smallest_squared_speed() <= 0 else ACCEPTED
 
 

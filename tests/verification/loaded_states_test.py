@@ -1,6 +1,5 @@
 #!/usr/bin/python3
-"""Which loaded states of which materials the claims accept before a crack: all that are stable, and no others. The table in
-docs/limits.md says so.
+"""Checks that the claims accept all stable loaded states before a crack, and no others, as in the table of docs/limits.md.
 
 Usage: loaded_states_test.py LATCON [--full]     --full: the whole map, some hours
 """
@@ -38,8 +37,8 @@ MATERIALS = {
     "10 MPa, linear": (spring(1), both(law="linear", modulus=1e7)),
     "undamped": (rod(1e5, 1.5e5), both(viscosity=0)),
 }
-# Far stretched; of nearest neighbours alone, pushed together until they buckle; both buckled; at the border of stability;
-# stiff. With the claims that are tried: those on the loaded sheet's waves differ most.
+# Strongly stretched; nearest neighbours alone, compressed until they buckle; both buckled; at the border of stability; stiff.
+# Each with the claims to check: those on waves in the loaded sheet differ most.
 SOME = [("a = 0", 0.0, 3.0, "energy"), ("rubber", -0.3, 0.03, "energy"), ("rubber", -0.3, 1.0, "wave-speeds"),
         ("linear", -0.15, 0.6, "energy"), ("10 MPa", 0.3, 0.03, "energy")]
 # The row by which a state may be refused.
@@ -48,7 +47,7 @@ REASON = "stability of the loaded lattice"
 
 class LoadedStates(TemporaryFolder):
     def check(self, material, x, y, claims=()):
-        """The claims of both sets of shells come out as the lattice by itself says."""
+        """Checks that the verdicts for both sets of shells agree with the stability of the lattice."""
         law, entries = MATERIALS[material]
         settings = [f"Loading/strain x={x}", f"Loading/strain y={y}", "Fracture/breaking stretch=auto", *entries]
         run = latcon("verify", *claims, "--quick", "--quiet", "--case", CASES / "quick.prm", "--output-dir", self.out,

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Fails where a source that makes rows of claims takes a maximum or minimum from which a NaN can be lost.
+"""Fails if a source that creates rows of claims takes a maximum or minimum that can lose a NaN.
 
 std::max(0., NaN) is 0, and so an error that could not be computed would hold. The sources below take errors and extremes
 from support/largest_error.h. What has an integer type by name, as std::max<std::size_t>(a, b), is not meant.
@@ -10,7 +10,7 @@ import pathlib
 import re
 import sys
 
-# Everything that ends in a row with a verdict.
+# All sources that contribute to a row with a verdict.
 SOURCES = ("support/largest_error.*",
            *(f"verification/{path}" for path in (
              "bridge/anisotropy.*", "bridge/bloch.*", "bridge/equivalent_sheet.*", "bridge/homogenisation.*", "bridge/plane_waves.*",
@@ -32,7 +32,7 @@ PLANTED = {
 
 
 def losses(text):
-    """[(number of the line, the line)] in which a NaN can be lost."""
+    """[(line number, line)] of the lines that can lose a NaN."""
     return [(number, line.strip()) for number, line in enumerate(text.splitlines(), start=1)
             if LOSES.search(line.partition("//")[0])]
 

@@ -1,4 +1,4 @@
-"""Tables of claims made up for the tests of the report: closed forms with known orders, factors and errors."""
+"""Synthetic tables of claims for the tests of the report: closed forms with known orders, factors and errors."""
 import csv
 import itertools
 

@@ -1,4 +1,4 @@
-"""A triangular lattice that a crack runs through, its frames made up, as `latcon fracture` leaves them."""
+"""Synthetic frames of a triangular lattice with a running crack, in the format of `latcon fracture`."""
 import json
 
 import numpy as np
@@ -19,7 +19,7 @@ def lattice():
 
 
 def write_torn_sheet(folder):
-    """A run whose crack opens from the left, a bond after the other."""
+    """Writes a run whose crack opens from the left, one bond after the other."""
     write_fracture(folder, [HOLDS, PUBLISHED])
     generator = np.random.default_rng(7)
     reference, bonds = lattice()

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Pictures of made-up fields around a tip: what they show of a known field, and which files they refuse."""
+"""Tests of pictures of synthetic fields around a tip: their contents for a known field, and rejected files."""
 import sys
 import tempfile
 import unittest
@@ -23,7 +23,7 @@ GREEN = np.array((0x00, 0x9E, 0x73))
 
 
 def write_field(path, backward=3.0, without=()):
-    """A crack open behind the tip, and a disc of 5 mm ahead of it that moves back."""
+    """A crack that is open behind the tip, and a disc of 5 mm ahead of it that moves backwards."""
     columns, rows = BEHIND + 1 + AHEAD, 2 * HALF + 1
     X, Y = np.meshgrid(PITCH * np.arange(-BEHIND, AHEAD + 1), PITCH * np.arange(-HALF, HALF + 1))
     zero = np.zeros_like(X)
@@ -89,7 +89,7 @@ class NearTipPlots(unittest.TestCase):
         write_field(self.vti)
         velocity_picture(self.vti, self.png, crack_speed=50.0)
         outlined = self.green()
-        self.assertGreater(outlined, 500)  # a circle of some 300 pixels' radius
+        self.assertGreater(outlined, 500)  # a circle with a radius of about 300 pixels
         write_field(self.vti, backward=0.4)  # slower than 1 % of the crack
         velocity_picture(self.vti, self.png, crack_speed=50.0)
         self.assertLess(self.green(), outlined / 20)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What `latcon fracture` leaves of the fields near the tip, on a strip of a few thousand sites.
+"""Tests of the fields near the tip written by `latcon fracture`, on a strip of a few thousand sites.
 
 Usage: near_tip_test.py PATH_OF_LATCON
 """
@@ -77,8 +77,8 @@ class NearTip(TemporaryFolder):
             F = arrays["deformation_gradient"].reshape(rows, columns, 9)[:, 19:23, 0]
             self.assertLess(abs((u[:, 2:] - u[:, :-2]) / (2 * d) + 1 - F).max(), 0.1)
             self.assertGreater(F.min(), 1.5)
-            # Of a steady crack v_x / c = 1 - F_xX / F0_xX (theory.md, eq. (N.1)), with c = 2.3 C. This one oscillates, and
-            # its mean over samples is steady but for a part of the deviation from the loaded sheet.
+            # A steady crack has v_x / c = 1 - F_xX / F0_xX (theory.md, eq. (N.1)), with c = 2.3 C. This one oscillates, and
+            # its mean over samples is steady up to a fraction of the deviation from the loaded sheet.
             steady = 1 - arrays["deformation_gradient"].reshape(rows, columns, 9)[:, 18:24, 0] / 2.3
             speed = arrays["velocity"].reshape(rows, columns, 3)[:, 18:24, 0] / (2.3 * crack["speed_lagrangian"])
             self.assertLess(((speed - steady)**2).mean(), 0.5**2 * (steady**2).mean())
@@ -95,7 +95,7 @@ class NearTip(TemporaryFolder):
             entry = [float(tip["t"]) for tip in tips if float(tip["X"]) >= found["sampled_from"]][0]
             last = [float(tip["t"]) for tip in tips if float(tip["X"]) > found["sampled_to"]]
             end = last[0] if last else json.loads((folder / "crack.json").read_text())["end_time"]
-            # One in each interval, the first and the last of which are not whole.
+            # One sample in each interval, of which the first and the last are incomplete.
             self.assertAlmostEqual(found["samples"], (end - entry) / interval, delta=1.01, msg=integrator)
             self.assertGreater(found["samples"], 10)
 

@@ -1,4 +1,4 @@
-"""Runs the scripts of verification/paraview/ with ParaView's modules, on a display of memory."""
+"""Runs the scripts of verification/paraview/ with ParaView's modules, on a virtual display."""
 import os
 import pathlib
 import shutil
@@ -24,11 +24,11 @@ class ParaView(unittest.TestCase):
         cls.display = subprocess.Popen(["Xvfb", "-displayfd", str(write_end), "-noreset", "-nolisten", "tcp", "-screen",
                                         "0", "1280x1024x24"], pass_fds=[write_end], stdout=subprocess.DEVNULL,
                                        stderr=subprocess.DEVNULL)
-        cls.addClassCleanup(cls.end_display)  # also where the rest of a set-up fails
+        cls.addClassCleanup(cls.end_display)  # also if the rest of the set-up fails
         os.close(write_end)
         with os.fdopen(read_end) as told:
             number = told.readline().strip()
-        # Interpreted as pvpython would, by the interpreter that ParaView was built for.
+        # Runs the script like pvpython, with the interpreter for which ParaView was built.
         cls.environment = dict(os.environ, DISPLAY=f":{number}", PYTHONPATH=str(MODULES), PYTHONDONTWRITEBYTECODE="1",
                                OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
 
@@ -39,13 +39,13 @@ class ParaView(unittest.TestCase):
         cls.temporary.cleanup()
 
     def script(self, name, *arguments):
-        """What a script of that folder does."""
+        """Runs a script of that folder."""
         return subprocess.run(["/usr/bin/python3", str(SCRIPTS / name), *map(str, arguments)], capture_output=True,
                               text=True, timeout=300, env=self.environment, check=False)
 
 
 def run_tests():
-    """Those of the file that is run; none, and exit code 77, without ParaView or a display."""
+    """Runs the tests of the script; exit code 77 without ParaView or a display."""
     if not (MODULES / "paraview").is_dir() or shutil.which("Xvfb") is None:
         print(f"no ParaView in {MODULES}, or no Xvfb")
         sys.exit(SKIPPED)

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""The looks of a crack in ParaView, verification/paraview/, drawn on a display of memory.
+"""Tests of the views of a crack in ParaView, verification/paraview/, on a virtual display.
 
 Usage: paraview_test.py FOLDER_WITH_PARAVIEWS_PYTHON_MODULES
-Exits with 77 where they are not, or Xvfb is not: cmake/set-up.sh puts both there.
+Exits with 77 if the modules or Xvfb are missing; cmake/set-up.sh installs both.
 """
 import sys
 
@@ -15,12 +15,12 @@ from paraview_display import ParaView, run_tests
 from report_test import write_frame, write_series
 
 BREAKING = 3.0
-RED, GREEN = (213, 94, 0), (0, 158, 115)  # bonds beyond the breaking stretch; outline of what moves back
+RED, GREEN = (213, 94, 0), (0, 158, 115)  # bonds beyond the breaking stretch; outline of the zone of backward motion
 YELLOW = (253, 231, 37)  # the upper end of the scale
 
 
 def near(pixels, colour):
-    """How many pixels have a colour."""
+    """Number of pixels with a colour."""
     return np.count_nonzero(np.abs(pixels - colour).max(axis=2) < 12)
 
 
@@ -72,7 +72,7 @@ class Looks(ParaView):
             shown = np.abs(pixels[40:-100] - 255).max(axis=2) > 60
             rows, columns = np.flatnonzero(shown.mean(axis=1) > 0.3), np.flatnonzero(shown.mean(axis=0) > 0.2)
             self.assertAlmostEqual(np.ptp(columns) / np.ptp(rows), 78 / 43.5, delta=0.05)
-        # The bonds between two rows in the middle are gone but for a quarter.
+        # A quarter of the bonds between two rows in the middle remain.
         shown = [np.count_nonzero(np.abs(pixels - 255).max(axis=2) > 60, axis=1) for pixels in (torn, whole)]
         middle = int(np.argmax(shown[1] - shown[0]))
         self.assertLess(shown[0][middle], 0.5 * shown[1][middle])
@@ -96,7 +96,7 @@ class Looks(ParaView):
         right = np.split(self.picture("near_tip.py", "--field", "opening-stress"), 2, axis=1)[1]
         rows, columns = np.nonzero(np.abs(right[:-180] - YELLOW).max(axis=2) < 25)
         self.assertGreater(len(rows), 20)
-        # The tip is 20 of 36 pitches from the left end of the sheet, which takes nine tenths of the view.
+        # The tip is 20 of 36 pitches from the left end of the sheet, which fills nine tenths of the view.
         self.assertAlmostEqual(np.median(columns) / right.shape[1], 0.05 + 0.9 * 20 / 36, delta=0.06)
 
     def test_refuse_what_they_cannot_show(self):

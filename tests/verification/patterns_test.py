@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What decides the pattern of a crack, in strips of a few thousand sites: the study `patterns`.
+"""Runs the study `patterns`: the parameters that determine the pattern of a crack, in strips of a few thousand sites.
 
 Usage: patterns_test.py PATH_OF_LATCON [--full]     --full: all seeds, not one
 """
@@ -33,7 +33,7 @@ class Patterns(unittest.TestCase):
         self.assertEqual(exit_code, 0)
 
     def test_without_what_decides_them_the_study_fails(self):
-        # Next to no viscosity: the crack that shall oscillate runs straight.
+        # Nearly without viscosity the crack that should oscillate runs straight.
         document = json.loads(SHIPPED.read_text(encoding="utf-8"))
         document.update(base=str(SHIPPED.parent / document["base"]), runs={"fig1": document["runs"]["fig1"]},
                         claims=document["claims"][:1])

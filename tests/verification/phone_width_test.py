@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The report in a browser, Chromium, on a screen as narrow as a phone's: neither the page nor a box in it scrolls sideways."""
+"""Checks in Chromium that on a screen as narrow as a phone neither the report nor a box in it scrolls horizontally."""
 import sys
 import tempfile
 import unittest
@@ -11,7 +11,7 @@ from made_up_sheet import write_torn_sheet
 from report_test import FAILS, HOLDS, PUBLISHED, REPORTED, report, write_fracture, write_verification
 
 WIDTH = 390  # [pixels]
-# Elements that leave the window, and boxes with more in them than they show.
+# Elements that extend beyond the window, and boxes whose contents do not fit.
 TOO_WIDE = """[...document.querySelectorAll('body *')].filter((element) => {
   const box = element.getBoundingClientRect(), style = getComputedStyle(element);
   if (!box.width || element.closest('thead')) return false; // heads of columns are for screen readers alone
@@ -41,7 +41,7 @@ class PhoneWidth(unittest.TestCase):
             self.assertLessEqual(browser.value("document.documentElement.scrollWidth"), WIDTH)
             self.assertEqual(browser.value(TOO_WIDE), [])
             browser.value(SPOIL)
-            self.assertNotEqual(browser.value(TOO_WIDE), [])  # and what does not fit is seen
+            self.assertNotEqual(browser.value(TOO_WIDE), [])  # elements that do not fit are detected
 
 
 if __name__ == "__main__":

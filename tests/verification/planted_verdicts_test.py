@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A file of verdicts with rows that are not the claims' own: it is named and not used, and the claims are checked.
+"""Checks that a verdict file with rows of other claims is reported and ignored, and that the claims are checked.
 
 Usage: planted_verdicts_test.py PATH_OF_LATCON
 """

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Many processes on one machine: what they share when they start, and what each leaves to the others.
+"""Tests of many processes on one machine: shared folders at the start, leftover files, and use of cores.
 
 Usage: processes_test.py PATH_OF_LATCON [PATHS_OF_TEST_PROGRAMS...]
 """
@@ -21,7 +21,7 @@ LAUNCHED = ("OMPI_", "PMIX_", "PMI_")
 
 
 def environment(**variables):
-    """That of a user who has set nothing for MPI, and started nothing by mpirun."""
+    """Environment of a user without MPI settings, outside mpirun."""
     kept = {name: value for name, value in os.environ.items() if not name.startswith(LAUNCHED)}
     return dict(kept, **variables)
 
@@ -37,7 +37,7 @@ class Start(TemporaryFolder):
         self.tmp.mkdir()
 
     def block_session_folder(self):
-        """Puts files where Open MPI would make the session folder that a user's processes share."""
+        """Creates files where Open MPI would create the session folder shared by a user's processes."""
         host = socket.gethostname()
         for name in {host, host.partition(".")[0]}:
             (self.tmp / f"ompi.{name}.{os.geteuid()}").write_text("in the way")
@@ -62,7 +62,7 @@ class Start(TemporaryFolder):
         self.assertEqual(names_in(self.tmp), before)
 
     def test_the_files_in_the_way_are_in_the_way(self):
-        """Of mpirun, which makes the folder. If this fails, the test above shows nothing."""
+        """The same with mpirun, which creates the folder. If this fails, the test above is meaningless."""
         self.block_session_folder()
         run = subprocess.run(["mpirun", "-n", "1", "true"], capture_output=True, text=True, timeout=600,
                              env=environment(TMPDIR=str(self.tmp), OMPI_ALLOW_RUN_AS_ROOT="1",

@@ -1,4 +1,4 @@
-"""Runs latcon for the tests of the command line, and reads what it wrote with readers of other people."""
+"""Runs latcon for the tests of the command line, and reads its output with independent readers."""
 import csv
 import json
 import os
@@ -11,7 +11,7 @@ import unittest
 import xml.etree.ElementTree
 
 LATCON = sys.argv.pop(1)
-# Verdicts are stored for the time of a test alone, and never among those of the user.
+# Verdicts are cached for the duration of a test only, never in the user's cache.
 CACHE = tempfile.TemporaryDirectory()
 os.environ["XDG_CACHE_HOME"] = CACHE.name
 os.environ["MPLCONFIGDIR"] = f"{CACHE.name}/matplotlib"  # its list of fonts takes seconds to make, once is enough
@@ -50,12 +50,12 @@ def read(reader, path):
     return reader.GetOutput()
 
 
-# What has not begun after this time [s], on a machine however busy, never will.
+# Time [s] after which a process is assumed never to start, even on a busy machine.
 BEGINS = 600
 
 
 def wait_for(condition, process, seconds=BEGINS):
-    """Until the condition holds or the process ends. @return whether it holds"""
+    """Waits until the condition holds or the process ends. @return whether it holds"""
     deadline = time.monotonic() + seconds
     while not condition() and process.poll() is None and time.monotonic() < deadline:
         time.sleep(0.01)
@@ -63,14 +63,14 @@ def wait_for(condition, process, seconds=BEGINS):
 
 
 def catches(process, number):
-    """Whether the program has got as far as to answer the signal itself."""
+    """Whether the program has installed its signal handlers."""
     with open(f"/proc/{process.pid}/status") as file:
         caught = next(line.split()[1] for line in file if line.startswith("SigCgt:"))
     return bool(int(caught, 16) >> (number - 1) & 1)
 
 
 def children(process):
-    """Processes that a process has started and that have not ended; none of one that has ended itself."""
+    """Running child processes of a process; none if it has ended."""
     try:
         return [int(child) for child in pathlib.Path(f"/proc/{process}/task/{process}/children").read_text().split()]
     except OSError:
@@ -86,7 +86,7 @@ class TemporaryFolder(unittest.TestCase):
 
 
 class Started(TemporaryFolder):
-    """Processes of latcon that run beside the test, and end with it."""
+    """Processes of latcon that run in the background and end with the test."""
 
     def start(self, *arguments, launcher=(), **keywords):
         environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")

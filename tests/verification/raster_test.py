@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""A made-up sheet as pixels: what is filled, what opens as bonds break, what is left out."""
+"""Tests of the rasterisation of a synthetic sheet: filled pixels, openings where bonds break, omitted parts."""
 import sys
 import unittest
 from pathlib import Path
@@ -25,7 +25,7 @@ def made_up_frame():
 
 
 def broken_bonds(frame):
-    """Those between rows 4 and 5, named by the numbers of their sites, some from the far end."""
+    """Bonds between rows 4 and 5, by the numbers of their sites, some in reverse order."""
     rows = frame.bonds // COLUMNS
     ends = 100 + frame.bonds[(rows[:, 0] == 4) & (rows[:, 1] == 5)]
     ends[::2] = ends[::2, ::-1]

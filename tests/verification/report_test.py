@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The report of runs made up here: what it says, draws and refuses, and how it exits."""
+"""Tests of the report with synthetic runs: text, pictures, rejected files and exit codes."""
 import base64
 import contextlib
 import io
@@ -142,13 +142,13 @@ def write_series(path, times):
 
 
 class Page(HTMLParser):
-    """Reads a page: its text, what it refers to, and whether every element is closed in its turn."""
+    """Reads a page: its text, its references, and whether its elements are properly nested."""
 
     def __init__(self, html):
         super().__init__()
         self.open, self.images, self.references, self.headings, self.text = [], [], [], [], ""
         self.alternatives = []  # of the images
-        self.kinds = []  # classes of what is open
+        self.kinds = []  # classes of open elements
         self.feed(html)
         self.close()
 
@@ -182,7 +182,7 @@ class ReportTest(unittest.TestCase):
         self.folder = Path(temporary.name) / "runs"
 
     def report(self, *options, expect, folder=None):
-        """What the script does, in this process. @return (stdout, stderr)"""
+        """Runs the script in this process. @return (stdout, stderr)"""
         streams = [io.TextIOWrapper(io.BytesIO(), encoding="utf-8") for _ in range(2)]
         with contextlib.redirect_stdout(streams[0]), contextlib.redirect_stderr(streams[1]):
             exit_code = report.main([str(folder or self.folder), *options])
@@ -277,7 +277,7 @@ class ReportTest(unittest.TestCase):
         self.assertEqual([r[:30] for r in page.references if not r.startswith(own)], [])
         bare = re.sub(r"base64,[^\"]*|^/\*! @license .*?\*/", "", html, flags=re.M)
         self.assertNotRegex(bare, r"https?://|@import|url\(|<script[^>]* src|<link|sourceMappingURL")
-        self.assertIn("@license https://github.com/danvk/dygraphs", html)  # MIT: its notice goes along
+        self.assertIn("@license https://github.com/danvk/dygraphs", html)  # the MIT licence requires its notice
         self.assertEqual(len(page.images), len(PICTURES) + 1)
 
     def test_can_be_read_without_seeing_it(self):
@@ -314,7 +314,7 @@ class ReportTest(unittest.TestCase):
         self.assertEqual(gif, base64.b64decode(page.images[0].partition(",")[2]))
         self.assertRegex(html, r'<source media="print, [^"]*" srcset="data:image/png;base64,')
         with Image.open(io.BytesIO(gif)) as film:
-            self.assertEqual((film.n_frames, film.info["loop"]), (MOTION_FRAMES, 0))  # over and over
+            self.assertEqual((film.n_frames, film.info["loop"]), (MOTION_FRAMES, 0))  # repeated for ever
             pictures, shown = [], []
             for number in range(film.n_frames):
                 film.seek(number)
@@ -396,7 +396,7 @@ class ReportTest(unittest.TestCase):
         self.assertIn("holds, not verified", page.text)
         self.assertNotRegex(html, r'class="[^"]*\bholds\b')  # nothing is green
         self.assertIn("not verified", out)
-        # Beside a run that was verified as well.
+        # Together with a verified run as well.
         write_verification(self.folder.parent / "both" / "verify", [HOLDS])
         write_fracture(self.folder.parent / "both" / "fig", [PUBLISHED])
         (self.folder.parent / "both" / "fig" / "run.json").write_text(
@@ -476,7 +476,7 @@ class ReportTest(unittest.TestCase):
 class FitSinusoid(unittest.TestCase):
     def test_recovers_the_sinusoid(self):
         X = np.linspace(0.0, 0.12, 500)
-        Y = np.where((X < BEGIN) | (X > END), 1.0, path_of_tip(X))  # what lies outside must not count
+        Y = np.where((X < BEGIN) | (X > END), 1.0, path_of_tip(X))  # points outside must not count
         fit = fit_sinusoid(X, Y, WAVELENGTH, BEGIN, END)
         for value, truth in ((fit.amplitude, AMPLITUDE), (fit.phase, PHASE), (fit.offset, OFFSET), (fit.slope, SLOPE)):
             self.assertAlmostEqual(value / truth, 1, places=9)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The report in Chromium: the viewer of the sheet shows what the files hold, the plots and the page answer their reader."""
+"""Tests of the report in Chromium: the viewer shows the values of the files, and plots and page respond to the reader."""
 import base64
 import hashlib
 import io
@@ -32,7 +32,7 @@ SCREEN = 800  # height of a window [pixels]
 PLACE = (0.5e-6, SPACING / 2000 / 2)  # [m]
 SPEED = 0.5e-2  # [m/s]
 STRETCH = (0.5e-3, 2**0.5 / 2000)
-MARK = (0xab, 0x1f, 0x14)  # colour of what is picked, --fails of style.css
+MARK = (0xab, 0x1f, 0x14)  # colour of the selection, --fails of style.css
 VALUES = re.compile(r"site (\d+): X (\S+) cm, Y (\S+) cm, x (\S+) cm, y (\S+) cm, speed (\S+) m/s, damage (\S+?)"
                     r"(?:; bond (\d+)–(\d+): stretch (\S+))?$")
 
@@ -138,7 +138,7 @@ class ViewerTest(unittest.TestCase):
         while time.monotonic() < end and self.text("play") != "▶":
             seen.append(int(self.browser.value("document.querySelector('.viewer .slider').value")))
         self.assertEqual(seen, sorted(seen))
-        self.assertGreaterEqual(len(set(seen)), 3)  # a slow machine leaves some out
+        self.assertGreaterEqual(len(set(seen)), 3)  # a slow machine skips some
         self.assertEqual(int(self.browser.value("document.querySelector('.viewer .slider').value")), FRAMES - 1)
         self.click(".viewer .play")
         self.browser.value("""new Promise((done) => {
@@ -168,7 +168,7 @@ class ViewerTest(unittest.TestCase):
         return found
 
     def check_values(self, file, full, found, configuration):
-        """Each number is that of the file; the pointer is where the sites are, on one scale for x and y."""
+        """Checks that each number is that of the file, and that sites are at the pointer, on one scale for x and y."""
         fastest = max(File(path, file.site).speed.max() for _, path in series(self.runs / "torn" / "motion.pvd"))
         speed_step = fastest / 65535 / 2
         pointers, places = [], []
@@ -316,7 +316,7 @@ class ViewerTest(unittest.TestCase):
 
 class SizeTest(unittest.TestCase):
     def test_a_sheet_takes_no_more_than_it_may(self):
-        """Displacements of a thousand steps at random do not compress: frames are left out until they fit."""
+        """Random displacements do not compress: frames are dropped until they fit."""
         with tempfile.TemporaryDirectory() as name:
             folder = Path(name)
             write_torn_sheet(folder / "run")
@@ -329,7 +329,7 @@ class SizeTest(unittest.TestCase):
                 for frame in motion.frames for copy in range(4)])
             all_frames = sheet_data.sheet_data(run, motion, 10**9)
             sites = len(motion.whole.reference)
-            # At least the 10 bits of a coordinate that are at random; base64 has 4 letters for 3 bytes.
+            # At least the 10 random bits of a coordinate; base64 has 4 letters for 3 bytes.
             self.assertGreater(len(all_frames.text), len(motion.frames) * 2 * sites * 10 / 8 * 4 / 3)
             most = len(all_frames.text) // 3
             fewer = sheet_data.sheet_data(run, motion, most)
@@ -340,7 +340,7 @@ class SizeTest(unittest.TestCase):
             self.assertIsNone(sheet_data.sheet_data(run, motion, most // 20))
 
     def test_fig_1_is_below_8_megabytes(self):
-        """What a page may hold of each kind. Fig. 1 itself: fig1_test.py, which finds all of its pictures below 3 MB."""
+        """Checks the limits of a page. For Fig. 1 see fig1_test.py, which checks that its pictures are below 3 MB."""
         scripts = sum(path.stat().st_size for path in [*(report.Path(report.__file__).parent).glob("*.js"),
                                                        report.Path("/usr/share/javascript/dygraphs/dygraph.min.js")])
         self.assertLess(report.LARGEST_SHEETS + scripts + 3_000_000, 8_000_000)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Motions of the finite element sheet that are stopped, resumed, or come to nothing.
+"""Tests of motions of the finite element sheet that are stopped, resumed, or fail.
 
-That a kill at any moment loses nothing: tests/faults.
+Kills at arbitrary times are tested in tests/faults.
 
 Usage: resume_continuum_test.py PATH_OF_LATCON
 """
@@ -30,7 +30,7 @@ WAVES = {
     "Initial state/velocity x": "6*sin(pi*y/0.02)^2*sin(2*pi*x/0.01)", "Time/end": "0.1 ms",
     "Continuum/time step": "5 us", "Output/frame interval": "0.02 ms", "Output/energy interval": 2,
     "Checkpoints/steps": 3}
-# The same by conjugate gradients, which periodic edges do not allow.
+# The same with conjugate gradients, which do not support periodic edges.
 BY_MULTIGRID = {**WAVES, "Left edge/condition": "held", "Right edge/condition": "held", "Continuum/direct limit": 0,
                 "Initial state/velocity x": "6*sin(pi*y/0.02)^2*sin(pi*x/0.01)^2"}
 # Two sides thrown at each other, faster than Newton's method follows in steps of that length.
@@ -110,7 +110,7 @@ class Resume(TemporaryFolder):
         self.assertEqual(self.goes_on_to_the_same_files(signal.SIGKILL, BY_MULTIGRID), -9)
 
     def test_signal_to_one_rank_stops_all(self):
-        # mpirun tells the exit code of a rank.
+        # mpirun returns the exit code of a rank.
         self.assertEqual(self.goes_on_to_the_same_files(signal.SIGTERM, ranks=2, victim=1), 130)
 
     def test_killed_rank_ends_all(self):

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
-"""Checkpoints and --resume: which one is taken, what is said of those that cannot be, and what a stopped run leaves.
+"""Tests of checkpoints and --resume: choice of the checkpoint, messages about unusable ones, files of a stopped run.
 
-That resumed runs find what undisturbed ones do, whenever they are stopped: tests/faults.
+Results of runs that are stopped at arbitrary times and resumed are tested in tests/faults.
 
 Usage: resume_test.py PATH_OF_LATCON
 """
@@ -214,7 +214,7 @@ class BlowUp(TemporaryFolder):
         checkpoint.write_bytes(re.sub(rb"[0-9a-f]{64}", hashlib.sha256(rest).hexdigest().encode(), head, count=1) + rest)
 
     def test_last_sound_state_is_left_with_when_and_where(self):
-        """No case makes a sheet blow up: steps are stable, and divided where bonds are short."""
+        """Steps are stable, and divided where bonds are short, so that no case makes a sheet blow up."""
         motion = ["lattice", CASES / "quick.prm", "--output-dir", self.out, "--set", "Lattice/solution=motion", "--set",
                   "Time/end=0.1 ms", "--set", "Fracture/breaking stretch=auto", "--set", "Output/energy interval=1",
                   "--set", "Checkpoints/steps=20"]
@@ -228,7 +228,7 @@ class BlowUp(TemporaryFolder):
         blown, site, X, Y, sound = map(float, told.groups())
         self.assertLess(sound, blown)
         energies = read_csv(self.out / "energy.csv")
-        # Looked at every step.
+        # Checked in every step.
         step = float(energies[1]["t"]) - float(energies[0]["t"])
         self.assertAlmostEqual((blown - sound) / step, 1., delta=1e-5 * blown / step)  # six digits of each
         last_time, last = frames(self.out / "lattice.pvd")[-1]

@@ -1,8 +1,8 @@
 #!/usr/bin/python3
-"""The three views of verification/paraview/side_by_side.py, drawn by ParaView on a display of memory.
+"""Tests of the three views of verification/paraview/side_by_side.py, drawn by ParaView on a virtual display.
 
 Usage: side_by_side_test.py FOLDER_WITH_PARAVIEWS_PYTHON_MODULES
-Exits with 77 where they are not, or Xvfb is not: cmake/set-up.sh puts both there.
+Exits with 77 if the modules or Xvfb are missing; cmake/set-up.sh installs both.
 """
 import sys
 
@@ -44,7 +44,7 @@ def set_points(data, position):
 
 
 def write_difference(folder):
-    """Displacement along x that grows with x, the same on both sides but in the upper right quarter."""
+    """Displacement along x that increases with x, equal on both sides except in the upper right quarter."""
     nx, ny = round(WIDTH / SPACING) + 1, round(HEIGHT / SPACING) + 1
     x, y = np.meshgrid(SPACING * np.arange(nx), SPACING * np.arange(ny))
     position = np.column_stack((x.ravel(), y.ravel()))
@@ -62,7 +62,7 @@ def write_difference(folder):
     add(sites, "displacement", vectors(u + off))
     add(sites, "displacement_continuum", vectors(u))
     add(sites, "displacement_difference", vectors(off))
-    # Stress of sites that lack bonds is of no use.
+    # The stress of sites that lack bonds is meaningless.
     complete = (position[:, 1] > 0.25 * HEIGHT) & (position[:, 1] < 0.75 * HEIGHT)
     stress = np.zeros((nx * ny, 9))
     stress[:, 4] = np.where(complete, 1e5 + position[:, 0], -1e9)
@@ -102,7 +102,7 @@ class SideBySide(ParaView):
     def sheet(self, view):
         """The part of a view between its title and its bar that is not white."""
         filled = np.abs(view - 255).max(axis=2) > 40
-        rows = np.flatnonzero(filled.mean(axis=1) > 0.8)  # words and bars are shorter
+        rows = np.flatnonzero(filled.mean(axis=1) > 0.8)  # text and colour bars are shorter
         columns = np.flatnonzero(filled[rows].mean(axis=0) > 0.7)
         return view[rows[0]:rows[-1] + 1, columns[0]:columns[-1] + 1]
 
@@ -135,7 +135,7 @@ class SideBySide(ParaView):
         ends = [self.at(left, x, 0.5) for x in (0.05, 0.95)]
         self.assertGreater(abs(ends[0] - ends[1]).max(), 100)  # the scale is that of the sites that are coloured
         titles = [np.count_nonzero(view[:40].min(axis=2) < 128) for view in views]
-        self.assertGreater(min(titles[0], titles[2]), 2 * titles[1])  # and it is said
+        self.assertGreater(min(titles[0], titles[2]), 2 * titles[1])  # and the title states it
 
     def test_refuses_what_it_cannot_show(self):
         for arguments, part in ([self.folder / "none"], "difference_sites.vtp"), ([self.folder, "--component", "z"], "x, y"), \

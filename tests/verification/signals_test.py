@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Signals: every command ends soon, with exit code 130, and says so in run.json.
+"""Checks that signals end every command soon, with exit code 130, also in run.json.
 
 Usage: signals_test.py PATH_OF_LATCON
 """
@@ -20,7 +20,7 @@ from program import CASES, LATCON, Started, catches, children, latcon, wait_for
 QUICK = str(CASES / "quick.prm")
 TINY = [QUICK, "--set", "Sheet/length=10 mm", "--set", "Sheet/height=6 mm"]
 INTERRUPTED = 130
-# A command that does not end by itself in this time [s] was not ended by a signal either.
+# Longest time [s] in which a command must end after a signal.
 HANGS = 20
 ALL = ("SIGINT", "SIGTERM", "SIGHUP", "SIGUSR1", "SIGUSR2", "SIGALRM", "SIGXCPU")
 
@@ -40,7 +40,7 @@ class Interrupted(Started):
 
 
 class WithoutSteps(Interrupted):
-    """Commands and phases that save nothing on the way end at once."""
+    """Commands and phases without state to save end at once."""
 
     def is_ended(self, *arguments, begun=None, number=signal.SIGINT):
         process = self.start(*arguments, "--output-dir", self.out)
@@ -101,14 +101,14 @@ class WithoutSteps(Interrupted):
 
 
 class EveryCommand(Interrupted):
-    """As the keyboard does it: the signal goes to the command and to the scripts that it has started."""
+    """As from the keyboard: the signal is sent to the command and to its child processes."""
 
     def is_ended(self, process):
         os.killpg(process.pid, signal.SIGINT)
         self.ends(process)
 
     def is_ended_as_it_reads(self, pipe, *arguments):
-        """Whether it ends while it waits for a file that nobody writes."""
+        """Whether the command ends while it waits for a file that nobody writes."""
         process = self.start(*arguments, start_new_session=True)
         writers = []
 
@@ -146,7 +146,7 @@ class EveryCommand(Interrupted):
                 self.is_ended_as_it_reads(pipe, name, *arguments)
 
     def test_comparison(self):
-        """Frames are no pipes: the signal comes before they are read."""
+        """Frames cannot be pipes: the signal is sent before they are read."""
         sheets = {"lattice": self.folder / "lattice", "continuum": self.folder / "continuum"}
         for side, folder in sheets.items():
             self.assertEqual(latcon(side, *TINY, "--output-dir", folder).returncode, 0)

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""The page and the gallery of a study made up here: its checks, pictures of runs, numbers, and which cracks are shown."""
+"""Tests of the page and the gallery of a synthetic study: checks, pictures of runs, numbers, choice of the cracks."""
 import contextlib
 import io
 import json
@@ -33,7 +33,7 @@ BLUE = np.array((0x00, 0x72, 0xB2))
 
 
 def made_up_seed(run, seed, pattern, state="measured", **values):
-    """A seed as study.json has it."""
+    """A seed in the format of study.json."""
     return {"run": run, "seed": seed, "folder": f"runs/{run}-{seed}", "state": state, "problem": "", "exit_code": 0,
             "pattern": pattern, "reason": "", "sites": 96, "wall_time_s": 1.0,
             "values": {**QUANTITIES, **values}}
@@ -97,7 +97,7 @@ class MadeUpStudy(unittest.TestCase):
         return read_study(self.folder)
 
     def page(self, pictures=()):
-        """The page as it is read, with the pictures of some runs, and its HTML."""
+        """The parsed page with the pictures of some runs, and its HTML."""
         self.document["pictures"] = list(pictures)
         self.read()
         self.assertEqual(study.main([str(self.folder), "--quiet"]), 0)
@@ -161,7 +161,7 @@ class StudyPage(MadeUpStudy):
             self.assertIn(words, page.text)
 
     def sweep(self, row, *quantities):
-        """What is drawn of a sweep, and the labels of its panels."""
+        """Points drawn for a sweep, and the labels of its panels."""
         labels = []
         with mock.patch.object(study_plots, "save", wraps=study_plots.save) as saved:
             self.assertTrue(draw_sweep(self.read(), row, quantities, self.folder / "sweep.png"))
@@ -290,7 +290,7 @@ class Gallery(MadeUpStudy):
         self.read()
         pictures = self.folder / "docs" / "pictures"
         pictures.mkdir(parents=True)
-        for name in ("stale.png", "tutorial.png"):  # of the gallery before this one, and of another page
+        for name in ("stale.png", "tutorial.png"):  # of the previous gallery, and of another page
             (pictures / name).write_bytes(b"")
         (self.folder / "docs" / "gallery.md").write_text("![before](pictures/stale.png)")
         text, _ = self.gallery()
@@ -309,7 +309,7 @@ class Gallery(MadeUpStudy):
         text, _ = self.gallery(options=["--latcon", str(program)])
         self.assertEqual(log.read_text().splitlines(), ["fracture fig1.prm --no-report --quiet "] * 2)
         self.assertLess(text.index("## Animation of Fig. 1"), text.index("## Oscillating: `wavy`"))
-        self.assertIn("## Oscillating: `arrested`", text)  # as it came out, whatever the name
+        self.assertIn("## Oscillating: `arrested`", text)  # the pattern that was measured, whatever the name
         with Image.open(self.folder / "docs" / "pictures" / "fig1.gif") as film:
             self.assertEqual(film.n_frames, MOTION_FRAMES)
         self.gallery(options=["--latcon", str(program)])

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""latcon study: runs, exit codes, files, resuming, being killed, and what is refused.
+"""Tests of latcon study: runs, exit codes, files, resuming, kills, and refusals.
 
 Usage: study_test.py PATH_OF_LATCON
 """
@@ -17,7 +17,7 @@ import unittest
 sys.dont_write_bytecode = True
 from program import CASES, LATCON, TemporaryFolder, children, latcon, read_csv
 
-# Strips so small that a crack is through in a moment, of nearest neighbours alone, which are checked sooner.
+# Strips so small that a crack runs through in a moment, with nearest neighbours alone, which are faster to check.
 TINY = {
     "title": "A tiny study",
     "base": str(CASES / "quick.prm"),
@@ -48,7 +48,7 @@ def words_of(process):
 
 
 def seconds_of_threads(process):
-    """Processor time of each of its threads [s], of those that have not ended."""
+    """Processor time of each running thread of a process [s]."""
     seconds = {}
     for path in pathlib.Path(f"/proc/{process}/task").glob("*/stat"):
         try:
@@ -61,7 +61,7 @@ def seconds_of_threads(process):
 
 class Study(TemporaryFolder):
     def study(self, *arguments, change=None, expect=0, skip=True, **keywords):
-        """Runs the tiny study after `change` has changed it. @return what was printed"""
+        """Runs the tiny study after `change` has changed it. @return its output"""
         document = copy.deepcopy(TINY)
         if change:
             change(document)
@@ -76,7 +76,7 @@ class Study(TemporaryFolder):
         return (self.out / name).read_text()
 
     def times(self):
-        """When the runs were made."""
+        """Modification times of the runs."""
         return {name: (self.out / "runs" / name / "crack.json").stat().st_mtime_ns for name in FOLDERS}
 
     def test_runs_everything_and_leaves_every_file(self):
@@ -120,7 +120,7 @@ class Study(TemporaryFolder):
         self.assertIn("Incomplete: 1 row holds", self.text("study.html"))
 
     def test_child_that_fails_is_4_and_stops_no_other(self):
-        """A run that the system kills, as it does where memory ends."""
+        """A run that is killed by the system, as when memory is exhausted."""
         path = self.folder / "tiny.json"
         path.write_text(json.dumps(TINY))
         process = subprocess.Popen([LATCON, "study", path, "--output-dir", self.out, "--skip-verification", "--threads", "1"],
@@ -156,7 +156,7 @@ class Study(TemporaryFolder):
         self.assertEqual(self.times(), before)
         self.assertEqual({name: self.text(name) for name in first}, first)
 
-        def change(document):  # what is claimed is no part of the runs
+        def change(document):  # claims are not a part of the runs
             document["claims"][0]["rows"][0]["above"] = 1000
         printed = self.study("--resume", change=change, expect=3)
         self.assertIn("0 runs, 4 are there already", printed)
@@ -262,13 +262,13 @@ class Study(TemporaryFolder):
         self.assertEqual(len(times), 2)
         for of_run in times.values():
             *others, busiest = sorted(of_run.values())
-            # Threads that libraries start and leave idle wait for work a moment, 2^26 cycles in OpenBLAS, and go to sleep.
+            # Idle threads of libraries wait for work briefly, 2^26 cycles in OpenBLAS, and then sleep.
             idle = 0.1
             self.assertLess(max(others, default=0.), idle)
             self.assertGreater(busiest, 3 * idle)
 
     def test_quick_study_verifies_the_base_case_once(self):
-        # Its row is not measured: no crack of the quick version runs far enough to have a speed.
+        # The row is not measured: no crack of the quick version runs far enough to have a speed.
         printed = self.study("--quick", skip=False, expect=3,
                              change=lambda document: document.update(checks=["steady-crack"]))
         self.assertIn("claims: checked now", printed)
@@ -289,7 +289,7 @@ class Study(TemporaryFolder):
         results = json.loads(self.text("results.json"))["claims"]
         self.assertEqual([row["lattice"] for row in results if row["claim"] == "steady-crack"],
                          [row["lattice"] for row in check["rows"]])
-        # What is compared is known to far better than a per cent.
+        # The compared values are accurate to far better than one percent.
         self.assertLess(max(row["tolerance"] for row in check["rows"] if row["quantity"].startswith("crack speed")), 0.005)
         speeds = [float(line["lattice speed"]) for line in read_csv(self.out / "steady_crack.csv")]
         self.assertEqual(speeds, [row["lattice"] for row in check["rows"] if row["quantity"].startswith("crack speed")])

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Both integrators break a small strip of Fig. 1 alike, the long steps with at most a third of the force evaluations: the quick
-study `time-stepping`.
+"""Runs the quick study `time-stepping`: both integrators give the same crack in a small strip of Fig. 1, the long steps with at
+most a third of the force evaluations.
 
 Usage: time_stepping_study_test.py PATH_OF_LATCON
 """

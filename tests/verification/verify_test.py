@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Every claim holds on the shipped case, through the command line: in the quick versions, or with --full in the full ones.
-The pages about claims and their files agree with the results.
+"""Checks from the command line that every claim holds for the shipped case, in the quick or, with --full, in the full versions,
+and that the pages about claims and their files agree with the results.
 
 Usage: verify_test.py LATCON [--full]
 """
@@ -17,7 +17,7 @@ from program import CASES, TemporaryFolder, claims_where, latcon
 
 PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "verification.md"
 
-# Parts of quantities that must be among the rows of a claim.
+# Quantities that the rows of each claim must mention.
 SUBJECTS = {
     "energy": ("energy density, Cauchy-Born", "network against the lattice's mean", "c_L at F = I", "calibrated ratio", "lattice against Bloch",
                "local continuum and lattice agree", "over 1 + l_d^2 k^2 and the lattice's", "travelling L", "travelling S"),
@@ -33,7 +33,7 @@ TABLES = ("wave_speeds", "attenuation", "dispersion", "dispersion_runs", "edge_l
 
 class Verify(TemporaryFolder):
     def test_every_claim_holds(self):
-        # The full versions are to take less than ten minutes on two idle cores, and these may not be idle.
+        # The full versions should take less than ten minutes on two idle cores; the cores may be busy here.
         result = latcon("verify", *VERSION, "--output-dir", self.out, timeout=1800)
         self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
         results = json.loads((self.out / "results.json").read_text())
@@ -60,7 +60,7 @@ class Verify(TemporaryFolder):
         self.assertEqual(undocumented(self.out), [])
 
 
-# A sheet of nearest neighbours, compressed so far along x that its shear waves along x have no speed: it buckles.
+# A sheet of nearest neighbours, compressed along x until the speed of shear waves along x vanishes: it buckles.
 BUCKLED = [word for setting in (
     "Loading/strain x=-0.11", "Loading/strain y=0.75", "Next-nearest neighbours/present=false",
     "Nearest neighbours/viscosity=0", "Next-nearest neighbours/viscosity=0") for word in ("--set", setting)]
@@ -69,7 +69,7 @@ BUCKLED = [word for setting in (
 @unittest.skipIf("--full" in sys.argv, "the quick versions are enough")
 class WithoutNumbers(TemporaryFolder):
     def test_waves_that_never_ran_fail(self):
-        """On the case of quick.prm with other settings. Nothing that is no number holds."""
+        """Checks the case of quick.prm with other settings. Rows with NaN must not hold."""
         result = latcon("verify", "energy", "wave-speeds", "--quick", "--case", CASES / "quick.prm", *BUCKLED, "--output-dir",
                         self.out)
         self.assertEqual(result.returncode, 3, result.stdout + result.stderr)

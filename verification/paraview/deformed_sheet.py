@@ -1,9 +1,9 @@
 #!/usr/bin/env pvpython
-"""Shows the sheet of a lattice as it is, coloured by what its bonds or sites tell.
+"""Shows the deformed sheet of a lattice, coloured by a field of its bonds or sites.
 
 Usage: pvpython deformed_sheet.py DIR [--field FIELD] [--time MS] [--screenshot FILE.png]
 DIR is an output directory of `latcon fracture` or `latcon lattice`. FIELD: stretch of the bonds (default), speed,
-opening-stress, damage. Without --screenshot a window opens, in which the frames play.
+opening-stress, damage. Without --screenshot a window opens and plays the frames.
 """
 import sys
 from dataclasses import dataclass
@@ -19,7 +19,7 @@ MARGIN = 0.02  # around the sheet, of its length
 
 @dataclass(frozen=True)
 class Field:
-    """What a sheet may be coloured by."""
+    """Field by which a sheet can be coloured."""
 
     name: str  # in the files
     on: str
@@ -48,7 +48,7 @@ def arguments():
 
 
 def limits(sheet, field, directory):
-    """Ends of the colour scale. Single bonds, and the flanks of the crack, have extremes of their own."""
+    """Ends of the colour scale, without the extremes of single bonds and of the flanks of the crack."""
     import numpy as np
 
     if field.name == "damage":
@@ -69,7 +69,7 @@ def draw(chosen):
     sheet = pv.WarpByVector(Input=frames, Vectors=["POINTS", "displacement"])
     scene = pv.GetAnimationScene()
     scene.UpdateAnimationUsingDataTimeSteps()
-    # The edges are held where they are in the first frame; fragments may fly anywhere.
+    # The edges are held at their positions in the first frame; fragments may fly anywhere.
     sheet.UpdatePipeline(times[0])
     low_x, high_x, low_y, high_y = sheet.GetDataInformation().GetBounds()[:4]
     time = times[-1] if chosen.time is None else min(times, key=lambda t: abs(1e3 * t - chosen.time))
@@ -95,7 +95,7 @@ def draw(chosen):
 
 if __name__ == "__main__":
     CHOSEN = arguments()
-    import paraview.simple as pv  # after the arguments, whose errors need no ParaView
+    import paraview.simple as pv  # after parsing the arguments, which does not need ParaView
 
     pv._DisableFirstRenderCameraReset()
     finish(pv, *draw(CHOSEN), CHOSEN.screenshot)

@@ -1,4 +1,4 @@
-"""What the scripts of this folder share: the command line, colour scales, views in white, screenshots."""
+"""Utilities of the scripts in this folder: command line, colour scales, white views, screenshots."""
 import argparse
 import pathlib
 import re
@@ -12,7 +12,7 @@ VECTOR, TENSOR = {"x": 0, "y": 1}, {"xx": 0, "xy": 1, "yx": 3, "yy": 4}
 
 
 def parser_of(doc, directory):
-    """The command line that all scripts have. `doc`: of the script; `directory`: what DIR is."""
+    """Command line of all scripts. `doc`: docstring of the script; `directory`: description of DIR."""
     parser = argparse.ArgumentParser(description=doc.split("\n", maxsplit=1)[0])
     parser.add_argument("directory", metavar="DIR", type=pathlib.Path, help=directory)
     parser.add_argument("--screenshot", metavar="FILE", type=pathlib.Path, help="write a picture (PNG) and end")
@@ -20,19 +20,19 @@ def parser_of(doc, directory):
 
 
 def require(parser, directory, names, of):
-    """Ends with exit code 2 unless all files are there. `of`: the command that leaves them."""
+    """Ends with exit code 2 unless all files exist. `of`: the command that writes them."""
     for name in names:
         if not (directory / name).is_file():
             parser.error(f"{directory} holds no {name}: is it an output directory of {of}?")
 
 
 def fail(problem):
-    """Says what is wrong and ends with exit code 1."""
+    """Prints an error message and ends with exit code 1."""
     sys.exit(f"{pathlib.Path(sys.argv[0]).name}: {problem}")
 
 
 def input_number(directory, section, entry):
-    """A number in the case.prm of a run, SI unit; None if it is not there."""
+    """A number in the case.prm of a run, SI unit; None if it is missing."""
     path = directory / "case.prm"
     found = re.search(rf"^subsection {re.escape(section)}\n(?:(?!end\b).*\n)*?\s*set\s+{re.escape(entry)}\s*=\s*([-+.\deE]+)",
                       path.read_text() if path.is_file() else "", re.MULTILINE)
@@ -40,7 +40,7 @@ def input_number(directory, section, entry):
 
 
 def array(source, name, on="POINTS"):
-    """What is known of a point or cell array of a filter."""
+    """Information about a point or cell array of a filter."""
     found = (source.PointData if on == "POINTS" else source.CellData)[name]
     if found is None:
         fail(f"the frames have no field {name!r}")
@@ -57,7 +57,7 @@ def value_range(source, name, component=None):
 
 def values_of(source, name, component=None, on="POINTS"):
     """The values themselves; component None: of a scalar, or of the magnitude."""
-    # ParaView's modules are on the path only once it runs.
+    # ParaView's modules are on the path only after it has started.
     import numpy as np
     from paraview import servermanager
     from vtkmodules.util.numpy_support import vtk_to_numpy
@@ -72,7 +72,7 @@ def values_of(source, name, component=None, on="POINTS"):
 
 
 def set_scale(lut, limits, preset, component=None):
-    """A colour scale that stays as it is; component None: of the magnitude."""
+    """A fixed colour scale; component None: of the magnitude."""
     low, high = limits
     if not high > low:  # a constant field
         low, high = low - 0.5 * (abs(low) or 1.0), high + 0.5 * (abs(high) or 1.0)
@@ -84,13 +84,13 @@ def set_scale(lut, limits, preset, component=None):
 
 
 def symmetric(limits):
-    """Limits about zero."""
+    """Limits symmetric about zero."""
     largest = max(abs(limit) for limit in limits)
     return -largest, largest
 
 
 class View:
-    """A white view with a title, of things that lie in the plane."""
+    """A white view with a title, of objects in the plane."""
 
     def __init__(self, pv, title):
         self.pv = pv
@@ -105,8 +105,7 @@ class View:
         text.Color = TEXT
 
     def show(self, source, field=None, on="POINTS", colour=None):
-        """Shows a source, by the colours of a field or in one colour, without shading. @return its display, the
-        colours' scale"""
+        """Shows a source without shading, coloured by a field or in one colour. @return its display, the colour scale"""
         display = self.pv.Show(source, self.view)
         display.Ambient, display.Diffuse, display.Specular = 1.0, 0.0, 0.0  # colours as in the bar
         if field is None:
@@ -131,22 +130,22 @@ class View:
         bar.AutomaticLabelFormat = 0
         bar.LabelFormat = bar.RangeLabelFormat = "%-#.3g"
         bar.AddRangeLabels = 1
-        bar.UseCustomLabels = 1  # the ends are enough, and do not overlap
+        bar.UseCustomLabels = 1  # labels at the ends do not overlap
         bar.CustomLabels = []
 
     def mark(self, x, y):
-        """A cross at a place [m], above what is shown there."""
+        """A cross at a position [m], on top of the sheet."""
         mark = self.pv.Show(self.pv.Text(Text="+"), self.view)
         mark.TextPropMode, mark.BillboardPosition = "Billboard 3D Text", [x, y, 1e-3]
         mark.FontSize, mark.Bold, mark.Color, mark.Justification = 26, 1, [0.0, 0.0, 0.0], "Center"
         mark.VerticalJustification = "Center"
 
     def look_at(self, bounds, size):
-        """Shows a box (x from, to, y from, to) [m] above the colour bar of a view of so many pixels."""
+        """Shows a box (x from, to, y from, to) [m] above the colour bar of a view with a given size [pixels]."""
         low_x, high_x, low_y, high_y = bounds
         width, height = high_x - low_x, high_y - low_y
         pixel = max(width / (0.9 * size[0]), height / (size[1] - BAR_HEIGHT))
-        # Titles take less than the colour bars below: the box is a little above the middle.
+        # Titles are smaller than the colour bars below, so that the box is slightly above the middle.
         centre = [0.5 * (low_x + high_x), 0.5 * (low_y + high_y) - 0.17 * BAR_HEIGHT * pixel]
         self.view.CameraParallelProjection = 1
         self.view.CameraFocalPoint = [*centre, 0.0]
@@ -156,13 +155,13 @@ class View:
 
 
 def size_for(bounds, width):
-    """Pixels of a view so wide that shows a box and a colour bar below."""
+    """Size [pixels] of a view of given width that shows a box and a colour bar below."""
     low_x, high_x, low_y, high_y = bounds
     return width, int(min(max(0.9 * width * (high_y - low_y) / (high_x - low_x), 120), 900)) + BAR_HEIGHT
 
 
 def beside(pv, views, size, name):
-    """Views of one size beside each other. @return (layout, its size)"""
+    """Views of equal size side by side. @return (layout, its size)"""
     layout = pv.CreateLayout(name)
     layout.AssignView(0, views[0].view)
     place = 0

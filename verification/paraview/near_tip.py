@@ -1,10 +1,10 @@
 #!/usr/bin/env pvpython
-"""Shows what is around the tip of a crack: the sheet in a frame, and the fields as averaged while the tip ran.
+"""Shows the neighbourhood of the tip of a crack: the sheet in a frame, and the mean fields around the running tip.
 
 Usage: pvpython near_tip.py DIR [--field FIELD] [--unfolded] [--time MS] [--screenshot FILE.png]
 DIR is an output directory of `latcon fracture`. Left: bonds around the tip (cross), coloured by their stretch. Right:
 means over samples that move with the tip, in the current configuration. FIELD: velocity, its component along the crack
-with arrows and an outline of what moves back ahead of the tip, or opening-stress. Without --screenshot a window opens.
+with arrows and an outline of the zone of backward motion ahead of the tip, or opening-stress. Without --screenshot a window opens.
 """
 import csv
 import json
@@ -16,7 +16,7 @@ from looks import (BEYOND, TENSOR, View, beside, fail, finish, input_number, par
                    values_of)
 
 VIEW_WIDTH = 760  # [pixels]
-NEGATIVE = 0.01  # of the crack's speed: what moves back faster is outlined, as near_tip.json counts it
+NEGATIVE = 0.01  # fraction of the crack speed: faster backward motion is outlined, as counted in near_tip.json
 OUTLINE = [0.0, 0.62, 0.45]  # green
 LABELS = {"velocity": "velocity along the crack, laboratory [m/s]",
           "opening-stress": "Cauchy stress yy, across the crack [Pa]"}
@@ -51,7 +51,7 @@ def frame_time(times, path, chosen):
 
 
 def averaged(chosen):
-    """Where there was material more often than not, as warped; cells that span the opening are left out."""
+    """The warped region with material in at least half of the samples, without cells that span the opening."""
     import numpy as np
 
     image = pv.XMLImageDataReader(FileName=[str(chosen.directory / chosen.means)])
@@ -69,7 +69,7 @@ def averaged(chosen):
 
 
 def show_means(view, chosen):
-    """The averaged fields. @return bounds of what there is of them [m]"""
+    """Shows the mean fields. @return their bounds [m]"""
     import numpy as np
 
     cells = averaged(chosen)
@@ -101,7 +101,7 @@ def show_means(view, chosen):
 
 
 def show_sheet(view, sheet, bounds, chosen):
-    """Bonds of the sheet in a box by their stretch."""
+    """Shows the bonds in a box, coloured by stretch."""
     import numpy as np
 
     low_x, high_x, low_y, high_y = bounds
@@ -147,7 +147,7 @@ def draw(chosen):
 
 if __name__ == "__main__":
     CHOSEN = arguments()
-    import paraview.simple as pv  # after the arguments, whose errors need no ParaView
+    import paraview.simple as pv  # after parsing the arguments, which does not need ParaView
 
     pv._DisableFirstRenderCameraReset()
     finish(pv, *draw(CHOSEN), CHOSEN.screenshot)

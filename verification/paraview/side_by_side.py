@@ -1,8 +1,8 @@
 #!/usr/bin/env pvpython
-"""Shows what `latcon compare` wrote: the lattice, the continuum, and their difference at the sites.
+"""Shows the output of `latcon compare`: the lattice, the continuum, and their difference at the sites.
 
 Usage: pvpython side_by_side.py DIR [--field NAME] [--component C] [--undeformed] [--screenshot FILE.png]
-DIR holds the difference.pvd of `latcon compare`. The first two views have one colour scale, and all three one camera.
+DIR contains difference.pvd of `latcon compare`. The first two views share a colour scale, and all three share a camera.
 Without --screenshot a window opens.
 """
 import sys
@@ -12,7 +12,7 @@ sys.dont_write_bytecode = True  # this folder stays as it is
 from looks import (TENSOR, VECTOR, View, array, beside, finish, parser_of, require, set_scale, size_for, symmetric,
                    value_range)
 
-# Fields that on the lattice come from the bonds of a site: coloured where it has all of them, grey elsewhere.
+# Fields that the lattice computes from the bonds of a site: coloured at sites with all their bonds, grey elsewhere.
 FROM_BONDS = ("deformation_gradient", "first_piola_stress", "cauchy_stress", "strain_energy_density")
 FIELDS = {"displacement": (VECTOR, "m"), "velocity": (VECTOR, "m/s"), "deformation_gradient": (TENSOR, "1"),
           "first_piola_stress": (TENSOR, "Pa"), "cauchy_stress": (TENSOR, "Pa"), "strain_energy_density": ({}, "J/m^3")}
@@ -61,7 +61,7 @@ def draw(chosen):
         sites = pv.Threshold(Input=sites, Scalars=["POINTS", "complete"], LowerThreshold=1.0, UpperThreshold=1.0)
         sites.UpdatePipeline()
         grey = " (grey: sites that lack bonds)"
-    # What the continuum does between the sites, in a corner for instance, does not wash out the rest.
+    # Extremes of the continuum between the sites, for instance in a corner, do not determine the scale.
     ranges = [value_range(sites, name, component) for name in (chosen.field, f"{chosen.field}_continuum")]
     off = value_range(sites, difference, component)
     if not chosen.undeformed:
@@ -98,7 +98,7 @@ def draw(chosen):
 
 if __name__ == "__main__":
     CHOSEN = arguments()
-    import paraview.simple as pv  # after the arguments, whose errors need no ParaView
+    import paraview.simple as pv  # after parsing the arguments, which does not need ParaView
 
     pv._DisableFirstRenderCameraReset()
     finish(pv, *draw(CHOSEN), CHOSEN.screenshot)
