@@ -131,14 +131,14 @@ std::string with_time(std::string vtu, const double time)
 FieldWriter::FieldWriter(const MPI_Comm communicator, std::filesystem::path directory, std::string name)
   : communicator_(communicator), directory_(std::move(directory)), name_(std::move(name))
 {
-  collectively(communicator_,
-               [&]
-               {
-                 std::error_code failure;
-                 std::filesystem::create_directory(directory_, failure);
-                 if (failure)
-                   throw OutputFailed("cannot create the folder " + directory_.string() + ": " + failure.message());
-               });
+  run_collectively(communicator_,
+                   [&]
+                   {
+                     std::error_code failure;
+                     std::filesystem::create_directory(directory_, failure);
+                     if (failure)
+                       throw OutputFailed("cannot create the folder " + directory_.string() + ": " + failure.message());
+                   });
 }
 
 void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::Vector &u, const Sheet::Vector *v)
@@ -171,29 +171,29 @@ void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::
   if (v != nullptr)
     output.add_data_vector(sheet.dof_handler(), *v, std::vector<std::string>(2, "velocity"), vector);
   output.add_data_vector(sheet.dof_handler(), u, local_fields);
-  collectively(communicator_,
-               [&]
-               {
-                 output.build_patches(sheet.mapping(), sheet.degree());
-                 std::ostringstream text;
-                 output.write_vtu(text);
-                 write_whole(directory_ / piece(rank), with_time(text.str(), time));
-               });
+  run_collectively(communicator_,
+                   [&]
+                   {
+                     output.build_patches(sheet.mapping(), sheet.degree());
+                     std::ostringstream text;
+                     output.write_vtu(text);
+                     write_whole(directory_ / piece(rank), with_time(text.str(), time));
+                   });
 
   frames_.push_back({time, n_ranks});
   if (n_ranks > 1)
-    collectively(communicator_,
-                 [&]
-                 {
-                   if (rank != 0)
-                     return;
-                   std::vector<std::string> pieces;
-                   for (unsigned int r = 0; r < n_ranks; ++r)
-                     pieces.push_back(piece(r));
-                   std::ostringstream text;
-                   output.write_pvtu_record(text, pieces);
-                   write_whole(directory_ / file_of(frames_.size() - 1), without_comment(text.str()));
-                 });
+    run_collectively(communicator_,
+                     [&]
+                     {
+                       if (rank != 0)
+                         return;
+                       std::vector<std::string> pieces;
+                       for (unsigned int r = 0; r < n_ranks; ++r)
+                         pieces.push_back(piece(r));
+                       std::ostringstream text;
+                       output.write_pvtu_record(text, pieces);
+                       write_whole(directory_ / file_of(frames_.size() - 1), without_comment(text.str()));
+                     });
   write_collection();
 }
 
@@ -211,20 +211,20 @@ std::string FieldWriter::file_of(const std::size_t frame) const
 
 void FieldWriter::write_collection() const
 {
-  collectively(communicator_,
-               [&]
-               {
-                 if (Utilities::MPI::this_mpi_process(communicator_) != 0)
-                   return;
-                 std::ostringstream out;
-                 out << std::setprecision(17);
-                 out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n";
-                 for (std::size_t frame = 0; frame < frames_.size(); ++frame)
-                   out << "    <DataSet timestep=\"" << frames_[frame].time << "\" part=\"0\" file=\"" << file_of(frame)
-                       << "\"/>\n";
-                 out << "  </Collection>\n</VTKFile>\n";
-                 write_whole(collection(), out.str());
-               });
+  run_collectively(communicator_,
+                   [&]
+                   {
+                     if (Utilities::MPI::this_mpi_process(communicator_) != 0)
+                       return;
+                     std::ostringstream out;
+                     out << std::setprecision(17);
+                     out << "<?xml version=\"1.0\"?>\n<VTKFile type=\"Collection\" version=\"0.1\">\n  <Collection>\n";
+                     for (std::size_t frame = 0; frame < frames_.size(); ++frame)
+                       out << "    <DataSet timestep=\"" << frames_[frame].time << "\" part=\"0\" file=\""
+                           << file_of(frame) << "\"/>\n";
+                     out << "  </Collection>\n</VTKFile>\n";
+                     write_whole(collection(), out.str());
+                   });
 }
 
 double FieldWriter::last_time() const
