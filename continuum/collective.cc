@@ -94,7 +94,7 @@ void DeferredException::rethrow_collectively(const MPI_Comm communicator) const
   rethrow(gravest, message);
 }
 
-void collectively(const MPI_Comm communicator, const std::function<void()> &work)
+void run_collectively(const MPI_Comm communicator, const std::function<void()> &work)
 {
   DeferredException(work).rethrow_collectively(communicator);
 }

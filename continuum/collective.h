@@ -30,5 +30,5 @@ private:
 };
 
 /// Runs local `work` and rethrows its exception on every rank: a DeferredException with nothing in between. Collective.
-void collectively(MPI_Comm communicator, const std::function<void()> &work);
+void run_collectively(MPI_Comm communicator, const std::function<void()> &work);
 } // namespace latcon::continuum

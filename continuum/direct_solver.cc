@@ -125,20 +125,20 @@ void DirectSolver::factorise(const Sheet::Matrix &K)
   communicator_ = K.get_mpi_communicator();
   n_own_ = K.trilinos_matrix().NumMyRows();
   MatrixRows rows = gather_rows(K.trilinos_matrix(), communicator_);
-  collectively(communicator_,
-               [&]
-               {
-                 if (rows.lengths.empty())
-                   return;
-                 // After a failure there are no factors.
-                 std::unique_ptr<Factors> factors = std::move(factors_);
-                 if (factors && factors->has_sparsity_of(rows))
-                   factors->replace_values(rows);
-                 else
-                   factors = std::make_unique<Factors>(std::move(rows), library_);
-                 require_success(factors->solver->NumericFactorization(), "factorisation");
-                 factors_ = std::move(factors);
-               });
+  run_collectively(communicator_,
+                   [&]
+                   {
+                     if (rows.lengths.empty())
+                       return;
+                     // After a failure there are no factors.
+                     std::unique_ptr<Factors> factors = std::move(factors_);
+                     if (factors && factors->has_sparsity_of(rows))
+                       factors->replace_values(rows);
+                     else
+                       factors = std::make_unique<Factors>(std::move(rows), library_);
+                     require_success(factors->solver->NumericFactorization(), "factorisation");
+                     factors_ = std::move(factors);
+                   });
 }
 
 DirectSolver::~DirectSolver() = default;
@@ -146,16 +146,16 @@ DirectSolver::~DirectSolver() = default;
 void DirectSolver::solve(double *x, const double *b)
 {
   const auto parts = Utilities::MPI::gather(communicator_, std::vector<double>(b, b + n_own_));
-  collectively(communicator_,
-               [&]
-               {
-                 if (!factors_)
-                   return;
-                 double *to = factors_->b.Values();
-                 for (const std::vector<double> &part : parts)
-                   to = std::copy(part.begin(), part.end(), to);
-                 require_success(factors_->solver->Solve(), "forward and backward substitution");
-               });
+  run_collectively(communicator_,
+                   [&]
+                   {
+                     if (!factors_)
+                       return;
+                     double *to = factors_->b.Values();
+                     for (const std::vector<double> &part : parts)
+                       to = std::copy(part.begin(), part.end(), to);
+                     require_success(factors_->solver->Solve(), "forward and backward substitution");
+                   });
   std::vector<int> counts;
   std::vector<int> offsets;
   for (const std::vector<double> &part : parts)

@@ -162,14 +162,14 @@ void DynamicSolver::release(const double duration)
 double DynamicSolver::load_factor_at(const double time) const
 {
   double factor = 1.;
-  collectively(sheet_.communicator(),
-               [&]
-               {
-                 if (given_load_factor_)
-                   factor = given_load_factor_(time);
-                 if (!std::isfinite(factor))
-                   throw InvalidInput("the load factor at time " + std::to_string(time) + " s is not finite");
-               });
+  run_collectively(sheet_.communicator(),
+                   [&]
+                   {
+                     if (given_load_factor_)
+                       factor = given_load_factor_(time);
+                     if (!std::isfinite(factor))
+                       throw InvalidInput("the load factor at time " + std::to_string(time) + " s is not finite");
+                   });
   return factor;
 }
 

@@ -132,14 +132,14 @@ std::string with_time(std::string vtu, const double time)
 FieldWriter::FieldWriter(const MPI_Comm communicator, std::filesystem::path directory, std::string name)
   : communicator_(communicator), directory_(std::move(directory)), name_(std::move(name))
 {
-  collectively(communicator_,
-               [&]
-               {
-                 std::error_code failure;
-                 std::filesystem::create_directory(directory_, failure);
-                 if (failure)
-                   throw OutputFailed("cannot create the folder " + directory_.string() + ": " + failure.message());
-               });
+  run_collectively(communicator_,
+                   [&]
+                   {
+                     std::error_code failure;
+                     std::filesystem::create_directory(directory_, failure);
+                     if (failure)
+                       throw OutputFailed("cannot create the folder " + directory_.string() + ": " + failure.message());
+                   });
 }
 
 void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::Vector &u, const Sheet::Vector *v)
@@ -172,29 +172,29 @@ void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::
   if (v != nullptr)
     output.add_data_vector(sheet.dof_handler(), *v, std::vector<std::string>(2, "velocity"), vector);
   output.add_data_vector(sheet.dof_handler(), u, local_fields);
-  collectively(communicator_,
-               [&]
-               {
-                 output.build_patches(sheet.mapping(), sheet.degree());
-                 std::ostringstream text;
-                 output.write_vtu(text);
-                 write_whole(directory_ / piece(rank), with_time(text.str(), time));
-               });
+  run_collectively(communicator_,
+                   [&]
+                   {
+                     output.build_patches(sheet.mapping(), sheet.degree());
+                     std::ostringstream text;
+                     output.write_vtu(text);
+                     write_whole(directory_ / piece(rank), with_time(text.str(), time));
+                   });
 
   frames_.push_back({time, n_ranks});
   if (n_ranks > 1)
-    collectively(communicator_,
-                 [&]
-                 {
-                   if (rank != 0)
-                     return;
-                   std::vector<std::string> pieces;
-                   for (unsigned int r = 0; r < n_ranks; ++r)
-                     pieces.push_back(piece(r));
-                   std::ostringstream text;
-                   output.write_pvtu_record(text, pieces);
-                   write_whole(directory_ / file_of(frames_.size() - 1), without_comment(text.str()));
-                 });
+    run_collectively(communicator_,
+                     [&]
+                     {
+                       if (rank != 0)
+                         return;
+                       std::vector<std::string> pieces;
+                       for (unsigned int r = 0; r < n_ranks; ++r)
+                         pieces.push_back(piece(r));
+                       std::ostringstream text;
+                       output.write_pvtu_record(text, pieces);
+                       write_whole(directory_ / file_of(frames_.size() - 1), without_comment(text.str()));
+                     });
   write_collection();
 }
 

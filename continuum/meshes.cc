@@ -347,14 +347,14 @@ double n_coarse_cells(const std::filesystem::path &gmsh_file)
 void read_gmsh(parallel::distributed::Triangulation<2> &mesh, const std::filesystem::path &file,
                const unsigned int refinements)
 {
-  collectively(mesh.get_communicator(),
-               [&]
-               {
-                 // Read into a serial mesh first: an exception of deal.II on one rank must not leave the others
-                 // waiting.
-                 Triangulation<2> serial;
-                 read_serial(serial, file);
-               });
+  run_collectively(mesh.get_communicator(),
+                   [&]
+                   {
+                     // Read into a serial mesh first: an exception of deal.II on one rank must not leave the others
+                     // waiting.
+                     Triangulation<2> serial;
+                     read_serial(serial, file);
+                   });
   std::ifstream stream(file);
   GridIn<2> reader(mesh);
   reader.read_msh(stream);

@@ -137,13 +137,13 @@ Sheet::Vector Sheet::lift() const
 {
   AffineConstraints<double> given(conformity_constraints_.get_local_lines());
   given.merge(conformity_constraints_);
-  collectively(communicator(),
-               [&]
-               {
-                 for (const PrescribedDisplacement &condition : conditions_.displacements)
-                   VectorTools::interpolate_boundary_values(mapping_, dof_handler_, condition.boundary,
-                                                            *condition.displacement, given, condition.components);
-               });
+  run_collectively(communicator(),
+                   [&]
+                   {
+                     for (const PrescribedDisplacement &condition : conditions_.displacements)
+                       VectorTools::interpolate_boundary_values(mapping_, dof_handler_, condition.boundary,
+                                                                *condition.displacement, given, condition.components);
+                   });
   Vector nodal = make_owned();
   for (const types::global_dof_index i : owned_)
     if (given.is_constrained(i) && !conformity_constraints_.is_constrained(i))
@@ -158,42 +158,42 @@ std::vector<PointState> Sheet::evaluate(const Vector &u, const std::vector<Point
   // Each cell has one owner, so the mean over the cells that contain a point is independent of the partition.
   constexpr unsigned int n_sums = 15; // u (2), F (4), G (8), number of cells
   std::vector<double> sums(n_sums * points.size(), 0.);
-  collectively(communicator(),
-               [&]
-               {
-                 const FEValuesExtractors::Vector displacement(0);
-                 std::vector<Tensor<1, 2>> values;
-                 std::vector<Tensor<2, 2>> gradients;
-                 std::vector<Tensor<3, 2>> hessians;
-                 for (const auto &[cell, located] : locate(points))
-                 {
-                   FEValues<2> there(mapping_, element_, Quadrature<2>(located.unit_points),
-                                     update_values | update_gradients | update_hessians);
-                   there.reinit(
-                     typename DoFHandler<2>::active_cell_iterator(&mesh_, cell->level(), cell->index(), &dof_handler_));
-                   values.resize(located.indices.size());
-                   gradients.resize(located.indices.size());
-                   hessians.resize(located.indices.size());
-                   there[displacement].get_function_values(u, values);
-                   there[displacement].get_function_gradients(u, gradients);
-                   there[displacement].get_function_hessians(u, hessians);
-                   for (std::size_t n = 0; n < located.indices.size(); ++n)
-                   {
-                     double *sum = &sums[n_sums * located.indices[n]];
-                     for (unsigned int i = 0; i < 2; ++i)
-                     {
-                       sum[i] += values[n][i];
-                       for (unsigned int J = 0; J < 2; ++J)
-                       {
-                         sum[2 + 2 * i + J] += gradients[n][i][J];
-                         for (unsigned int K = 0; K < 2; ++K)
-                           sum[6 + 4 * i + 2 * J + K] += hessians[n][i][J][K];
-                       }
-                     }
-                     sum[n_sums - 1] += 1.;
-                   }
-                 }
-               });
+  run_collectively(
+    communicator(),
+    [&]
+    {
+      const FEValuesExtractors::Vector displacement(0);
+      std::vector<Tensor<1, 2>> values;
+      std::vector<Tensor<2, 2>> gradients;
+      std::vector<Tensor<3, 2>> hessians;
+      for (const auto &[cell, located] : locate(points))
+      {
+        FEValues<2> there(mapping_, element_, Quadrature<2>(located.unit_points),
+                          update_values | update_gradients | update_hessians);
+        there.reinit(typename DoFHandler<2>::active_cell_iterator(&mesh_, cell->level(), cell->index(), &dof_handler_));
+        values.resize(located.indices.size());
+        gradients.resize(located.indices.size());
+        hessians.resize(located.indices.size());
+        there[displacement].get_function_values(u, values);
+        there[displacement].get_function_gradients(u, gradients);
+        there[displacement].get_function_hessians(u, hessians);
+        for (std::size_t n = 0; n < located.indices.size(); ++n)
+        {
+          double *sum = &sums[n_sums * located.indices[n]];
+          for (unsigned int i = 0; i < 2; ++i)
+          {
+            sum[i] += values[n][i];
+            for (unsigned int J = 0; J < 2; ++J)
+            {
+              sum[2 + 2 * i + J] += gradients[n][i][J];
+              for (unsigned int K = 0; K < 2; ++K)
+                sum[6 + 4 * i + 2 * J + K] += hessians[n][i][J][K];
+            }
+          }
+          sum[n_sums - 1] += 1.;
+        }
+      }
+    });
   Utilities::MPI::sum(sums, communicator(), sums);
 
   std::vector<PointState> states(points.size());

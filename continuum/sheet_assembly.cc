@@ -20,12 +20,12 @@ namespace latcon::continuum
 double Sheet::energy(const Vector &u, const double load_factor) const
 {
   double own = 0.;
-  collectively(communicator(),
-               [&]
-               {
-                 integrate(*this, u, load_factor, Order::value,
-                           [&](const Contribution &contribution) { own += contribution.energy; });
-               });
+  run_collectively(communicator(),
+                   [&]
+                   {
+                     integrate(*this, u, load_factor, Order::value,
+                               [&](const Contribution &contribution) { own += contribution.energy; });
+                   });
   return Utilities::MPI::sum(own, communicator());
 }
 

@@ -299,54 +299,54 @@ void VertexPatches::factorise(const Sheet::Matrix &K)
     const auto index = static_cast<types::global_dof_index>(column);
     return layout_->in_local_range(index) || layout_->is_ghost_entry(index) ? layout_->global_to_local(index) : nowhere;
   };
-  collectively(layout_->get_mpi_communicator(),
-               [&]
-               {
-                 std::vector<unsigned int> own_columns(own.NumMyCols());
-                 for (int column = 0; column < own.NumMyCols(); ++column)
-                   own_columns[column] = position_of(own.GCID(column));
-
-                 std::vector<unsigned int> at(n_owned + layout_->n_ghost_indices(),
-                                              nowhere); // position in the current patch
-                 Eigen::MatrixXd block;
-                 Eigen::LLT<Eigen::MatrixXd> cholesky;
-                 for (std::size_t p = 0; p + 1 < first_dof_.size(); ++p)
-                 {
-                   const unsigned int *dofs = &dofs_[first_dof_[p]];
-                   const unsigned int n = first_dof_[p + 1] - first_dof_[p];
-                   for (unsigned int i = 0; i < n; ++i)
-                     at[dofs[i]] = i;
-                   block.setZero(n, n);
-                   int n_entries = 0;
-                   double *values = nullptr;
-                   int *columns = nullptr;
-                   for (unsigned int i = 0; i < n; ++i)
+  run_collectively(layout_->get_mpi_communicator(),
+                   [&]
                    {
-                     const auto take = [&](const int k, const unsigned int position)
+                     std::vector<unsigned int> own_columns(own.NumMyCols());
+                     for (int column = 0; column < own.NumMyCols(); ++column)
+                       own_columns[column] = position_of(own.GCID(column));
+
+                     std::vector<unsigned int> at(n_owned + layout_->n_ghost_indices(),
+                                                  nowhere); // position in the current patch
+                     Eigen::MatrixXd block;
+                     Eigen::LLT<Eigen::MatrixXd> cholesky;
+                     for (std::size_t p = 0; p + 1 < first_dof_.size(); ++p)
                      {
-                       if (position != nowhere && at[position] != nowhere)
-                         block(at[position], i) = values[k];
-                     };
-                     if (dofs[i] < n_owned)
-                     {
-                       own.ExtractMyRowView(static_cast<int>(dofs[i]), n_entries, values, columns);
-                       for (int k = 0; k < n_entries; ++k)
-                         take(k, own_columns[columns[k]]);
+                       const unsigned int *dofs = &dofs_[first_dof_[p]];
+                       const unsigned int n = first_dof_[p + 1] - first_dof_[p];
+                       for (unsigned int i = 0; i < n; ++i)
+                         at[dofs[i]] = i;
+                       block.setZero(n, n);
+                       int n_entries = 0;
+                       double *values = nullptr;
+                       int *columns = nullptr;
+                       for (unsigned int i = 0; i < n; ++i)
+                       {
+                         const auto take = [&](const int k, const unsigned int position)
+                         {
+                           if (position != nowhere && at[position] != nowhere)
+                             block(at[position], i) = values[k];
+                         };
+                         if (dofs[i] < n_owned)
+                         {
+                           own.ExtractMyRowView(static_cast<int>(dofs[i]), n_entries, values, columns);
+                           for (int k = 0; k < n_entries; ++k)
+                             take(k, own_columns[columns[k]]);
+                         }
+                         else
+                         {
+                           ghosts.ExtractGlobalRowView(static_cast<int>(layout_->local_to_global(dofs[i])), n_entries,
+                                                       values, columns);
+                           for (int k = 0; k < n_entries; ++k)
+                             take(k, position_of(columns[k]));
+                         }
+                       }
+                       if (!invert(block, cholesky, &inverses_[first_entry_[p]]))
+                         ++own_replaced_;
+                       for (unsigned int i = 0; i < n; ++i)
+                         at[dofs[i]] = nowhere;
                      }
-                     else
-                     {
-                       ghosts.ExtractGlobalRowView(static_cast<int>(layout_->local_to_global(dofs[i])), n_entries,
-                                                   values, columns);
-                       for (int k = 0; k < n_entries; ++k)
-                         take(k, position_of(columns[k]));
-                     }
-                   }
-                   if (!invert(block, cholesky, &inverses_[first_entry_[p]]))
-                     ++own_replaced_;
-                   for (unsigned int i = 0; i < n; ++i)
-                     at[dofs[i]] = nowhere;
-                 }
-               });
+                   });
 }
 
 void VertexPatches::vmult(Vector &z, const Vector &r) const

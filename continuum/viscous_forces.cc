@@ -120,16 +120,16 @@ double ViscousForces::dissipation(const Vector &u, const Vector &v) const
   if (viscosity_ == nullptr)
     return 0.;
   double own = 0.;
-  collectively(sheet_.communicator(),
-               [&]
-               {
-                 for_each_cell(sheet_, u, v,
-                               [&](const auto &values, const auto &F, const auto &Fdot, const auto &)
-                               {
-                                 for (unsigned int q = 0; q < F.size(); ++q)
-                                   own += viscosity_->dissipation(F[q], Fdot[q]) * values.JxW(q);
-                               });
-               });
+  run_collectively(sheet_.communicator(),
+                   [&]
+                   {
+                     for_each_cell(sheet_, u, v,
+                                   [&](const auto &values, const auto &F, const auto &Fdot, const auto &)
+                                   {
+                                     for (unsigned int q = 0; q < F.size(); ++q)
+                                       own += viscosity_->dissipation(F[q], Fdot[q]) * values.JxW(q);
+                                   });
+                   });
   return Utilities::MPI::sum(own, sheet_.communicator());
 }
 } // namespace latcon::continuum

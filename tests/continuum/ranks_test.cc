@@ -204,7 +204,7 @@ TEST(Ranks, AllThrowWhatOneThrows)
   };
   try
   {
-    continuum::collectively(MPI_COMM_WORLD, fail_on_last);
+    continuum::run_collectively(MPI_COMM_WORLD, fail_on_last);
     FAIL() << "did not throw";
   }
   catch (const continuum::NonPhysicalState &failure)
@@ -218,8 +218,8 @@ TEST(Ranks, AllThrowWhatOneThrows)
       throw continuum::OutputFailed("no disk");
     throw continuum::NonPhysicalState("no matter");
   };
-  EXPECT_THROW(continuum::collectively(MPI_COMM_WORLD, fail_differently), continuum::OutputFailed);
-  EXPECT_NO_THROW(continuum::collectively(MPI_COMM_WORLD, [] {}));
+  EXPECT_THROW(continuum::run_collectively(MPI_COMM_WORLD, fail_differently), continuum::OutputFailed);
+  EXPECT_NO_THROW(continuum::run_collectively(MPI_COMM_WORLD, [] {}));
 }
 
 TEST(Ranks, AllSeeANonPhysicalStateOnOneRank)

@@ -69,7 +69,7 @@ std::string hanging(const std::string &before, const std::string &text)
 {
   const std::size_t indent = support::width_of(before);
   std::string lines;
-  for (const std::string &line : support::wrapped(text, columns - indent))
+  for (const std::string &line : support::wrap_text(text, columns - indent))
     lines += (lines.empty() ? before : std::string(indent, ' ')) + line + "\n";
   return lines;
 }

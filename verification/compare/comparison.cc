@@ -183,7 +183,7 @@ void require_same_time(const LatticeFrame &lattice, const ContinuumFrame &contin
                               " is in motion and the " + (lattice_moves ? "continuum" : "lattice") + " in equilibrium" +
                               advice);
   }
-  if (!same_time(lattice.time, continuum.time))
+  if (!is_same_time(lattice.time, continuum.time))
     throw support::InputError(both_files(lattice, continuum) +
                               ": the times differ: " + support::full_precision(lattice.time) + " of the lattice, " +
                               support::full_precision(continuum.time) + " of the continuum" + advice);

@@ -113,7 +113,7 @@ double frame_time(const FrameFile &file, vtkDataSet &data, const char *name, std
   if (time == nullptr || time->GetNumberOfTuples() != 1 || !std::isfinite(time->GetComponent(0, 0)))
     fail(file, std::string("has no field data '") + name + "', so its time is unknown");
   const double found = time->GetComponent(0, 0);
-  if (wanted && !same_time(found, *wanted))
+  if (wanted && !is_same_time(found, *wanted))
     fail(file, "has the time " + support::full_precision(found) + ", not " + support::full_precision(*wanted));
   return found;
 }

@@ -92,7 +92,7 @@ FrameFile pick(const fs::path &series, Side side, std::optional<double> time)
   const double wanted = time.value_or(entries.back().time);
   std::vector<Entry> found;
   std::copy_if(entries.begin(), entries.end(), std::back_inserter(found),
-               [&](const Entry &entry) { return same_time(entry.time, wanted); });
+               [&](const Entry &entry) { return is_same_time(entry.time, wanted); });
   if (found.empty())
   {
     std::vector<double> nearest = frame.times;
@@ -121,7 +121,7 @@ std::string to_string(Side side)
   return side == Side::lattice ? "lattice" : "continuum";
 }
 
-bool same_time(double one, double other)
+bool is_same_time(double one, double other)
 {
   return std::abs(one - other) <= time_tolerance * std::max(std::abs(one), std::abs(other));
 }

@@ -33,7 +33,7 @@ struct FrameFile
 inline constexpr double time_tolerance = 1e-9;
 
 /// Returns true if two times [s], or load factors [-], are equal to time_tolerance.
-bool same_time(double one, double other);
+bool is_same_time(double one, double other);
 
 /// Finds the frame given by an argument of the command line.
 /// @param name frame (.vtp of the lattice; .vtu or .pvtu of the continuum), series (.pvd), or output directory of a

@@ -18,14 +18,14 @@ QuietVtk::~QuietVtk()
   vtkOutputWindow::SetInstance(before_);
 }
 
-QuietVtk::Kept *QuietVtk::Kept::New()
+QuietVtk::FirstErrorWindow *QuietVtk::FirstErrorWindow::New()
 {
-  auto *const window = new Kept;
+  auto *const window = new FirstErrorWindow;
   window->InitializeObjectBase();
   return window;
 }
 
-void QuietVtk::Kept::DisplayErrorText(const char *text)
+void QuietVtk::FirstErrorWindow::DisplayErrorText(const char *text)
 {
   if (first.empty())
     first = text == nullptr ? "unknown error" : text;

@@ -23,17 +23,17 @@ public:
 
 private:
   // Stores the first error.
-  class Kept : public vtkOutputWindow
+  class FirstErrorWindow : public vtkOutputWindow
   {
   public:
-    static Kept *New();
+    static FirstErrorWindow *New();
     void DisplayText(const char *) override {}
     void DisplayErrorText(const char *text) override;
     std::string first;
   };
 
   vtkSmartPointer<vtkOutputWindow> before_;
-  vtkNew<Kept> kept_;
+  vtkNew<FirstErrorWindow> kept_;
 };
 
 } // namespace latcon::compare

@@ -9,7 +9,7 @@ namespace latcon::output
 CrackFilm::CrackFilm(const input::Case &input, lattice::Simulation &simulation, const CrackRecord &record,
                      double seed_tip_X, std::filesystem::path directory)
   : simulation_(simulation), record_(record), frames_(simulation.lattice(), std::move(directory)),
-    wanted_(input.motion_frames > 0),
+    is_enabled_(input.motion_frames > 0),
     pitch_((input.stop_position * simulation.lattice().length() - seed_tip_X) / std::max(1u, input.motion_frames)),
     next_frame_(seed_tip_X + pitch_)
 {
@@ -22,7 +22,7 @@ void CrackFilm::begin(bool resumed)
     add_frame();
     next_frame_ = due_beyond(record_.tip_X(), next_frame_);
   }
-  else if (wanted_ && simulation_.band().is_first())
+  else if (is_enabled_ && simulation_.band().is_first())
     frames_.write_collection();
 }
 
@@ -56,13 +56,13 @@ void CrackFilm::check_loaded(double first) const
       next = due_beyond(tip.X, next);
     }
   lattice::require_archived(next_frame_ == next, "`next_frame` is not the next frame that is due");
-  if (wanted_)
+  if (is_enabled_)
     lattice::require_archived(frames_.times() == times, "`times` of frames do not match the record of the tip");
 }
 
 void CrackFilm::add_frame()
 {
-  if (!wanted_)
+  if (!is_enabled_)
     return;
   const lattice::State &whole = simulation_.gather();
   if (simulation_.band().is_first())

@@ -49,7 +49,7 @@ private:
   lattice::Simulation &simulation_;
   const CrackRecord &record_;
   MotionWriter frames_;
-  bool wanted_;
+  bool is_enabled_;
   double pitch_;      // advance of the tip between frames [m]
   double next_frame_; // X of the tip at the next frame [m]
 };

@@ -37,7 +37,7 @@ void require(herr_t status, const std::string &what)
 }
 
 // Disables the error messages of HDF5; exceptions report errors.
-void be_quiet()
+void disable_error_messages()
 {
   H5Eset_auto2(H5E_DEFAULT, nullptr, nullptr);
 }
@@ -136,7 +136,7 @@ void write_array(hid_t file, const std::string &path, hid_t in_file, hid_t in_me
 
 Hdf5Image::Hdf5Image()
 {
-  be_quiet();
+  disable_error_messages();
   const std::string what = "HDF5 cannot create a file in memory";
   const Handle access(H5Pcreate(H5P_FILE_ACCESS), H5Pclose, what);
   constexpr std::size_t increment = 1U << 20U;
@@ -185,7 +185,7 @@ std::string Hdf5Image::take_bytes()
 
 Hdf5File::Hdf5File(const std::string &path)
 {
-  be_quiet();
+  disable_error_messages();
   file_ = H5Fopen(path.c_str(), H5F_ACC_RDONLY, H5P_DEFAULT);
   if (file_ < 0)
     throw Hdf5Error("it is not an HDF5 file");
