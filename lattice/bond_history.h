@@ -12,8 +12,8 @@ namespace latcon::lattice
 /// What bonds with a memory remember, by the place where they start: their stretch at the last update and the variables
 /// of their memory there. Nothing is stored for kinds of bonds without a memory.
 ///
-/// A rank holds values for the bonds that it computes: those that start in its own rows, and in the two rows below them,
-/// which the rank that owns those rows updates alike.
+/// A rank holds values for the bonds that it computes: those that start in its own rows, and in the two rows below
+/// them, which the rank that owns those rows updates alike.
 struct BondHistory
 {
   /// Bonds of one kind.

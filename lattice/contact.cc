@@ -83,7 +83,7 @@ bool Contact::has_moved(const State &state) const
   return false;
 }
 
-void Contact::note(const State &state, const std::vector<BrokenBond> &broken)
+void Contact::add_broken_bonds(const State &state, const std::vector<BrokenBond> &broken)
 {
   if (found_.size() < places_.size())
     rebuild(state);

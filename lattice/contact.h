@@ -48,7 +48,7 @@ public:
 
   /// Takes note of bonds that broke: their ends may touch others from now on, and each other.
   /// @param state with the positions of these ends, wherever they are
-  void note(const State &state, const std::vector<BrokenBond> &broken);
+  void add_broken_bonds(const State &state, const std::vector<BrokenBond> &broken);
 
   const std::vector<SiteForce> &evaluate(const State &state, const Field &vx, const Field &vy) override;
 

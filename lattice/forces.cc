@@ -238,10 +238,9 @@ kernels::BondForce Forces::single_bond(const Motion &motion, std::size_t place, 
 {
   const State &state = motion.state;
   const std::size_t far = place + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(place)));
-  kernels::BondForce bond =
-    kernels::bond_force(laws_[kind / n_nearest_kinds], constants_.shell(kind), state.x[far] - state.x[place],
-                        state.y[far] - state.y[place], motion.vx[far] - motion.vx[place],
-                        motion.vy[far] - motion.vy[place]);
+  kernels::BondForce bond = kernels::bond_force(laws_[kind / n_nearest_kinds], constants_.shell(kind),
+                                                state.x[far] - state.x[place], state.y[far] - state.y[place],
+                                                motion.vx[far] - motion.vx[place], motion.vy[far] - motion.vy[place]);
   if (const BondHistory::Kind &history = state.history.kinds[kind]; !history.variables.empty())
   {
     const kernels::Overstress over =

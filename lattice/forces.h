@@ -35,7 +35,7 @@ public:
 
   /// Enables row_has_short_bonds() for bonds whose stretch is below `stretch` [-], but for linear ones; 0: for none,
   /// the default.
-  void watch_short_bonds(double stretch) { constants_.shortness_limit = 1. / stretch; }
+  void set_shortness_threshold(double stretch) { constants_.shortness_limit = 1. / stretch; }
 
   /// Sets the time since the last update of the memory of bonds, in which they reached the positions at which forces are
   /// evaluated next [s], >= 0; 0 by default.
@@ -79,7 +79,7 @@ public:
   /// Whether a row holds bonds that were stretched past their limit (or retracted) at the last evaluation.
   bool row_has_events(std::size_t row) const { return row_events_[row] != 0; }
 
-  /// Whether a row holds short bonds, as of the last evaluation; see watch_short_bonds().
+  /// Whether a row holds short bonds, as of the last evaluation; see set_shortness_threshold().
   bool row_has_short_bonds(std::size_t row) const { return row_short_bonds_[row] != 0; }
 
   /// Whether one of the bonds that start in a row of the band will be past its limit, or have retracted, when their

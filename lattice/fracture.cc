@@ -63,30 +63,30 @@ void Fracture::configure(State &state, Forces &forces) const
 void Fracture::set_lookahead(double duration)
 {
   require(duration >= 0., "breaking looks ahead in time, not back");
-  look_ahead_ = duration;
+  lookahead_ = duration;
 }
 
 std::vector<std::uint8_t> Fracture::rows_with_events_ahead(const State &state, const Forces &forces) const
 {
   std::vector<std::uint8_t> rows(lattice_.rows(), 0);
   for_each_row(lattice_, band_.rows(),
-               [&](std::size_t row) { rows[row] = forces.row_has_events_ahead(state, row, look_ahead_) ? 1 : 0; });
+               [&](std::size_t row) { rows[row] = forces.row_has_events_ahead(state, row, lookahead_) ? 1 : 0; });
   return rows;
 }
 
 // With the expressions of the loops over a row: one that they do not flag has no event, one that they flag has one.
 Fracture::Event Fracture::event(const State &state, std::size_t place, std::size_t kind) const
 {
-  const double longest = limit(state, place, kind);
+  const double longest = breaking_stretch_of(state, place, kind);
   const double shortest = state.bonds.toughened(place, kind) ? 0. : retraction_stretch_[kind];
   const auto among = [](double value, double from, double to) {
     return value > to ? Event::broken : value < from ? Event::retracted : Event::none;
   };
-  if (!(look_ahead_ > 0.))
+  if (!(lookahead_ > 0.))
     return among(stretch(state, lattice_, place, kind), shortest, longest);
   const std::size_t far = place + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(place)));
   const double l = lattice_.rest_length(kind);
-  return among(squared_length_after(look_ahead_, state.x[far] - state.x[place], state.y[far] - state.y[place],
+  return among(squared_length_after(lookahead_, state.x[far] - state.x[place], state.y[far] - state.y[place],
                                     state.vx[far] - state.vx[place], state.vy[far] - state.vy[place]),
                squared_length(shortest, l), squared_length(longest, l));
 }
@@ -176,11 +176,11 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
     throw std::logic_error("the breaking stretches of a state are set by configure() before bonds break");
   std::vector<Loss> own;
   std::vector<std::uint8_t> ahead;
-  if (look_ahead_ > 0.)
+  if (lookahead_ > 0.)
     ahead = rows_with_events_ahead(state, forces);
   for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
   {
-    if (look_ahead_ > 0. ? ahead[row] == 0 : !forces.row_has_events(row))
+    if (lookahead_ > 0. ? ahead[row] == 0 : !forces.row_has_events(row))
       continue;
     for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
     {
@@ -260,14 +260,14 @@ void Fracture::toughen_behind_tip(State &state)
 std::optional<StretchedBond> nearest_to_breaking(const State &state, const TriangularLattice &lattice)
 {
   std::optional<StretchedBond> nearest;
-  for_each_bond(
-    state, lattice,
-    [&](std::size_t near, std::size_t kind, std::size_t far)
-    {
-      const StretchedBond bond{near, far, kind, stretch(state, lattice, near, kind), limit(state, near, kind)};
-      if (!nearest || bond.stretch / bond.limit > nearest->stretch / nearest->limit)
-        nearest = bond;
-    });
+  for_each_bond(state, lattice,
+                [&](std::size_t near, std::size_t kind, std::size_t far)
+                {
+                  const StretchedBond bond{near, far, kind, stretch(state, lattice, near, kind),
+                                           breaking_stretch_of(state, near, kind)};
+                  if (!nearest || bond.stretch / bond.limit > nearest->stretch / nearest->limit)
+                    nearest = bond;
+                });
   return nearest;
 }
 

@@ -153,7 +153,7 @@ private:
   double toughened_stretch_;
   Toughening toughening_;
   std::array<double, n_bond_kinds> retraction_stretch_{};
-  double look_ahead_ = 0.; // [s]
+  double lookahead_ = 0.; // [s]
   unsigned int tip_losses_;
   std::optional<std::size_t> tip_;
   double tip_x_ = 0.; // reference X of the tip

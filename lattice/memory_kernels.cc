@@ -155,8 +155,7 @@ Overstress overstress(const MemoryStep &step, const BondConstants &bond, double 
       for (std::size_t v = 0; v < s.n; ++v)
         variables[v] = remembered.variable[v][place];
       double dissipation = 0.;
-      const double stress =
-        formulas::advance(s, remembered.stretch[place], stretch, variables.data(), dissipation);
+      const double stress = formulas::advance(s, remembered.stretch[place], stretch, variables.data(), dissipation);
       return {bond.cross_section * stress, bond.cross_section * bond.rest_length * dissipation};
     }
   };

@@ -408,9 +408,9 @@ BondForce bond_force(const BondLaw &law, const BondConstants &bond, double dx, d
   const double stretch = (1. / bond.rest_length) * distance;
   const double viscous = bond.damping * rate;
   const double axial =
-    bond.cross_section *
-      std::visit([&](const auto &of_kind) { return formulas::force(of_kind, stretch, bond.rest_length * inverse); },
-                 law) +
+    bond.cross_section * std::visit([&](const auto &of_kind)
+                                    { return formulas::force(of_kind, stretch, bond.rest_length * inverse); },
+                                    law) +
     viscous;
   return {axial * nx, axial * ny, nx, ny, stretch, viscous * rate};
 }

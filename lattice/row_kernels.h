@@ -43,7 +43,7 @@ struct SheetConstants
 {
   std::array<BondConstants, 2> shells;                   ///< nearest and next-nearest neighbours
   std::array<double, n_bond_kinds> retraction_stretch{}; ///< see Forces::set_retraction_threshold; 0: not watched
-  /// Inverse of the stretch below which bonds are short [-]; see Forces::watch_short_bonds.
+  /// Inverse of the stretch below which bonds are short [-]; see Forces::set_shortness_threshold.
   double shortness_limit = std::numeric_limits<double>::infinity();
 
   const BondConstants &shell(std::size_t kind) const { return shells[TriangularLattice::is_nearest(kind) ? 0 : 1]; }

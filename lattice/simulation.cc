@@ -32,7 +32,7 @@ Simulation::Simulation(const RowPartition &band, const Material &material, State
     relax_memory(state_, band_, material_);
   if (fracture_)
     fracture_->configure(state_, forces_);
-  forces_.watch_short_bonds(watched_stretch(time_stepping, lattice_, material_, state_.toughened_stretch));
+  forces_.set_shortness_threshold(watched_stretch(time_stepping, lattice_, material_, state_.toughened_stretch));
   forces_.update_memory(state_);
   reinitialize_forces();
   initial_energy_ = stored_energy() + kinetic_energy(state_, band_);
@@ -43,7 +43,7 @@ void Simulation::reinitialize_forces()
   if (contact_)
     contact_->find_candidates(state_);
   integrator_->initialise(state_);
-  note_powers();
+  update_powers();
   parts_ = needed_parts();
   band_.all_gather(std::vector<char>(), &parts_);
 }
@@ -78,7 +78,7 @@ int Simulation::needed_parts() const
   return parts;
 }
 
-void Simulation::note_powers()
+void Simulation::update_powers()
 {
   for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
   {
@@ -209,7 +209,7 @@ const std::vector<BrokenBond> &Simulation::advance(double duration)
 
   // Powers are taken before bonds break, so that each interval of the trapezoidal rule sees one set of bonds.
   const Ledger before = powers_;
-  note_powers();
+  update_powers();
   add_work(before, duration);
   parts_ = needed_parts();
   if (!fracture_)
@@ -235,11 +235,11 @@ const std::vector<BrokenBond> &Simulation::advance(double duration)
     {
       // From this instant on, as the bonds are gone from it.
       band_.broadcast_from_owners(ends, {&state_.x, &state_.y});
-      contact_->note(state_, broken);
+      contact_->add_broken_bonds(state_, broken);
       integrator_->evaluate_site_forces(state_);
     }
     integrator_->update_accelerations(state_, ends);
-    note_powers();
+    update_powers();
   }
   return broken;
 }
@@ -302,13 +302,8 @@ double Simulation::stored_energy() const
 
 EnergyBalance Simulation::energies() const
 {
-  return {stored_energy(),
-          kinetic_energy(state_, band_),
-          band_.sum(work_.viscous),
-          broken_,
-          band_.sum(work_.contact),
-          band_.sum(work_.boundary),
-          initial_energy_};
+  return {stored_energy(),          kinetic_energy(state_, band_), band_.sum(work_.viscous), broken_,
+          band_.sum(work_.contact), band_.sum(work_.boundary),     initial_energy_};
 }
 
 } // namespace latcon::lattice

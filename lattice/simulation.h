@@ -106,7 +106,7 @@ private:
 
   double stored_energy() const; // in bonds and their memory [J/m]
   void reinitialize_forces();
-  void note_powers();
+  void update_powers();
   void add_work(const Ledger &before, double duration);
   const std::vector<BrokenBond> &advance(double duration);
   int needed_parts() const;

@@ -66,7 +66,7 @@ inline constexpr Edges Edges::free{false, false, false, false};
 State homogeneous_state(const RowPartition &band, const Material &material, const Eigen::Matrix2d &F, Edges edges);
 
 /// Stretch beyond which a bond that is present breaks [-].
-inline double limit(const State &state, std::size_t place, std::size_t kind)
+inline double breaking_stretch_of(const State &state, std::size_t place, std::size_t kind)
 {
   return state.bonds.toughened(place, kind) ? state.toughened_stretch : state.breaking_stretch;
 }

@@ -152,9 +152,8 @@ double watched_stretch(const TimeStepping &stepping, const TriangularLattice &la
       const double overstress = largest_stiffness(shell->memory) * breaking_stretch;
       site_energy += cross_section(*shell, lattice) * lattice.rest_length(kind) *
                      (energy(shell->law, breaking_stretch) + 0.5 * overstress * breaking_stretch);
-      of_forces =
-        std::max(of_forces, 0.5 * material.coordination() * (force(shell->law, breaking_stretch) + overstress) /
-                              shell->viscosity);
+      of_forces = std::max(of_forces, 0.5 * material.coordination() *
+                                        (force(shell->law, breaking_stretch) + overstress) / shell->viscosity);
     }
   const double of_energy = std::sqrt(8. * site_energy / site_mass(material, lattice)) / lattice.spacing();
   const double loss = stepping.step * std::min(of_energy, of_forces);

@@ -1,8 +1,8 @@
 // Experiment: a lattice whose bonds remember, with one variable per bond, held stretched and made to ring.
 //
-// Parallel to a neo-Hookean rod, each bond has a spring in series with a dashpot whose rate grows with the square of its
-// stress: it relaxes fast at first and ever more slowly. A sheet is stretched at once and held; its stored energy is
-// compared with the closed form. Then it rings, and the energy balance is computed. Exit code 1 if one disagrees.
+// Parallel to a neo-Hookean rod, each bond has a spring in series with a dashpot whose rate grows with the square of
+// its stress: it relaxes fast at first and ever more slowly. A sheet is stretched at once and held; its stored energy
+// is compared with the closed form. Then it rings, and the energy balance is computed. Exit code 1 if one disagrees.
 #include <cmath>
 #include <cstdio>
 #include <memory>
@@ -36,10 +36,7 @@ public:
 
   double stored_energy(double, const double *q) const noexcept override { return 0.5 * *q * *q / E_; }
 
-  double dissipation(double, const double *q) const noexcept override
-  {
-    return std::abs(*q) * *q * *q / (E_ * Y_tau_);
-  }
+  double dissipation(double, const double *q) const noexcept override { return std::abs(*q) * *q * *q / (E_ * Y_tau_); }
 
   double largest_stiffness() const noexcept override { return E_; }
 

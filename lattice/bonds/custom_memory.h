@@ -10,9 +10,9 @@ namespace latcon::lattice
 
 /// User-defined memory of a bond: derive from it, and construct a Shell with a CustomMemory of it.
 ///
-/// A memory adds an overstress q [Pa] to psi'(lam) and eta lam'. It depends on the variables of the bond, which are 0 in
-/// a bond at rest. Several threads call the functions at once: they may not change anything but the variables given to
-/// them, nor throw.
+/// A memory adds an overstress q [Pa] to psi'(lam) and eta lam'. It depends on the variables of the bond, which are 0
+/// in a bond at rest. Several threads call the functions at once: they may not change anything but the variables given
+/// to them, nor throw.
 class CustomMemoryLaw
 {
 public:

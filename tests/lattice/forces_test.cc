@@ -221,9 +221,8 @@ std::vector<Subject> subjects()
   // Few and many columns, of all remainders that a vector of up to eight sites leaves.
   for (const double columns : {3., 10., 11., 12., 13., 14., 15., 16., 17., 40.})
     for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
-      for (const Material &material :
-           {sheets::rubber(), sheets::nearest_only(), linear(), sheets::rubber_from_outside(), mixed(),
-            with_branches()})
+      for (const Material &material : {sheets::rubber(), sheets::nearest_only(), linear(),
+                                       sheets::rubber_from_outside(), mixed(), with_branches()})
         for (const Periodic periodic : {Periodic{}, Periodic{true, false}, Periodic{false, true}, Periodic{true, true}})
           all.push_back({material, orientation, periodic, columns});
   return all;
@@ -345,7 +344,7 @@ TEST(Forces, ReportRowsWithShortBonds)
                   });
     for (const double limit : {0.9, 1., 1.1, 1.2})
     {
-      forces.watch_short_bonds(limit);
+      forces.set_shortness_threshold(limit);
       forces.evaluate(state, state.vx, state.vy);
       for (std::size_t row = 0; row < sheet.rows(); ++row)
       {

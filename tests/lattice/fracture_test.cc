@@ -49,7 +49,7 @@ struct TenSites
   double limit(std::size_t row, std::size_t column, std::size_t kind) const
   {
     const std::size_t place = sheet.index(row, column);
-    return state.bonds.present(place, kind) ? lattice::limit(state, place, kind) : 0.;
+    return state.bonds.present(place, kind) ? lattice::breaking_stretch_of(state, place, kind) : 0.;
   }
 
   TriangularLattice sheet;
@@ -274,7 +274,7 @@ TEST(Fracture, OwnsTheBreakingStretch)
   const Eigen::Matrix2d F = sheets::stretched(1.4, 1.4);
   State state = homogeneous_state(sheet, material, F, Edges::held);
   const std::size_t near = sheet.index(4, 3), far = near + 1;
-  EXPECT_EQ(limit(state, near, 0), unbreakable);
+  EXPECT_EQ(breaking_stretch_of(state, near, 0), unbreakable);
   state.x[far] += 0.2 * sheets::spacing;
   state.bonds.toughen(near, 0);
   const auto n_broken = [&](const Toughening &toughening)

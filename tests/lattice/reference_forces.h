@@ -25,8 +25,7 @@ inline std::vector<std::array<double, 3>> overstressed_branches(const latcon::la
     for (std::size_t i = 0; i < memory->branches().size(); ++i)
     {
       const auto &[modulus, time] = memory->branches()[i];
-      branches.push_back(
-        {history.variables[i][place] + modulus * (stretch - history.stretch[place]), modulus, time});
+      branches.push_back({history.variables[i][place] + modulus * (stretch - history.stretch[place]), modulus, time});
     }
   return branches;
 }
@@ -89,7 +88,7 @@ reference_forces(const latcon::lattice::State &state, const latcon::lattice::Tri
     }
     result.viscous_power += section * shell.viscosity * rate * rate / rest_length +
                             section * rest_length * memory_dissipation(state, shell, near, kind, stretch);
-    if (stretch > limit(state, near, kind) ||
+    if (stretch > breaking_stretch_of(state, near, kind) ||
         (!state.bonds.toughened(near, kind) && stretch < retraction_stretch[kind]))
       result.row_has_events[sheet.row_of(near)] = true;
   };
