@@ -50,14 +50,16 @@ support::ExitCode report(const input::Options &options, const std::string &direc
 support::ExitCode run_study(const input::Options &options, const std::string &study);          ///< `latcon study`
 support::ExitCode print_schema(const input::Options &options);                                 ///< `latcon schema`
 
-/// `latcon entries`: lists the entries of a section, or of all if it is empty. @throws InputError for an unknown section
+/// `latcon entries`: lists the entries of a section, or of all if it is empty. @throws InputError for an unknown
+/// section
 support::ExitCode print_entries(const std::string &section);
 
 /// `latcon help TOPIC` for a section or an entry. @param commands names of the commands, for typing errors
 /// @throws InputError for an unknown topic
 support::ExitCode print_topic(const std::string &topic, const std::vector<std::string> &commands);
 
-/// `latcon init`: creates the folder and a commented case in it. @throws InputError if the case exists @throws OutputError
+/// `latcon init`: creates the folder and a commented case in it. @throws InputError if the case exists @throws
+/// OutputError
 support::ExitCode init(const std::string &directory);
 
 /// Draws pictures and report.html of a run, or of a folder of several, in a directory that this process has locked. On

@@ -151,7 +151,9 @@ support::ExitCode print_help(const CLI::App &app, const std::string &topic)
   if (!topic.empty() && !is_command)
     return print_topic(topic, names);
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-    std::cout << (is_command ? app.get_subcommand(topic)->help(app.get_name()) : app.help());
+    // App::help() of a program whose command line named a command describes that command.
+    std::cout << (is_command ? app.get_subcommand(topic)->help(app.get_name())
+                             : app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal));
   return support::ExitCode::done;
 }
 
@@ -164,7 +166,8 @@ support::ExitCode run_program(int argc, char **argv)
   options.arguments.assign(argv, argv + argc);
   std::function<support::ExitCode()> command;
 
-  CLI::App app("latcon: dynamic fracture of rubber on a triangular lattice, and the continuum it approximates", "latcon");
+  CLI::App app("latcon: dynamic fracture of rubber on a triangular lattice, and the continuum it approximates",
+               "latcon");
   app.set_version_flag("--version", "latcon " + output::program_version() + " (" + output::git_commit() + ")");
   app.require_subcommand(1);
   app.fallthrough();
@@ -239,8 +242,8 @@ support::ExitCode run_program(int argc, char **argv)
   fracture_command->add_flag("--no-report", options.no_report, "draw neither pictures nor page");
 
   std::string study;
-  CLI::App *study_command = add_command("study", "a sweep of cracks, compared with what a source states",
-                                        "latcon study paper --quick");
+  CLI::App *study_command =
+    add_command("study", "a sweep of cracks, compared with what a source states", "latcon study paper --quick");
   study_command->add_option("STUDY", study, study::study_choices())->required()->type_name("");
   study_command->add_flag("--quick", options.quick, "small version");
   study_command->add_flag("--skip-verification", options.skip_verification,
@@ -253,8 +256,9 @@ support::ExitCode run_program(int argc, char **argv)
     });
 
   CompareOptions chosen;
-  CLI::App *compare_command = add_command("compare", "two cracks, or a lattice frame and a continuum frame site by site",
-                                          "latcon compare output/strip output/thin");
+  CLI::App *compare_command =
+    add_command("compare", "two cracks, or a lattice frame and a continuum frame site by site",
+                "latcon compare output/strip output/thin");
   compare_command
     ->add_option("LATTICE", chosen.lattice,
                  "output directory of a crack; or frame (.vtp), series (.pvd) or output directory of a lattice")
@@ -292,32 +296,32 @@ support::ExitCode run_program(int argc, char **argv)
     });
 
   std::string directory;
-  CLI::App *report_command = add_command("report", "summary table, pictures and report.html of finished runs",
-                                         "latcon report output/quick");
+  CLI::App *report_command =
+    add_command("report", "summary table, pictures and report.html of finished runs", "latcon report output/quick");
   report_command->add_option("DIR", directory, "output directory of a run, or a folder of several")
     ->required()
     ->type_name("");
   report_command->callback([&] { command = [&] { return report(options, directory); }; });
 
-  CLI::App *init_command =
-    add_command("init", "a folder with a commented case to start from", "latcon init my-strip");
+  CLI::App *init_command = add_command("init", "a folder with a commented case to start from", "latcon init my-strip");
   init_command->add_option("DIR", directory, "folder; the case in it has its name")->required()->type_name("");
   init_command->callback([&] { command = [&] { return init(directory); }; });
 
   std::string section;
-  CLI::App *entries_command = add_command("entries", "entries of a case: name, unit, default, meaning",
-                                          "latcon entries Fracture");
+  CLI::App *entries_command =
+    add_command("entries", "entries of a case: name, unit, default, meaning", "latcon entries Fracture");
   entries_command->add_option("SECTION", section, "section whose entries to list; default: all")->type_name("");
   entries_command->callback([&] { command = [&] { return print_entries(section); }; });
 
   std::vector<std::string> topic;
-  CLI::App *help_command = add_command("help", "help on a command, a section or an entry of a case",
-                                       "latcon help Fracture/toughening");
-  help_command->add_option("TOPIC", topic, "command, section, or entry (Section/Name or its name alone)")->type_name("");
+  CLI::App *help_command =
+    add_command("help", "help on a command, a section or an entry of a case", "latcon help Fracture/toughening");
+  help_command->add_option("TOPIC", topic, "command, section, or entry (Section/Name or its name alone)")
+    ->type_name("");
   help_command->callback([&] { command = [&] { return print_help(app, joined(topic)); }; });
 
-  CLI::App *schema_command = add_command("schema", "all entries of a case as JSON, with the values of one",
-                                         "latcon schema quick");
+  CLI::App *schema_command =
+    add_command("schema", "all entries of a case as JSON, with the values of one", "latcon schema quick");
   schema_command->add_option("CASE", options.case_file, "case whose values to print; default: declarations only")
     ->type_name("");
   schema_command->callback(
