@@ -90,8 +90,7 @@ Run::Run(const input::Options &options, const input::Parameters &parameters) : R
 
 Run::Run(const input::Options &options, const input::Parameters *parameters)
   : record_(std::make_shared<Record>(options)), directory_(options.output_dir), is_root_(first_rank()),
-    is_verbose_(is_root_ && !options.quiet), prints_all_(options.verbose),
-    resumes_(options.resume)
+    is_verbose_(is_root_ && !options.quiet), prints_all_(options.verbose), resumes_(options.resume)
 {
   if (parameters != nullptr)
     info().add("case_hash", output::sha256(input::case_lines(*parameters)));

@@ -152,7 +152,9 @@ support::ExitCode print_help(const CLI::App &app, const std::string &topic)
   if (!topic.empty() && !is_command)
     return print_topic(topic, names);
   if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
-    std::cout << (is_command ? app.get_subcommand(topic)->help(app.get_name()) : app.help());
+    // App::help() of a program whose command line named a command describes that command.
+    std::cout << (is_command ? app.get_subcommand(topic)->help(app.get_name())
+                             : app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal));
   return support::ExitCode::done;
 }
 

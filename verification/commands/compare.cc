@@ -102,9 +102,9 @@ support::ExitCode compare_cracks(const input::Options &options, const CompareOpt
   if (!(chosen.time.empty() && chosen.lattice_time.empty() && chosen.continuum_time.empty() &&
         chosen.tolerances.empty() && chosen.excluded.empty()) ||
       chosen.overlap)
-    throw support::InputError("--time, --lattice-time, --continuum-time, --tolerance, --overlap and --exclude are for frames, and " +
-                              chosen.lattice + " and " + chosen.continuum +
-                              " are two cracks; to compare frames, give their files");
+    throw support::InputError(
+      "--time, --lattice-time, --continuum-time, --tolerance, --overlap and --exclude are for frames, and " +
+      chosen.lattice + " and " + chosen.continuum + " are two cracks; to compare frames, give their files");
   for (const std::string &run : {chosen.lattice, chosen.continuum})
     if (std::error_code none; std::filesystem::equivalent(options.output_dir, run, none))
       throw support::InputError("--output-dir " + options.output_dir +

@@ -17,8 +17,8 @@ void require_memory(const input::Options &options, const resources::MemoryNeed &
 /// @throws InputError with the estimate
 void require_time(const input::Options &options, double seconds);
 
-/// Rough time of a crack or a motion of the lattice on this machine [s], from the number of force evaluations; nothing is
-/// measured. @param steps that are expected
+/// Rough time of a crack or a motion of the lattice on this machine [s], from the number of force evaluations; nothing
+/// is measured. @param steps that are expected
 [[nodiscard]] double rough_seconds(const input::Case &input, const lattice::TimeStepping &stepping, double steps);
 
 } // namespace latcon::commands

@@ -67,7 +67,8 @@ std::string claim_lines(const output::Results &results)
   std::vector<std::pair<std::string, output::Results>> claims; // in the order of their first rows
   for (const output::Result &row : results.rows())
   {
-    auto claim = std::find_if(claims.begin(), claims.end(), [&](const auto &known) { return known.first == row.claim; });
+    auto claim =
+      std::find_if(claims.begin(), claims.end(), [&](const auto &known) { return known.first == row.claim; });
     if (claim == claims.end())
       claim = claims.insert(claims.end(), {row.claim, {}});
     claim->second.add(row);

@@ -92,16 +92,19 @@ std::string entry_text(const input::Declaration &entry)
 {
   std::string text = key_of(entry) + "\n" + hanging("  ", entry.documentation);
   if (!entry.unit.empty())
-    text += "  unit:     " + (entry.unit == "1" ? "none" : entry.unit + "; a value may carry its unit, with any prefix") + "\n";
+    text +=
+      "  unit:     " + (entry.unit == "1" ? "none" : entry.unit + "; a value may carry its unit, with any prefix") +
+      "\n";
   if (!entry.rule.empty())
     text += hanging("  allowed:  ", entry.rule);
-  text += "  default:  " + (entry.presence == input::Presence::required ? "none, the entry is required"
-                            : entry.default_text.empty()                ? "empty"
-                                                                        : entry.default_text) +
+  text += "  default:  " +
+          (entry.presence == input::Presence::required ? "none, the entry is required"
+           : entry.default_text.empty()                ? "empty"
+                                                       : entry.default_text) +
           "\n";
   const std::string value = entry.presence == input::Presence::required ? "..." : entry.default_text;
-  text += "  in a case file:       subsection " + entry.section + "\n                          set " + entry.name + " = " +
-          value + "\n                        end\n";
+  text += "  in a case file:       subsection " + entry.section + "\n                          set " + entry.name +
+          " = " + value + "\n                        end\n";
   return text + "  on the command line:  --set \"" + key_of(entry) + "=" + value + "\"\n";
 }
 
@@ -164,8 +167,7 @@ support::ExitCode print_entries(const std::string &section)
   if (text.empty())
     refuse("section", section, sections, "sections: " + input::comma_separated(sections));
   if (is_root())
-    std::cout << text
-              << "\nColumns: name, SI unit, default, meaning. One entry in full: latcon help Section/Name\n";
+    std::cout << text << "\nColumns: name, SI unit, default, meaning. One entry in full: latcon help Section/Name\n";
   return support::ExitCode::done;
 }
 

@@ -26,15 +26,15 @@ public:
   /// Functions that a motion calls at each step.
   struct StepCallbacks
   {
-    std::string phase;             ///< name of its time in run.json
-    std::function<bool()> goes_on; ///< whether there is a further step
+    std::string phase;                                                        ///< name of its time in run.json
+    std::function<bool()> goes_on;                                            ///< whether there is a further step
     std::function<void(const std::vector<lattice::BrokenBond> &)> after_step; ///< given the bonds that broke in it
     std::function<std::pair<std::string, double>()> progress;                 ///< text, and the completed fraction
     std::function<void(bool resumed)> begin = {};                             ///< before the first step, if given
   };
 
-  /// Moves the sheet from its first step, or from the checkpoint found, until `goes_on` is false or a signal comes. Then,
-  /// and if it blows up, writes the last frame and the tables.
+  /// Moves the sheet from its first step, or from the checkpoint found, until `goes_on` is false or a signal comes.
+  /// Then, and if it blows up, writes the last frame and the tables.
   /// @param extra_state archives further state of the motion, given an archive
   /// @throws SolverError if the sheet blows up, OutputError
   template <class ExtraState>

@@ -98,8 +98,8 @@ CrackRun read_run(const std::string &directory)
   planned.spacing = input.spacing;
   run.outcome = study::read_outcome(planned, directory);
   if (run.outcome.state != study::RunState::measured)
-    throw support::InputError(directory + ": its crack was not measured; crack.json or run.json is damaged, or the run " +
-                              "has not ended");
+    throw support::InputError(
+      directory + ": its crack was not measured; crack.json or run.json is damaged, or the run " + "has not ended");
   run.path = read_path(directory + "/crack.csv");
   return run;
 }
@@ -167,8 +167,7 @@ std::optional<PathDistance> path_distance(const std::vector<PathPoint> &first, c
       distance.largest_X = positions[i];
     }
     if (i > 0) // the square of a linear function, integrated
-      integral +=
-        (positions[i] - positions[i - 1]) * (apart * apart + apart * previous + previous * previous) / 3.;
+      integral += (positions[i] - positions[i - 1]) * (apart * apart + apart * previous + previous * previous) / 3.;
     previous = apart;
   }
   distance.rms = std::sqrt(integral / (distance.X_end - distance.X_begin));
@@ -196,7 +195,7 @@ RunComparison compare_runs(const std::string &first, const std::string &second)
       continue;
     const auto of = [&](const CrackRun &run, const std::string &suffix)
     { return value_in(run.outcome.values, quantity.name + suffix); };
-    const QuantityPair pair{quantity.name, quantity.unit,   of(one, ""),
+    const QuantityPair pair{quantity.name,           quantity.unit, of(one, ""),
                             of(one, "_uncertainty"), of(other, ""), of(other, "_uncertainty")};
     if (pair.first || pair.second)
       comparison.quantities.push_back(pair);

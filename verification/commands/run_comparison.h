@@ -17,8 +17,8 @@ struct QuantityPair
 
   /// Second minus first.
   [[nodiscard]] std::optional<double> difference() const;
-  /// difference() over the root of the sum of both squared uncertainties [-]; none unless both are known and one of them
-  /// is positive.
+  /// difference() over the root of the sum of both squared uncertainties [-]; none unless both are known and one of
+  /// them is positive.
   [[nodiscard]] std::optional<double> normalized_difference() const;
 };
 

@@ -126,9 +126,8 @@ std::string RunComparison::csv() const
   for (const QuantityPair &pair : quantities)
   {
     text += output::csv_field(pair.name) + "," + output::csv_field(pair.unit);
-    for (const std::optional<double> &value : {pair.first, pair.first_uncertainty, pair.second,
-                                               pair.second_uncertainty, pair.difference(),
-                                               pair.normalized_difference()})
+    for (const std::optional<double> &value : {pair.first, pair.first_uncertainty, pair.second, pair.second_uncertainty,
+                                               pair.difference(), pair.normalized_difference()})
       text += "," + csv_of(value);
     text += "\n";
   }

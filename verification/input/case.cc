@@ -142,7 +142,9 @@ void check_time_step(const Case &input, Parameters &p)
     limit = 2. * lattice::ChebyshevStages(input.stages).real_limit() * limits.viscous;
   }
   if (*input.time_step > limit)
-    p.error("Time/step", "the time stepping is unstable beyond " + support::full_precision(limit) + " s; omit `step`, or give a smaller one",
+    p.error("Time/step",
+            "the time stepping is unstable beyond " + support::full_precision(limit) +
+              " s; omit `step`, or give a smaller one",
             {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity", "Sheet/spacing", "Time/integrator",
              "Time/stages"});
 }
@@ -156,15 +158,13 @@ void check_time_stepping(const Case &input, Parameters &p)
   if (chebyshev && input.stages == 1)
     p.error("Time/stages", "a second-order method has at least two stages; give 0 for an automatic number");
   if (chebyshev && (input.nearest.viscosity == 0. || (input.has_next_nearest && input.next_nearest.viscosity == 0.)))
-    p.error("Time/integrator",
-            "runge-kutta-chebyshev requires a viscosity for all bonds; give one, or velocity-verlet",
+    p.error("Time/integrator", "runge-kutta-chebyshev requires a viscosity for all bonds; give one, or velocity-verlet",
             {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity"});
   else if (chebyshev && input.breaking_stretch && input.has_contact && input.contact_viscosity == 0.)
-    p.error(
-      "Contact/viscosity",
-      "runge-kutta-chebyshev amplifies undamped oscillations, also in contacts; give more than 0, or "
-      "integrator = velocity-verlet",
-      {"Time/integrator"});
+    p.error("Contact/viscosity",
+            "runge-kutta-chebyshev amplifies undamped oscillations, also in contacts; give more than 0, or "
+            "integrator = velocity-verlet",
+            {"Time/integrator"});
   else if (input.density > 0. && input.has_sheet() && input.nearest.has_stiffness() &&
            (!input.has_next_nearest || input.next_nearest.has_stiffness()))
   {
@@ -208,12 +208,13 @@ lattice::Shell ShellCase::shell() const
 
 void Case::declare(Parameters &p)
 {
-  p.add("Sheet", "spacing", spacing, Magnitude{}, "m", "lattice spacing d: undeformed distance between nearest sites", Presence::required);
+  p.add("Sheet", "spacing", spacing, Magnitude{}, "m", "lattice spacing d: undeformed distance between nearest sites",
+        Presence::required);
   p.add("Sheet", "length", length, Magnitude{}, "m",
         "undeformed length along x, the direction of the crack; rounded to whole rows or columns of sites",
         Presence::required);
-  p.add("Sheet", "height", height, Magnitude{}, "m", "undeformed height along y; rounded to whole rows or columns of sites",
-        Presence::required);
+  p.add("Sheet", "height", height, Magnitude{}, "m",
+        "undeformed height along y; rounded to whole rows or columns of sites", Presence::required);
   p.add("Sheet", "orientation", orientation,
         {{"rows-along-crack", lattice::Orientation::rows_along_crack},
          {"rows-across-crack", lattice::Orientation::rows_across_crack}},
@@ -224,7 +225,8 @@ void Case::declare(Parameters &p)
   p.add("Sheet", "notch length", notch_length, MagnitudeOrZero{}, "m",
         "undeformed length of a slit from the left edge along y = 0; 0: no slit");
 
-  p.add("Material", "density", density, Magnitude{}, "kg/m^3", "mass density rho of the rubber, undeformed", Presence::required);
+  p.add("Material", "density", density, Magnitude{}, "kg/m^3", "mass density rho of the rubber, undeformed",
+        Presence::required);
   nearest.declare(p, "Nearest neighbours");
   p.add("Next-nearest neighbours", "present", has_next_nearest, "include bonds between next-nearest neighbours");
   next_nearest.declare(p, "Next-nearest neighbours");
@@ -234,8 +236,7 @@ void Case::declare(Parameters &p)
   p.add("Loading", "strain y", strain_y, Range({-1., false}, {1000., true}), "1",
         "eps_y: engineering strain along y; the stretch is 1 + eps_y", Presence::required);
 
-  p.add("Loading", "shear", shear, Between{-1000., 1000.}, "1",
-        "F_xy: displacement along x over undeformed y");
+  p.add("Loading", "shear", shear, Between{-1000., 1000.}, "1", "F_xy: displacement along x over undeformed y");
 
   p.add("Lattice", "solution", solution, {{"relaxed", Solution::relaxed}, {"motion", Solution::motion}},
         "what `latcon lattice` computes: static equilibrium, or the motion until the end time");
@@ -252,7 +253,8 @@ void Case::declare(Parameters &p)
         "delta: behind-tip toughens bonds whose undeformed midpoint is more than this behind the tip");
   p.add("Fracture", "fraction", toughening_fraction, Between{0.01, 0.999}, "1",
         "retraction toughens bonds whose stretch falls below this fraction of that in the loaded sheet");
-  p.add("Fracture", "factor", toughening_factor, Between{1., 1e6}, "1", "toughened bonds break at this multiple of lam_f");
+  p.add("Fracture", "factor", toughening_factor, Between{1., 1e6}, "1",
+        "toughened bonds break at this multiple of lam_f");
   p.add("Fracture", "seed shape", seed_shape, {{"sites", SeedShape::sites}, {"slit", SeedShape::slit}},
         "shape of the seed crack: a line of removed sites along x, or a rectangle of removed sites");
   p.add("Fracture", "seed sites", seed_sites, Between{1., 1000.}, "number of sites removed by the shape sites");
@@ -301,9 +303,10 @@ void Case::declare(Parameters &p)
 
   p.add("Output", "frame interval", frame_interval, MagnitudeOrZero{}, "s",
         "time between full frames; 0: only the first and the last frame");
-  p.add("Output", "motion frames", motion_frames, Between{0., 1e4},
-        "number of reduced frames of a crack for animations, equally spaced in tip position between the seed and the stop "
-        "position; 0: none");
+  p.add(
+    "Output", "motion frames", motion_frames, Between{0., 1e4},
+    "number of reduced frames of a crack for animations, equally spaced in tip position between the seed and the stop "
+    "position; 0: none");
   p.add("Output", "energy interval", energy_interval, AtLeast{1.}, "number of time steps between rows of energy.csv");
   p.add("Checkpoints", "steps", checkpoint_steps, AtLeast{0.},
         "number of time steps between checkpoints of a motion; 0: not by steps");
@@ -312,7 +315,8 @@ void Case::declare(Parameters &p)
 
   p.add("Near tip", "ahead", near_tip_ahead, MagnitudeOrZero{}, "m",
         "undeformed length of the averaging window ahead of the tip; 0: 32 spacings");
-  p.add("Near tip", "behind", near_tip_behind, MagnitudeOrZero{}, "m", "undeformed length of the averaging window behind the tip; 0: 40 spacings");
+  p.add("Near tip", "behind", near_tip_behind, MagnitudeOrZero{}, "m",
+        "undeformed length of the averaging window behind the tip; 0: 40 spacings");
   p.add("Near tip", "half height", near_tip_half_height, MagnitudeOrZero{}, "m",
         "undeformed half height of the averaging window; 0: 32 spacings");
   p.add("Near tip", "interval", near_tip_interval, MagnitudeOrZero{}, "s",
@@ -323,7 +327,8 @@ void Case::declare(Parameters &p)
         "published undeformed wavelength of the crack path, compared with the measured value; auto: none");
   p.add("Reference", "amplitude", reference_amplitude, Magnitude{}, "m",
         "published undeformed amplitude of the crack path, compared with the measured value; auto: none");
-  p.add("Reference", "speed", reference_speed, Magnitude{}, "m/s", "published Lagrangian crack speed, compared with the measured value; auto: none");
+  p.add("Reference", "speed", reference_speed, Magnitude{}, "m/s",
+        "published Lagrangian crack speed, compared with the measured value; auto: none");
   p.add("Reference", "tolerance", reference_tolerance, Magnitude{}, "1",
         "largest relative difference between measured and published values that counts as agreement");
 }

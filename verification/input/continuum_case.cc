@@ -228,7 +228,8 @@ void EdgeCase::declare(Parameters &p, const bool can_be_periodic)
           std::string(can_be_periodic ? ", periodic with the opposite edge" : ""));
   for (std::string *component : {&displacement_x, &displacement_y})
     p.add(name, component == &displacement_x ? "displacement x" : "displacement y", *component,
-          std::string("prescribed displacement of a held edge, component ") + (component == &displacement_x ? "x" : "y") +
+          std::string("prescribed displacement of a held edge, component ") +
+            (component == &displacement_x ? "x" : "y") +
             " [m]: `loading` for the homogeneous loading, `free`, or an expression in x, y [m] and pi");
   p.add(
     name, "normal gradient", normal_gradient,
@@ -236,7 +237,8 @@ void EdgeCase::declare(Parameters &p, const bool can_be_periodic)
     "normal derivative of the displacement, for gradient laws: free, clamped to zero, or prescribed by the homogeneous "
     "loading");
   traction.declare(p, name, "traction", "Pa", "dead load per undeformed area");
-  double_traction.declare(p, name, "double traction", "Pa m", "dead load conjugate to the normal derivative of the displacement");
+  double_traction.declare(p, name, "double traction", "Pa m",
+                          "dead load conjugate to the normal derivative of the displacement");
 }
 
 void EdgeCase::check(Parameters &p) const
@@ -273,38 +275,39 @@ ContinuumCase::ContinuumCase()
 
 void ContinuumCase::declare(Parameters &p)
 {
-  p.add(
-    "Continuum", "law", law,
-    {{"cauchy-born", ContinuumLaw::cauchy_born},
-     {"mooney-rivlin-network", ContinuumLaw::mooney_rivlin_network},
-     {"mooney-rivlin", ContinuumLaw::mooney_rivlin}},
-    "material law of the finite element sheet: Cauchy-Born law of the lattice, its mean over all bond directions, or the "
-    "plane-stress Mooney-Rivlin law calibrated along the loading path");
+  p.add("Continuum", "law", law,
+        {{"cauchy-born", ContinuumLaw::cauchy_born},
+         {"mooney-rivlin-network", ContinuumLaw::mooney_rivlin_network},
+         {"mooney-rivlin", ContinuumLaw::mooney_rivlin}},
+        "material law of the finite element sheet: Cauchy-Born law of the lattice, its mean over all bond directions, "
+        "or the "
+        "plane-stress Mooney-Rivlin law calibrated along the loading path");
   p.add("Continuum", "ratio", mooney_rivlin_ratio, Between{-0.9, 0.9}, "1",
         "r = C2 / (C1 + C2) of the law mooney-rivlin; auto: calibrated along the loading path");
-  p.add(
-    "Continuum", "gradient", gradient,
-    {{"none", ContinuumGradient::none},
-     {"isotropic", ContinuumGradient::isotropic},
-     {"lattice", ContinuumGradient::lattice},
-     {"network", ContinuumGradient::network}},
-    "strain-gradient energy: none, (mu l_s^2 / 2) |Grad F|^2, the energy of the lattice's bonds, or its mean over all bond "
-    "directions, for the law mooney-rivlin-network");
-  p.add(
-    "Continuum", "static length", static_length, MagnitudeOrZero{}, "m",
-    "l_s of the isotropic gradient energy; auto: fitted to the direction-averaged dispersion of the lattice");
+  p.add("Continuum", "gradient", gradient,
+        {{"none", ContinuumGradient::none},
+         {"isotropic", ContinuumGradient::isotropic},
+         {"lattice", ContinuumGradient::lattice},
+         {"network", ContinuumGradient::network}},
+        "strain-gradient energy: none, (mu l_s^2 / 2) |Grad F|^2, the energy of the lattice's bonds, or its mean over "
+        "all bond "
+        "directions, for the law mooney-rivlin-network");
+  p.add("Continuum", "static length", static_length, MagnitudeOrZero{}, "m",
+        "l_s of the isotropic gradient energy; auto: fitted to the direction-averaged dispersion of the lattice");
   p.add("Continuum", "inertia length", inertia_length, MagnitudeOrZero{}, "m",
         "l_d of the micro-inertia and of the gradient energies lattice and network; auto: 0 without a gradient energy, "
         "fitted together with l_s for isotropic, the longest bond over sqrt(12) for the others");
   p.add("Continuum", "penalty", penalty, Between{0.5, 1000.}, "1",
         "gamma: interior penalty gamma p (p + 1) / h on jumps of the normal derivative");
-  p.add("Continuum", "cells x", cells_x, Between{1., 65536.}, "number of cells along x of a sheet without hole or notch");
-  p.add("Continuum", "cells y", cells_y, Between{1., 65536.}, "number of cells along y of a sheet without hole or notch");
+  p.add("Continuum", "cells x", cells_x, Between{1., 65536.},
+        "number of cells along x of a sheet without hole or notch");
+  p.add("Continuum", "cells y", cells_y, Between{1., 65536.},
+        "number of cells along y of a sheet without hole or notch");
   p.add("Continuum", "refinements", refinements, Between{0., 12.},
         "number of uniform refinements of the mesh of a sheet with a hole or a notch, or of a mesh from a file");
-  p.add(
-    "Continuum", "mesh file", mesh_file,
-    "Gmsh mesh of quadrilaterals [m] that replaces the sheet; physical curves 0 left, 1 right, 2 bottom, 3 top, 4 inner");
+  p.add("Continuum", "mesh file", mesh_file,
+        "Gmsh mesh of quadrilaterals [m] that replaces the sheet; physical curves 0 left, 1 right, 2 bottom, 3 top, 4 "
+        "inner");
   p.add("Continuum", "degree", degree, Between{1., 5.},
         "polynomial degree p of the elements; at least 2 with a gradient energy");
   p.add("Continuum", "adaptive cycles", adaptive_cycles, Between{0., 30.},
@@ -314,8 +317,7 @@ void ContinuumCase::declare(Parameters &p)
   p.add("Continuum", "reaction tolerance", reaction_tolerance, Magnitude{}, "1",
         "largest relative change of the largest reaction in the last adaptive cycle that counts as converged; "
         "auto: the change is reported without a verdict");
-  p.add("Continuum", "first load step", first_load_step, Between{0.001, 1.}, "1",
-        "first increment of the load factor");
+  p.add("Continuum", "first load step", first_load_step, Between{0.001, 1.}, "1", "first increment of the load factor");
   p.add("Continuum", "relative tolerance", relative_tolerance, Between{1e-14, 1e-4}, "1",
         "relative residual at which Newton's method stops, not below its round-off");
   p.add(
@@ -336,11 +338,13 @@ void ContinuumCase::declare(Parameters &p)
   body_force.declare(p, "Body force", "force", "N/m^3", "dead load per undeformed volume of the finite element sheet");
   p.add("Body force", "corrected", body_force_corrected,
         "apply (1 - l_d^2 Laplace) to the force, as required to match the lattice with micro-inertia");
-  p.add("Initial state", "base", initial_base,
-        {{"undeformed", Base::undeformed}, {"loading", Base::loading}, {"equilibrium", Base::equilibrium}},
-        "initial state of a motion of the finite elements: undeformed, homogeneously loaded, or in equilibrium with the "
-        "boundary conditions");
-  initial_displacement.declare(p, "Initial state", "displacement", "m", "initial displacement added to the base, zero on held edges");
+  p.add(
+    "Initial state", "base", initial_base,
+    {{"undeformed", Base::undeformed}, {"loading", Base::loading}, {"equilibrium", Base::equilibrium}},
+    "initial state of a motion of the finite elements: undeformed, homogeneously loaded, or in equilibrium with the "
+    "boundary conditions");
+  initial_displacement.declare(p, "Initial state", "displacement", "m",
+                               "initial displacement added to the base, zero on held edges");
   initial_velocity.declare(p, "Initial state", "velocity", "m/s", "initial velocity of the finite elements");
 }
 
