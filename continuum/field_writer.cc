@@ -212,16 +212,16 @@ std::string FieldWriter::file_of(const std::size_t frame) const
 
 void FieldWriter::write_collection() const
 {
-  collectively(communicator_,
-               [&]
-               {
-                 if (Utilities::MPI::this_mpi_process(communicator_) != 0)
-                   return;
-                 std::vector<support::PvdFile> files;
-                 for (std::size_t frame = 0; frame < frames_.size(); ++frame)
-                   files.push_back({frames_[frame].time, file_of(frame)});
-                 write_whole(collection(), support::pvd_text(files));
-               });
+  run_collectively(communicator_,
+                   [&]
+                   {
+                     if (Utilities::MPI::this_mpi_process(communicator_) != 0)
+                       return;
+                     std::vector<support::PvdFile> files;
+                     for (std::size_t frame = 0; frame < frames_.size(); ++frame)
+                       files.push_back({frames_[frame].time, file_of(frame)});
+                     write_whole(collection(), support::pvd_text(files));
+                   });
 }
 
 double FieldWriter::last_time() const

@@ -13,13 +13,12 @@ namespace latcon::lattice
 
 /// Forces on all sites from all bonds. The loops over a row are in row_kernels.h.
 ///
-/// A bond pulls with A0 psi'(lam) + A0 eta (v_rel . n) / l along its current direction n (theory.md, eq. (L.3)), and with
-/// the overstress A0 q of its memory (eq. (L.27)) if the state has a history.
-/// Every thread takes some of the rows from its lower to its upper end. It computes the bonds that start in a row,
-/// keeps those of the last three rows, and lets the sites of the row gather their twelve bonds while these are in
-/// cache. Bonds that reach into these from below are computed once more there. The order of a gather is symmetric under
-/// both mirrors of the lattice, so the bits of a result depend neither on the number of threads nor on which side of a
-/// symmetry line a site stands.
+/// A bond pulls with A0 psi'(lam) + A0 eta (v_rel . n) / l along its current direction n (theory.md, eq. (L.3)), and
+/// with the overstress A0 q of its memory (eq. (L.27)) if the state has a history. Every thread takes some of the rows
+/// from its lower to its upper end. It computes the bonds that start in a row, keeps those of the last three rows, and
+/// lets the sites of the row gather their twelve bonds while these are in cache. Bonds that reach into these from below
+/// are computed once more there. The order of a gather is symmetric under both mirrors of the lattice, so the bits of a
+/// result depend neither on the number of threads nor on which side of a symmetry line a site stands.
 class Forces
 {
 public:
@@ -37,8 +36,8 @@ public:
   /// the default.
   void set_shortness_threshold(double stretch) { constants_.shortness_limit = 1. / stretch; }
 
-  /// Sets the time since the last update of the memory of bonds, in which they reached the positions at which forces are
-  /// evaluated next [s], >= 0; 0 by default.
+  /// Sets the time since the last update of the memory of bonds, in which they reached the positions at which forces
+  /// are evaluated next [s], >= 0; 0 by default.
   void set_elapsed(double duration);
 
   /// Updates the memory of bonds to the present positions, which they reached in the time that was set; that is 0 from

@@ -115,7 +115,7 @@ std::string instruction_set();
 /// A bond's force, one at a time: the operations of bonds_of_row, so that both have the same bits.
 struct BondForce
 {
-  double x, y; ///< on the near end [N/m], the opposite on the far end
+  double x, y;   ///< on the near end [N/m], the opposite on the far end
   double nx, ny; ///< direction from the near to the far end
   double stretch;
   double viscous_power; ///< [W/m]

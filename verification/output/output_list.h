@@ -23,8 +23,8 @@ void begin_output_list(const std::filesystem::path &folder);
 /// @throws OutputError
 void list_output(const std::filesystem::path &file);
 
-/// Moves the listed files of an output directory to its subfolder `earlier-run`, or if that exists to `earlier-run-2` and
-/// so on. Files that are not listed are not moved.
+/// Moves the listed files of an output directory to its subfolder `earlier-run`, or if that exists to `earlier-run-2`
+/// and so on. Files that are not listed are not moved.
 /// @param keep file that is not moved, listed or not; may be empty
 /// @return the folder, or an empty path if there was nothing to move
 /// @throws OutputError
