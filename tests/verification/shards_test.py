@@ -6,6 +6,7 @@ Usage: shards_test.py PATH_OF_LATCON
 import copy
 import json
 import os
+import pathlib
 import signal
 import subprocess
 import sys
@@ -58,6 +59,19 @@ class Shards(TemporaryFolder):
         self.study("--collect")
         self.assertEqual(self.result(self.out), self.undisturbed())
         self.assertTrue((self.out / "study.html").exists())
+
+    def test_runs_side_by_side_verify_a_rubber_once(self):
+        study = str(self.write_study())
+        shards = [subprocess.Popen([LATCON, "study", study, "--output-dir", self.out, "--shard", f"{i}/2", "--threads", "2"],
+                                   text=True, stdout=subprocess.PIPE, stderr=subprocess.STDOUT) for i in (1, 2)]
+        for shard in shards:
+            printed, _ = shard.communicate(timeout=600)
+            self.assertEqual(shard.returncode, 0, printed)
+        checks = [json.loads((self.out / "runs" / name / "run.json").read_text())["verification"]
+                  for name in ("base-1", "base-2", "low-1", "thin-1")]
+        self.assertEqual(len({check["hash"] for check in checks}), 2)  # that of `thin` is another rubber
+        self.assertEqual(sum(not check["reused"] for check in checks), 2)
+        self.assertFalse(list(pathlib.Path(os.environ["XDG_CACHE_HOME"]).rglob("*.checking")))
 
     def test_stopped_shard_continues(self):
         shard = subprocess.Popen([LATCON, *self.words("--shard", "1/1", "--threads", "1")], stdout=subprocess.DEVNULL)

@@ -11,6 +11,7 @@
 #include <limits>
 #include <system_error>
 #include <thread>
+#include <utility>
 
 #include <fcntl.h>
 #include <link.h>
@@ -263,6 +264,39 @@ void VerdictStore::write(const VerdictKey &key, const std::string &text) const
   support::remove_stale_parts(folder_, std::filesystem::file_time_type::clock::now() - std::chrono::hours(1));
   output::write_file(path(key), text);
   chmod(path(key).c_str(), S_IRUSR | S_IWUSR); // read() refuses other modes, whatever the umask
+}
+
+VerdictStore::Turn::Turn(std::filesystem::path folder) : folder_(std::move(folder))
+{
+  constexpr std::chrono::hours patience(1);
+  std::filesystem::create_directories(folder_);
+  lock_ = std::make_unique<support::FolderLock>(folder_, patience);
+}
+
+VerdictStore::Turn::~Turn()
+{
+  std::error_code ignored; // an empty folder does no harm
+  std::filesystem::remove_all(folder_, ignored);
+}
+
+std::unique_ptr<VerdictStore::Turn> VerdictStore::wait_for_turn(const VerdictKey &key) const
+{
+  try
+  {
+    return std::make_unique<Turn>(folder_ + "/" + key.hash + ".checking");
+  }
+  catch (const support::FolderInUse &)
+  {
+    return nullptr;
+  }
+  catch (const support::OutputError &)
+  {
+    return nullptr;
+  }
+  catch (const std::filesystem::filesystem_error &)
+  {
+    return nullptr;
+  }
 }
 
 } // namespace latcon::claims

@@ -1,12 +1,15 @@
 /// Cache of verdicts, by the hash of everything they depend on.
 #pragma once
 
+#include <filesystem>
 #include <map>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
+#include "support/folder_lock.h"
 #include "verification/claims/claim.h"
 #include "verification/claims/claim_outcome.h"
 #include "verification/input/case.h"
@@ -79,6 +82,24 @@ public:
   /// Replaces the file of the key atomically.
   /// @throws OutputError
   void write(const VerdictKey &key, const std::string &text) const;
+
+  /// Turn of one process to check the claims of a key. Ends with the object.
+  class Turn
+  {
+  public:
+    explicit Turn(std::filesystem::path folder);
+    ~Turn();
+    Turn(const Turn &) = delete;
+    Turn &operator=(const Turn &) = delete;
+
+  private:
+    std::filesystem::path folder_;
+    std::unique_ptr<support::FolderLock> lock_;
+  };
+
+  /// Waits while another process checks the claims of the key, so that the runs of a study or of a job array check them
+  /// once. The wait is at most an hour, and none where folders cannot be created or locked: then both check.
+  [[nodiscard]] std::unique_ptr<Turn> wait_for_turn(const VerdictKey &key) const;
 
 private:
   std::string folder_;

@@ -1,6 +1,8 @@
 #include <iostream>
+#include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 
 #include <deal.II/base/mpi.h>
 
@@ -23,6 +25,7 @@ struct Stored
   std::string key;  // inputs that the verdicts depend on; empty: not known
   std::string text; // content of the stored file; empty: none that can be read
   std::string note; // message for the user; empty: no problem
+  std::unique_ptr<claims::VerdictStore::Turn> turn = nullptr; // of the root rank, to check the claims
 };
 
 std::string unused(const std::string &path, const std::string &reason)
@@ -43,7 +46,13 @@ Stored look_up(const input::Case &input, const std::optional<std::string> &folde
     else
       try
       {
-        stored.text = claims::VerdictStore(*folder).read(key).value_or("");
+        const claims::VerdictStore store(*folder);
+        stored.text = store.read(key).value_or("");
+        if (stored.text.empty())
+        {
+          stored.turn = store.wait_for_turn(key);
+          stored.text = store.read(key).value_or(""); // by the process that had its turn before
+        }
       }
       catch (const claims::UnusableVerdicts &error)
       {
@@ -60,9 +69,9 @@ Stored look_up(const input::Case &input, const std::optional<std::string> &folde
 // Returns the same on all ranks.
 Stored look_up_on_root_rank(const input::Case &input, const Run &run, const std::optional<std::string> &folder)
 {
-  const Stored stored = run.is_root() ? look_up(input, folder) : Stored();
+  Stored stored = run.is_root() ? look_up(input, folder) : Stored();
   const auto shared = [](const std::string &text) { return dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, text); };
-  return {shared(stored.key), shared(stored.text), shared(stored.note)};
+  return {shared(stored.key), shared(stored.text), shared(stored.note), std::move(stored.turn)};
 }
 
 void append(std::string &note, const std::string &more)
@@ -115,6 +124,8 @@ output::Results require_verified(const input::Case &input, Run &run)
         append(stored.note, std::string("the verdicts are not kept: ") + error.what());
       }
   }
+
+  stored.turn.reset();
 
   output::RunInfo::Object record{
     {"hash", key.text.empty() ? "" : key.hash}, {"reused", reused}, {"checked_at", verdicts->checked_at}};
