@@ -11,8 +11,8 @@ set(CPACK_DEBIAN_PACKAGE_SECTION science)
 
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_NAME latcon)
 set(CPACK_DEBIAN_RUNTIME_DESCRIPTION "The program: it simulates cracks in stretched rubber on a triangular lattice
-of bonds, sets the finite element continuum that the lattice stands for beside
-it, and runs a crack only after both have been shown to agree.")
+of bonds, compares it with the finite element continuum that it approximates,
+and runs a crack only once the two agree.")
 # Libraries, and the Python modules of the report.
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_SHLIBDEPS ON)
 set(CPACK_DEBIAN_RUNTIME_PACKAGE_DEPENDS "libjs-dygraphs, python3, python3-matplotlib, python3-numpy, python3-pil, python3-vtk9")

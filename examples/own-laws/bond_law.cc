@@ -2,7 +2,7 @@
 //
 // The bonds follow Gent's law of rubber, A. N. Gent, Rubber Chem. Technol. 69, 59 (1996). A sheet of them is stretched
 // equally both ways. Measured are the energy and its slope, and the speed of a shear wave; each is set beside the
-// closed form for the continuum that the lattice stands for. Exit code 1 if one disagrees.
+// closed form for the continuum that the lattice approximates. Exit code 1 if one disagrees.
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -48,7 +48,7 @@ public:
 private:
   static double neo_hookean(double stretch) { return stretch - 1. / (stretch * stretch); }
 
-  /// What is left of the chains' length: 1 at rest, 0 where they lock, and no number beyond.
+  /// Remaining length of the chains: 1 at rest, 0 where they lock, NaN beyond.
   double slack(double stretch) const
   {
     const double left = 1. - (stretch * stretch + 2. / stretch - 3.) / Jm_;

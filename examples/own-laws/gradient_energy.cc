@@ -26,7 +26,7 @@ using dealii::Tensor;
 
 /// Fibres along the unit vector a of the reference configuration, with the curvature k_i = G_iJK a_J a_K:
 ///   W_g = (c / 2) |k|^2,   so   B(G, Z) = c k(G) . k(Z)   and   Q_iJK = c k_i a_J a_K
-/// The same at every F.
+/// Gradient energy that does not depend on F.
 class BendingFibres : public continuum::GradientLaw
 {
 public:
@@ -69,8 +69,9 @@ private:
   Tensor<2, 2> aa_;
 };
 
-/// Whether the functions of a law that does not depend on F belong together: Q(G) : Z = B(G, Z), and C : Z = Q(Z), for
-/// gradients that are symmetric in their last two indices. Newton's method forgives a wrong C, and only takes longer.
+/// Checks that the functions of a law that does not depend on F are consistent: Q(G) : Z = B(G, Z), and C : Z = Q(Z),
+/// for gradients that are symmetric in their last two indices. Newton's method forgives a wrong C, and only takes
+/// longer.
 bool is_consistent(const continuum::GradientLaw &law)
 {
   const Tensor<2, 2> F(dealii::unit_symmetric_tensor<2>());
@@ -100,7 +101,7 @@ struct Layer
   const continuum::Material &rubber;
   const continuum::GradientLaw &fibres;
 
-  /// Force on the upper plate over its area [Pa], of the layer cut into so many cells across.
+  /// Force on the upper plate over its area [Pa], for a layer with this number of cells across.
   double shear_stress(unsigned int cells) const
   {
     const auto constant = [](double x) {
@@ -136,7 +137,7 @@ int main()
   const double theory = mu * layer.shear / (1. - share);
   const double coarse = layer.shear_stress(8), fine = layer.shear_stress(16);
 
-  // What halving the cells changed is more than what it left.
+  // The change when the cells are halved exceeds the remaining error.
   const double error = std::abs(fine - theory), tolerance = std::abs(fine - coarse);
   std::printf("Rubber with bending fibres, sheared by %.0f%% of its height\n", 100. * layer.shear);
   std::printf("  shear stress without fibres  %10.3f Pa\n", mu * layer.shear);

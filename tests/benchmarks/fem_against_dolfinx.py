@@ -20,7 +20,7 @@ HERE = pathlib.Path(__file__).resolve().parent
 PYTHON = "/usr/bin/python3"  # the one that sees Debian's packages
 CASE = HERE / "continuum_sheet.prm"
 
-# Of continuum_sheet.prm: (3/8) sum over shells of c psi''(1), with c = s and sqrt(3) s for an area factor s of 2/3.
+# Shear modulus of continuum_sheet.prm: (3/8) sum over shells of c psi''(1), with c = s and sqrt(3) s for an area factor s of 2/3.
 SHEAR_MODULUS = 3 / 8 * (2 / 3) * (1 + math.sqrt(3)) * 3 * (0.1e6 + 0.15e6)
 STATIC_LENGTH = 0.01  # m
 PROBE = (0.05, 0.0)  # m, a vertex of every mesh with an even number of cells

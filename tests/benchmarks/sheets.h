@@ -12,7 +12,7 @@
 namespace benchmarks
 {
 
-/// What the sheet is made of and what is watched in every step.
+/// Material of the sheet, and quantities monitored in every step.
 enum class Work
 {
   everything, ///< Mooney-Rivlin bonds to twelve neighbours, dashpots, breaking and toughening watched

@@ -4,7 +4,7 @@ A block of a page is
 
     ```sh      commands, run in the order of the page, all blocks of a page in one folder
     ```python  statements, run after the commands, all blocks of a page by one interpreter in that folder
-    ```text    straight after commands or statements: what they print. `...` stands for anything, in a line or for lines
+    ```text    straight after commands or statements: what they print. `...` matches anything, in a line or for lines
     ```prm, ```json    part of a case, or a study, which has `runs`; a dry run reads it
 
 and any other language is ignored. A comment on the line before a block of commands or statements marks exceptions;

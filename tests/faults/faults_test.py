@@ -58,7 +58,7 @@ class Faults(Folder):
 
     @unittest.skipUnless(CAN_MOUNT, "no disk can be mounted here")
     def test_small_disk(self):
-        """The same with a real disk, which becomes full in the middle of a file."""
+        """A real disk becomes full in the middle of a file."""
         arguments = victims.VICTIMS["crack"]
         expected, _ = victims.undisturbed(PROGRAM, arguments, self.folder / "undisturbed")
         disk, kept = self.folder / "disk", self.folder / "kept"

@@ -10,7 +10,7 @@ CASES = pathlib.Path(__file__).resolve().parents[2] / "verification" / "cases"
 
 
 def settings(**entries):
-    """--set options; `Section__name` stands for Section/name, `_` for a blank."""
+    """--set options; `Section__name` represents Section/name, `_` for a blank."""
     words = []
     for key, value in entries.items():
         words += ["--set", key.replace("__", "/").replace("_", " ") + "=" + str(value)]

@@ -346,7 +346,7 @@ class Fuzzer:
 
     @staticmethod
     def is_short(printed):
-        """Whether a dry run estimates at most a few seconds and frames."""
+        """Returns whether a dry run estimates at most a few seconds and frames."""
         words = [line.split() for line in printed.splitlines() if line.startswith("# time: about ")]
         steps = [float(line.split(" steps")[0].split()[-1]) for line in printed.splitlines() if " steps" in line and line[0] == "#"]
         frames = [line.split("=")[1].split("#")[0].strip() for line in printed.splitlines() if "set frame interval" in line]

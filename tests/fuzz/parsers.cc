@@ -83,7 +83,7 @@ void read_case(const std::string &text, const std::string &name, const std::vect
   if (parameters.lines() != parameters_again.lines())
     fail("a case is another one once it is written");
 
-  // What a command asks besides may be refused.
+  // Further checks of a command may refuse the input.
   if (overrides.size() % 2 == 0)
     require_lattice_sheet(again, parameters_again, "`latcon lattice`");
   else

@@ -103,7 +103,7 @@ class Scratch:
         return pathlib.Path(self._compile[name][-1]).relative_to(self._root)
 
     def _knows(self, source, file):
-        """Whether a source has the name of a file, is its test, or includes it directly."""
+        """Returns whether a source has the name of a file, is its test, or includes it directly."""
         stem = pathlib.Path(file).stem
         if source.stem in (stem, stem + "_test"):
             return True

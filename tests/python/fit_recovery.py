@@ -73,7 +73,7 @@ class Trial:
 
     @property
     def is_recovered(self):
-        """Whether the known parameters are in the region of 95 % confidence."""
+        """Returns whether the known parameters are in the region of 95 % confidence."""
         return self.distance <= chi2.ppf(0.95, len(self.known))
 
 

@@ -55,7 +55,7 @@ class ClaimSections(unittest.TestCase):
         (folder / "case.prm").write_text("subsection Sheet\nend\n")
 
     def report(self, expect=0):
-        """What the script does. @return (the page, what it says of errors)"""
+        """Runs the script. Returns the page and its messages on stderr."""
         errors = io.StringIO()
         with contextlib.redirect_stderr(errors):
             self.assertEqual(report.main([str(self.folder), "--quiet"]), expect, errors.getvalue())

@@ -156,7 +156,7 @@ class Compare(TemporaryFolder):
         self.assertAlmostEqual(float(row["error"]), np.sqrt((difference**2).sum(axis=1).mean()) / scale, delta=1e-12)
         self.refused(["cannot be compared"], self.lattice, self.continuum, "--exclude", "0,0,1 m")
 
-    # The same homogeneous deformation in the left half of the sheet.
+    # One homogeneous deformation, also in the left half of the sheet.
     def test_a_part_of_the_sheet_is_compared_where_both_are(self):
         half = self.folder / "half"
         run = latcon("continuum", CASES / "quick.prm", "--quiet", "--output-dir", half, *(word.replace("=2 cm", "=1 cm") for word in SMALL))

@@ -372,7 +372,7 @@ class Motion(TemporaryFolder):
             energy = self.moved(cells)
             phase = np.arccos(np.sqrt(energy["kinetic"][1:] / energy["kinetic"][0]))
             errors.append(abs(phase[-1] / energy["t"][-1] / discrete - 1.))
-        # Of order 2 (p - 1) = 4 (motion.md). Measured: 2.1e-5 and 1.2e-6.
+        # The order is 2 (p - 1) = 4 (motion.md). Measured: 2.1e-5 and 1.2e-6.
         self.assertLess(errors[0], 5e-5)
         self.assertGreater(errors[0] / errors[1], 8.)
 

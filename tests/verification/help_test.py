@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""What the command line explains: typing errors, shipped cases, entries, a case to start from, runs that cost too much.
+"""Explanations of the command line: typing errors, shipped cases, entries, a case to start from, runs that cost too much.
 
 Usage: help_test.py PATH_OF_LATCON
 """

@@ -19,7 +19,7 @@ STRAINS_Y = (0.03, 0.1, 0.3, 0.6, 1.0, 1.8, 2.4, 3.0)
 
 
 def both(**entries):
-    """The same entries of both shells."""
+    """Entries with the same values for both shells."""
     return [f"{shell}/{name}={value}" for shell in ("Nearest neighbours", "Next-nearest neighbours")
             for name, value in entries.items()]
 

@@ -13,14 +13,14 @@ SKIPPED = 77  # exit code
 
 
 class ParaView(unittest.TestCase):
-    """Has a folder and a display."""
+    """Test case with a folder and a display."""
 
     @classmethod
     def setUpClass(cls):
         cls.temporary = tempfile.TemporaryDirectory()
         cls.folder = pathlib.Path(cls.temporary.name)
         read_end, write_end = os.pipe()
-        # -displayfd: told once connections are taken; -noreset: also after the last one has gone.
+        # -displayfd: writes the number once connections are accepted; -noreset: continues after the last one closes.
         cls.display = subprocess.Popen(["Xvfb", "-displayfd", str(write_end), "-noreset", "-nolisten", "tcp", "-screen",
                                         "0", "1280x1024x24"], pass_fds=[write_end], stdout=subprocess.DEVNULL,
                                        stderr=subprocess.DEVNULL)

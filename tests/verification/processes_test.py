@@ -62,7 +62,7 @@ class Start(TemporaryFolder):
         self.assertEqual(names_in(self.tmp), before)
 
     def test_the_files_in_the_way_are_in_the_way(self):
-        """The same with mpirun, which creates the folder. If this fails, the test above is meaningless."""
+        """Repeats the test with mpirun, which creates the folder. If this fails, the test above is meaningless."""
         self.block_session_folder()
         run = subprocess.run(["mpirun", "-n", "1", "true"], capture_output=True, text=True, timeout=600,
                              env=environment(TMPDIR=str(self.tmp), OMPI_ALLOW_RUN_AS_ROOT="1",

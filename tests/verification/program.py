@@ -63,7 +63,7 @@ def wait_for(condition, process, seconds=BEGINS):
 
 
 def catches(process, number):
-    """Whether the program has installed its signal handlers."""
+    """Returns whether the program has installed its signal handlers."""
     with open(f"/proc/{process.pid}/status") as file:
         caught = next(line.split()[1] for line in file if line.startswith("SigCgt:"))
     return bool(int(caught, 16) >> (number - 1) & 1)

@@ -310,7 +310,7 @@ class ViewerTest(unittest.TestCase):
                     (self.assertLess if dark else self.assertGreater)(corner.mean(), 60 if dark else 230, f"{selector}, {dark}")
 
     def number(self):
-        """Of the crack in the page."""
+        """Number of the crack in the page."""
         return self.browser.value("document.querySelector('[id^=stills-]').id.split('-')[1]")
 
 

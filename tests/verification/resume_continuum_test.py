@@ -30,7 +30,7 @@ WAVES = {
     "Initial state/velocity x": "6*sin(pi*y/0.02)^2*sin(2*pi*x/0.01)", "Time/end": "0.1 ms",
     "Continuum/time step": "5 us", "Output/frame interval": "0.02 ms", "Output/energy interval": 2,
     "Checkpoints/steps": 3}
-# The same with conjugate gradients, which do not support periodic edges.
+# Waves with conjugate gradients, which do not support periodic edges.
 BY_MULTIGRID = {**WAVES, "Left edge/condition": "held", "Right edge/condition": "held", "Continuum/direct limit": 0,
                 "Initial state/velocity x": "6*sin(pi*y/0.02)^2*sin(pi*x/0.01)^2"}
 # Two sides thrown at each other, faster than Newton's method follows in steps of that length.

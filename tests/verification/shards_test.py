@@ -37,7 +37,7 @@ class Shards(TemporaryFolder):
         return run.stdout + run.stderr
 
     def result(self, folder):
-        """What the study found, as bytes."""
+        """Results of the study, as bytes."""
         return [(folder / name).read_bytes() for name in ("study.json", "study.csv", "results.csv")]
 
     def undisturbed(self):

@@ -108,7 +108,7 @@ class EveryCommand(Interrupted):
         self.ends(process)
 
     def is_ended_as_it_reads(self, pipe, *arguments):
-        """Whether the command ends while it waits for a file that nobody writes."""
+        """Checks that the command ends while it waits for a file that nobody writes."""
         process = self.start(*arguments, start_new_session=True)
         writers = []
 

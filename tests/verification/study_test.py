@@ -152,14 +152,14 @@ class Study(TemporaryFolder):
     def test_resume_repeats_nothing_and_gives_the_same_files(self):
         self.study()
         before, first = self.times(), {name: self.text(name) for name in ("study.json", "study.csv", "results.json")}
-        self.assertIn("0 runs, 4 are there already", self.study("--resume"))
+        self.assertIn("0 runs, 4 are finished already", self.study("--resume"))
         self.assertEqual(self.times(), before)
         self.assertEqual({name: self.text(name) for name in first}, first)
 
         def change(document):  # claims are not a part of the runs
             document["claims"][0]["rows"][0]["above"] = 1000
         printed = self.study("--resume", change=change, expect=3)
-        self.assertIn("0 runs, 4 are there already", printed)
+        self.assertIn("0 runs, 4 are finished already", printed)
         self.assertIn("does not hold", printed)
 
         self.study()
@@ -174,7 +174,7 @@ class Study(TemporaryFolder):
         info = self.out / "runs" / "thin-1" / "run.json"
         document = json.loads(info.read_text())
         info.write_text(json.dumps(dict(document, program_hash="0" * 64)))
-        self.assertIn("2 runs, 2 are there already", self.study("--resume", change=change))
+        self.assertIn("2 runs, 2 are finished already", self.study("--resume", change=change))
         after = self.times()
         self.assertEqual([name for name in FOLDERS if after[name] != before[name]], ["low-1", "thin-1"])
 

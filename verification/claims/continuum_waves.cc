@@ -47,7 +47,7 @@ Vector interpolated(const continuum::Sheet &sheet, const dealii::Function<2> &fi
 
 continuum::Rectangle one_wavelength(const Eigen::Vector2d &K, unsigned int cells)
 {
-  // Where the wave does not vary, two square cells carry it.
+  // In a direction in which the wave does not vary, two square cells suffice.
   const bool along_x = std::abs(K.x()) > 1e-9 * K.norm(), along_y = std::abs(K.y()) > 1e-9 * K.norm();
   const double cell = 2. * M_PI / (K.norm() * cells);
   continuum::Rectangle rectangle{2. * cell, 2. * cell, 2, 2, true, true};
@@ -104,7 +104,7 @@ public:
     return sum;
   }
 
-  /// The same times what is prescribed, none here: rows of dependent unknowns are left out.
+  /// Clears the rows of dependent unknowns; the prescribed values are zero.
   void clear_dependent(Vector &b) const
   {
     for (const auto i : sheet_.owned())

@@ -17,7 +17,7 @@ namespace latcon::commands
 namespace
 {
 
-// What is compared of one run.
+// Compared data of one run.
 struct CrackRun
 {
   study::RunOutcome outcome;

@@ -123,7 +123,7 @@ private:
   double done_ = 0., total_ = 0.;
 };
 
-// Which runs of a study to start, and where they are.
+// Runs of a study to start, and their directory.
 struct Selection
 {
   std::string directory;         // output directory of the study
@@ -148,7 +148,8 @@ bool run_children(study::StudyResults &results, const Selection &selection, bool
       jobs.push_back(i);
   }
   if (run.is_verbose())
-    std::cout << jobs.size() << " runs, " << selection.runs.size() - jobs.size() << " are there already" << std::endl;
+    std::cout << jobs.size() << " runs, " << selection.runs.size() - jobs.size() << " are finished already"
+              << std::endl;
 
   for (const char *folder : {"/cases", "/runs"})
     fs::create_directory(directory + folder);

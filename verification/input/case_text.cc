@@ -25,8 +25,8 @@ std::string place_of(const std::string &name, const std::size_t line)
   return name + ":" + std::to_string(line);
 }
 
-// Whether the line begins with the word, in small or capital letters and followed by a blank or nothing; removes it if
-// so.
+// Removes the word from the beginning of the line, in small or capital letters and followed by a blank or nothing.
+// @return whether the line begins with it
 bool take_word(std::string &line, const std::string &word)
 {
   std::string capitals = word;
@@ -208,7 +208,7 @@ private:
     return true;
   }
 
-  // The same for something with an inside, which is passed over.
+  // Skips an element together with its content.
   bool skip(const std::string &what)
   {
     unsuitable(what);

@@ -138,7 +138,7 @@ void check_values_at(Parameters &parameters, const std::string &key, const std::
 // Empty if there is none. Evaluated once, since parsing happens with the first value.
 std::string problem_with(const std::string &expression)
 {
-  // Of a list muparser takes the last entry, where the user may have meant a decimal comma or both components.
+  // muparser takes the last entry of a list, but the user may have meant a decimal comma or both components.
   int open = 0;
   for (const char c : expression)
   {
@@ -251,7 +251,7 @@ void EdgeCase::check(Parameters &p) const
   double_traction.check(p, name, "double traction");
   if (condition == Condition::held && displacement_x == "free" && displacement_y == "free")
     p.error(name + "/condition", "a held edge needs a displacement that is not `free`, or condition = free");
-  // What is given has to act: of a held edge on the component that is free, of a periodic one not at all.
+  // A given load must have an effect: on a held edge for a free component only, on a periodic edge never.
   for (const bool is_x : {true, false})
     if ((is_x ? traction.x : traction.y) != "0" && condition != Condition::free &&
         (condition == Condition::periodic || (is_x ? displacement_x : displacement_y) != "free"))
@@ -390,7 +390,7 @@ void ContinuumCase::check(Parameters &p, const bool has_inner_edge) const
 
 void ContinuumCase::check_values(Parameters &p, const Outline &outline) const
 {
-  // Where a sheet from a file is, is known only when it is read.
+  // The extent of a mesh from a file is known only after reading it.
   if (!mesh_file.empty())
     return;
   const auto check = [&](const std::string &key, const std::string &text, const Points &points)

@@ -1,4 +1,4 @@
-// How each kind of entry is declared, read and written; what is done with the entries is in parameters.cc.
+// Declaration, reading and writing of each kind of entry; parameters.cc processes the entries.
 #include "verification/input/parameters.h"
 
 #include "support/full_precision.h"

@@ -71,7 +71,7 @@ void Parameters::read_overrides(const std::vector<std::string> &overrides)
 
 void Parameters::enter(const SectionStart &start)
 {
-  // Told here, once, and not for each entry in the section.
+  // Reported once, not for each entry in the section.
   if (!has_section(start.section))
     report(start.place, "unknown subsection '" + printable(start.section) + "'" + nearest_section(start.section) +
                           "; known: " + known_sections());
@@ -287,7 +287,7 @@ void Parameters::declare_in(dealii::ParameterHandler &handler) const
         " (" + entry.rule + (required && !entry.rule.empty() ? "; " : "") + (required ? "required" : "") + ")";
     handler.enter_subsection(entry.section);
     // Values are checked here, before deal.II sees them, so that all problems can be told at once. A required entry has
-    // no default; its value stands in for one, or deal.II would print an empty default beside it.
+    // no default; its value replaces the default, which deal.II would print as an empty text.
     handler.declare_entry(entry.name, required ? entry.write() : entry.default_text, dealii::Patterns::Anything(),
                           documentation, required);
     handler.set(entry.name, entry.write());

@@ -101,7 +101,7 @@ struct Between : Range
   Between(double lower, double upper) : Range({lower, true}, {upper, true}) {}
 };
 
-/// Whether an entry may be omitted.
+/// Required and optional entries.
 enum class Presence
 {
   optional, ///< if omitted, the member keeps the value that it had when it was declared

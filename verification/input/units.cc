@@ -39,7 +39,7 @@ struct Prefix
   int power;
 };
 
-// Both code points that are used for the Greek letter stand for micro.
+// Both code points that are used for the Greek letter denote micro.
 constexpr Prefix prefixes[] = {{"n", -9}, {"u", -6}, {"\xc2\xb5", -6}, {"\xce\xbc", -6}, {"m", -3},
                                {"c", -2}, {"d", -1}, {"k", 3},         {"M", 6},         {"G", 9}};
 

@@ -8,7 +8,7 @@ opening-stress, damage. Without --screenshot a window opens and plays the frames
 import sys
 from dataclasses import dataclass
 
-sys.dont_write_bytecode = True  # this folder stays as it is
+sys.dont_write_bytecode = True  # no files are added to this folder
 
 from looks import (BEYOND, TENSOR, TEXT, View, beside, fail, finish, input_number, parser_of, require, set_scale,
                    size_for, values_of)

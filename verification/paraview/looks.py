@@ -7,7 +7,7 @@ import sys
 TEXT = [0.13, 0.13, 0.13]
 BEYOND = [0.835, 0.369, 0.0]  # orange, of bonds beyond the breaking stretch
 BAR_HEIGHT = 170  # of the part of a view that title and colour bar take [pixels]
-# Where a field's components are in the files.
+# Indices of a field's components in the files.
 VECTOR, TENSOR = {"x": 0, "y": 1}, {"xx": 0, "xy": 1, "yx": 3, "yy": 4}
 
 

@@ -10,7 +10,7 @@ import csv
 import json
 import sys
 
-sys.dont_write_bytecode = True  # this folder stays as it is
+sys.dont_write_bytecode = True  # no files are added to this folder
 
 from looks import (BEYOND, TENSOR, View, beside, fail, finish, input_number, parser_of, require, set_scale, size_for,
                    values_of)

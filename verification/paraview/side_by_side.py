@@ -7,7 +7,7 @@ Without --screenshot a window opens.
 """
 import sys
 
-sys.dont_write_bytecode = True  # this folder stays as it is
+sys.dont_write_bytecode = True  # no files are added to this folder
 
 from looks import (TENSOR, VECTOR, View, array, beside, finish, parser_of, require, set_scale, size_for, symmetric,
                    value_range)

@@ -82,7 +82,7 @@ def largest_text(values):
 
 
 def not_computed(values):
-    """How many values are not finite: " (1 of 32 not computed)"; nothing if all are."""
+    """Text on the number of values that are not finite: " (1 of 32 not computed)"; nothing if all are."""
     missing = np.count_nonzero(~np.isfinite(values))
     return f" ({missing} of {len(values)} not computed)" if missing else ""
 

@@ -9,7 +9,7 @@ PIXELS = 160  # of the fields [1/in]
 
 
 def has_fields(frame):
-    """Whether a frame has the fields that draw_fields() needs."""
+    """Returns whether a frame has the fields that draw_fields() needs."""
     return {"velocity", "cauchy_stress", "damage"} <= set(frame.fields)
 
 

@@ -11,7 +11,7 @@ import sys
 import textwrap
 from pathlib import Path
 
-sys.dont_write_bytecode = True  # this folder stays as it is
+sys.dont_write_bytecode = True  # no files are added to this folder
 
 import own_settings  # before matplotlib
 

@@ -16,7 +16,7 @@ MOST_ROWS = 2000  # per plot
 
 
 def has_dygraphs():
-    """Whether the plotting library is installed."""
+    """Returns whether the plotting library is installed."""
     return (DYGRAPHS / "dygraph.min.js").exists() and (DYGRAPHS / "dygraph.min.css").exists()
 
 

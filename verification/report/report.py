@@ -9,7 +9,7 @@ import os
 import sys
 from pathlib import Path
 
-sys.dont_write_bytecode = True  # this folder stays as it is
+sys.dont_write_bytecode = True  # no files are added to this folder
 
 import own_settings  # before matplotlib
 

@@ -73,12 +73,12 @@ class Run:
 
     @property
     def is_fracture(self):
-        """Whether a crack was run, or at least started."""
+        """True if a crack was run, or at least started."""
         return self.crack is not None or has_rows(self.tip) or any(c.claim == "fracture" for c in self.checks)
 
     @property
     def state(self):
-        """How the run ended: "complete", "interrupted" or "unfinished"."""
+        """State of the run: "complete", "interrupted" or "unfinished"."""
         exit_code = (self.info or {"exit_code": 0}).get("exit_code")
         if exit_code == INTERRUPTED:
             return "interrupted"
@@ -86,7 +86,7 @@ class Run:
 
     @property
     def skipped_verification(self):
-        """Whether the crack was run without checking the claims for its material."""
+        """True if the crack was run without checking the claims for its material."""
         return bool((self.info or {}).get("skip_verification"))
 
     def input_number(self, section, entry):
@@ -113,7 +113,7 @@ class Unreadable:
 
 
 def has_rows(table, at_least=1):
-    """Whether a table was read and has at least `at_least` rows."""
+    """Returns whether a table was read and has at least `at_least` rows."""
     return table is not None and len(table["t"]) >= at_least
 
 

@@ -7,7 +7,7 @@ import argparse
 import sys
 from pathlib import Path
 
-sys.dont_write_bytecode = True  # this folder stays as it is
+sys.dont_write_bytecode = True  # no files are added to this folder
 
 import own_settings  # before matplotlib
 

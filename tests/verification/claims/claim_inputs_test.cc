@@ -1,4 +1,4 @@
-// What the claims may read of a case: every entry there is either changes the text or is said here not to.
+// Entries of a case that claims may read: every entry either changes the text or is listed here as unused.
 #include "verification/claims/claim_inputs.h"
 
 #include "support/errors.h"
@@ -168,7 +168,7 @@ TEST(ClaimInputs, EveryEntryChangesThemOrIsReadByNoClaim)
     const std::optional<Case> changed = with_another(key, value);
     ASSERT_TRUE(changed) << key << " = " << value << ": no other value was found to try";
     const std::string section = key.substr(0, key.find('/'));
-    // Of the finite element side claims read the ratio alone: they choose meshes, edges and solvers themselves.
+    // Claims read only the ratio of the finite element side: they choose meshes, edges and solvers themselves.
     const bool finite_elements = section == "Body force" || section == "Initial state" ||
                                  (section.size() > 5 && section.compare(section.size() - 5, 5, " edge") == 0) ||
                                  (section == "Continuum" && key != "Continuum/ratio");

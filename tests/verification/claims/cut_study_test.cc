@@ -156,7 +156,7 @@ TEST(CutStudy, NetworkLiesMidwayBetweenTheLatticeAndTheTurnedOne)
   EXPECT_LT(network.network_bound, 10. * network.from_local->energy) << "the bound says nothing";
 }
 
-// What the report reads by name.
+// Columns that the report reads by name.
 TEST(CutStudy, TablesHaveTheirColumns)
 {
   CutStudy study = hole_study(true);

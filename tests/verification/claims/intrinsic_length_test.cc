@@ -1,4 +1,4 @@
-// What length the bonds bring, and what makes the claim about it fail.
+// The intrinsic length of the bonds, and faults that make its claim fail.
 #include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
 
 #include <gtest/gtest.h>

@@ -362,7 +362,7 @@ TEST_P(NoNumber, FailsTheClaim)
   EXPECT_NE(failing.find(GetParam().reason), std::string::npos) << failing;
 }
 
-// What is planted fails them, not how: with the same wrappers around sound laws all of them hold.
+// The planted fault makes claims fail, not the wrapper: with the same wrappers around sound laws all claims hold.
 class SoundWrappers : public testing::TestWithParam<ClaimPart>
 {
 };

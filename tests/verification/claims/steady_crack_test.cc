@@ -138,7 +138,7 @@ TEST(CrackRun, RefusesAnUnstableStepAndACrackThatDoesNotRun)
   EXPECT_THROW(run_crack(options), std::runtime_error);
 }
 
-// What is compared is known to far better than a per cent, so that an error of a per cent anywhere is seen.
+// The compared values are known to much better than one percent, so that an error of one percent anywhere is detected.
 // theory-comparison.md, eqs. (S.2), (S.5), (S.8) and (S.9).
 TEST(SteadyCrackStudy, HoldsInItsQuickVersion)
 {

@@ -1,4 +1,4 @@
-// What a case says of the finite element sheet: defaults that are accepted, and combinations that are refused with the
+// Entries of the finite element sheet: defaults that are accepted, and combinations that are refused with the
 // entry to change.
 #include "support/errors.h"
 #include "verification/input/continuum_case.h"
@@ -35,7 +35,7 @@ Lines problems(const Lines &overrides, const bool has_inner_edge = false)
   return {};
 }
 
-// That there is one problem, and that it names the entry.
+// Expects one problem that names the entry.
 void expect_refused(const std::string &entry, const Lines &overrides, const bool has_inner_edge = false)
 {
   const Lines found = problems(overrides, has_inner_edge);
@@ -138,7 +138,7 @@ TEST(ContinuumCase, AnEdgeIsHeldOrLoaded)
   expect_refused("Continuum/adaptive cycles", {"Continuum/solution=motion", "Continuum/adaptive cycles=1"});
 }
 
-// Given in vain it would be left out without a word.
+// Such a load would have no effect.
 TEST(ContinuumCase, PeriodicAndClampedEdgesTakeNoLoads)
 {
   const std::string law = "Continuum/gradient=lattice";

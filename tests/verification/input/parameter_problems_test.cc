@@ -1,4 +1,4 @@
-// Every wrong entry of a case is told with its place, what is allowed and the nearest key, all at once.
+// All invalid entries of a case are reported together, each with its line, the allowed values and the nearest key.
 #include "tests/verification/input/sample_case.h"
 
 #include <limits>

@@ -77,7 +77,7 @@ inline std::vector<std::string> problems_of(Parameters &p)
   return {};
 }
 
-// What is wrong with a case.
+// Problems of a case.
 inline std::vector<std::string> problems(const std::string &text, const std::vector<std::string> &overrides = {},
                                          const std::string &name = "a.prm")
 {
@@ -130,7 +130,7 @@ inline bool same_bits(const double a, const double b)
   return std::memcmp(&a, &b, sizeof(a)) == 0;
 }
 
-// Whether the parameters can be set up as in `declaration`, or the program is told of its mistake.
+// Returns whether the parameters can be declared as in `declaration`; a programming error throws.
 template <typename Declaration>
 bool is_misuse(const Declaration &declaration)
 {

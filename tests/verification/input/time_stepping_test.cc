@@ -1,4 +1,4 @@
-// How a case chooses the time stepping of the lattice, and what it refuses.
+// Time stepping of the lattice as chosen by a case, and refused choices.
 #include <algorithm>
 
 #include <gtest/gtest.h>
@@ -83,7 +83,7 @@ TEST(TimeStepping, TakesStagesForTheStep)
   EXPECT_EQ(stepping({chebyshev, "Time/step=5e-6"}).stages, lattice::ChebyshevStages::needed(5e-6 / limits().viscous));
 }
 
-// Stages too few for the automatic step shorten it; a stated step is taken as it is.
+// Stages too few for the automatic step shorten it; a given step is not changed.
 TEST(TimeStepping, TakesTheStepForStages)
 {
   const lattice::TimeStepping few = stepping({chebyshev, "Time/stages=3"});
@@ -95,7 +95,7 @@ TEST(TimeStepping, TakesTheStepForStages)
   EXPECT_EQ(stated.step, 2.5e-6);
 }
 
-// Of a crack, whose sites may touch; of the motion of a whole sheet there are no contacts.
+// Sites of a crack may touch; the motion of a whole sheet has no contacts.
 TEST(TimeStepping, CountsContactsUnderRungeKuttaChebyshev)
 {
   const Lines breaks{chebyshev, "Fracture/breaking stretch=3.05", "Sheet/length=40 mm"};

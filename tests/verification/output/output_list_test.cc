@@ -78,7 +78,7 @@ TEST_F(OutputList, FilesOfTheRunBeforeAreMovedAndNoOthers)
   EXPECT_EQ(archive_earlier_output(folder, {}), folder / "earlier-run-2");
   EXPECT_EQ(content(folder / "earlier-run-2/crack.csv"), "second");
   EXPECT_FALSE(has("earlier-run-2/lattice-0000.vtp"));
-  // Those of the first run are still there.
+  // The files of the first run remain.
   EXPECT_EQ(content(folder / "earlier-run/crack.csv"), "first");
   EXPECT_TRUE(has("earlier-run/lattice-0000.vtp"));
   EXPECT_TRUE(has("earlier-run/mine.txt"));

@@ -87,7 +87,7 @@ TEST(Resources, StepsThatCannotBeCountedAreTold)
   try
   {
     parameters.finish();
-    FAIL() << "nothing was told";
+    FAIL() << "no exception";
   }
   catch (const latcon::support::InputError &error)
   {

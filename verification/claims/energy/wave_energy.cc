@@ -73,7 +73,7 @@ struct Media
   WaveContinuum local, gradient;
 };
 
-// The same in closed form, (1/4) p.(rho (1 + l^2 k^2) D) p: mean of cos^2 times half the stiffness.
+// Mean stiffness energy in closed form, (1/4) p.(rho (1 + l^2 k^2) D) p: mean of cos^2 times half the stiffness.
 double closed_stiffness(const WaveContinuum &medium, const Eigen::Matrix2d &F, const Eigen::Vector2d &K,
                         const Eigen::Vector2d &p)
 {

@@ -40,8 +40,8 @@ Eigen::Vector2d reactions(const lattice::TriangularLattice &sheet, const lattice
   return reaction;
 }
 
-// Of the radii within half a spacing of R the one at which missing bonds, with the energy that they would have in
-// tension along the rim, have the smallest sixth moment about the middle.
+// Returns the radius, within half a spacing of R, for which the missing bonds, weighted by the energy that they would
+// have in tension along the rim, have the smallest sixth moment about the middle.
 double roundest_radius(const bridge::Subject &subject, double R, double length, double height)
 {
   constexpr std::size_t n_radii = 21;
@@ -139,7 +139,7 @@ CutLattice relaxed_lattice(const bridge::Subject &subject, const CutSheet &sheet
       const double of_force = section * lattice::force(shell->law, r.norm() / l) * r.y() / r.norm() * R.y();
       energy += of_energy;
       force += of_force;
-      // Of the bonds that cross a free edge half the length across is missing.
+      // Half the length of the bonds that cross a free edge is missing.
       energy_missing += of_energy * 0.5 * std::abs(R.x());
       force_missing += of_force * 0.5 * std::abs(R.x());
     }

@@ -79,8 +79,8 @@ private:
   double from_, to_, pitch_;
 };
 
-// Where the tip of the first field has to be, ahead of the nominal one [d], for the second to be closest to it: golden
-// section, to a thousandth.
+// Shift of the tip of the first field ahead of its nominal position [d] at which the second field is closest to it, by
+// golden section search to a thousandth.
 double effective_tip(const TipField &first, const TipField &second, const Region &region, double d)
 {
   const Quantity &velocity = quantities().front();

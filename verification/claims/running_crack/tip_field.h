@@ -9,14 +9,14 @@
 namespace latcon::claims
 {
 
-/// What is compared at a point near the tip, of the upper half of the sheet.
+/// Compared quantities at a point near the tip, in the upper half of the sheet.
 struct TipValues
 {
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero(); ///< [m/s]
   Eigen::Vector2d excess = Eigen::Vector2d::Zero();   ///< x - F X [m]
   double opening_stress = 0.;                         ///< P_yY, first Piola, elastic and viscous [Pa]
   double dissipation = 0.;                            ///< by viscosity, per reference area [W/m^3]
-  // Of a continuum alone, norms of first Piola stresses [Pa]:
+  // In a continuum only, norms of first Piola stresses [Pa]:
   double anisotropy = 0.;    ///< of the lattice's own bonds less its mean over rotations, at its F
   double excess_stress = 0.; ///< elastic stress less that of the loaded sheet
 
@@ -24,7 +24,7 @@ struct TipValues
   TipValues operator*(double factor) const;
 };
 
-/// Where a sample is taken, relative to the tip: xi = X - X_tip, eta = |Y - Y_crack| [m].
+/// Position of a sample relative to the tip: xi = X - X_tip, eta = |Y - Y_crack| [m].
 struct TipSite
 {
   std::size_t place; ///< in the lattice

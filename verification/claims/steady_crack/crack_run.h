@@ -21,7 +21,7 @@ struct CrackRunOptions
   double window_end = 210.;   ///< ... up to here
 };
 
-/// What the crack did in the window. Energies are those for one broken bond, over the energy k e_c^2 / 2 of a bond at
+/// Measurement of the crack in the window. Energies are per broken bond, divided by the energy k e_c^2 / 2 of a bond at
 /// the breaking elongation.
 struct CrackRun
 {

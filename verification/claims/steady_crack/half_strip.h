@@ -24,7 +24,7 @@ struct CrackStrip
 /// Speed of shear waves, sqrt(3/8) d sqrt(k/m); longitudinal waves are faster by sqrt3.
 double shear_speed();
 
-/// How the lower half of a strip answers what moves past it at a steady speed.
+/// Response of the lower half of a strip to loads that move along it at a steady speed.
 ///
 /// All fields are w(t - X/v) with the same w for all sites of a row (theory-comparison.md, eq. (S.2)). Transforms are
 /// f(omega) = integral of f(s) exp(-i omega s), so that a step along the row by X is the factor exp(-i omega X/v). Rows
@@ -55,7 +55,7 @@ public:
     Complex along; ///< bonds of the row below the gap; 0 for the held row
   };
 
-  /// The same for every bond of the half strip: layer 0 is the gap of the crack, layer N that above the held row.
+  /// Elongations of all bonds of the half strip: layer 0 is the gap of the crack, layer N that above the held row.
   std::vector<Layer> elongations(double omega) const;
 
 private:

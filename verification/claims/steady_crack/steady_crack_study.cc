@@ -141,7 +141,7 @@ void add_run(ClaimOutcome &outcome, const CrackRunOptions &options, const Compar
           fields.largest_elsewhere, off_line});
 }
 
-// Where the exact solution would have other bonds beyond the breaking elongation, they do break.
+// Bonds that the exact solution stretches beyond the breaking elongation do break.
 void add_limit(ClaimOutcome &outcome, const CrackRunOptions &options)
 {
   const double speed = steady_speed(options.strip, options.driving, fastest);

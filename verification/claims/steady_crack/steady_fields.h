@@ -7,7 +7,7 @@
 namespace latcon::claims
 {
 
-/// What happens around a crack that runs steadily, as functions of the time s since a bond across it broke.
+/// Fields around a steadily running crack as functions of the time s since a bond across it broke.
 /// Elongations are over the breaking elongation.
 struct SteadyFields
 {
@@ -18,7 +18,8 @@ struct SteadyFields
   double largest_elsewhere; ///< of any other bond at any time
   double dissipation;       ///< by all dashpots for one broken bond, over the energy k e_c^2 / 2 that this held
 
-  /// Whether the solution is one: bonds reach the breaking elongation when they are to break, and nowhere else.
+  /// Returns whether the solution is valid: bonds reach the breaking elongation when they are to break, and nowhere
+  /// else.
   bool exists() const { return largest_before < 1. && largest_elsewhere < 1.; }
 };
 

@@ -29,7 +29,7 @@ void network_waves(const bridge::Subject &subject, const Eigen::Matrix2d &F, con
   const lattice::TriangularLattice sheet(d, 10. * d, 10. * d, subject.orientation); // only its bonds matter
   const WaveContinuum local{{subject.network}, {rho}},
     gradient{{subject.network, *subject.network_gradient}, {rho, subject.lengths.lattice}};
-  // Of the lattice turned by its rotations: that of the lattice as it is at F R, for the wave R^T K.
+  // The matrix of a lattice turned by R is that of the lattice at F R, for the wave R^T K.
   const auto on_lattice = [&](const Eigen::Vector2d &K)
   {
     Eigen::MatrixXd matrices(4, bridge::n_lattice_rotations);
