@@ -179,12 +179,13 @@ def test_a_first_batch_without_result_is_an_error(small_fit, crack, tmp_path):
     assert len(crack.runs) == 8
 
 
-def test_a_full_disk_stops_the_fit_and_a_later_call_continues_it(small_fit, crack, tmp_path):
+@pytest.mark.parametrize("code, kind", [(5, latcon.OutputFailed), (130, latcon.Interrupted)])
+def test_a_full_disk_or_a_signal_stops_the_fit_and_a_later_call_continues_it(small_fit, crack, tmp_path, code, kind):
     def fill(directory, **_):
         if directory.name.startswith("00005"):
-            raise error_of(5, "disk full")
+            raise error_of(code, "disk full")
     crack.body = fill
-    with pytest.raises(latcon.OutputFailed, match="disk full"):
+    with pytest.raises(kind, match="disk full"):
         small_fit(tmp_path / "fit")
     assert len(lines(tmp_path / "fit")) == 5
     crack.body = None

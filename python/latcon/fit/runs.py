@@ -11,7 +11,7 @@ from collections.abc import Callable, Iterable, Mapping
 
 from .. import commands
 from ..case import Case
-from ..errors import BadInput, ClaimFailed, Interrupted, OutputFailed, ProgramError
+from ..errors import BadInput, ClaimFailed, OutputFailed, ProgramError
 from ..program import Progress
 from ..results import Run, open_run
 from .problem import SEED, Measurement, Problem
@@ -38,6 +38,8 @@ def evaluate(record: Record, points: Iterable[Point], workers: int, keep_runs: b
     ------
     OutputFailed
         If a run could not write its files.
+    Interrupted
+        If a signal ended a run.
     ValueError
         If a run does not have an observed quantity.
     """
@@ -95,8 +97,6 @@ def _run_one(record: Record, number: int, values: Mapping[str, float], seed: int
             raise
         ended = "refused" if isinstance(error, (BadInput, ClaimFailed)) else "failed"
         outcome = Outcome(seed, ended, error.message, {})
-    except Interrupted as error:  # a signal to the program alone
-        raise _Stopped(error.message) from error
     if not keep_runs:
         shutil.rmtree(folder, ignore_errors=True)
     return outcome

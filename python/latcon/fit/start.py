@@ -74,7 +74,7 @@ def fit_case(case: CaseLike, parameters: Sequence[Parameter], observations: Sequ
         If a run cannot write its files. Other errors of a run are recorded with the point, which gets a misfit worse than
         that of all others.
     KeyboardInterrupt
-        After Ctrl-C: all runs are stopped, with checkpoints.
+        After Ctrl-C, or a signal to a run: all runs are stopped, with checkpoints.
     """
     for name, number in (("evaluations", evaluations), ("batch", batch), ("workers", workers or 1)):
         if number < 1:
