@@ -146,7 +146,7 @@ support::ExitCode run_program(int argc, char **argv)
 
   options.case_file = input::data_folder() + "/cases/fig1.prm";
   CLI::App *verify_command = app.add_subcommand("verify", "check that lattice and continuum agree, claim by claim");
-  verify_command->add_option("CLAIM", options.claims, "claims to check, see below")
+  verify_command->add_option("CLAIM", options.claims, "claims to check; default: all but those marked (only if named)")
     ->check(CLI::Validator([](const std::string &name) { return unknown_claim(name); }, claim_choices()))
     ->type_name("");
   verify_command
