@@ -103,6 +103,7 @@ class Help:
         self.usage = re.search(r"^Usage: (.*)$", rest, re.M).group(1)
         self.positionals, self.options, self.commands = (self.list_of(rest, name)
                                                          for name in ("Positionals", "Options", "Subcommands"))
+        self.positionals += self.list_of(rest, "Claims")
         self.end = re.split(r"\n\n", rest.strip())[-1]
 
     @staticmethod

@@ -43,6 +43,8 @@ class Shell(unittest.TestCase):
                 self.assertIn(option, part)
         for option in options_of():
             self.assertIn(option, page)
+        for claim in json.loads(run(LATCON, "schema"))["claims"]:
+            self.assertIn(claim["title"], " ".join(page.split()))
         for code in (0, 1, 2, 3, 4, 5, 130):
             self.assertRegex(page, rf"(?m)^ +{code} +\S")
 

@@ -91,13 +91,14 @@ std::string claim_choices()
 
 std::string claim_list()
 {
-  std::size_t width = 0;
-  for (const Claim &claim : claim_registry())
-    width = std::max(width, claim.name.size());
+  constexpr std::size_t column = 30; // of texts in the help
   std::string text = "Claims:\n";
   for (const Claim &claim : claim_registry())
-    text += "  " + claim.name + std::string(width - claim.name.size() + 2, ' ') + claim.title +
-            (claim.is_default ? "" : " (only if named)") + "\n";
+  {
+    std::string line = "  " + claim.name;
+    line.resize(std::max(line.size() + 2, column), ' ');
+    text += line + claim.title + (claim.is_default ? "" : " (only if named)") + "\n";
+  }
   return text;
 }
 

@@ -202,7 +202,7 @@ support::ExitCode run_program(int argc, char **argv)
   options.case_file = input::shipped_case_file("fig1");
   CLI::App *verify_command = add_command("verify", "check that lattice and continuum agree, claim by claim",
                                          "latcon verify energy --quick --output-dir output/energy");
-  verify_command->add_option("CLAIM", options.claims, "claims to check, see below")
+  verify_command->add_option("CLAIM", options.claims, "claims to check; default: all but those marked (only if named)")
     ->check(CLI::Validator([](const std::string &name) { return unknown_claim(name); }, claim_choices()))
     ->type_name("");
   verify_command
