@@ -46,7 +46,7 @@ void archive_rows(Archive &archive, const std::string &name, Vector &field, cons
   }
 }
 
-/// The same for a value of each row of the sheet, of which every rank knows those of its band.
+/// Archives one value per row of the sheet; every rank has the values of its band.
 template <class Archive>
 void archive_rows(Archive &archive, const std::string &name, std::vector<double> &of_rows, const RowPartition &band)
 {

@@ -9,8 +9,8 @@
 namespace latcon::lattice
 {
 
-/// What bonds with a memory remember, by the place where they start: their stretch at the last update and the variables
-/// of their memory there. Nothing is stored for kinds of bonds without a memory.
+/// History of bonds with a memory, by the place where they start: their stretch and the variables of their memory at
+/// the last update. Nothing is stored for kinds of bonds without a memory.
 ///
 /// A rank holds values for the bonds that it computes: those that start in its own rows, and in the two rows below
 /// them, which the rank that owns those rows updates alike.

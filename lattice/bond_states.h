@@ -10,8 +10,8 @@
 namespace latcon::lattice
 {
 
-/// Which bonds there are and which of them are toughened, two bits a bond: one word for the six bonds that start at a
-/// place, the kinds present in the lower byte, those toughened in the upper one.
+/// Bonds that are present and bonds that are toughened, two bits per bond: one word for the six bonds that start at a
+/// place, with the present kinds in the lower byte and the toughened kinds in the upper one.
 class BondStates
 {
 public:

@@ -9,7 +9,8 @@ namespace latcon::lattice
 namespace
 {
 
-// Of the contact distance. Pairs to look at grow with its square, the time between rebuilds with itself.
+// Skin over the contact distance. The number of candidate pairs grows with its square, the time between rebuilds in
+// proportion.
 constexpr double skin_over_distance = 1.;
 
 } // namespace
@@ -126,7 +127,7 @@ void Contact::insert_pair(std::size_t a, std::size_t b)
     pairs_.insert(at, pair);
 }
 
-// Whether no bond joins two sites, one of which at least is in the band.
+// Returns whether no bond joins two sites, at least one of which is in the band.
 bool Contact::may_touch(const State &state, std::size_t first, std::size_t second) const
 {
   if (!band_.owns(first) && !band_.owns(second))

@@ -61,7 +61,7 @@ public:
   std::size_t n_candidates() const { return places_.size(); }
   /// Pairs that overlapped at the last evaluation, those whose first site is in the band.
   std::size_t n_touching() const { return n_touching_; }
-  /// How often the list was made anew because candidates had moved.
+  /// Number of rebuilds of the list because candidates had moved.
   std::size_t n_list_builds() const { return n_list_builds_; }
 
 private:

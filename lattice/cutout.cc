@@ -50,7 +50,7 @@ void cut_out(State &state, const TriangularLattice &lattice, const Cutout &cutou
 {
   const Shape shape = std::visit([&](const auto &piece) { return Shape(lattice, piece); }, cutout);
   for (std::size_t place = 0; place < lattice.n_places(); ++place)
-    if (lattice.is_occupied(place) && shape.contains(lattice.reference(lattice.home(place))))
+    if (lattice.is_occupied(place) && shape.contains(lattice.reference(lattice.canonical_place(place))))
     {
       state.removed[place] = 1;
       state.held[place] = 0;

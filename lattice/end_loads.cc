@@ -10,8 +10,8 @@ namespace latcon::lattice
 namespace
 {
 
-// Whether a site is the outermost of those that stand side by side at an end: of its row if rows run along x, of the
-// first or last row if they run across.
+// Returns whether a site is outermost at an end: the last of its row if rows run along x, a site of the first or last
+// row if they run across.
 bool outermost(const TriangularLattice &lattice, std::size_t place, bool left)
 {
   const std::size_t row = lattice.row_of(place);

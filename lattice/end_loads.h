@@ -10,11 +10,11 @@ namespace latcon::lattice
 /// (theory-comparison.md, eqs. (W.1) and (W.2)), sum over the bonds that a site owns. Symmetric.
 Eigen::Matrix2d tangent_along_x(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F);
 
-/// Whether both long waves along x run in the sheet at x = F X: tangent_along_x is positive definite. An absorbing end
-/// needs that.
+/// Returns whether both long waves along x propagate in the sheet at x = F X, i.e. tangent_along_x is positive
+/// definite. An absorbing end requires it.
 bool waves_run_along_x(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F);
 
-/// Loads that stand for the rest of an endless sheet at its short ends, on the sites there that are not held
+/// Loads that represent the rest of an endless sheet at its short ends, on the sites there that are not held
 /// (theory.md, eqs. (L.15) and (L.16)).
 ///
 /// Dead load: what the bonds that are missing would pull with in the sheet at x = F X, so that this sheet is an exact

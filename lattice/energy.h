@@ -14,7 +14,7 @@ double elastic_energy(const State &state, const RowPartition &band, const Materi
 /// Energy stored in the memory of all bonds as of its last update, per sheet thickness [J/m]. Collective.
 double memory_energy(const State &state, const RowPartition &band, const Material &material);
 
-/// The same for one bond.
+/// Energy in the memory of one bond.
 double memory_energy(const State &state, const TriangularLattice &lattice, const Material &material, std::size_t place,
                      std::size_t kind);
 
@@ -27,7 +27,7 @@ double kinetic_energy(const State &state, const RowPartition &band);
 double boundary_power(const State &state, const TriangularLattice &lattice, const Forces &forces, const Field &vx,
                       const Field &vy, std::size_t row);
 
-/// Where the energy of a sheet is and where it went, all per sheet thickness [J/m] (theory.md, eq. (L.11)).
+/// Energies of a sheet and work done on it, all per sheet thickness [J/m] (theory.md, eq. (L.11)).
 struct EnergyBalance
 {
   double elastic;       ///< of the bonds present, stored in their memory included

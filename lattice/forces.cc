@@ -11,7 +11,7 @@ namespace
 
 constexpr std::ptrdiff_t reach = 2; // of bonds, in rows
 
-// What the bonds of one kind that start at some place and those after it remember.
+// History of the bonds of one kind that start at a place and the places after it.
 template <class Pointer, class Kind>
 kernels::RememberedRow<Pointer> remembered_from(Kind &kind, std::size_t place)
 {
@@ -270,7 +270,7 @@ Eigen::Vector2d Forces::on_site(const State &state, const Field &vx, const Field
     // As in gather_row, along the row and two rows down the parity is the site's own.
     const std::size_t near_row = (kind == 0 || kind == 5) ? row : row + 1;
     note(place, start);
-    note(lattice_.home(place - static_cast<std::size_t>(lattice_.shift(kind, near_row))), end);
+    note(lattice_.canonical_place(place - static_cast<std::size_t>(lattice_.shift(kind, near_row))), end);
   }
   return {sum_of_bonds(start[0], end[0]), sum_of_bonds(start[1], end[1])};
 }

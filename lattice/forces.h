@@ -44,8 +44,8 @@ public:
   /// then on.
   void update_memory(State &state);
 
-  /// What an integrator does with each row of the band during an evaluation, while it is in cache: once, in any order
-  /// of rows, by several threads.
+  /// Callbacks of an integrator for each row of the band during an evaluation, while the row is in cache: once per row,
+  /// in any order, by several threads.
   struct RowCallbacks
   {
     /// Before any bond of the row is looked at; may give the row its positions and velocities to be evaluated. Not for
@@ -60,7 +60,7 @@ public:
   /// Computes the force on every site of the band at positions state.x, y and the given velocities [m/s], those of
   /// images included. Forces at held sites are those the bonds exert on them.
   void evaluate(const State &state, const Field &vx, const Field &vy, const RowCallbacks &work);
-  /// The same, into fx() and fy().
+  /// Evaluates the forces into fx() and fy().
   void evaluate(const State &state, const Field &vx, const Field &vy);
 
   const Field &fx() const { return fx_; } ///< force per sheet thickness [N/m]
@@ -72,17 +72,17 @@ public:
   /// Power the dashpots dissipated at the last evaluation, sum of A0 eta (v_rel . n)^2 / l [W/m] over the bonds that
   /// start in a row of the band, those in the memory of bonds included.
   double viscous_power(std::size_t row) const { return row_viscous_power_[row]; }
-  /// The same over all its rows.
+  /// Sums over all rows of the band.
   double viscous_power() const;
 
-  /// Whether a row holds bonds that were stretched past their limit (or retracted) at the last evaluation.
+  /// Returns whether a row has bonds that were stretched past their limit (or retracted) at the last evaluation.
   bool row_has_events(std::size_t row) const { return row_events_[row] != 0; }
 
-  /// Whether a row holds short bonds, as of the last evaluation; see set_shortness_threshold().
+  /// Returns whether a row has short bonds, as of the last evaluation; see set_shortness_threshold().
   bool row_has_short_bonds(std::size_t row) const { return row_short_bonds_[row] != 0; }
 
-  /// Whether one of the bonds that start in a row of the band will be past its limit, or have retracted, when their
-  /// ends have gone on for `ahead` [s] at the velocities of the state.
+  /// Returns whether one of the bonds that start in a row of the band will be past its limit, or will have retracted,
+  /// after its ends have moved for `ahead` [s] at the velocities of the state.
   bool row_has_events_ahead(const State &state, std::size_t row, double ahead) const;
 
   /// Takes a bond that has just broken out of viscous_power(), if it is there.
@@ -113,14 +113,14 @@ private:
     Field values_;
   };
 
-  /// What an evaluation depends on.
+  /// Input of an evaluation.
   struct Motion
   {
     const State &state;
     const Field &vx, &vy;
   };
 
-  /// What a thread computes with.
+  /// Scratch arrays of a thread.
   struct Scratch
   {
     explicit Scratch(std::size_t stride) : bonds(stride), fx(stride, 0.), fy(stride, 0.) {}

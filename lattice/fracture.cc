@@ -99,7 +99,7 @@ double Fracture::bond_energy(const State &state, std::size_t place, std::size_t 
   return elastic + memory_energy(state, lattice_, material_, place, kind);
 }
 
-// What ranks tell each other of a bond that is lost.
+// Message between ranks about a broken bond.
 struct Fracture::Loss
 {
   std::size_t place, kind;

@@ -38,7 +38,7 @@ struct RetractionToughening
   double factor;   ///< [-], >= 1
 };
 
-/// How bonds toughen behind the crack.
+/// Rules by which bonds toughen behind the crack.
 using Toughening = std::variant<NoToughening, GivenToughening, BehindTipToughening, RetractionToughening>;
 
 /// A bond that broke.
@@ -70,8 +70,8 @@ struct BrokenBond
 /// in the source paper, 2 of 6 where there are nearest neighbours alone. Held and removed sites do not count. Among
 /// sites at the same X the one nearest the previous tip is taken, then the one stored first.
 ///
-/// Where ranks share a sheet, each looks after the bonds that start in its rows and tells the others what broke, so
-/// that all follow the crack alike.
+/// If ranks share a sheet, each handles the bonds that start in its rows and sends the broken ones to the others, so
+/// that all ranks have the same crack.
 class Fracture
 {
 public:
@@ -86,9 +86,9 @@ public:
   /// `forces`. To be called before apply(); a Simulation does.
   void configure(State &state, Forces &forces) const;
 
-  /// Has a bond break, or toughen, in the evaluation after which it will come to its limit within `duration` [s], >= 0,
-  /// at the velocities of its ends; 0 by default: once it is past it. Half a time step makes it the end of a step that
-  /// is nearest to the moment of coming there, so that breaking is neither late nor early in the mean. @throws
+  /// Makes a bond break, or toughen, in the evaluation after which it will reach its limit within `duration` [s], >= 0,
+  /// at the velocities of its ends; default 0: once it is past its limit. Half a time step makes it the end of a step
+  /// that is nearest to the moment of coming there, so that breaking is neither late nor early in the mean. @throws
   /// std::invalid_argument for a negative duration
   void set_lookahead(double duration);
 

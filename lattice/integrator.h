@@ -24,7 +24,7 @@ public:
   /// Sets h [s] of the steps to come, > 0.
   void set_time_step(double time_step) { time_step_ = time_step; }
 
-  /// Has forces act besides those of the bonds, at the same positions and velocities; they must outlive this object.
+  /// Adds forces to those of the bonds, at the same positions and velocities; they must outlive this object.
   void add(SiteForces &forces) { site_forces_.push_back(&forces); }
 
   /// Computes the accelerations a state starts with; needed once, and again after a change from outside. Collective.

@@ -21,7 +21,7 @@ struct Shell
   BondMemory memory = NoMemory();
 };
 
-/// What the sheet is made of. All extensive quantities of the lattice are per unit sheet thickness h, which cancels
+/// Material of the sheet. All extensive quantities of the lattice are per unit sheet thickness h, which cancels
 /// from the motion: masses in kg/m, forces in N/m, energies in J/m.
 struct Material
 {
@@ -44,7 +44,7 @@ struct Material
   unsigned int coordination() const { return next_nearest ? 12 : 6; }
 };
 
-/// The same bonds without their dashpots and memories: what they are in equilibrium.
+/// Returns the bonds without their dashpots and memories, as they are in equilibrium.
 Material without_dashpots(Material material);
 
 /// A0 / h = s (sqrt3 / 2) d [m], cross-section of a bond per sheet thickness (theory.md, eq. (L.4)).

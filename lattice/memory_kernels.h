@@ -9,7 +9,7 @@
 namespace latcon::lattice::kernels
 {
 
-/// What the bonds of one kind that start in a row remember, by places counted from its first site.
+/// History of the bonds of one kind that start in a row, by places counted from its first site.
 template <class Pointer>
 struct RememberedRow
 {

@@ -5,7 +5,7 @@
 namespace latcon::lattice
 {
 
-/// How a relaxation ended.
+/// Result of a relaxation.
 struct Relaxation
 {
   std::size_t iterations;

@@ -59,7 +59,7 @@ HWY_INLINE Lanes stretch_of(const BondConstants &bond, std::size_t kind, const L
   return (1. / bond.rest_length) * load(lengths.length[kind]);
 }
 
-// Whether one of the bonds is past its own limit, or has retracted.
+// Returns whether one of the bonds is past its own limit, or has retracted.
 template <std::size_t n_kinds>
 bool any_event(const SheetConstants &sheet, const RowOfBonds &row, std::size_t site, const Lengths &lengths)
 {
@@ -99,7 +99,7 @@ HWY_INLINE Lanes bonds_of_kind(const Law &law, const SheetConstants &sheet, cons
   return stretch;
 }
 
-// What tells in short whether one of some bonds may be past a limit.
+// Quick test whether one of several bonds may be past a limit.
 template <bool watches_retraction>
 struct Extremes
 {
@@ -317,7 +317,7 @@ HWY_EXPORT(InstructionSet);
 namespace
 {
 
-// Those that this processor has and the loops exist for.
+// Instruction sets that this processor has and for which the loops were compiled.
 std::vector<std::int64_t> targets()
 {
   static const std::int64_t all = hwy::SupportedTargets() & HWY_TARGETS;

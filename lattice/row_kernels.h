@@ -30,7 +30,7 @@ namespace latcon::lattice::kernels
 /// Laws of nearest and next-nearest neighbours; the second is unused in a sheet of nearest neighbours alone.
 using BondLaws = std::array<BondLaw, 2>;
 
-/// What the bonds of a shell have in common besides their law.
+/// Constants of the bonds of a shell besides their law.
 struct BondConstants
 {
   double rest_length = 0.;   ///< l [m]
@@ -38,7 +38,7 @@ struct BondConstants
   double damping = 0.;       ///< A0 eta / (h l) [Pa s]
 };
 
-/// What the bonds of a sheet have in common.
+/// Constants of the bonds of a sheet.
 struct SheetConstants
 {
   std::array<BondConstants, 2> shells;                   ///< nearest and next-nearest neighbours
@@ -99,14 +99,14 @@ void next_stage(const ChebyshevStages::Stage &stage, double h, std::size_t n, co
                 const double *start_velocity, const double *position, const double *velocity, double *previous_position,
                 double *previous_velocity);
 
-/// Whether one of the bonds that start in a row will be past its limit, or have retracted, when their ends have gone on
-/// for `ahead` [s] at their velocities. `row.force` is not looked at.
+/// Returns whether one of the bonds that start in a row will be past its limit, or will have retracted, after its ends
+/// have moved for `ahead` [s] at their velocities. Does not use `row.force`.
 bool any_event_ahead(const SheetConstants &sheet, const RowOfBonds &row, double ahead);
 
 /// Names of the instruction sets that this processor has and the loops exist for, the best first. The
 /// last is for any processor: "SCALAR", or with some compilers "EMU128".
 std::vector<std::string> instruction_sets();
-/// Has the loops use one of these from now on, instead of the best. Not while others compute.
+/// Selects the instruction set of the loops; the default is the best one. Not to be called during a computation.
 /// @throws std::invalid_argument for another name
 void use_instruction_set(const std::string &name);
 /// Name of the one in use.
@@ -120,7 +120,7 @@ struct BondForce
   double stretch;
   double viscous_power; ///< [W/m]
 };
-/// Of a bond whose ends are at a distance (dx, dy) [m] and move apart with (dvx, dvy) [m/s].
+/// Returns the force of a bond whose ends are at a distance (dx, dy) [m] and move apart with (dvx, dvy) [m/s].
 BondForce bond_force(const BondLaw &law, const BondConstants &bond, double dx, double dy, double dvx, double dvy);
 
 } // namespace latcon::lattice::kernels

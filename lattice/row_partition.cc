@@ -9,7 +9,7 @@ namespace latcon::lattice
 namespace
 {
 
-// How far bonds reach across rows.
+// Number of rows across which a bond can reach.
 constexpr std::ptrdiff_t reach = 2;
 
 } // namespace
@@ -98,7 +98,7 @@ double RowPartition::sum(std::vector<double> values) const
   return std::accumulate(values.begin(), values.end(), 0.);
 }
 
-std::vector<char> RowPartition::joined_bytes(const char *own, std::size_t size, int *number) const
+std::vector<char> RowPartition::all_gather_bytes(const char *own, std::size_t size, int *number) const
 {
   const int own_size = static_cast<int>(size);
   const std::array<int, 2> given{own_size, number != nullptr ? *number : 0};

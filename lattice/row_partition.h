@@ -15,7 +15,7 @@ namespace latcon::lattice
 
 /// A field over the places of a lattice, one value each, margin included. Make one of zeros as Field(n): see ZeroPages.
 using Field = std::vector<double, ZeroPages<double>>;
-/// The same for small whole numbers.
+/// A small whole number per place.
 using SiteFlags = std::vector<std::uint8_t, ZeroPages<std::uint8_t>>;
 
 /// The rows begin, begin + 1, ... end - 1.
@@ -76,7 +76,7 @@ public:
 
 private:
   std::size_t padded_row(std::size_t place) const { return place / lattice_->stride(); }
-  std::vector<char> joined_bytes(const char *own, std::size_t size, int *number) const;
+  std::vector<char> all_gather_bytes(const char *own, std::size_t size, int *number) const;
   void gather_bytes(void *field, std::size_t bytes_of_place, Rows rows) const;
 
   const TriangularLattice *lattice_;
@@ -93,7 +93,7 @@ std::vector<T> RowPartition::all_gather(const std::vector<T> &own, int *number) 
   if (!is_shared())
     return own;
   const std::vector<char> bytes =
-    joined_bytes(reinterpret_cast<const char *>(own.data()), own.size() * sizeof(T), number);
+    all_gather_bytes(reinterpret_cast<const char *>(own.data()), own.size() * sizeof(T), number);
   std::vector<T> all(bytes.size() / sizeof(T));
   // Not memcpy, which may not be given the null pointers of empty vectors.
   std::copy(bytes.begin(), bytes.end(), reinterpret_cast<char *>(all.data()));

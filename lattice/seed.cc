@@ -96,7 +96,7 @@ std::vector<Site> sites_of(const SeedSlit &slit, const TriangularLattice &lattic
 std::vector<Site> sites_of(const SeedLine &line, const TriangularLattice &lattice)
 {
   const double room = round_off * lattice.spacing();
-  // Of two that are equally near, the larger wins.
+  // Of two equally near ones the larger is taken.
   double nearest_y = 0., smallest = -1.;
   for (const double y : lines_of_sites(lattice))
   {

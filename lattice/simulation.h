@@ -50,7 +50,7 @@ public:
   /// @throws std::logic_error without fracture rules; std::invalid_argument for what is no bond of a site
   void cut_bonds(const std::vector<std::pair<std::size_t, std::size_t>> &bonds);
 
-  /// Lets the held sites move with v = L X from now on, L [1/s] in the reference frame.
+  /// Prescribes the velocity v = L X of the held sites, L [1/s] in the reference configuration.
   void move_edges(const Eigen::Matrix2d &velocity_gradient);
 
   /// Adds a velocity field to the free sites; for waves and for tests. One (vx, vy) a place [m/s].
@@ -60,10 +60,10 @@ public:
   /// eq. (L.24)). @return bonds of the whole sheet that broke in it
   const std::vector<BrokenBond> &step();
 
-  /// Lets the first rank know positions, velocities and bonds in some rows. @return its state() there, and that of
-  /// others as it was
+  /// Sends positions, velocities and bonds in some rows to the root rank.
+  /// @return state(), complete in these rows on the root rank, unchanged on the others
   const State &gather(Rows rows);
-  /// The same for the whole sheet, for those who look at it all.
+  /// Sends the whole sheet to the root rank.
   const State &gather() { return gather({0, lattice_.rows()}); }
 
   /// Saves what changes from step to step, or loads it into a simulation that was set up like the one that was saved,
@@ -180,7 +180,7 @@ void Simulation::archive(Archive &archive)
   {
     check_loaded(bonds_before, energy_before);
     update_images(state_, band_);
-    // Which pairs may touch follows from the state.
+    // The candidate pairs of contacts follow from the state.
     if (contact_)
       contact_->find_candidates(state_);
   }

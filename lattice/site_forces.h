@@ -33,7 +33,7 @@ public:
     return none;
   }
 
-  /// Those of the last evaluation.
+  /// Forces of the last evaluation.
   const std::vector<SiteForce> &last() const { return forces_; }
 
 protected:

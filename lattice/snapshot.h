@@ -7,7 +7,7 @@
 namespace latcon::lattice
 {
 
-/// What can be seen of a sheet at an instant, positions, velocities and bonds, in the rows that a rank moves.
+/// Positions, velocities and bonds of a sheet at an instant, in the rows that a rank moves.
 class Snapshot
 {
 public:

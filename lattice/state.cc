@@ -22,7 +22,7 @@ double symmetric_uniform(std::uint64_t bits)
   return static_cast<double>(bits >> 11) * 0x1p-52 - 1.;
 }
 
-// Whether a bond of a site, in either sense, would end beyond one of the edges that `edges` holds.
+// Returns whether a bond of a site, in either sense, would end beyond one of the edges held by `edges`.
 bool reaches_beyond(const TriangularLattice &lattice, const Material &material, std::size_t place, const Edges &edges)
 {
   const Eigen::Vector2d X = lattice.reference(place);

@@ -49,7 +49,7 @@ struct State
 /// after a change of either from outside; what moves a sheet calls it itself.
 void update_images(State &state, const RowPartition &band);
 
-/// Which edges of the sheet are held: there, sites that lack a neighbour beyond the edge have their motion prescribed.
+/// Held edges of the sheet, where the motion of sites that lack a neighbour beyond the edge is prescribed.
 /// With all held, homogeneous states are in equilibrium (theory.md, eq. (L.6)).
 struct Edges
 {
@@ -100,7 +100,7 @@ void for_each_bond(const State &state, const TriangularLattice &lattice, Rows ro
     }
 }
 
-/// The same for all rows.
+/// Visits the bonds of all rows.
 template <class Visitor>
 void for_each_bond(const State &state, const TriangularLattice &lattice, Visitor &&visit)
 {
@@ -119,7 +119,7 @@ void for_each_bond_of_site(const State &state, const TriangularLattice &lattice,
       visit(place, kind);
     // The bond from below starts in a row of the other parity, except along the row and two rows down.
     const std::size_t near_row = (kind == 0 || kind == n_bond_kinds - 1) ? row : row + 1;
-    const std::size_t near = lattice.home(place - static_cast<std::size_t>(lattice.shift(kind, near_row)));
+    const std::size_t near = lattice.canonical_place(place - static_cast<std::size_t>(lattice.shift(kind, near_row)));
     if (state.bonds.present(near, kind))
       visit(near, kind);
   }

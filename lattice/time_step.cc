@@ -20,11 +20,11 @@ struct Rates
   double gamma = 0.;        // [1/s]
 };
 
-// Of Runge-Kutta-Chebyshev: where the crack of Fig. 1 still runs as with steps twenty times shorter (theory.md, section
-// "Long steps").
+// Share for Runge-Kutta-Chebyshev, with which the crack of Fig. 1 still runs as with steps twenty times shorter
+// (theory.md, section "Long steps").
 constexpr double share_of_elastic_limit = 0.35;
 
-// Of velocity Verlet: where the ledger of a crack in a sheet that is hardly damped closes to 1e-4.
+// Share for velocity Verlet, with which the ledger of a crack in a weakly damped sheet closes to 1e-4.
 constexpr double share_for_recoil = 0.1;
 
 TimeStepLimits limits(const Rates &rates)
@@ -68,7 +68,7 @@ double damped_step(const Material &material, const SmallestStretch &smallest_str
   return step;
 }
 
-// Of a site with six contacts around it, whose sum n n is 3 I; the bound is twice the sum.
+// Bound for a site with six contacts around it, whose sum n n is 3 I; the bound is twice the sum.
 Rates bound_of_contacts(const TriangularLattice &lattice, const Material &material, const ContactLaw &contact)
 {
   const double per_contact = 6. / site_mass(material, lattice);

@@ -7,7 +7,7 @@ namespace latcon::lattice
 
 struct ContactLaw;
 
-/// How a motion is advanced in time.
+/// Time integrator of a motion, and its step.
 struct TimeStepping
 {
   /// Velocity Verlet, unless stages are given.
@@ -36,9 +36,9 @@ struct TimeStepLimits
 /// @param smallest_stretch lam_min [-] in (0, 1]
 TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch);
 
-/// The same for a sheet whose sites may touch (theory.md, eq. (L.14)): a site with all its bonds, as they are in the
-/// undeformed lattice, and six contacts around it. Differs only for contacts that are stiffer or more viscous than the
-/// bonds they stand for.
+/// Returns the step for a sheet whose sites may touch (theory.md, eq. (L.14)): a site with all its bonds, as they are
+/// in the undeformed lattice, and six contacts around it. Differs only for contacts that are stiffer or more viscous
+/// than the bonds that they replace.
 TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
                                 const ContactLaw &contact);
 

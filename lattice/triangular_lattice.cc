@@ -135,7 +135,7 @@ const TriangularLattice::Image *TriangularLattice::site_of_image(std::size_t pla
   return found != images_.end() && found->place == place ? &*found : nullptr;
 }
 
-std::size_t TriangularLattice::home(std::size_t place) const
+std::size_t TriangularLattice::canonical_place(std::size_t place) const
 {
   if (images_.empty())
     return place;

@@ -9,7 +9,7 @@
 namespace latcon::lattice
 {
 
-/// Which way the rows of nearest neighbours run. The crack runs along x.
+/// Direction of the rows of nearest neighbours. The crack runs along x.
 enum class Orientation
 {
   rows_along_crack, ///< NN bonds at 0, 60, 120 degrees to x, NNN bonds at 30, 90, 150
@@ -86,10 +86,10 @@ public:
   }
   std::size_t row_of(std::size_t place) const { return place / stride() - margin; }
   std::size_t column_of(std::size_t place) const { return place % stride() - row_alignment; }
-  /// Whether a place, margin included, holds a site that is no image.
+  /// Returns whether a place, margin included, has a site that is not an image.
   bool is_site(std::size_t place) const;
 
-  /// A place in the margin that stands for a site one period away.
+  /// A place in the margin that is the image of a site one period away.
   struct Image
   {
     std::size_t place;
@@ -98,10 +98,10 @@ public:
   };
   /// All images, in the order of their places; none unless the sheet is periodic.
   const std::vector<Image> &images() const { return images_; }
-  /// Whether a place holds a site or an image of one.
+  /// Returns whether a place has a site or an image of one.
   bool is_occupied(std::size_t place) const { return is_site(place) || site_of_image(place) != nullptr; }
   /// The site that stands at a place or has its image there: what fields over sites are summed at.
-  std::size_t home(std::size_t place) const;
+  std::size_t canonical_place(std::size_t place) const;
 
   /// Reference position (X, Y) [m] of a place; X from 0 to length(), Y centred on 0. Valid in the margin as well.
   Eigen::Vector2d reference(std::size_t place) const;

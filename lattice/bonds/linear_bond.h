@@ -27,7 +27,7 @@ struct LinearBond
   /// psi''(lam) [Pa].
   double stiffness(double /*stretch*/) const { return modulus; }
 
-  /// The same, whatever the stretch.
+  /// Constant for this law.
   double largest_stiffness(double /*smallest_stretch*/) const { return modulus; }
 };
 

@@ -321,7 +321,7 @@ TEST(BondMemory, GoesOnWithTheSameBitsFromAnArchive)
 
 TEST(BondMemory, HasTheSameBitsForAllThreadsAndInstructionSets)
 {
-  // Of more than min_places_for_threads.
+  // More than min_places_for_threads places.
   const TriangularLattice sheet(sheets::spacing, 90. * sheets::spacing, 60. * sheets::spacing,
                                 Orientation::rows_along_crack);
   ASSERT_GE(sheet.n_places(), min_places_for_threads);

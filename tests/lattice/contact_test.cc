@@ -358,8 +358,8 @@ TEST(Contact, LedgerClosesWhereAPairOverlapsFromTheStart)
   };
   const EnergyBalance coarse = balance(4e-7), fine = balance(1e-7);
   EXPECT_GT(fine.broken, 0.5 * fine.initial);
-  // What appeared in the spring is in motion now. The step in which the bond breaks changes the overlap by some
-  // percent.
+  // The energy that appeared in the spring is kinetic now. The step in which the bond breaks changes the overlap by a
+  // few percent.
   const double stiffness = contact_like_nearest_bond(sheet, material, sheets::spacing, 1., 0.).stiffness;
   EXPECT_NEAR(fine.contact / (-0.5 * stiffness * std::pow(0.2 * sheets::spacing, 2)), 1., 0.05);
   EXPECT_LT(std::abs(fine.imbalance()), 1e-3 * fine.initial);

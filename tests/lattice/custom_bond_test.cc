@@ -114,7 +114,7 @@ TEST(CustomBond, BoundsTheTimeStepByItsLargestStiffness)
   EXPECT_DOUBLE_EQ(chebyshev_step(sheet, material, 0.5), 1e-3 / 8e5);
 }
 
-// Where a law has no value the ends of the bond feel none, and nobody else; a relaxation stops.
+// A law without a value gives NaN at the ends of its bond alone; a relaxation stops.
 TEST(CustomBond, WithoutAValueIsSeen)
 {
   const TriangularLattice sheet = sheets::square(8);

@@ -1,4 +1,4 @@
-// What is cut out is not there; what is left at the rim is free, undamaged, and symmetric.
+// Cut-outs are empty; the remaining rim is free, undamaged, and symmetric.
 #include "lattice/cutout.h"
 
 #include <gtest/gtest.h>

@@ -181,7 +181,7 @@ TEST(Forces, ReportRowsWithOverstretchedBonds)
     EXPECT_EQ(noisy.forces.row_has_events(row), row == 5);
 }
 
-// What a sheet can be: material, orientation, which way it repeats itself, and how many sites a row has.
+// Variants of a sheet: material, orientation, periodic direction, and number of sites in a row.
 struct Subject
 {
   Material material;

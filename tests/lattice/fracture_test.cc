@@ -90,7 +90,7 @@ TEST(Fracture, BreaksWhatIsBeyondTheLimitForGood)
   EXPECT_EQ(sheet.state.lost_bonds[corner], 1);
   EXPECT_EQ(sheet.state.lost_bonds[corner + 1], 1);
 
-  // What remains pulls on the corner along the other bond alone, in the same evaluation already.
+  // Only the other bond still pulls on the corner, already in the same evaluation.
   const Eigen::Vector2d pull = sheet.forces.on_site(sheet.state, sheet.state.vx, sheet.state.vy, corner);
   EXPECT_NEAR(pull.normalized().dot(Eigen::Vector2d(1.1, std::sqrt(0.75)).normalized()), 1., 1e-12);
 

@@ -11,7 +11,7 @@
 namespace plane_modes
 {
 
-/// Of one wave vector: y = (u, v) = Re (modes.col(i) exp(i K.X + rates(i) t)).
+/// Modes of one wave vector: y = (u, v) = Re (modes.col(i) exp(i K.X + rates(i) t)).
 struct PlaneModes
 {
   Eigen::Vector4cd rates; ///< [1/s]

@@ -80,7 +80,7 @@ reference_forces(const latcon::lattice::State &state, const latcon::lattice::Tri
     const double magnitude = section * (2. * stiffness(shell.law, 1.) * std::max(stretch, std::pow(stretch, -3)) +
                                         shell.viscosity * velocity.norm() / rest_length) +
                              remembered_magnitude(state, shell, near, kind, stretch) * section;
-    for (const auto &[place, sense] : {std::pair{near, 1.}, std::pair{sheet.home(far), -1.}})
+    for (const auto &[place, sense] : {std::pair{near, 1.}, std::pair{sheet.canonical_place(far), -1.}})
     {
       result.fx[place] += sense * on_near.x();
       result.fy[place] += sense * on_near.y();

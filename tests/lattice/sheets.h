@@ -9,7 +9,7 @@
 
 namespace latcon::lattice
 {
-/// How an orientation reads in the name of a test.
+/// Prints an orientation in the name of a test.
 inline void PrintTo(const Orientation orientation, std::ostream *out)
 {
   *out << (orientation == Orientation::rows_along_crack ? "rows along crack" : "rows across crack");
@@ -98,7 +98,7 @@ inline latcon::lattice::Material nearest_only(double viscosity = 65.625)
   return material;
 }
 
-/// The same rubber with laws from outside.
+/// Rubber with custom laws.
 inline latcon::lattice::Material rubber_from_outside()
 {
   latcon::lattice::Material material = rubber();
@@ -107,7 +107,7 @@ inline latcon::lattice::Material rubber_from_outside()
   return material;
 }
 
-/// The same rubber with two Maxwell branches in the bonds of nearest neighbours and one from outside in the others.
+/// Rubber with two Maxwell branches in nearest-neighbour bonds and a custom memory in the others.
 inline latcon::lattice::Material rubber_with_memory(double viscosity = 65.625)
 {
   latcon::lattice::Material material = rubber(viscosity);

@@ -132,7 +132,7 @@ TEST(Simulation, DividesStepsInWhichBondsAreTooShort)
   EXPECT_EQ(rubber.simulation->n_divided_steps(), 0u);
 }
 
-// Of nearest neighbours alone, by hand: e = 3 A0 d psi, half of six bonds pull.
+// Sheet of nearest neighbours alone, by hand: e = 3 A0 d psi, half of six bonds pull.
 // theory.md, eq. (L.26).
 TEST(TimeStep, WatchesBondsByWhatTheyCanLoseInIt)
 {

@@ -1,4 +1,4 @@
-// What a sheet does must not depend on where it is, how it is turned, which way up it is, how large it is or which way
+// The motion of a sheet must not depend on its position, orientation, reflection, size, or the direction in which
 // time runs. Where only signs, the order of x and y, or powers of two change, bits must not change either.
 #include <algorithm>
 #include <cmath>

@@ -21,8 +21,8 @@ std::vector<Piece> pieces(const lattice::State &state, const lattice::Triangular
   for_each_bond(state, lattice,
                 [&](std::size_t near, std::size_t, std::size_t far)
                 {
-                  neighbours[near].push_back(lattice.home(far));
-                  neighbours[lattice.home(far)].push_back(near);
+                  neighbours[near].push_back(lattice.canonical_place(far));
+                  neighbours[lattice.canonical_place(far)].push_back(near);
                 });
   std::vector<Piece> all;
   std::vector<std::uint8_t> seen(lattice.n_places(), 0);

@@ -143,7 +143,7 @@ void Run::begin_log(const input::Options &options)
   record_->log_header += "\n";
 }
 
-void Run::note(const output::Checkpoints &checkpoints)
+void Run::record_checkpoint(const output::Checkpoints &checkpoints)
 {
   const std::optional<output::CheckpointPlace> &found = checkpoints.found();
   if (found)

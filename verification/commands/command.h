@@ -120,7 +120,7 @@ public:
   explicit Run(const input::Options &options) : Run(options, nullptr) {}
 
   /// Reports the checkpoint from which the run continues, in words and in run.json.
-  void note(const output::Checkpoints &checkpoints);
+  void record_checkpoint(const output::Checkpoints &checkpoints);
 
   const std::string &directory() const { return directory_; }
   output::RunInfo &info() { return record_->info; }

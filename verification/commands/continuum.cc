@@ -415,7 +415,7 @@ support::ExitCode run_continuum(const input::Options &options)
   require_time(options, seconds);
   output::Checkpoints checkpoints(options, parameters, input, "continuum");
   Run run(options, parameters);
-  run.note(checkpoints);
+  run.record_checkpoint(checkpoints);
   try
   {
     const output::Results results =

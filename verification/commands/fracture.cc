@@ -212,7 +212,7 @@ support::ExitCode run_fracture(const input::Options &options)
 
   output::Checkpoints checkpoints(options, parameters, input, "fracture");
   Run run(options, parameters);
-  run.note(checkpoints);
+  run.record_checkpoint(checkpoints);
   run.info().add("skip_verification", options.skip_verification);
   output::Results results;
   if (claims)

@@ -110,7 +110,7 @@ support::ExitCode run_lattice(const input::Options &options)
   require_memory(options, memory);
   require_time(options, seconds);
   Run run(options, parameters);
-  run.note(checkpoints);
+  run.record_checkpoint(checkpoints);
   output::Results results;
   const auto state_of = [&](const lattice::RowPartition &band)
   {

@@ -1,4 +1,4 @@
-// Which rows ranks have, and what they tell each other of them.
+// Rows of the ranks, and communication between them.
 #include <cmath>
 #include <cstdlib>
 #include <numeric>

@@ -99,7 +99,10 @@ TEST(Fragments, GoOnAcrossAPeriodicEdge)
   State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
   const std::size_t row = 5, last = sheet.columns() - 1;
   const auto is_inner = [&](std::size_t place)
-  { return sheet.home(place) == sheet.index(row, 0) || sheet.home(place) == sheet.index(row, last); };
+  {
+    return sheet.canonical_place(place) == sheet.index(row, 0) ||
+           sheet.canonical_place(place) == sheet.index(row, last);
+  };
   for_each_bond(state, sheet,
                 [&](std::size_t near, std::size_t kind, std::size_t far)
                 {
