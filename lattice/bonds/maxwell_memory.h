@@ -11,7 +11,7 @@ namespace latcon::lattice
 /// Generalised Maxwell branches parallel to the elastic law and the dashpot of a bond (theory.md, eq. (L.27)):
 ///   q_i' = E_i lam' - q_i / tau_i,   sigma = psi'(lam) + eta lam' + sum_i q_i.
 /// The variables of a bond are its overstresses q_i [Pa]. An update is exact for a stretch that changes linearly in
-/// time.
+/// time (theory.md, eq. (L.28)), and energy and dissipation are those of theory.md, eq. (L.29).
 class MaxwellMemory
 {
 public:
