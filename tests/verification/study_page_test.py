@@ -35,7 +35,7 @@ BLUE = np.array((0x00, 0x72, 0xB2))
 def made_up_seed(run, seed, pattern, state="measured", **values):
     """A seed in the format of study.json."""
     return {"run": run, "seed": seed, "folder": f"runs/{run}-{seed}", "state": state, "problem": "", "exit_code": 0,
-            "pattern": pattern, "reason": "", "sites": 96, "wall_time_s": 1.0,
+            "pattern": pattern, "reason": "", "sites": 96,
             "values": {**QUANTITIES, **values}}
 
 

@@ -61,12 +61,18 @@ def read_study(folder):
         raise DamagedFile(path, "no study was run here")
     try:
         seeds = [Seed(s["run"], s["seed"], folder / s["folder"], s["state"], s["problem"], s["pattern"],
-                      s["wall_time_s"], s["values"]) for s in document["seeds"]]
+                      wall_time(folder / s["folder"]), s["values"]) for s in document["seeds"]]
         runs = {run["run"]: (run["about"], run["set"], [seed for seed in seeds if seed.run == run["run"]])
                 for run in document["runs"]}
     except (KeyError, TypeError) as error:
         raise DamagedFile(path, f"lacks {error}") from error
     return Study(folder, document, runs)
+
+
+def wall_time(folder):
+    """Wall time of the run in a folder [s]; 0 if unknown. study.json has none, so that equal runs give equal files."""
+    seconds = (read_json(folder / "run.json") or {}).get("wall_time_total_s")
+    return seconds if isinstance(seconds, (int, float)) else 0.
 
 
 def mean_of(seeds, quantity):

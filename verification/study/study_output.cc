@@ -44,7 +44,6 @@ Json json_of(const PlannedRun &planned, const RunOutcome &outcome)
   run["pattern"] = outcome.pattern.empty() ? Json(nullptr) : Json(outcome.pattern);
   run["reason"] = outcome.reason;
   run["sites"] = planned.sites;
-  run["wall_time_s"] = outcome.wall_time;
   run["values"] = Json::object();
   for (const StudyQuantity &quantity : quantities())
   {
