@@ -20,6 +20,21 @@ std::unique_ptr<Integrator> integrator(const RowPartition &band, Forces &forces,
   return std::make_unique<RungeKuttaChebyshev>(band, forces, how.step, how.stages);
 }
 
+// Throws unless each kind of bonds has the variables of its memory at every place.
+void require_history(const State &state, const TriangularLattice &lattice, const Material &material)
+{
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  {
+    const BondHistory::Kind &history = state.history.kinds[kind];
+    const Shell *shell = material.shell(kind);
+    bool fits = history.variables.size() == (shell != nullptr ? n_variables(shell->memory) : 0);
+    for (const Field &variable : history.variables)
+      fits = fits && variable.size() == lattice.n_places() && history.stretch.size() == lattice.n_places();
+    if (!fits)
+      throw std::invalid_argument("the history of the bonds does not fit the memories of the material");
+  }
+}
+
 } // namespace
 
 Simulation::Simulation(const RowPartition &band, const Material &material, State initial, TimeStepping time_stepping,
@@ -30,6 +45,7 @@ Simulation::Simulation(const RowPartition &band, const Material &material, State
 {
   if (material_.has_memory() && state_.history.empty())
     relax_memory(state_, band_, material_);
+  require_history(state_, lattice_, material_);
   if (fracture_)
     fracture_->configure(state_, forces_);
   forces_.set_shortness_threshold(watched_stretch(time_stepping, lattice_, material_, state_.toughened_stretch));

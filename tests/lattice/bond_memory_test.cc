@@ -23,7 +23,7 @@ namespace
 using namespace lattice;
 using Branch = MaxwellMemory::Branch;
 
-TEST(MaxwellMemory, HasPositiveConstantsAndARoomForItsBranches)
+TEST(MaxwellMemory, RejectsInvalidBranches)
 {
   EXPECT_NO_THROW(MaxwellMemory({{1e5, 1e-4}}));
   EXPECT_NO_THROW(MaxwellMemory(std::vector<Branch>(max_history_variables, {1e5, 1e-4})));
@@ -50,7 +50,7 @@ TEST(MaxwellMemory, DecaysExponentially)
   EXPECT_EQ(MaxwellMemory({{2e5, 1e-4}}).step(0.).decay[0], 1.);
 }
 
-// The law has a stretch that changes linearly, however long the steps: q = E tau rate (1 - e^(-t/tau)).
+// Exact for a stretch that is linear in time, for any step: q = E tau rate (1 - e^(-t/tau)).
 // theory.md, eq. (L.28).
 TEST(MaxwellMemory, IsExactOnARamp)
 {
@@ -79,7 +79,7 @@ TEST(MaxwellMemory, IsExactOnARamp)
   }
 }
 
-TEST(CustomMemory, HasToBeAtRestWithoutAPast)
+TEST(CustomMemory, RejectsLawsWithStressAtRest)
 {
   struct Mistaken : sheets::BranchFromOutside
   {
@@ -290,7 +290,7 @@ private:
   std::string prefix_;
 };
 
-TEST(BondMemory, GoesOnWithTheSameBitsFromAnArchive)
+TEST(BondMemory, ResumesBitwise)
 {
   const TriangularLattice sheet = cracked_sheet();
   for (const unsigned int stages : {0u, 8u})
@@ -317,6 +317,24 @@ TEST(BondMemory, GoesOnWithTheSameBitsFromAnArchive)
     EXPECT_GT(whole->n_broken(), broken_when_saved) << "too quiet to show anything";
     expect_same_bits(*resumed, *whole);
   }
+}
+
+TEST(BondMemory, RejectsHistoryOfOtherMemories)
+{
+  const TriangularLattice sheet = cracked_sheet();
+  const Material material = sheets::rubber_with_memory();
+  State state(sheet, material, Eigen::Matrix2d::Identity());
+  relax_memory(state, RowPartition(sheet), material);
+  const auto start = [&](const State &from) { return Simulation(RowPartition(sheet), material, from, {1e-7, 0}); };
+  EXPECT_NO_THROW(start(state));
+  State fewer_variables = state, fewer_places = state, one_shell = state;
+  fewer_variables.history.kinds[0].variables.pop_back();
+  fewer_places.history.kinds[0].variables[0].pop_back();
+  for (BondHistory::Kind &kind : one_shell.history.kinds)
+    if (&kind != &one_shell.history.kinds[0])
+      kind = {};
+  for (const State *wrong : {&fewer_variables, &fewer_places, &one_shell})
+    EXPECT_THROW(start(*wrong), std::invalid_argument);
 }
 
 TEST(BondMemory, HasTheSameBitsForAllThreadsAndInstructionSets)
