@@ -323,7 +323,7 @@ TEST(BondMemory, RejectsHistoryOfOtherMemories)
 {
   const TriangularLattice sheet = cracked_sheet();
   const Material material = sheets::rubber_with_memory();
-  State state(sheet, material, Eigen::Matrix2d::Identity());
+  State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
   relax_memory(state, RowPartition(sheet), material);
   const auto start = [&](const State &from) { return Simulation(RowPartition(sheet), material, from, {1e-7, 0}); };
   EXPECT_NO_THROW(start(state));

@@ -188,7 +188,7 @@ TEST(StudyFile, UnknownWordsAreNamedWithTheirPlaceAndTheNearestKnownOne)
              "claims/1/rows/6/run: 'onee' is not a known run; nearest: one");
   EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][5]["quantity"] = "wavelenght"; }),
              "claims/1/rows/6/quantity: 'wavelenght' is not a known quantity; nearest: wavelength");
-  EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][4]["is"] = "wavy"; }), "'wavy' is no pattern");
+  EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][4]["is"] = "wavy"; }), "'wavy' is not a known pattern");
   EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][1]["against"] = "zetta"; }), "nearest: zeta");
   EXPECT_HAS(problem_after([](Json &d) { d["pictures"][0] = "nothing"; }), "pictures/1: 'nothing' is not a known run");
   EXPECT_HAS(problem_after(

@@ -151,7 +151,7 @@ TEST(StudyTable, BoundMayBeThatOfAnotherRun)
   EXPECT_EQ(table.judged(row).verdict, RowVerdict::does_not_hold);
   row.bound_run = "none";
   EXPECT_EQ(table.judged(row).verdict, RowVerdict::not_measured);
-  EXPECT_HAS(table.judged(row).note, "none, to compare with");
+  EXPECT_HAS(table.judged(row).note, "none, the run to compare with");
 }
 
 // A difference within the scatter of the seeds is not significant; without a scatter nothing is.
