@@ -114,7 +114,7 @@ class Help(TemporaryFolder):
             self.assertEqual(latcon(command, "quick", *entries, "--dry-run", "--yes").returncode, 0)
         cells = ["--set", "Continuum/cells x=8192", "--set", "Continuum/cells y=8192"]
         self.assertRegex(self.refused("continuum", "quick", *cells, "--output-dir", self.out),
-                         r"memory: .* \d{11,} bytes .*; --yes starts it all the same")
+                         r"memory: .* \d{11,} bytes .*; use --yes to run it anyway")
 
 
 class Log(TemporaryFolder):

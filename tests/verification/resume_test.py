@@ -134,7 +134,7 @@ class Resume(TemporaryFolder):
 
     def test_without_any_it_starts_from_the_beginning(self):
         run = self.run_to_end("--resume")
-        self.assertIn("no checkpoint", run.stdout)
+        self.assertIn("No checkpoint in", run.stdout)
         self.assertNotIn("resumed_from", json.loads((self.out / "run.json").read_text()))
 
     def test_files_may_be_renamed(self):

@@ -100,6 +100,8 @@ class Shards(TemporaryFolder):
         del fewer["runs"]["thin"]
         edited = copy.deepcopy(TINY)
         edited["set"]["Sheet/length"] = "2.6 cm"
+        self.assertIn("begun with 4 shards", self.study("--shard", "1/2", expect=2))
+        self.assertIn("give --collect", self.study(expect=2))
         for document, reason in ((other, "another study, 'A tiny study'"), (fewer, "4 runs, now there are 3"),
                                  (edited, "the case of run base-1 differs")):
             for choice in (["--shard", "2/4"], ["--collect"]):

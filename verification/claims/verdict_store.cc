@@ -268,7 +268,7 @@ void VerdictStore::write(const VerdictKey &key, const std::string &text) const
 
 VerdictStore::Turn::Turn(std::filesystem::path folder) : folder_(std::move(folder))
 {
-  constexpr std::chrono::hours patience(1);
+  constexpr std::chrono::minutes patience(10);
   std::filesystem::create_directories(folder_);
   lock_ = std::make_unique<support::FolderLock>(folder_, patience);
 }

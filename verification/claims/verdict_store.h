@@ -98,7 +98,7 @@ public:
   };
 
   /// Waits while another process checks the claims of the key, so that the runs of a study or of a job array check them
-  /// once. The wait is at most an hour, and none where folders cannot be created or locked: then both check.
+  /// once. The wait is at most ten minutes, and none where folders cannot be created or locked: then both check.
   [[nodiscard]] std::unique_ptr<Turn> wait_for_turn(const VerdictKey &key) const;
 
 private:

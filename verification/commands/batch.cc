@@ -8,6 +8,8 @@
 
 #include <unistd.h>
 
+#include <deal.II/base/mpi.h>
+
 #include "support/child_process.h"
 #include "verification/commands/command.h"
 #include "verification/input/case_text.h"
@@ -45,6 +47,8 @@ std::string study_command(const input::Options &options, const BatchOptions &cho
     command += " --quick";
   if (options.skip_verification)
     command += " --skip-verification";
+  if (options.yes)
+    command += " --yes";
   return command + " --output-dir " + quoted(fs::absolute(options.output_dir).lexically_normal().string());
 }
 
@@ -74,11 +78,11 @@ trap 'kill -TERM "$runs"' TERM
        << R"(runs=$!
 # A signal ends `wait` before the program ends.
 wait "$runs"
-code=$?
 while kill -0 "$runs" 2>/dev/null; do
   wait "$runs"
-  code=$?
 done
+wait "$runs"
+code=$?
 if [ "$requeue" = yes ] && [ "$code" -eq 130 ]; then
   scontrol requeue "${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID"
 fi
@@ -111,6 +115,8 @@ std::string submit(const std::vector<std::string> &arguments, const std::string 
 
 support::ExitCode write_batch(const input::Options &options, const BatchOptions &chosen)
 {
+  if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+    throw support::InputError("`latcon batch` writes scripts for one cluster; run it without mpirun");
   static const std::regex time("([0-9]+-)?[0-9]+(:[0-9]{2}){0,2}"), name("[A-Za-z0-9_.,-]*");
   if (!std::regex_match(chosen.time, time))
     throw support::InputError("--time '" + input::printable(chosen.time) +
@@ -129,9 +135,9 @@ support::ExitCode write_batch(const input::Options &options, const BatchOptions 
   }
 
   const fs::path folder = fs::absolute(options.output_dir).lexically_normal() / "batch";
-  if (!std::regex_match(folder.string(), std::regex("[^\\s%\\\\]+")))
+  if (!std::regex_match(folder.string(), std::regex("[^\\s%\\\\'\"]+")))
     throw support::InputError("--output-dir '" + input::printable(folder.string()) +
-                              "': sbatch does not support folders with blanks, % or \\ for its log files");
+                              "': sbatch does not support folders with blanks, quotes, % or \\ for its log files");
   fs::create_directories(folder);
   const std::string command = study_command(options, chosen);
   const std::string runs = (folder / "runs.sh").string(), collect = (folder / "collect.sh").string();
@@ -147,10 +153,11 @@ support::ExitCode write_batch(const input::Options &options, const BatchOptions 
   }
   const std::string log = (folder / "sbatch.log").string();
   const std::string array = submit({runs}, log);
+  if (!options.quiet)
+    std::cout << plan.size() << " runs in " << n_tasks << " tasks: job " << array << std::endl;
   const std::string judge = submit({"--dependency=afterany:" + array, collect}, log);
   if (!options.quiet)
-    std::cout << plan.size() << " runs in " << n_tasks << " tasks: job " << array << ", then the verdict: job " << judge
-              << std::endl;
+    std::cout << "then the verdict: job " << judge << std::endl;
   return support::ExitCode::done;
 }
 

@@ -80,7 +80,7 @@ support::ExitCode print_topic(const std::string &topic, const std::vector<std::s
 
 /// `latcon init`: creates the folder and a commented case in it. @throws InputError if the case exists @throws
 /// OutputError
-support::ExitCode init(const std::string &directory);
+support::ExitCode init(const input::Options &options, const std::string &directory);
 
 /// Draws pictures and report.html of a run, or of a folder of several, in a directory that this process has locked. On
 /// rank 0.

@@ -340,7 +340,7 @@ support::ExitCode run_program(int argc, char **argv)
 
   CLI::App *init_command = add_command("init", "a folder with a commented case to start from", "latcon init my-strip");
   init_command->add_option("DIR", directory, "folder; the case in it has its name")->required()->type_name("");
-  init_command->callback([&] { command = [&] { return init(directory); }; });
+  init_command->callback([&] { command = [&] { return init(options, directory); }; });
 
   std::string section;
   CLI::App *entries_command =

@@ -15,7 +15,7 @@ namespace latcon::commands
 namespace
 {
 
-constexpr const char *confirmation = "; --yes starts it all the same";
+constexpr const char *confirmation = "; use --yes to run it anyway";
 
 } // namespace
 

@@ -187,17 +187,17 @@ support::ExitCode print_topic(const std::string &topic, const std::vector<std::s
   return support::ExitCode::done;
 }
 
-support::ExitCode init(const std::string &directory)
+support::ExitCode init(const input::Options &options, const std::string &directory)
 {
   const std::string name = case_name(directory);
   const fs::path file = fs::path(directory) / (name + ".prm");
-  if (fs::exists(file))
+  if (is_root() && fs::exists(file))
     throw support::InputError(file.string() + " exists; give another folder");
   const std::string source = input::shipped_case_file("start");
   const input::InputFile start = input::read_input_file(source);
   if (!start.problem.empty())
     throw support::InputError("cannot read the starting case " + source + ": " + start.problem);
-  if (is_root())
+  if (is_root() && !options.dry_run)
   {
     std::error_code error;
     fs::create_directories(directory, error);
@@ -205,8 +205,9 @@ support::ExitCode init(const std::string &directory)
       throw support::OutputError(directory, error.message());
     support::write_atomically(file, start.text, support::Sync::yes);
     const std::string path = file.string();
-    std::cout << path << "\n\nrun it:       latcon fracture " << path << "\ncheck it:     latcon fracture " << path
-              << " --dry-run\nits entries:  latcon entries\n";
+    if (!options.quiet)
+      std::cout << path << "\n\nrun it:       latcon fracture " << path << "\ncheck it:     latcon fracture " << path
+                << " --dry-run\nits entries:  latcon entries\n";
   }
   return support::ExitCode::done;
 }

@@ -61,7 +61,7 @@ std::string case_file_of(const std::string &directory, const study::PlannedRun &
 }
 
 std::vector<std::string> command_of(const std::string &case_file, const std::string &folder, bool skip_verification,
-                                    bool resume)
+                                    bool resume, bool is_confirmed)
 {
   // This program, even if its file has been replaced since it was started.
   std::vector<std::string> command{"/proc/self/exe", "fracture",  case_file, "--output-dir",
@@ -70,6 +70,8 @@ std::vector<std::string> command_of(const std::string &case_file, const std::str
     command.emplace_back("--skip-verification");
   if (resume)
     command.emplace_back("--resume");
+  if (is_confirmed)
+    command.emplace_back("--yes");
   return command;
 }
 
@@ -129,6 +131,7 @@ struct Selection
   std::string directory;         // output directory of the study
   std::vector<std::size_t> runs; // indices in the plan, in the order of their start
   bool resume;                   // keep measured runs, continue runs with a checkpoint
+  bool is_confirmed;             // run also what costs too much (--yes)
 };
 
 // Runs the selected runs that are not measured yet. @return whether all of them ended
@@ -170,7 +173,8 @@ bool run_children(study::StudyResults &results, const Selection &selection, bool
     if (!goes_on)
       fs::remove_all(folder);
     fs::create_directory(folder);
-    return {command_of(case_file_of(directory, planned), folder, skip_verification, goes_on), folder + "/log.txt"};
+    return {command_of(case_file_of(directory, planned), folder, skip_verification, goes_on, selection.is_confirmed),
+            folder + "/log.txt"};
   };
   pool.ended = [&](std::size_t job, int status)
   {
@@ -275,15 +279,17 @@ void collect_outcomes(study::StudyResults &results, const std::string &directory
   {
     const study::PlannedRun &planned = results.plan[i];
     const std::string folder = folders_of(directory, planned).whole;
-    if (study::is_begun(planned, folder, skip_verification))
+    // A run that ended before it wrote its record has failed.
+    if (study::is_begun(planned, folder, skip_verification) ||
+        (fs::exists(folder) && !fs::exists(folder + "/run.json")))
       results.outcomes[i] = study::read_outcome(planned, folder);
     else if (++n_missing <= max_named)
       missing += (missing.empty() ? "" : ", ") + planned.folder();
   }
   if (n_missing > 0)
     throw support::InputError("--collect: " + std::to_string(n_missing) + " of " + std::to_string(results.plan.size()) +
-                              " runs have not ended: " + missing + (n_missing > max_named ? ", ..." : "") +
-                              "; run their shards again");
+                              " runs have not been run to their end by this program: " + missing +
+                              (n_missing > max_named ? ", ..." : "") + "; run their shards again");
 }
 
 // Judges the runs, writes the tables and the page, and ends the run.
@@ -355,24 +361,28 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
                                                    : "material and pre-stretch of every run";
   results.is_verified = !skip_verification;
 
-  Selection selection{options.output_dir, study::runs_of_shard(results.plan, shard), options.resume};
+  const std::string plan =
+    study::plan_text(results.study.title, results.plan, options.skip_verification, chosen.collect ? 0 : shard.count);
+  Selection selection{options.output_dir, study::runs_of_shard(results.plan, shard), options.resume, options.yes};
   input::Options own = options; // those of the record in run.json
   if (!chosen.shard.empty())
   {
-    share_plan(options.output_dir, study::plan_text(results.study.title, results.plan, options.skip_verification),
-               true);
+    share_plan(options.output_dir, plan, true);
     // A shard has a record and a lock of its own.
     own.output_dir += "/shards/" + std::to_string(shard.index) + "-of-" + std::to_string(shard.count);
     own.resume = selection.resume = true;
   }
   else if (chosen.collect)
   {
-    share_plan(options.output_dir, study::plan_text(results.study.title, results.plan, options.skip_verification),
-               false);
+    share_plan(options.output_dir, plan, false);
     collect_outcomes(results, options.output_dir, skip_verification);
     own.resume = true;
     selection.runs.clear();
   }
+  else if (fs::exists(fs::path(options.output_dir) / study::plan_file_name))
+    throw support::InputError(options.output_dir +
+                              " has the runs of a study in shards; give --collect, or another folder "
+                              "(--output-dir)");
   Run run(own);
   run.info().add("skip_verification", options.skip_verification);
   run.info().add("study", results.study.title);

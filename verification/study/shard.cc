@@ -1,6 +1,8 @@
 #include "verification/study/shard.h"
 
+#include <algorithm>
 #include <charconv>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -49,30 +51,43 @@ std::vector<std::size_t> runs_of_shard(const std::vector<PlannedRun> &plan, cons
   return runs;
 }
 
-std::string plan_text(const std::string &title, const std::vector<PlannedRun> &plan, const bool skip_verification)
+std::string plan_text(const std::string &title, const std::vector<PlannedRun> &plan, const bool skip_verification,
+                      const std::size_t n_shards)
 {
   Json runs = Json::array();
   for (const PlannedRun &run : plan)
     runs.push_back({{"run", run.folder()}, {"case_sha256", output::sha256(run.case_text)}});
-  return Json{{"study", title}, {"skip_verification", skip_verification}, {"runs", std::move(runs)}}.dump(1) + "\n";
+  Json document{{"study", title}, {"skip_verification", skip_verification}};
+  if (n_shards > 0)
+    document["shards"] = n_shards;
+  document["runs"] = std::move(runs);
+  return document.dump(1) + "\n";
 }
 
 std::string plan_difference(const std::string &stored, const std::string &wanted)
 {
-  if (stored == wanted)
+  try
+  {
+    const Json there = Json::parse(stored), here = Json::parse(wanted);
+    const auto differs = [&](const char *key) { return there.at(key) != here.at(key); };
+    if (differs("study"))
+      return "it is of another study, '" + input::printable(there.at("study").get<std::string>()) + "'";
+    if (differs("skip_verification"))
+      return "it was begun with another choice of --skip-verification";
+    if (here.contains("shards") && differs("shards"))
+      return "it was begun with " + there.at("shards").dump() + " shards";
+    const Json &old_runs = there.at("runs"), &new_runs = here.at("runs");
+    for (std::size_t i = 0; i < std::min(old_runs.size(), new_runs.size()); ++i)
+      if (old_runs.at(i) != new_runs.at(i))
+        return "the case of run " + new_runs.at(i).at("run").get<std::string>() + " differs";
+    if (old_runs.size() != new_runs.size())
+      return "it has " + std::to_string(old_runs.size()) + " runs, now there are " + std::to_string(new_runs.size());
     return "";
-  const Json there = Json::parse(stored, nullptr, false), here = Json::parse(wanted);
-  if (!there.is_object() || !there.contains("runs") || !there["runs"].is_array())
+  }
+  catch (const Json::exception &)
+  {
     return std::string(plan_file_name) + " is damaged";
-  if (there.value("study", "") != here.value("study", ""))
-    return "it is of another study, '" + input::printable(there.value("study", "")) + "'";
-  if (there.value("skip_verification", false) != here.value("skip_verification", false))
-    return "it was begun with other choices of --quick or --skip-verification";
-  const Json &old_runs = there["runs"], &new_runs = here["runs"];
-  for (std::size_t i = 0; i < std::min(old_runs.size(), new_runs.size()); ++i)
-    if (old_runs[i] != new_runs[i])
-      return "the case of run " + new_runs[i].value("run", "") + " differs";
-  return "it has " + std::to_string(old_runs.size()) + " runs, now there are " + std::to_string(new_runs.size());
+  }
 }
 
 } // namespace latcon::study

@@ -27,10 +27,11 @@ struct Shard
 /// Name of the file in the output directory of a study that its shards share.
 inline constexpr const char *plan_file_name = "plan.json";
 
-/// Text of plan.json: the runs in their order with the SHA-256 of their resolved cases, and whether they verify their
-/// material and pre-stretch. The same study gives the same text.
+/// Text of plan.json: number of shards, the runs in their order with the SHA-256 of their resolved cases, and whether
+/// they verify their material and pre-stretch. The same study gives the same text.
+/// @param n_shards 0: any number, for a comparison
 [[nodiscard]] std::string plan_text(const std::string &title, const std::vector<PlannedRun> &plan,
-                                    bool skip_verification);
+                                    bool skip_verification, std::size_t n_shards);
 
 /// First difference between the plan in a file and that of this study, in words.
 /// @return an empty text if they are the same
