@@ -4,7 +4,9 @@
 #include "lattice/bonds/mooney_rivlin_bond.h"
 
 #ifndef LATCON_LATTICE_BOND_LAW
+/// @cond
 #define LATCON_LATTICE_BOND_LAW
+/// @endcond
 
 #include <variant>
 

@@ -9,5 +9,6 @@
 /// formula may use +, -, * and the numbers given to it. It may not use exp or log, whose bits differ between
 /// instruction sets.
 #ifndef LATCON_FORMULAS
+/// Namespace of the formulas for one double.
 #define LATCON_FORMULAS formulas
 #endif
