@@ -109,7 +109,7 @@ class Help(TemporaryFolder):
             for mode in ([], ["--dry-run"]):
                 run = latcon(command, "quick", *entries, *mode, "--output-dir", self.out)
                 self.assertEqual(run.returncode, 2, run.stdout)
-                self.assertRegex(run.stderr, r"the run would take about \S+ days, more than 10; .*; --yes starts it")
+                self.assertRegex(run.stderr, r"the run would take about \S+ days, more than 10; .*; use --yes")
                 self.assertFalse(self.out.exists())
             self.assertEqual(latcon(command, "quick", *entries, "--dry-run", "--yes").returncode, 0)
         cells = ["--set", "Continuum/cells x=8192", "--set", "Continuum/cells y=8192"]
