@@ -136,9 +136,10 @@ void Run::begin_log(const input::Options &options)
   const std::string file = directory_ + "/log.txt";
   std::error_code none;
   // A log.txt that latcon did not write belongs to the user, who may have redirected the output of this program to it.
-  record_->keeps_log = !std::filesystem::equivalent("/proc/self/fd/1", file, none) &&
-                       !std::filesystem::equivalent("/proc/self/fd/2", file, none) &&
-                       (!std::filesystem::exists(file, none) || output::is_listed_output(file));
+  record_->keeps_log =
+    !std::filesystem::equivalent("/proc/self/fd/1", file, none) &&
+    !std::filesystem::equivalent("/proc/self/fd/2", file, none) &&
+    (!std::filesystem::is_regular_file(std::filesystem::symlink_status(file, none)) || output::is_listed_output(file));
   if (resumes_)
     record_->log_header = input::read_input_file(file).text;
   for (const std::string &argument : options.arguments)
