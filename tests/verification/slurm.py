@@ -40,6 +40,15 @@ class Slurm:
                             "PATH": os.environ.get("PATH", "") + os.pathsep + "/usr/sbin"}
 
     def __enter__(self):
+        try:
+            self.start_daemons()
+        except BaseException:
+            self.__exit__()
+            raise
+        return self
+
+    def start_daemons(self):
+        """Writes the configuration and starts the daemons, and waits until the node is idle."""
         self.folder.mkdir(mode=0o755, exist_ok=True)
         for name in ("state", "spool"):
             (self.folder / name).mkdir()
@@ -70,7 +79,6 @@ class Slurm:
         self.start(["slurmctld", "-D", "-f", str(self.folder / "slurm.conf")])
         self.start(["slurmd", "-D", "-f", str(self.folder / "slurm.conf"), "-N", host])
         self.wait_for(lambda: "idle" in self.run("sinfo", "--noheader", "--format=%T", check=False), "slurmd")
-        return self
 
     def __exit__(self, *_):
         for daemon in reversed(self.daemons):
