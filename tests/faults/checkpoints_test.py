@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Tests of damaged and forged checkpoints: a short version of tests/faults/run.
 
-Usage: checkpoints_test.py PATH_OF_THE_FUZZ_SERVER
+Usage: checkpoints_test.py PATH_OF_THE_FORK_SERVER
 """
 import pathlib
 import random
@@ -12,6 +12,7 @@ import unittest
 sys.dont_write_bytecode = True
 import damage
 import hostile
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "verification"))
 from forked import Forked
 
 PROGRAM = Forked(sys.argv.pop(1))

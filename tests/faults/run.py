@@ -18,6 +18,7 @@ import hostile
 import kills
 import moments
 import victims
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "verification"))
 from forked import Forked
 
 
@@ -28,7 +29,7 @@ def parsed():
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("latcon", type=pathlib.Path, help="the program")
     parser.add_argument("library", type=pathlib.Path, help="the library of file faults")
-    parser.add_argument("server", type=pathlib.Path, help="the program behind a fork, see tests/fuzz/server.cc")
+    parser.add_argument("server", type=pathlib.Path, help="the program behind a fork, see tests/verification/fork_server.cc")
     parser.add_argument("--damages", type=int, default=500, help="damaged checkpoints, in all [%(default)s]")
     parser.add_argument("--contents", type=int, default=1000, help="made-up checkpoints of each run, at most [%(default)s]")
     parser.add_argument("--kills", type=int, default=500, help="at random moments, in all [%(default)s]")

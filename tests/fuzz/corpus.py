@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Writes the seed corpus of libFuzzer: the shipped cases and studies, options of --set, and a dictionary of all words of a case.
 
-Usage: corpus.py FUZZ_SERVER CORPUS DICTIONARY
+Usage: corpus.py FORK_SERVER CORPUS DICTIONARY
 """
 import argparse
 import json

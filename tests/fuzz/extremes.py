@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Runs tiny sheets with entries anywhere in their documented ranges.
 
-Usage: extremes.py FUZZ_SERVER [--runs N] [--seed S] [--only NUMBER] [--failures DIR]
+Usage: extremes.py FORK_SERVER [--runs N] [--seed S] [--only NUMBER] [--failures DIR]
 
 Allowed outcomes are the exit codes 0, 2 (the dry run ends likewise, and nothing is written), 3, 4, 5. Other codes, signals,
 timeouts, and non-finite numbers in a file of a run that ended with 0 are findings. A run is determined by seed and number alone.
@@ -144,7 +144,7 @@ class Runner:
     def __init__(self, options):
         self.options = options
         self.work = pathlib.Path(tempfile.mkdtemp(prefix="latcon-extremes-"))
-        self.server = mutate.Server(options.server, self.work)
+        self.server = mutate.started(options.server, self.work)
         self.counts = collections.Counter()
         self.findings = 0
         outcome, _, printed = self.run(["schema", str(BASE)])
@@ -158,7 +158,7 @@ class Runner:
         shutil.rmtree(folder, ignore_errors=True)
         folder.mkdir()
         outcome = self.server.run(arguments, folder, self.options.limit)
-        return outcome, (folder / "stderr").read_text(errors="replace"), (folder / "stdout").read_text(errors="replace")
+        return outcome, self.server.stderr(), self.server.stdout()
 
     def arguments(self, command, chosen):
         return [command[0], str(BASE), *command[1:], *(word for key, value in chosen.items() for word in ("--set", f"{key}={value}"))]
@@ -181,7 +181,7 @@ class Runner:
         arguments = [*self.arguments(command, chosen), "--output-dir", "out", "--threads", "1", "--quiet"]
         outcome, said, _ = self.run(arguments)
         folder = self.work / "run"
-        left = sorted(path.name for path in folder.iterdir() if path.name not in ("stdout", "stderr"))
+        left = sorted(path.name for path in folder.iterdir())
         finding = ""
         if outcome not in ENDS or any(alarm in said for alarm in mutate.ALARMS):
             finding = outcome

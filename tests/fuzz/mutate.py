@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Mutates the shipped cases and studies and command-line options, and checks the outcome of latcon.
 
-Usage: mutate.py FUZZ_SERVER [--inputs N] [--seed S] [--only NUMBER] [--failures DIR]
+Usage: mutate.py FORK_SERVER [--inputs N] [--seed S] [--only NUMBER] [--failures DIR]
 
 Exit codes 0, 2, 3 and 4 are allowed; 1 (a defect), 5 (a file that cannot be written), signals, reports of sanitizers and
 timeouts are findings, as is any file after exit code 2 or a dry run. Inputs are determined by the seed alone. Failing inputs
@@ -18,6 +18,9 @@ import subprocess
 import sys
 import tempfile
 import time
+
+sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "verification"))
+from forked import ForkServer
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 CASES = sorted((ROOT / "verification" / "cases").glob("*.prm"))
@@ -256,32 +259,19 @@ def make_input(seed, number, full):
     return case_input(mutator), random_.random() < 0.2
 
 
-class Server:
-    def __init__(self, program, folder):
-        self.folder = folder
-        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1", XDG_CACHE_HOME=str(folder / "cache"),
-                           ASAN_OPTIONS="detect_leaks=0:abort_on_error=0", UBSAN_OPTIONS=f"print_stacktrace=1:suppressions={pathlib.Path(__file__).with_name('ubsan-suppressions.txt')}")
-        self.process = subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment)
-
-    def run(self, arguments, folder, limit):
-        words = [os.fsencode(word).hex() for word in [str(folder), *arguments]]
-        self.process.stdin.write(f"{limit} " + " ".join(words) + "\n")
-        self.process.stdin.flush()
-        answer = self.process.stdout.readline().strip()
-        if not answer:
-            raise SystemExit("the server has ended")
-        return answer
-
-    def close(self):
-        self.process.stdin.close()
-        self.process.wait()
+def started(program, folder):
+    """A fork server with verdicts of its own in `folder`, and settings for sanitizers."""
+    suppressions = pathlib.Path(__file__).with_name("ubsan-suppressions.txt")
+    return ForkServer(program, dict(os.environ, XDG_CACHE_HOME=str(folder / "cache"),
+                                    ASAN_OPTIONS="detect_leaks=0:abort_on_error=0",
+                                    UBSAN_OPTIONS=f"print_stacktrace=1:suppressions={suppressions}"))
 
 
 class Fuzzer:
     def __init__(self, options):
         self.options = options
         self.work = pathlib.Path(tempfile.mkdtemp(prefix="latcon-fuzz-"))
-        self.server = Server(options.server, self.work)
+        self.server = started(options.server, self.work)
         self.limit = options.limit
         self.counts = collections.Counter()
         self.failures = []
@@ -290,9 +280,9 @@ class Fuzzer:
     def all_entries(self):
         folder = self.folder_of({"case.prm": CASES[0].read_bytes()})
         self.server.run(["verify", "--case", "case.prm", "--dry-run"], folder, 10 * self.limit)
-        entries = case_lines((folder / "stdout").read_text())
+        entries = case_lines(self.server.stdout())
         if len(entries) < 50:
-            raise SystemExit("no resolved case:\n" + (folder / "stderr").read_text())
+            raise SystemExit("no resolved case:\n" + self.server.stderr())
         return entries
 
     def folder_of(self, files):
@@ -306,11 +296,9 @@ class Fuzzer:
     def run_once(self, files, arguments):
         """(outcome, finding or "", what it printed)"""
         folder = self.folder_of(files)
-        before = set(files) | {"stdout", "stderr"}
         outcome = self.server.run(arguments, folder, self.limit)
-        printed = (folder / "stdout").read_text(errors="replace")
-        error = (folder / "stderr").read_text(errors="replace")
-        left = sorted(path.name for path in folder.iterdir() if path.name not in before)
+        printed, error = self.server.stdout(), self.server.stderr()
+        left = sorted(path.name for path in folder.iterdir() if path.name not in files)
         finding = ""
         if outcome not in ALLOWED:
             finding = outcome
@@ -359,8 +347,8 @@ class Fuzzer:
         folder.mkdir(parents=True)
         for name, data in files.items():
             (folder / name).write_bytes(data)
-        for name in ("stdout", "stderr"):
-            shutil.copy(self.work / "input" / name, folder / name)
+        (folder / "stdout").write_text(self.server.stdout())
+        (folder / "stderr").write_text(self.server.stderr())
         (folder / "command.txt").write_text(f"{finding}\ncd {folder.resolve()} && latcon " +
                                             " ".join("'" + word.replace("'", "'\\''") + "'" for word in arguments) + "\n",
                                             errors="surrogateescape")

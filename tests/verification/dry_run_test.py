@@ -1,14 +1,13 @@
 #!/usr/bin/python3
 """Checks that a dry run and the run refuse the same cases, with the same exit code and reason and without output files.
 
-Usage: dry_run_test.py PATH_OF_THE_FUZZ_SERVER
+Usage: dry_run_test.py PATH_OF_THE_FORK_SERVER
 """
 import pathlib
 import sys
 import unittest
 
 sys.dont_write_bytecode = True
-sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "faults"))
 from forked import Forked
 from program import CASES, LATCON, TemporaryFolder
 

@@ -1,8 +1,11 @@
 """Runs latcon for the tests of the command line, and reads its output with independent readers."""
+import atexit
 import csv
+import functools
 import json
 import os
 import pathlib
+import shutil
 import subprocess
 import sys
 import tempfile
@@ -10,16 +13,36 @@ import time
 import unittest
 import xml.etree.ElementTree
 
+from forked import ForkServer
+
+# latcon, or the fork server, which with arguments is latcon.
 LATCON = sys.argv.pop(1)
-# Verdicts are cached for the duration of a test only, never in the user's cache.
+# Verdicts are cached for the duration of a test only, never in the user's cache. A fixture may have left verdicts to begin with.
 CACHE = tempfile.TemporaryDirectory()
+if "LATCON_VERDICTS" in os.environ:
+    shutil.copytree(os.environ["LATCON_VERDICTS"], CACHE.name, dirs_exist_ok=True)
 os.environ["XDG_CACHE_HOME"] = CACHE.name
 os.environ["MPLCONFIGDIR"] = f"{CACHE.name}/matplotlib"  # its list of fonts takes seconds to make, once is enough
 CASES = pathlib.Path(__file__).resolve().parents[2] / "verification" / "cases"
 
 
+@functools.cache
+def server():
+    """The fork server of this process, which ends with it."""
+    started = ForkServer(LATCON)
+    atexit.register(started.close)
+    return started
+
+
 def latcon(*arguments, program=LATCON, timeout=600, **keywords):
-    return subprocess.run([program, *map(str, arguments)], capture_output=True, text=True, timeout=timeout, **keywords)
+    """Runs latcon: in a fork of the server, if that is what LATCON is, and nothing but the folder is asked for."""
+    command = [program, *map(str, arguments)]
+    if program != LATCON or pathlib.Path(LATCON).name != "fork_server" or not keywords.keys() <= {"cwd"}:
+        return subprocess.run(command, capture_output=True, text=True, timeout=timeout, **keywords)
+    how, _, number = server().run(command[1:], keywords.get("cwd", pathlib.Path.cwd()), timeout).partition(" ")
+    if how == "limit":
+        raise subprocess.TimeoutExpired(command, timeout)
+    return subprocess.CompletedProcess(command, int(number) if how == "exit" else -int(number), server().stdout(), server().stderr())
 
 
 def claims_where(property_):

@@ -1,9 +1,9 @@
-// Runs the program once for each line on standard input, in a child made by fork: what takes half a second to start,
-// MPI and the libraries, starts once.
+// The program for tests. With arguments it is latcon. Without, it runs latcon once for each line on standard input, in a
+// child made by fork: what takes half a second to start, MPI and the libraries, starts once.
 //
-// A line is `LIMIT FOLDER ARGUMENT...`: seconds, a folder to work in, and the arguments of latcon without its name,
-// each word in hexadecimal. The child's output goes into FOLDER/stdout and FOLDER/stderr. The answer is a line: `exit
-// CODE`, `signal NUMBER`, or `limit` if the child was killed after LIMIT seconds.
+// A line is `LIMIT OUTPUT FOLDER ARGUMENT...`: seconds, the folder of the files stdout and stderr of the child, the folder
+// to work in, and the arguments of latcon without its name, each word in hexadecimal. The answer is a line: `exit CODE`,
+// `signal NUMBER`, or `limit` if the child was killed after LIMIT seconds.
 #include <chrono>
 #include <csignal>
 #include <cstdio>
@@ -21,6 +21,7 @@
 
 #include "continuum/parallel_session.h"
 #include "verification/commands/command_line.h"
+#include "verification/commands/signals.h"
 
 using namespace latcon;
 
@@ -43,10 +44,10 @@ void redirect(int descriptor, const std::string &path)
   close(file);
 }
 
-[[noreturn]] void run_child(const std::string &folder, std::vector<std::string> arguments)
+[[noreturn]] void run_child(const std::string &output, const std::string &folder, std::vector<std::string> arguments)
 {
-  redirect(STDOUT_FILENO, folder + "/stdout");
-  redirect(STDERR_FILENO, folder + "/stderr");
+  redirect(STDOUT_FILENO, output + "/stdout");
+  redirect(STDERR_FILENO, output + "/stderr");
   const int nothing = open("/dev/null", O_RDONLY);
   dup2(nothing, STDIN_FILENO);
   if (chdir(folder.c_str()) != 0)
@@ -82,21 +83,15 @@ std::string outcome(const pid_t child, const double limit)
   return "exit " + std::to_string(WEXITSTATUS(status));
 }
 
-} // namespace
-
-int main()
+void serve()
 {
-  // Threads do not survive a fork.
-  setenv("OMP_NUM_THREADS", "1", 1);
-  setenv("OPENBLAS_NUM_THREADS", "1", 1);
-  const continuum::ParallelSession session;
   std::string line;
   while (std::getline(std::cin, line))
   {
     std::istringstream words(line);
     double limit = 0.;
-    std::string folder, word;
-    words >> limit >> folder;
+    std::string output, folder, word;
+    words >> limit >> output >> folder;
     std::vector<std::string> arguments;
     while (words >> word)
       arguments.push_back(decoded(word));
@@ -105,8 +100,27 @@ int main()
     if (child < 0)
       throw std::runtime_error("cannot fork");
     if (child == 0)
-      run_child(decoded(folder), arguments);
+      run_child(decoded(output), decoded(folder), arguments);
     std::cout << outcome(child, limit) << std::endl;
   }
+}
+
+} // namespace
+
+int main(int argc, char **argv)
+{
+  const bool serves = argc == 1;
+  if (serves)
+  {
+    // Threads do not survive a fork.
+    setenv("OMP_NUM_THREADS", "1", 1);
+    setenv("OPENBLAS_NUM_THREADS", "1", 1);
+  }
+  else
+    commands::install_signal_handlers();
+  const continuum::ParallelSession session;
+  if (!serves)
+    return static_cast<int>(commands::run_program(argc, argv));
+  serve();
   return 0;
 }

@@ -1,0 +1,58 @@
+"""Runs latcon in forks of one process (fork_server.cc): MPI and the libraries, which take half a second, start once."""
+import os
+import pathlib
+import subprocess
+import tempfile
+
+
+class ForkServer:
+    """A fork server, and the folder of the output of its children."""
+
+    def __init__(self, program, environment=None):
+        self.temporary = tempfile.TemporaryDirectory()
+        self.output = pathlib.Path(self.temporary.name)
+        environment = dict(environment or os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+        self.process = subprocess.Popen([program], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment)
+
+    def run(self, arguments, folder, limit):
+        """Runs latcon in `folder`, for at most `limit` s. @return `exit CODE`, `signal NUMBER` or `limit`"""
+        words = [os.fsencode(word).hex() for word in [str(self.output), str(folder), *arguments]]
+        self.process.stdin.write(f"{limit} " + " ".join(words) + "\n")
+        self.process.stdin.flush()
+        answer = self.process.stdout.readline().strip()
+        if not answer:
+            raise SystemExit("the server has ended")
+        return answer
+
+    def stdout(self):
+        """Standard output of the last run."""
+        return (self.output / "stdout").read_text(errors="replace")
+
+    def stderr(self):
+        """Standard error of the last run."""
+        return (self.output / "stderr").read_text(errors="replace")
+
+    def close(self):
+        self.process.stdin.close()
+        self.process.wait()
+        self.process.stdout.close()
+        self.temporary.cleanup()
+
+
+class Forked:
+    """Program like victims.Program, for uninterrupted runs on one thread."""
+
+    def __init__(self, server):
+        # Other verdicts than those of the user.
+        self.cache = tempfile.TemporaryDirectory()
+        self.server = ForkServer(server, dict(os.environ, XDG_CACHE_HOME=self.cache.name))
+
+    def run(self, arguments, out, timeout=600):
+        """@return exit status, minus the number of a signal, or "hangs"; standard error"""
+        how, _, number = self.server.run([*arguments, "--output-dir", str(out)], pathlib.Path.cwd(), timeout).partition(" ")
+        status = {"exit": lambda: int(number), "signal": lambda: -int(number), "limit": lambda: "hangs"}[how]()
+        return status, self.server.stderr()
+
+    def close(self):
+        self.server.close()
+        self.cache.cleanup()
