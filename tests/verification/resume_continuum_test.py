@@ -18,7 +18,7 @@ import h5py
 import numpy as np
 
 sys.dont_write_bytecode = True
-from program import CASES, LATCON, TemporaryFolder, frames, latcon, latcon_on_ranks, read_csv
+from program import CASES, LATCON, TemporaryFolder, children, frames, latcon, latcon_on_ranks, read_csv
 
 
 # Waves in a layer between held faces: 20 steps, checkpoints after every third, six frames.
@@ -71,11 +71,14 @@ class Resume(TemporaryFolder):
                 time.sleep(0.005)
             target = run.pid
             if victim is not None:
-                children = pathlib.Path(f"/proc/{run.pid}/task/{run.pid}/children").read_text().split()
-                [target] = [int(pid) for pid in children if f"OMPI_COMM_WORLD_RANK={victim}\0".encode()
+                [target] = [pid for pid in children(run.pid) if f"OMPI_COMM_WORLD_RANK={victim}\0".encode()
                             in pathlib.Path(f"/proc/{pid}/environ").read_bytes()]
+            started = children(run.pid) if launcher else []
             os.kill(target, which)
             run.communicate(timeout=600)
+            # The ranks outlive an mpirun that was killed for a moment.
+            while any(pathlib.Path(f"/proc/{rank}").exists() for rank in started):
+                time.sleep(0.005)
             return run.returncode
 
     def goes_on_to_the_same_files(self, which, case=WAVES, ranks=1, victim=None):
