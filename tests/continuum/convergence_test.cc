@@ -9,6 +9,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <fstream>
 #include <iomanip>
@@ -276,9 +277,19 @@ std::vector<Series> all_series()
       series.push_back({Local::network, nonlocal, Meshes::uniform, Edges::loaded_above, degree});
   return series;
 }
+
+// Elements of degree 4, whose forcing takes the longest, on uniform meshes between clamped edges only.
+std::vector<Series> quick_series()
+{
+  std::vector<Series> series = all_series();
+  const auto is_long = [](const Series &s)
+  { return s.degree == 4 && (s.meshes == Meshes::hanging || s.edges == Edges::loaded_above); };
+  series.erase(std::remove_if(series.begin(), series.end(), is_long), series.end());
+  return series;
+}
 } // namespace
 
 INSTANTIATE_TEST_SUITE_P(Continuum, Convergence, testing::ValuesIn(all_series()),
                          [](const auto &series) { return series.param.name(); });
-INSTANTIATE_TEST_SUITE_P(Continuum, CoarseConvergence, testing::ValuesIn(all_series()),
+INSTANTIATE_TEST_SUITE_P(Continuum, CoarseConvergence, testing::ValuesIn(quick_series()),
                          [](const auto &series) { return series.param.name(); });
