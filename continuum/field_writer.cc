@@ -123,7 +123,7 @@ std::string with_time(std::string vtu, const double time)
     throw OutputFailed("the VTU text contains no unstructured grid");
   std::ostringstream field;
   field << std::setprecision(17)
-        << "\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TIME\" NumberOfTuples=\"1\" format=\"ascii\">" << time
+        << "\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">" << time
         << "</DataArray>\n</FieldData>";
   return vtu.insert(at + grid.size(), field.str());
 }

@@ -51,7 +51,7 @@ def check(path, time, n_cells):
     grid = reader.GetOutput()
     assert grid.GetNumberOfCells() == n_cells, f"{path.name} has {grid.GetNumberOfCells()} cells"
     if path.suffix == ".vtu":
-        stored = grid.GetFieldData().GetArray("TIME")
+        stored = grid.GetFieldData().GetArray("TimeValue")
         assert stored is not None, f"{path.name} has no TIME"
         assert stored.GetValue(0) == time, f"TIME is {stored.GetValue(0)!r}, the series says {time!r}"
     points = grid.GetPointData()

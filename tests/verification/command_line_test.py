@@ -305,7 +305,7 @@ class BothSides(TemporaryFolder):
         self.assertEqual([continuum[0][0], continuum[-1][0]], [0., 1.])
         sites = read(vtk.vtkXMLPolyDataReader(), lattice[-1][1])
         cells = read(vtk.vtkXMLUnstructuredGridReader(), continuum[-1][1])
-        self.assertEqual(cells.GetFieldData().GetArray("TIME").GetValue(0), 1.)
+        self.assertEqual(cells.GetFieldData().GetArray("TimeValue").GetValue(0), 1.)
         probe = vtk.vtkProbeFilter()
         probe.SetSourceData(cells)
         probe.SetInputData(sites)

@@ -219,7 +219,7 @@ class Hole(unittest.TestCase):
 
     def test_fields_open_outside_latcon(self):
         mesh = last_mesh(self.out)
-        self.assertEqual(mesh.GetFieldData().GetArray("TIME").GetValue(0), 1.)
+        self.assertEqual(mesh.GetFieldData().GetArray("TimeValue").GetValue(0), 1.)
         points = mesh.GetPointData()
         components = {points.GetArrayName(i): points.GetArray(i).GetNumberOfComponents()
                       for i in range(points.GetNumberOfArrays())}

@@ -105,13 +105,13 @@ std::vector<Position> read_points(const FrameFile &file, vtkPointSet &data)
 }
 
 // Returns the time given by the series, otherwise that in the file.
-double frame_time(const FrameFile &file, vtkDataSet &data, const char *name, std::optional<double> wanted)
+double frame_time(const FrameFile &file, vtkDataSet &data, std::optional<double> wanted)
 {
   if (file.time)
     return *file.time;
-  vtkDataArray *const time = data.GetFieldData()->GetArray(name);
+  vtkDataArray *const time = data.GetFieldData()->GetArray("TimeValue");
   if (time == nullptr || time->GetNumberOfTuples() != 1 || !std::isfinite(time->GetComponent(0, 0)))
-    fail(file, std::string("has no field data '") + name + "', so its time is unknown");
+    fail(file, "has no field data 'TimeValue', so its time is unknown");
   const double found = time->GetComponent(0, 0);
   if (wanted && !is_same_time(found, *wanted))
     fail(file, "has the time " + support::full_precision(found) + ", not " + support::full_precision(*wanted));
@@ -158,7 +158,7 @@ LatticeFrame read_lattice_frame(const FrameFile &file, std::optional<double> tim
   LatticeFrame frame;
   frame.file = file;
   frame.data = read_data<vtkXMLPolyDataReader>(file);
-  frame.time = frame_time(file, *frame.data, "TimeValue", time);
+  frame.time = frame_time(file, *frame.data, time);
   frame.points = read_points(file, *frame.data);
   if (vtkDataArray *const bounds = frame.data->GetFieldData()->GetArray("SheetBounds"))
   {
@@ -208,7 +208,7 @@ ContinuumFrame read_continuum_frame(const FrameFile &file, std::optional<double>
   frame.file = file;
   frame.data = file.path.extension() == ".pvtu" ? read_data<vtkXMLPUnstructuredGridReader>(file)
                                                 : read_data<vtkXMLUnstructuredGridReader>(file);
-  frame.time = frame_time(file, *frame.data, "TIME", time);
+  frame.time = frame_time(file, *frame.data, time);
   frame.points = read_points(file, *frame.data);
   const bool moves = frame.data->GetPointData()->GetArray("velocity") != nullptr;
   frame.kind = moves ? TimeKind::motion : frame.time == 0. ? TimeKind::start : TimeKind::equilibrium;

@@ -49,7 +49,7 @@ inline void add_array(vtkDataSet &data, const MadeUpState &state, const char *na
 }
 
 /// Adds the common fields: displacement as given, the others constant.
-inline void add_fields(vtkDataSet &data, const MadeUpState &state, const char *name_of_time)
+inline void add_fields(vtkDataSet &data, const MadeUpState &state)
 {
   add_array(data, state, "displacement", 3, 0.);
   if (vtkDataArray *const u = data.GetPointData()->GetArray("displacement"))
@@ -66,7 +66,7 @@ inline void add_fields(vtkDataSet &data, const MadeUpState &state, const char *n
   if (state.bad)
     data.GetPointData()->GetArray("first_piola_stress")->SetComponent(0, 4, std::nan(""));
   vtkNew<vtkDoubleArray> time;
-  time->SetName(name_of_time);
+  time->SetName("TimeValue");
   time->InsertNextValue(state.time);
   data.GetFieldData()->AddArray(time);
 }
@@ -107,7 +107,7 @@ inline std::string write_lattice(const std::string &path, const MadeUpState &sta
   sheet->SetPoints(points);
   sheet->SetVerts(vertices);
   sheet->SetLines(lines);
-  add_fields(*sheet, state, "TimeValue");
+  add_fields(*sheet, state);
   add_array(*sheet, state, "velocity", 3, state.moves ? 2. : 0.);
   sheet->GetPointData()->AddArray(held);
   vtkNew<vtkXMLPolyDataWriter> writer;
@@ -153,7 +153,7 @@ inline std::string write_continuum(const std::string &path, const MadeUpState &s
       sheet->InsertNextCell(degree == 1 ? VTK_QUAD : VTK_LAGRANGE_QUADRILATERAL, n, ids.data());
     }
   sheet->SetPoints(points);
-  add_fields(*sheet, state, "TIME");
+  add_fields(*sheet, state);
   if (state.moves)
     add_array(*sheet, state, "velocity", 3, 2.);
   vtkNew<vtkXMLUnstructuredGridWriter> writer;
