@@ -20,7 +20,7 @@ _latcon() {
     esac
   done
   case $prev in
-    --set)
+    --set|--sweep)
       # Names hold blanks: within quotes as they are, without them escaped.
       for entry in @entries@; do
         case $cur in
@@ -161,7 +161,8 @@ def completion(latcon, data, program, commands):
     every = program.options + [pair for command in commands.values() for pair in command.options]
 
     def of_type(pattern):
-        return "|".join(sorted({what.split()[0] for what, _ in every if re.search(pattern, what)}))
+        return "|".join(sorted({name for what, _ in every if re.search(pattern, what)
+                                for name in what.split()[0].split(",")}))
 
     shared = program.option_names()
     schema = json.loads(subprocess.run([latcon, "schema"], check=True, capture_output=True, text=True).stdout)

@@ -147,6 +147,38 @@ class Shards(TemporaryFolder):
         self.assertIn("no sbatch on this machine", run.stderr)
         self.assertTrue((self.out / "batch/runs.sh").exists())
 
+    def test_task_that_nears_its_time_limit_is_requeued_and_continues(self):
+        def longer(document):  # so that the signal arrives during a run
+            document["set"].update({"Sheet/length": "4 cm", "Time/end": "3 ms"})
+            document["runs"] = {"base": {}}
+            document["claims"][0]["rows"] = [{"run": "base", "quantity": "pattern"}]
+        document = copy.deepcopy(TINY)
+        longer(document)
+        study = self.write_study(document)
+        self.study(study=study, out=self.folder / "undisturbed")
+        run = latcon(*self.words("--slurm", study=study, command="batch"))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        tools = self.folder / "bin"
+        tools.mkdir()
+        (tools / "scontrol").write_text(f'#!/bin/sh\necho "$@" >>{self.folder}/requeued\n')
+        (tools / "scontrol").chmod(0o755)
+        environment = {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}", "SLURM_ARRAY_JOB_ID": "42",
+                       "SLURM_ARRAY_TASK_ID": "1"}
+        part = self.out / "runs" / "base-1.part"
+        with subprocess.Popen(["bash", self.out / "batch/runs.sh"], env=environment) as task:
+            end = time.monotonic() + 300
+            while not (part / "lattice-0000.vtp").exists() and time.monotonic() < end:
+                time.sleep(0.01)
+            task.send_signal(signal.SIGUSR1)  # as Slurm does, to the script alone
+            self.assertEqual(task.wait(120), 130)
+        self.assertEqual((self.folder / "requeued").read_text(), "requeue 42_1\n")
+        self.assertTrue(list((part / "checkpoints").iterdir()))
+        subprocess.run(["bash", self.out / "batch/runs.sh"], env=environment, check=True, timeout=300)
+        self.assertIn("resumed_from", json.loads((self.out / "runs/base-1/run.json").read_text()))
+        self.assertEqual((self.folder / "requeued").read_text(), "requeue 42_1\n")  # once
+        subprocess.run(["bash", self.out / "batch/collect.sh"], check=True, timeout=300)
+        self.assertEqual(self.result(self.out), self.result(self.folder / "undisturbed"))
+
     @unittest.skipIf(missing() or os.geteuid() != 0, "needs Slurm and root, which slurmd requires")
     def test_array_cancelled_half_way_continues_in_slurm(self):
         with Slurm(self.folder / "slurm") as cluster:

@@ -11,12 +11,14 @@ from pathlib import Path
 from unittest import mock
 
 import numpy as np
+from matplotlib.colors import to_rgb
 from PIL import Image
 
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification" / "report"))
 
 import gallery
+import phase_map
 import study
 import study_plots
 from check_plots import draw_steady_crack
@@ -209,7 +211,7 @@ class StudyPage(MadeUpStudy):
             self.document["seeds"][3]["values"]["speed_lagrangian"] = 21.0
             picture, labels = self.sweep(row, "speed_lagrangian", "end_time")
             pictures.append(picture)
-        self.assertEqual(labels, [("Near tip/interval [s]", "speed [m/s]"), ("Near tip/interval [s]", "end time [ms]")])
+        self.assertEqual(labels, [("Near tip/interval [ms]", "speed [m/s]"), ("Near tip/interval [ms]", "end time [ms]")])
         changed = np.nonzero(np.abs(pictures[0] - pictures[1]).max(axis=(0, 2)) > 30)[0]
         self.assertGreater(len(changed), 5)
         self.assertLess(changed.max(), 0.5 * pictures[0].shape[1])
@@ -232,6 +234,69 @@ class StudyPage(MadeUpStudy):
         self.assertIn("Paper:", self.page()[0].text)
         self.document["claims"][0]["paper"] = ""
         self.assertNotIn("Paper:", self.page()[0].text)
+
+
+class Maps(MadeUpStudy):
+    """Pages of studies that vary one entry or two: a grid of 3 x 2 cells with two seeds."""
+
+    def vary(self, entries, patterns):
+        """Turns the study into one without claims, whose runs have these values of entries and patterns of two seeds."""
+        names = [f"r{number}" for number in range(len(patterns))]
+        self.document.update(
+            claims=[], checks=[], runs=[{"run": name, "about": "", "set": {}} for name in names],
+            seeds=[made_up_seed(name, seed, pattern, wavelength=0.02 + 0.001 * place, speed_lagrangian=20.0 + place)
+                   for place, (name, both) in enumerate(zip(names, patterns)) for seed, pattern in enumerate(both, start=1)],
+            varied=[{"entry": entry, "unit": "m", "values": values} for entry, values in entries.items()])
+
+    GRID = {"Sheet/width": [0.01, 0.01, 0.02, 0.02, 0.03, 0.03], "Sheet/depth": [1.0, 2.0] * 3}
+    WAVY, CALM = ("oscillating", "oscillating"), ("straight", "straight")
+
+    def drawn(self, patterns):
+        """Axes, texts of the legend and caption of the map."""
+        self.vary(self.GRID, patterns)
+        with mock.patch.object(phase_map, "save", wraps=phase_map.save) as saved:
+            caption = study_plots.draw_map(self.read(), self.folder / "map.png")
+            figure = saved.call_args.args[0]
+        return figure.axes[0], [text.get_text() for text in figure.legends[0].get_texts()], caption
+
+    def test_map_has_a_cell_per_case_with_units_and_contours(self):
+        axes, legend, caption = self.drawn([self.CALM] * 2 + [self.WAVY] * 4)
+        self.assertEqual((axes.get_xlabel(), axes.get_ylabel()), ("Sheet/width [cm]", "Sheet/depth [cm]"))
+        boxes = [patch.get_bbox().bounds for patch in axes.patches]
+        np.testing.assert_allclose(boxes, [(x, y, 1, 100) for x in (0.5, 1.5, 2.5) for y in (50, 150)])
+        self.assertEqual([patch.get_facecolor()[:3] for patch in axes.patches],
+                         [to_rgb(phase_map.COLOURS["straight"])] * 2 + [to_rgb(phase_map.COLOURS["oscillating"])] * 4)
+        self.assertEqual(legend, ["oscillating", "straight"])
+        self.assertEqual(axes.get_title(loc="left"), "contours: wavelength [cm]")
+        self.assertIn("Patterns over Sheet/width and Sheet/depth", caption)
+
+    def test_map_divides_and_marks_cells_whose_seeds_disagree(self):
+        axes, legend, _ = self.drawn([self.CALM] * 3 + [("straight", "oscillating"), (None, None), self.WAVY])
+        widths = [round(patch.get_width(), 9) for patch in axes.patches]
+        self.assertEqual(widths, [1, 1, 1, 0.5, 0.5, 1])  # the fifth cell was not measured
+        (mixed, unmeasured) = axes.lines[-2:]
+        self.assertEqual((mixed.get_xydata().tolist(), unmeasured.get_xydata().tolist()), ([[2, 200]], [[3, 100]]))
+        self.assertEqual(legend[2:], ["seeds disagree", "not measured"])
+
+    def test_study_of_two_entries_shows_the_map_and_needs_no_claim(self):
+        self.vary(self.GRID, [self.CALM] * 3 + [self.WAVY] * 3)
+        page, html = self.page()
+        self.assertIn("Patterns over Sheet/width and Sheet/depth", page.text)
+        self.assertNotIn('id="summary"', html)
+        self.assertTrue((self.folder / "pictures" / "map.png").exists())
+        self.document["varied"][0]["values"][0] = None  # not a number
+        self.assertNotIn("Patterns over", self.page()[0].text)
+
+    def test_study_of_one_entry_shows_quantities_against_it(self):
+        self.vary({"Sheet/width": [0.01, 0.02, 0.03]}, [self.CALM, self.WAVY, self.WAVY])
+        page, _ = self.page()
+        self.assertIn("Speed, wavelength and amplitudes against Sheet/width: mean and standard deviation", page.text)
+        self.assertTrue((self.folder / "pictures" / "sweep.png").exists())
+
+    def test_studies_of_many_entries_have_neither(self):
+        self.vary(dict(self.GRID, **{"Sheet/third": [1.0, 2, 3, 4, 5, 6]}), [self.CALM] * 6)
+        self.page()
+        self.assertEqual([name for name in ("map.png", "sweep.png") if (self.folder / "pictures" / name).exists()], [])
 
 
 class Pictures(MadeUpStudy):

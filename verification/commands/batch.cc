@@ -12,8 +12,8 @@
 
 #include "support/child_process.h"
 #include "verification/commands/command.h"
+#include "verification/commands/requested_study.h"
 #include "verification/input/case_text.h"
-#include "verification/input/input_file.h"
 #include "verification/output/output_file.h"
 #include "verification/study/study_output.h"
 
@@ -36,12 +36,13 @@ std::string quoted(const std::string &word)
 }
 
 // `latcon study` with the choices of the user, from any folder.
-std::string study_command(const input::Options &options, const BatchOptions &chosen)
+// @param given name or file of the study, as given by the user
+std::string study_command(const input::Options &options, const RequestedStudy &requested, const std::string &given)
 {
-  const bool is_file = fs::exists(chosen.study);
+  const std::string study = requested.is_sweep() ? requested.file : given;
   std::string command = quoted(fs::read_symlink("/proc/self/exe").string()) + " study " +
-                        quoted(is_file ? fs::absolute(chosen.study).string() : chosen.study);
-  for (const std::string &setting : options.overrides)
+                        quoted(fs::exists(study) ? fs::absolute(study).lexically_normal().string() : study);
+  for (const std::string &setting : requested.settings)
     command += " --set " + quoted(setting);
   if (options.quick)
     command += " --quick";
@@ -123,9 +124,9 @@ support::ExitCode write_batch(const input::Options &options, const BatchOptions 
                               "': expected [days-]hours:minutes:seconds, for example 1-00:00:00");
   if (!std::regex_match(chosen.partition, name))
     throw support::InputError("--partition '" + input::printable(chosen.partition) + "': expected a name");
-  const study::Study study = study::read_study_file(study::study_path(chosen.study), options.quick);
-  const std::vector<study::PlannedRun> plan =
-    study::plan_runs(study, input::read_input_file(study.base), options.overrides);
+  const RequestedStudy requested = read_requested_study(options, chosen.study, chosen.sweep);
+  const study::Study &study = requested.study;
+  const std::vector<study::PlannedRun> plan = study::plan_runs(study, requested.base, requested.settings);
   const std::size_t n_tasks = std::min(plan.size(), chosen.tasks > 0 ? chosen.tasks : max_default_tasks);
   if (options.dry_run)
   {
@@ -139,7 +140,8 @@ support::ExitCode write_batch(const input::Options &options, const BatchOptions 
     throw support::InputError("--output-dir '" + input::printable(folder.string()) +
                               "': sbatch does not support folders with blanks, quotes, % or \\ for its log files");
   fs::create_directories(folder);
-  const std::string command = study_command(options, chosen);
+  write_sweep(requested);
+  const std::string command = study_command(options, requested, chosen.study);
   const std::string runs = (folder / "runs.sh").string(), collect = (folder / "collect.sh").string();
   output::write_file(runs, array_script(command, chosen, n_tasks, folder.string()));
   output::write_file(collect, directives(chosen, "latcon-collect", (folder / "collect.log").string()) + "\nexec " +

@@ -39,10 +39,18 @@ struct CompareOptions
   std::vector<std::string> excluded;   ///< `X,Y,R` of circles
 };
 
+/// Sweep on the command line in place of a study file.
+struct SweepOptions
+{
+  std::vector<std::string> sweeps; ///< `Section/Name=START:STOP:COUNT` or `=VALUE,VALUE`; none: no sweep
+  std::size_t seeds = 0;           ///< number of seeds of each case; 0: not given
+};
+
 /// Options of `latcon study`.
 struct StudyOptions
 {
-  std::string study;    ///< file, or name of a shipped study
+  std::string study;    ///< file, name of a shipped study, or case of a sweep
+  SweepOptions sweep;
   std::string shard;    ///< `I/N`: run this share alone, without verdict; empty: run all
   bool collect = false; ///< run nothing, judge the runs of all shards
 };
@@ -50,7 +58,8 @@ struct StudyOptions
 /// Options of `latcon batch`.
 struct BatchOptions
 {
-  std::string study;               ///< file, or name of a shipped study
+  std::string study;               ///< file, name of a shipped study, or case of a sweep
+  SweepOptions sweep;
   bool slurm = false;              ///< write scripts for Slurm, the only batch system supported
   bool submit = false;             ///< pass the scripts to sbatch
   std::size_t tasks = 0;           ///< tasks of the job array; 0: one per run, at most 1000

@@ -28,7 +28,7 @@
 #include "verification/commands/usage_error.h"
 #include "verification/input/case_text.h"
 #include "verification/input/shipped_cases.h"
-#include "verification/study/study_file.h"
+#include "verification/study/sweep.h"
 
 namespace latcon::commands
 {
@@ -138,6 +138,15 @@ std::string joined(const std::vector<std::string> &words)
   return text;
 }
 
+// Default output directory of a study; of the study file that a sweep wrote, its own folder.
+std::string study_folder(const std::string &study, const SweepOptions &sweep)
+{
+  const std::filesystem::path path(study);
+  if (path.filename() == study::sweep_file_name && path.has_parent_path())
+    return path.parent_path().string();
+  return "output/" + path.stem().string() + (sweep.sweeps.empty() ? "" : "-sweep");
+}
+
 std::string case_choices()
 {
   return "case file, .prm or .json, or a shipped case: " + input::comma_separated(input::shipped_cases());
@@ -176,7 +185,7 @@ support::ExitCode run_program(int argc, char **argv)
   app.add_option("--set", options.overrides, "Section/Name=value, replaces an entry of the case; repeatable")
     ->allow_extra_args(false)
     ->type_name("ENTRY");
-  app.add_option("--output-dir", options.output_dir, "output directory; default: output/CASE, or as the command says")
+  app.add_option("-o,--output-dir", options.output_dir, "output directory; default: output/CASE, or as the command says")
     ->type_name("DIR");
   app.add_option("--threads", options.threads, "threads of the lattice on each rank; default: all cores")
     ->check(CLI::Range(1u, 4096u))
@@ -246,29 +255,40 @@ support::ExitCode run_program(int argc, char **argv)
   StudyOptions study;
   BatchOptions batch;
   const auto add_study_command =
-    [&](const std::string &name, const std::string &help, const std::string &example, std::string &place)
+    [&](const std::string &name, const std::string &help, const std::string &example, std::string &place,
+        SweepOptions &sweep)
   {
     CLI::App *subcommand = add_command(name, help, example);
-    subcommand->add_option("STUDY", place, study::study_choices())->required()->type_name("");
+    subcommand->add_option("STUDY", place, study::study_choices() + "; with --sweep a case")->required()->type_name("");
+    subcommand
+      ->add_option("--sweep", sweep.sweeps,
+                   "Section/Name=START:STOP:COUNT or =VALUE,VALUE,...: run the case STUDY for these values; repeatable: "
+                   "all combinations")
+      ->allow_extra_args(false)
+      ->type_name("ENTRY");
+    subcommand->add_option("--seeds", sweep.seeds, "seeds 1 to N of each case of a sweep; default: 1")
+      ->check(CLI::Range(1u, 100000u))
+      ->type_name("N");
     subcommand->add_flag("--quick", options.quick, "small version");
     subcommand->add_flag("--skip-verification", options.skip_verification,
                          "run the cracks unverified; noted in every output");
     return subcommand;
   };
   CLI::App *study_command = add_study_command("study", "a sweep of cracks, compared with what a source states",
-                                              "latcon study paper --quick", study.study);
+                                              "latcon study paper --quick", study.study, study.sweep);
   study_command->add_option("--shard", study.shard, "run one of N shares of the runs, without verdict; then --collect")
     ->type_name("I/N");
   study_command->add_flag("--collect", study.collect, "run nothing: judge the runs of all shards");
   study_command->callback(
     [&]
     {
-      default_folder(std::filesystem::path(study.study).stem());
+      if (options.output_dir.empty())
+        options.output_dir = study_folder(study.study, study.sweep);
       command = [&] { return run_study(options, study); };
     });
 
   CLI::App *batch_command = add_study_command("batch", "a study as a job array of a cluster",
-                                              "latcon batch paper --slurm --tasks 50", batch.study);
+                                              "latcon batch paper --slurm --tasks 50", batch.study, batch.sweep);
   batch_command->add_flag("--slurm", batch.slurm, "write job scripts for Slurm")->required();
   batch_command->add_flag("--submit", batch.submit, "submit them with sbatch");
   batch_command->add_option("--tasks", batch.tasks, "tasks of the array; default: one per run, at most 1000")
@@ -286,7 +306,8 @@ support::ExitCode run_program(int argc, char **argv)
   batch_command->callback(
     [&]
     {
-      default_folder(std::filesystem::path(batch.study).stem());
+      if (options.output_dir.empty())
+        options.output_dir = study_folder(batch.study, batch.sweep);
       command = [&] { return write_batch(options, batch); };
     });
 

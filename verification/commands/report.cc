@@ -1,5 +1,6 @@
 #include <chrono>
 #include <filesystem>
+#include <iostream>
 #include <string>
 #include <thread>
 #include <vector>
@@ -31,6 +32,12 @@ std::vector<std::string> environment_of_scripts()
   }
   return kept;
 }
+
+// The interpreter cannot be started.
+struct NoPython : support::OutputError
+{
+  using support::OutputError::OutputError;
+};
 
 // Waits for a child with a progress line. @return its exit status
 int wait_with_progress(pid_t child, const std::string &what)
@@ -64,7 +71,7 @@ int run_script(const std::string &script, const std::string &directory, const st
   const pid_t child = support::start_child({command, environment_of_scripts(), ""});
   const int status = shows_progress ? wait_with_progress(child, "drawing " + page) : support::wait_for_child(child);
   if (status == support::not_started)
-    throw support::OutputError(directory + "/" + page, "cannot start " + python);
+    throw NoPython(directory + "/" + page, "cannot start " + python);
   if (status > 128)
     throw support::OutputError(directory + "/" + page, "the report script was killed");
   for (const support::ExitCode known : {support::ExitCode::done, support::ExitCode::bad_input,
@@ -94,8 +101,19 @@ support::ExitCode draw_report(const std::string &directory, bool quiet, bool sho
 
 void study_page(const std::string &directory)
 {
-  if (run_script("study.py", directory, "study.html", true) != 0)
-    throw support::OutputError(directory + "/study.html", "the report script failed");
+  try
+  {
+    if (run_script("study.py", directory, "study.html", true) != 0)
+      throw support::OutputError(directory + "/study.html", "the report script failed");
+  }
+  catch (const NoPython &error)
+  {
+    // Nodes of a cluster may have none; all results are written.
+    std::cerr << "latcon: " << error.what()
+              << "; every other file is complete. To draw the page, repeat the command with --resume, or with --collect "
+                 "after shards, where there is Python"
+              << std::endl;
+  }
 }
 
 } // namespace latcon::commands

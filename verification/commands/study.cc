@@ -14,8 +14,8 @@
 #include "support/machine_memory.h"
 #include "verification/commands/command.h"
 #include "verification/commands/cost.h"
+#include "verification/commands/requested_study.h"
 #include "verification/commands/signals.h"
-#include "verification/input/input_file.h"
 #include "verification/output/output_file.h"
 #include "verification/output/progress.h"
 #include "verification/resources/resources.h"
@@ -157,7 +157,7 @@ bool run_children(study::StudyResults &results, const Selection &selection, bool
   for (const char *folder : {"/cases", "/runs"})
     fs::create_directory(directory + folder);
   for (const std::size_t i : selection.runs)
-    output::write_file(case_file_of(directory, results.plan[i]), results.plan[i].case_text);
+    output::write_file(case_file_of(directory, results.plan[i]), results.plan[i].case_text());
   PoolProgress progress(results.plan, jobs, run.is_verbose());
   study::ProcessPool pool;
   pool.n_jobs = jobs.size();
@@ -165,8 +165,11 @@ bool run_children(study::StudyResults &results, const Selection &selection, bool
   pool.start = [&](std::size_t job) -> study::ProcessPool::Job
   {
     const study::PlannedRun &planned = results.plan[jobs[job]];
-    const std::string folder = folders_of(directory, planned).part;
+    const auto [whole, folder] = folders_of(directory, planned);
     support::require_in_place(folder);
+    // A run that failed, as on a full disk, may have checkpoints.
+    if (selection.resume && !fs::exists(folder) && study::is_begun(planned, whole, skip_verification))
+      fs::rename(whole, folder);
     if (fs::exists(folder))
       lock_directory(folder, patience_with_orphans); // released at once: the run locks it for itself
     const bool goes_on = selection.resume && study::is_begun(planned, folder, skip_verification);
@@ -315,7 +318,7 @@ support::ExitCode judge_runs(study::StudyResults &results, const input::Options 
   if (complete)
   {
     study_page(run.directory());
-    if (run.is_verbose())
+    if (run.is_verbose() && fs::exists(run.directory() + "/study.html"))
       std::cout << run.directory() << "/study.html" << std::endl;
   }
   return exit_code;
@@ -331,9 +334,9 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
     throw support::InputError("--collect judges the runs of all shards; give it without --shard");
   const study::Shard shard = chosen.shard.empty() ? study::Shard() : study::parse_shard(chosen.shard);
   study::StudyResults results;
-  results.study = study::read_study_file(study::study_path(chosen.study), options.quick);
-  const input::InputFile base = input::read_input_file(results.study.base);
-  results.plan = study::plan_runs(results.study, base, options.overrides);
+  const RequestedStudy requested = read_requested_study(options, chosen.study, chosen.sweep);
+  results.study = requested.study;
+  results.plan = study::plan_runs(results.study, requested.base, requested.settings);
   for (const study::PlannedRun &planned : results.plan)
   {
     results.outcomes.emplace_back();
@@ -383,11 +386,14 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
     throw support::InputError(options.output_dir +
                               " has the runs of a study in shards; give --collect, or another folder "
                               "(--output-dir)");
+  else
+    require_folder_of(results.study, options.output_dir);
   Run run(own);
+  write_sweep(requested);
   run.info().add("skip_verification", options.skip_verification);
   run.info().add("study", results.study.title);
   if (options.quick && !options.skip_verification && !chosen.collect)
-    verify_base(results.study, base, options.overrides, run);
+    verify_base(results.study, requested.base, requested.settings, run);
   const bool complete = chosen.collect || run_children(results, selection, skip_verification, n_cores, run);
   if (!chosen.shard.empty())
     return run.end({}, complete ? exit_code_of(results, {}) : support::ExitCode::interrupted);

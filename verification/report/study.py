@@ -18,8 +18,8 @@ from near_tip_plots import opening_stress_picture, velocity_picture
 from pictures import draw_sheet, shrink
 from runs import read_run
 from study_page import RUN_PICTURES, page
-from study_plots import draw_paths, draw_speeds, draw_sweep
-from study_quantities import asked_quantities, sweeps_of
+from study_plots import draw_map, draw_paths, draw_speeds, draw_sweep
+from study_quantities import PATH, asked_quantities, sweeps_of
 from study_runs import first_measured, read_study
 
 LARGEST_PICTURE = 400_000  # [bytes] per picture of a run, since the page contains all of them
@@ -39,6 +39,7 @@ def draw_pictures(study):
         if draw_paths(study, names, png):
             drawn["paths"][number] = png
         drawn["sweeps"][number] = draw_sweeps(study, number, claim, folder)
+    drawn["overview"] = draw_overview(study, folder)
     shown = [name for name in study.document["pictures"] if name in study.runs]
     if draw_speeds(study, folder / "speeds.png"):
         drawn["speeds"] = folder / "speeds.png"
@@ -54,6 +55,30 @@ def draw_pictures(study):
     return drawn
 
 
+def draw_overview(study, folder):
+    """Draws the map over two varied entries, or the sweep along the only one unless a claim shows it: [(caption, PNG), ...]."""
+    png = folder / "map.png"
+    if caption := draw_map(study, png):
+        return [(caption, png)]
+    if len(study.varied) != 1:
+        return []
+    (entry,) = study.varied
+    if any(row["against"] == entry["entry"] for claim in study.claims for row in claim["rows"]):
+        return []
+    sweep = {"against": entry["entry"], "against_unit": entry["unit"],
+             "values": [{"run": run, "against": value} for run, value in zip(study.runs, entry["values"])]}
+    png = folder / "sweep.png"
+    if not draw_sweep(study, sweep, ("speed_lagrangian", *PATH), png):
+        return []
+    return [(sweep_caption("speed, wavelength and amplitudes", entry["entry"]), png)]
+
+
+def sweep_caption(names, against):
+    """Caption of quantities along an abscissa."""
+    return (f"{names[:1].upper()}{names[1:]} against {against}: mean and standard deviation over the seeds. Open symbols at "
+            "0: not defined for this crack.")
+
+
 def draw_sweeps(study, number, claim, folder):
     """Draws one picture for each set of runs along one abscissa, with the quantities of its rows: [(caption, PNG), ...]."""
     drawn = []
@@ -62,8 +87,7 @@ def draw_sweeps(study, number, claim, folder):
         png = folder / f"sweep-{number + 1}-{len(drawn) + 1}.png"
         if draw_sweep(study, sweep[0], quantities, png):
             names = ", ".join(name.replace("_", " ") for name in quantities)
-            drawn.append((f"{names[:1].upper()}{names[1:]} against {sweep[0]['against']}: mean and standard deviation "
-                          "over the seeds. Open symbols at 0: not defined for this crack.", png))
+            drawn.append((sweep_caption(names, sweep[0]["against"]), png))
     return drawn
 
 

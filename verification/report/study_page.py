@@ -22,7 +22,7 @@ CLAIM_KINDS = {**KINDS, "incomplete": "warns"}
 def page(study, pictures):
     """The whole page.
 
-    pictures: {"paths": {claim number: PNG}, "sweeps": {claim number: [(caption, PNG), ...]}, "speeds": PNG or None,
+    pictures: {"overview": [(caption, PNG), ...], "paths": {claim number: PNG}, "sweeps": {claim number: [(caption, PNG), ...]}, "speeds": PNG or None,
     "checks": {name: (caption, PNG)}, "runs": [(run, seed, {kind of RUN_PICTURES: PNG}), ...]}
     """
     document = study.document
@@ -42,7 +42,7 @@ def page(study, pictures):
 <h1>{title}</h1>
 <p class="soft">{escape(facts(study))}</p>
 {banner(study)}
-<h2 id="summary">Claims</h2>
+{"".join(figure(png, first_sentence(caption), escape(caption)) for caption, png in pictures["overview"])}
 {overview(study)}
 {"".join(sections)}
 {"".join(check_section(check, pictures) for check in study.checks)}
@@ -111,15 +111,17 @@ def banner(study):
 
 
 def overview(study):
-    """One line per claim and check."""
+    """One line per claim and check; empty if the study has neither."""
     judged = [(f"claim-{number}", claim["claim"], claim["verdict"], claim["rows"])
               for number, claim in enumerate(study.claims)]
     judged += [(f"check-{check['name']}", f"Check {check['name']}", verdict_of(check), check["rows"])
                for check in study.checks]
+    if not judged:
+        return ""
     lines = [row(CLAIM_KINDS[verdict], [("words", f'<a href="#{escape(place)}">{escape(heading)}</a>'),
                                   *(("number", str(count)) for count in counts(rows).values())], verdict)
              for place, heading, verdict, rows in judged]
-    return table(["verdict", "claim", "#hold", "#do not", "#reported", "#not measured"], lines, "narrow")
+    return '<h2 id="summary">Claims</h2>' + table(["verdict", "claim", "#hold", "#do not", "#reported", "#not measured"], lines, "narrow")
 
 
 def claim_section(number, claim, pictures):

@@ -2,14 +2,16 @@
 import numpy as np
 from matplotlib.lines import Line2D
 
+from phase_map import COLOURS, Cell, draw_phase_map
 from pictures import BLACK, BLUE, GREEN, GREY, RED, SKY, WIDTH, Page, save
-from study_quantities import against_axis, quantity_axis
+from study_quantities import against_axis, entry_axis, quantity_axis
 from study_runs import mean_of, patterns_of, tip_path
 
-PATTERNS = {"oscillating": ("o", BLUE), "straight": ("s", GREEN), "branching": ("v", RED), "arrested": ("X", GREY),
-            "undecided": ("D", SKY)}
+MARKERS = {"oscillating": "o", "straight": "s", "branching": "v", "arrested": "X", "undecided": "D"}
+PATTERNS = {pattern: (marker, COLOURS[pattern]) for pattern, marker in MARKERS.items()}
 LEFT, RIGHT, GAP = 0.75, 0.2, 0.75  # of a grid of panels [in]
 SEED_COLOURS = [BLUE, RED, GREEN, SKY, BLACK, GREY]
+CONTOURS = ("wavelength", "speed_lagrangian")  # of the map of patterns: the first that was measured
 DECADES = 30.0  # ratio of the largest to the smallest abscissa above which the axis is logarithmic
 
 
@@ -27,6 +29,25 @@ class Panels:
         row, column = divmod(number, self.columns)
         return self.page.axes(LEFT + column * (self.width + GAP), self.top + 0.3 + row * self.pitch, self.width,
                               self.height)
+
+
+def draw_map(study, path):
+    """Draws the map of patterns over the two entries that the runs of a study vary, with contours of the wavelength, or of
+    the speed where no crack has one. @return caption, or None if the runs do not vary exactly two numbers"""
+    varied = study.varied
+    if len(varied) != 2 or any(value is None for entry in varied for value in entry["values"]):
+        return None
+    (x_unit, x_label), (y_unit, y_label) = (entry_axis(entry["entry"], entry["unit"]) for entry in varied)
+    means = {quantity: [mean_of(seeds, quantity) for _, _, seeds in study.runs.values()] for quantity in CONTOURS}
+    quantity = next((name for name in CONTOURS if any(means[name])), CONTOURS[0])
+    scale, label = quantity_axis(quantity, study.document["units"][quantity])
+    cells = [Cell(x_unit * x, y_unit * y, patterns_of(seeds), scale * mean.mean if mean else None)
+             for x, y, (_, _, seeds), mean in zip(varied[0]["values"], varied[1]["values"], study.runs.values(),
+                                                  means[quantity])]
+    if not draw_phase_map(cells, x_label, y_label, path, label):
+        return None
+    return (f"Patterns over {varied[0]['entry']} and {varied[1]['entry']}. A cell whose seeds disagree is divided between "
+            f"their patterns and has a dot. Contours, where neighbouring cells have one: {label}, mean over the seeds.")
 
 
 def draw_paths(study, names, path):

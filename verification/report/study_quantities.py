@@ -18,7 +18,8 @@ PATH = ("wavelength", "amplitude", "crest_amplitude")
 AGAINST = {"zeta": (1, "ζ = (η/a) / (d √(ρ/a))"), "Sheet/spacing": (1e3, "d [mm]"),
            "Sheet/height": (100, "height of the sheet, undeformed [cm]"),
            "Sheet/length": (100, "length of the sheet, undeformed [cm]"),
-           "Lattice/noise amplitude": (1, "noise amplitude / d")}
+           "Lattice/noise amplitude": (1, "noise amplitude / d"),
+           "Loading/strain x": (1, "strain x, along the crack"), "Loading/strain y": (1, "strain y, across the crack")}
 # Scale and unit shown for each SI unit, for quantities that are in no table.
 SHOWN = {"m": (100, "cm"), "m^2": (1e6, "mm²"), "s": (1e3, "ms"), "degrees": (1, "°")}
 
@@ -32,9 +33,17 @@ def quantity_axis(quantity, unit):
     return scale, f"{quantity.replace('_', ' ')} [{shown}]"
 
 
+def entry_axis(name, unit):
+    """(scale to the unit shown, label) of an entry of a case with an SI unit, or of zeta."""
+    if name in AGAINST:
+        return AGAINST[name]
+    scale, shown = SHOWN.get(unit, (1, unit))
+    return scale, name if shown in ("", "1") else f"{name} [{shown}]"
+
+
 def against_axis(row):
-    """(scale to the unit shown, label) of the abscissa of a row, an entry of a case or zeta."""
-    return AGAINST.get(row["against"], (1, f"{row['against']} [{row['against_unit']}]"))
+    """(scale to the unit shown, label) of the abscissa of a row."""
+    return entry_axis(row["against"], row["against_unit"])
 
 
 def asked_quantities(rows):

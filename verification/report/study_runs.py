@@ -35,6 +35,11 @@ class Study:
         return self.document["claims"]
 
     @property
+    def varied(self):
+        """Entries in which the runs differ: [{"entry", "unit", "values": [number or None, per run]}, ...]."""
+        return self.document.get("varied", [])
+
+    @property
     def checks(self):
         return self.document["checks"]
 

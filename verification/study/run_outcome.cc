@@ -115,7 +115,7 @@ RunOutcome read_outcome(const PlannedRun &run, const std::string &folder, const 
 bool is_begun(const PlannedRun &run, const std::string &folder, const bool skip_verification)
 {
   const Json info = object_in(folder + "/run.json");
-  return content(folder + "/case.prm") == run.case_text &&
+  return content(folder + "/case.prm") == run.case_text() &&
          value_or(info, "program_hash", std::string()) == output::program_hash() &&
          value_or(info, "skip_verification", !skip_verification) == skip_verification;
 }

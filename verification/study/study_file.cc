@@ -15,6 +15,7 @@
 #include "verification/study/quantities.h"
 #include "verification/study/study_check.h"
 #include "verification/study/study_json.h"
+#include "verification/study/sweep.h"
 
 namespace latcon::study
 {
@@ -62,7 +63,7 @@ public:
   {
     const nlohmann::ordered_json document = parse_json(text, study_.file);
     const JsonPlace top(document, study_.file, "", problems_);
-    top.is_object({"title", "base", "set", "seeds", "quick", "runs", "claims", "checks", "pictures"});
+    top.is_object({"title", "base", "set", "seeds", "quick", "sweep", "runs", "claims", "checks", "pictures"});
     if (const auto title = top.required("title"))
       study_.title = title->text();
     if (const auto base = top.required("base"))
@@ -70,21 +71,23 @@ public:
     whole_ = change(top);
     if (top.has("quick"))
     {
-      top.at("quick").is_object({"set", "seeds"});
+      top.at("quick").is_object({"set", "seeds", "sweep"});
       quick_change_ = change(top.at("quick"));
     }
     study_.settings = whole_.set;
     if (quick_)
       override_settings(study_.settings, quick_change_.set);
-    if (const auto runs = top.required("runs"))
+    if (top.has("sweep"))
+      sweep(quick_ && top.has("quick") && top.at("quick").has("sweep") ? top.at("quick").at("sweep") : top.at("sweep"));
+    if (const auto runs = top.has("sweep") && !top.has("runs") ? std::nullopt : top.required("runs"))
     {
       for (const auto &[name, place] : runs->members())
         run(name, place);
       if (study_.runs.empty() && problems_.empty())
         runs->problem("no run is left");
     }
-    if (const auto claims = top.required("claims"))
-      for (const JsonPlace &place : claims->list())
+    if (top.has("claims"))
+      for (const JsonPlace &place : top.at("claims").list())
         claim(place);
     if (top.has("checks"))
       checks(top.at("checks"));
@@ -144,6 +147,9 @@ private:
     const auto allowed = [](const unsigned char c) { return std::isalnum(c) != 0 || c == '.' || c == '_' || c == '-'; };
     if (name.empty() || name.front() == '.' || !std::all_of(name.begin(), name.end(), allowed))
       place.problem("the name of a run must consist of letters, digits, '.', '_' and '-', and must not begin with '.'");
+    const auto swept = names_.begin() + static_cast<std::ptrdiff_t>(n_swept_);
+    if (std::find(names_.begin(), swept, name) != swept)
+      place.problem("a run of the sweep has this name");
     names_.push_back(name);
     if (!place.is_object({"about", "set", "seeds", "quick"}))
       return;
@@ -180,6 +186,35 @@ private:
       study_.left_out.push_back(name);
     else
       study_.runs.push_back(std::move(run));
+  }
+
+  // Adds a run for each combination of the values of sweeps.
+  void sweep(const JsonPlace &place)
+  {
+    std::vector<Sweep> sweeps;
+    try
+    {
+      for (const JsonPlace &text : place.list())
+        sweeps.push_back(parse_sweep(text.text()));
+      const std::vector<std::uint64_t> &seeds =
+        quick_ && !quick_change_.seeds.empty() ? quick_change_.seeds : whole_.seeds;
+      for (const SweptCase &combination : combinations(sweeps))
+      {
+        StudyRun run;
+        run.name = combination.name;
+        run.own = combination.set;
+        run.all = study_.settings;
+        override_settings(run.all, run.own);
+        run.seeds = seeds.empty() ? std::vector<std::uint64_t>{1} : seeds;
+        names_.push_back(run.name);
+        study_.runs.push_back(std::move(run));
+      }
+      n_swept_ = names_.size();
+    }
+    catch (const support::InputError &error)
+    {
+      place.problem(error.what());
+    }
   }
 
   void checks(const JsonPlace &place)
@@ -332,6 +367,7 @@ private:
   std::vector<std::string> entries_;
   std::map<std::string, std::string> units_{{"zeta", "1"}}; // of everything that `against` can be
   std::vector<std::string> names_;                          // names of all runs of the file
+  std::size_t n_swept_ = 0;                                 // the first of them, of sweeps
   std::vector<std::string> problems_;
   Change whole_, quick_change_;
   Study study_;
@@ -363,6 +399,14 @@ const StudyRun &Study::run(const std::string &name) const
   if (found == runs.end())
     throw std::logic_error("study: '" + name + "' is not a run");
   return *found;
+}
+
+std::string entry_unit(const std::string &key)
+{
+  input::Case input;
+  input::Parameters parameters;
+  input.declare(parameters);
+  return parameters.unit(key);
 }
 
 std::vector<std::string> shipped_studies()

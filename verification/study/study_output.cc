@@ -4,6 +4,7 @@
 #include <cmath>
 #include <iomanip>
 #include <ostream>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
@@ -125,6 +126,53 @@ Json json_of(const CheckResult &check)
   return {{"name", check.name}, {"about", check.about}, {"rows", rows}};
 }
 
+// Entries in which the runs of a study differ, with their value in each run.
+Json varied_entries(const StudyResults &results)
+{
+  std::vector<std::string> keys;
+  for (const StudyRun &run : results.study.runs)
+    for (const auto &[key, value] : run.own)
+      if (std::find(keys.begin(), keys.end(), key) == keys.end())
+        keys.push_back(key);
+  Json entries = Json::array();
+  for (const std::string &key : keys)
+  {
+    Json values = Json::array();
+    bool differ = false;
+    std::string last;
+    for (const PlannedRun &run : results.plan)
+    {
+      if (run.run == last)
+        continue;
+      last = run.run;
+      values.push_back(json_of(run.value(key)));
+      differ = differ || values.back() != values.front();
+    }
+    if (differ)
+      entries.push_back({{"entry", key}, {"unit", entry_unit(key)}, {"values", std::move(values)}});
+  }
+  return entries;
+}
+
+// One line per run, of at most 60: patterns, speed, wavelength and amplitude over the seeds.
+void print_runs(std::ostream &out, const StudyResults &results)
+{
+  constexpr std::size_t max_printed = 60;
+  for (std::size_t i = 0; i < std::min(max_printed, results.study.runs.size()); ++i)
+  {
+    const std::string &name = results.study.runs[i].name;
+    out << name << ": " << statistics(name, pattern_quantity, results.outcomes).text("");
+    for (const auto &[quantity, label] : {std::pair<std::string, std::string>{"speed_lagrangian", ""},
+                                          {"wavelength", "wavelength "},
+                                          {"amplitude", "amplitude "}})
+      if (const SeedStatistics seeds = statistics(name, quantity, results.outcomes); seeds.n > 0)
+        out << ", " << label << seeds.text(unit_of(quantity));
+    out << '\n';
+  }
+  if (results.study.runs.size() > max_printed)
+    out << "... " << results.study.runs.size() << " cases in all: study.csv\n";
+}
+
 std::string list_of(const std::vector<std::string> &names)
 {
   std::string text;
@@ -151,6 +199,7 @@ std::string study_json(const StudyResults &results)
   document["runs"] = Json::array();
   for (const StudyRun &run : results.study.runs)
     document["runs"].push_back({{"run", run.name}, {"about", run.about}, {"set", json_of(run.own)}});
+  document["varied"] = varied_entries(results);
   document["left_out"] = results.study.left_out;
   document["pictures"] = results.study.pictures;
   document["seeds"] = Json::array();
@@ -228,6 +277,8 @@ void print_table(std::ostream &out, const StudyResults &results)
     lead.resize(17, ' ');
     paragraph(text, lead, std::string(lead.size(), ' '));
   };
+  if (results.claims.empty())
+    print_runs(out, results);
   for (const ClaimResult &claim : results.claims)
   {
     paragraph(claim.claim.claim + ": " + to_string(claim.verdict()), "", "");

@@ -3,13 +3,16 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <numeric>
+#include <utility>
 
 #include "support/errors.h"
 #include "verification/bridge/homogenisation.h"
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/input/case.h"
 #include "verification/input/case_text.h"
+#include "verification/output/sha256.h"
 #include "verification/resources/resources.h"
 
 namespace latcon::study
@@ -17,57 +20,70 @@ namespace latcon::study
 namespace
 {
 
-std::map<std::string, double> numbers_in(const std::string &case_text)
+// Value of an entry as a number; NaN if it is not a finite one.
+double number_or_nan(const std::string &text)
 {
-  std::map<std::string, double> numbers;
-  for (const auto &item : input::read_prm(case_text, "case"))
-    if (const auto *assignment = std::get_if<input::Assignment>(&item))
-    {
-      char *end = nullptr;
-      const double value = std::strtod(assignment->value.c_str(), &end);
-      if (!assignment->value.empty() && *end == '\0' && std::isfinite(value))
-        numbers[assignment->section + "/" + assignment->name] = value;
-    }
-  return numbers;
+  char *end = nullptr;
+  const double value = std::strtod(text.c_str(), &end);
+  return !text.empty() && *end == '\0' && std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
-PlannedRun plan_run(const Study &study, const input::InputFile &base, const StudyRun &run, const std::uint64_t seed,
-                    const Settings &settings)
+void resolve(const PlannedCase &planned, const std::uint64_t seed, input::Case &input, input::Parameters &parameters)
 {
-  PlannedRun planned;
-  planned.run = run.name;
-  planned.seed = seed;
-  Settings all = run.all;
-  override_settings(all, settings);
-  override_settings(
-    all, {{seed_entry, std::to_string(seed)}, {"Output/frame interval", "0"}, {"Output/motion frames", "0"}});
-  std::vector<std::string> changes;
-  for (const auto &[key, value] : all)
-    changes.push_back(key + "=" + value);
-
-  input::Case input;
-  input::Parameters parameters;
   input.declare(parameters);
-  if (base.problem.empty())
-    parameters.read_text(base.text, study.base);
+  if (planned.base->problem.empty())
+    parameters.read_text(planned.base->text, planned.base_name);
   else
-    parameters.read_file(study.base); // throws the same problems
+    parameters.read_file(planned.base_name); // throws the same problems
+  std::vector<std::string> changes = planned.changes;
+  changes.push_back(std::string(seed_entry) + "=" + std::to_string(seed));
   parameters.read_overrides(changes);
   input.check(parameters);
   bridge::require_fracture_case(input, parameters);
   parameters.finish();
+}
 
-  const lattice::TriangularLattice sheet = input.lattice();
-  planned.case_text = parameters.resolved_text();
-  planned.spacing = input.spacing;
-  planned.zeta = zeta(input);
-  planned.entries = numbers_in(planned.case_text);
-  planned.sites = sheet.n_sites();
+// Adds the seeds of a run, whose case is resolved once.
+// @param shared base case, its name, and `keys` once the first case has been resolved
+void plan_seeds(const StudyRun &run, const Settings &settings, PlannedCase &shared, std::vector<PlannedRun> &runs)
+{
+  Settings all = run.all;
+  override_settings(all, settings);
+  override_settings(all, {{"Output/frame interval", "0"}, {"Output/motion frames", "0"}});
+  const auto planned = std::make_shared<PlannedCase>(shared);
+  for (const auto &[key, value] : all)
+    planned->changes.push_back(key + "=" + value);
+
+  input::Case input;
+  input::Parameters parameters;
+  resolve(*planned, run.seeds.front(), input, parameters);
+  const std::vector<std::pair<std::string, std::string>> values = parameters.values();
+  if (shared.keys == nullptr)
+  {
+    const auto keys = std::make_shared<std::vector<std::string>>();
+    for (const auto &[key, value] : values)
+      keys->push_back(key);
+    shared.keys = planned->keys = keys;
+  }
+  for (const auto &[key, value] : values)
+    planned->numbers.push_back(number_or_nan(value));
+
+  PlannedRun of_seed;
+  of_seed.run = run.name;
+  of_seed.planned_case = planned;
+  of_seed.spacing = input.spacing;
+  of_seed.zeta = zeta(input);
+  of_seed.sites = input.lattice().n_sites();
   const resources::MemoryNeed memory = resources::lattice_memory(input, resources::RunKind::fracture, true);
-  planned.memory = memory.shared + memory.first_rank;
+  of_seed.memory = memory.shared + memory.first_rank;
   const lattice::TimeStepping stepping = input.fracture_time_stepping();
-  planned.steps = resources::expected_steps(input, stepping) * stepping.evaluations();
-  return planned;
+  of_seed.steps = resources::expected_steps(input, stepping) * stepping.evaluations();
+  for (const std::uint64_t seed : run.seeds)
+  {
+    of_seed.seed = input.noise_seed = seed; // any number is allowed
+    of_seed.case_sha256 = output::sha256(parameters.lines());
+    runs.push_back(of_seed);
+  }
 }
 
 // Adds a problem for each row whose `against` is not a number in any of its runs.
@@ -91,7 +107,40 @@ void check_abscissas(const Study &study, const std::vector<PlannedRun> &runs, st
     }
 }
 
-// Splits "Section/Name=value"; the case checks names and values when it reads them.
+} // namespace
+
+std::optional<double> zeta(const input::Case &input)
+{
+  const input::ShellCase &bond = input.nearest;
+  if (bond.law != input::ShellCase::Law::mooney_rivlin || !(bond.a > 0.))
+    return {};
+  return bond.viscosity / bond.a * std::sqrt(bond.a / input.density) / input.spacing;
+}
+
+std::optional<double> PlannedRun::value(const std::string &against) const
+{
+  if (against == "zeta")
+    return zeta;
+  if (against == seed_entry)
+    return static_cast<double>(seed);
+  if (planned_case == nullptr)
+    return {};
+  const std::vector<std::string> &keys = *planned_case->keys;
+  const auto found = std::lower_bound(keys.begin(), keys.end(), against);
+  if (found == keys.end() || *found != against)
+    return {};
+  const double number = planned_case->numbers[static_cast<std::size_t>(found - keys.begin())];
+  return std::isnan(number) ? std::nullopt : std::optional<double>(number);
+}
+
+std::string PlannedRun::case_text() const
+{
+  input::Case input;
+  input::Parameters parameters;
+  resolve(*planned_case, seed, input, parameters);
+  return parameters.resolved_text();
+}
+
 Settings parse_settings(const std::vector<std::string> &texts)
 {
   Settings settings;
@@ -109,35 +158,19 @@ Settings parse_settings(const std::vector<std::string> &texts)
   return settings;
 }
 
-} // namespace
-
-std::optional<double> zeta(const input::Case &input)
-{
-  const input::ShellCase &bond = input.nearest;
-  if (bond.law != input::ShellCase::Law::mooney_rivlin || !(bond.a > 0.))
-    return {};
-  return bond.viscosity / bond.a * std::sqrt(bond.a / input.density) / input.spacing;
-}
-
-std::optional<double> PlannedRun::value(const std::string &against) const
-{
-  if (against == "zeta")
-    return zeta;
-  const auto found = entries.find(against);
-  return found == entries.end() ? std::nullopt : std::optional<double>(found->second);
-}
-
 std::vector<PlannedRun> plan_runs(const Study &study, const input::InputFile &base,
                                   const std::vector<std::string> &settings)
 {
   const Settings overrides = parse_settings(settings);
+  PlannedCase shared;
+  shared.base = std::make_shared<const input::InputFile>(base);
+  shared.base_name = study.base;
   std::vector<PlannedRun> runs;
   std::vector<std::string> problems;
   for (const StudyRun &run : study.runs)
     try
     {
-      for (const std::uint64_t seed : run.seeds)
-        runs.push_back(plan_run(study, base, run, seed, overrides));
+      plan_seeds(run, overrides, shared, runs);
     }
     catch (const support::InputError &error)
     {

@@ -3,7 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <map>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -20,18 +20,30 @@ struct Case;
 namespace latcon::study
 {
 
-/// Fracture run: a case with one seed.
+/// Case of a run, shared by its seeds. It is resolved once, whatever their number.
+struct PlannedCase
+{
+  std::shared_ptr<const input::InputFile> base; ///< shared by all cases of a study
+  std::string base_name;                        ///< path of the base case
+  std::vector<std::string> changes;             ///< `Section/Name=value` without the seed
+  std::shared_ptr<const std::vector<std::string>> keys; ///< all entries `Section/Name`, sorted; shared by all cases
+  std::vector<double> numbers; ///< values of `keys` in SI units; NaN for entries that are not numbers
+};
+
+/// Fracture run: a case with one seed. It keeps no text, so that thousands of runs take little memory.
 struct PlannedRun
 {
   std::string run;
   std::uint64_t seed = 0;
-  std::string case_text;                 ///< resolved case with all entries, as in the case.prm of the run
-  double spacing = 0.;                   ///< d [m]
-  std::optional<double> zeta;            ///< see zeta()
-  std::map<std::string, double> entries; ///< numerical entries of the case, in SI units
+  std::shared_ptr<const PlannedCase> planned_case; ///< shared by the seeds of the run
+  std::string case_sha256; ///< of all entries and their values, as in Parameters::lines(); hexadecimal
+  double spacing = 0.;     ///< d [m]
+  std::optional<double> zeta; ///< see zeta()
   std::size_t sites = 0;
   double steps = 0.; ///< expected number, for a crack at the shear wave speed of the unloaded sheet
 
+  /// Resolves the case with all entries, as in the case.prm of the run, in about 3 ms.
+  [[nodiscard]] std::string case_text() const;
   std::string folder() const { return run + "-" + std::to_string(seed); }
   double memory = 0.; ///< estimated, in addition to that of the program itself [bytes]
   double cost() const { return static_cast<double>(sites) * steps; } ///< site-steps [-]
@@ -42,6 +54,10 @@ struct PlannedRun
 /// Returns zeta = (eta / a) / (d / sqrt(a / rho)) of the nearest-neighbour bonds [-]: the retardation time divided by
 /// the travel time of a wave over one spacing (theory.md, eq. (L.5)). None for linear bonds, which have no a.
 [[nodiscard]] std::optional<double> zeta(const input::Case &input);
+
+/// Splits settings `Section/Name=value` of the command line; cases check names and values when they read them.
+/// @throws InputError for other texts, and for the seed
+[[nodiscard]] Settings parse_settings(const std::vector<std::string> &texts);
 
 /// Returns all runs of a study with all their seeds, in the order of the file. Sets the noise seed, and disables all
 /// frames except the first and the last.

@@ -156,7 +156,7 @@ TEST(StudyFile, PlanResolvesEveryCase)
   // theory.md, eq. (L.5): (eta / a) / (d / sqrt(a / rho)) = 65.625 / 1e5 / (0.625e-3 / sqrt(1e5 / 944))
   EXPECT_NEAR(plan[0].zeta.value(), 10.80695, 1e-5);
   EXPECT_GT(plan[0].sites, 1000u);
-  EXPECT_NE(plan[0].case_text.find("set noise seed"), std::string::npos);
+  EXPECT_NE(plan[0].case_text().find("set noise seed"), std::string::npos);
 }
 
 TEST(StudyFile, LinearBondsHaveNoZeta)
@@ -237,8 +237,8 @@ TEST(StudyFile, RowsKnowTheUnitOfWhatTheyAreAgainst)
 
 TEST(StudyFile, ShippedStudiesAreThoseInTheFolder)
 {
-  EXPECT_EQ(shipped_studies(), (std::vector<std::string>{"paper", "patterns", "time-stepping"}));
-  EXPECT_EQ(study_choices(), "study file (.json), or a shipped one: paper, patterns, time-stepping");
+  EXPECT_EQ(shipped_studies(), (std::vector<std::string>{"map", "paper", "patterns", "time-stepping"}));
+  EXPECT_EQ(study_choices(), "study file (.json), or a shipped one: map, paper, patterns, time-stepping");
   try
   {
     (void)read_study_file(study_path("nosuch"), false);

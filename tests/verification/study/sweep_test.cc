@@ -1,0 +1,169 @@
+// Sweeps of the command line: values, messages that name the wrong part, and the equivalent study files.
+#include <algorithm>
+#include <filesystem>
+#include <set>
+
+#include <gtest/gtest.h>
+
+#include <nlohmann/json.hpp>
+
+#include "support/errors.h"
+#include "verification/study/study_plan.h"
+#include "verification/study/sweep.h"
+
+using namespace latcon;
+using namespace study;
+
+namespace
+{
+
+using Texts = std::vector<std::string>;
+
+std::string refusal(const std::string &text)
+{
+  try
+  {
+    (void)parse_sweep(text);
+  }
+  catch (const support::InputError &error)
+  {
+    return error.what();
+  }
+  return "nothing";
+}
+
+#define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
+
+Study read(const std::string &text)
+{
+  return read_study(text, "folder/sweep.json", false);
+}
+
+} // namespace
+
+TEST(Sweep, GridsHaveBothEndsAndShortNumbers)
+{
+  EXPECT_EQ(parse_sweep("Loading/strain y=1.5:1.9:5").values, (Texts{"1.5", "1.6", "1.7", "1.8", "1.9"}));
+  EXPECT_EQ(parse_sweep("Loading/strain x = -0.1 : 0.2 : 4").values, (Texts{"-0.1", "0", "0.1", "0.2"}));
+  EXPECT_EQ(parse_sweep("Sheet/height=1 cm:2cm:3").values, (Texts{"1 cm", "1.5 cm", "2 cm"}));
+  EXPECT_EQ(parse_sweep("Nearest neighbours/a=1e5:+2e5:2").values, (Texts{"100000", "200000"}));
+}
+
+TEST(Sweep, ListsAreValuesOfAnyKind)
+{
+  EXPECT_EQ(parse_sweep("Sheet/orientation=rows-along-crack, rows-across-crack").values,
+            (Texts{"rows-along-crack", "rows-across-crack"}));
+  EXPECT_EQ(parse_sweep("Sheet/height=1 cm,5 cm").values, (Texts{"1 cm", "5 cm"}));
+}
+
+TEST(Sweep, MessagesNameTheWrongPart)
+{
+  EXPECT_HAS(refusal("Loading/strain z=1:2:3"), "'Loading/strain z' is not an entry of a case; nearest: Loading/strain");
+  EXPECT_HAS(refusal("Loading/strain y"), "expected Section/Name=START:STOP:COUNT");
+  EXPECT_HAS(refusal("Loading/strain y=1:2"), "'1:2' has 2 parts");
+  EXPECT_HAS(refusal("Loading/strain y=a:2:3"), "START 'a': not a number");
+  EXPECT_HAS(refusal("Loading/strain y=1:2 cm:3"), "STOP '2 cm': wrong unit");
+  EXPECT_HAS(refusal("Loading/strain y=1::3"), "STOP is empty");
+  EXPECT_HAS(refusal("Loading/strain y=1:2:1"), "COUNT '1' must be a whole number from 2");
+  EXPECT_HAS(refusal("Loading/strain y=1:2:2.5"), "COUNT '2.5'");
+  EXPECT_HAS(refusal("Loading/strain y=2:2:3"), "START and STOP must differ");
+  EXPECT_HAS(refusal("Sheet/height=1 cm:20 mm:3"), "must have the same unit");
+  EXPECT_HAS(refusal("Sheet/orientation=1:2:3"), "Sheet/orientation is not a number");
+  EXPECT_HAS(refusal("Loading/strain y=1,,2"), "value 2 is empty");
+  EXPECT_HAS(refusal("Loading/strain y=1,2,1"), "the value 1 is given twice");
+  EXPECT_HAS(refusal("Loading/strain y=1"), "one value is no sweep");
+  EXPECT_HAS(refusal("Lattice/noise seed=1,2"), "seeds are set by --seeds");
+}
+
+TEST(Sweep, SeveralSweepsGiveAllCombinationsAsAStudyFile)
+{
+  const std::string text = sweep_study({"Loading/strain y=1.5:1.6:2", "Sheet/height=2 cm,3 cm"}, "fig1", "base.prm", {{"Material/density", "900"}}, 3);
+  const Study study = read(text);
+  EXPECT_EQ(study.title, "Sweep of Loading/strain y, Sheet/height (fig1)");
+  EXPECT_EQ(study.base, "folder/base.prm");
+  ASSERT_EQ(study.runs.size(), 4u);
+  EXPECT_EQ(study.runs[0].name, "strain-y-1.5_height-2cm");
+  EXPECT_EQ(study.runs[1].name, "strain-y-1.5_height-3cm");
+  EXPECT_EQ(study.runs[3].own, (Settings{{"Loading/strain y", "1.6"}, {"Sheet/height", "3 cm"}}));
+  EXPECT_EQ(study.runs[3].seeds, (std::vector<std::uint64_t>{1, 2, 3}));
+  EXPECT_EQ(study.settings, (Settings{{"Material/density", "900"}}));
+  EXPECT_TRUE(study.claims.empty());
+}
+
+TEST(Sweep, NamesOfRunsAreDistinct)
+{
+  const Study study = read(sweep_study({"Nearest neighbours/viscosity=1e+1,1e1", "Next-nearest neighbours/viscosity=1,2"}, "x", "base.prm", {}, 0));
+  std::set<std::string> names;
+  for (const StudyRun &run : study.runs)
+    names.insert(run.name);
+  EXPECT_EQ(names.size(), 4u);
+  EXPECT_EQ(study.runs[0].name, "Nearest-neighbours-viscosity-1e1_Next-nearest-neighbours-viscosity-1");
+}
+
+TEST(Sweep, EntriesSweptTwiceOrAlsoSetAreRefused)
+{
+  const Sweep sweep = parse_sweep("Sheet/height=2 cm,3 cm");
+  EXPECT_THROW((void)combinations({sweep, sweep}), support::InputError);
+  EXPECT_THROW((void)combinations({parse_sweep("Loading/strain y=1:2:60000"), sweep}), support::InputError);
+  EXPECT_THROW((void)sweep_study({"Sheet/height=2 cm,3 cm"}, "x", "x", {{"Sheet/height", "1"}}, 1),
+               support::InputError);
+}
+
+TEST(Sweep, StudyFilesSweepBesideNamedRunsAndInTheirQuickVersion)
+{
+  const std::string text = R"({"title": "t", "base": "b.prm", "seeds": [4, 5], "sweep": ["Sheet/height=2 cm:4 cm:3"],
+    "quick": {"seeds": [7], "sweep": ["Sheet/height=2 cm,4 cm"]}, "runs": {"own": {}},
+    "claims": [{"claim": "c", "rows": [{"run": "height-2cm", "quantity": "pattern"}]}]})";
+  const Study study = read(text);
+  ASSERT_EQ(study.runs.size(), 4u);
+  EXPECT_EQ(study.runs[1].name, "height-3cm");
+  EXPECT_EQ(study.runs[1].seeds, (std::vector<std::uint64_t>{4, 5}));
+  EXPECT_EQ(study.runs[3].name, "own");
+  const Study quick = read_study(text, "folder/sweep.json", true);
+  ASSERT_EQ(quick.runs.size(), 3u);
+  EXPECT_EQ(quick.runs[1].own, (Settings{{"Sheet/height", "4 cm"}}));
+  EXPECT_EQ(quick.runs[1].seeds, (std::vector<std::uint64_t>{7}));
+  try
+  {
+    (void)read(R"({"title": "t", "base": "b.prm", "sweep": ["Sheet/hight=1,2"]})");
+    FAIL();
+  }
+  catch (const support::InputError &error)
+  {
+    EXPECT_HAS(std::string(error.what()), "folder/sweep.json: sweep: sweep 'Sheet/hight=1,2': 'Sheet/hight' is not an");
+  }
+}
+
+// A hundred seeds cost no more cases, and no text is kept.
+TEST(Sweep, ACaseIsResolvedOnceForAllItsSeeds)
+{
+  Study study = read(sweep_study({"Loading/strain y=1.5:1.9:3"}, "quick", "base.prm", {}, 100));
+  study.base = std::filesystem::path(study_path("paper")).parent_path().parent_path() / "cases/quick.prm";
+  const std::vector<PlannedRun> plan = plan_runs(study, input::read_input_file(study.base), {});
+  ASSERT_EQ(plan.size(), 300u);
+  std::set<const PlannedCase *> resolved;
+  std::set<const void *> shared;
+  std::set<std::string> hashes;
+  for (const PlannedRun &run : plan)
+  {
+    resolved.insert(run.planned_case.get());
+    shared.insert(run.planned_case->base.get());
+    shared.insert(run.planned_case->keys.get());
+    hashes.insert(run.case_sha256);
+  }
+  EXPECT_EQ(resolved.size(), 3u);
+  EXPECT_EQ(shared.size(), 2u);
+  EXPECT_EQ(hashes.size(), 300u); // the seed is a part of the case
+
+  // Each seed has the case that it would have alone.
+  Study alone = study;
+  alone.runs = {study.runs[1]};
+  alone.runs[0].seeds = {70};
+  const PlannedRun one = plan_runs(alone, input::read_input_file(study.base), {}).at(0);
+  const PlannedRun &same = plan.at(169);
+  EXPECT_EQ(one.folder(), same.folder());
+  EXPECT_EQ(one.case_sha256, same.case_sha256);
+  EXPECT_EQ(one.case_text(), same.case_text());
+  EXPECT_HAS(same.case_text(), "set noise seed      = 70");
+  EXPECT_DOUBLE_EQ(same.value(seed_entry).value(), 70.);
+}

@@ -1,0 +1,146 @@
+#!/usr/bin/python3
+"""latcon study --sweep, and what a study does where something is missing: Python, room on the disk, a folder of its own.
+
+Usage: sweep_test.py PATH_OF_LATCON
+"""
+import copy
+import json
+import os
+import subprocess
+import sys
+import unittest
+
+sys.dont_write_bytecode = True
+from program import CASES, LATCON, TemporaryFolder, latcon
+from study_test import TINY
+
+SMALL = [word for entry, value in TINY["set"].items() for word in ("--set", f"{entry}={str(value).lower()}")]
+# Two cracks that run through in a moment.
+SWEEP = ["--sweep", "Sheet/height=1 cm,1.5 cm", *SMALL[:2], *SMALL[4:]]
+CAN_MOUNT = os.geteuid() == 0 and subprocess.run(["unshare", "-m", "mount", "-t", "tmpfs", "none", "/mnt"],
+                                                 capture_output=True, check=False).returncode == 0
+
+
+class Folder(TemporaryFolder):
+    def run_study(self, *arguments, expect=0, command="study", launcher=()):
+        words = [*launcher, LATCON, command, *map(str, arguments), "--skip-verification"]
+        run = subprocess.run(words, capture_output=True, text=True, timeout=600, check=False)
+        self.assertEqual(run.returncode, expect, run.stdout + run.stderr)
+        return run.stdout + run.stderr
+
+    def write_study(self, change=lambda document: None):
+        document = copy.deepcopy(TINY)
+        document["runs"] = {"low": {"set": {"Sheet/height": "1 cm"}}}
+        del document["claims"]
+        change(document)
+        path = self.folder / "tiny.json"
+        path.write_text(json.dumps(document))
+        return path
+
+    def files(self, folder=None):
+        return {path: path.read_bytes() for path in (folder or self.out).rglob("*") if path.is_file()}
+
+
+class Sweeps(Folder):
+    def test_leaves_a_study_that_runs_again(self):
+        printed = self.run_study("quick", *SWEEP, "--sweep", "Time/safety factor=0.5,0.9", "-o", self.out)
+        self.assertIn("height-1cm_safety-factor-0.5: ", printed)
+        document = json.loads((self.out / "study.json").read_text())
+        self.assertEqual([(entry["entry"], entry["unit"], entry["values"]) for entry in document["varied"]],
+                         [("Sheet/height", "m", [0.01, 0.01, 0.015, 0.015]),
+                          ("Time/safety factor", "1", [0.5, 0.9, 0.5, 0.9])])
+        self.assertTrue((self.out / "pictures" / "map.png").exists())
+        self.assertEqual((self.out / "base.prm").read_bytes(), (CASES / "quick.prm").read_bytes())
+        result = (self.out / "study.json").read_bytes()
+        # In its own folder by default.
+        printed = self.run_study(self.out / "sweep.json", "--resume")
+        self.assertIn("0 runs, 4 are finished already", printed)
+        self.assertEqual((self.out / "study.json").read_bytes(), result)
+
+        before = self.files()
+        printed = self.run_study("quick", *SWEEP, "-o", self.out, expect=2)
+        self.assertIn(f"{self.out}/sweep.json differs from this sweep", printed)
+        printed = self.run_study("fig1", *SWEEP, "--sweep", "Time/safety factor=0.5,0.9", "-o", self.out, expect=2)
+        self.assertIn("differs from", printed)
+        self.assertEqual(self.files(), before)
+
+    def test_runs_in_shards(self):
+        self.run_study("quick", *SWEEP, "-o", self.out, "--shard", "1/1", "--quiet")
+        self.run_study(self.out / "sweep.json", "--collect", "--quiet")
+        self.assertEqual(len(json.loads((self.out / "study.json").read_text())["seeds"]), 2)
+        self.assertTrue((self.out / "pictures" / "sweep.png").exists())
+
+    def test_is_a_job_array(self):
+        self.run_study("quick", *SWEEP, "--seeds", "3", "--slurm", "-o", self.out, command="batch")
+        script = (self.out / "batch" / "runs.sh").read_text()
+        subprocess.run(["bash", "-n", self.out / "batch" / "runs.sh"], check=True)
+        self.assertIn("#SBATCH --array=1-6\n", script)
+        self.assertIn(f" study {self.out}/sweep.json --skip-verification --output-dir {self.out} --shard", script)
+        self.assertNotIn("--set", script)  # the study file contains them
+        self.assertIn("6 runs", self.run_study(self.out / "sweep.json", "--dry-run"))
+
+    def test_bad_sweeps_are_named_and_write_nothing(self):
+        for words, reason in ((["Sheet/hight=1:2:3"], "nearest: Sheet/height"),
+                              (["Sheet/height=1 cm:2 cm:0"], "COUNT '0'"),
+                              (["Sheet/height=1 mm,2 cm"], "runs/height-1mm: --set: Sheet/height = 1 mm"),
+                              (["Sheet/height=1 cm,2 cm", "--set", "Sheet/height=3 cm"], "is also an entry of --sweep"),
+                              (["Sheet/height=1 cm,2 cm", "--set", "Sheet/lenght=3 cm"], "nearest: Sheet/length")):
+            printed = self.run_study("quick", "--sweep", *words, "-o", self.out, expect=2)
+            self.assertIn(reason, printed)
+        self.assertIn("nearest shipped case: quick", self.run_study("quikc", *SWEEP, "-o", self.out, expect=2))
+        self.assertIn("--seeds is an option of --sweep", self.run_study("patterns", "--seeds", "2", expect=2))
+        self.assertFalse(self.out.exists())
+
+
+class Troubles(Folder):
+    def test_folder_of_another_study_is_refused_untouched(self):
+        self.run_study(self.write_study(), "-o", self.out, "--quiet")
+        before = self.files()
+        for options in ([], ["--resume"]):
+            printed = self.run_study(self.write_study(lambda document: document.update(title="Another")), *options, "-o",
+                                     self.out, expect=2)
+            self.assertIn(f"{self.out} has the results of another study, 'A tiny study'; choose another folder", printed)
+        self.assertEqual(self.files(), before)
+
+    @unittest.skipUnless(CAN_MOUNT, "nothing can be mounted here")
+    def test_node_without_python_lacks_the_page_alone(self):
+        study = self.write_study()
+        self.run_study(study, "-o", self.out, "--quiet")
+        expected = {name: (self.out / name).read_bytes() for name in ("study.json", "study.csv", "results.json")}
+        bare = self.folder / "bare"
+        without = ["unshare", "-m", "sh", "-c", 'mount --bind /dev/null "$(readlink -f /usr/bin/python3)" && exec "$@"', "sh"]
+        printed = self.run_study(study, "-o", bare, launcher=without)
+        self.assertIn(f"cannot write {bare}/study.html: cannot start /usr/bin/python3", printed)
+        self.assertIn("repeat the command with --resume", printed)
+        self.assertEqual({name: (bare / name).read_bytes() for name in expected}, expected)
+        self.assertFalse((bare / "study.html").exists())
+        self.run_study(study, "-o", bare, "--resume", "--quiet")
+        self.assertTrue((bare / "study.html").exists())
+
+    @unittest.skipUnless(CAN_MOUNT, "nothing can be mounted here")
+    def test_full_disk_loses_nothing(self):
+        def longer(document):
+            document["runs"]["high"] = {}
+        study = self.write_study(longer)
+        self.run_study(study, "-o", self.out, "--quiet", "--threads", "1")
+        expected = (self.out / "study.csv").read_bytes()
+        size = sum(len(content) for content in self.files(self.out / "runs").values())
+        disk, kept = self.folder / "disk", self.folder / "kept"
+        disk.mkdir()
+        # Room for one of the two runs.
+        script = (f"mount -t tmpfs -o size={size * 6 // 10240}k none {disk} || exit 77; \"$@\"; status=$?; "
+                  f"cp -r {disk}/out {kept}; exit $status")
+        run = subprocess.run(["unshare", "-m", "sh", "-c", script, "sh", LATCON, "study", study, "-o", disk / "out",
+                              "--skip-verification", "--quiet", "--threads", "1"],
+                             capture_output=True, text=True, timeout=600, check=False)
+        self.assertEqual(run.returncode, 5, run.stdout + run.stderr)
+        self.assertIn("No space left on device", run.stderr)
+        measured = list(kept.glob("runs/*-1/crack.json"))
+        self.assertEqual(len(measured), 1)
+        printed = self.run_study(study, "-o", kept, "--resume", "--threads", "1")
+        self.assertIn("1 runs, 1 are finished already", printed)
+        self.assertEqual((kept / "study.csv").read_bytes(), expected)
+
+
+if __name__ == "__main__":
+    unittest.main(argv=sys.argv[:1])

@@ -1,0 +1,99 @@
+"""Map of patterns over two quantities: cells coloured by pattern, contours of a third quantity."""
+from dataclasses import dataclass
+
+import numpy as np
+from matplotlib.colors import to_rgba
+from matplotlib.patches import Patch, Rectangle
+
+from pictures import BLACK, BLUE, GREEN, GREY, RED, SKY, WIDTH, Page, save
+
+COLOURS = {"oscillating": BLUE, "straight": GREEN, "branching": RED, "arrested": GREY, "undecided": SKY}
+OTHER = "#cc79a7"  # of a pattern that is not in COLOURS
+SHADE = 0.6  # opacity of the cells, on which contours and numbers are black
+LEFT, FOOT, HEAD, RIGHT = 0.95, 0.7, 0.75, 0.3  # around the axes [in]
+
+
+@dataclass(frozen=True)
+class Cell:
+    """One point of the map."""
+
+    x: float
+    y: float
+    patterns: dict  # {pattern: number of seeds}; empty if nothing was measured
+    value: float = None  # of the contours; None if there is none
+
+
+def draw_phase_map(cells, x_label, y_label, path, contour_label=None, height=5.2):
+    """Draws the map. Cells whose seeds disagree are divided between their patterns, in proportion, and marked by a dot.
+
+    Points need not fill a grid: only cells with a point are drawn. Contours are drawn where four neighbouring cells have a
+    value. @return whether any pattern was measured
+    """
+    if not any(cell.patterns for cell in cells):
+        return False
+    xs, ys = (np.unique([getattr(cell, name) for cell in cells]) for name in "xy")
+    x_edges, y_edges = edges(xs), edges(ys)
+    page = Page(HEAD + height + FOOT)
+    axes = page.axes(LEFT, HEAD, WIDTH - LEFT - RIGHT, height)
+    values = np.full((len(ys), len(xs)), np.nan)
+    mixed, unmeasured = [], []
+    for cell in cells:
+        column, row = np.searchsorted(xs, cell.x), np.searchsorted(ys, cell.y)
+        if not cell.patterns:
+            unmeasured.append((cell.x, cell.y))
+            continue
+        fill(axes, x_edges[column:column + 2], y_edges[row:row + 2], cell.patterns)
+        if len(cell.patterns) > 1:
+            mixed.append((cell.x, cell.y))
+        if cell.value is not None:
+            values[row, column] = cell.value
+    axes.set(xlim=x_edges[[0, -1]], ylim=y_edges[[0, -1]], xlabel=x_label, ylabel=y_label)
+    axes.grid(False)
+    if contour_label and draw_contours(axes, xs, ys, values):
+        axes.set_title(f"contours: {contour_label}", fontsize=10)
+    handles = legend(cells)
+    for points, style, label in ((mixed, {"marker": "o", "color": BLACK}, "seeds disagree"),
+                                 (unmeasured, {"marker": "x", "color": GREY}, "not measured")):
+        if points:
+            handles += axes.plot(*np.transpose(points), linestyle="none", markersize=5, label=label, **style)
+    page.figure.legend(handles=handles, loc="upper left", bbox_to_anchor=(LEFT / WIDTH - 0.005, 1), ncol=6,
+                       borderaxespad=0.3, columnspacing=1.4, handlelength=1.4)
+    save(page.figure, path)
+    return True
+
+
+def edges(values):
+    """Edges of the cells around sorted values: half way between neighbours."""
+    if len(values) == 1:
+        return np.array([values[0] - 0.5, values[0] + 0.5])
+    middles = (values[1:] + values[:-1]) / 2
+    return np.concatenate(([2 * values[0] - middles[0]], middles, [2 * values[-1] - middles[-1]]))
+
+
+def fill(axes, x, y, patterns):
+    """Fills a cell with the colours of its patterns, side by side, the most frequent first."""
+    total = sum(patterns.values())
+    left = x[0]
+    for pattern, count in sorted(patterns.items(), key=lambda item: (-item[1], item[0])):
+        width = (x[1] - x[0]) * count / total
+        axes.add_patch(Rectangle((left, y[0]), width, y[1] - y[0], facecolor=to_rgba(COLOURS.get(pattern, OTHER), SHADE),
+                                 edgecolor="white", linewidth=0.6))
+        left += width
+
+
+def legend(cells):
+    """Legend entries of the patterns that occur, in a fixed order."""
+    found = {pattern for cell in cells for pattern in cell.patterns}
+    order = [pattern for pattern in COLOURS if pattern in found] + sorted(found - set(COLOURS))
+    return [Patch(facecolor=COLOURS.get(pattern, OTHER), alpha=SHADE, label=pattern) for pattern in order]
+
+
+def draw_contours(axes, xs, ys, values):
+    """Draws contours of values on a grid, NaN where there are none. @return whether there are any"""
+    finite = np.isfinite(values)
+    whole = finite[1:, 1:] & finite[1:, :-1] & finite[:-1, 1:] & finite[:-1, :-1]
+    if not whole.any() or np.ptp(values[finite]) == 0:
+        return False
+    lines = axes.contour(xs, ys, np.ma.masked_invalid(values), levels=6, colors=BLACK, linewidths=1)
+    axes.clabel(lines, fontsize=9)
+    return True
