@@ -6,13 +6,16 @@ Usage: filter.py ROOT SITE FILE   (to standard output; files that a page links t
 Pages: `$...$` and blocks ```math become formulas, headings and numbered equations get anchors, and links between pages, to
 headings and to files of the project lead there. In pages and in docstrings "(L.2)" leads to that equation. Headers: see
 header(). In contents.dox
-"\\subpages GLOB..." becomes a list of all pages that match and are not in an earlier list.
+"\\subpages GLOB..." becomes a list of all pages that match and are not in an earlier list; in python.dox "\\pythonapi" becomes the
+interface of the Python package.
 """
 import pathlib
 import posixpath
 import re
 import shutil
 import sys
+
+import python_api
 
 EQUATION = re.compile(r"\(([A-Z]\.\d+)\)")
 TAG = re.compile(r"\\tag\{([^}]+)\}")
@@ -152,7 +155,8 @@ def contents(root, text):
             listed.update(paths)
         return "\n".join(f"- \\subpage {name}" for name in names)
 
-    return re.sub(r"^\\subpages (.*)$", lines, text, flags=re.MULTILINE)
+    text = re.sub(r"^\\subpages (.*)$", lines, text, flags=re.MULTILINE)
+    return re.sub(r"^\\pythonapi$", lambda _: python_api.page(root), text, flags=re.MULTILINE)
 
 
 def main():
