@@ -15,8 +15,6 @@ import re
 import shutil
 import sys
 
-import python_api
-
 EQUATION = re.compile(r"\(([A-Z]\.\d+)\)")
 TAG = re.compile(r"\\tag\{([^}]+)\}")
 FENCE = re.compile(r"(^ *```.*?^ *```$)", re.DOTALL | re.MULTILINE)
@@ -156,7 +154,10 @@ def contents(root, text):
         return "\n".join(f"- \\subpage {name}" for name in names)
 
     text = re.sub(r"^\\subpages (.*)$", lines, text, flags=re.MULTILINE)
-    return re.sub(r"^\\pythonapi$", lambda _: python_api.page(root), text, flags=re.MULTILINE)
+    if "\\pythonapi\n" in text:
+        import python_api  # only here, since it imports the package
+        text = text.replace("\\pythonapi\n", python_api.page(root) + "\n")
+    return text
 
 
 def main():
