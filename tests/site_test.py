@@ -1,10 +1,12 @@
 #!/usr/bin/python3
-"""Checks that the web site of the documentation is built without warnings and has no dead links.
+"""Checks that the web site of the documentation is built without warnings, has no dead links and contains the Python interface.
 
 Usage: site_test.py PROJECT_ROOT DOXYFILE SITE [--full]     --full: also the layout of equations in Chromium
 """
 import html.parser
+import importlib
 import importlib.util
+import inspect
 import pathlib
 import re
 import subprocess
@@ -92,6 +94,64 @@ class Site(unittest.TestCase):
         name = module(ROOT / "docs" / "site" / "filter.py").page_name
         for path in sorted((ROOT / "docs").rglob("*.md")):
             self.assertIn(name(path.relative_to(ROOT).as_posix()) + ".html", tree)
+
+    def test_python_names_have_signatures_and_docstrings(self):
+        sys.path[:0] = [str(ROOT / "python"), str(BUILD.parent)]
+        sys.dont_write_bytecode = True
+        page = self.pages["python-api.html"]
+        shown = " ".join("".join(page.text).split())
+        count = 0
+        for module in map(importlib.import_module, ("latcon", "latcon.fit")):
+            for name in (*module.__all__, *["open"] * (module.__name__ == "latcon")):
+                thing = getattr(module, name)
+                own = [] if not inspect.isclass(thing) else [
+                    (f"{name}.{key}", getattr(value, "func", getattr(value, "fget", value))) for key, value in vars(thing).items()
+                    if not key.startswith("_")]
+                for full, documented in [(f"{module.__name__}.{name}", thing), *own]:
+                    text = inspect.getdoc(documented)
+                    if not text or not callable(documented):
+                        continue
+                    count += 1
+                    self.assertIn("python-" + full.replace(".", "-"), page.anchors)
+                    plain = re.sub(r":\w+:`~?([^`]+)`", r"\1", text.split("\n\n")[0]).replace("`", "")
+                    self.assertIn(" ".join(plain.split()), shown, full)
+                    if inspect.isfunction(documented) and (thing is documented or documented in vars(thing).values()):
+                        self.assertIn(f"{full}(", shown)
+                        for key, parameter in inspect.signature(documented).parameters.items():
+                            self.assertTrue(key == "self" or f"{key}: {parameter.annotation}" in shown, f"{full}: {key}")
+        self.assertGreater(count, 60)
+
+    def test_interfaces_of_the_libraries_are_in_a_group_of_their_own(self):
+        menu = (SITE / "menudata.js").read_text()
+        top = re.findall(r'^(?:var menudata=\{children:\[|)\{text:"([^"]+)"', menu, re.MULTILINE)
+        self.assertEqual(top[:3], ["Main Page", "Pages", "C++ interface"], menu[:500])
+
+    def test_can_be_published_with_its_version(self):
+        publish = module(BUILD.with_name("publish.py")).publish
+        with tempfile.TemporaryDirectory() as name:
+            folder = pathlib.Path(name)
+            small = folder / "site"
+            small.mkdir()
+            for version in ("0.2.0", "0.10.0", "0.9.1", "0.2.0"):
+                (small / "index.html").write_text(f"{version} {len(list(folder.rglob('*')))}")
+                publish(small, folder / "www", version)
+            www = folder / "www"
+            self.assertEqual(re.findall(r'href="([^"]+)"', (www / "versions.html").read_text()),
+                             [f"{version}/index.html" for version in ("0.10.0", "0.9.1", "0.2.0")])
+            self.assertIn("url=0.10.0/index.html", (www / "index.html").read_text())
+            for link in re.findall(r'(?:href="|url=)([^"]+)"', (www / "versions.html").read_text() + (www / "index.html").read_text()):
+                self.assertTrue((www / link).is_file(), link)
+            for version in ("latest", "../x"):
+                with self.assertRaises(SystemExit):
+                    publish(small, www, version)
+            with self.assertRaises(SystemExit):
+                publish(folder / "nothing", www, "1.0")
+        # The site names its version, and no folder of this machine.
+        self.assertIn(re.search(r"project\(latcon VERSION ([\d.]+)", (ROOT / "CMakeLists.txt").read_text())[1],
+                      (SITE / "index.html").read_text())
+        local = [path.name for path in SITE.rglob("*") if path.suffix in (".html", ".js", ".txt") and "mathjax" not in path.parts
+                 and str(ROOT) in path.read_text(errors="replace")]
+        self.assertEqual(local, [])
 
     def test_equations_are_formulas_with_anchors(self):
         for path in sorted((ROOT / "docs").glob("theory*.md")):

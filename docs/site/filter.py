@@ -6,7 +6,8 @@ Usage: filter.py ROOT SITE FILE   (to standard output; files that a page links t
 Pages: `$...$` and blocks ```math become formulas, headings and numbered equations get anchors, and links between pages, to
 headings and to files of the project lead there. In pages and in docstrings "(L.2)" leads to that equation. Headers: see
 header(). In contents.dox
-"\\subpages GLOB..." becomes a list of all pages that match and are not in an earlier list.
+"\\subpages GLOB..." becomes a list of all pages that match and are not in an earlier list; in python.dox "\\pythonapi" becomes the
+interface of the Python package.
 """
 import pathlib
 import posixpath
@@ -152,7 +153,11 @@ def contents(root, text):
             listed.update(paths)
         return "\n".join(f"- \\subpage {name}" for name in names)
 
-    return re.sub(r"^\\subpages (.*)$", lines, text, flags=re.MULTILINE)
+    text = re.sub(r"^\\subpages (.*)$", lines, text, flags=re.MULTILINE)
+    if "\\pythonapi\n" in text:
+        import python_api  # only here, since it imports the package
+        text = text.replace("\\pythonapi\n", python_api.page(root) + "\n")
+    return text
 
 
 def main():

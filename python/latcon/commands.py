@@ -13,7 +13,7 @@ Directory = str | os.PathLike[str]
 
 
 def fracture(case: CaseLike, directory: Directory, *, threads: int | None = None, resume: bool = False,
-             skip_verification: bool = False, report: bool = True, progress: Progress = True) -> Run:
+             skip_verification: bool = False, report: bool = True, yes: bool = False, progress: Progress = True) -> Run:
     """Verifies the material and the pre-stretch of a case, then runs its crack (``latcon fracture``).
 
     Parameters
@@ -31,6 +31,8 @@ def fracture(case: CaseLike, directory: Directory, *, threads: int | None = None
         Whether to run the crack without verification; every output states it.
     report
         Whether to create pictures and `report.html`.
+    yes
+        Whether to run even if the program estimates more than ten days, or more memory than the machine has.
     progress
         True: a progress indicator on standard error, tqdm if it is installed. False: none. A function: called with each
         progress line of the program.
@@ -48,25 +50,25 @@ def fracture(case: CaseLike, directory: Directory, *, threads: int | None = None
         After Ctrl-C or another signal: a checkpoint and all results are written.
     """
     options = ["--skip-verification"] * skip_verification + ["--no-report"] * (not report)
-    return _run("fracture", case, directory, threads, resume, progress, options)
+    return _run("fracture", case, directory, threads, resume, yes, progress, options)
 
 
 def lattice(case: CaseLike, directory: Directory, *, threads: int | None = None, resume: bool = False,
-            progress: Progress = True) -> Run:
+            yes: bool = False, progress: Progress = True) -> Run:
     """Computes the equilibrium or the motion of the unbroken lattice sheet (``latcon lattice``).
 
     Parameters, result and errors are those of :func:`fracture`.
     """
-    return _run("lattice", case, directory, threads, resume, progress)
+    return _run("lattice", case, directory, threads, resume, yes, progress)
 
 
 def continuum(case: CaseLike, directory: Directory, *, threads: int | None = None, resume: bool = False,
-              progress: Progress = True) -> Run:
+              yes: bool = False, progress: Progress = True) -> Run:
     """Computes the equilibrium or the motion of the finite element sheet (``latcon continuum``).
 
     Parameters, result and errors are those of :func:`fracture`.
     """
-    return _run("continuum", case, directory, threads, resume, progress)
+    return _run("continuum", case, directory, threads, resume, yes, progress)
 
 
 def verify(*claims: str, directory: Directory, case: CaseLike | None = None, quick: bool = False,
@@ -104,10 +106,10 @@ def _case(case: CaseLike) -> Case:
     return case if isinstance(case, Case) else Case(case)
 
 
-def _run(command: str, case: CaseLike, directory: Directory, threads: int | None, resume: bool, progress: Progress,
+def _run(command: str, case: CaseLike, directory: Directory, threads: int | None, resume: bool, yes: bool, progress: Progress,
          options: list[str] | None = None) -> Run:
     case = _case(case)
-    words = [command, os.fspath(case.file), *case.arguments(), *(options or []), *["--resume"] * resume]
+    words = [command, os.fspath(case.file), *case.arguments(), *(options or []), *["--resume"] * resume, *["--yes"] * yes]
     return _start(words, directory, threads, progress)
 
 

@@ -6,7 +6,7 @@ Usage: debian_test.py SOURCE_FOLDER BUILD_FOLDER
 import re
 import unittest
 
-from folders import BUILD, FOLDER, SOURCE, check_program, files_below, mentions_of_sources, python, run
+from folders import BUILD, FOLDER, SOURCE, check_program, files_below, mentions_of_sources, modules, python, run
 
 
 def field(package, name):
@@ -72,7 +72,8 @@ class Packages(unittest.TestCase):
         for package in (self.program, self.python):
             run("dpkg-deb", "--extract", package, root)
         self.assertEqual(mentions_of_sources(root), [])
-        self.assertEqual(python(root / "usr", "print(latcon.Case('quick')['Sheet/length'], latcon.find_program())").split(),
+        self.assertEqual(modules(root / "usr/lib/python3/dist-packages/latcon"), modules(SOURCE / "python/latcon"))
+        self.assertEqual(python(root / "usr", "import latcon.fit; print(latcon.Case('quick')['Sheet/length'], latcon.find_program())").split(),
                          ["0.04", str(root / "usr/bin/latcon")])
 
     def test_libraries_hold_every_header(self):

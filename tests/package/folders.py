@@ -27,6 +27,11 @@ def files_below(folder):
     return [path for path in folder.rglob("*") if path.is_file()]
 
 
+def modules(package):
+    """Files of a Python package, relative to it."""
+    return {path.relative_to(package) for path in files_below(package) if "__pycache__" not in path.parts}
+
+
 def mentions_of_sources(folder):
     """Files that contain the path of the sources (usually the beginning of the path of the build folder)."""
     paths = [str(SOURCE).encode(), str(BUILD).encode()]

@@ -7,10 +7,10 @@ import re
 import shutil
 import unittest
 
-from folders import BUILD, FOLDER, SOURCE, run
+from folders import BUILD, FOLDER, SOURCE, modules, run
 
 LATCON = BUILD / "verification" / "latcon"
-CHECK = "import importlib.metadata as m, latcon; print(m.version('latcon'), latcon.schema().version, " \
+CHECK = "import importlib.metadata as m, latcon, latcon.fit; print(m.version('latcon'), latcon.schema().version, " \
         "latcon.Case('quick')['Sheet/length'], latcon.__file__)"
 
 
@@ -27,8 +27,14 @@ class PythonPackage(unittest.TestCase):
         self.assertEqual(printed[:3], [project, project, "0.04"])
         self.assertTrue(printed[3].startswith(str(FOLDER / "own")), printed[3])
         installed = next((FOLDER / "own").glob("lib/python3*/site-packages/latcon"))
-        self.assertEqual({path.name for path in installed.iterdir()} - {"__pycache__"},
-                         {path.name for path in (SOURCE / "python/latcon").iterdir()} - {"__pycache__"})
+        self.assertEqual(modules(installed), modules(SOURCE / "python/latcon"))
+        # A run in the fresh folder, by the installed package alone.
+        printed = run("env", "-C", fresh, f"LATCON={LATCON}", FOLDER / "own/bin/python", "-c",
+                      "import latcon; case = latcon.Case('quick').set('Sheet/length', '1 cm').set('Sheet/height', '6 mm'); "
+                      "run = latcon.fracture(case.set('Time/end', '0.01 ms'), 'out', skip_verification=True, report=False, progress=False); "
+                      "print(run.exit_code, len(run.frames))")
+        self.assertEqual(printed.split(), ["0", "2"])
+        self.assertTrue((fresh / "out" / "crack.json").is_file())
 
 
 if __name__ == "__main__":

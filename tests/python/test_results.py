@@ -5,12 +5,16 @@ import math
 import os
 import shutil
 import signal
+import subprocess
 
 import numpy as np
 import pytest
 
 import latcon
 from conftest import tiny_case
+
+CAN_MOUNT = os.geteuid() == 0 and subprocess.run(["unshare", "-m", "mount", "-t", "tmpfs", "none", "/mnt"], capture_output=True,
+                                                 check=False).returncode == 0
 
 
 def rows(path):
@@ -151,6 +155,70 @@ def test_errors_of_the_program_are_raised(tmp_path):
     (tmp_path / "file").touch()
     with pytest.raises(latcon.OutputFailed):
         latcon.lattice(tiny_case(), tmp_path / "file" / "out", progress=False)
+
+
+class Started(Exception):
+    pass
+
+
+def test_a_run_that_costs_too_much_is_refused_unless_confirmed(tmp_path):
+    def stop(line):
+        raise Started
+    # More memory than any machine has; years.
+    huge = {latcon.fracture: {"Sheet/length": "600 m", "Sheet/height": "100 m"},
+            latcon.lattice: {"Lattice/solution": "motion", "Time/end": "1e6 s"},
+            latcon.continuum: {"Continuum/cells x": 8000, "Continuum/cells y": 8000}}
+    for command, entries in huge.items():
+        case = tiny_case()
+        for key, value in entries.items():
+            case = case.set(key, value)
+        out = tmp_path / command.__name__
+        with pytest.raises(latcon.BadInput, match="--yes"):
+            command(case, out, progress=False)
+        assert not out.exists()
+        if command is latcon.lattice:
+            with pytest.raises(Started):
+                command(case, out, yes=True, progress=stop)
+
+
+def test_each_command_passes_the_confirmation_on(stand_in, tmp_path, monkeypatch):
+    words = tmp_path / "words"
+    case = tiny_case()
+    stand_in(f"pathlib.Path({str(words)!r}).write_text(' '.join(sys.argv[1:])); sys.exit(2)")
+    for command in (latcon.fracture, latcon.lattice, latcon.continuum):
+        for yes in (False, True):
+            with pytest.raises(latcon.BadInput):
+                command(case, tmp_path / "out", yes=yes, progress=False)
+            assert (words.read_text().split()[0], "--yes" in words.read_text().split()) == (command.__name__, yes)
+
+
+@pytest.fixture
+def in_own_mounts(stand_in):
+    """Substitutes the program after shell commands in a mount namespace of its own."""
+    real = latcon.find_program()
+
+    def make(commands):
+        stand_in(f"import os\nos.execvp('unshare', ['unshare', '-m', 'sh', '-c', {commands + ' || exit 77; exec ' + str(real)!r} "
+                 "+ ' \"$@\"', 'sh', *sys.argv[1:]])")
+    return make
+
+
+@pytest.mark.skipif(not CAN_MOUNT, reason="no disk can be mounted here")
+def test_a_full_disk_is_an_exception_that_names_the_file(in_own_mounts, tmp_path):
+    (tmp_path / "disk").mkdir()
+    in_own_mounts(f"mount -t tmpfs -o size=200k none {tmp_path}/disk")
+    with pytest.raises(latcon.OutputFailed, match=f"cannot write {tmp_path}/disk/out/.*") as caught:
+        latcon.fracture(tiny_case(), tmp_path / "disk" / "out", skip_verification=True, report=False, progress=False)
+    assert caught.value.exit_code == 5 and "No space left" in caught.value.message
+
+
+@pytest.mark.skipif(not CAN_MOUNT, reason="nothing can be hidden here")
+def test_without_the_packages_of_the_report_a_run_keeps_its_results_and_says_what_to_install(in_own_mounts, tmp_path, crack):
+    in_own_mounts("mount -t tmpfs none /usr/lib/python3/dist-packages/vtkmodules")
+    with pytest.raises(latcon.OutputFailed, match="install.*python3-vtk9") as caught:
+        latcon.fracture(tiny_case(), tmp_path / "out", skip_verification=True, progress=False)
+    assert "Traceback" not in caught.value.message
+    assert latcon.open(caught.value.directory).path.equals(crack.path)
 
 
 def test_ctrl_c_leaves_a_checkpoint_from_which_the_run_continues(crack, tmp_path):

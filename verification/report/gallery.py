@@ -28,7 +28,7 @@ from study_plots import draw_sweep, pattern_text
 from study_quantities import asked_quantities, sweeps_of
 from study_runs import mean_of, read_study, value_text
 
-LARGEST_PICTURE = 250_000  # [bytes]
+LARGEST_PICTURE, LARGEST_ANIMATION = 250_000, 1_000_000  # [bytes]
 SWEEPS = ("zeta", "Sheet/height")  # abscissas of the plots
 SHELLS = "Next-nearest neighbours/present"
 ALL_KINDS = ("sheet", "path", "velocity", "stress")
@@ -152,7 +152,7 @@ def film_section(run, folder):
     motion = read_motion(run)
     if motion is None:
         return [], []
-    draw_animation(motion, gif)
+    draw_animation(motion, gif, largest=LARGEST_ANIMATION)
     return ["", "## Animation of Fig. 1", "", "![the sheet of Fig. 1, torn from left to right](pictures/fig1.gif)", "",
             "The deformed sheet, coloured by the speed of the material, in uniform slow motion: waves run ahead of the "
             "crack, and its flanks snap back behind it. Made from the frames in `motion.pvd` of `./run fracture "

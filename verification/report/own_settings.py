@@ -1,11 +1,33 @@
-"""Imports matplotlib without the `matplotlibrc` of the current folder, which would otherwise take precedence: the folder of
-a run may belong to somebody else. Import this module before any other that imports matplotlib."""
+"""Ends the script with a message if a Debian package of the report is missing, and imports matplotlib without the `matplotlibrc`
+of the current folder, which would otherwise take precedence: the folder of a run may belong to somebody else. Import this module
+before any other that imports matplotlib."""
+import importlib
 import os
+import sys
 from pathlib import Path
+
+# Debian packages by a module of each; matplotlib imports those before it.
+PACKAGES = {"numpy.linalg": "python3-numpy", "PIL.Image": "python3-pil", "matplotlib.figure": "python3-matplotlib",
+            "vtkmodules.util": "python3-vtk9"}
+IO_FAILED = 5  # exit code, that of latcon
+
+
+def require_packages():
+    missing = []
+    for module, package in PACKAGES.items():
+        try:
+            importlib.import_module(module)
+        except ImportError:
+            missing.append(package)
+    if missing:
+        names = " ".join(missing)
+        print(f"error: no report: cannot import the Python modules of the Debian packages {names}; install them "
+              f"(apt-get install {names}) and run `latcon report`; all results of the run are written", file=sys.stderr)
+        sys.exit(IO_FAILED)
+
 
 _here = os.open(".", os.O_PATH)
 os.chdir(Path(__file__).resolve().parent)
-import matplotlib  # noqa: F401
-
+require_packages()
 os.fchdir(_here)
 os.close(_here)
