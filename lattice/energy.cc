@@ -20,6 +20,27 @@ double elastic_energy(const State &state, const RowPartition &band, const Materi
   return band.sum(of_rows);
 }
 
+namespace
+{
+
+// Calls add(mechanism of the shell, energy [J/m]) for the memory of one bond.
+template <class Add>
+void for_each_mechanism(const State &state, const TriangularLattice &lattice, const Material &material,
+                        std::size_t place, std::size_t kind, const Add &add)
+{
+  const BondHistory::Kind &history = state.history.kinds[kind];
+  if (history.variables.empty())
+    return;
+  const Shell &shell = *material.shell(kind);
+  const double volume = cross_section(shell, lattice) * lattice.rest_length(kind);
+  std::array<double, max_history_variables> variables{};
+  state.history.variables_of(place, kind, variables.data());
+  for (std::size_t m = 0; m < n_mechanisms(shell.memory); ++m)
+    add(m, volume * stored_energy(shell.memory, m, history.stretch[place], variables.data()));
+}
+
+} // namespace
+
 double memory_energy(const State &state, const RowPartition &band, const Material &material)
 {
   const TriangularLattice &lattice = band.lattice();
@@ -31,17 +52,31 @@ double memory_energy(const State &state, const RowPartition &band, const Materia
   return band.sum(of_rows);
 }
 
+std::vector<double> memory_energies(const State &state, const RowPartition &band, const Material &material)
+{
+  const TriangularLattice &lattice = band.lattice();
+  std::vector<std::vector<double>> of_rows(material.n_mechanisms(), std::vector<double>(lattice.rows(), 0.));
+  const std::size_t of_nearest = n_mechanisms(material.nearest.memory);
+  for_each_bond(state, lattice, band.rows(),
+                [&](std::size_t place, std::size_t kind, std::size_t)
+                {
+                  const std::size_t first = TriangularLattice::is_nearest(kind) ? 0 : of_nearest;
+                  for_each_mechanism(state, lattice, material, place, kind,
+                                     [&](std::size_t m, double energy)
+                                     { of_rows[first + m][lattice.row_of(place)] += energy; });
+                });
+  std::vector<double> energies;
+  for (const std::vector<double> &rows : of_rows)
+    energies.push_back(band.sum(rows));
+  return energies;
+}
+
 double memory_energy(const State &state, const TriangularLattice &lattice, const Material &material, std::size_t place,
                      std::size_t kind)
 {
-  const BondHistory::Kind &history = state.history.kinds[kind];
-  if (history.variables.empty())
-    return 0.;
-  const Shell &shell = *material.shell(kind);
-  std::array<double, max_history_variables> variables{};
-  state.history.variables_of(place, kind, variables.data());
-  return cross_section(shell, lattice) * lattice.rest_length(kind) *
-         stored_energy(shell.memory, history.stretch[place], variables.data());
+  double sum = 0.;
+  for_each_mechanism(state, lattice, material, place, kind, [&](std::size_t, double energy) { sum += energy; });
+  return sum;
 }
 
 double kinetic_energy(const State &state, const RowPartition &band)

@@ -14,6 +14,9 @@ double elastic_energy(const State &state, const RowPartition &band, const Materi
 /// Energy stored in the memory of all bonds as of its last update, per sheet thickness [J/m]. Collective.
 double memory_energy(const State &state, const RowPartition &band, const Material &material);
 
+/// The same by mechanism of the material [J/m]. Collective.
+std::vector<double> memory_energies(const State &state, const RowPartition &band, const Material &material);
+
 /// Energy in the memory of one bond.
 double memory_energy(const State &state, const TriangularLattice &lattice, const Material &material, std::size_t place,
                      std::size_t kind);
@@ -26,6 +29,14 @@ double kinetic_energy(const State &state, const RowPartition &band);
 /// @param vx,vy velocities that the dashpots see [m/s]
 double boundary_power(const State &state, const TriangularLattice &lattice, const Forces &forces, const Field &vx,
                       const Field &vy, std::size_t row);
+
+/// Energy of one mechanism of the memories of bonds, such as the Maxwell branches of one relaxation time, per sheet
+/// thickness [J/m]; parts of EnergyBalance::elastic and viscous.
+struct MechanismEnergy
+{
+  double stored;     ///< as of the last update
+  double dissipated; ///< since the start
+};
 
 /// Energies of a sheet and work done on it, all per sheet thickness [J/m] (theory.md, eq. (L.11)).
 struct EnergyBalance

@@ -29,7 +29,7 @@ Forces::Forces(const RowPartition &band, const Material &material)
                                                                                            : material.nearest.law}},
     rows_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - lattice_.stride())),
     columns_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - 1)), row_viscous_power_(lattice_.rows(), 0.),
-    row_events_(lattice_.rows(), 0), row_short_bonds_(lattice_.rows(), 0)
+    row_mechanism_power_(material.n_mechanisms(), Field(lattice_.rows(), 0.)), row_events_(lattice_.rows(), 0), row_short_bonds_(lattice_.rows(), 0)
 {
   for (const std::size_t kind : {std::size_t{0}, n_nearest_kinds})
     if (const Shell *shell = material.shell(kind))
@@ -38,6 +38,7 @@ Forces::Forces(const RowPartition &band, const Material &material)
       constants_.shells[kind / n_nearest_kinds] = {rest_length, section, section * shell->viscosity / rest_length};
       memories_[kind / n_nearest_kinds] = shell->memory;
     }
+  first_mechanism_ = {0, n_mechanisms(memories_[0])};
   set_elapsed(0.);
 }
 
@@ -68,13 +69,14 @@ void Forces::update_memory(State &state)
 
 // Adds the overstress of the bonds that start in row `from` to what their laws give.
 void Forces::add_overstress(const State &state, std::size_t from, const kernels::RowOfBonds &bonds,
-                            kernels::RowSums &sums) const
+                            std::vector<double> &mechanism_power) const
 {
+  mechanism_power.assign(row_mechanism_power_.size(), 0.);
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
     if (const BondHistory::Kind &history = state.history.kinds[kind]; !history.variables.empty())
-      sums.viscous_power +=
-        kernels::add_overstress(memory_steps_[kind / n_nearest_kinds], constants_.shell(kind), bonds, kind,
-                                remembered_from<const double *>(history, lattice_.index(from, 0)));
+      kernels::add_overstress(memory_steps_[kind / n_nearest_kinds], constants_.shell(kind), bonds, kind,
+                              remembered_from<const double *>(history, lattice_.index(from, 0)),
+                              &mechanism_power[first_mechanism_[kind / n_nearest_kinds]]);
 }
 
 void Forces::evaluate(const State &state, const Field &vx, const Field &vy, const RowCallbacks &work)
@@ -113,8 +115,8 @@ void Forces::evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrd
 {
   if (begin == end)
     return;
-  bonds_from_below(motion, begin - 2, scratch.bonds);
-  bonds_from_below(motion, begin - 1, scratch.bonds);
+  bonds_from_below(motion, begin - 2, scratch);
+  bonds_from_below(motion, begin - 1, scratch);
   std::vector<const double *> ahead;
   for (std::ptrdiff_t row = begin; row < end; ++row)
   {
@@ -126,8 +128,10 @@ void Forces::evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrd
     if (row + 2 * reach + 1 < end)
       for (const Field *field : work.fields)
         ahead.push_back(&(*field)[lattice_.index(index + reach + 1, 0)]);
-    const kernels::RowSums sums = bonds_of_row(motion, index, row, scratch.bonds, ahead);
+    const kernels::RowSums sums = bonds_of_row(motion, index, row, scratch, ahead);
     row_viscous_power_[index] = sums.viscous_power;
+    for (std::size_t m = 0; m < row_mechanism_power_.size(); ++m)
+      row_mechanism_power_[m][index] = scratch.mechanism_power[m];
     row_events_[index] = sums.has_events ? 1 : 0;
     row_short_bonds_[index] = sums.has_short_bonds ? 1 : 0;
     gather_row(row, scratch);
@@ -135,16 +139,16 @@ void Forces::evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrd
   }
 }
 
-void Forces::bonds_from_below(const Motion &motion, std::ptrdiff_t row, BondRows &bonds) const
+void Forces::bonds_from_below(const Motion &motion, std::ptrdiff_t row, Scratch &scratch) const
 {
   if (row >= 0)
-    bonds_of_row(motion, static_cast<std::size_t>(row), row, bonds);
+    bonds_of_row(motion, static_cast<std::size_t>(row), row, scratch);
   else if (rows_repeat_)
-    bonds_of_row(motion, lattice_.rows() - static_cast<std::size_t>(-row), row, bonds);
+    bonds_of_row(motion, lattice_.rows() - static_cast<std::size_t>(-row), row, scratch);
   else
     for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
       for (std::size_t component = 0; component < 2; ++component)
-        std::fill_n(bonds.at(row, kind, component) - TriangularLattice::row_alignment, lattice_.stride(), 0.);
+        std::fill_n(scratch.bonds.at(row, kind, component) - TriangularLattice::row_alignment, lattice_.stride(), 0.);
 }
 
 kernels::RowOfBonds Forces::row_of_bonds(const Motion &motion, std::size_t row) const
@@ -174,7 +178,7 @@ bool Forces::row_has_events_ahead(const State &state, std::size_t row, double ah
 }
 
 // The bonds of row `from` as those of `row`: the same, or below the edge of a periodic sheet.
-kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, BondRows &bonds,
+kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, Scratch &scratch,
                                       const std::vector<const double *> &ahead) const
 {
   kernels::RowOfBonds all = row_of_bonds(motion, from);
@@ -182,9 +186,14 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
   all.n_ahead = ahead.size();
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
     for (std::size_t component = 0; component < 2; ++component)
-      all.force[kind][component] = bonds.at(row, kind, component);
+      all.force[kind][component] = scratch.bonds.at(row, kind, component);
   kernels::RowSums sums = kernels::bonds_of_row(laws_, constants_, all);
-  add_overstress(motion.state, from, all, sums);
+  if (!row_mechanism_power_.empty())
+  {
+    add_overstress(motion.state, from, all, scratch.mechanism_power);
+    for (const double power : scratch.mechanism_power)
+      sums.viscous_power += power;
+  }
   // A site gathers from the places around it, so bonds that start beyond a periodic edge must be there.
   const std::size_t columns = lattice_.columns();
   if (columns_repeat_)
@@ -231,7 +240,24 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy)
 void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, std::size_t place, std::size_t kind)
 {
   if (band_.owns(place))
-    row_viscous_power_[lattice_.row_of(place)] -= single_bond({state, vx, vy}, place, kind).viscous_power;
+  {
+    const std::size_t row = lattice_.row_of(place);
+    const kernels::BondForce bond = single_bond({state, vx, vy}, place, kind);
+    row_viscous_power_[row] -= bond.viscous_power;
+    if (!state.history.kinds[kind].variables.empty())
+    {
+      const std::size_t shell = kind / n_nearest_kinds;
+      const kernels::Overstress over = overstress(state, place, kind, bond.stretch);
+      for (std::size_t m = 0; m < n_mechanisms(memories_[shell]); ++m)
+        row_mechanism_power_[first_mechanism_[shell] + m][row] -= over.dissipation[m];
+    }
+  }
+}
+
+kernels::Overstress Forces::overstress(const State &state, std::size_t place, std::size_t kind, double stretch) const
+{
+  return kernels::overstress(memory_steps_[kind / n_nearest_kinds], constants_.shell(kind), stretch, place,
+                             remembered_from<const double *>(state.history.kinds[kind], 0));
 }
 
 kernels::BondForce Forces::single_bond(const Motion &motion, std::size_t place, std::size_t kind) const
@@ -241,14 +267,13 @@ kernels::BondForce Forces::single_bond(const Motion &motion, std::size_t place, 
   kernels::BondForce bond = kernels::bond_force(laws_[kind / n_nearest_kinds], constants_.shell(kind),
                                                 state.x[far] - state.x[place], state.y[far] - state.y[place],
                                                 motion.vx[far] - motion.vx[place], motion.vy[far] - motion.vy[place]);
-  if (const BondHistory::Kind &history = state.history.kinds[kind]; !history.variables.empty())
+  if (!state.history.kinds[kind].variables.empty())
   {
-    const kernels::Overstress over =
-      kernels::overstress(memory_steps_[kind / n_nearest_kinds], constants_.shell(kind), bond.stretch, place,
-                          remembered_from<const double *>(history, 0));
+    const kernels::Overstress over = overstress(state, place, kind, bond.stretch);
     bond.x += over.axial * bond.nx;
     bond.y += over.axial * bond.ny;
-    bond.viscous_power += over.dissipation;
+    for (const double power : over.dissipation)
+      bond.viscous_power += power;
   }
   return bond;
 }

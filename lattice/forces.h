@@ -75,6 +75,10 @@ public:
   /// Sums over all rows of the band.
   double viscous_power() const;
 
+  /// Power that each mechanism of Material::n_mechanisms() dissipated at the last evaluation [W/m], in the bonds that
+  /// start in a row of the band; a part of viscous_power().
+  double mechanism_power(std::size_t mechanism, std::size_t row) const { return row_mechanism_power_[mechanism][row]; }
+
   /// Returns whether a row has bonds that were stretched past their limit (or retracted) at the last evaluation.
   bool row_has_events(std::size_t row) const { return row_events_[row] != 0; }
 
@@ -125,18 +129,20 @@ private:
   {
     explicit Scratch(std::size_t stride) : bonds(stride), fx(stride, 0.), fy(stride, 0.) {}
     BondRows bonds;
-    Field fx, fy; // forces on the sites of a row
+    Field fx, fy;                              // forces on the sites of a row
+    std::vector<double> mechanism_power = {}; // of the bonds that start in a row
   };
 
   void evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
                      const RowCallbacks &work);
   kernels::RowOfBonds row_of_bonds(const Motion &motion, std::size_t row) const;
-  void bonds_from_below(const Motion &motion, std::ptrdiff_t row, BondRows &bonds) const;
-  kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, BondRows &bonds,
+  void bonds_from_below(const Motion &motion, std::ptrdiff_t row, Scratch &scratch) const;
+  kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, Scratch &scratch,
                                 const std::vector<const double *> &ahead = {}) const;
   void gather_row(std::ptrdiff_t row, Scratch &scratch) const;
   void add_overstress(const State &state, std::size_t from, const kernels::RowOfBonds &bonds,
-                      kernels::RowSums &sums) const;
+                      std::vector<double> &mechanism_power) const;
+  kernels::Overstress overstress(const State &state, std::size_t place, std::size_t kind, double stretch) const;
   kernels::BondForce single_bond(const Motion &motion, std::size_t place, std::size_t kind) const;
 
   RowPartition band_;
@@ -144,6 +150,7 @@ private:
   kernels::BondLaws laws_;
   std::array<BondMemory, 2> memories_;
   std::array<MemoryStep, 2> memory_steps_;
+  std::array<std::size_t, 2> first_mechanism_; // of each shell
   kernels::SheetConstants constants_;
   bool rows_repeat_;    // periodic across the rows
   bool columns_repeat_; // periodic along them
@@ -151,6 +158,7 @@ private:
   std::vector<Scratch> scratch_; // one a thread
   Field fx_, fy_;
   Field row_viscous_power_;
+  std::vector<Field> row_mechanism_power_; // [mechanism][row]
   std::vector<std::uint8_t> row_events_, row_short_bonds_;
 };
 

@@ -1,5 +1,7 @@
 #include "lattice/material.h"
 
+#include <utility>
+
 namespace latcon::lattice
 {
 
@@ -8,16 +10,25 @@ bool Material::has_memory() const
   return n_variables(nearest.memory) > 0 || (next_nearest && n_variables(next_nearest->memory) > 0);
 }
 
+std::size_t Material::n_mechanisms() const
+{
+  return lattice::n_mechanisms(nearest.memory) + (next_nearest ? lattice::n_mechanisms(next_nearest->memory) : 0);
+}
+
+Material without_memory(Material material)
+{
+  material.nearest.memory = NoMemory();
+  if (material.next_nearest)
+    material.next_nearest->memory = NoMemory();
+  return material;
+}
+
 Material without_dashpots(Material material)
 {
-  const auto remove = [](Shell &shell)
-  {
-    shell.viscosity = 0.;
-    shell.memory = NoMemory();
-  };
-  remove(material.nearest);
+  material = without_memory(std::move(material));
+  material.nearest.viscosity = 0.;
   if (material.next_nearest)
-    remove(*material.next_nearest);
+    material.next_nearest->viscosity = 0.;
   return material;
 }
 

@@ -40,9 +40,16 @@ struct Material
   /// Returns whether bonds of some kind have a memory.
   bool has_memory() const;
 
+  /// Number of mechanisms by which memories store and dissipate energy: those of the nearest neighbours, then those of
+  /// the next-nearest.
+  std::size_t n_mechanisms() const;
+
   /// Bonds of a site inside the sheet: 6 or 12.
   unsigned int coordination() const { return next_nearest ? 12 : 6; }
 };
+
+/// Returns the bonds with their dashpots, but without memories.
+Material without_memory(Material material);
 
 /// Returns the bonds without their dashpots and memories, as they are in equilibrium.
 Material without_dashpots(Material material);

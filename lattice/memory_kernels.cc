@@ -1,5 +1,6 @@
 #include "lattice/memory_kernels.h"
 
+#include <algorithm>
 #include <variant>
 
 #include "lattice/instruction_sets.h"
@@ -52,39 +53,42 @@ HWY_INLINE void load_variables(const RememberedRow<Pointer> &remembered, std::si
 }
 
 template <class Step>
-double add_overstress_of(const Step &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
-                         const RememberedRow<const double *> &remembered)
+void add_overstress_of(const Step &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+                       const RememberedRow<const double *> &remembered, double *power)
 {
-  Lanes power[block];
-  for (Lanes &sum : power)
-    sum = lanes(0.);
+  // Partial sums whose order does not depend on the width of a vector.
+  alignas(64) double sums[max_history_variables][block];
+  for (std::size_t m = 0; m < step.n_mechanisms(); ++m)
+    std::fill_n(sums[m], block, 0.);
   const double volume = bond.cross_section * bond.rest_length;
   double *const fx = row.force[kind][0], *const fy = row.force[kind][1];
   const std::size_t end = (row.n + block - 1) / block * block;
   for (std::size_t site = 0; site < end; site += width())
   {
     const Directions bonds(bond, row, site, kind);
-    Lanes variables[max_history_variables], dissipation;
+    Lanes variables[max_history_variables], dissipation[max_history_variables];
     load_variables(remembered, step.n, site, variables);
     const Lanes stress = advance(step, load(remembered.stretch + site), bonds.stretch, variables, dissipation);
     const Lanes axial = bond.cross_section * bonds.where_present(stress);
     store(load(fx + site) + axial * bonds.nx, fx + site);
     store(load(fy + site) + axial * bonds.ny, fy + site);
-    Lanes &sum = power[site % block / width()];
-    sum = sum + volume * bonds.where_present(dissipation);
+    for (std::size_t m = 0; m < step.n_mechanisms(); ++m)
+    {
+      double *const sum = sums[m] + site % block;
+      store(load(sum) + bonds.where_present(dissipation[m]), sum);
+    }
   }
-  alignas(64) double sums[block];
-  for (std::size_t part = 0; part < block / width(); ++part)
-    store(power[part], sums + part * width());
-  double total = 0.;
-  for (const double sum : sums)
-    total += sum;
-  return total;
+  for (std::size_t m = 0; m < step.n_mechanisms(); ++m)
+  {
+    double total = 0.;
+    for (const double sum : sums[m])
+      total += sum;
+    power[m] += volume * total;
+  }
 }
-double add_overstress_of(const NoMemory::Step &, const BondConstants &, const RowOfBonds &, std::size_t,
-                         const RememberedRow<const double *> &)
+void add_overstress_of(const NoMemory::Step &, const BondConstants &, const RowOfBonds &, std::size_t,
+                       const RememberedRow<const double *> &, double *)
 {
-  return 0.;
 }
 
 template <class Step>
@@ -95,7 +99,7 @@ void update_memory_of(const Step &step, const BondConstants &bond, const RowOfBo
   for (std::size_t site = 0; site < end; site += width())
   {
     const Directions bonds(bond, row, site, kind);
-    Lanes variables[max_history_variables], dissipation;
+    Lanes variables[max_history_variables], dissipation[max_history_variables];
     load_variables(remembered, step.n, site, variables);
     advance(step, load(remembered.stretch + site), bonds.stretch, variables, dissipation);
     for (std::size_t v = 0; v < step.n; ++v)
@@ -108,10 +112,10 @@ void update_memory_of(const NoMemory::Step &, const BondConstants &, const RowOf
 {
 }
 
-double AddOverstress(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
-                     const RememberedRow<const double *> &remembered)
+void AddOverstress(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+                   const RememberedRow<const double *> &remembered, double *power)
 {
-  return std::visit([&](const auto &of_kind) { return add_overstress_of(of_kind, bond, row, kind, remembered); }, step);
+  std::visit([&](const auto &of_kind) { add_overstress_of(of_kind, bond, row, kind, remembered, power); }, step);
 }
 
 void UpdateMemory(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
@@ -130,10 +134,10 @@ namespace latcon::lattice::kernels
 HWY_EXPORT(AddOverstress);
 HWY_EXPORT(UpdateMemory);
 
-double add_overstress(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
-                      const RememberedRow<const double *> &remembered)
+void add_overstress(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+                    const RememberedRow<const double *> &remembered, double *power)
 {
-  return HWY_DYNAMIC_DISPATCH(AddOverstress)(step, bond, row, kind, remembered);
+  HWY_DYNAMIC_DISPATCH(AddOverstress)(step, bond, row, kind, remembered, power);
 }
 
 void update_memory(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
@@ -148,15 +152,18 @@ Overstress overstress(const MemoryStep &step, const BondConstants &bond, double 
   const auto of_bond = [&](const auto &s) -> Overstress
   {
     if constexpr (std::is_same_v<std::decay_t<decltype(s)>, NoMemory::Step>)
-      return {0., 0.};
+      return {0., {}};
     else
     {
       std::array<double, max_history_variables> variables{};
       for (std::size_t v = 0; v < s.n; ++v)
         variables[v] = remembered.variable[v][place];
-      double dissipation = 0.;
-      const double stress = formulas::advance(s, remembered.stretch[place], stretch, variables.data(), dissipation);
-      return {bond.cross_section * stress, bond.cross_section * bond.rest_length * dissipation};
+      Overstress result{0., {}};
+      result.axial = bond.cross_section * formulas::advance(s, remembered.stretch[place], stretch, variables.data(),
+                                                            result.dissipation.data());
+      for (double &power : result.dissipation)
+        power *= bond.cross_section * bond.rest_length;
+      return result;
     }
   };
   return std::visit(of_bond, step);

@@ -19,9 +19,9 @@ struct RememberedRow
 
 /// Adds the overstress of the bonds of one kind that start in a row to `row.force`, the present stretch being reached
 /// in the duration of `step` since the last update.
-/// @return power that they dissipate [W/m]
-double add_overstress(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
-                      const RememberedRow<const double *> &remembered);
+/// @param power the power that each mechanism dissipates in them is added [W/m]
+void add_overstress(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
+                    const RememberedRow<const double *> &remembered, double *power);
 
 /// Updates what the bonds remember to the present stretch. Absent bonds remember 0.
 void update_memory(const MemoryStep &step, const BondConstants &bond, const RowOfBonds &row, std::size_t kind,
@@ -30,8 +30,8 @@ void update_memory(const MemoryStep &step, const BondConstants &bond, const RowO
 /// Overstress of one bond.
 struct Overstress
 {
-  double axial;       ///< [N/m], tension positive
-  double dissipation; ///< [W/m]
+  double axial;                                          ///< [N/m], tension positive
+  std::array<double, max_history_variables> dissipation; ///< of each mechanism, 0 beyond [W/m]
 };
 /// By the operations of add_overstress, so that both have the same bits. @param place of the remembered row
 Overstress overstress(const MemoryStep &step, const BondConstants &bond, double stretch, std::size_t place,

@@ -41,7 +41,8 @@ Simulation::Simulation(const RowPartition &band, const Material &material, State
                        std::optional<Fracture> fracture)
   : band_(band), lattice_(band.lattice()), material_(material), state_(std::move(initial)),
     time_stepping_(time_stepping), forces_(band, material), integrator_(integrator(band, forces_, time_stepping)),
-    fracture_(std::move(fracture)), powers_(lattice_.rows()), work_(lattice_.rows())
+    fracture_(std::move(fracture)), powers_(lattice_.rows(), material.n_mechanisms()),
+    work_(lattice_.rows(), material.n_mechanisms())
 {
   if (material_.has_memory() && state_.history.empty())
     relax_memory(state_, band_, material_);
@@ -99,6 +100,8 @@ void Simulation::update_powers()
   for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
   {
     powers_.viscous[row] = forces_.viscous_power(row);
+    for (std::size_t m = 0; m < powers_.mechanisms.size(); ++m)
+      powers_.mechanisms[m][row] = forces_.mechanism_power(m, row);
     powers_.contact[row] = 0.;
     powers_.boundary[row] = edges_move_ ? boundary_power(state_, lattice_, forces_, integrator_->evaluated_vx(state_),
                                                          integrator_->evaluated_vy(state_), row)
@@ -128,6 +131,8 @@ void Simulation::add_work(const Ledger &before, double duration)
     work_.viscous[row] += half * (before.viscous[row] + powers_.viscous[row]);
     work_.contact[row] += half * (before.contact[row] + powers_.contact[row]);
     work_.boundary[row] += half * (before.boundary[row] + powers_.boundary[row]);
+    for (std::size_t m = 0; m < work_.mechanisms.size(); ++m)
+      work_.mechanisms[m][row] += half * (before.mechanisms[m][row] + powers_.mechanisms[m][row]);
   }
 }
 
@@ -278,6 +283,13 @@ const State &Simulation::gather(Rows rows)
   for (Field *field : {&state_.x, &state_.y, &state_.vx, &state_.vy})
     band_.gather(*field, rows);
   band_.gather(state_.bonds.storage(), rows);
+  for (BondHistory::Kind &history : state_.history.kinds)
+    if (!history.variables.empty())
+    {
+      band_.gather(history.stretch, rows);
+      for (Field &variable : history.variables)
+        band_.gather(variable, rows);
+    }
   for (SiteFlags *marks : {&state_.held, &state_.removed, &state_.lost_bonds})
     band_.gather(*marks, rows);
   if (band_.is_first())
@@ -320,6 +332,14 @@ EnergyBalance Simulation::energies() const
 {
   return {stored_energy(),          kinetic_energy(state_, band_), band_.sum(work_.viscous), broken_,
           band_.sum(work_.contact), band_.sum(work_.boundary),     initial_energy_};
+}
+
+std::vector<MechanismEnergy> Simulation::mechanism_energies() const
+{
+  std::vector<MechanismEnergy> energies;
+  for (const double stored : memory_energies(state_, band_, material_))
+    energies.push_back({stored, band_.sum(work_.mechanisms[energies.size()])});
+  return energies;
 }
 
 } // namespace latcon::lattice

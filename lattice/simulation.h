@@ -89,6 +89,8 @@ public:
   std::size_t n_broken() const { return n_broken_; } ///< bonds broken since the start, the seed's not counted
   std::size_t n_divided_steps() const { return n_divided_steps_; } ///< time steps made in parts since the start
   EnergyBalance energies() const;
+  /// Energies by mechanism of the memories of bonds, in the order of Material::n_mechanisms(). Collective.
+  std::vector<MechanismEnergy> mechanism_energies() const;
   const Contact *contact() const { return contact_ ? &*contact_ : nullptr; } ///< nullptr: sites do not touch
 
   static constexpr int most_parts = 1 << 20; ///< into which a step is divided
@@ -101,7 +103,11 @@ private:
     std::vector<double> viscous;  // dissipated by dashpots
     std::vector<double> contact;  // from the sheet into contacts
     std::vector<double> boundary; // into the sheet from its edges
-    explicit Ledger(std::size_t rows) : viscous(rows, 0.), contact(rows, 0.), boundary(rows, 0.) {}
+    std::vector<std::vector<double>> mechanisms; // dissipated by each mechanism of the memories; a part of `viscous`
+    Ledger(std::size_t rows, std::size_t n_mechanisms)
+      : viscous(rows, 0.), contact(rows, 0.), boundary(rows, 0.), mechanisms(n_mechanisms, viscous)
+    {
+    }
   };
 
   double stored_energy() const; // in bonds and their memory [J/m]
@@ -168,6 +174,8 @@ void Simulation::archive(Archive &archive)
     archive_rows(archive, name + "_viscous", ledger->viscous, band_);
     archive_rows(archive, name + "_contact", ledger->contact, band_);
     archive_rows(archive, name + "_boundary", ledger->boundary, band_);
+    for (std::size_t m = 0; m < ledger->mechanisms.size(); ++m)
+      archive_rows(archive, name + "_mechanism_" + std::to_string(m), ledger->mechanisms[m], band_);
   }
   archive("parts", parts_);
   archive("n_divided_steps", n_divided_steps_);

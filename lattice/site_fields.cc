@@ -1,11 +1,34 @@
 #include "lattice/site_fields.h"
 
 #include <cmath>
+#include <type_traits>
 
 #include <Eigen/LU>
 
 namespace latcon::lattice
 {
+namespace
+{
+
+// Overstress of a bond as of the last update of its memory [Pa]. @param step over no time
+double overstress(const MemoryStep &step, const BondHistory &history, std::size_t place, std::size_t kind)
+{
+  const auto of_bond = [&](const auto &over_no_time) -> double
+  {
+    if constexpr (std::is_same_v<std::decay_t<decltype(over_no_time)>, NoMemory::Step>)
+      return 0.;
+    else
+    {
+      std::array<double, max_history_variables> variables{}, dissipation{};
+      history.variables_of(place, kind, variables.data());
+      const double stretch = history.kinds[kind].stretch[place];
+      return formulas::advance(over_no_time, stretch, stretch, variables.data(), dissipation.data());
+    }
+  };
+  return std::visit(of_bond, step);
+}
+
+} // namespace
 
 SiteEvaluator::SiteEvaluator(const TriangularLattice &lattice, const Material &material)
   : lattice_(lattice), material_(material)
@@ -18,7 +41,8 @@ SiteEvaluator::SiteEvaluator(const TriangularLattice &lattice, const Material &m
                     R * R.transpose(),
                     lattice.rest_length(kind),
                     shell != nullptr ? cross_section(*shell, lattice) : 0.,
-                    {{lattice.shift(kind, 0), lattice.shift(kind, 1)}}};
+                    {{lattice.shift(kind, 0), lattice.shift(kind, 1)}},
+                    memory_step(shell != nullptr ? shell->memory : NoMemory(), 0.)};
   }
 }
 
@@ -40,8 +64,10 @@ SiteValues SiteEvaluator::at(const State &state, std::size_t place) const
       const double length = bond.norm();
       const Eigen::Vector2d direction = bond / length;
       const double stretch = length / kind.rest_length;
-      const double axial =
+      double axial =
         kind.section * (force(shell.law, stretch) + shell.viscosity * rate.dot(direction) / kind.rest_length);
+      if (!state.history.kinds[number].variables.empty())
+        axial += kind.section * overstress(kind.at_rest, state.history, near, number);
       ++values.bonds;
       values.strain_energy_density += 0.5 * kind.section * kind.rest_length * energy(shell.law, stretch);
       values.first_piola_stress += 0.5 * axial * direction * kind.reference.transpose();

@@ -14,13 +14,14 @@ using TensorField = std::vector<Eigen::Matrix2d>;
 /// cracks, where a site has fewer bonds and the values are sums over those.
 struct SiteValues
 {
-  /// W [J/m^3]: half the energy of every bond of the site over its reference volume. Exact in a homogeneous
-  /// deformation.
+  /// W [J/m^3]: half the energy of the law of every bond of the site over its reference volume. Exact in a homogeneous
+  /// deformation. Energy stored in memories of bonds is excluded.
   double strain_energy_density = 0.;
   /// F_iJ [-]: least-squares fit of x_j - x_i = F (X_j - X_i) over the bonds of the site; identity where they do not
   /// fix it.
   Eigen::Matrix2d deformation_gradient = Eigen::Matrix2d::Identity();
-  /// P_iJ = (1 / 2V) sum_j f_i R_J [Pa]: virial first Piola stress of elastic and viscous bond forces, R reference.
+  /// P_iJ = (1 / 2V) sum_j f_i R_J [Pa]: virial first Piola stress of elastic and viscous bond forces and of the
+  /// overstress as of its last update, R reference.
   Eigen::Matrix2d first_piola_stress = Eigen::Matrix2d::Zero();
   /// P F^T / det F [Pa]: force per current length and reference thickness (a lattice has no thickness to change). Zero
   /// where F is not fixed or has det F <= 0.
@@ -47,6 +48,7 @@ private:
     Eigen::Matrix2d reference_moment;
     double rest_length, section;
     std::array<std::ptrdiff_t, 2> shift; // from even and odd rows
+    MemoryStep at_rest;                  // update of the memory over no time
   };
   const TriangularLattice &lattice_;
   Material material_;

@@ -11,9 +11,9 @@
 /// Memories of bonds: overstresses q that depend on the past of a bond through a number of variables per bond,
 ///   sigma = psi'(lam) + eta lam' + q   (theory.md, eq. (L.27)).
 ///
-/// A memory declares its number of variables, its energy and a bound on its stiffness; its `Step` has what an update
-/// over one duration needs, and `advance` is its formula for any type of number. Variables are 0 at rest and are stored
-/// by BondHistory.
+/// A memory declares its number of variables, the mechanisms by which it stores and dissipates energy, and a bound on
+/// its stiffness; its `Step` has what an update over one duration needs, and `advance` is its formula for any type of
+/// number. Variables are 0 at rest and are stored by BondHistory.
 namespace latcon::lattice
 {
 
@@ -21,8 +21,9 @@ namespace latcon::lattice
 struct NoMemory
 {
   std::size_t n_variables() const { return 0; }
+  std::size_t n_mechanisms() const { return 0; }
   double largest_stiffness() const { return 0.; }
-  double stored_energy(double /*stretch*/, const double * /*variables*/) const { return 0.; }
+  double stored_energy(std::size_t /*mechanism*/, double /*stretch*/, const double * /*variables*/) const { return 0.; }
   struct Step
   {
   };
@@ -39,15 +40,20 @@ inline std::size_t n_variables(const BondMemory &memory)
 {
   return std::visit([](const auto &m) { return m.n_variables(); }, memory);
 }
+/// Number of mechanisms whose energies are recorded one by one, at most n_variables(): branches of a MaxwellMemory.
+inline std::size_t n_mechanisms(const BondMemory &memory)
+{
+  return std::visit([](const auto &m) { return m.n_mechanisms(); }, memory);
+}
 /// Bound on dq/dlam in fast motion [Pa].
 inline double largest_stiffness(const BondMemory &memory)
 {
   return std::visit([](const auto &m) { return m.largest_stiffness(); }, memory);
 }
-/// Energy stored per reference volume of a bond [Pa].
-inline double stored_energy(const BondMemory &memory, double stretch, const double *variables)
+/// Energy that one mechanism stores per reference volume of a bond [Pa].
+inline double stored_energy(const BondMemory &memory, std::size_t mechanism, double stretch, const double *variables)
 {
-  return std::visit([&](const auto &m) { return m.stored_energy(stretch, variables); }, memory);
+  return std::visit([&](const auto &m) { return m.stored_energy(mechanism, stretch, variables); }, memory);
 }
 /// Update over `duration` [s], >= 0.
 inline MemoryStep memory_step(const BondMemory &memory, double duration)

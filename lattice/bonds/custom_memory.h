@@ -48,8 +48,10 @@ public:
   explicit CustomMemory(std::shared_ptr<const CustomMemoryLaw> law);
 
   std::size_t n_variables() const { return law_->n_variables(); }
+  /// Energies are those of the law as a whole.
+  std::size_t n_mechanisms() const { return 1; }
   double largest_stiffness() const { return law_->largest_stiffness(); }
-  double stored_energy(double stretch, const double *variables) const
+  double stored_energy(std::size_t /*mechanism*/, double stretch, const double *variables) const
   {
     return law_->stored_energy(stretch, variables);
   }
@@ -60,6 +62,7 @@ public:
     const CustomMemoryLaw *law;
     double duration; ///< [s]
     std::size_t n;   ///< variables
+    std::size_t n_mechanisms() const { return 1; }
   };
   Step step(double duration) const { return {law_.get(), duration, n_variables()}; }
 
@@ -92,9 +95,9 @@ inline double advance_each(const CustomMemory::Step &step, double before, double
 /// Updates the variables of a bond while its stretch changes from `before` to `now`.
 /// @param dissipation at the end [Pa/s] @return overstress at the end [Pa]
 template <class Number>
-inline Number advance(const CustomMemory::Step &step, Number before, Number now, Number *variables, Number &dissipation)
+inline Number advance(const CustomMemory::Step &step, Number before, Number now, Number *variables, Number *dissipation)
 {
-  return advance_each(step, before, now, variables, dissipation);
+  return advance_each(step, before, now, variables, *dissipation);
 }
 
 } // namespace latcon::lattice::LATCON_FORMULAS

@@ -59,12 +59,9 @@ double MaxwellMemory::largest_stiffness() const
   return sum;
 }
 
-double MaxwellMemory::stored_energy(double /*stretch*/, const double *overstress) const
+double MaxwellMemory::stored_energy(std::size_t branch, double /*stretch*/, const double *overstress) const
 {
-  double sum = 0.;
-  for (std::size_t i = 0; i < branches_.size(); ++i)
-    sum += 0.5 * overstress[i] * overstress[i] / branches_[i].modulus;
-  return sum;
+  return 0.5 * overstress[branch] * overstress[branch] / branches_[branch].modulus;
 }
 
 MaxwellMemory::Step MaxwellMemory::step(double duration) const

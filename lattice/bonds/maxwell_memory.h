@@ -28,17 +28,19 @@ public:
 
   const std::vector<Branch> &branches() const { return branches_; }
   std::size_t n_variables() const { return branches_.size(); }
+  std::size_t n_mechanisms() const { return branches_.size(); }
 
   /// Axial stiffness that the branches add to that of the law in fast motion, sum E_i [Pa].
   double largest_stiffness() const;
 
-  /// Energy in the springs per reference volume of the bond, sum q_i^2 / (2 E_i) [Pa].
-  double stored_energy(double stretch, const double *overstress) const;
+  /// Energy in the spring of one branch per reference volume of the bond, q_i^2 / (2 E_i) [Pa].
+  double stored_energy(std::size_t branch, double stretch, const double *overstress) const;
 
   /// Coefficients of an update over one duration.
   struct Step
   {
-    std::size_t n;
+    std::size_t n; ///< branches
+    std::size_t n_mechanisms() const { return n; }
     std::array<double, max_history_variables> decay;   ///< e^(-h/tau) [-]
     std::array<double, max_history_variables> gain;    ///< E tau/h (1 - e^(-h/tau)) [Pa]; E for h = 0
     std::array<double, max_history_variables> fluency; ///< 1 / (E tau) [1 / (Pa s)]
@@ -59,21 +61,22 @@ namespace latcon::lattice::LATCON_FORMULAS
 {
 
 /// Updates the overstresses of a bond while its stretch changes from `before` to `now`.
-/// @param dissipation power of the dashpots per reference volume of the bond at the end, sum q_i^2 / (E_i tau_i) [Pa/s]
+/// @param dissipation power of the dashpot of each branch per reference volume of the bond at the end,
+/// q_i^2 / (E_i tau_i) [Pa/s]
 /// @return sum q_i [Pa]
 template <class Number>
 inline Number advance(const MaxwellMemory::Step &step, Number before, Number now, Number *overstress,
-                      Number &dissipation)
+                      Number *dissipation)
 {
   const Number change = now - before;
   overstress[0] = step.decay[0] * overstress[0] + step.gain[0] * change;
   Number sum = overstress[0];
-  dissipation = step.fluency[0] * (overstress[0] * overstress[0]);
+  dissipation[0] = step.fluency[0] * (overstress[0] * overstress[0]);
   for (std::size_t i = 1; i < step.n; ++i)
   {
     overstress[i] = step.decay[i] * overstress[i] + step.gain[i] * change;
     sum = sum + overstress[i];
-    dissipation = dissipation + step.fluency[i] * (overstress[i] * overstress[i]);
+    dissipation[i] = step.fluency[i] * (overstress[i] * overstress[i]);
   }
   return sum;
 }

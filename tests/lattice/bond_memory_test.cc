@@ -12,6 +12,7 @@
 #include <omp.h>
 
 #include "lattice/simulation.h"
+#include "lattice/site_fields.h"
 #include "lattice/time_step.h"
 #include "tests/lattice/sheets.h"
 
@@ -60,22 +61,27 @@ TEST(MaxwellMemory, IsExactOnARamp)
   for (const double h : {1e-7, 3e-6, 2e-4})
   {
     const MaxwellMemory::Step step = memory.step(h);
-    double q[2] = {0., 0.}, dissipation = 0., sum = 0.;
+    double q[2] = {0., 0.}, dissipation[2] = {0., 0.}, sum = 0.;
     const int n = 50;
     for (int i = 0; i < n; ++i)
       sum = formulas::advance(step, 1. + i * h * rate, 1. + (i + 1) * h * rate, q, dissipation);
-    double exact = 0., exact_dissipation = 0.;
+    double exact = 0.;
+    std::vector<double> of_branches;
     for (const auto &[modulus, time] : branches)
     {
-      const double of_branch = -modulus * time * rate * std::expm1(-n * h / time);
-      exact += of_branch;
-      exact_dissipation += of_branch * of_branch / (modulus * time);
+      of_branches.push_back(-modulus * time * rate * std::expm1(-n * h / time));
+      exact += of_branches.back();
     }
     // Each difference of stretches is off by the round-off of 1.
     const double round_off = 4. * 3e5 * n * 2.3e-16 + 1e-13 * exact;
     EXPECT_NEAR(sum, exact, round_off) << h;
-    EXPECT_NEAR(dissipation, exact_dissipation, 2. * exact_dissipation * round_off / exact) << h;
-    EXPECT_NEAR(memory.stored_energy(1., q), 0.5 * (q[0] * q[0] / 2e5 + q[1] * q[1] / 1e5), 1e-15 * sum);
+    for (std::size_t i = 0; i < branches.size(); ++i)
+    {
+      const double q_exact = of_branches[i],
+                   power = q_exact * q_exact / (branches[i].modulus * branches[i].relaxation_time);
+      EXPECT_NEAR(dissipation[i], power, 2. * power * round_off / q_exact) << h;
+      EXPECT_NEAR(memory.stored_energy(i, 1., q), 0.5 * q[i] * q[i] / branches[i].modulus, 1e-15 * sum);
+    }
   }
 }
 
@@ -236,6 +242,19 @@ TEST(BondMemory, ClosesTheEnergyBalanceThroughFracture)
     EXPECT_GT(simulation->n_broken(), 15u);
     const double stored = memory_energy(simulation->state(), sheet, simulation->material());
     EXPECT_GT(stored, 1e-4 * e.initial) << "too quiet to show anything";
+    // Two branches of nearest neighbours, and the others' memory from outside.
+    const std::vector<MechanismEnergy> mechanisms = simulation->mechanism_energies();
+    ASSERT_EQ(mechanisms.size(), 3u);
+    double stored_sum = 0., dissipated_sum = 0.;
+    for (const MechanismEnergy &mechanism : mechanisms)
+    {
+      EXPECT_GT(mechanism.stored, 0.);
+      EXPECT_GT(mechanism.dissipated, 0.);
+      stored_sum += mechanism.stored;
+      dissipated_sum += mechanism.dissipated;
+    }
+    EXPECT_NEAR(stored_sum, stored, 1e-12 * stored);
+    EXPECT_LT(dissipated_sum, e.viscous);
     // The error of the time stepping, far below what memories hold.
     EXPECT_LT(std::abs(e.imbalance()), 1e-2 * stored);
   }
@@ -259,6 +278,13 @@ void expect_same_bits(const Simulation &one, const Simulation &other)
   }
   EXPECT_EQ(one.n_broken(), other.n_broken());
   EXPECT_EQ(one.energies().viscous, other.energies().viscous);
+  const std::vector<MechanismEnergy> of_one = one.mechanism_energies(), of_other = other.mechanism_energies();
+  ASSERT_EQ(of_one.size(), of_other.size());
+  for (std::size_t m = 0; m < of_one.size(); ++m)
+  {
+    EXPECT_EQ(of_one[m].stored, of_other[m].stored);
+    EXPECT_EQ(of_one[m].dissipated, of_other[m].dissipated);
+  }
   EXPECT_EQ(one.energies().imbalance(), other.energies().imbalance());
 }
 
@@ -361,6 +387,44 @@ TEST(BondMemory, HasTheSameBitsForAllThreadsAndInstructionSets)
     expect_same_bits(*run(2, set), *one);
   kernels::use_instruction_set(sets.front());
   omp_set_num_threads(threads_before);
+}
+
+// Without viscosity the mechanisms dissipate everything, broken bonds included; stresses of sites contain overstresses.
+TEST(BondMemory, RecordsEnergiesByMechanism)
+{
+  const TriangularLattice sheet = cracked_sheet();
+  const auto simulation = crack(sheet, sheets::rubber_with_memory(0.));
+  for (int step = 0; step < 600; ++step)
+    simulation->step();
+  ASSERT_GT(simulation->n_broken(), 0u) << "too quiet to show anything";
+  double dissipated = 0.;
+  for (const MechanismEnergy &mechanism : simulation->mechanism_energies())
+    dissipated += mechanism.dissipated;
+  // 600 steps, each rounding sums over a few hundred bonds.
+  EXPECT_NEAR(dissipated, simulation->energies().viscous, 1e-11 * dissipated);
+}
+
+// theory.md, eq. (L.31), at the start: P = P_relaxed + sum A0 l / V E (lam - 1) n N.
+TEST(BondMemory, ContributesToTheStressOfSites)
+{
+  const HeldSheet held(verlet, sheets::rubber_with_memory());
+  const State &state = held.simulation->state();
+  const TriangularLattice &sheet = held.sheet;
+  const std::size_t middle = sheet.index(sheet.rows() / 2, sheet.columns() / 2);
+  Eigen::Matrix2d overstress = Eigen::Matrix2d::Zero();
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  {
+    const Eigen::Vector2d R = sheet.bond_vector(kind), r = held.F * R;
+    const double modulus = TriangularLattice::is_nearest(kind) ? 3e5 : 1.5e5;
+    overstress += cross_section(*held.material.shell(kind), sheet) / sheet.site_area() * modulus *
+                  (r.norm() / R.norm() - 1.) * r.normalized() * R.transpose();
+  }
+  State relaxed = state;
+  relaxed.history = {};
+  const SiteEvaluator evaluator(sheet, held.material);
+  const Eigen::Matrix2d found =
+    evaluator.at(state, middle).first_piola_stress - evaluator.at(relaxed, middle).first_piola_stress;
+  EXPECT_LT((found - overstress).norm(), 1e-12 * overstress.norm());
 }
 
 // Forces that bonds between an update and the next have by the kernel of a row and by that of one bond.
