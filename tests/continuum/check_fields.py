@@ -52,8 +52,8 @@ def check(path, time, n_cells):
     assert grid.GetNumberOfCells() == n_cells, f"{path.name} has {grid.GetNumberOfCells()} cells"
     if path.suffix == ".vtu":
         stored = grid.GetFieldData().GetArray("TimeValue")
-        assert stored is not None, f"{path.name} has no TIME"
-        assert stored.GetValue(0) == time, f"TIME is {stored.GetValue(0)!r}, the series says {time!r}"
+        assert stored is not None, f"{path.name} has no TimeValue"
+        assert stored.GetValue(0) == time, f"TimeValue is {stored.GetValue(0)!r}, the series says {time!r}"
     points = grid.GetPointData()
     names = {points.GetArrayName(i) for i in range(points.GetNumberOfArrays())}
     wanted = {"displacement", "deformation_gradient", "first_piola_stress", "cauchy_stress", "strain_energy_density",
