@@ -45,7 +45,7 @@ class Help(TemporaryFolder):
 
     def test_every_command_has_the_shared_options_and_an_example(self):
         commands = re.findall(r"^  ([a-z]+) ", latcon("--help").stdout.split("Subcommands:")[1], re.M)
-        shared = re.findall(r"^  (--(?!version)[a-z-]+)", latcon("--help").stdout, re.M)
+        shared = re.findall(r"^  (?:-[a-z],)?(--(?!version|help)[a-z-]+)", latcon("--help").stdout, re.M)
         self.assertIn("--yes", shared)
         for command in commands:
             text = latcon(command, "--help").stdout
