@@ -24,6 +24,7 @@ QUANTITIES = {"crack.wavelength": ("wavelength", "cm", 100), "crack.crest_amplit
               "crack.speed_lagrangian": ("speed", "m/s", 1)}
 SCALES = {"m": ("cm", 100), "1": ("1", 1)}
 LISTED = 8  # sets in the table of the best
+UNBOUNDED = 10  # uncertainty of a combination, in ranges between the bounds
 
 
 def read_fit(directory):
@@ -94,9 +95,12 @@ def sets(result, others):
 
 
 def directions(result):
+    """Bounded combinations, and the share of each parameter in the space of the others, whose basis is arbitrary."""
     keys = list(result.parameters.index)
-    rows = [[f"{row['uncertainty']:.2g}" if row["uncertainty"] < 10 else "over 10", "yes" if row["determined"] else "no",
-             *(f"{row[key]:+.2f}" for key in keys)] for _, row in result.directions.iterrows()]
+    bounded = result.directions[result.directions["uncertainty"] < UNBOUNDED]
+    rows = [[f"{row['uncertainty']:.2g}", "yes" if row["determined"] else "no", *(f"{row[key]:+.2f}" for key in keys)]
+            for _, row in bounded.iterrows()]
+    rows.append(["unbounded", "no", *(f"{100 * (1 - (bounded[key]**2).sum()):.0f} %" for key in keys)])
     return table(["uncertainty", "determined", *map(short, keys)], rows)
 
 
