@@ -47,3 +47,4 @@ install(FILES docs/library.md cmake/copyright ${PROJECT_BINARY_DIR}/changelog.gz
 # Module path of Debian's interpreter below /usr.
 install(DIRECTORY python/latcon DESTINATION lib/python3/dist-packages COMPONENT python PATTERN __pycache__ EXCLUDE)
 install(FILES docs/python.md cmake/copyright ${PROJECT_BINARY_DIR}/changelog.gz DESTINATION share/doc/python3-latcon COMPONENT python)
+install(DIRECTORY examples/fit-fig1 DESTINATION share/doc/python3-latcon/examples COMPONENT python PATTERN __pycache__ EXCLUDE)

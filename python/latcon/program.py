@@ -169,10 +169,13 @@ def _message(errors: Sequence[str], output: str) -> str:
 class _Lines:
     """Splits the standard error of the program into progress lines and messages.
 
-    A progress line follows ``\\r ESC [K`` and has no line end; a message ends with one.
+    A progress line follows ``\\r ESC [K`` and has no line end; a message ends with one. A message of the scripts of the report may
+    follow a progress line directly. Escape sequences for colours are removed.
     """
 
     _SEPARATOR = re.compile(r"(\r\x1b\[K|\r*\n)")
+    _PROGRESS = re.compile(r".*?, \d+ s (?:left|so far)")
+    _COLOUR = re.compile(r"\x1b\[[0-9;]*m")
 
     def __init__(self, show: _Shower) -> None:
         self.messages: list[str] = []
@@ -184,7 +187,7 @@ class _Lines:
         pieces = self._SEPARATOR.split(self._pending + text)
         for piece, separator in zip(pieces[::2], pieces[1::2]):
             if separator.endswith("\n"):
-                self._add(piece)
+                self._add(self._PROGRESS.sub("", piece, count=1) if self._in_progress else piece)
             self._in_progress = not separator.endswith("\n")
         self._pending = pieces[-1]
         # Without a partial separator at the end.
@@ -199,6 +202,7 @@ class _Lines:
         self._show.close()
 
     def _add(self, message: str) -> None:
+        message = self._COLOUR.sub("", message)
         if message.strip():
             self.messages.append(message.rstrip())
 

@@ -31,7 +31,8 @@ class PythonPackage(unittest.TestCase):
         # A run in the fresh folder, by the installed package alone.
         printed = run("env", "-C", fresh, f"LATCON={LATCON}", FOLDER / "own/bin/python", "-c",
                       "import latcon; case = latcon.Case('quick').set('Sheet/length', '1 cm').set('Sheet/height', '6 mm'); "
-                      "run = latcon.fracture(case.set('Time/end', '0.01 ms'), 'out', skip_verification=True, report=False, progress=False); "
+                      "case = case.set('Time/end', '0.01 ms'); "
+                      "run = latcon.fracture(case, 'out', skip_verification=True, report=False, progress=False); "
                       "print(run.exit_code, len(run.frames))")
         self.assertEqual(printed.split(), ["0", "2"])
         self.assertTrue((fresh / "out" / "crack.json").is_file())

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
-"""Checks the recipes in packaging/ as far as possible without running them: syntax, versions, names of files, and dependencies, which
-follow from cmake/packages.txt and CMakeLists.txt.
+"""Checks the recipes in packaging/ as far as possible without running them: syntax, versions, names of files, and dependencies,
+which follow from cmake/packages.txt and CMakeLists.txt.
 
 Usage: recipes_test.py SOURCE_FOLDER BUILD_FOLDER
 """

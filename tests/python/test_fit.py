@@ -19,6 +19,7 @@ from latcon.fit.local_model import PRIOR, fit_local_model
 from latcon.fit.misfit import UNDETERMINED, tabulate
 from latcon.fit.problem import Axis, Problem
 from latcon.fit.record import Evaluation, Outcome
+from latcon.fit.result import _pivoted_basis
 from latcon.fit.search import propose
 
 STRETCH, DENSITY, SEED = "Fracture/breaking stretch", "Material/density", "Lattice/noise seed"
@@ -411,6 +412,18 @@ def test_quantities_may_jump_where_a_word_changes():
                    for number, at in enumerate(positions)]
     model = fit_local_model(tabulate(problem, evaluations))
     assert model.center[0] == pytest.approx(0.45, abs=1e-6) and (positions[model.rows] < 0.5).all()
+
+
+def test_undetermined_directions_do_not_depend_on_round_off():
+    generator = np.random.default_rng(1)
+    # A plane that contains the second axis and another direction.
+    plane = np.linalg.qr(np.array([[0, 1, 0, 0], [0.6, 0.1, -0.4, 0.7]]).T)[0]
+    found = [_pivoted_basis(plane @ np.linalg.qr(generator.normal(size=(2, 2)))[0]) for _ in range(5)]
+    for basis in found:
+        np.testing.assert_allclose(basis, found[0], atol=1e-12)
+        np.testing.assert_allclose(basis.T @ basis, np.eye(2), atol=1e-12)
+        np.testing.assert_allclose(basis @ basis.T, plane @ plane.T, atol=1e-12)
+    np.testing.assert_allclose(found[0][:, 0], [0, 1, 0, 0], atol=1e-12)  # the parameter that is free
 
 
 def test_integers_and_logarithmic_parameters(small_fit, crack, tmp_path):

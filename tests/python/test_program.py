@@ -102,6 +102,13 @@ def test_progress_is_shown_in_place_in_a_terminal_and_sparsely_in_a_log(stand_in
         assert stream.getvalue().startswith(shown)
 
 
+def test_messages_have_neither_progress_lines_nor_colours():
+    lines = program._Lines(program._Shower())
+    lines.feed("\r\x1b[Kdrawing report.html, 2 s so farerror: no package\n\x1b[0m\x1b[31mred\x1b[0m\n\x1b[0m\nover 5, 2 s left\n")
+    lines.close()
+    assert lines.messages == ["error: no package", "red", "over 5, 2 s left"]
+
+
 def test_progress_lines_are_found_however_they_are_cut():
     text = "\r\x1b[Kstep 1\r\x1b[Kstep 22\r\x1b[Kone\r\nlatcon: two\n"
     for size in range(1, len(text)):

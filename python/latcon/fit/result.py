@@ -22,6 +22,8 @@ from .record import Evaluation
 # uniform distribution between the bounds.
 _DETERMINED = 0.5
 _CONFIDENCE = 0.95
+# Eigenvalues of half the Hessian over the largest that round-off makes of zero: of (parameters) sums in double precision.
+_ROUND_OFF = 1e-12
 # Components of a direction that its description names.
 _NAMED = 0.3
 
@@ -132,13 +134,16 @@ class Fit:
         """Combinations of parameters from the best to the worst determined: eigenvectors of half the Hessian of the misfit.
 
         Columns ``uncertainty`` (distance along the direction that raises the misfit by 1), ``determined``, and the component of
-        each parameter; all in fractions of the range between the bounds. Empty without a local model.
+        each parameter; all in fractions of the range between the bounds. Empty without a local model. Directions along which the
+        misfit does not change have no unique basis: the first of them is that of the parameter which can change most along them.
         """
         names = [axis.key for axis in self._axes]
         if self.model is None:
             return pd.DataFrame(columns=["uncertainty", "determined", *names])
         values, vectors = np.linalg.eigh(self.model.metric - np.eye(len(names)) / PRIOR**2)
         order = np.argsort(-values)
+        free = values[order] <= _ROUND_OFF * values.max()
+        vectors[:, order[free]] = _pivoted_basis(vectors[:, order[free]])
         uncertainty = 1 / np.sqrt(np.maximum(values[order], 1e-12))
         total = 1 / np.sqrt(1 / uncertainty**2 + 1 / PRIOR**2)
         table = pd.DataFrame(_with_positive_largest(vectors[:, order].T), columns=names)
@@ -217,3 +222,14 @@ def _slope(axis: Axis, value: float) -> float:
 def _with_positive_largest(vectors: Floats) -> Floats:
     largest = np.take_along_axis(vectors, np.abs(vectors).argmax(axis=1)[:, None], axis=1)
     return np.asarray(vectors * np.sign(largest))
+
+
+def _pivoted_basis(vectors: Floats) -> Floats:
+    """Orthonormal basis, by columns, of the space that orthonormal columns span; independent of their choice."""
+    projector = vectors @ vectors.T
+    basis = np.empty_like(vectors)
+    for column in basis.T:
+        pivot = int(np.argmax(np.diag(projector)))
+        column[:] = projector[pivot] / math.sqrt(projector[pivot, pivot])
+        projector = projector - np.outer(column, column)
+    return basis
