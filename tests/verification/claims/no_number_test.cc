@@ -227,10 +227,10 @@ const ClaimPart notch{"prestretch, notch", [](const Subject &s)
                       }};
 
 // With a memory, so that the claims about memories are among those before fracture.
-Material material_with_branch()
+lattice::Material material_with_branch()
 {
-  Material material = subjects::paper_case().material();
-  material.nearest.memory = MaxwellMemory({{1e5, 1e-4}});
+  lattice::Material material = subjects::paper_case().material();
+  material.nearest.memory = lattice::MaxwellMemory({{1e5, 1e-4}});
   return material;
 }
 

@@ -18,8 +18,9 @@ using Complex = std::complex<double>;
 
 // Nonlinear terms change frequencies by the square of this.
 constexpr double strain = 1e-5;
-// Largest w h and h / tau. Velocity Verlet has sin(w' h / 2) = w h / 2, so extrapolation leaves (3 / 2560) of the fourth
-// power: 1.2e-7. The update of a branch leaves (h / tau)^4 / 2880 of its share, dashpots a term of the same order.
+// Largest w h and h / tau. Velocity Verlet has sin(w' h / 2) = w h / 2, so extrapolation leaves (3 / 2560) of the
+// fourth power: 1.2e-7. The update of a branch leaves (h / tau)^4 / 2880 of its share, dashpots a term of the same
+// order.
 constexpr double share_per_step = 0.1;
 
 double step_of(const WaveCell &cell, const lattice::Material &material, const Eigen::Matrix2d &F,

@@ -19,8 +19,8 @@ namespace
 constexpr const char *wave_names[] = {"L", "S"};
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-// Errors: extrapolated time stepping, three terms of 1.2e-7 (mode_run.cc), nonlinear terms 1e-10. Decays are down to a twentieth of the
-// frequency to which their error is relative.
+// Errors: extrapolated time stepping, three terms of 1.2e-7 (mode_run.cc), nonlinear terms 1e-10. Decays are down to a
+// twentieth of the frequency to which their error is relative.
 constexpr double frequency_tolerance = 1e-6, decay_tolerance = 2e-5;
 // Modulus of the swept branch over the stiffness of a bond.
 constexpr double swept_ratio = 0.5;
