@@ -29,7 +29,8 @@ Forces::Forces(const RowPartition &band, const Material &material)
                                                                                            : material.nearest.law}},
     rows_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - lattice_.stride())),
     columns_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - 1)), row_viscous_power_(lattice_.rows(), 0.),
-    row_mechanism_power_(material.n_mechanisms(), Field(lattice_.rows(), 0.)), row_events_(lattice_.rows(), 0), row_short_bonds_(lattice_.rows(), 0)
+    row_mechanism_power_(material.n_mechanisms(), Field(lattice_.rows(), 0.)), row_events_(lattice_.rows(), 0),
+    row_short_bonds_(lattice_.rows(), 0)
 {
   for (const std::size_t kind : {std::size_t{0}, n_nearest_kinds})
     if (const Shell *shell = material.shell(kind))

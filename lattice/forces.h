@@ -129,7 +129,7 @@ private:
   {
     explicit Scratch(std::size_t stride) : bonds(stride), fx(stride, 0.), fy(stride, 0.) {}
     BondRows bonds;
-    Field fx, fy;                              // forces on the sites of a row
+    Field fx, fy;                             // forces on the sites of a row
     std::vector<double> mechanism_power = {}; // of the bonds that start in a row
   };
 

@@ -50,6 +50,8 @@ void one_thread(benchmark::internal::Benchmark *registered)
 BENCHMARK(reference)->ArgsProduct({{10'000, 100'000}})->Unit(benchmark::kMillisecond);
 BENCHMARK_CAPTURE(step, everything, Work::everything)->Apply(one_thread);
 BENCHMARK_CAPTURE(step, nearest, Work::nearest)->Apply(one_thread);
+BENCHMARK_CAPTURE(step, one_branch, Work::one_branch)->Apply(one_thread);
+BENCHMARK_CAPTURE(step, three_branches, Work::three_branches)->Apply(one_thread);
 BENCHMARK_CAPTURE(step, linear, Work::linear)->Apply(one_thread);
 
 } // namespace

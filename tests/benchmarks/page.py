@@ -50,7 +50,8 @@ def kernel_table(part):
     rows = [[row["work"], row["target"] or row["used"], number(row["sites"]), ns(best(row["seconds_per_site"])),
              per_cent(spread(row["seconds_per_site"]))] for row in part["rows"]]
     note = ("`everything`: Mooney-Rivlin bonds to twelve neighbours, dashpots, breaking and toughening; `nearest`: the same "
-            "with six neighbours; `linear`: only linear bonds to twelve neighbours; `reference`: only forces, bond by bond.")
+            "with six neighbours; `one_branch`, `three_branches`: `everything` with Maxwell branches in all bonds; "
+            "`linear`: only linear bonds to twelve neighbours; `reference`: only forces, bond by bond.")
     return [Table("Kernel, one core", ["bonds", "instruction set", "sites", "ns per site and step", "spread"], rows, note)]
 
 

@@ -60,7 +60,7 @@ def kernel(plan):
              f"--benchmark_min_time={0.02 if plan.quick else 0.3}", f"--benchmark_out={path}",
              "--benchmark_out_format=json"])
         rows += kernel_rows(json.loads(path.read_text(encoding="utf-8")), target)
-    order = ("everything", "nearest", "linear", "reference")
+    order = ("everything", "nearest", "one_branch", "three_branches", "linear", "reference")
     return {"rows": sorted(rows, key=lambda row: (order.index(row["work"]), row["target"], row["sites"]))}
 
 

@@ -15,19 +15,24 @@ namespace benchmarks
 /// Material of the sheet, and quantities monitored in every step.
 enum class Work
 {
-  everything, ///< Mooney-Rivlin bonds to twelve neighbours, dashpots, breaking and toughening watched
-  nearest,    ///< the same with six neighbours
-  linear      ///< linear bonds to twelve neighbours, and nothing else
+  everything,     ///< Mooney-Rivlin bonds to twelve neighbours, dashpots, breaking and toughening watched
+  nearest,        ///< the same with six neighbours
+  one_branch,     ///< everything, and one Maxwell branch per bond
+  three_branches, ///< everything, and three Maxwell branches per bond
+  linear          ///< linear bonds to twelve neighbours, and nothing else
 };
 
 /// @throws std::invalid_argument for another name
 inline Work work_of(const std::string &name)
 {
-  static const std::map<std::string, Work> names{
-    {"everything", Work::everything}, {"nearest", Work::nearest}, {"linear", Work::linear}};
+  static const std::map<std::string, Work> names{{"everything", Work::everything},
+                                                 {"nearest", Work::nearest},
+                                                 {"one_branch", Work::one_branch},
+                                                 {"three_branches", Work::three_branches},
+                                                 {"linear", Work::linear}};
   const auto found = names.find(name);
   if (found == names.end())
-    throw std::invalid_argument("\"" + name + "\" is none of everything, nearest, linear");
+    throw std::invalid_argument("\"" + name + "\" is none of everything, nearest, one_branch, three_branches, linear");
   return found->second;
 }
 
@@ -35,6 +40,15 @@ inline latcon::lattice::Material material(Work work)
 {
   if (work == Work::nearest)
     return sheets::nearest_only();
+  if (work == Work::one_branch || work == Work::three_branches)
+  {
+    latcon::lattice::Material bonds = sheets::rubber();
+    std::vector<latcon::lattice::MaxwellMemory::Branch> branches{{2e5, 1e-4}};
+    if (work == Work::three_branches)
+      branches.insert(branches.end(), {{2e5, 1e-3}, {2e5, 1e-2}});
+    bonds.nearest.memory = bonds.next_nearest->memory = latcon::lattice::MaxwellMemory(branches);
+    return bonds;
+  }
   if (work == Work::everything)
     return sheets::rubber();
   const latcon::lattice::LinearBond bond{6e5};

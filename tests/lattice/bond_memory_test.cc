@@ -12,7 +12,6 @@
 #include <omp.h>
 
 #include "lattice/simulation.h"
-#include "lattice/site_fields.h"
 #include "lattice/time_step.h"
 #include "tests/lattice/sheets.h"
 
@@ -402,29 +401,6 @@ TEST(BondMemory, RecordsEnergiesByMechanism)
     dissipated += mechanism.dissipated;
   // 600 steps, each rounding sums over a few hundred bonds.
   EXPECT_NEAR(dissipated, simulation->energies().viscous, 1e-11 * dissipated);
-}
-
-// theory.md, eq. (L.31), at the start: P = P_relaxed + sum A0 l / V E (lam - 1) n N.
-TEST(BondMemory, ContributesToTheStressOfSites)
-{
-  const HeldSheet held(verlet, sheets::rubber_with_memory());
-  const State &state = held.simulation->state();
-  const TriangularLattice &sheet = held.sheet;
-  const std::size_t middle = sheet.index(sheet.rows() / 2, sheet.columns() / 2);
-  Eigen::Matrix2d overstress = Eigen::Matrix2d::Zero();
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
-  {
-    const Eigen::Vector2d R = sheet.bond_vector(kind), r = held.F * R;
-    const double modulus = TriangularLattice::is_nearest(kind) ? 3e5 : 1.5e5;
-    overstress += cross_section(*held.material.shell(kind), sheet) / sheet.site_area() * modulus *
-                  (r.norm() / R.norm() - 1.) * r.normalized() * R.transpose();
-  }
-  State relaxed = state;
-  relaxed.history = {};
-  const SiteEvaluator evaluator(sheet, held.material);
-  const Eigen::Matrix2d found =
-    evaluator.at(state, middle).first_piola_stress - evaluator.at(relaxed, middle).first_piola_stress;
-  EXPECT_LT((found - overstress).norm(), 1e-12 * overstress.norm());
 }
 
 // Forces that bonds between an update and the next have by the kernel of a row and by that of one bond.

@@ -67,8 +67,30 @@ def write_claims(folder):
           [["NN+NNN", j, FIRST_ROW * DECAY**j * (1 + 1e-3), FIRST_ROW * DECAY**j] for j in rows]
           + [["NN", j, 3e-16 * (-1) ** j, 0.0] for j in rows])
     write_running_crack(folder)
+    write_branches(folder)
     for name, size in (("hole", "R/d"), ("notch", "length/d")):
         write_cut(folder, name, size)
+
+
+def write_branches(folder):
+    """Waves with one branch and with those of the case, and relaxation of one."""
+    columns = ["rubbery [rad/s]", "glassy [rad/s]", *(f"{side}_{what}" for side in ("theory", "lattice")
+                                                    for what in ("frequency [rad/s]", "decay [1/s]"))]
+    rows = []
+    for state, wave in itertools.product(STATES, "LS"):
+        for x in (0.1, 0.3, 1.0, 3.0, 10.0):
+            frequency, decay = 1e4 * (1 + 0.22 * x**2 / (1 + x**2)), 2e3 * x / (1 + x**2)
+            rows.append([*state, "one branch", wave, 0.25, x, 1e4, 1.22e4, frequency, decay, frequency * 1.0001, decay])
+        rows.append([*state, "own branches", wave, 0.5, NAN, 1e4, 1.3e4, 1.1e4, 1e3, 1.1e4, 1e3])
+    write(folder, "viscoelastic_waves", ["shells", "F_xx", "F_yy", "part", "wave", "k d", "w tau", *columns], rows)
+    rows = []
+    for shells, integrator in itertools.product(("NN+NNN", "NN"), ("velocity Verlet", "Runge-Kutta-Chebyshev")):
+        for t in np.linspace(0, 1e-3, 9):
+            q, stored = 1e5 * np.exp(-t / 3e-4), 0.2 * np.exp(-2 * t / 3e-4)
+            rows.append([shells, integrator, t, q, q, stored, stored, 0.2 - stored, 0.2 - stored])
+    write(folder, "relaxation", ["shells", "integrator", "t [s]", *(
+        f"{side}_{what}" for what in ("overstress [Pa]", "stored [J/m]", "dissipated [J/m]")
+        for side in ("lattice", "theory"))], rows)
 
 
 def write_dispersion(folder):

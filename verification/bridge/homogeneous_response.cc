@@ -8,18 +8,10 @@
 namespace latcon::bridge
 {
 
-LatticeResponse homogeneous_response(const lattice::TriangularLattice &sheet, const lattice::Material &material,
-                                     const Eigen::Matrix2d &F)
+Eigen::Matrix2d edge_stress(const lattice::TriangularLattice &sheet,
+                            const std::function<Eigen::Vector2d(std::size_t)> &force_on)
 {
-  const lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::free);
-  lattice::Forces forces(sheet, material);
-  forces.evaluate(state, state.vx, state.vy);
-  const auto force = [&](std::size_t row, std::size_t column)
-  {
-    const std::size_t place = sheet.index(row, column);
-    return Eigen::Vector2d(forces.fx()[place], forces.fy()[place]);
-  };
-
+  const auto force = [&](std::size_t row, std::size_t column) { return force_on(sheet.index(row, column)); };
   // The forces on the two uppermost rows balance the rest of the sheet: they are P times the normal, per length d of a
   // column. The same applies to the left end, where sites with missing neighbours repeat every two rows.
   const std::size_t top = sheet.rows() - 1, column = sheet.columns() / 2, row = 2 * (sheet.rows() / 4);
@@ -31,8 +23,19 @@ LatticeResponse homogeneous_response(const lattice::TriangularLattice &sheet, co
   Eigen::Matrix2d P;
   P.col(rows_along_x ? 0 : 1) = along;
   P.col(rows_along_x ? 1 : 0) = across;
+  return P;
+}
+
+LatticeResponse homogeneous_response(const lattice::TriangularLattice &sheet, const lattice::Material &material,
+                                     const Eigen::Matrix2d &F)
+{
+  const lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::free);
+  lattice::Forces forces(sheet, material);
+  forces.evaluate(state, state.vx, state.vy);
+  const Eigen::Matrix2d P =
+    edge_stress(sheet, [&](std::size_t place) { return Eigen::Vector2d(forces.fx()[place], forces.fy()[place]); });
   const lattice::SiteFields fields = lattice::site_fields(state, sheet, material);
-  return {fields.strain_energy_density[sheet.index(row, column)], P};
+  return {fields.strain_energy_density[sheet.index(2 * (sheet.rows() / 4), sheet.columns() / 2)], P};
 }
 
 } // namespace latcon::bridge

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <functional>
+
 #include "lattice/material.h"
 
 namespace latcon::bridge
@@ -11,6 +13,13 @@ struct LatticeResponse
   double energy_density;
   Eigen::Matrix2d first_piola_stress;
 };
+
+/// First Piola stress [Pa] of a sheet in homogeneous deformation, from the forces of its bonds on the sites of its
+/// edges.
+/// @param sheet as for homogeneous_response()
+/// @param force on the site at a slot, per sheet thickness [N/m]
+Eigen::Matrix2d edge_stress(const lattice::TriangularLattice &sheet,
+                            const std::function<Eigen::Vector2d(std::size_t place)> &force);
 
 /// Computes the response of a lattice with its simulator. @param sheet at least 12 by 12 spacings, so that the sites in
 /// the middle have all their neighbours

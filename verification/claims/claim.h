@@ -39,13 +39,26 @@ struct Claim
   /// one of these rows are not used. Empty: a crack does not need the claim.
   std::vector<std::string> required_rows = {};
 
+  /// The claim is about memories of bonds: part of `latcon verify` without names, and of verification before fracture,
+  /// for materials with a memory only.
+  bool is_about_memory = false;
+
   /// Entries `Section/Name` that the claim reads besides those of a Subject.
   std::vector<std::string> entries = {};
 
   /// The quick version is run on the shells of the case, and not also on the nearest neighbours alone.
   bool quick_on_own_shells_only = false;
 
-  [[nodiscard]] bool is_before_fracture() const { return !required_rows.empty(); }
+  /// Returns whether `latcon verify` without names includes the claim. @param material of the lattice
+  [[nodiscard]] bool is_default_for(const lattice::Material &material) const
+  {
+    return is_default && (!is_about_memory || material.has_memory());
+  }
+  /// Returns whether verification before fracture includes the claim. @param material of the sheet that breaks
+  [[nodiscard]] bool is_before_fracture(const lattice::Material &material) const
+  {
+    return !required_rows.empty() && (!is_about_memory || material.has_memory());
+  }
 };
 
 } // namespace latcon::claims

@@ -9,7 +9,9 @@
 #include "verification/claims/energy/descriptor.h"
 #include "verification/claims/intrinsic_length/descriptor.h"
 #include "verification/claims/prestretch/descriptor.h"
+#include "verification/claims/relaxation/descriptor.h"
 #include "verification/claims/running_crack/descriptor.h"
+#include "verification/claims/viscoelastic_waves/descriptor.h"
 #include "verification/claims/wave_speeds/descriptor.h"
 #include "verification/input/case_text.h"
 #include "verification/input/spelling.h"
@@ -29,6 +31,8 @@ std::vector<Claim> all_claims()
   std::vector<Claim> list;
   list.push_back(claims::energy_descriptor());
   list.push_back(claims::wave_speeds_descriptor());
+  list.push_back(claims::viscoelastic_waves_descriptor());
+  list.push_back(claims::relaxation_descriptor());
   list.push_back(claims::intrinsic_length_descriptor());
   list.push_back(claims::prestretch_descriptor());
   list.push_back(claims::running_crack_descriptor());
@@ -59,16 +63,19 @@ const std::vector<Claim> &claim_registry()
   return claims;
 }
 
-std::vector<Claim> selected_claims(const std::vector<std::string> &names)
+std::vector<Claim> selected_claims(const std::vector<std::string> &names, const lattice::Material &material)
 {
   return claims_where(
     [&](const Claim &claim)
-    { return names.empty() ? claim.is_default : std::find(names.begin(), names.end(), claim.name) != names.end(); });
+    {
+      return names.empty() ? claim.is_default_for(material)
+                           : std::find(names.begin(), names.end(), claim.name) != names.end();
+    });
 }
 
-std::vector<Claim> claims_before_fracture()
+std::vector<Claim> claims_before_fracture(const lattice::Material &material)
 {
-  return claims_where([](const Claim &claim) { return claim.is_before_fracture(); });
+  return claims_where([&](const Claim &claim) { return claim.is_before_fracture(material); });
 }
 
 std::string unknown_claim(const std::string &name)
@@ -97,7 +104,12 @@ std::string claim_list()
   {
     std::string line = "  " + claim.name;
     line.resize(std::max(line.size() + 2, column), ' ');
-    text += line + claim.title + (claim.is_default ? "" : " (only if named)") + "\n";
+    text += line + claim.title;
+    if (claim.is_about_memory)
+      text += " (only if named or if bonds have branches)";
+    else if (!claim.is_default)
+      text += " (only if named)";
+    text += "\n";
   }
   return text;
 }

@@ -14,10 +14,12 @@ namespace latcon::commands
 
 /// Claims checked by `latcon verify` for these names on the command line; without names the default ones.
 /// @param names of the registry, in any order
-[[nodiscard]] std::vector<claims::Claim> selected_claims(const std::vector<std::string> &names);
+/// @param material of the lattice
+[[nodiscard]] std::vector<claims::Claim> selected_claims(const std::vector<std::string> &names,
+                                                         const lattice::Material &material);
 
-/// Claims that must hold before a crack of the lattice is run.
-[[nodiscard]] std::vector<claims::Claim> claims_before_fracture();
+/// Claims that must hold before a crack of the lattice is run. @param material of the lattice
+[[nodiscard]] std::vector<claims::Claim> claims_before_fracture(const lattice::Material &material);
 
 /// Message about a name that is not in the registry, with the nearest name that is; empty if it is in.
 [[nodiscard]] std::string unknown_claim(const std::string &name);

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <iostream>
 #include <sstream>
+#include <tuple>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/numerics/vector_tools_interpolate.h>
@@ -375,6 +376,14 @@ support::ExitCode run_continuum(const input::Options &options)
   const bool moves = input.continuum.solution == input::ContinuumCase::Solution::motion;
   if (moves && !(input.end_time > 0.))
     parameters.error("Time/end", "motion needs an end time larger than 0", {"Continuum/solution"});
+  // An equilibrium is that of the relaxed sheet.
+  for (const auto &[shell, section, is_present] :
+       {std::tuple(&input.nearest, "Nearest neighbours", true),
+        std::tuple(&input.next_nearest, "Next-nearest neighbours", input.has_next_nearest)})
+    if (moves && is_present && !shell->branch_moduli.empty())
+      parameters.error(std::string(section) + "/branch moduli",
+                       "motion of finite elements has no Maxwell branches; omit them, or give solution = equilibrium",
+                       {"Continuum/solution"});
   if (moves && input.continuum.time_step && parameters.good())
     resources::check_steps(input, *input.continuum.time_step, parameters);
   parameters.finish();

@@ -38,7 +38,7 @@ Stored look_up(const input::Case &input, const std::optional<std::string> &folde
   Stored stored;
   try
   {
-    const claims::VerdictKey key = claims::verdict_key(input, claims_before_fracture(), quick,
+    const claims::VerdictKey key = claims::verdict_key(input, claims_before_fracture(input.material()), quick,
                                                        dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD));
     stored.key = key.text;
     if (!folder)
@@ -95,8 +95,8 @@ output::Results require_verified(const input::Case &input, Run &run)
     {
       verdicts = claims::read_verdicts(key, stored.text);
       // Verdicts that refuse a crack need not be complete.
-      if (const std::string problem =
-            claims::row_problem(verdicts->results, bridge::shells_name(input.material()), claims_before_fracture());
+      if (const std::string problem = claims::row_problem(verdicts->results, bridge::shells_name(input.material()),
+                                                          claims_before_fracture(input.material()));
           verdicts->results.all_hold() && !problem.empty())
       {
         verdicts.reset();
@@ -111,7 +111,7 @@ output::Results require_verified(const input::Case &input, Run &run)
   bool kept = false;
   if (!reused)
   {
-    verdicts.emplace(run_claims(input, claims_before_fracture(), quick, Shells::own,
+    verdicts.emplace(run_claims(input, claims_before_fracture(input.material()), quick, Shells::own,
                                 bridge::laws_of_lattice())); // bonds break, no finite elements
     if (run.is_root() && folder && !key.text.empty())
       try
@@ -142,7 +142,7 @@ output::Results require_verified(const input::Case &input, Run &run)
   }
   if (run.is_root())
   {
-    write_claims(claims_before_fracture(), run.directory());
+    write_claims(claims_before_fracture(input.material()), run.directory());
     verdicts->write_tables(run.directory());
   }
   if (!verdicts->results.all_hold())

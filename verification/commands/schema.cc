@@ -155,8 +155,8 @@ support::ExitCode print_schema(const input::Options &options)
   for (const claims::Claim &claim : claim_registry())
     document["claims"].push_back({{"name", claim.name},
                                   {"title", claim.title},
-                                  {"default", claim.is_default},
-                                  {"before_fracture", claim.is_before_fracture()}});
+                                  {"default", claim.is_default_for(input.material())},
+                                  {"before_fracture", claim.is_before_fracture(input.material())}});
   for (const input::Declaration &entry : entries)
     document["entries"].push_back(describe(entry));
   if (options.case_is_given)

@@ -49,7 +49,7 @@ support::ExitCode verify(const input::Options &options)
   claims::ClaimOutcome outcome;
   {
     const auto phase = run.info().stopwatch().phase("claims");
-    const std::vector<claims::Claim> selected = selected_claims(options.claims);
+    const std::vector<claims::Claim> selected = selected_claims(options.claims, input.material());
     if (run.is_root())
       write_claims(selected, run.directory());
     for (const claims::Claim &claim : selected)

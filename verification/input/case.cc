@@ -149,6 +149,17 @@ void check_time_step(const Case &input, Parameters &p)
              "Time/stages"});
 }
 
+void check_relaxation_times(const Case &input, Parameters &p)
+{
+  const bool next_nearest = input.has_next_nearest && !input.next_nearest.relaxation_times.empty();
+  if (!p.good() || (input.nearest.relaxation_times.empty() && !next_nearest))
+    return;
+  const double step = (input.breaking_stretch ? input.fracture_time_stepping() : input.lattice_time_stepping()).step;
+  input.nearest.check_relaxation_times(p, "Nearest neighbours", step);
+  if (next_nearest)
+    input.next_nearest.check_relaxation_times(p, "Next-nearest neighbours", step);
+}
+
 void check_time_stepping(const Case &input, Parameters &p)
 {
   const bool chebyshev = input.integrator == Case::Integrator::runge_kutta_chebyshev;
@@ -175,6 +186,7 @@ void check_time_stepping(const Case &input, Parameters &p)
       check_time_step(input, p);
       check_contact_step(input, p);
     }
+    check_relaxation_times(input, p);
   }
 }
 
@@ -191,19 +203,21 @@ void ShellCase::declare(Parameters &parameters, const std::string &section)
                  "s: cross-section of a bond over (sqrt3 / 2) d h, with the thickness h");
   parameters.add(section, "viscosity", viscosity, MagnitudeOrZero{}, "Pa s",
                  "eta of the Kelvin dashpot along the bond");
+  declare_branches(parameters, section);
 }
 
 void ShellCase::check(Parameters &parameters, const std::string &section) const
 {
   if (!has_stiffness())
     parameters.error(section + "/a", "a bond needs stiffness: a + b must be positive", {section + "/b"});
+  check_branches(parameters, section);
 }
 
 lattice::Shell ShellCase::shell() const
 {
   if (law == Law::linear)
-    return {lattice::LinearBond{modulus}, area_factor, viscosity};
-  return {lattice::MooneyRivlinBond{a, b}, area_factor, viscosity};
+    return {lattice::LinearBond{modulus}, area_factor, viscosity, memory()};
+  return {lattice::MooneyRivlinBond{a, b}, area_factor, viscosity, memory()};
 }
 
 void Case::declare(Parameters &p)

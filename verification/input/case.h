@@ -33,13 +33,24 @@ struct ShellCase
   double b = 1.5e5;     ///< [Pa]
   double modulus = 1e5; ///< e [Pa]
   double area_factor = 2. / 3.;
-  double viscosity = 0.; ///< eta [Pa s]
+  double viscosity = 0.;                     ///< eta [Pa s]
+  std::vector<double> branch_moduli = {};    ///< E_i of Maxwell branches [Pa]
+  std::vector<double> relaxation_times = {}; ///< tau_i of the branches [s]
 
   void declare(Parameters &parameters, const std::string &section);
   void check(Parameters &parameters, const std::string &section) const;
+  /// Reports the first branch that relaxes within a time step: its overstress would lag behind the motion by half a
+  /// step. Branches must be valid. @param step [s]
+  void check_relaxation_times(Parameters &parameters, const std::string &section, double step) const;
   /// Returns whether the bonds have stiffness, as shell() requires.
   bool has_stiffness() const { return law == Law::linear || a + b > 0.; }
   lattice::Shell shell() const;
+
+private:
+  void declare_branches(Parameters &parameters, const std::string &section);
+  void check_branches(Parameters &parameters, const std::string &section) const;
+  /// Returns the Maxwell branches; none also if they are not given as lattice::MaxwellMemory requires.
+  lattice::BondMemory memory() const;
 };
 
 /// All input parameters of a run: the rubber sheet, its loading, fracture, and numerical parameters. All commands read

@@ -65,7 +65,18 @@ FastestSite fastest_site(const lattice::Simulation &simulation)
 
 } // namespace
 
-CrackRecord::CrackRecord(lattice::Simulation &simulation) : simulation_(simulation) {}
+CrackRecord::CrackRecord(lattice::Simulation &simulation) : simulation_(simulation)
+{
+  const lattice::Material &material = simulation.material();
+  const auto add = [&](const std::string &shell, const lattice::Shell &bonds)
+  {
+    for (std::size_t m = 1; m <= lattice::n_mechanisms(bonds.memory); ++m)
+      mechanisms_.push_back(shell + "_branch_" + std::to_string(m));
+  };
+  add("nearest", material.nearest);
+  if (material.next_nearest)
+    add("next_nearest", *material.next_nearest);
+}
 
 void CrackRecord::start()
 {
@@ -106,6 +117,8 @@ void CrackRecord::record_tip()
 void CrackRecord::energies()
 {
   energies_.push_back({simulation_.state().time, sound_energies()});
+  for (const lattice::MechanismEnergy &mechanism : simulation_.mechanism_energies())
+    mechanism_energies_.insert(mechanism_energies_.end(), {mechanism.stored, mechanism.dissipated});
 }
 
 lattice::EnergyBalance CrackRecord::sound_energies()
@@ -142,6 +155,8 @@ void CrackRecord::check_loaded() const
                    "`last_tip` is not a site of the sheet");
   require_archived(broken_.size() == simulation_.n_broken(), "the number of `broken_bonds` does not match the state");
   require_archived(!energies_.empty(), "`energies` is empty");
+  require_archived(mechanism_energies_.size() == 2 * mechanisms_.size() * energies_.size(),
+                   "the number of `mechanism_energies` does not match `energies`");
   double before = 0.;
   const auto require_order = [&](double time, const std::string &what)
   {
@@ -219,10 +234,16 @@ void CrackRecord::write_tables(const std::filesystem::path &directory) const
     directory / "energy.csv",
     [this](std::ostream &out)
     {
-      out << "t,elastic,kinetic,viscous,broken,boundary_work,contact,imbalance\n";
+      out << "t,elastic,kinetic,viscous,broken,boundary_work,contact,imbalance";
+      for (const std::string &mechanism : mechanisms_)
+        out << ',' << mechanism << "_stored," << mechanism << "_dissipated";
+      out << '\n';
+      auto of_mechanism = mechanism_energies_.begin();
       for (const auto &[time, e] : energies_)
       {
         write_row(out, {time, e.elastic, e.kinetic, e.viscous, e.broken, e.boundary_work, e.contact, e.imbalance()});
+        for (std::size_t i = 0; i < 2 * mechanisms_.size(); ++i)
+          out << ',' << support::full_precision(*of_mechanism++);
         out << '\n';
       }
     });

@@ -64,6 +64,8 @@ public:
     archive("broken_at_tip", broken_at_tip_);
     archive.records("broken_bonds", broken_);
     archive.records("energies", energies_);
+    if (!mechanisms_.empty())
+      archive("mechanism_energies", mechanism_energies_);
     if constexpr (Archive::loads)
       check_loaded();
     last_sound_ = {simulation_.state(), simulation_.band()};
@@ -94,6 +96,8 @@ private:
   std::vector<std::size_t> broken_at_tip_; // bonds broken so far, per tip record
   std::vector<lattice::BrokenBond> broken_;
   std::vector<EnergyRow> energies_;
+  std::vector<std::string> mechanisms_;    // names in the columns of energy.csv
+  std::vector<double> mechanism_energies_; // stored and dissipated, per mechanism and energy row [J/m]
   lattice::Snapshot last_sound_;
 };
 

@@ -29,6 +29,8 @@ constexpr double bytes_of_place = 180., bytes_of_chebyshev_place = 48.;
 constexpr double bytes_of_site_in_frame = 640., bytes_of_bond_in_frame = 50., bytes_of_site_in_checkpoint = 150.;
 // Bytes per site in the window around the tip, in the sums over all samples and over samples not yet folded.
 constexpr double bytes_of_site_near_tip = 2700.;
+// Bytes per variable of the memory of bonds, and of their stretch, in the history and in the image of a checkpoint.
+constexpr double bytes_of_variable = 8.;
 // Memory of the small versions of the claims, for any case.
 constexpr double bytes_of_claims = 7e7;
 
@@ -103,6 +105,17 @@ OnMachine on_machine(const MemoryNeed &need)
   return {sums[0], sums[1]};
 }
 
+// Bytes of the history of bonds per slot.
+double history_per_place(const lattice::Material &material)
+{
+  double values = 0.;
+  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+    if (const lattice::Shell *const shell = material.shell(kind))
+      if (const std::size_t variables = lattice::n_variables(shell->memory); variables > 0)
+        values += static_cast<double>(variables) + 1.;
+  return bytes_of_variable * values;
+}
+
 // Returns the case of a small piece of the sheet, cheap to set up, with the same number of threads.
 input::Case small_piece(const input::Case &input)
 {
@@ -154,8 +167,9 @@ MemoryNeed lattice_memory(const input::Case &input, const RunKind run, const boo
     run != RunKind::equilibrium && input.integrator == input::Case::Integrator::runge_kutta_chebyshev;
   const double bonds = input.has_next_nearest ? 6. : 3.;
   const double frame = sites * (bytes_of_site_in_frame + bonds * bytes_of_bond_in_frame);
-  const double checkpoint = run != RunKind::equilibrium ? sites * bytes_of_site_in_checkpoint : 0.;
-  const double fields = places * (bytes_of_place + (is_chebyshev ? bytes_of_chebyshev_place : 0.));
+  const double history = run != RunKind::equilibrium ? history_per_place(input.material()) : 0.;
+  const double checkpoint = run != RunKind::equilibrium ? sites * (bytes_of_site_in_checkpoint + history) : 0.;
+  const double fields = places * (bytes_of_place + (is_chebyshev ? bytes_of_chebyshev_place : 0.) + history);
   MemoryNeed need;
   // Equilibrium is computed on the root rank only.
   (run == RunKind::equilibrium ? need.first_rank : need.shared) = fields;

@@ -176,7 +176,7 @@ TEST(ClaimInputs, EveryEntryChangesThemOrIsReadByNoClaim)
     EXPECT_EQ(claims::claim_inputs_text(*changed) == text, unread) << key << " = " << entries(*changed).at(key);
     n_read += unread ? 0 : 1;
   }
-  EXPECT_EQ(n_read, 20u);
+  EXPECT_EQ(n_read, 24u);
   for (const std::string &key : no_claim_reads)
     EXPECT_EQ(entries(input).count(key), 1u) << key;
 }
@@ -186,6 +186,8 @@ TEST(ClaimInputs, MakeTheSubjectOfTheCase)
   Case input = some_case();
   input.orientation = lattice::Orientation::rows_across_crack;
   input.nearest.a = 1. / 3.;
+  input.nearest.branch_moduli = {1e5 / 3., 2e5};
+  input.nearest.relaxation_times = {1e-4 / 3., 1e-3};
   input.shear = 0.1;
   input.continuum.mooney_rivlin_ratio = 0.2;
   const bridge::Subject whole = bridge::subject(input);
@@ -194,6 +196,11 @@ TEST(ClaimInputs, MakeTheSubjectOfTheCase)
   EXPECT_EQ(read.orientation, whole.orientation);
   EXPECT_EQ(read.deformation, whole.deformation);
   EXPECT_EQ(read.theory.shear_modulus, whole.theory.shear_modulus);
+  const auto &branches = std::get<lattice::MaxwellMemory>(read.material.nearest.memory).branches();
+  ASSERT_EQ(branches.size(), 2u);
+  EXPECT_EQ(branches[0].modulus, 1e5 / 3.);
+  EXPECT_EQ(branches[0].relaxation_time, 1e-4 / 3.);
+  EXPECT_TRUE(std::holds_alternative<lattice::NoMemory>(read.material.next_nearest->memory));
   EXPECT_EQ(read.theory.shear_speed, whole.theory.shear_speed);
   EXPECT_EQ(read.mooney_rivlin->ratio, whole.mooney_rivlin->ratio);
   EXPECT_EQ(read.mooney_rivlin->energy_residual, whole.mooney_rivlin->energy_residual);

@@ -119,7 +119,8 @@ public:
   Comparison(const bridge::Subject &subject, const CrackSides &sides, const RunningCrackOptions &options)
     : subject_(subject), sides_(sides), options_(options), far_(sides.drive, far_from, options.far),
       near_(sides.drive, near_from, near_to), reach_((options.far + 3.) * subject.spacing),
-      lattice_(drive_lattice_crack(sides.drive, subject.material, subject.deformation, reach_, frame("lattice")))
+      lattice_(drive_lattice_crack(sides.drive, lattice::without_memory(subject.material), subject.deformation, reach_,
+                                   frame("lattice"))) // the continuum has no memories
   {
     add_frame("lattice");
     add_fields("lattice", lattice_);

@@ -1,0 +1,131 @@
+#!/usr/bin/python3
+"""Tests of cases with Maxwell branches: same files for ranks and threads, restart, energy ledger, refusals.
+
+Usage: branches_test.py PATH_OF_LATCON
+"""
+import json
+import shutil
+import unittest
+
+from program import CASES, TemporaryFolder, latcon, latcon_on_ranks, read_csv
+
+SPECTRUM = CASES / "spectrum.prm"
+STRIP = ["fracture", SPECTRUM, "--skip-verification", "--no-report", "--quiet", "--set", "Sheet/length=2.5 cm", "--set",
+         "Sheet/height=1 cm", "--set", "Output/frame interval=0.1 ms", "--set", "Near tip/interval=2e-5"]
+END = ["--set", "Time/end=0.3 ms"]
+VERLET = ["--set", "Checkpoints/steps=200", "--set", "Output/energy interval=50"]
+CHEBYSHEV = ["--set", "Time/integrator=runge-kutta-chebyshev", "--set", "Checkpoints/steps=40", "--set",
+             "Output/energy interval=10"]
+
+
+def files(folder):
+    """Contents of files by name, without those that record the circumstances of the run."""
+    return {path.name: path.read_bytes() for path in folder.iterdir()
+            if path.is_file() and path.name not in ("run.json", "log.txt")}
+
+
+class Branches(TemporaryFolder):
+    def expect_same(self, folder, expected):
+        found = files(folder)
+        self.assertEqual(sorted(found), sorted(expected))
+        for name, content in expected.items():
+            self.assertEqual(found[name] == content, True, f"{name} in {folder.name}")
+
+    def crack(self, integrator):
+        """Runs the crack on one rank and thread, then on others, then from a checkpoint."""
+        strip = [*STRIP, *END, *integrator]
+        alone = latcon(*strip, "--threads", "1", "--output-dir", self.out)
+        self.assertIn(alone.returncode, (0, 3), alone.stderr)
+        expected = files(self.out)
+        self.assertGreater(json.loads(expected["crack.json"])["bonds_broken"], 30)
+        for ranks, threads in ((1, 2), (2, 1), (3, 2)):
+            folder = self.folder / f"{ranks}_{threads}"
+            run = latcon_on_ranks(ranks, *strip, "--threads", threads, "--output-dir", folder)
+            self.assertEqual(run.returncode, alone.returncode, run.stderr)
+            self.expect_same(folder, expected)
+        # From the checkpoint before the last, on other ranks.
+        stopped = self.folder / "stopped"
+        shutil.copytree(self.out, stopped)
+        sorted((stopped / "checkpoints").glob("*.h5"))[-1].unlink()
+        run = latcon_on_ranks(2, *strip, "--resume", "--threads", "1", "--output-dir", stopped)
+        self.assertEqual(run.returncode, alone.returncode, run.stderr)
+        self.assertGreater(json.loads((stopped / "run.json").read_text())["resumed_from"]["step"], 0)
+        self.expect_same(stopped, expected)
+        return read_csv(self.out / "energy.csv")
+
+    def check_ledger(self, rows):
+        names = [f"{shell}_branch_{i}" for shell in ("nearest", "next_nearest") for i in (1, 2, 3)]
+        self.assertEqual(list(rows[0]), ["t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "imbalance",
+                                         *(f"{name}_{what}" for name in names for what in ("stored", "dissipated"))])
+        first, last = ({key: float(value) for key, value in row.items()} for row in (rows[0], rows[-1]))
+        for name in names:
+            self.assertEqual(first[f"{name}_dissipated"], 0)
+            self.assertGreater(last[f"{name}_stored"], 0)
+            self.assertGreater(last[f"{name}_dissipated"], 0)
+        self.assertLess(sum(last[f"{name}_dissipated"] for name in names), last["viscous"])
+        self.assertLess(sum(last[f"{name}_stored"] for name in names), last["elastic"])
+        # The ledger of every crack closes to 1e-4 of the energy supplied.
+        self.assertLess(abs(last["imbalance"]), 1e-4 * first["elastic"])
+
+    def test_crack_with_velocity_verlet(self):
+        self.check_ledger(self.crack(VERLET))
+
+    def test_crack_with_runge_kutta_chebyshev(self):
+        self.check_ledger(self.crack(CHEBYSHEV))
+
+    def test_checkpoint_of_other_branches_is_refused(self):
+        short = [*STRIP, "--set", "Time/end=0.05 ms", "--set", "Checkpoints/steps=10", "--output-dir", self.out]
+        run = latcon(*short)
+        self.assertIn(run.returncode, (0, 3), run.stderr)
+        run = latcon(*short, "--resume", "--set", "Nearest neighbours/relaxation times=0.02 ms, 0.1 ms, 0.6 ms")
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertIn("another case: Nearest neighbours/relaxation times = 2e-05, 1e-04, 5e-04 in the checkpoint", run.stderr)
+
+    def test_cases_without_branches_have_their_columns(self):
+        run = latcon("lattice", CASES / "quick.prm", "--quiet", "--set", "Lattice/solution=motion", "--set", "Time/end=2e-6",
+                     "--output-dir", self.out)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual((self.out / "energy.csv").read_text().partition("\n")[0],
+                         "t,elastic,kinetic,viscous,broken,boundary_work,contact,imbalance")
+
+    def test_bad_branches_are_refused_by_name(self):
+        seventeen = ", ".join(["1 ms"] * 17)
+        for entries, key, words in (
+                (["relaxation times=0.02 ms, 0.1 ms"], "relaxation times", "3 moduli and 2 times"),
+                (["relaxation times="], "relaxation times", "3 moduli and 0 times"),
+                (["branch moduli="], "relaxation times", "0 moduli and 3 times"),
+                ([f"relaxation times={seventeen}", f"branch moduli={seventeen.replace('ms', 'MPa')}"], "branch moduli",
+                 "at most 16"),
+                (["relaxation times=0.02 ms, 0 ms, 0.5 ms"], "relaxation times", "1e-20"),
+                (["relaxation times=0.02 ms, -1 ms, 0.5 ms"], "relaxation times", "1e-20"),
+                (["branch moduli=0.3 MPa, nan MPa, 0.5 MPa"], "branch moduli", "1e-20"),
+                (["branch moduli=0.3 MPa, inf MPa, 0.5 MPa"], "branch moduli", "1e-20"),
+                (["relaxation times=1e-9 s, 0.1 ms, 0.5 ms"], "relaxation times", "within one time step")):
+            for section in ("Nearest neighbours", "Next-nearest neighbours"):
+                sets = [word for entry in entries for word in ("--set", f"{section}/{entry}")]
+                run = latcon("fracture", SPECTRUM, "--dry-run", *sets)
+                self.assertEqual(run.returncode, 2, (entries, run.stderr))
+                self.assertIn(f"{section}/{key}", run.stderr)
+                self.assertIn(words, run.stderr)
+
+    def test_motion_of_finite_elements_refuses_branches(self):
+        run = latcon("continuum", SPECTRUM, "--dry-run", "--set", "Continuum/solution=motion")
+        self.assertEqual(run.returncode, 2, run.stderr)
+        for section in ("Nearest neighbours", "Next-nearest neighbours"):
+            self.assertIn(f"{section}/branch moduli", run.stderr)
+        self.assertEqual(latcon("continuum", SPECTRUM, "--dry-run").returncode, 0)
+
+    def test_memory_is_estimated(self):
+        def bytes_of(*more):
+            text = latcon("fracture", SPECTRUM, "--dry-run", "--set", "Sheet/length=30 cm", "--set", "Sheet/height=15 cm", *more).stdout
+            return float(text.partition("# memory: about ")[2].split()[0])
+        none = [word for section in ("Nearest neighbours", "Next-nearest neighbours") for key in ("branch moduli", "relaxation times")
+                for word in ("--set", f"{section}/{key}=")]
+        # 3 + 1 numbers per bond of six kinds for 480 x 277 sites, in the state and in the image of a checkpoint.
+        more = bytes_of() - bytes_of(*none)
+        self.assertGreater(more, 20e6)
+        self.assertLess(more, 60e6)
+
+
+if __name__ == "__main__":
+    unittest.main()

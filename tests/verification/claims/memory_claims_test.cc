@@ -1,0 +1,225 @@
+// Claims about memories of bonds, and what makes them fail.
+#include <gtest/gtest.h>
+
+#include <array>
+#include <cmath>
+#include <functional>
+#include <memory>
+#include <ostream>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "tests/verification/claims/subjects.h"
+#include "verification/bridge/bloch.h"
+#include "verification/bridge/memory_waves.h"
+#include "verification/claims/relaxation/descriptor.h"
+#include "verification/claims/relaxation/relaxation_claim.h"
+#include "verification/claims/viscoelastic_waves/descriptor.h"
+#include "verification/claims/viscoelastic_waves/viscoelastic_waves_claim.h"
+
+using namespace latcon;
+
+namespace
+{
+
+using namespace bridge;
+using namespace claims;
+using lattice::Material;
+using lattice::MaxwellMemory;
+using Branch = MaxwellMemory::Branch;
+
+// The rubber of the paper with two branches in nearest-neighbour bonds, three in the others, and little viscosity.
+input::Case case_with_branches()
+{
+  input::Case input = subjects::paper_case();
+  input.nearest.viscosity = 5.;
+  input.nearest.branch_moduli = {2e5, 1e5};
+  input.nearest.relaxation_times = {2e-5, 2e-4};
+  input.next_nearest.viscosity = 15.;
+  input.next_nearest.branch_moduli = {3e5, 1e5, 5e4};
+  input.next_nearest.relaxation_times = {1e-5, 5e-5, 1e-3};
+  return input;
+}
+
+Material changed(const Material &material, const std::function<void(std::vector<Branch> &)> &change)
+{
+  Material result = material;
+  std::vector<Branch> branches = std::get<MaxwellMemory>(result.nearest.memory).branches();
+  change(branches);
+  result.nearest.memory = MaxwellMemory(branches);
+  return result;
+}
+
+// A branch that pushes where it should pull.
+class OppositeBranch : public lattice::CustomMemoryLaw
+{
+public:
+  explicit OppositeBranch(const Branch &branch) : branch_(branch) {}
+  std::size_t n_variables() const noexcept override { return 1; }
+  double advance(double duration, double before, double now, double *overstress) const noexcept override
+  {
+    const double change = branch_.modulus * (now - before);
+    return *overstress = std::exp(-duration / branch_.relaxation_time) * (*overstress - change);
+  }
+  double stored_energy(double, const double *q) const noexcept override { return 0.5 * *q * *q / branch_.modulus; }
+  double dissipation(double, const double *q) const noexcept override
+  {
+    return *q * *q / (branch_.modulus * branch_.relaxation_time);
+  }
+  double largest_stiffness() const noexcept override { return branch_.modulus; }
+
+private:
+  Branch branch_;
+};
+
+Material with_opposite_sign(Material material)
+{
+  const Branch branch = std::get<MaxwellMemory>(material.nearest.memory).branches().front();
+  material.nearest.memory = lattice::CustomMemory(std::make_shared<OppositeBranch>(branch));
+  return material;
+}
+
+struct PlantedFault
+{
+  const char *name;
+  PlantedBranches plant;
+};
+std::ostream &operator<<(std::ostream &out, const PlantedFault &fault)
+{
+  return out << fault.name;
+}
+const std::vector<PlantedFault> &planted_faults()
+{
+  static const std::vector<PlantedFault> faults{
+    {"a relaxation time 1 % off",
+     [](const Material &m) { return changed(m, [](auto &b) { b.front().relaxation_time *= 1.01; }); }},
+    {"a modulus 1 % off", [](const Material &m) { return changed(m, [](auto &b) { b.front().modulus *= 1.01; }); }},
+    {"another branch", [](const Material &m) { return changed(m,
+                                                              [](auto &b) {
+                                                                b.push_back({1e5, 1e-4});
+                                                              }); }},
+    {"overstress of the opposite sign", with_opposite_sign}};
+  return faults;
+}
+
+ViscoelasticWavesOptions waves_at_rest()
+{
+  ViscoelasticWavesOptions options;
+  options.states = {Eigen::Matrix2d::Identity()};
+  options.frequencies = {0.3, 0.6, 1., 1.7, 3.};
+  return options;
+}
+
+std::string failing(const ClaimOutcome &outcome)
+{
+  std::string text;
+  for (const output::Result &row : outcome.results.rows())
+    if (row.verdict() == output::Verdict::fails)
+      text += row.quantity + "\n";
+  return text;
+}
+
+TEST(Relaxation, FollowsTheClosedForm)
+{
+  for (const input::Case &input : {case_with_branches(), subjects::paper_case()})
+    for (const Material &material : {input.material(), subjects::nearest_only(input)})
+    {
+      const ClaimOutcome outcome = relaxation_claim(subject(input, material), {});
+      EXPECT_TRUE(outcome.results.all_hold()) << failing(outcome);
+      EXPECT_EQ(outcome.results.rows().size(), 10u); // five for each integrator
+    }
+}
+
+TEST(Relaxation, FailsForWrongBranches)
+{
+  for (const PlantedFault &fault : planted_faults())
+  {
+    RelaxationOptions options;
+    options.planted = fault.plant;
+    const ClaimOutcome outcome = relaxation_claim(subject(case_with_branches()), options);
+    const std::string rows = failing(outcome);
+    for (const char *quantity :
+         {"velocity Verlet, first Piola stress", "Chebyshev, first Piola stress", "energy stored", "energy dissipated"})
+      EXPECT_NE(rows.find(quantity), std::string::npos) << fault << ": " << quantity;
+  }
+}
+
+// Known answers of theory.md, eq. (L.30): limits, and one branch in closed form. With E / psi'' equal in all bonds,
+// s^2 + w_0^2 (1 + r s tau / (1 + s tau)) = 0.
+TEST(MemoryWaves, SolveTheirCubicEquation)
+{
+  const input::Case input = subjects::paper_case();
+  const lattice::TriangularLattice sheet = input.lattice();
+  const Material elastic = lattice::without_dashpots(input.material());
+  const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
+  const Eigen::Vector2d K(0.7 / input.spacing, 0.);
+  const std::array<PlaneWave, 2> without = bloch_waves(sheet, elastic, I, K);
+  constexpr double ratio = 0.5;
+  for (const double scaled : {1e-4, 0.1, 1., 10., 1e4})
+    for (std::size_t w = 0; w < 2; ++w)
+    {
+      const double frequency = without[w].frequency, time = scaled / frequency;
+      const std::complex<double> s =
+        memory_waves(sheet, with_branches(elastic, {ratio}, {time}), I, K)[w].rate / frequency;
+      EXPECT_GT(s.imag(), 0.9);
+      EXPECT_LT(std::abs(s * s + 1. + ratio * s * scaled / (1. + s * scaled)), 1e-10) << scaled;
+    }
+}
+
+// Without branches the waves, if they oscillate, are those of dashpots alone.
+TEST(MemoryWaves, AreThoseOfDashpotsWithoutBranches)
+{
+  const input::Case input = subjects::paper_case();
+  const lattice::TriangularLattice sheet = input.lattice();
+  const Eigen::Matrix2d F = input.deformation();
+  const Eigen::Vector2d K(0.02 / input.spacing, 0.01 / input.spacing);
+  const auto with = memory_waves(sheet, input.material(), F, K);
+  const auto without = plane_waves(bloch_matrices(sheet, input.material(), F, K), wave_normal(F, K));
+  for (std::size_t w = 0; w < 2; ++w)
+  {
+    EXPECT_GT(without[w].frequency, 0.);
+    EXPECT_NEAR(with[w].frequency(), without[w].frequency, 1e-10 * without[w].frequency);
+    EXPECT_NEAR(with[w].decay(), without[w].decay, 1e-10 * without[w].frequency);
+  }
+}
+
+TEST(ViscoelasticWaves, FollowTheComplexModulus)
+{
+  const input::Case input = case_with_branches();
+  ViscoelasticWavesOptions options = waves_at_rest();
+  options.states.push_back(input.deformation());
+  const ClaimOutcome outcome = viscoelastic_waves_claim(subject(input), options);
+  EXPECT_TRUE(outcome.results.all_hold()) << failing(outcome);
+  EXPECT_EQ(outcome.results.rows().size(), 14u);
+  const ClaimOutcome nearest = viscoelastic_waves_claim(subject(input, subjects::nearest_only(input)), waves_at_rest());
+  EXPECT_TRUE(nearest.results.all_hold()) << failing(nearest);
+}
+
+TEST(ViscoelasticWaves, FailForWrongBranches)
+{
+  for (const PlantedFault &fault : planted_faults())
+  {
+    ViscoelasticWavesOptions options = waves_at_rest();
+    options.planted = fault.plant;
+    const std::string rows = failing(viscoelastic_waves_claim(subject(case_with_branches()), options));
+    for (const char *quantity :
+         {"one branch, frequency, lattice", "one branch, decay", "own branches, frequency", "own branches, decay"})
+      EXPECT_NE(rows.find(quantity), std::string::npos) << fault << ": " << quantity;
+  }
+}
+
+// Before fracture and without names for materials with a memory alone.
+TEST(MemoryClaims, AreForMaterialsWithAMemory)
+{
+  const Material with = case_with_branches().material(), without = subjects::paper_case().material();
+  for (const Claim &claim : {relaxation_descriptor(), viscoelastic_waves_descriptor()})
+  {
+    EXPECT_TRUE(claim.is_before_fracture(with));
+    EXPECT_TRUE(claim.is_default_for(with));
+    EXPECT_FALSE(claim.is_before_fracture(without));
+    EXPECT_FALSE(claim.is_default_for(without));
+  }
+}
+
+} // namespace

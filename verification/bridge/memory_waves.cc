@@ -1,0 +1,109 @@
+#include "verification/bridge/memory_waves.h"
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <variant>
+#include <vector>
+
+#include <Eigen/Eigenvalues>
+
+#include "verification/bridge/bloch.h"
+
+namespace latcon::bridge
+{
+namespace
+{
+
+// One branch of the bonds of one shell.
+struct BranchMatrix
+{
+  Eigen::Matrix2d stiffness; // G_i [1/s^2]
+  double relaxation_time;    // tau_i [s]
+};
+
+std::vector<BranchMatrix> branch_matrices(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                                          const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
+{
+  std::vector<BranchMatrix> branches;
+  const double mass = lattice::site_mass(material, lattice);
+  for (const bool is_nearest : {true, false})
+  {
+    const lattice::Shell *shell = is_nearest ? &material.nearest : material.shell(lattice::n_nearest_kinds);
+    const auto *memory = shell != nullptr ? std::get_if<lattice::MaxwellMemory>(&shell->memory) : nullptr;
+    if (memory == nullptr)
+      continue;
+    // Per unit of the modulus.
+    Eigen::Matrix2d stiffness = Eigen::Matrix2d::Zero();
+    for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+      if (lattice::TriangularLattice::is_nearest(kind) == is_nearest)
+      {
+        const Eigen::Vector2d R = lattice.bond_vector(kind), n = (F * R).normalized();
+        const double phase = 4. * std::pow(std::sin(0.5 * K.dot(R)), 2);
+        stiffness +=
+          phase * lattice::cross_section(*shell, lattice) / lattice.rest_length(kind) / mass * n * n.transpose();
+      }
+    for (const lattice::MaxwellMemory::Branch &branch : memory->branches())
+      branches.push_back({branch.modulus * stiffness, branch.relaxation_time});
+  }
+  return branches;
+}
+
+} // namespace
+
+Eigen::Matrix2d glassy_stiffness(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                                 const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
+{
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (const BranchMatrix &branch : branch_matrices(lattice, material, F, K))
+    sum += branch.stiffness;
+  return sum;
+}
+
+std::array<MemoryWave, 2> memory_waves(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                                       const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
+{
+  const WaveMatrices bloch = bloch_matrices(lattice, material, F, K);
+  const std::vector<BranchMatrix> branches = branch_matrices(lattice, material, F, K);
+  // (u, u'/r, r_1, r_2, ...)' = r B (...) with the forces r_i' = G_i u' - r_i / tau_i per mass and r^2, and a rate r
+  // that scales the entries to similar size.
+  const double rate = std::sqrt(bloch.stiffness.norm() + glassy_stiffness(lattice, material, F, K).norm());
+  const auto size = static_cast<Eigen::Index>(4 + 2 * branches.size());
+  Eigen::MatrixXd B = Eigen::MatrixXd::Zero(size, size);
+  B.block<2, 2>(0, 2).setIdentity();
+  B.block<2, 2>(2, 0) = -bloch.stiffness / (rate * rate);
+  B.block<2, 2>(2, 2) = -bloch.damping / rate;
+  Eigen::Index at = 4;
+  for (const BranchMatrix &branch : branches)
+  {
+    B.block<2, 2>(2, at) = -Eigen::Matrix2d::Identity();
+    B.block<2, 2>(at, 2) = branch.stiffness / (rate * rate);
+    B.block<2, 2>(at, at) = -Eigen::Matrix2d::Identity() / (rate * branch.relaxation_time);
+    at += 2;
+  }
+  // The solver of eigenvalues does not handle values that are not finite.
+  if (!B.allFinite())
+    throw std::runtime_error("the stiffness of the lattice is not finite");
+  const Eigen::EigenSolver<Eigen::MatrixXd> solver(B);
+  // Everything else relaxes.
+  std::vector<Eigen::Index> order;
+  for (Eigen::Index i = 0; i < size; ++i)
+    order.push_back(i);
+  std::stable_sort(order.begin(), order.end(),
+                   [&](Eigen::Index a, Eigen::Index b)
+                   { return solver.eigenvalues()[a].imag() > solver.eigenvalues()[b].imag(); });
+  const auto wave = [&](Eigen::Index i)
+  {
+    const Eigen::Vector2cd p = solver.eigenvectors().col(i).head<2>();
+    return MemoryWave{rate * solver.eigenvalues()[i], p / (std::abs(p[0]) > std::abs(p[1]) ? p[0] : p[1])};
+  };
+  std::array<MemoryWave, 2> waves{wave(order[0]), wave(order[1])};
+  const Eigen::Vector2d normal = wave_normal(F, K);
+  const auto along = [&](const MemoryWave &w)
+  { return std::abs(w.polarisation.dot(normal.cast<std::complex<double>>())) / w.polarisation.norm(); };
+  if (along(waves[0]) < along(waves[1]))
+    std::swap(waves[0], waves[1]);
+  return waves;
+}
+
+} // namespace latcon::bridge

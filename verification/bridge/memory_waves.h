@@ -1,0 +1,38 @@
+/// Plane waves in the lattice whose bonds have Maxwell branches.
+#pragma once
+
+#include <array>
+#include <complex>
+
+#include "verification/bridge/plane_waves.h"
+
+#include "lattice/material.h"
+
+namespace latcon::bridge
+{
+
+/// Free wave Re(p exp(s t)) of one polarisation, with s = -g + i w.
+struct MemoryWave
+{
+  std::complex<double> rate;     ///< s [1/s]; w = 0 if the wave is overdamped or the sheet is unstable
+  Eigen::Vector2cd polarisation; ///< p [-], current frame; its largest entry is 1
+
+  double frequency() const { return rate.imag(); } ///< w [rad/s]
+  double decay() const { return -rate.real(); }    ///< g [1/s]
+};
+
+/// Solves (s^2 + s C + D + sum_i s tau_i / (1 + s tau_i) G_i) p = 0 (theory.md, eq. (L.30)) for the two waves
+/// that oscillate: the generalised complex modulus of the lattice's own Bloch matrices, dispersion included. The
+/// longitudinal wave comes first, as in plane_waves().
+/// @param lattice only its bonds matter
+/// @param F homogeneous deformation, whose bonds are relaxed
+/// @param K referential wave vector [1/m], not 0
+/// @throws std::runtime_error if an entry of the matrices is not finite
+std::array<MemoryWave, 2> memory_waves(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                                       const Eigen::Matrix2d &F, const Eigen::Vector2d &K);
+
+/// Stiffness that the branches add to the Bloch matrix D in fast motion, sum_i G_i [1/s^2].
+Eigen::Matrix2d glassy_stiffness(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                                 const Eigen::Matrix2d &F, const Eigen::Vector2d &K);
+
+} // namespace latcon::bridge

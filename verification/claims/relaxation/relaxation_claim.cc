@@ -1,0 +1,261 @@
+#include "verification/claims/relaxation/relaxation_claim.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <variant>
+
+#include "lattice/simulation.h"
+#include "lattice/time_step.h"
+#include "support/largest_error.h"
+#include "verification/bridge/homogeneous_response.h"
+#include "verification/claims/lattice_waves.h"
+
+namespace latcon::claims
+{
+namespace
+{
+
+constexpr double epsilon = std::numeric_limits<double>::epsilon();
+
+// Branches for lattices without any: moduli over the stiffness of a bond, relaxation times in time steps.
+const std::vector<double> ratios{0.5, 0.3, 0.2}, times_in_steps{30., 100., 300.};
+
+// One branch of one shell in the closed form.
+struct BranchTheory
+{
+  double relaxation_time; // [s]
+  double stored;          // at the start, of the whole sheet [J/m]
+  Eigen::Matrix2d stress; // at the start [Pa]
+};
+
+// The step of strain: from the undeformed sheet to one in which no bond is compressed, which is stable.
+Eigen::Matrix2d strained(const bridge::Subject &subject, const lattice::TriangularLattice &sheet)
+{
+  const Eigen::Matrix2d F = subject.deformation;
+  bool is_stretched = subject.is_stable() && !F.isIdentity(1e-6);
+  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
+    is_stretched = is_stretched && (F * sheet.bond_vector(kind)).norm() >= sheet.rest_length(kind);
+  return is_stretched ? F : 1.2 * Eigen::Matrix2d::Identity();
+}
+
+// Branches at the start: q_i = E_i (lam - 1), energies and stresses by sums over bonds (theory.md, eq. (L.31)).
+std::vector<BranchTheory> theory(const lattice::TriangularLattice &sheet, const lattice::Material &material,
+                                 const lattice::State &state, const Eigen::Matrix2d &F)
+{
+  std::array<double, lattice::n_bond_kinds> n_bonds{};
+  lattice::for_each_bond(state, sheet, [&](std::size_t, std::size_t kind, std::size_t) { n_bonds[kind] += 1.; });
+  std::vector<BranchTheory> branches;
+  for (const std::size_t first_kind : {std::size_t{0}, lattice::n_nearest_kinds})
+  {
+    const lattice::Shell *shell = material.shell(first_kind);
+    const auto *memory = shell != nullptr ? std::get_if<lattice::MaxwellMemory>(&shell->memory) : nullptr;
+    if (memory == nullptr)
+      continue;
+    for (const lattice::MaxwellMemory::Branch &branch : memory->branches())
+    {
+      BranchTheory sum{branch.relaxation_time, 0., Eigen::Matrix2d::Zero()};
+      for (std::size_t kind = first_kind; kind < first_kind + lattice::n_nearest_kinds; ++kind)
+      {
+        const Eigen::Vector2d R = sheet.bond_vector(kind), r = F * R;
+        const double change = r.norm() / R.norm() - 1., section = lattice::cross_section(*shell, sheet);
+        sum.stored += n_bonds[kind] * section * R.norm() * 0.5 * branch.modulus * change * change;
+        sum.stress += section / sheet.site_area() * branch.modulus * change * r.normalized() * R.transpose();
+      }
+      branches.push_back(sum);
+    }
+  }
+  return branches;
+}
+
+// A relaxing sheet beside its closed form.
+class HeldSheet
+{
+public:
+  HeldSheet(const bridge::Subject &subject, const lattice::TriangularLattice &sheet, const lattice::Material &material,
+            const lattice::Material &planted, const Eigen::Matrix2d &F, const lattice::TimeStepping &stepping)
+    : sheet_(sheet), rows_(sheet), simulation_(rows_, planted, start(planted, F), stepping),
+      branches_(theory(sheet, material, simulation_.state(), F)),
+      relaxed_(bridge::to_lattice(subject.cauchy_born.first_piola_stress(bridge::to_continuum(F))))
+  {
+    for (const BranchTheory &branch : branches_)
+    {
+      stored_ += branch.stored;
+      overstress_ += branch.stress;
+    }
+  }
+
+  // Compares at the present time.
+  void compare()
+  {
+    const double t = simulation_.state().time;
+    Eigen::Matrix2d overstress = Eigen::Matrix2d::Zero();
+    const std::vector<lattice::MechanismEnergy> measured = simulation_.mechanism_energies();
+    const lattice::EnergyBalance energies = simulation_.energies();
+    double stored_sum = 0., dissipated_sum = 0., stored_theory = 0., dissipated_theory = 0.;
+    for (std::size_t i = 0; i < branches_.size(); ++i)
+    {
+      const auto &[time, at_start, stress] = branches_[i];
+      overstress += std::exp(-t / time) * stress;
+      const double stored = std::exp(-2. * t / time) * at_start;
+      // The trapezoidal rule of the ledger on e^(-2t/tau) in steps h, with x = 2h/tau: (x/2) coth(x/2) of the integral.
+      const double half = simulation_.time_step() / time;
+      const double dissipated = -std::expm1(-2. * t / time) * at_start * half / std::tanh(half);
+      const lattice::MechanismEnergy found = i < measured.size() ? measured[i] : lattice::MechanismEnergy{0., 0.};
+      stored_error_.add(std::abs(found.stored - stored) / at_start, found.stored, stored);
+      if (t > 0.)
+        dissipated_error_.add_relative(found.dissipated, dissipated);
+      stored_sum += found.stored;
+      dissipated_sum += found.dissipated;
+      stored_theory += stored;
+      dissipated_theory += dissipated;
+    }
+    const Eigen::Matrix2d P = bridge::edge_stress(
+      sheet_,
+      [&](std::size_t place) {
+        return simulation_.forces().on_site(simulation_.state(), simulation_.state().vx, simulation_.state().vy, place);
+      });
+    const Eigen::Matrix2d expected = relaxed_ + overstress;
+    stress_error_.add((P - expected).norm() / overstress_.norm(), P.norm(), expected.norm());
+    const double of_laws = lattice::elastic_energy(simulation_.state(), rows_, simulation_.material());
+    totals_.add(std::abs(energies.elastic - of_laws - stored_sum) / stored_);
+    totals_.add(std::abs(energies.viscous - dissipated_sum) / stored_);
+    imbalance_.add(std::abs(energies.imbalance()) / stored_);
+    points_.push_back(
+      {t, (P - relaxed_).norm(), overstress.norm(), stored_sum, stored_theory, dissipated_sum, dissipated_theory});
+  }
+
+  void run(std::size_t n_steps)
+  {
+    constexpr std::size_t samples = 20;
+    compare();
+    for (std::size_t step = 1; step <= n_steps; ++step)
+    {
+      simulation_.step();
+      if (step % std::max<std::size_t>(1, n_steps / samples) == 0 || step == n_steps)
+        compare();
+    }
+  }
+
+  void add_rows(const bridge::Subject &subject, const std::string &integrator, std::size_t n_steps,
+                ClaimOutcome &outcome) const
+  {
+    const auto add = [&](const std::string &quantity, const std::string &unit, std::optional<double> lattice_value,
+                         std::optional<double> continuum_value, std::optional<double> theory_value, double error,
+                         double tolerance)
+    {
+      outcome.results.add({"relaxation",
+                           subject.name + ": held sheet after a step of strain, " + integrator + ", " + quantity, unit,
+                           lattice_value, continuum_value, theory_value, error, tolerance});
+    };
+    // Each update rounds twice, multiplies by an exponential that is off by a rounding, and adds a change of stretch
+    // that is round-off: 4 roundings at most. Sums over the bonds of the sheet round less than 1000 times.
+    const double round_off = (4. * static_cast<double>(n_steps) + 1000.) * epsilon;
+    support::Extremes dissipated, times; // share of the energy at the first sample; relaxation times
+    const double h = simulation_.time_step(), t_first = points_.at(1)[0];
+    for (const BranchTheory &branch : branches_)
+    {
+      dissipated.add(-std::expm1(-2. * t_first / branch.relaxation_time));
+      times.add(branch.relaxation_time);
+    }
+    const double elastic_over_stored = simulation_.energies().elastic / stored_;
+    // Overstress is a difference to the stress of the laws.
+    add("first Piola stress, worst of all times, error over the overstress at the start", "Pa", stress_error_.value(),
+        stress_error_.reference(), {}, stress_error_.error(), round_off * (1. + relaxed_.norm() / overstress_.norm()));
+    add("energy stored in a branch, worst of all branches and times, error over that at the start", "J/m",
+        stored_error_.value(), {}, stored_error_.reference(), stored_error_.error(), 2. * round_off);
+    add("energy dissipated by a branch, worst of all branches and times", "J/m", dissipated_error_.value(), {},
+        dissipated_error_.reference(), dissipated_error_.error(), 2. * round_off / dissipated.smallest());
+    add("branches against the totals of the energy ledger, worst of all times, error over their energy at the start",
+        "1", {}, {}, {}, totals_.error(), round_off * (1. + elastic_over_stored));
+    // x^2/12 for the shortest relaxation time bounds (x/2) coth(x/2) - 1.
+    add("energy imbalance, worst of all times, over the energy of the branches at the start", "1", {}, {}, {},
+        imbalance_.error(), std::pow(h / times.smallest(), 2) / 3. + round_off * (1. + elastic_over_stored));
+    output::Table &table =
+      outcome.table("relaxation", {"shells", "integrator", "t [s]", "lattice_overstress [Pa]", "theory_overstress [Pa]",
+                                   "lattice_stored [J/m]", "theory_stored [J/m]", "lattice_dissipated [J/m]",
+                                   "theory_dissipated [J/m]"});
+    for (const std::array<double, 7> &p : points_)
+      table.add({subject.name, integrator, p[0], p[1], p[2], p[3], p[4], p[5], p[6]});
+  }
+
+private:
+  // Memories at rest at F = I, sites at x = F X.
+  lattice::State start(const lattice::Material &material, const Eigen::Matrix2d &F) const
+  {
+    lattice::State at_rest =
+      lattice::homogeneous_state(rows_, material, Eigen::Matrix2d::Identity(), lattice::Edges::held);
+    lattice::relax_memory(at_rest, rows_, material);
+    lattice::State state = lattice::homogeneous_state(rows_, material, F, lattice::Edges::held);
+    state.history = std::move(at_rest.history);
+    return state;
+  }
+
+  const lattice::TriangularLattice &sheet_;
+  lattice::RowPartition rows_;
+  lattice::Simulation simulation_;
+  std::vector<BranchTheory> branches_;
+  Eigen::Matrix2d relaxed_, overstress_ = Eigen::Matrix2d::Zero(); // of the laws; of the branches at the start [Pa]
+  double stored_ = 0.;                                             // in all branches at the start [J/m]
+  support::LargestError stress_error_, stored_error_, dissipated_error_, totals_, imbalance_;
+  std::vector<std::array<double, 7>> points_; // of the table
+};
+
+bool is_damped(const lattice::Material &material)
+{
+  return material.nearest.viscosity > 0. && (!material.next_nearest || material.next_nearest->viscosity > 0.);
+}
+
+} // namespace
+
+ClaimOutcome relaxation_claim(const bridge::Subject &subject, const RelaxationOptions &options)
+{
+  ClaimOutcome outcome;
+  const double extent = 12. * subject.spacing;
+  const lattice::TriangularLattice sheet(subject.spacing, extent, extent, subject.orientation);
+  const Eigen::Matrix2d F = strained(subject, sheet);
+  const auto relax = [&](const std::string &integrator, bool is_chebyshev)
+  {
+    lattice::Material material = subject.material;
+    const auto stepping = [&]() -> lattice::TimeStepping
+    {
+      constexpr double safety = 0.9;
+      const lattice::TimeStepLimits limits = lattice::time_step_limits(sheet, material, 1.);
+      if (!is_chebyshev)
+        return safety * limits.combined;
+      return lattice::chebyshev_time_stepping(safety * lattice::chebyshev_step(sheet, material, 1.), limits, 0);
+    };
+    if (!has_branches(material))
+    {
+      // The step depends on moduli alone.
+      material = with_branches(material, ratios, std::vector<double>(ratios.size(), 1.));
+      std::vector<double> times;
+      for (const double steps : times_in_steps)
+        times.push_back(steps * stepping().step);
+      material = with_branches(material, ratios, times);
+    }
+    const lattice::Material planted = options.planted ? options.planted(material) : material;
+    HeldSheet held(subject, sheet, material, planted, F, stepping());
+    support::Extremes times;
+    for (const lattice::Shell *shell : {material.shell(0), material.shell(lattice::n_nearest_kinds)})
+      if (const auto *memory = shell != nullptr ? std::get_if<lattice::MaxwellMemory>(&shell->memory) : nullptr)
+        for (const lattice::MaxwellMemory::Branch &branch : memory->branches())
+          times.add(branch.relaxation_time);
+    const auto n_steps = static_cast<std::size_t>(std::ceil(
+      support::smallest_of({static_cast<double>(options.max_steps), 3. * times.largest() / stepping().step})));
+    held.run(n_steps);
+    held.add_rows(subject, integrator, n_steps, outcome);
+  };
+  const auto attempt = [&](const std::string &integrator, bool is_chebyshev)
+  {
+    outcome.results.attempt("relaxation", subject.name + ": held sheet after a step of strain, " + integrator,
+                            [&] { relax(integrator, is_chebyshev); });
+  };
+  attempt("velocity Verlet", false);
+  if (is_damped(subject.material))
+    attempt("Runge-Kutta-Chebyshev", true);
+  return outcome;
+}
+
+} // namespace latcon::claims

@@ -1,0 +1,40 @@
+/// Maxwell branches of the lattices on which claims about memories run.
+#pragma once
+
+#include <functional>
+#include <variant>
+#include <vector>
+
+#include "lattice/material.h"
+
+namespace latcon::claims
+{
+
+/// Returns whether the bonds of some shell have Maxwell branches.
+inline bool has_branches(const lattice::Material &material)
+{
+  return std::holds_alternative<lattice::MaxwellMemory>(material.nearest.memory) ||
+         (material.next_nearest && std::holds_alternative<lattice::MaxwellMemory>(material.next_nearest->memory));
+}
+
+/// Gives all bonds branches with these moduli over the stiffness of a bond at rest [-], and these relaxation times [s].
+inline lattice::Material with_branches(lattice::Material material, const std::vector<double> &ratios,
+                                       const std::vector<double> &relaxation_times)
+{
+  const auto give = [&](lattice::Shell &shell)
+  {
+    std::vector<lattice::MaxwellMemory::Branch> branches;
+    for (std::size_t i = 0; i < ratios.size(); ++i)
+      branches.push_back({ratios[i] * lattice::stiffness(shell.law, 1.), relaxation_times[i]});
+    shell.memory = lattice::MaxwellMemory(branches);
+  };
+  give(material.nearest);
+  if (material.next_nearest)
+    give(*material.next_nearest);
+  return material;
+}
+
+/// Returns a material with other branches in the lattice that runs; tests plant faults with it. Empty: the same.
+using PlantedBranches = std::function<lattice::Material(const lattice::Material &)>;
+
+} // namespace latcon::claims

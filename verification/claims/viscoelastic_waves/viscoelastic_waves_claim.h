@@ -1,0 +1,32 @@
+#pragma once
+
+#include <vector>
+
+#include "verification/bridge/subject.h"
+#include "verification/claims/claim_outcome.h"
+#include "verification/claims/spectrum.h"
+
+namespace latcon::claims
+{
+
+/// Size of the claim.
+struct ViscoelasticWavesOptions
+{
+  std::vector<Eigen::Matrix2d> states; ///< F about which waves are evaluated
+  /// w tau of the branch that is swept, w being the frequency of the wave without branches; increasing, 5 or more.
+  std::vector<double> frequencies{0.1, 0.3, 0.6, 1., 1.7, 3., 10.};
+  PlantedBranches planted = {}; ///< for tests
+};
+
+/// Claim `viscoelastic-waves`: free waves in lattices whose bonds have Maxwell branches have the frequency and the
+/// decay of the lattice's complex modulus, s^2 p = -M(s) p (theory.md, eq. (L.30)), dispersion included.
+///
+/// - With one branch per bond and no dashpots, relaxation times over two decades: frequencies lie between the rubbery
+///   and the glassy limit, and the decay peaks at w tau ~ 1.
+/// - With the branches and the dashpots of the material, if it has any branches: a wave that is damped by less than
+///   critical damping, and one twice as long.
+///
+/// Each run starts with one wave alone, the overstresses included, so that displacements are one damped oscillation.
+ClaimOutcome viscoelastic_waves_claim(const bridge::Subject &subject, const ViscoelasticWavesOptions &options);
+
+} // namespace latcon::claims
