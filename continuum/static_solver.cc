@@ -182,10 +182,15 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
     lift *= target - load_factor_;
     Vector step = sheet_.make_owned();
     u = displacement_;
-    const unsigned int linear_iterations = solve(evaluate_at(u), &lift, 0., step).linear_iterations;
-    u += step;
-    step = lift;
-    u += step;
+    unsigned int linear_iterations = 0;
+    // If only the stiffness factor has changed, there is no increment, and the first step may need the line search.
+    if (target != load_factor_ || !sheet_.constitution().factor)
+    {
+      linear_iterations = solve(evaluate_at(u), &lift, 0., step).linear_iterations;
+      u += step;
+      step = lift;
+      u += step;
+    }
     const std::string failure = newton.solve(u, evaluate_at(u), number, target, linear_iterations, report.iterations);
     if (!failure.empty())
       return failure;
@@ -206,13 +211,29 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
 SolverReport StaticSolver::solve(const Observer &observer)
 {
   SolverReport report;
+  if (load_factor_ < 1.)
+    advance(1., report, observer);
+  return report;
+}
+
+SolverReport StaticSolver::step_to(const double load_factor)
+{
+  SolverReport report;
+  advance(load_factor, report, Observer());
+  return report;
+}
+
+// Changes the load factor to `end` in one step or more.
+void StaticSolver::advance(const double end, SolverReport &report, const Observer &observer)
+{
   double rise = settings_.first_load_step;
   constexpr unsigned int few_iterations = 5;
-  while (load_factor_ < 1.)
+  const double direction = load_factor_ <= end ? 1. : -1.;
+  do
   {
     // A remainder within rounding is added to this step.
-    const double left = 1. - load_factor_;
-    const double target = left <= rise * (1. + 1e-12) ? 1. : load_factor_ + rise;
+    const double left = direction * (end - load_factor_);
+    const double target = left <= rise * (1. + 1e-12) ? end : load_factor_ + direction * rise;
     const std::size_t before = report.iterations.size();
     const std::string failure = attempt(target, report);
     report.load_steps.push_back(
@@ -232,14 +253,15 @@ SolverReport StaticSolver::solve(const Observer &observer)
         throw SolverFailed(
           "static equilibrium was lost at load factor " + std::to_string(load_factor_) + ": " + failure, report);
     }
-  }
-  return report;
+  } while (load_factor_ != end);
 }
 
 void StaticSolver::refine(Sheet::Mesh &mesh, const double fraction)
 {
   if (&mesh != &sheet_.mesh())
     throw InvalidInput("refine() needs the mesh of the solver's own sheet");
+  if (sheet_.constitution().factor)
+    throw InvalidInput("refine() does not support a stiffness factor, which belongs to one mesh");
   if (!(fraction > 0. && fraction <= 1.))
     throw InvalidInput("the fraction of cells to refine must be in (0, 1]");
   parallel::distributed::GridRefinement::refine_and_coarsen_fixed_number(mesh, error_indicators(sheet_, displacement_),

@@ -68,6 +68,10 @@ public:
   /// there, by loading from zero. Throws SolverFailed as solve() does.
   SolverReport equilibrate();
 
+  /// Finds the equilibrium at `load_factor` [-], which may be larger than the current one, smaller or the same, from
+  /// the current state in load steps as solve(). Throws SolverFailed as solve() does.
+  SolverReport step_to(double load_factor);
+
   /// Returns the stored energy E [J/m] of the current state, per unit reference thickness.
   double total_energy() const;
 
@@ -95,6 +99,7 @@ private:
   Evaluation evaluate(const Vector &u, double load_factor) const;
   double round_off(const Evaluation &state, const Vector &u) const;
   std::string attempt(double target, SolverReport &report);
+  void advance(double end, SolverReport &report, const Observer &observer);
 
   Sheet sheet_;
   StaticSettings settings_;

@@ -14,7 +14,7 @@ import subprocess
 import sys
 
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"]([^>"]+)[>"]', re.MULTILINE)
-SIDES = ("support", "lattice/bonds", "lattice", "continuum")
+SIDES = ("support", "lattice/bonds", "lattice", "continuum", "continuum/damage")
 MODELS = (*SIDES, "verification/input", "verification/bridge", "verification/analysis", "verification/output")
 # The folders that a folder may include in addition to itself; `claims/*` is the folder of any one claim.
 ALLOWED = {
@@ -22,6 +22,7 @@ ALLOWED = {
     "lattice/bonds": (),
     "lattice": ("support", "lattice/bonds"),
     "continuum": ("support",),
+    "continuum/damage": ("support", "continuum"),
     "verification/analysis": ("support", "lattice/bonds", "lattice"),
     "verification/input": ("support", "lattice/bonds", "lattice"),
     "verification/bridge": (*SIDES, "verification/input"),
@@ -38,7 +39,7 @@ ALLOWED = {
     # Tests of one side must not depend on the other either.
     "tests/support": ("support",),
     "tests/lattice": ("support", "lattice/bonds", "lattice", "tests/support"),
-    "tests/continuum": ("support", "continuum", "tests/support"),
+    "tests/continuum": ("support", "continuum", "continuum/damage", "tests/support"),
     "tests/verification/analysis": ("support", "lattice", "verification/analysis", "tests/support", "tests/lattice"),
 }
 # Folders that may not include a library, by the beginning of its headers' names.
@@ -58,6 +59,7 @@ PLANTED = [
     ("lattice", '#include "verification/analysis/path_fit.h"'),
     ("continuum", '#include "lattice/bonds/bond_law.h"'),
     ("continuum", '#include "verification/input/case.h"'),
+    ("continuum", '#include "continuum/damage/damage_field.h"'),
     ("verification/analysis", '#include "continuum/dynamic_solver.h"'),
     ("verification/analysis", '#include "verification/output/csv.h"'),
     ("verification/input", '#include "verification/output/csv.h"'),

@@ -32,12 +32,15 @@ PLACES = {
     "support/": ["support_tests"],
     "lattice/": ["lattice_tests", "lattice_ranks_tests"],
     "continuum/": ["continuum_tests"],
+    "continuum/damage/": ["continuum_damage_tests"],
+    "continuum/stiffness_factor.h": ["continuum_damage_tests"],
     "verification/": ["verification_tests", "claims_tests"],
     "verification/analysis/": ["analysis_tests"],
     **dict.fromkeys(["verification/bridge/affine_displacement.h", "verification/bridge/bloch.", "verification/bridge/equivalent_sheet.",
                      "verification/bridge/homogenisation.cc", "verification/bridge/plane_waves.",
                      "verification/claims/continuum_waves.", "verification/claims/lattice_waves.", "verification/claims/order_fit.h",
-                     "verification/claims/oscillation.", "verification/claims/energy/", "verification/claims/intrinsic_length/",
+                     "verification/claims/oscillation.", "verification/claims/damage/", "verification/claims/energy/",
+                     "verification/claims/intrinsic_length/",
                      "verification/claims/prestretch/", "verification/claims/steady_crack/",
                      "verification/claims/wave_speeds/"], ["claims_tests", "verification_tests"]),
     "verification/compare/": ["compare_tests"],
@@ -51,7 +54,7 @@ PLACES = {
                      "continuum/precompiled.h", "verification/study/study_output."], []),
 }
 PROGRAMS = {"support_tests": GoogleTests(), "lattice_tests": GoogleTests(), "lattice_ranks_tests": Ranks(3),
-            "continuum_tests": GoogleTests(), "analysis_tests": GoogleTests(),
+            "continuum_tests": GoogleTests(), "continuum_damage_tests": GoogleTests(), "analysis_tests": GoogleTests(),
             "claims_tests": GoogleTests(), "compare_tests": GoogleTests(), "verification_tests": GoogleTests()}
 
 

@@ -28,7 +28,8 @@ from made_up_claims import DECAY, FIRST_ROW, RUN_ERROR, write_claims
 
 decay_of = MODULES["intrinsic-length"].decay_of
 # In the order in which they are checked.
-CLAIMS = ("energy", "wave-speeds", "viscoelastic-waves", "relaxation", "intrinsic-length", "prestretch", "running-crack")
+CLAIMS = ("energy", "wave-speeds", "viscoelastic-waves", "relaxation", "intrinsic-length", "prestretch", "running-crack",
+          "damage")
 FULL = "--full" in sys.argv  # also the layout of the plots
 
 
@@ -108,6 +109,8 @@ class ClaimSections(unittest.TestCase):
             "running-crack": ("NN+NNN: most negative velocity ahead of the tip [m/s]: lattice -1.00, local continuum "
                               "-0.50, gradient continuum -0.50",
                               "NN: most negative velocity ahead of the tip [m/s]: lattice -1.00, local continuum -0.50<"),
+            "damage": ("NN+NNN, local law, h = 0.5 ξ: damage off the closed form by up to 1.0e-03",
+                       "NN, with gradient energy, h = 0.25 ξ: damage off the closed form by up to 1.0e-03"),
         }
         for claim, expected in metrics.items():
             section = self.section(html, claim)

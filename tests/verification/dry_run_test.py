@@ -24,6 +24,8 @@ REFUSED = [
     ("continuum", [*MOTION, "Initial state/velocity y=1/y"], "is no finite number"),
     ("continuum", [*MOTION, "Continuum/time step=1e-20"], "more than the"),
     ("continuum", ["Continuum/mesh file=none.msh"], "none.msh"),
+    ("continuum", ["Damage/length=1 mm"], "Damage/length: `latcon continuum` does not support damage"),
+    ("continuum", ["Damage/threshold energy=1e6"], "Damage/threshold energy: `latcon continuum` does not support damage"),
     ("lattice", ["Lattice/solution=motion", "Time/end=0"], "needs an end time"),
     ("lattice", ["Lattice/solution=motion", "Time/end=1", "Time/step=1e-20"], "more than the"),
     ("lattice", ["Sheet/spacing=1e-9"], ""),

@@ -6,6 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "verification/claims/damage/descriptor.h"
 #include "verification/claims/energy/descriptor.h"
 #include "verification/claims/intrinsic_length/descriptor.h"
 #include "verification/claims/prestretch/descriptor.h"
@@ -36,6 +37,7 @@ std::vector<Claim> all_claims()
   list.push_back(claims::intrinsic_length_descriptor());
   list.push_back(claims::prestretch_descriptor());
   list.push_back(claims::running_crack_descriptor());
+  list.push_back(claims::damage_descriptor());
   return list;
 }
 

@@ -374,6 +374,9 @@ support::ExitCode run_continuum(const input::Options &options)
   input::Parameters parameters;
   read_case(options, input, parameters);
   const bool moves = input.continuum.solution == input::ContinuumCase::Solution::motion;
+  if (input.continuum.damage_length || input.continuum.damage_threshold)
+    parameters.error(input.continuum.damage_length ? "Damage/length" : "Damage/threshold energy",
+                     "`latcon continuum` does not support damage, `latcon verify damage` does; give auto");
   if (moves && !(input.end_time > 0.))
     parameters.error("Time/end", "motion needs an end time larger than 0", {"Continuum/solution"});
   // An equilibrium is that of the relaxed sheet.

@@ -346,6 +346,14 @@ void ContinuumCase::declare(Parameters &p)
   initial_displacement.declare(p, "Initial state", "displacement", "m",
                                "initial displacement added to the base, zero on held edges");
   initial_velocity.declare(p, "Initial state", "velocity", "m/s", "initial velocity of the finite elements");
+  p.add("Damage", "length", damage_length, Magnitude{}, "m",
+        "xi of the damage of the finite elements, which reaches 2 xi from a crack; auto: the spacing of the lattice. For "
+        "`latcon verify damage`");
+  p.add("Damage", "threshold energy", damage_threshold, Magnitude{}, "J/m^3",
+        "W_c, stored energy density at which damage begins; auto: that of the law cauchy-born stretched along both axes "
+        "to the breaking stretch of the bonds, or to 3 if there is none");
+  p.add("Damage", "residual stiffness", residual_stiffness, Between{1e-6, 1e-3}, "1",
+        "k, factor of the stored energy where the damage is 1");
 }
 
 void ContinuumCase::check(Parameters &p, const bool has_inner_edge) const

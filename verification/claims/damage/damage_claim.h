@@ -1,0 +1,29 @@
+#pragma once
+
+#include "continuum/damage/damage_law.h"
+#include "verification/bridge/subject.h"
+#include "verification/claims/claim_outcome.h"
+
+namespace latcon::claims
+{
+
+/// Returns the constants of the damage of a case: those of section `Damage`. By default the length is the spacing, and
+/// the threshold the energy density of the subject's Cauchy-Born law stretched along both axes to the breaking stretch,
+/// or to 3 if the case has none (theory-continuum.md, eq. (C.61)).
+continuum::DamageLaw damage_law(const input::Case &input, const bridge::Subject &subject);
+
+struct DamageOptions
+{
+  unsigned int finest = 4;       ///< elements per xi of the finest bar, 4 or more and a power of two
+  double planted_toughness = 1.; ///< for tests: factor of the threshold in the solver, not in the theory
+};
+
+/// Claim `damage`: bars of the subject's Cauchy-Born law in tension against closed forms (theory-continuum.md, eqs.
+/// (C.60) to (C.68)), without gradient energy and with the isotropic one; the degradation of the lattice's gradient
+/// energy in a sheet.
+///
+/// Writes the table `damaged_bar`. Collective.
+ClaimOutcome damage_claim(const bridge::Subject &subject, const continuum::DamageLaw &law,
+                          const DamageOptions &options = DamageOptions());
+
+} // namespace latcon::claims

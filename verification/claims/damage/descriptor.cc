@@ -1,0 +1,37 @@
+#include "verification/claims/damage/descriptor.h"
+
+#include "verification/claims/damage/damage_claim.h"
+
+namespace latcon::claims
+{
+namespace
+{
+
+ClaimOutcome check(const ClaimInput &input)
+{
+  DamageOptions options;
+  options.finest = input.quick ? 4 : 8;
+  return damage_claim(input.subject, damage_law(input.entries, input.subject), options);
+}
+
+} // namespace
+
+Claim damage_descriptor()
+{
+  Claim claim;
+  claim.name = "damage";
+  claim.title = "a bar of the damaging continuum breaks as its closed form";
+  claim.statement = "Damage of the finite elements begins at its threshold, never heals, and closes the ledger of "
+                    "energies. A bar breaks "
+                    "for the energy of a crack, with the damage of the closed form, with and without gradient energy. "
+                    "This claim is about "
+                    "the continuum alone.";
+  claim.check = check;
+  claim.is_default = false;
+  claim.entries = {"Damage/length", "Damage/threshold energy", "Damage/residual stiffness",
+                   "Fracture/breaking stretch"};
+  claim.quick_on_own_shells_only = true;
+  return claim;
+}
+
+} // namespace latcon::claims
