@@ -23,6 +23,11 @@ PotentialDerivatives of(const LinearPotential &p, const double l)
 {
   return {0.5 * p.e * (l - 1.) * (l - 1.), p.e * (l - 1.), p.e, 0., 0.};
 }
+
+PotentialDerivatives of(const CustomPotential &p, const double l)
+{
+  return p.law->derivatives(l);
+}
 } // namespace
 
 PotentialDerivatives derivatives(const FibrePotential &potential, const double l)

@@ -2,6 +2,7 @@
 
 #include <deal.II/base/tensor.h>
 
+#include <memory>
 #include <variant>
 
 namespace latcon::continuum
@@ -22,17 +23,6 @@ struct LinearPotential
   friend bool operator==(const LinearPotential &p, const LinearPotential &q) { return p.e == q.e; }
 };
 
-/// Potential of a fibre. To add a potential, add an alternative here and an overload in fibres.cc.
-using FibrePotential = std::variant<RodPotential, LinearPotential>;
-
-/// Family of fibres with one reference direction.
-struct FibreFamily
-{
-  dealii::Tensor<1, 2> direction; ///< unit vector N_J [-], reference configuration
-  double weight;                  ///< c [-] > 0
-  FibrePotential potential;       ///< psi [Pa]
-};
-
 /// Value [Pa] of psi and its derivatives [Pa] by the stretch.
 struct PotentialDerivatives
 {
@@ -41,6 +31,34 @@ struct PotentialDerivatives
   double second;
   double third;
   double fourth;
+};
+
+/// Potential that is not in closed form here: derive from it.
+class CustomPotentialLaw
+{
+public:
+  virtual ~CustomPotentialLaw() = default;
+
+  /// Returns psi(l) and its first four derivatives at stretch l > 0 [-]; NaN where there are none.
+  virtual PotentialDerivatives derivatives(double l) const = 0;
+};
+
+/// A user-defined potential. Two are equal if they have the same law.
+struct CustomPotential
+{
+  std::shared_ptr<const CustomPotentialLaw> law;
+  friend bool operator==(const CustomPotential &p, const CustomPotential &q) { return p.law == q.law; }
+};
+
+/// Potential of a fibre. To add a potential, add an alternative here and an overload in fibres.cc.
+using FibrePotential = std::variant<RodPotential, LinearPotential, CustomPotential>;
+
+/// Family of fibres with one reference direction.
+struct FibreFamily
+{
+  dealii::Tensor<1, 2> direction; ///< unit vector N_J [-], reference configuration
+  double weight;                  ///< c [-] > 0
+  FibrePotential potential;       ///< psi [Pa]
 };
 
 /// Returns psi(l) and its first four derivatives at stretch l > 0 [-] (theory-continuum.md, eqs. (C.12), (C.13)).

@@ -2,6 +2,8 @@
 
 #include "continuum/errors.h"
 
+#include <cmath>
+
 using dealii::Tensor;
 
 namespace latcon::continuum
@@ -15,12 +17,30 @@ struct Overloaded : Functions...
 };
 template <class... Functions>
 Overloaded(Functions...) -> Overloaded<Functions...>;
+
+// Adds fibres of a family in all directions; those of equal potentials are one family.
+void add_in_all_directions(std::vector<FibreFamily> &fibres, const FibreFamily &family)
+{
+  constexpr unsigned int n = IsotropicNetwork::n_directions;
+  std::size_t first = 0;
+  while (first < fibres.size() && !(fibres[first].potential == family.potential))
+    first += n;
+  if (first == fibres.size())
+    for (unsigned int k = 0; k < n; ++k)
+    {
+      const double angle = std::acos(-1.) * k / n;
+      fibres.push_back({Tensor<1, 2>({std::cos(angle), std::sin(angle)}), 0., family.potential});
+    }
+  for (std::size_t k = first; k < first + n; ++k)
+    fibres[k].weight += family.weight / n;
+}
 } // namespace
 
 IsotropicNetwork::IsotropicNetwork(const std::vector<FibreFamily> &families)
 {
   if (families.empty())
     throw InvalidMaterial("a fibre network needs at least one family");
+  std::vector<FibreFamily> sampled;
   for (const FibreFamily &family : families)
   {
     check(family);
@@ -30,9 +50,12 @@ IsotropicNetwork::IsotropicNetwork(const std::vector<FibreFamily> &families)
                             a_ += c * rod.a;
                             b_ += c * rod.b;
                           },
-                          [&](const LinearPotential &spring) { e_ += c * spring.e; }},
+                          [&](const LinearPotential &spring) { e_ += c * spring.e; },
+                          [&](const CustomPotential &) { add_in_all_directions(sampled, family); }},
                family.potential);
   }
+  if (!sampled.empty())
+    sampled_.emplace(std::move(sampled));
 }
 
 InvariantFunction IsotropicNetwork::density(const Tensor<2, 2> &F) const
@@ -52,17 +75,19 @@ InvariantFunction IsotropicNetwork::density(const Tensor<2, 2> &F) const
 
 double IsotropicNetwork::energy(const Tensor<2, 2> &F) const
 {
-  return density(F).value;
+  return density(F).value + (sampled_ ? sampled_->energy(F) : 0.);
 }
 
 Tensor<2, 2> IsotropicNetwork::first_piola_stress(const Tensor<2, 2> &F) const
 {
-  return continuum::first_piola_stress(density(F), F);
+  Tensor<2, 2> P = continuum::first_piola_stress(density(F), F);
+  return sampled_ ? P += sampled_->first_piola_stress(F) : P;
 }
 
 Tensor<4, 2> IsotropicNetwork::tangent(const Tensor<2, 2> &F) const
 {
-  return continuum::tangent(density(F), F);
+  Tensor<4, 2> T = continuum::tangent(density(F), F);
+  return sampled_ ? T += sampled_->tangent(F) : T;
 }
 
 double IsotropicNetwork::thickness_stretch(const Tensor<2, 2> &F) const

@@ -1,15 +1,19 @@
 #pragma once
 
+#include "continuum/cauchy_born.h"
 #include "continuum/fibres.h"
 #include "continuum/material.h"
 #include "continuum/plane_invariants.h"
 
+#include <optional>
 #include <vector>
 
 namespace latcon::continuum
 {
 /// Isotropic law of a fibre network: mean of CauchyBorn over all rotations of the reference configuration, in closed
 /// form (theory-continuum.md, eqs. (C.50) to (C.56)). With Mooney-Rivlin rods it is the Mooney-Rivlin law of a network.
+/// The mean of custom potentials is a sum over n_directions equally spaced fibres, by which an analytic potential is
+/// integrated to round-off: with principal stretches p > q the error falls as ((p - q) / (p + q))^n_directions.
 /// It differs from CauchyBorn only in the dependence on direction. The law does not model the thickness:
 /// thickness_stretch() returns 1.
 ///
@@ -26,6 +30,8 @@ public:
   dealii::Tensor<4, 2> tangent(const dealii::Tensor<2, 2> &F) const override;
   double thickness_stretch(const dealii::Tensor<2, 2> &F) const override;
 
+  static constexpr unsigned int n_directions = 96;
+
 private:
   InvariantFunction density(const dealii::Tensor<2, 2> &F) const;
 
@@ -33,5 +39,6 @@ private:
   double a_ = 0.;
   double b_ = 0.;
   double e_ = 0.;
+  std::optional<CauchyBorn> sampled_; // fibres with custom potentials, in all directions
 };
 } // namespace latcon::continuum

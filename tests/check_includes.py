@@ -19,7 +19,7 @@ MODELS = (*SIDES, "verification/input", "verification/bridge", "verification/ana
 # The folders that a folder may include in addition to itself; `claims/*` is the folder of any one claim.
 ALLOWED = {
     "support": (),
-    "lattice/bonds": (),
+    "lattice/bonds": ("support",),
     "lattice": ("support", "lattice/bonds"),
     "continuum": ("support",),
     "continuum/damage": ("support", "continuum"),

@@ -1,3 +1,4 @@
+#include <cstddef>
 #include <memory>
 
 #include "lattice/bonds/formulas.h"
@@ -27,6 +28,13 @@ public:
   /// psi'(lam) [Pa], axial force per reference cross-section, tension positive. The loop over all bonds calls this.
   virtual double force(double stretch) const noexcept = 0;
 
+  /// psi' [Pa] of n bonds, the same bits as force() gives for each. Overridden where this is faster for several bonds.
+  virtual void forces(std::size_t n, const double *stretches, double *forces) const noexcept
+  {
+    for (std::size_t i = 0; i < n; ++i)
+      forces[i] = force(stretches[i]);
+  }
+
   /// psi''(lam) [Pa], axial tangent stiffness per reference cross-section.
   virtual double stiffness(double stretch) const noexcept = 0;
 
@@ -52,6 +60,20 @@ public:
 
   /// psi'(lam) [Pa]; 0 for absent bonds, which have no length.
   double force(double stretch) const { return stretch > 0. ? law_->force(stretch) : 0.; }
+
+  /// psi' [Pa] of n bonds, in place of their stretches, as force() gives it.
+  void forces(std::size_t n, double *stretches) const
+  {
+    double present[max_bonds], of_law[max_bonds];
+    for (std::size_t i = 0; i < n; ++i)
+      present[i] = stretches[i] > 0. ? stretches[i] : 1.;
+    law_->forces(n, present, of_law);
+    for (std::size_t i = 0; i < n; ++i)
+      stretches[i] = stretches[i] > 0. ? of_law[i] : 0.;
+  }
+  static constexpr std::size_t max_bonds = 8; ///< of one call of forces()
+
+  const std::shared_ptr<const CustomBondLaw> &law() const { return law_; }
 
 private:
   std::shared_ptr<const CustomBondLaw> law_;

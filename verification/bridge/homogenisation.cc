@@ -1,11 +1,15 @@
 #include "verification/bridge/homogenisation.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <stdexcept>
 
 #include "continuum/errors.h"
+#include "continuum/expression_potential.h"
+#include "lattice/bonds/expression_law.h"
+#include "lattice/bonds/library_law.h"
 #include "support/largest_error.h"
 
 namespace latcon::bridge
@@ -18,6 +22,36 @@ namespace
 double bond_weight(const lattice::TriangularLattice &lattice, const lattice::Shell &shell, std::size_t kind)
 {
   return lattice::cross_section(shell, lattice) * lattice.rest_length(kind) / lattice.site_area();
+}
+
+class LibraryPotential : public continuum::CustomPotentialLaw
+{
+public:
+  explicit LibraryPotential(std::shared_ptr<const lattice::LibraryLaw> law) : law_(std::move(law)) {}
+  continuum::PotentialDerivatives derivatives(double l) const override
+  {
+    const std::array<double, 5> psi = law_->derivatives(l);
+    return {psi[0], psi[1], psi[2], psi[3], psi[4]};
+  }
+
+private:
+  std::shared_ptr<const lattice::LibraryLaw> law_;
+};
+
+// Returns the potential of a custom law, made at the first call for a shell. From an expression the continuum takes the
+// energy alone, and from a library other functions than the lattice does.
+continuum::CustomPotential custom_potential(const lattice::Shell &shell, continuum::CustomPotential &of_shell)
+{
+  const auto &law = std::get<lattice::CustomBond>(shell.law).law();
+  if (of_shell.law)
+    return of_shell;
+  if (const auto expression = std::dynamic_pointer_cast<const lattice::ExpressionLaw>(law))
+    of_shell.law = std::make_shared<continuum::ExpressionPotential>(expression->psi());
+  else if (const auto library = std::dynamic_pointer_cast<const lattice::LibraryLaw>(law))
+    of_shell.law = std::make_shared<LibraryPotential>(library);
+  else
+    throw std::invalid_argument("the continuum of bonds with a law of another program is not supported");
+  return of_shell;
 }
 
 // Number of points along the path; the fit covers the whole path, not only its end.
@@ -63,6 +97,7 @@ std::vector<continuum::BondFamily> bond_families(const lattice::TriangularLattic
                                                  const lattice::Material &material)
 {
   std::vector<continuum::BondFamily> families;
+  continuum::CustomPotential nearest, next_nearest; // one for all bonds of a shell
   for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
     if (const lattice::Shell *shell = material.shell(kind))
     {
@@ -76,7 +111,7 @@ std::vector<continuum::BondFamily> bond_families(const lattice::TriangularLattic
       else if (const auto *spring = std::get_if<lattice::LinearBond>(&shell->law))
         family.potential = continuum::LinearPotential{spring->modulus};
       else
-        throw std::invalid_argument("the continuum of bonds with a custom law is not supported");
+        family.potential = custom_potential(*shell, kind < lattice::n_nearest_kinds ? nearest : next_nearest);
       families.push_back({family, lattice.rest_length(kind)});
     }
   return families;

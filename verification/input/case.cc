@@ -6,6 +6,8 @@
 #include <stdexcept>
 #include <tuple>
 
+#include <Eigen/SVD>
+
 #include "lattice/chebyshev_stages.h"
 #include "lattice/contact.h"
 #include "lattice/seed.h"
@@ -194,8 +196,13 @@ void check_time_stepping(const Case &input, Parameters &p)
 
 void ShellCase::declare(Parameters &parameters, const std::string &section)
 {
-  parameters.add(section, "law", law, {{"mooney-rivlin", Law::mooney_rivlin}, {"linear", Law::linear}},
-                 "bond law: rod of incompressible Mooney-Rivlin rubber with constants a and b, or linear spring");
+  parameters.add(section, "law", law,
+                 {{"mooney-rivlin", Law::mooney_rivlin},
+                  {"linear", Law::linear},
+                  {"expression", Law::expression},
+                  {"library", Law::library}},
+                 "bond law: rod of incompressible Mooney-Rivlin rubber with constants a and b, linear spring, or your "
+                 "own by an expression or a shared library");
   parameters.add(section, "a", a, MagnitudeOrZero{}, "Pa", "a = 2 C1 of a Mooney-Rivlin bond");
   parameters.add(section, "b", b, MagnitudeOrZero{}, "Pa", "b = 2 C2 of a Mooney-Rivlin bond");
   parameters.add(section, "modulus", modulus, Magnitude{}, "Pa", "modulus e of a linear bond");
@@ -204,17 +211,23 @@ void ShellCase::declare(Parameters &parameters, const std::string &section)
   parameters.add(section, "viscosity", viscosity, MagnitudeOrZero{}, "Pa s",
                  "eta of the Kelvin dashpot along the bond");
   declare_branches(parameters, section);
+  user_law.declare(parameters, section);
 }
 
-void ShellCase::check(Parameters &parameters, const std::string &section) const
+void ShellCase::check(Parameters &parameters, const std::string &section, const double longest)
 {
-  if (!has_stiffness())
+  if (has_user_law())
+    user_law.check(parameters, section, user_law_kind(), {{"a", a}, {"b", b}, {"modulus", modulus}}, longest);
+  else if (!has_stiffness())
     parameters.error(section + "/a", "a bond needs stiffness: a + b must be positive", {section + "/b"});
   check_branches(parameters, section);
 }
 
-lattice::Shell ShellCase::shell() const
+lattice::Shell ShellCase::shell(const double longest) const
 {
+  if (has_user_law())
+    return {lattice::CustomBond(user_law.law(user_law_kind(), {{"a", a}, {"b", b}, {"modulus", modulus}}, longest)),
+            area_factor, viscosity, memory()};
   if (law == Law::linear)
     return {lattice::LinearBond{modulus}, area_factor, viscosity, memory()};
   return {lattice::MooneyRivlinBond{a, b}, area_factor, viscosity, memory()};
@@ -347,11 +360,11 @@ void Case::declare(Parameters &p)
         "largest relative difference between measured and published values that counts as agreement");
 }
 
-void Case::check(Parameters &p) const
+void Case::check(Parameters &p)
 {
-  nearest.check(p, "Nearest neighbours");
+  nearest.check(p, "Nearest neighbours", longest_stretch());
   if (has_next_nearest)
-    next_nearest.check(p, "Next-nearest neighbours");
+    next_nearest.check(p, "Next-nearest neighbours", longest_stretch());
 
   check_size(*this, p);
   check_cutout(*this, p);
@@ -407,10 +420,18 @@ lattice::TriangularLattice Case::lattice() const
 
 lattice::Material Case::material() const
 {
-  lattice::Material material{density, nearest.shell(), std::nullopt};
+  lattice::Material material{density, nearest.shell(longest_stretch()), std::nullopt};
   if (has_next_nearest)
-    material.next_nearest = next_nearest.shell();
+    material.next_nearest = next_nearest.shell(longest_stretch());
   return material;
+}
+
+double Case::longest_stretch() const
+{
+  if (breaking_stretch)
+    return *breaking_stretch * (toughening == Toughening::none ? 1. : toughening_factor);
+  constexpr double margin = 1.2;
+  return margin * std::max(1., deformation().jacobiSvd().singularValues()(0));
 }
 
 Eigen::Matrix2d Case::deformation() const

@@ -10,6 +10,7 @@
 #include "lattice/time_step.h"
 #include "verification/input/continuum_case.h"
 #include "verification/input/parameters.h"
+#include "verification/input/user_law.h"
 
 namespace latcon::lattice
 {
@@ -25,7 +26,9 @@ struct ShellCase
   enum class Law
   {
     mooney_rivlin,
-    linear
+    linear,
+    expression,
+    library
   };
 
   Law law = Law::mooney_rivlin;
@@ -36,15 +39,23 @@ struct ShellCase
   double viscosity = 0.;                     ///< eta [Pa s]
   std::vector<double> branch_moduli = {};    ///< E_i of Maxwell branches [Pa]
   std::vector<double> relaxation_times = {}; ///< tau_i of the branches [s]
+  UserLaw user_law;                          ///< for Law::expression and Law::library
 
   void declare(Parameters &parameters, const std::string &section);
-  void check(Parameters &parameters, const std::string &section) const;
+  /// @param longest largest stretch of an unbroken bond [-]
+  void check(Parameters &parameters, const std::string &section, double longest);
   /// Reports the first branch that relaxes within a time step: its overstress would lag behind the motion by half a
   /// step. Branches must be valid. @param step [s]
   void check_relaxation_times(Parameters &parameters, const std::string &section, double step) const;
   /// Returns whether the bonds have stiffness, as shell() requires.
-  bool has_stiffness() const { return law == Law::linear || a + b > 0.; }
-  lattice::Shell shell() const;
+  bool has_stiffness() const { return has_user_law() ? user_law.is_usable : law == Law::linear || a + b > 0.; }
+  bool has_user_law() const { return law == Law::expression || law == Law::library; }
+  UserLaw::Kind user_law_kind() const
+  {
+    return law == Law::library ? UserLaw::Kind::library : UserLaw::Kind::expression;
+  }
+  /// @param longest largest stretch of an unbroken bond [-]
+  lattice::Shell shell(double longest) const;
 
 private:
   void declare_branches(Parameters &parameters, const std::string &section);
@@ -163,13 +174,17 @@ struct Case
   double reference_tolerance = 0.2;           ///< [-]
 
   void declare(Parameters &parameters);
-  void check(Parameters &parameters) const;
+  /// Reports problems that concern several entries, and sets those that follow from others.
+  void check(Parameters &parameters);
 
   /// Returns whether length and height are in the range that lattice() requires.
   bool has_sheet() const;
   /// The lattice of the sheet, periodic where its edges are.
   lattice::TriangularLattice lattice() const;
   lattice::Material material() const;
+  /// Largest stretch of an unbroken bond [-], up to which user-defined laws must have values: the breaking stretch,
+  /// with toughening; in a sheet that does not break, that of the loading and a fifth more.
+  double longest_stretch() const;
   /// Returns whether the sheet has an inner edge, that of a hole or a notch.
   bool has_inner_edge() const { return hole_radius > 0. || notch_length > 0.; }
   /// F = [1 + eps_x, F_xy; 0, 1 + eps_y] of the loaded sheet [-].

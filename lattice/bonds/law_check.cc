@@ -1,0 +1,77 @@
+#include "lattice/bonds/law_check.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <limits>
+#include <string>
+
+namespace latcon::lattice
+{
+namespace
+{
+
+constexpr double step = 0.01; // between two stretches of the check, relative
+
+std::string text(double number)
+{
+  if (std::isnan(number))
+    return "nan"; // whatever its sign
+  char digits[32];
+  std::snprintf(digits, sizeof digits, "%.6g", number);
+  return digits;
+}
+
+std::string name(std::size_t derivative)
+{
+  return "psi" + std::string(derivative, '\'');
+}
+
+// A central difference of step h is off by the round-off of the function, eps |f| / h, and by h^2 f''' / 6, of which
+// that of step 2 h has four times as much: their difference is three times the error of the former.
+void check_slope(const std::function<double(double)> &function, const std::function<double(double)> &slope,
+                 std::size_t derivative, double stretch)
+{
+  constexpr double eps = std::numeric_limits<double>::epsilon();
+  const double h = 1e-4 * stretch;
+  double largest = 0.;
+  const auto quotient = [&](double distance)
+  {
+    const double above = function(stretch + distance), below = function(stretch - distance);
+    largest = std::max({largest, std::abs(above), std::abs(below)});
+    return (above - below) / (2. * distance);
+  };
+  const double difference = quotient(h), wider = quotient(2. * h), given = slope(stretch);
+  // Values are sums of terms that may be a hundred times larger than they are.
+  const double tolerance = std::abs(wider - difference) + 100. * eps * largest / h + 1e-9 * std::abs(given);
+  if (std::abs(given - difference) > tolerance)
+    throw InvalidBondLaw(name(derivative) + " is " + text(given) + " Pa at stretch " + text(stretch) +
+                         ", but differences of " + name(derivative - 1) + " give " + text(difference) + " Pa");
+}
+
+} // namespace
+
+void check_law(const std::vector<std::function<double(double)>> &functions, double shortest, double longest)
+{
+  const double stiffness = functions[2](1.);
+  if (!(stiffness > 0. && std::isfinite(stiffness)))
+    throw InvalidBondLaw("psi''(1) is " + text(stiffness) + " Pa; a bond at rest needs a stiffness > 0");
+  if (!(std::abs(functions[1](1.)) <= 1e-12 * stiffness))
+    throw InvalidBondLaw("psi'(1) is " + text(functions[1](1.)) + " Pa; a bond at rest has no force");
+  std::vector<double> stretches;
+  for (double stretch = shortest; stretch < longest; stretch *= 1. + step)
+    stretches.push_back(stretch);
+  stretches.push_back(longest);
+  for (std::size_t derivative = 0; derivative < functions.size(); ++derivative)
+    for (const double stretch : stretches)
+      if (const double value = functions[derivative](stretch); !std::isfinite(value))
+        throw InvalidBondLaw(name(derivative) + " is " + text(value) + " at stretch " + text(stretch) +
+                             "; it must be finite for all stretches of bonds, " + text(shortest) + " to " +
+                             text(longest));
+  for (std::size_t derivative = 1; derivative < functions.size(); ++derivative)
+    for (const double stretch : stretches)
+      if (stretch < longest && stretch > shortest) // where the differences stay inside
+        check_slope(functions[derivative - 1], functions[derivative], derivative, stretch);
+}
+
+} // namespace latcon::lattice

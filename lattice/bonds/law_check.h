@@ -1,0 +1,23 @@
+#pragma once
+
+#include <functional>
+#include <stdexcept>
+#include <vector>
+
+namespace latcon::lattice
+{
+
+/// A bond law that a lattice cannot have; what() says which of its values is wrong, at which stretch.
+class InvalidBondLaw : public std::invalid_argument
+{
+public:
+  using std::invalid_argument::invalid_argument;
+};
+
+/// Checks the functions of a law: psi, psi', psi'' [Pa] and possibly further derivatives by the stretch, in this order.
+/// From `shortest` to `longest` [-] all are finite, and each agrees with differences of the one before it; psi'(1) = 0
+/// to 1e-12 psi''(1), and psi''(1) > 0.
+/// @throws InvalidBondLaw
+void check_law(const std::vector<std::function<double(double)>> &functions, double shortest, double longest);
+
+} // namespace latcon::lattice

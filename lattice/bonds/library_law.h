@@ -1,0 +1,68 @@
+#pragma once
+
+#include <array>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "lattice/bonds/bond_law_library.h"
+#include "lattice/bonds/custom_bond.h"
+#include "lattice/bonds/stiffness_bound.h"
+
+namespace latcon::lattice
+{
+
+/// A shared library that cannot be used as a bond law; what() gives the reason.
+class UnusableLibrary : public std::runtime_error
+{
+public:
+  using std::runtime_error::runtime_error;
+};
+
+/// A shared library with the functions of bond_law_library.h. It remains loaded until the program ends.
+class LawLibrary
+{
+public:
+  /// @throws UnusableLibrary for a file that cannot be loaded, a missing function, or another version of the interface
+  explicit LawLibrary(const std::string &path);
+
+  /// Names of the parameters, in their order.
+  const std::vector<std::string> &parameters() const { return parameters_; }
+
+private:
+  friend class LibraryLaw;
+
+  decltype(&latcon_bond_law_force) force_ = nullptr;
+  decltype(&latcon_bond_law_derivatives) derivatives_ = nullptr;
+  std::vector<std::string> parameters_;
+};
+
+/// Bond law of a shared library.
+class LibraryLaw : public CustomBondLaw
+{
+public:
+  /// @param parameters values [SI], one for each name in library.parameters()
+  /// @param longest largest stretch of an unbroken bond [-], > 1
+  /// @throws InvalidBondLaw as check_law does for stretches from smallest_checked_stretch on
+  LibraryLaw(LawLibrary library, std::vector<double> parameters, double longest);
+
+  double energy(double stretch) const noexcept override { return derivatives(stretch)[0]; }
+  double force(double stretch) const noexcept override { return library_.force_(stretch, parameters_.data()); }
+  double stiffness(double stretch) const noexcept override { return derivatives(stretch)[2]; }
+  double largest_stiffness(double smallest_stretch) const noexcept override
+  {
+    return bound_->from(*this, smallest_stretch);
+  }
+
+  /// psi and its first four derivatives [Pa], with psi(1) = 0.
+  std::array<double, 5> derivatives(double stretch) const noexcept;
+
+private:
+  LawLibrary library_;
+  std::vector<double> parameters_;
+  double at_rest_ = 0.; // [Pa], psi(1) as the library gives it
+  std::unique_ptr<const StiffnessBound> bound_;
+};
+
+} // namespace latcon::lattice

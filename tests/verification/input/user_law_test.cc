@@ -1,0 +1,170 @@
+#include "verification/input/user_law.h"
+
+#include <cmath>
+#include <map>
+#include <set>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include <gtest/gtest.h>
+
+#include "support/errors.h"
+#include "verification/claims/claim_inputs.h"
+#include "verification/input/case.h"
+#include "verification/input/expression_parser.h"
+
+using namespace latcon;
+
+namespace
+{
+
+double value(const support::Expression &e, double x)
+{
+  std::vector<double> values;
+  for (const auto &[operation, number, left, right] : e.nodes())
+    values.push_back(operation == support::Expression::Operation::variable
+                       ? x
+                       : support::evaluate(operation, number, values.empty() ? 0. : values[left],
+                                           values.empty() ? 0. : values[right]));
+  return values[e.result];
+}
+
+const std::map<std::string, double> constants{{"mu", 2.}, {"alpha", -3.}};
+
+TEST(ExpressionParser, HasTheUsualGrammar)
+{
+  for (const auto &[text, at_two] : std::vector<std::pair<std::string, double>>{{"lam", 2.},
+                                                                                {"mu/2*(lam^2 + 2/lam - 3)", 2.},
+                                                                                {"-lam^2", -4.},
+                                                                                {"2^3^2", 512.},
+                                                                                {"(-lam)^2", 4.},
+                                                                                {"lam^-2", 0.25},
+                                                                                {"lam^alpha", 0.125},
+                                                                                {"mu*-lam", -4.},
+                                                                                {"6/3/2", 1.},
+                                                                                {"5-2-1", 2.},
+                                                                                {"1e-3*lam + .5", 0.502},
+                                                                                {"sqrt(8*lam) - exp(0)", 3.},
+                                                                                {"log(lam*0.5)", 0.},
+                                                                                {" ( lam ) ", 2.}})
+    EXPECT_EQ(value(input::parse_expression(text, "lam", constants), 2.), at_two) << text;
+  // exp(lam ln(lam))
+  EXPECT_NEAR(value(input::parse_expression("lam^lam", "lam", constants), 2.), 4., 1e-14);
+}
+
+TEST(ExpressionParser, NamesTheColumnOfAMistakeAndWhatIsAllowed)
+{
+  for (const auto &[text, part] :
+       std::vector<std::pair<std::string, std::string>>{{"1 + lan", "unknown 'lan' at column 5; nearest: lam"},
+                                                        {"lam,2", "unknown ',' at column 4"},
+                                                        {"lam$", "unknown '$' at column 4"},
+                                                        {"lam?1:2", "unknown '?' at column 4"},
+                                                        {"lam = 2", "unknown '=' at column 5"},
+                                                        {"lam \xc2\xb2", "at column 5"},
+                                                        {"sqrt(lam", "')' is missing at the end"},
+                                                        {"lam)", "parenthesis at column 4"},
+                                                        {"sqrt()", "one argument at column 6"},
+                                                        {"exp lam", "'(' is missing after 'exp' at column 1"},
+                                                        {"2lam", "'lam' is not expected at column 2"},
+                                                        {"sin(lam)", "unknown 'sin' at column 1"},
+                                                        {"lam +", "ends too early"},
+                                                        {"", "an expression is required"},
+                                                        {"  ", "an expression is required"}})
+    try
+    {
+      (void)input::parse_expression(text, "lam", constants);
+      ADD_FAILURE() << text;
+    }
+    catch (const input::InvalidExpression &error)
+    {
+      const std::string what = error.what();
+      EXPECT_NE(what.find(part), std::string::npos) << what;
+      EXPECT_NE(what.find("; allowed: numbers, + - * / ^ ( ), sqrt, exp, log, lam, alpha, mu"), std::string::npos)
+        << what;
+    }
+  EXPECT_THROW((void)input::parse_expression(std::string(3000, '('), "lam", constants), input::InvalidExpression);
+}
+
+// What a case says about the entries; empty for nothing.
+std::string problems(const std::vector<std::string> &settings, input::Case *read = nullptr)
+{
+  input::Case input;
+  input::Parameters parameters;
+  input.declare(parameters);
+  std::vector<std::string> all{"Sheet/spacing=1 mm",   "Sheet/length=4 cm",    "Sheet/height=2 cm",
+                               "Material/density=944", "Loading/strain x=0.5", "Loading/strain y=0.5"};
+  for (const std::string &setting : settings)
+    all.push_back("Nearest neighbours/" + setting);
+  parameters.read_overrides(all);
+  input.check(parameters);
+  try
+  {
+    parameters.finish();
+  }
+  catch (const support::InputError &error)
+  {
+    return error.what();
+  }
+  if (read != nullptr)
+    *read = input;
+  return "";
+}
+
+const std::string psi = "psi=mu/2*(lam^2 + 2/lam - 3)";
+
+TEST(UserLaw, IsThatOfTheExpressionAndItsParameters)
+{
+  input::Case input;
+  ASSERT_EQ(problems({"law=expression", psi, "parameters= mu = 0.1 MPa"}, &input), "");
+  const lattice::BondLaw law = input.material().nearest.law;
+  EXPECT_NEAR(lattice::force(law, 2.), 1e5 * (2. - 0.25), 1e-9);
+  // Entries of the section are values as well, unless a parameter has their name.
+  ASSERT_EQ(problems({"law=expression", "psi=a*(lam-1)^2 + b*(lam-1)^2", "a=3", "parameters=b=0.5"}, &input), "");
+  EXPECT_EQ(lattice::stiffness(input.material().nearest.law, 2.), 7.);
+  // The law need not have values where no bond gets.
+  const std::string locks = "psi=-lam-(k-1)*log(k-lam)";
+  EXPECT_EQ(problems({"law=expression", locks, "parameters=k=1.9"}), "");
+  EXPECT_NE(problems({"law=expression", locks, "parameters=k=1.7"}), "");
+}
+
+// A verdict on one law must not be reused for another.
+TEST(UserLaw, IsAmongTheInputsOfClaims)
+{
+  input::Case input;
+  input.spacing = 1e-3;
+  std::set<std::string> texts{claims::claim_inputs_text(input, {})};
+  for (input::ShellCase *shell : {&input.nearest, &input.next_nearest})
+    for (std::string input::UserLaw::*entry :
+         {&input::UserLaw::psi, &input::UserLaw::parameters, &input::UserLaw::library, &input::UserLaw::sha256})
+    {
+      shell->user_law.*entry = "changed";
+      EXPECT_TRUE(texts.insert(claims::claim_inputs_text(input, {})).second);
+    }
+}
+
+TEST(UserLaw, SaysWhichEntryIsWrong)
+{
+  const std::string key = "Nearest neighbours/";
+  for (const auto &[settings, part] : std::vector<std::pair<std::vector<std::string>, std::string>>{
+         {{"law=expression"}, key + "psi = : an expression is required"},
+         {{"law=expression", psi}, key + psi.substr(0, 3) + " = " + psi.substr(4) + ": unknown 'mu' at column 1"},
+         {{"law=expression", psi, "parameters=mu"}, key + "parameters = mu: 'mu': expected NAME = NUMBER"},
+         {{"law=expression", psi, "parameters=mu = 1 m"}, "with one of stress"},
+         {{"law=expression", psi, "parameters=mu = x"}, "'mu = x': expected a number"},
+         {{"law=expression", psi, "parameters=mu = 1, mu = 2"}, "'mu = 2': set twice"},
+         {{"law=expression", psi, "parameters=mu = 1, lam = 2"}, "'lam = 2': a name is"},
+         {{"law=expression", psi, "parameters=mu = 1, exp = 2"}, "'exp = 2': a name is"},
+         {{"law=expression", psi, "parameters=mu = -1"}, "psi''(1) is -3 Pa; a bond at rest needs a stiffness > 0"},
+         {{"law=expression", "psi=lam^2"}, "psi'(1) is 2 Pa; a bond at rest has no force"},
+         {{"law=library"}, key + "library = : the path of a shared library is required"},
+         {{"law=library", "library=none.so"}, key + "library = none.so: cannot read the library"},
+         {{"law=library", "library=/dev/null"}, key + "library = /dev/null: "}})
+  {
+    const std::string found = problems(settings);
+    EXPECT_NE(found.find(part), std::string::npos) << part << "\n" << found;
+    EXPECT_NE(found.find("; with Nearest neighbours/law"), std::string::npos) << found;
+  }
+}
+
+} // namespace

@@ -1,0 +1,123 @@
+#!/usr/bin/python3
+"""Tests of bond laws that a case brings along: expressions, and the shared library of examples/own-laws.
+
+Usage: own_laws_test.py PATH_OF_LATCON
+"""
+import json
+import pathlib
+import subprocess
+import sys
+import unittest
+
+sys.dont_write_bytecode = True
+from program import CASES, TemporaryFolder, latcon, latcon_on_ranks, read_csv
+
+SOURCE = pathlib.Path(__file__).resolve().parents[2]
+# A crack that takes a second.
+TINY = ["--set", "Sheet/length=2.5 cm", "--set", "Sheet/height=1.5 cm", "--set", "Time/end=0.6 ms", "--no-report",
+        "--skip-verification"]
+RESULTS = ("crack.csv", "broken_bonds.csv", "energy.csv")
+MOONEY_RIVLIN = {"law": "expression", "psi": "a*(lam^2/2 + 1/lam) + k/2*(2*lam + lam^-2)", "parameters": "k = 0.15 MPa"}
+
+
+def bonds(**entries):
+    """Options that set entries of both kinds of bonds."""
+    return [word for section in ("Nearest neighbours", "Next-nearest neighbours") for name, value in entries.items()
+            for word in ("--set", f"{section}/{name.replace('_', ' ')}={value}")]
+
+
+class OwnLaws(TemporaryFolder):
+    def crack(self, name, *options, **entries):
+        ended = latcon("fracture", CASES / "quick.prm", *TINY, *bonds(**entries), *options, "--output-dir", self.folder / name)
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        return self.folder / name
+
+    def refused(self, part, *options, **entries):
+        ended = latcon("fracture", CASES / "quick.prm", *TINY, *bonds(**entries), *options, "--output-dir", self.folder / "bad")
+        self.assertEqual(ended.returncode, 2, ended.stderr)
+        self.assertIn(part, ended.stderr)
+        self.assertFalse((self.folder / "bad").exists())
+
+    def library(self, name, *flags, text=None):
+        source = self.folder / f"{name}.c"
+        source.write_text(text or (SOURCE / "examples/own-laws/gent_law.c").read_text())
+        library = self.folder / f"{name}.so"
+        subprocess.run(["cc", "-O1", "-shared", "-fPIC", "-I", SOURCE, *flags, source, "-o", library, "-lm"], check=True)
+        return library
+
+    def same_crack(self, one, other):
+        """Bond after bond. The laws differ by a few roundings of each force, 1e-16. Between two breaks they grow like any
+        perturbation; over the run of this test, from 1e-16 to less than 1e-9. A bond breaks in the same step unless it is as
+        close to its limit as that, and time steps follow from the stiffness, whose roundings are those of the times."""
+        rows = [read_csv(folder / "broken_bonds.csv") for folder in (one, other)]
+        self.assertGreater(len(rows[0]), 20)
+        self.assertEqual(len(rows[0]), len(rows[1]))
+        for a, b in zip(*rows):
+            for column in a:
+                x, y = float(a[column]), float(b[column])
+                self.assertAlmostEqual(x, y, delta=1e-9 * max(abs(x), 1e-3), msg=column)
+
+    def test_expression_cracks_as_the_built_in_law(self):
+        self.same_crack(self.crack("built-in"), self.crack("typed", **MOONEY_RIVLIN))
+
+    def test_library_cracks_as_the_same_expression(self):
+        parameters = "mu = 0.25 MPa, Jm = 120"
+        typed = self.crack("typed", law="expression", psi="-mu*Jm/2*log(1 - (lam^2 + 2/lam - 3)/Jm)", parameters=parameters)
+        compiled = self.crack("compiled", law="library", library=self.library("gent"), parameters=parameters)
+        self.same_crack(typed, compiled)
+
+    def test_threads_and_ranks_leave_the_same_bits(self):
+        one = self.crack("one", "--threads", 1, **MOONEY_RIVLIN)
+        two = self.crack("two", "--threads", 2, **MOONEY_RIVLIN)
+        ended = latcon_on_ranks(2, "fracture", CASES / "quick.prm", *TINY, *bonds(**MOONEY_RIVLIN), "--threads", 1,
+                                "--output-dir", self.folder / "ranks")
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+        for name in RESULTS:
+            for other in (two, self.folder / "ranks"):
+                self.assertEqual((one / name).read_bytes(), (other / name).read_bytes(), name)
+
+    def test_claims_hold(self):
+        ended = latcon("verify", "energy", "wave-speeds", "--quick", "--case", CASES / "quick.prm", "--set",
+                       "Next-nearest neighbours/present=false", *bonds(**MOONEY_RIVLIN), "--output-dir", self.folder / "claims")
+        self.assertEqual(ended.returncode, 0, ended.stdout + ended.stderr)
+        rows = json.loads((self.folder / "claims" / "results.json").read_text())["claims"]
+        self.assertGreater(sum(row["verdict"] == "holds" for row in rows), 20)
+
+    def test_force_is_compared_with_the_derivatives(self):
+        text = (SOURCE / "examples/own-laws/gent_law.c").read_text()
+        wrong = text.replace("  return mu * (lam", "  return (1. + 1e-3 * (lam > 2.3)) * mu * (lam")
+        self.assertNotEqual(text, wrong)
+        self.refused("psi' is", law="library", library=self.library("wrong", text=wrong), parameters="mu = 0.25 MPa, Jm = 120")
+
+    def test_library_is_part_of_the_case(self):
+        gent = self.library("gent")
+        parameters = "mu = 0.25 MPa, Jm = 120"
+        run = self.crack("first", law="library", library=gent, parameters=parameters)
+        case = (run / "case.prm").read_text()
+        first = json.loads((run / "run.json").read_text())["case_hash"]
+        self.library("gent", "-DANOTHER=1", "-O0")  # in its place
+        ended = latcon("fracture", run / "case.prm", "--no-report", "--skip-verification", "--output-dir", self.folder / "second")
+        self.assertEqual(ended.returncode, 2)
+        self.assertIn("Nearest neighbours/library sha256", ended.stderr)
+        self.assertRegex(case, r"library sha256 *= [0-9a-f]{64}")
+        second = self.crack("third", law="library", library=gent, parameters=parameters)
+        self.assertNotEqual(first, json.loads((second / "run.json").read_text())["case_hash"])
+
+    def test_unusable_libraries_are_refused(self):
+        text = (SOURCE / "examples/own-laws/gent_law.c").read_text()
+        law = {"law": "library", "parameters": "mu = 0.25 MPa, Jm = 120"}
+        self.refused("cannot read the library", library=self.folder / "none.so", **law)
+        self.refused("no function `latcon_bond_law_force`", **law,
+                     library=self.library("nameless", text=text.replace("latcon_bond_law_force", "latcon_force")))
+        self.refused("it has version 2 of the interface; required: 1", **law,
+                     library=self.library("later", text=text.replace("return LATCON_BOND_LAW_VERSION", "return 2")))
+        gent = self.library("gent")
+        self.refused("the library needs 'Jm'", law="library", library=gent, parameters="mu = 0.25 MPa")
+        self.refused("has no parameter 'k'", law="library", library=gent, parameters="mu = 0.25 MPa, Jm = 120, k = 1")
+        # The chains lock before the toughened bonds break, at 9.15.
+        self.refused("it must be finite for all stretches of bonds, 0.3 to 9.15", law="library", library=gent,
+                     parameters="mu = 0.25 MPa, Jm = 30")
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

@@ -1,0 +1,168 @@
+#include "verification/input/user_law.h"
+
+#include <algorithm>
+#include <array>
+#include <sstream>
+#include <utility>
+#include <vector>
+
+#include <openssl/evp.h>
+
+#include "lattice/bonds/expression_law.h"
+#include "lattice/bonds/law_check.h"
+#include "lattice/bonds/library_law.h"
+#include "verification/input/case_text.h"
+#include "verification/input/expression_parser.h"
+#include "verification/input/input_file.h"
+#include "verification/input/spelling.h"
+#include "verification/input/units.h"
+
+namespace latcon::input
+{
+namespace
+{
+
+using Values = std::map<std::string, double>;
+
+constexpr const char *variable = "lam";
+
+// Reads `mu = 0.1 MPa, alpha = 2`.
+Values parameters_of(const std::string &text)
+{
+  Values values;
+  std::istringstream parts(text);
+  for (std::string part; std::getline(parts, part, ',');)
+  {
+    const std::size_t equals = part.find('=');
+    const std::string name = trimmed(part.substr(0, equals));
+    const auto wrong = [&](const std::string &what)
+    { throw UserLaw::Problem("parameters", "'" + printable(trimmed(part)) + "': " + what); };
+    if (equals == std::string::npos)
+      wrong("expected NAME = NUMBER, separated by commas");
+    if (!is_value_name(name) || name == variable)
+      wrong("a name is a letter followed by letters, digits and underscores, and neither a function nor lam");
+    const std::string number = trimmed(part.substr(equals + 1));
+    const ParsedNumber pure = read_quantity(number, "1");
+    const ParsedNumber stress = pure.wrong.empty() ? pure : read_quantity(number, "Pa");
+    if (!stress.wrong.empty())
+      wrong("expected a number, without a unit or with one of stress");
+    if (!values.emplace(name, stress.value).second)
+      wrong("set twice");
+  }
+  return values;
+}
+
+std::string sha256_of(const std::string &bytes)
+{
+  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
+  unsigned int size = 0;
+  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1)
+    throw std::runtime_error("OpenSSL has no SHA-256");
+  std::string text;
+  for (unsigned int i = 0; i < size; ++i)
+    for (const unsigned int shift : {4U, 0U})
+      text += "0123456789abcdef"[(digest[i] >> shift) & 15U];
+  return text;
+}
+
+std::string sha256_of_library(const std::string &path)
+{
+  if (path.empty())
+    throw UserLaw::Problem("library", "the path of a shared library is required");
+  const InputFile file = read_input_file(path);
+  if (!file.problem.empty())
+    throw UserLaw::Problem("library", "cannot read the library: " + file.problem);
+  return sha256_of(file.text);
+}
+
+std::string list_of(const std::vector<std::string> &names)
+{
+  std::string text;
+  for (const std::string &name : names)
+    text += (text.empty() ? "" : ", ") + name;
+  return text.empty() ? "none" : text;
+}
+
+std::vector<double> in_order_of_library(const std::vector<std::string> &names, const Values &given,
+                                        const Values &constants)
+{
+  for (const auto &[name, value] : given)
+    if (std::find(names.begin(), names.end(), name) == names.end())
+      throw UserLaw::Problem("parameters", "the library has no parameter '" + name + "'; it has: " + list_of(names));
+  std::vector<double> values;
+  for (const std::string &name : names)
+  {
+    const auto own = given.find(name);
+    const auto constant = constants.find(name);
+    if (own == given.end() && constant == constants.end())
+      throw UserLaw::Problem("parameters", "the library needs '" + name + "'; its parameters: " + list_of(names));
+    values.push_back(own != given.end() ? own->second : constant->second);
+  }
+  return values;
+}
+
+} // namespace
+
+void UserLaw::declare(Parameters &p, const std::string &section)
+{
+  p.add(section, "psi", psi,
+        "law = expression: energy of a bond per reference volume in Pa, as a function of its stretch `lam`, of a, b, "
+        "modulus and the parameters, with + - * / ^ ( ) sqrt exp log");
+  p.add(section, "parameters", parameters,
+        "laws expression and library: values of their parameters, as in `mu = 0.1 MPa, k = 2`");
+  p.add(section, "library", library, "law = library: path of a shared library with the functions of a bond law");
+  p.add(section, "library sha256", sha256,
+        "SHA-256 that the library must have; if empty, that of the library found, in the resolved case");
+}
+
+void UserLaw::check(Parameters &p, const std::string &section, Kind kind, const Values &constants, double longest)
+{
+  try
+  {
+    if (kind == Kind::library && sha256.empty())
+      sha256 = sha256_of_library(library);
+    (void)law(kind, constants, longest);
+    is_usable = true;
+  }
+  catch (const Problem &problem)
+  {
+    p.error(section + "/" + problem.entry, problem.what(), {section + "/law"});
+  }
+}
+
+std::shared_ptr<const lattice::CustomBondLaw> UserLaw::law(Kind kind, const Values &constants, double longest) const
+{
+  const Values given = parameters_of(parameters);
+  Values values = given;
+  values.insert(constants.begin(), constants.end()); // names of parameters come first
+  const std::string entry = kind == Kind::expression ? "psi" : "library";
+  try
+  {
+    if (kind == Kind::expression)
+      return std::make_shared<lattice::ExpressionLaw>(parse_expression(psi, variable, values), longest);
+    const std::string found = sha256_of_library(library);
+    if (found != sha256)
+      throw Problem("library sha256", "the library " + printable(library) + " has the SHA-256 " + found);
+    lattice::LawLibrary loaded(library);
+    std::vector<double> in_order = in_order_of_library(loaded.parameters(), given, constants);
+    return std::make_shared<lattice::LibraryLaw>(std::move(loaded), std::move(in_order), longest);
+  }
+  catch (const InvalidExpression &error)
+  {
+    throw Problem(entry, error.what());
+  }
+  catch (const lattice::UnusableLibrary &error)
+  {
+    throw Problem(entry, error.what());
+  }
+  catch (const lattice::InvalidBondLaw &error)
+  {
+    throw Problem(entry, error.what());
+  }
+  catch (const std::length_error &error)
+  {
+    throw Problem(entry, std::string("its derivatives are too long: ") + error.what());
+  }
+}
+
+} // namespace latcon::input

@@ -1,0 +1,50 @@
+/// Bond laws that a case brings along: an expression, or a shared library.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+
+#include "lattice/bonds/custom_bond.h"
+#include "verification/input/parameters.h"
+
+namespace latcon::input
+{
+
+/// Entries of a bond law that is not built into latcon, for one shell of bonds.
+struct UserLaw
+{
+  enum class Kind
+  {
+    expression,
+    library
+  };
+
+  std::string psi;        ///< energy [Pa] as an expression of the stretch `lam`
+  std::string parameters; ///< NAME = NUMBER, separated by commas
+  std::string library;    ///< path of a shared library
+  std::string sha256;     ///< of the library; empty: any. check() sets it, so that it is part of the resolved case
+
+  /// An entry without which there is no law; what() says what is wrong.
+  struct Problem : std::runtime_error
+  {
+    Problem(std::string entry_, const std::string &text) : std::runtime_error(text), entry(std::move(entry_)) {}
+    std::string entry; ///< its name
+  };
+
+  void declare(Parameters &p, const std::string &section);
+
+  /// Reports a law that cannot be used, and sets `is_usable` and `sha256`.
+  /// @param constants further values that psi may name [SI]
+  /// @param longest largest stretch of an unbroken bond [-]
+  void check(Parameters &p, const std::string &section, Kind kind, const std::map<std::string, double> &constants,
+             double longest);
+  bool is_usable = false; ///< result of check()
+
+  /// The law, made anew. @throws Problem
+  std::shared_ptr<const lattice::CustomBondLaw> law(Kind kind, const std::map<std::string, double> &constants,
+                                                    double longest) const;
+};
+
+} // namespace latcon::input
