@@ -4,6 +4,45 @@
 namespace latcon::input
 {
 
+void ShellCase::declare(Parameters &parameters, const std::string &section)
+{
+  parameters.add(section, "law", law,
+                 {{"mooney-rivlin", Law::mooney_rivlin},
+                  {"linear", Law::linear},
+                  {"expression", Law::expression},
+                  {"library", Law::library}},
+                 "bond law: rod of incompressible Mooney-Rivlin rubber with constants a and b, linear spring, or your "
+                 "own by an expression or a shared library");
+  parameters.add(section, "a", a, MagnitudeOrZero{}, "Pa", "a = 2 C1 of a Mooney-Rivlin bond");
+  parameters.add(section, "b", b, MagnitudeOrZero{}, "Pa", "b = 2 C2 of a Mooney-Rivlin bond");
+  parameters.add(section, "modulus", modulus, Magnitude{}, "Pa", "modulus e of a linear bond");
+  parameters.add(section, "area factor", area_factor, Magnitude{}, "1",
+                 "s: cross-section of a bond over (sqrt3 / 2) d h, with the thickness h");
+  parameters.add(section, "viscosity", viscosity, MagnitudeOrZero{}, "Pa s",
+                 "eta of the Kelvin dashpot along the bond");
+  declare_branches(parameters, section);
+  user_law.declare(parameters, section);
+}
+
+void ShellCase::check(Parameters &parameters, const std::string &section, const double longest)
+{
+  if (has_user_law())
+    user_law.check(parameters, section, user_law_kind(), {{"a", a}, {"b", b}, {"modulus", modulus}}, longest);
+  else if (!has_stiffness())
+    parameters.error(section + "/a", "a bond needs stiffness: a + b must be positive", {section + "/b"});
+  check_branches(parameters, section);
+}
+
+lattice::Shell ShellCase::shell(const double longest) const
+{
+  if (has_user_law())
+    return {lattice::CustomBond(user_law.law(user_law_kind(), {{"a", a}, {"b", b}, {"modulus", modulus}}, longest)),
+            area_factor, viscosity, memory()};
+  if (law == Law::linear)
+    return {lattice::LinearBond{modulus}, area_factor, viscosity, memory()};
+  return {lattice::MooneyRivlinBond{a, b}, area_factor, viscosity, memory()};
+}
+
 void ShellCase::declare_branches(Parameters &parameters, const std::string &section)
 {
   parameters.add(section, "branch moduli", branch_moduli, Magnitude{}, "Pa",
