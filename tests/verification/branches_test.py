@@ -38,7 +38,7 @@ class Branches(TemporaryFolder):
         self.assertIn(alone.returncode, (0, 3), alone.stderr)
         expected = files(self.out)
         self.assertGreater(json.loads(expected["crack.json"])["bonds_broken"], 30)
-        for ranks, threads in ((1, 2), (2, 1), (3, 2)):
+        for ranks, threads in ((2, 2), (3, 1)):
             folder = self.folder / f"{ranks}_{threads}"
             run = latcon_on_ranks(ranks, *strip, "--threads", threads, "--output-dir", folder)
             self.assertEqual(run.returncode, alone.returncode, run.stderr)
@@ -101,12 +101,12 @@ class Branches(TemporaryFolder):
                 (["branch moduli=0.3 MPa, nan MPa, 0.5 MPa"], "branch moduli", "1e-20"),
                 (["branch moduli=0.3 MPa, inf MPa, 0.5 MPa"], "branch moduli", "1e-20"),
                 (["relaxation times=1e-9 s, 0.1 ms, 0.5 ms"], "relaxation times", "within one time step")):
-            for section in ("Nearest neighbours", "Next-nearest neighbours"):
-                sets = [word for entry in entries for word in ("--set", f"{section}/{entry}")]
-                run = latcon("fracture", SPECTRUM, "--dry-run", *sets)
-                self.assertEqual(run.returncode, 2, (entries, run.stderr))
-                self.assertIn(f"{section}/{key}", run.stderr)
-                self.assertIn(words, run.stderr)
+            section = "Next-nearest neighbours" if "relaxation times=" in entries[0] else "Nearest neighbours"
+            sets = [word for entry in entries for word in ("--set", f"{section}/{entry}")]
+            run = latcon("fracture", SPECTRUM, "--dry-run", *sets)
+            self.assertEqual(run.returncode, 2, (entries, run.stderr))
+            self.assertIn(f"{section}/{key}", run.stderr)
+            self.assertIn(words, run.stderr)
 
     def test_motion_of_finite_elements_refuses_branches(self):
         run = latcon("continuum", SPECTRUM, "--dry-run", "--set", "Continuum/solution=motion")
