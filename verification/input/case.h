@@ -39,7 +39,7 @@ struct ShellCase
   double viscosity = 0.;                     ///< eta [Pa s]
   std::vector<double> branch_moduli = {};    ///< E_i of Maxwell branches [Pa]
   std::vector<double> relaxation_times = {}; ///< tau_i of the branches [s]
-  UserLaw user_law;                          ///< for Law::expression and Law::library
+  UserLaw user_law = {};                     ///< for Law::expression and Law::library
 
   void declare(Parameters &parameters, const std::string &section);
   /// @param longest largest stretch of an unbroken bond [-]
