@@ -15,7 +15,7 @@ import unittest
 ROOT = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else pathlib.Path(__file__).parents[1]
 FOLDERS = ("support", "lattice", "continuum", "verification", "tests")
 
-NOT_CODE = re.compile(r'//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.DOTALL)
+NOT_CODE = re.compile(r'R"\(.*?\)"|//[^\n]*|/\*.*?\*/|"(?:\\.|[^"\\\n])*"|\'(?:\\.|[^\'\\\n])\'', re.DOTALL)
 BLOCK = re.compile(r"\bnamespace\b(?P<namespace>[\w:\s]*)\{|"
                    r"\b(?:struct|class|union|enum(?:\s+(?:class|struct))?)\s+(?P<type>[\w:]+)(?P<special><[^;(){}]*>)?"
                    r"\s*(?:final\s*)?(?::[^;(){}]*)?\{|[{}]")
@@ -50,7 +50,7 @@ class OneDefinition(unittest.TestCase):
     def test_classes_are_found(self):
         text = ("namespace a\n{\nstruct S\n{\n  struct Inner\n  {\n  };\n};\nnamespace\n{\nstruct Hidden\n{\n};\n} // namespace\n"
                 "// struct Comment {\nclass Declared;\nclass S::Impl final : public B\n{\n};\nenum class E : int\n{\n};\n} // namespace a\n"
-                "namespace b::c\n{\ntemplate <class T>\nstruct T1\n{\n};\ntemplate <>\nstruct T1<int>\n{\n};\nvoid f(struct S s)\n{\n}\n"
+                "const char *t = R\"({\"x\": 1)\";\nnamespace b::c\n{\ntemplate <class T>\nstruct T1\n{\n};\ntemplate <>\nstruct T1<int>\n{\n};\nvoid f(struct S s)\n{\n}\n"
                 "} // namespace b::c\nstruct Global\n{\n};\n")
         self.assertEqual(classes_in(text), ["a::S", "a::S::Impl", "a::E", "b::c::T1", "Global"])
 

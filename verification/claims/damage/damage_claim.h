@@ -12,6 +12,7 @@ namespace latcon::claims
 /// or to 3 if the case has none (theory-continuum.md, eq. (C.61)).
 continuum::DamageLaw damage_law(const input::Case &input, const bridge::Subject &subject);
 
+/// Sizes of the claim `damage`.
 struct DamageOptions
 {
   unsigned int finest = 4;       ///< elements per xi of the finest bar, 4 or more and a power of two
