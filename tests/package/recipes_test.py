@@ -30,6 +30,7 @@ NAMES = {
     "libopenblas0-pthread": ("blas", "libblas"), "libeigen3-dev": ("eigen", "eigen"), "libhwy-dev": ("highway", "libhwy"),
     "libvtk9-dev": ("vtk", "vtk-base"), "libboost-dev": ("boost", "libboost-devel"), "libcli11-dev": ("cli11", "cli11"),
     "libhdf5-openmpi-dev": ("hdf5", "hdf5"), "libssl-dev": ("openssl", "openssl"),
+    "libmuparser-dev": ("muparser", "muparser"),
     "nlohmann-json3-dev": ("nlohmann-json", "nlohmann_json"), "python3": ("python", "python"),
     "python3-numpy": ("py-numpy", "numpy"), "python3-matplotlib": ("py-matplotlib", "matplotlib-base"),
     "python3-pil": ("py-pillow", "pillow"),

@@ -13,6 +13,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 TYPES = {"number": (int, float), "integer": int, "numbers": list, "boolean": bool, "word": str, "text": str}
 # Largest number of problems that the program reports.
 MOST_PROBLEMS = 50
+OUT_OF_RANGE = re.compile(r"(number \d+ in the list: )?(out of range|beyond)")
 
 
 def run(*arguments):
@@ -93,9 +94,9 @@ def test_bounds_are_those_that_the_program_keeps():
         problems = refused(overrides)
         assert set(problems) == set(overrides)
         # A negative number is not of the type of an unsigned entry.
-        assert all(re.match("out of range|beyond", problem) for problem in problems.values())
+        assert all(OUT_OF_RANGE.match(problem) for problem in problems.values())
     # Checks of several entries may refuse them together, but not for their ranges.
-    assert not any(re.match("out of range|beyond", problem) for problem in refused(included).values())
+    assert not any(OUT_OF_RANGE.match(problem) for problem in refused(included).values())
     # The upper ends of those that have two.
     above = {key: (entry.range["maximum"] + 1 if entry.type == "integer" else 1.001 * entry.range["maximum"])
              for key, entry in entries.items() if "maximum" in entry.range}
@@ -132,6 +133,8 @@ def test_defaults_are_those_of_a_dry_run(tmp_path):
             text = match[2].partition(" # ")[0].strip()
             if text == "auto":
                 value = None
+            elif entry.type == "numbers":
+                value = [float(number) for number in text.split(",") if number.strip()]
             elif entry.type in ("number", "integer"):
                 value = float(text)
             else:

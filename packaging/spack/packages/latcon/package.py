@@ -26,6 +26,7 @@ class Latcon(CMakePackage):
     depends_on("cli11@2.1:")
     depends_on("hdf5@1.10: +mpi")
     depends_on("openssl@3.0:")
+    depends_on("muparser")
     depends_on("nlohmann-json@3.11:")
 
     # The build generates the manual page with Python; the Python package imports these.
