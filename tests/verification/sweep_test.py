@@ -6,12 +6,13 @@ Usage: sweep_test.py PATH_OF_LATCON
 import copy
 import json
 import os
+import signal
 import subprocess
 import sys
 import unittest
 
 sys.dont_write_bytecode = True
-from program import CASES, LATCON, TemporaryFolder, latcon
+from program import CASES, LATCON, TemporaryFolder, children, wait_for
 from study_test import TINY
 
 SMALL = [word for entry, value in TINY["set"].items() for word in ("--set", f"{entry}={str(value).lower()}")]
@@ -117,6 +118,20 @@ class Troubles(Folder):
         self.run_study(study, "-o", bare, "--resume", "--quiet")
         self.assertTrue((bare / "study.html").exists())
 
+    def test_run_that_failed_continues_from_its_checkpoint(self):
+        def longer(document):
+            document["set"].update({"Sheet/length": "4 cm", "Time/end": "3 ms", "Checkpoints/steps": 64})
+        study = self.write_study(longer)
+        process = subprocess.Popen([LATCON, "study", study, "-o", self.out, "--skip-verification", "--quiet"])
+        checkpoints = self.out / "runs" / "low-1.part" / "checkpoints"
+        self.assertTrue(wait_for(lambda: checkpoints.exists() and any(checkpoints.glob("*.h5")), process))
+        (child,) = children(process.pid)
+        os.kill(child, signal.SIGKILL)
+        self.assertEqual(process.wait(120), 4)
+        self.assertFalse((self.out / "runs" / "low-1" / "crack.json").exists())
+        self.run_study(study, "-o", self.out, "--resume", "--quiet")
+        self.assertIn("resumed_from", json.loads((self.out / "runs" / "low-1" / "run.json").read_text()))
+
     @unittest.skipUnless(CAN_MOUNT, "nothing can be mounted here")
     def test_full_disk_loses_nothing(self):
         def longer(document):
@@ -124,11 +139,12 @@ class Troubles(Folder):
         study = self.write_study(longer)
         self.run_study(study, "-o", self.out, "--quiet", "--threads", "1")
         expected = (self.out / "study.csv").read_bytes()
-        size = sum(len(content) for content in self.files(self.out / "runs").values())
+        high, low = (sum(-(-len(content) // 4096) * 4 for content in self.files(self.out / "runs" / name).values())
+                     for name in ("high-1", "low-1"))  # in pages, as tmpfs counts [KiB]
         disk, kept = self.folder / "disk", self.folder / "kept"
         disk.mkdir()
-        # Room for one of the two runs.
-        script = (f"mount -t tmpfs -o size={size * 6 // 10240}k none {disk} || exit 77; \"$@\"; status=$?; "
+        # Room for the first run, which is the more expensive one, for its case and lists, and for half of the other.
+        script = (f"mount -t tmpfs -o size={high + low // 2 + 100}k none {disk} || exit 77; \"$@\"; status=$?; "
                   f"cp -r {disk}/out {kept}; exit $status")
         run = subprocess.run(["unshare", "-m", "sh", "-c", script, "sh", LATCON, "study", study, "-o", disk / "out",
                               "--skip-verification", "--quiet", "--threads", "1"],

@@ -5,9 +5,9 @@ import numpy as np
 from matplotlib.colors import to_rgba
 from matplotlib.patches import Patch, Rectangle
 
-from pictures import BLACK, BLUE, GREEN, GREY, RED, SKY, WIDTH, Page, save
+from pictures import BLACK, BLUE, GREEN, GREY, RED, WIDTH, Page, save
 
-COLOURS = {"oscillating": BLUE, "straight": GREEN, "branching": RED, "arrested": GREY, "undecided": SKY}
+COLOURS = {"oscillating": BLUE, "straight": GREEN, "branching": RED, "arrested": GREY, "undecided": "#f0e442"}
 OTHER = "#cc79a7"  # of a pattern that is not in COLOURS
 SHADE = 0.6  # opacity of the cells, on which contours and numbers are black
 LEFT, FOOT, HEAD, RIGHT = 0.95, 0.7, 0.75, 0.3  # around the axes [in]

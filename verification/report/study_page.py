@@ -94,7 +94,7 @@ def banner(study):
         rows = plural(count["holds"], "1 row holds", f"{count['holds']} rows hold")
         kind, head = "warns", f"! Incomplete: {rows}, but not everything was measured"
     elif not judged:
-        kind, head = "reported", "· Reported: no row has a rule"
+        kind, head = "reported", f"· Reported: {'no row has a rule' if study.claims else 'the study has no claims'}"
     elif not verified:
         rows = plural(judged, "the only row holds", f"all {judged} rows hold")
         kind, head = "warns", f"! Not verified: {rows}, but not every run was verified"

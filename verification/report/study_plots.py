@@ -2,13 +2,13 @@
 import numpy as np
 from matplotlib.lines import Line2D
 
-from phase_map import COLOURS, Cell, draw_phase_map
+from phase_map import Cell, draw_phase_map
 from pictures import BLACK, BLUE, GREEN, GREY, RED, SKY, WIDTH, Page, save
 from study_quantities import against_axis, entry_axis, quantity_axis
 from study_runs import mean_of, patterns_of, tip_path
 
-MARKERS = {"oscillating": "o", "straight": "s", "branching": "v", "arrested": "X", "undecided": "D"}
-PATTERNS = {pattern: (marker, COLOURS[pattern]) for pattern, marker in MARKERS.items()}
+PATTERNS = {"oscillating": ("o", BLUE), "straight": ("s", GREEN), "branching": ("v", RED), "arrested": ("X", GREY),
+            "undecided": ("D", SKY)}
 LEFT, RIGHT, GAP = 0.75, 0.2, 0.75  # of a grid of panels [in]
 SEED_COLOURS = [BLUE, RED, GREEN, SKY, BLACK, GREY]
 CONTOURS = ("wavelength", "speed_lagrangian")  # of the map of patterns: the first that was measured

@@ -168,10 +168,11 @@ Sweep parse_sweep(const std::string &text)
     sweep.values = split(values, ',');
   if (sweep.values.size() < 2)
     refuse(text, "one value is no sweep; give two or more, or --set");
+  std::set<std::string> earlier;
   for (std::size_t i = 0; i < sweep.values.size(); ++i)
     if (sweep.values[i].empty())
       refuse(text, "value " + std::to_string(i + 1) + " is empty");
-    else if (std::count(sweep.values.begin(), sweep.values.end(), sweep.values[i]) > 1)
+    else if (!earlier.insert(sweep.values[i]).second)
       refuse(text, "the value " + input::printable(sweep.values[i]) + " is given twice");
   return sweep;
 }
