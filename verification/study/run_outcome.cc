@@ -115,9 +115,10 @@ RunOutcome read_outcome(const PlannedRun &run, const std::string &folder, const 
 bool is_begun(const PlannedRun &run, const std::string &folder, const bool skip_verification)
 {
   const Json info = object_in(folder + "/run.json");
-  return content(folder + "/case.prm") == run.case_text() &&
-         value_or(info, "program_hash", std::string()) == output::program_hash() &&
-         value_or(info, "skip_verification", !skip_verification) == skip_verification;
+  // Resolving the case takes milliseconds.
+  return value_or(info, "program_hash", std::string()) == output::program_hash() &&
+         value_or(info, "skip_verification", !skip_verification) == skip_verification &&
+         content(folder + "/case.prm") == run.case_text();
 }
 
 bool is_finished(const PlannedRun &run, const std::string &folder, const bool skip_verification)
