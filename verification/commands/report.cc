@@ -128,10 +128,11 @@ void study_page(const std::string &directory)
     problem = error.what();
   }
   if (!problem.empty())
-    std::cerr << "latcon: " << problem
-              << "; every other file is complete. To draw the page, repeat the command with --resume, or with --collect "
-                 "after shards, on a machine with Python and the packages of the report"
-              << std::endl;
+    std::cerr
+      << "latcon: " << problem
+      << "; every other file is complete. To draw the page, repeat the command with --resume, or with --collect "
+         "after shards, on a machine with Python and the packages of the report"
+      << std::endl;
 }
 
 } // namespace latcon::commands

@@ -110,7 +110,8 @@ std::vector<std::string> grid(const std::string &text, const std::string &values
   return found;
 }
 
-// Value as a text that is the same for equal values: of a number its SI value (0 for -0), of all others the text itself.
+// Value as a text that is the same for equal values: of a number its SI value (0 for -0), of all others the text
+// itself.
 std::string canonical(const std::string &value, const input::Declaration &entry)
 {
   if (entry.type != input::ValueType::number && entry.type != input::ValueType::whole_number)

@@ -97,7 +97,8 @@ TEST(Sweep, SeveralSweepsGiveAllCombinationsAsAStudyFile)
 
 TEST(Sweep, NamesOfRunsAreDistinct)
 {
-  const Study study = read(sweep_study({"Nearest neighbours/viscosity=1 N s/m,1 N s*m", "Next-nearest neighbours/viscosity=1,2"}, "x", "base.prm", {}, 0));
+  const Study study = read(sweep_study(
+    {"Nearest neighbours/viscosity=1 N s/m,1 N s*m", "Next-nearest neighbours/viscosity=1,2"}, "x", "base.prm", {}, 0));
   std::set<std::string> names;
   for (const StudyRun &run : study.runs)
     names.insert(run.name);
@@ -153,8 +154,9 @@ TEST(Sweep, StudyFilesSweepBesideNamedRunsAndInTheirQuickVersion)
   for (const bool is_quick : {false, true})
     try
     {
-      (void)read_study(R"({"title": "t", "base": "b.prm", "quick": {"sweep": ["Sheet/height=1,2"]}, "runs": {"own": {}}})",
-                       "folder/sweep.json", is_quick);
+      (void)read_study(
+        R"({"title": "t", "base": "b.prm", "quick": {"sweep": ["Sheet/height=1,2"]}, "runs": {"own": {}}})",
+        "folder/sweep.json", is_quick);
       FAIL();
     }
     catch (const support::InputError &error)
@@ -167,7 +169,8 @@ TEST(Sweep, EntriesOfAnyKindAreVariedAndNoneIsSetAsWell)
 {
   const std::string base = std::filesystem::path(study_path("paper")).parent_path().parent_path() / "cases/quick.prm";
   Study study = read(sweep_study({"Sheet/orientation=rows-along-crack,rows-across-crack", "Sheet/height=2 cm,3 cm",
-                                  "Next-nearest neighbours/present=false,true"}, "quick", "base.prm", {}, 2));
+                                  "Next-nearest neighbours/present=false,true"},
+                                 "quick", "base.prm", {}, 2));
   study.base = base;
   // A run that leaves an entry as it is in the base case, and an entry whose value is the same in all runs.
   study.runs.resize(2);
