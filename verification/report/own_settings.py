@@ -21,8 +21,8 @@ def require_packages():
             missing.append(package)
     if missing:
         names = " ".join(missing)
-        print(f"error: cannot import the Python modules of the Debian packages {names}; install them (apt-get install {names})",
-              file=sys.stderr)
+        print(f"error: cannot import the Python modules of the Debian packages {names}; install them "
+              f"(apt-get install {names})", file=sys.stderr)
         sys.exit(PACKAGES_MISSING)
 
 

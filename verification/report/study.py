@@ -56,7 +56,7 @@ def draw_pictures(study):
 
 
 def draw_overview(study, folder):
-    """Draws the map over two swept entries, or the sweep along the only one unless a claim shows it: [(caption, PNG), ...]."""
+    """Draws the map over two swept entries, or the sweep along one unless a claim shows it: [(caption, PNG), ...]."""
     png = folder / "map.png"
     if caption := draw_map(study, png):
         return [(caption, png)]

@@ -22,7 +22,8 @@ CLAIM_KINDS = {**KINDS, "incomplete": "warns"}
 def page(study, pictures):
     """The whole page.
 
-    pictures: {"overview": [(caption, PNG), ...], "paths": {claim number: PNG}, "sweeps": {claim number: [(caption, PNG), ...]}, "speeds": PNG or None,
+    pictures: {"overview": [(caption, PNG), ...], "paths": {claim number: PNG},
+    "sweeps": {claim number: [(caption, PNG), ...]}, "speeds": PNG or None,
     "checks": {name: (caption, PNG)}, "runs": [(run, seed, {kind of RUN_PICTURES: PNG}), ...]}
     """
     document = study.document

@@ -41,8 +41,8 @@ class Study:
 
     @property
     def abscissas(self):
-        """Entries over which the page may begin with a map or plot: those that the runs of a sweep vary, if all values are
-        numbers and no point occurs twice; none for studies without a sweep."""
+        """Entries over which the page may begin with a map or plot: those that the runs of a sweep vary, if all values
+        are numbers and no point occurs twice; none for studies without a sweep."""
         values = [entry["values"] for entry in self.varied]
         points = list(zip(*values))
         are_numbers = all(isinstance(value, (int, float)) for value in sum(values, []))

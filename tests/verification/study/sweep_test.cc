@@ -60,7 +60,8 @@ TEST(Sweep, ListsAreValuesOfAnyKind)
 
 TEST(Sweep, MessagesNameTheWrongPart)
 {
-  EXPECT_HAS(refusal("Loading/strain z=1:2:3"), "'Loading/strain z' is not an entry of a case; nearest: Loading/strain");
+  EXPECT_HAS(refusal("Loading/strain z=1:2:3"),
+             "'Loading/strain z' is not an entry of a case; nearest: Loading/strain");
   EXPECT_HAS(refusal("Loading/strain y"), "expected Section/Name=START:STOP:COUNT");
   EXPECT_HAS(refusal("Loading/strain y=1:2"), "'1:2' has 2 parts");
   EXPECT_HAS(refusal("Loading/strain y=a:2:3"), "START 'a': not a number");
@@ -82,7 +83,8 @@ TEST(Sweep, MessagesNameTheWrongPart)
 
 TEST(Sweep, SeveralSweepsGiveAllCombinationsAsAStudyFile)
 {
-  const std::string text = sweep_study({"Loading/strain y=1.5:1.6:2", "Sheet/height=2 cm,3 cm"}, "fig1", "base.prm", {{"Material/density", "900"}}, 3);
+  const std::string text = sweep_study({"Loading/strain y=1.5:1.6:2", "Sheet/height=2 cm,3 cm"}, "fig1", "base.prm",
+                                       {{"Material/density", "900"}}, 3);
   const Study study = read(text);
   EXPECT_EQ(study.title, "Sweep of Loading/strain y, Sheet/height (fig1)");
   EXPECT_EQ(study.base, "folder/base.prm");
