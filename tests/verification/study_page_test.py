@@ -246,7 +246,7 @@ class Maps(MadeUpStudy):
             claims=[], checks=[], runs=[{"run": name, "about": "", "set": {}} for name in names],
             seeds=[made_up_seed(name, seed, pattern, wavelength=0.02 + 0.001 * place, speed_lagrangian=20.0 + place)
                    for place, (name, both) in enumerate(zip(names, patterns)) for seed, pattern in enumerate(both, start=1)],
-            varied=[{"entry": entry, "unit": "m", "values": values} for entry, values in entries.items()])
+            swept=list(entries), varied=[{"entry": entry, "unit": "m", "values": values} for entry, values in entries.items()])
 
     GRID = {"Sheet/width": [0.01, 0.01, 0.02, 0.02, 0.03, 0.03], "Sheet/depth": [1.0, 2.0] * 3}
     WAVY, CALM = ("oscillating", "oscillating"), ("straight", "straight")
@@ -284,7 +284,16 @@ class Maps(MadeUpStudy):
         self.assertIn("Patterns over Sheet/width and Sheet/depth", page.text)
         self.assertNotIn('id="summary"', html)
         self.assertTrue((self.folder / "pictures" / "map.png").exists())
-        self.document["varied"][0]["values"][0] = None  # not a number
+        first = self.document["varied"][0]["values"]
+        for index, value in ((0, "auto"), (0, 0.02), (2, 0.01)):  # not a number; the points of other cells
+            self.document["varied"][0]["values"] = first[:index] + [value] + first[index + 1:]
+            self.assertIsNone(study_plots.draw_map(self.read(), self.folder / "map.png"))
+        self.document["varied"][0]["values"] = first
+        self.assertIsNotNone(study_plots.draw_map(self.read(), self.folder / "map.png"))
+        self.document["varied"].append({"entry": "Sheet/orientation", "unit": "", "values": ["a"] * 5 + ["b"]})
+        self.assertIsNone(study_plots.draw_map(self.read(), self.folder / "map.png"))
+        del self.document["varied"][2]
+        self.document["swept"] = []  # named runs, which happen to vary two entries
         self.assertNotIn("Patterns over", self.page()[0].text)
 
     def test_study_of_one_entry_shows_quantities_against_it(self):
@@ -292,6 +301,15 @@ class Maps(MadeUpStudy):
         page, _ = self.page()
         self.assertIn("Speed, wavelength and amplitudes against Sheet/width: mean and standard deviation", page.text)
         self.assertTrue((self.folder / "pictures" / "sweep.png").exists())
+        self.document["claims"] = [{"claim": "It does", "paper": "", "note": "", "verdict": "not measured",
+                                    "rows": [made_up_row(["r0", "r1"], "wavelength", against="Sheet/width")]}]
+        self.assertNotIn("Speed, wavelength and amplitudes against", self.page()[0].text)  # the claim has the plot
+
+    def test_page_names_few_of_the_runs_that_a_quick_sweep_omits(self):
+        self.document["left_out"] = [f"r{number}" for number in range(1, 31)]
+        page, _ = self.page()
+        self.assertIn("omitted in the quick version: r1, ", page.text)
+        self.assertIn("r20, ... (30 in all)", page.text)
 
     def test_studies_of_many_entries_have_neither(self):
         self.vary(dict(self.GRID, **{"Sheet/third": [1.0, 2, 3, 4, 5, 6]}), [self.CALM] * 6)

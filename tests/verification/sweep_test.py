@@ -4,12 +4,17 @@
 Usage: sweep_test.py PATH_OF_LATCON
 """
 import copy
+import ctypes
 import json
 import os
 import signal
+import struct
 import subprocess
 import sys
 import unittest
+from pathlib import Path
+
+import PIL
 
 sys.dont_write_bytecode = True
 from program import CASES, LATCON, TemporaryFolder, children, wait_for
@@ -42,6 +47,35 @@ class Folder(TemporaryFolder):
         return {path: path.read_bytes() for path in (folder or self.out).rglob("*") if path.is_file()}
 
 
+CLOSE_WRITE, MOVED_TO = 0x08, 0x80  # of inotify(7)
+
+
+class Events:
+    """Files of a folder that are closed after writing, or moved into it, in their order."""
+
+    def __init__(self, folder):
+        self.libc = ctypes.CDLL(None, use_errno=True)
+        self.folder = folder
+
+    def __enter__(self):
+        self.descriptor = self.libc.inotify_init()
+        if self.libc.inotify_add_watch(self.descriptor, os.fsencode(self.folder), CLOSE_WRITE | MOVED_TO) < 0:
+            raise OSError(ctypes.get_errno(), "inotify_add_watch")
+        return self
+
+    def __exit__(self, *_):
+        os.close(self.descriptor)
+
+    def read(self):
+        """The events so far: [(CLOSE_WRITE or MOVED_TO, name), ...]."""
+        events, found = os.read(self.descriptor, 1 << 20), []
+        while events:
+            _, mask, _, length = struct.unpack_from("iIII", events)
+            found.append((mask, events[16:16 + length].rstrip(b"\0").decode()))
+            events = events[16 + length:]
+        return found
+
+
 class Sweeps(Folder):
     def test_leaves_a_study_that_runs_again(self):
         printed = self.run_study("quick", *SWEEP, "--sweep", "Time/safety factor=0.5,0.9", "-o", self.out)
@@ -60,13 +94,18 @@ class Sweeps(Folder):
 
         before = self.files()
         printed = self.run_study("quick", *SWEEP, "-o", self.out, expect=2)
-        self.assertIn(f"{self.out}/sweep.json differs from this sweep", printed)
+        self.assertIn(f"{self.out}/sweep.json differs from this sweep; to run the stored sweep: latcon study {self.out}", printed)
         printed = self.run_study("fig1", *SWEEP, "--sweep", "Time/safety factor=0.5,0.9", "-o", self.out, expect=2)
         self.assertIn("differs from", printed)
         self.assertEqual(self.files(), before)
 
     def test_runs_in_shards(self):
-        self.run_study("quick", *SWEEP, "-o", self.out, "--shard", "1/1", "--quiet")
+        self.out.mkdir()
+        with Events(self.out) as events:
+            self.run_study("quick", *SWEEP, "-o", self.out, "--shard", "1/1", "--quiet")
+            names = events.read()
+        # While the folder is locked, since every shard removes the unfinished files of others.
+        self.assertLess(names.index((MOVED_TO, "sweep.json")), names.index((CLOSE_WRITE, ".latcon.lock")))
         self.run_study(self.out / "sweep.json", "--collect", "--quiet")
         self.assertEqual(len(json.loads((self.out / "study.json").read_text())["seeds"]), 2)
         self.assertTrue((self.out / "pictures" / "sweep.png").exists())
@@ -83,6 +122,7 @@ class Sweeps(Folder):
     def test_bad_sweeps_are_named_and_write_nothing(self):
         for words, reason in ((["Sheet/hight=1:2:3"], "nearest: Sheet/height"),
                               (["Sheet/height=1 cm:2 cm:0"], "COUNT '0'"),
+                              (["Sheet/height=1 cm:2 cm:100", "--seeds", "1001"], "more than 100000 runs, with 1001 seeds"),
                               (["Sheet/height=1 mm,2 cm"], "runs/height-1mm: --set: Sheet/height = 1 mm"),
                               (["Sheet/height=1 cm,2 cm", "--set", "Sheet/height=3 cm"], "is also an entry of --sweep"),
                               (["Sheet/height=1 cm,2 cm", "--set", "Sheet/lenght=3 cm"], "nearest: Sheet/length")):
@@ -97,9 +137,10 @@ class Troubles(Folder):
     def test_folder_of_another_study_is_refused_untouched(self):
         self.run_study(self.write_study(), "-o", self.out, "--quiet")
         before = self.files()
-        for options in ([], ["--resume"]):
-            printed = self.run_study(self.write_study(lambda document: document.update(title="Another")), *options, "-o",
-                                     self.out, expect=2)
+        other = self.write_study(lambda document: document.update(title="Another"))
+        for command, *options in (("study",), ("study", "--resume"), ("study", "--shard", "1/2"), ("study", "--collect"),
+                                  ("batch", "--slurm")):
+            printed = self.run_study(other, *options, "-o", self.out, expect=2, command=command)
             self.assertIn(f"{self.out} has the results of another study, 'A tiny study'; choose another folder", printed)
         self.assertEqual(self.files(), before)
 
@@ -112,6 +153,14 @@ class Troubles(Folder):
         without = ["unshare", "-m", "sh", "-c", 'mount --bind /dev/null "$(readlink -f /usr/bin/python3)" && exec "$@"', "sh"]
         printed = self.run_study(study, "-o", bare, launcher=without)
         self.assertIn(f"cannot write {bare}/study.html: cannot start /usr/bin/python3", printed)
+        self.assertIn("repeat the command with --resume", printed)
+        self.assertEqual({name: (bare / name).read_bytes() for name in expected}, expected)
+        self.assertFalse((bare / "study.html").exists())
+        # An interpreter without a package of the report.
+        hidden = str(Path(PIL.__file__).parent)
+        without = ["unshare", "-m", "sh", "-c", f'mount -t tmpfs none {hidden} && exec "$@"', "sh"]
+        printed = self.run_study(study, "-o", bare, "--resume", "--quiet", launcher=without)
+        self.assertIn("apt-get install python3-pil", printed)
         self.assertIn("repeat the command with --resume", printed)
         self.assertEqual({name: (bare / name).read_bytes() for name in expected}, expected)
         self.assertFalse((bare / "study.html").exists())

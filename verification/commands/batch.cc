@@ -139,8 +139,13 @@ support::ExitCode write_batch(const input::Options &options, const BatchOptions 
   if (!std::regex_match(folder.string(), std::regex("[^\\s%\\\\'\"]+")))
     throw support::InputError("--output-dir '" + input::printable(folder.string()) +
                               "': sbatch does not support folders with blanks, quotes, % or \\ for its log files");
+  require_folder_of(study, options.output_dir);
   fs::create_directories(folder);
-  write_sweep(requested);
+  if (requested.is_sweep())
+  {
+    const auto lock = lock_directory(options.output_dir);
+    write_sweep(requested);
+  }
   const std::string command = study_command(options, requested, chosen.study);
   const std::string runs = (folder / "runs.sh").string(), collect = (folder / "collect.sh").string();
   output::write_file(runs, array_script(command, chosen, n_tasks, folder.string()));

@@ -59,6 +59,9 @@ int wait_with_progress(pid_t child, const std::string &what)
   }
 }
 
+// Exit status of a script that has named the missing Debian packages: PACKAGES_MISSING of own_settings.py.
+constexpr int packages_missing = 69;
+
 // Runs a script of the folder report/ on an output directory. @return its exit status
 int run_script(const std::string &script, const std::string &directory, const std::string &page, bool quiet,
                bool shows_progress = false)
@@ -78,6 +81,8 @@ int run_script(const std::string &script, const std::string &directory, const st
                                         support::ExitCode::claim_failed, support::ExitCode::output_failed})
     if (status == static_cast<int>(known))
       return status;
+  if (status == packages_missing)
+    return status;
   throw support::OutputError(directory + "/" + page, "the report script failed");
 }
 
@@ -95,25 +100,39 @@ support::ExitCode report(const input::Options &options, const std::string &direc
 
 support::ExitCode draw_report(const std::string &directory, bool quiet, bool shows_progress)
 {
+  const int status = run_script("report.py", directory, "report.html", quiet, shows_progress);
+  if (status == packages_missing)
+  {
+    std::cerr << "latcon: no report; every other file is complete. With these packages, draw it by: latcon report "
+              << directory << std::endl;
+    return support::ExitCode::output_failed;
+  }
   // The script uses the exit codes of this program.
-  return static_cast<support::ExitCode>(run_script("report.py", directory, "report.html", quiet, shows_progress));
+  return static_cast<support::ExitCode>(status);
 }
 
 void study_page(const std::string &directory)
 {
+  // Nodes of a cluster may have no Python, or no packages; all results are written.
+  std::string problem;
   try
   {
-    if (run_script("study.py", directory, "study.html", true) != 0)
+    const int status = run_script("study.py", directory, "study.html", true);
+    if (status == packages_missing)
+      problem = "cannot draw " + directory + "/study.html without these packages";
+    else if (status != 0)
       throw support::OutputError(directory + "/study.html", "the report script failed");
   }
   catch (const NoPython &error)
   {
-    // Nodes of a cluster may have none; all results are written.
-    std::cerr << "latcon: " << error.what()
-              << "; every other file is complete. To draw the page, repeat the command with --resume, or with --collect "
-                 "after shards, where there is Python"
-              << std::endl;
+    problem = error.what();
   }
+  if (!problem.empty())
+    std::cerr
+      << "latcon: " << problem
+      << "; every other file is complete. To draw the page, repeat the command with --resume, or with --collect "
+         "after shards, on a machine with Python and the packages of the report"
+      << std::endl;
 }
 
 } // namespace latcon::commands

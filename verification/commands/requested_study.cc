@@ -10,6 +10,7 @@
 #include "support/errors.h"
 #include "verification/input/case_text.h"
 #include "verification/input/shipped_cases.h"
+#include "verification/study/shard.h"
 #include "verification/study/study_plan.h"
 #include "verification/study/sweep.h"
 
@@ -27,8 +28,9 @@ void require_same_or_absent(const std::string &file, const std::string &text, co
 {
   std::error_code none;
   if (fs::exists(file, none) && input::read_input_file(file).text != text)
-    throw support::InputError(file + " differs from " + other + "; run it as it is with latcon study " +
-                              (fs::path(file).parent_path() / study::sweep_file_name).string() + another_folder);
+    throw support::InputError(file + " differs from " + other + "; to run the stored sweep: latcon study " +
+                              (fs::path(file).parent_path() / study::sweep_file_name).string() +
+                              "; for another one choose another --output-dir");
 }
 
 RequestedStudy read_sweep(const input::Options &options, const std::string &name, const SweepOptions &chosen)
@@ -83,7 +85,8 @@ void write_sweep(const RequestedStudy &requested)
 
 void require_folder_of(const study::Study &study, const std::string &directory)
 {
-  for (const auto &[file, key] : {std::pair{"study.json", "title"}, std::pair{"run.json", "study"}})
+  for (const auto &[file, key] :
+       {std::pair{"study.json", "title"}, std::pair{"run.json", "study"}, std::pair{study::plan_file_name, "study"}})
   {
     const auto document =
       nlohmann::json::parse(input::read_input_file((fs::path(directory) / file).string()).text, nullptr, false);

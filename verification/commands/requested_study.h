@@ -29,8 +29,9 @@ struct RequestedStudy
 [[nodiscard]] RequestedStudy read_requested_study(const input::Options &options, const std::string &study,
                                                   const SweepOptions &sweep);
 
-/// Writes the study file of a sweep and the copy of its case into the existing output directory, unless they are there.
-/// They are no output that a later run may move aside. No effect for other studies. @throws OutputError
+/// Writes the study file of a sweep and the copy of its case into the existing output directory, unless they exist.
+/// Later runs do not archive them. The directory must be locked by this process. No effect for other studies.
+/// @throws OutputError
 void write_sweep(const RequestedStudy &requested);
 
 /// Refuses an output directory with the results of another study. @throws InputError

@@ -249,27 +249,32 @@ support::ExitCode exit_code_of(const study::StudyResults &results, const output:
                                                                                    : support::ExitCode::done;
 }
 
-// Records the plan of a study that runs in shards in its output directory, or checks that it is the recorded one.
+// Checks that a plan is the recorded one of the study whose shards run in a directory.
 // @throws InputError if the directory belongs to another study
-void share_plan(const std::string &directory, const std::string &plan, bool create)
+void require_plan(const std::string &directory, const std::string &plan)
 {
   const fs::path file = fs::path(directory) / study::plan_file_name;
-  if (create)
-    fs::create_directories(directory);
-  std::string stored;
-  {
-    // Shards start at the same moment.
-    const auto lock = create ? lock_directory(directory, patience_with_shards) : nullptr;
-    if (create && !fs::exists(file))
-      output::write_file(file.string(), plan);
-    std::ifstream stream(file, std::ios::binary);
-    stored.assign(std::istreambuf_iterator<char>(stream), {});
-    if (!stream)
-      throw support::InputError(file.string() + " cannot be read: no shard of this study was run in " + directory);
-  }
+  std::ifstream stream(file, std::ios::binary);
+  const std::string stored(std::istreambuf_iterator<char>(stream), {});
+  if (!stream)
+    throw support::InputError(file.string() + " cannot be read: no shard of this study was run in " + directory);
   if (const std::string difference = study::plan_difference(stored, plan); !difference.empty())
     throw support::InputError(directory + " belongs to the runs of another plan: " + difference +
                               "; choose another folder (--output-dir)");
+}
+
+// Records the plan of a study that runs in shards in its output directory, and its sweep, unless they are recorded.
+// @throws InputError if the directory belongs to another study
+void share_plan(const std::string &directory, const std::string &plan, const RequestedStudy &requested)
+{
+  const fs::path file = fs::path(directory) / study::plan_file_name;
+  fs::create_directories(directory);
+  // Shards start at the same moment, and each removes unfinished files once it has the lock.
+  const auto lock = lock_directory(directory, patience_with_shards);
+  if (!fs::exists(file))
+    output::write_file(file.string(), plan);
+  require_plan(directory, plan);
+  write_sweep(requested);
 }
 
 // Reads the outcomes of all runs. @throws InputError if some have not ended
@@ -368,16 +373,17 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
     study::plan_text(results.study.title, results.plan, options.skip_verification, chosen.collect ? 0 : shard.count);
   Selection selection{options.output_dir, study::runs_of_shard(results.plan, shard), options.resume, options.yes};
   input::Options own = options; // those of the record in run.json
+  require_folder_of(results.study, options.output_dir);
   if (!chosen.shard.empty())
   {
-    share_plan(options.output_dir, plan, true);
+    share_plan(options.output_dir, plan, requested);
     // A shard has a record and a lock of its own.
     own.output_dir += "/shards/" + std::to_string(shard.index) + "-of-" + std::to_string(shard.count);
     own.resume = selection.resume = true;
   }
   else if (chosen.collect)
   {
-    share_plan(options.output_dir, plan, false);
+    require_plan(options.output_dir, plan);
     collect_outcomes(results, options.output_dir, skip_verification);
     own.resume = true;
     selection.runs.clear();
@@ -386,10 +392,9 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
     throw support::InputError(options.output_dir +
                               " has the runs of a study in shards; give --collect, or another folder "
                               "(--output-dir)");
-  else
-    require_folder_of(results.study, options.output_dir);
   Run run(own);
-  write_sweep(requested);
+  if (chosen.shard.empty())
+    write_sweep(requested);
   run.info().add("skip_verification", options.skip_verification);
   run.info().add("study", results.study.title);
   if (options.quick && !options.skip_verification && !chosen.collect)

@@ -9,7 +9,7 @@ from pathlib import Path
 # Debian packages by a module of each; matplotlib imports those before it.
 PACKAGES = {"numpy.linalg": "python3-numpy", "PIL.Image": "python3-pil", "matplotlib.figure": "python3-matplotlib",
             "vtkmodules.util": "python3-vtk9"}
-IO_FAILED = 5  # exit code, that of latcon
+PACKAGES_MISSING = 69  # exit code, which latcon replaces by its own: EX_UNAVAILABLE of sysexits.h
 
 
 def require_packages():
@@ -21,9 +21,9 @@ def require_packages():
             missing.append(package)
     if missing:
         names = " ".join(missing)
-        print(f"error: no report: cannot import the Python modules of the Debian packages {names}; install them "
-              f"(apt-get install {names}) and run `latcon report`; all results of the run are written", file=sys.stderr)
-        sys.exit(IO_FAILED)
+        print(f"error: cannot import the Python modules of the Debian packages {names}; install them "
+              f"(apt-get install {names})", file=sys.stderr)
+        sys.exit(PACKAGES_MISSING)
 
 
 _here = os.open(".", os.O_PATH)

@@ -56,13 +56,13 @@ def draw_pictures(study):
 
 
 def draw_overview(study, folder):
-    """Draws the map over two varied entries, or the sweep along the only one unless a claim shows it: [(caption, PNG), ...]."""
+    """Draws the map over two swept entries, or the sweep along one unless a claim shows it: [(caption, PNG), ...]."""
     png = folder / "map.png"
     if caption := draw_map(study, png):
         return [(caption, png)]
-    if len(study.varied) != 1:
+    if len(study.abscissas) != 1:
         return []
-    (entry,) = study.varied
+    (entry,) = study.abscissas
     if any(row["against"] == entry["entry"] for claim in study.claims for row in claim["rows"]):
         return []
     sweep = {"against": entry["entry"], "against_unit": entry["unit"],

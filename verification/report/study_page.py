@@ -22,7 +22,8 @@ CLAIM_KINDS = {**KINDS, "incomplete": "warns"}
 def page(study, pictures):
     """The whole page.
 
-    pictures: {"overview": [(caption, PNG), ...], "paths": {claim number: PNG}, "sweeps": {claim number: [(caption, PNG), ...]}, "speeds": PNG or None,
+    pictures: {"overview": [(caption, PNG), ...], "paths": {claim number: PNG},
+    "sweeps": {claim number: [(caption, PNG), ...]}, "speeds": PNG or None,
     "checks": {name: (caption, PNG)}, "runs": [(run, seed, {kind of RUN_PICTURES: PNG}), ...]}
     """
     document = study.document
@@ -197,9 +198,14 @@ def measured_table(study, columns):
     return table(["run", "pattern", *(f"#{head}" for *_, head in columns)], lines)
 
 
+def omitted(names, most=20):
+    """Names of runs, and their number if there are more than `most`."""
+    return ", ".join(names[:most]) + (f", ... ({len(names)} in all)" if len(names) > most else "")
+
+
 def settings(document):
     """Entries that all runs change in the base case."""
     lines = [f"{key} = {value}" for key, value in document["settings"].items()]
     if document["left_out"]:
-        lines.append(f"omitted in the quick version: {', '.join(document['left_out'])}")
+        lines.append(f"omitted in the quick version: {omitted(document['left_out'])}")
     return f"<p class=\"soft\">For all runs: {escape('; '.join(lines))}</p>" if lines else ""

@@ -32,10 +32,10 @@ class Panels:
 
 
 def draw_map(study, path):
-    """Draws the map of patterns over the two entries that the runs of a study vary, with contours of the wavelength, or of
-    the speed where no crack has one. @return caption, or None if the runs do not vary exactly two numbers"""
-    varied = study.varied
-    if len(varied) != 2 or any(value is None for entry in varied for value in entry["values"]):
+    """Draws the map of patterns over the two entries that the runs of a sweep vary, with contours of the wavelength, or of
+    the speed where no crack has one. @return caption, or None if there are not exactly two abscissas"""
+    varied = study.abscissas
+    if len(varied) != 2:
         return None
     (x_unit, x_label), (y_unit, y_label) = (entry_axis(entry["entry"], entry["unit"]) for entry in varied)
     means = {quantity: [mean_of(seeds, quantity) for _, _, seeds in study.runs.values()] for quantity in CONTOURS}

@@ -36,8 +36,18 @@ class Study:
 
     @property
     def varied(self):
-        """Entries in which the runs differ: [{"entry", "unit", "values": [number or None, per run]}, ...]."""
+        """Entries in which the runs differ: [{"entry", "unit", "values": [number or text, per run]}, ...]."""
         return self.document.get("varied", [])
+
+    @property
+    def abscissas(self):
+        """Entries over which the page may begin with a map or plot: those that the runs of a sweep vary, if all values
+        are numbers and no point occurs twice; none for studies without a sweep."""
+        values = [entry["values"] for entry in self.varied]
+        points = list(zip(*values))
+        are_numbers = all(isinstance(value, (int, float)) for value in sum(values, []))
+        is_plotted = self.document.get("swept") and are_numbers and len(set(points)) == len(points)
+        return self.varied if is_plotted else []
 
     @property
     def checks(self):

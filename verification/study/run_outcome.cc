@@ -115,9 +115,11 @@ RunOutcome read_outcome(const PlannedRun &run, const std::string &folder, const 
 bool is_begun(const PlannedRun &run, const std::string &folder, const bool skip_verification)
 {
   const Json info = object_in(folder + "/run.json");
-  return content(folder + "/case.prm") == run.case_text() &&
-         value_or(info, "program_hash", std::string()) == output::program_hash() &&
-         value_or(info, "skip_verification", !skip_verification) == skip_verification;
+  // A killed run has not recorded whether it was verified; it verifies its case when it continues. The case comes last,
+  // because it takes milliseconds to resolve.
+  return value_or(info, "program_hash", std::string()) == output::program_hash() &&
+         value_or(info, "skip_verification", skip_verification) == skip_verification &&
+         content(folder + "/case.prm") == run.case_text();
 }
 
 bool is_finished(const PlannedRun &run, const std::string &folder, const bool skip_verification)

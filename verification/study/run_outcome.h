@@ -45,7 +45,7 @@ struct RunOutcome
                                       std::optional<int> exit_code = {});
 
 /// Returns true if a folder contains a possibly unfinished run of exactly this case by exactly this program (equal
-/// bytes), with the same choice of verification.
+/// bytes), with the same choice of verification if it has recorded one.
 [[nodiscard]] bool is_begun(const PlannedRun &run, const std::string &folder, bool skip_verification);
 
 /// Returns true if a folder contains the measured run of exactly this case by exactly this program, with the same

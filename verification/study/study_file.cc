@@ -77,8 +77,7 @@ public:
     study_.settings = whole_.set;
     if (quick_)
       override_settings(study_.settings, quick_change_.set);
-    if (top.has("sweep"))
-      sweep(quick_ && top.has("quick") && top.at("quick").has("sweep") ? top.at("quick").at("sweep") : top.at("sweep"));
+    sweeps(top);
     if (const auto runs = top.has("sweep") && !top.has("runs") ? std::nullopt : top.required("runs"))
     {
       for (const auto &[name, place] : runs->members())
@@ -188,32 +187,62 @@ private:
       study_.runs.push_back(std::move(run));
   }
 
-  // Adds a run for each combination of the values of sweeps.
-  void sweep(const JsonPlace &place)
+  // Adds a run for each combination of the values of the sweeps in the wanted size, and the names of those of the full
+  // size, about which there may be claims.
+  void sweeps(const JsonPlace &top)
   {
-    std::vector<Sweep> sweeps;
+    const bool has_quick = top.has("quick") && top.at("quick").has("sweep");
+    if (!top.has("sweep"))
+    {
+      if (has_quick)
+        top.at("quick").at("sweep").problem("needs the key 'sweep' of the study");
+      return;
+    }
+    const std::vector<std::uint64_t> seeds = whole_.seeds.empty() ? std::vector<std::uint64_t>{1} : whole_.seeds;
+    const std::vector<std::uint64_t> &quick_seeds = quick_change_.seeds.empty() ? seeds : quick_change_.seeds;
+    const std::vector<SweptCase> full = sweep(top.at("sweep"), seeds.size(), !quick_ || !has_quick);
+    const std::vector<SweptCase> small =
+      has_quick ? sweep(top.at("quick").at("sweep"), quick_seeds.size(), quick_) : full;
+    std::set<std::string> names;
+    for (const SweptCase &combination : quick_ ? small : full)
+    {
+      StudyRun run;
+      run.name = combination.name;
+      run.own = combination.set;
+      run.all = study_.settings;
+      override_settings(run.all, run.own);
+      run.seeds = quick_ ? quick_seeds : seeds;
+      names.insert(run.name);
+      names_.push_back(run.name);
+      study_.runs.push_back(std::move(run));
+    }
+    for (const SweptCase &combination : full)
+      if (names.insert(combination.name).second)
+      {
+        names_.push_back(combination.name);
+        study_.left_out.push_back(combination.name);
+      }
+    n_swept_ = names_.size();
+  }
+
+  // Combinations of the values of sweeps; none if there is a problem. @param is_run whether this study runs them
+  std::vector<SweptCase> sweep(const JsonPlace &place, const std::size_t n_seeds, const bool is_run)
+  {
     try
     {
+      std::vector<Sweep> found;
       for (const JsonPlace &text : place.list())
-        sweeps.push_back(parse_sweep(text.text()));
-      const std::vector<std::uint64_t> &seeds =
-        quick_ && !quick_change_.seeds.empty() ? quick_change_.seeds : whole_.seeds;
-      for (const SweptCase &combination : combinations(sweeps))
-      {
-        StudyRun run;
-        run.name = combination.name;
-        run.own = combination.set;
-        run.all = study_.settings;
-        override_settings(run.all, run.own);
-        run.seeds = seeds.empty() ? std::vector<std::uint64_t>{1} : seeds;
-        names_.push_back(run.name);
-        study_.runs.push_back(std::move(run));
-      }
-      n_swept_ = names_.size();
+        found.push_back(parse_sweep(text.text()));
+      std::vector<SweptCase> cases = combinations(found, n_seeds);
+      for (const Sweep &of_entry : found)
+        if (is_run)
+          study_.swept.push_back(of_entry.entry);
+      return cases;
     }
     catch (const support::InputError &error)
     {
       place.problem(error.what());
+      return {};
     }
   }
 

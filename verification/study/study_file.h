@@ -75,6 +75,7 @@ struct Study
   std::string base;  ///< path of the case
   Settings settings; ///< of the whole study, for all runs
   std::vector<StudyRun> runs;
+  std::vector<std::string> swept;    ///< entries that `sweep` varies
   std::vector<std::string> left_out; ///< runs of the file that the quick version omits
   std::vector<StudyClaim> claims;
   std::vector<std::string> checks;   ///< see study_checks()

@@ -126,7 +126,7 @@ Json json_of(const CheckResult &check)
   return {{"name", check.name}, {"about", check.about}, {"rows", rows}};
 }
 
-// Entries in which the runs of a study differ, with their value in each run.
+// Entries in which the runs of a study differ, with their value in each run: a number, or a text.
 Json varied_entries(const StudyResults &results)
 {
   std::vector<std::string> keys;
@@ -145,7 +145,8 @@ Json varied_entries(const StudyResults &results)
       if (run.run == last)
         continue;
       last = run.run;
-      values.push_back(json_of(run.value(key)));
+      const std::optional<double> number = run.value(key);
+      values.push_back(number ? Json(*number) : Json(run.text(key)));
       differ = differ || values.back() != values.front();
     }
     if (differ)
@@ -199,6 +200,7 @@ std::string study_json(const StudyResults &results)
   document["runs"] = Json::array();
   for (const StudyRun &run : results.study.runs)
     document["runs"].push_back({{"run", run.name}, {"about", run.about}, {"set", json_of(run.own)}});
+  document["swept"] = results.study.swept;
   document["varied"] = varied_entries(results);
   document["left_out"] = results.study.left_out;
   document["pictures"] = results.study.pictures;

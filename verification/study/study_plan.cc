@@ -5,6 +5,7 @@
 #include <cstdlib>
 #include <limits>
 #include <numeric>
+#include <set>
 #include <utility>
 
 #include "support/errors.h"
@@ -44,8 +45,10 @@ void resolve(const PlannedCase &planned, const std::uint64_t seed, input::Case &
 }
 
 // Adds the seeds of a run, whose case is resolved once.
+// @param changed entries that a run of the study changes
 // @param shared base case, its name, and `keys` once the first case has been resolved
-void plan_seeds(const StudyRun &run, const Settings &settings, PlannedCase &shared, std::vector<PlannedRun> &runs)
+void plan_seeds(const StudyRun &run, const Settings &settings, const std::set<std::string> &changed,
+                PlannedCase &shared, std::vector<PlannedRun> &runs)
 {
   Settings all = run.all;
   override_settings(all, settings);
@@ -66,7 +69,11 @@ void plan_seeds(const StudyRun &run, const Settings &settings, PlannedCase &shar
     shared.keys = planned->keys = keys;
   }
   for (const auto &[key, value] : values)
+  {
     planned->numbers.push_back(number_or_nan(value));
+    if (std::isnan(planned->numbers.back()) && changed.count(key) > 0)
+      planned->texts[key] = value;
+  }
 
   PlannedRun of_seed;
   of_seed.run = run.name;
@@ -133,6 +140,12 @@ std::optional<double> PlannedRun::value(const std::string &against) const
   return std::isnan(number) ? std::nullopt : std::optional<double>(number);
 }
 
+std::string PlannedRun::text(const std::string &key) const
+{
+  const auto found = planned_case->texts.find(key);
+  return found == planned_case->texts.end() ? "" : found->second;
+}
+
 std::string PlannedRun::case_text() const
 {
   input::Case input;
@@ -162,6 +175,13 @@ std::vector<PlannedRun> plan_runs(const Study &study, const input::InputFile &ba
                                   const std::vector<std::string> &settings)
 {
   const Settings overrides = parse_settings(settings);
+  for (const auto &[key, value] : overrides)
+    if (std::find(study.swept.begin(), study.swept.end(), key) != study.swept.end())
+      throw support::InputError("--set: " + key + " is also an entry of the sweep of " + study.file);
+  std::set<std::string> changed;
+  for (const StudyRun &run : study.runs)
+    for (const auto &[key, value] : run.own)
+      changed.insert(key);
   PlannedCase shared;
   shared.base = std::make_shared<const input::InputFile>(base);
   shared.base_name = study.base;
@@ -170,7 +190,7 @@ std::vector<PlannedRun> plan_runs(const Study &study, const input::InputFile &ba
   for (const StudyRun &run : study.runs)
     try
     {
-      plan_seeds(run, overrides, shared, runs);
+      plan_seeds(run, overrides, changed, shared, runs);
     }
     catch (const support::InputError &error)
     {

@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <string>
@@ -28,6 +29,7 @@ struct PlannedCase
   std::vector<std::string> changes;             ///< `Section/Name=value` without the seed
   std::shared_ptr<const std::vector<std::string>> keys; ///< all entries `Section/Name`, sorted; shared by all cases
   std::vector<double> numbers; ///< values of `keys` in SI units; NaN for entries that are not numbers
+  std::map<std::string, std::string> texts; ///< other values, of the entries that a run of the study changes
 };
 
 /// Fracture run: a case with one seed. It keeps no text, so that thousands of runs take little memory.
@@ -49,6 +51,8 @@ struct PlannedRun
   double cost() const { return static_cast<double>(sites) * steps; } ///< site-steps [-]
   /// Returns the value of "zeta" or of an entry `Section/Name`; none if it is not a number.
   std::optional<double> value(const std::string &against) const;
+  /// Returns the value of an entry that a run of the study changes, if it is not a number; empty if it is one.
+  std::string text(const std::string &key) const;
 };
 
 /// Returns zeta = (eta / a) / (d / sqrt(a / rho)) of the nearest-neighbour bonds [-]: the retardation time divided by
@@ -63,7 +67,8 @@ struct PlannedRun
 /// frames except the first and the last.
 /// @param base file of the base case, read once for all runs
 /// @param settings `Section/Name=value` for all runs; override those of the study
-/// @throws InputError with the problems of all cases, and of rows whose `against` is not a number in any of their runs
+/// @throws InputError with the problems of all cases, of rows whose `against` is not a number in any of their runs, and
+/// of settings of entries that the study sweeps
 [[nodiscard]] std::vector<PlannedRun> plan_runs(const Study &study, const input::InputFile &base,
                                                 const std::vector<std::string> &settings);
 

@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <numeric>
 #include <set>
 #include <utility>
@@ -13,6 +14,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/errors.h"
+#include "support/full_precision.h"
 #include "verification/input/case.h"
 #include "verification/input/case_text.h"
 #include "verification/input/spelling.h"
@@ -23,7 +25,7 @@ namespace latcon::study
 namespace
 {
 
-constexpr std::size_t max_runs = 100000; // cases of a sweep
+constexpr std::size_t max_runs = 100000; // of a sweep, with all seeds
 constexpr std::size_t max_name = 150; // letters of the name of a run, which is the name of a folder
 
 [[noreturn]] void refuse(const std::string &text, const std::string &reason)
@@ -93,6 +95,9 @@ std::vector<std::string> grid(const std::string &text, const std::string &values
                    std::to_string(max_runs));
   if (start.number == stop.number)
     refuse(text, "START and STOP must differ");
+  if (!std::isfinite(stop.number - start.number))
+    refuse(text, "START '" + input::printable(parts[0]) + "' and STOP '" + input::printable(parts[1]) +
+                   "' are too far apart for floating-point numbers");
   std::vector<std::string> found;
   for (std::size_t i = 0; i < count; ++i)
   {
@@ -103,6 +108,16 @@ std::vector<std::string> grid(const std::string &text, const std::string &values
     found.push_back(plain_number(std::abs(value) < step ? 0. : value) + (start.unit.empty() ? "" : " " + start.unit));
   }
   return found;
+}
+
+// Value as a text that is the same for equal values: of a number its SI value (0 for -0), of all others the text
+// itself.
+std::string canonical(const std::string &value, const input::Declaration &entry)
+{
+  if (entry.type != input::ValueType::number && entry.type != input::ValueType::whole_number)
+    return value;
+  const input::ParsedNumber number = input::read_quantity(value, entry.unit.empty() ? "1" : entry.unit);
+  return number.wrong.empty() ? support::full_precision(number.value + 0.) : value;
 }
 
 // Letters that a name of a run may have: blanks become `blank`, others '-'.
@@ -167,17 +182,22 @@ Sweep parse_sweep(const std::string &text)
   else
     sweep.values = split(values, ',');
   if (sweep.values.size() < 2)
-    refuse(text, "one value is no sweep; give two or more, or --set");
-  std::set<std::string> earlier;
+    refuse(text, "expected two values or more; for one value use --set");
+  std::map<std::string, std::string> earlier; // values by their canonical form
   for (std::size_t i = 0; i < sweep.values.size(); ++i)
-    if (sweep.values[i].empty())
+  {
+    const std::string &value = sweep.values[i];
+    if (value.empty())
       refuse(text, "value " + std::to_string(i + 1) + " is empty");
-    else if (!earlier.insert(sweep.values[i]).second)
-      refuse(text, "the value " + input::printable(sweep.values[i]) + " is given twice");
+    const auto [same, is_new] = earlier.emplace(canonical(value, *entry), value);
+    if (!is_new)
+      refuse(text, "the value " + input::printable(value) + " is given twice" +
+                     (same->second == value ? "" : ", also as " + input::printable(same->second)));
+  }
   return sweep;
 }
 
-std::vector<SweptCase> combinations(const std::vector<Sweep> &sweeps)
+std::vector<SweptCase> combinations(const std::vector<Sweep> &sweeps, const std::size_t n_seeds)
 {
   std::size_t n_cases = 1;
   for (std::size_t i = 0; i < sweeps.size(); ++i)
@@ -188,8 +208,9 @@ std::vector<SweptCase> combinations(const std::vector<Sweep> &sweeps)
       throw support::InputError("sweep: " + entry + " is swept twice");
     n_cases = n_cases > max_runs ? n_cases : n_cases * sweeps[i].values.size();
   }
-  if (n_cases > max_runs)
-    throw support::InputError("sweep: more than " + std::to_string(max_runs) + " cases");
+  if (n_cases > max_runs / n_seeds)
+    throw support::InputError("sweep: more than " + std::to_string(max_runs) + " runs, with " +
+                              std::to_string(n_seeds) + " seeds for each combination of values");
   std::vector<SweptCase> cases;
   std::set<std::string> names;
   std::vector<std::size_t> at(sweeps.size(), 0); // index of the value of each sweep

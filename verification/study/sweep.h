@@ -14,7 +14,7 @@ namespace latcon::study
 struct Sweep
 {
   std::string entry;               ///< `Section/Name`
-  std::vector<std::string> values; ///< at least two, distinct, as a case file would hold them
+  std::vector<std::string> values; ///< at least two, distinct (numbers in SI), as a case file would hold them
 };
 
 /// Parses `Section/Name=START:STOP:COUNT`, COUNT values at equal distances with both ends, or
@@ -33,8 +33,9 @@ struct SweptCase
 };
 
 /// All combinations of values; those of the last sweep vary fastest. Names are distinct.
-/// @throws InputError for an entry that is swept twice, or more than 100,000 combinations
-[[nodiscard]] std::vector<SweptCase> combinations(const std::vector<Sweep> &sweeps);
+/// @param n_seeds number of seeds of each combination
+/// @throws InputError for an entry that is swept twice, or more than 100,000 runs
+[[nodiscard]] std::vector<SweptCase> combinations(const std::vector<Sweep> &sweeps, std::size_t n_seeds);
 
 /// Text of a study file that runs sweeps.
 /// @param sweeps at least one, as in parse_sweep()
