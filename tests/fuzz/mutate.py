@@ -219,9 +219,13 @@ def case_input(mutator):
 
 def study_input(mutator):
     document = json.loads(mutator.pick(STUDIES).read_text())
-    names = list(document["runs"])
+    sweeps = "sweep" in document
+    names = [] if sweeps else list(document["runs"])
     kept = set(mutator.random.sample(names, min(3, len(names))))
-    if mutator.random.random() < 0.7:  # short, so that the runs are planned soon
+    is_short = mutator.random.random() < 0.7  # so that the runs are planned soon
+    if is_short and sweeps:
+        document["sweep"] = document["sweep"][:1]
+    elif is_short:
         document["runs"] = {name: run for name, run in document["runs"].items() if name in kept}
         document["claims"] = [dict(claim, rows=rows) for claim in document["claims"]
                               if (rows := [row for row in claim["rows"] if set(row.get("runs", [row.get("run")])) <= kept])]

@@ -24,7 +24,7 @@ def complete(*words):
 
 @functools.cache
 def options_of(*command):
-    return set(re.findall(r"^  (?:-h,)?(--[a-z-]+)", run(LATCON, *command, "--help"), re.M))
+    return set(re.findall(r"^  (?:-[a-z],)?(--[a-z-]+)", run(LATCON, *command, "--help"), re.M))
 
 
 class Shell(unittest.TestCase):
