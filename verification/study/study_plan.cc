@@ -142,6 +142,8 @@ std::optional<double> PlannedRun::value(const std::string &against) const
 
 std::string PlannedRun::text(const std::string &key) const
 {
+  if (planned_case == nullptr)
+    return "";
   const auto found = planned_case->texts.find(key);
   return found == planned_case->texts.end() ? "" : found->second;
 }
