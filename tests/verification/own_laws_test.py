@@ -103,6 +103,13 @@ class OwnLaws(TemporaryFolder):
         second = self.crack("third", law="library", library=gent, parameters=parameters)
         self.assertNotEqual(first, json.loads((second / "run.json").read_text())["case_hash"])
 
+    def test_schema_refuses_an_invalid_law(self):
+        for setting, part in (("Nearest neighbours/psi=mu*lan", "unknown 'mu'"), ("Nearest neighbours/law=library", "library is required")):
+            ended = latcon("schema", CASES / "quick.prm", *bonds(law="expression", psi="a*(lam-1)^2"), "--set", setting)
+            self.assertEqual(ended.returncode, 2, ended.stderr)
+            self.assertIn(part, ended.stderr)
+            self.assertEqual(ended.stdout, "")
+
     def test_unusable_libraries_are_refused(self):
         text = (SOURCE / "examples/own-laws/gent_law.c").read_text()
         law = {"law": "library", "parameters": "mu = 0.25 MPa, Jm = 120"}
