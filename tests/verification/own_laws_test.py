@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests of bond laws that a case brings along: expressions, and the shared library of examples/own-laws.
+"""Tests of user-defined bond laws in cases: expressions, and the shared library of examples/own-laws.
 
 Usage: own_laws_test.py PATH_OF_LATCON
 """
@@ -75,6 +75,29 @@ class OwnLaws(TemporaryFolder):
         for name in RESULTS:
             for other in (two, self.folder / "ranks"):
                 self.assertEqual((one / name).read_bytes(), (other / name).read_bytes(), name)
+
+    def test_branches_beside_an_expression_leave_the_same_bits(self):
+        options = ("fracture", CASES / "spectrum.prm", "--set", "Sheet/length=1.6 cm", "--set", "Sheet/height=1 cm", "--set",
+                   "Time/end=0.25 ms", *bonds(**MOONEY_RIVLIN), "--threads", 1, "--no-report", "--skip-verification")
+        one = latcon(*options, "--output-dir", self.folder / "one")
+        two = latcon_on_ranks(2, *options, "--output-dir", self.folder / "two")
+        for ended in (one, two):
+            self.assertEqual(ended.returncode, 0, ended.stderr)
+        self.assertGreater(len(read_csv(self.folder / "one" / "broken_bonds.csv")), 10)
+        for name in RESULTS:
+            self.assertEqual(*((self.folder / run / name).read_bytes() for run in ("one", "two")), name)
+
+    def test_claims_need_the_law_up_to_their_largest_stretch(self):
+        # Locks between 2.9, the largest stretch of this case's bonds, and 3.5.
+        law = {"law": "expression", "psi": "-lam - (k-1)*log(k-lam)", "parameters": "k=3.2"}
+        case = (CASES / "quick.prm", "--set", "Fracture/toughening=none", "--set", "Fracture/factor=1",
+                "--set", "Fracture/breaking stretch=2.9", *bonds(**law), "--output-dir", self.folder / "bad")
+        for command in (("fracture",), ("verify", "energy", "--quick", "--case")):
+            ended = latcon(*command, *case)
+            self.assertEqual(ended.returncode, 2, ended.stderr)
+            self.assertIn("claims evaluate the law at stretches up to 3.5: psi is nan at stretch 3.2", ended.stderr)
+            self.assertFalse((self.folder / "bad").exists())
+        self.assertEqual(latcon("fracture", *case, "--skip-verification", "--dry-run").returncode, 0)
 
     def test_claims_hold(self):
         ended = latcon("verify", "energy", "wave-speeds", "--quick", "--case", CASES / "quick.prm", "--set",
