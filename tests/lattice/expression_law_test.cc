@@ -230,4 +230,28 @@ TEST(LawCheck, ComparesEachDerivativeWithDifferences)
   }
 }
 
+// Stretch 0.3 * 1.01^100 = 0.811 of the check has a value, its neighbours have none.
+TEST(LawCheck, RefusesDifferencesWithoutValue)
+{
+  double checked = 0.3;
+  for (int i = 0; i < 100; ++i)
+    checked *= 1.01;
+  const Functions right{[](double l) { return 0.5 * (l - 1.) * (l - 1.); }, [](double l) { return l - 1.; },
+                        [](double) { return 1.; }};
+  const auto without_values_from = [&](double distance)
+  {
+    Functions functions = right;
+    functions[0] = [=, psi = right[0]](double l)
+    {
+      const double away = std::abs(l / checked - 1.);
+      return away > distance && away < 1e-3 ? std::numeric_limits<double>::quiet_NaN() : psi(l);
+    };
+    return functions;
+  };
+  EXPECT_THROW(lattice::check_law(without_values_from(0.5e-4), 0.3, 3.), lattice::InvalidBondLaw);
+  EXPECT_NO_THROW(lattice::check_law(without_values_from(2.5e-4), 0.3, 3.));
+  // Beyond the last stretch a law needs no value.
+  EXPECT_NO_THROW(lattice::check_law(without_values_from(1e-12), 0.3, checked));
+}
+
 } // namespace

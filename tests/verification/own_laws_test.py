@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests of bond laws that a case brings along: expressions, and the shared library of examples/own-laws.
+"""Tests of user-defined bond laws in cases: expressions, and the shared library of examples/own-laws.
 
 Usage: own_laws_test.py PATH_OF_LATCON
 """
@@ -76,6 +76,29 @@ class OwnLaws(TemporaryFolder):
             for other in (two, self.folder / "ranks"):
                 self.assertEqual((one / name).read_bytes(), (other / name).read_bytes(), name)
 
+    def test_branches_beside_an_expression_leave_the_same_bits(self):
+        options = ("fracture", CASES / "spectrum.prm", "--set", "Sheet/length=1.6 cm", "--set", "Sheet/height=1 cm", "--set",
+                   "Time/end=0.25 ms", *bonds(**MOONEY_RIVLIN), "--threads", 1, "--no-report", "--skip-verification")
+        one = latcon(*options, "--output-dir", self.folder / "one")
+        two = latcon_on_ranks(2, *options, "--output-dir", self.folder / "two")
+        for ended in (one, two):
+            self.assertEqual(ended.returncode, 0, ended.stderr)
+        self.assertGreater(len(read_csv(self.folder / "one" / "broken_bonds.csv")), 10)
+        for name in RESULTS:
+            self.assertEqual(*((self.folder / run / name).read_bytes() for run in ("one", "two")), name)
+
+    def test_claims_need_the_law_up_to_their_largest_stretch(self):
+        # Locks between 2.9, the largest stretch of this case's bonds, and 3.5.
+        law = {"law": "expression", "psi": "-lam - (k-1)*log(k-lam)", "parameters": "k=3.2"}
+        case = (CASES / "quick.prm", "--set", "Fracture/toughening=none", "--set", "Fracture/factor=1",
+                "--set", "Fracture/breaking stretch=2.9", *bonds(**law), "--output-dir", self.folder / "bad")
+        for command in (("fracture",), ("verify", "energy", "--quick", "--case")):
+            ended = latcon(*command, *case)
+            self.assertEqual(ended.returncode, 2, ended.stderr)
+            self.assertIn("claims evaluate the law at stretches up to 3.5: psi is nan at stretch 3.2", ended.stderr)
+            self.assertFalse((self.folder / "bad").exists())
+        self.assertEqual(latcon("fracture", *case, "--skip-verification", "--dry-run").returncode, 0)
+
     def test_claims_hold(self):
         ended = latcon("verify", "energy", "wave-speeds", "--quick", "--case", CASES / "quick.prm", "--set",
                        "Next-nearest neighbours/present=false", *bonds(**MOONEY_RIVLIN), "--output-dir", self.folder / "claims")
@@ -102,6 +125,13 @@ class OwnLaws(TemporaryFolder):
         self.assertRegex(case, r"library sha256 *= [0-9a-f]{64}")
         second = self.crack("third", law="library", library=gent, parameters=parameters)
         self.assertNotEqual(first, json.loads((second / "run.json").read_text())["case_hash"])
+
+    def test_schema_refuses_an_invalid_law(self):
+        for setting, part in (("Nearest neighbours/psi=mu*lan", "unknown 'mu'"), ("Nearest neighbours/law=library", "library is required")):
+            ended = latcon("schema", CASES / "quick.prm", *bonds(law="expression", psi="a*(lam-1)^2"), "--set", setting)
+            self.assertEqual(ended.returncode, 2, ended.stderr)
+            self.assertIn(part, ended.stderr)
+            self.assertEqual(ended.stdout, "")
 
     def test_unusable_libraries_are_refused(self):
         text = (SOURCE / "examples/own-laws/gent_law.c").read_text()

@@ -1,5 +1,6 @@
 #include "verification/claims/claim_inputs.h"
 
+#include <algorithm>
 #include <array>
 #include <set>
 #include <stdexcept>
@@ -49,6 +50,14 @@ constexpr std::array entries_of_subject{
   "Continuum/ratio",
 };
 
+// Entries of which the largest stretch of a bond follows, up to which a law of the user must have values.
+constexpr std::array entries_of_user_law{"Fracture/breaking stretch", "Fracture/toughening", "Fracture/factor"};
+
+bool has_user_law(const input::Case &input)
+{
+  return input.nearest.has_user_law() || (input.has_next_nearest && input.next_nearest.has_user_law());
+}
+
 // Claims choose their own sheets; a subject needs one for its bonds alone.
 constexpr double sheet_size = 12.; // spacings
 
@@ -57,6 +66,8 @@ std::vector<std::string> assignments(const input::Case &input, const std::vector
 {
   std::set<std::string> allowed(entries_of_subject.begin(), entries_of_subject.end());
   allowed.insert(further.begin(), further.end());
+  if (has_user_law(input))
+    allowed.insert(entries_of_user_law.begin(), entries_of_user_law.end());
   input::Case copy = input; // declaring binds entries to members that may be written
   input::Parameters parameters;
   copy.declare(parameters);
@@ -97,6 +108,31 @@ input::Case claim_inputs(const input::Case &input, const std::vector<std::string
   parameters.read_overrides(lines);
   parameters.finish();
   return read;
+}
+
+void check_user_laws(const input::Case &input, input::Parameters &parameters)
+{
+  if (!parameters.good())
+    return; // there may be no law
+  const auto check = [&](const input::ShellCase &shell, const std::string &section)
+  {
+    if (!shell.has_user_law())
+      return;
+    try
+    {
+      (void)shell.shell(std::max(largest_stretch, input.longest_stretch()));
+    }
+    catch (const input::UserLaw::Problem &problem)
+    {
+      parameters.error(section + "/" + problem.entry,
+                       "claims evaluate the law at stretches up to " + support::full_precision(largest_stretch) + ": " +
+                         problem.what(),
+                       {section + "/law"});
+    }
+  };
+  check(input.nearest, "Nearest neighbours");
+  if (input.has_next_nearest)
+    check(input.next_nearest, "Next-nearest neighbours");
 }
 
 } // namespace latcon::claims

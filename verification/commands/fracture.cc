@@ -3,6 +3,7 @@
 
 #include "support/largest_error.h"
 #include "verification/bridge/lattice_sheet.h"
+#include "verification/claims/claim_inputs.h"
 #include "verification/commands/command.h"
 #include "verification/commands/cost.h"
 #include "verification/commands/crack_summary.h"
@@ -190,6 +191,8 @@ support::ExitCode run_fracture(const input::Options &options)
   bridge::require_fracture_case(input, parameters);
   if (parameters.good())
     resources::check_steps(input, input.fracture_time_stepping().step, parameters);
+  if (!options.skip_verification)
+    claims::check_user_laws(input, parameters);
   parameters.finish();
 
   const lattice::TriangularLattice sheet = input.lattice();

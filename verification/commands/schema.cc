@@ -143,6 +143,8 @@ support::ExitCode print_schema(const input::Options &options)
     input.declare(parameters);
   else
     throw support::InputError("--set replaces entries of a case; give one: latcon schema CASE --set ...");
+  if (options.case_is_given)
+    parameters.finish(); // an invalid case has no material
   const std::vector<input::Declaration> entries = parameters.declarations();
   Json document;
   document["format"] = "latcon-schema";
@@ -152,16 +154,16 @@ support::ExitCode print_schema(const input::Options &options)
   document["cases"] = shipped_case_files();
   for (const study::StudyQuantity &quantity : study::quantities())
     document["quantities"][quantity.name] = quantity.unit;
+  const lattice::Material material = input.material();
   for (const claims::Claim &claim : claim_registry())
     document["claims"].push_back({{"name", claim.name},
                                   {"title", claim.title},
-                                  {"default", claim.is_default_for(input.material())},
-                                  {"before_fracture", claim.is_before_fracture(input.material())}});
+                                  {"default", claim.is_default_for(material)},
+                                  {"before_fracture", claim.is_before_fracture(material)}});
   for (const input::Declaration &entry : entries)
     document["entries"].push_back(describe(entry));
   if (options.case_is_given)
   {
-    parameters.finish();
     Json values = Json::object();
     for (const input::Declaration &entry : entries)
       values[entry.section + "/" + entry.name] = value_of(entry, parameters.value(entry.section + "/" + entry.name));

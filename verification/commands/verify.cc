@@ -39,6 +39,7 @@ support::ExitCode verify(const input::Options &options)
   input::Case input;
   input::Parameters parameters;
   read_case(options, input, parameters);
+  claims::check_user_laws(input, parameters);
   parameters.finish();
   if (options.dry_run)
   {

@@ -156,7 +156,9 @@ void check_relaxation_times(const Case &input, Parameters &p)
   const bool next_nearest = input.has_next_nearest && !input.next_nearest.relaxation_times.empty();
   if (!p.good() || (input.nearest.relaxation_times.empty() && !next_nearest))
     return;
-  const double step = (input.breaking_stretch ? input.fracture_time_stepping() : input.lattice_time_stepping()).step;
+  double step = input.lattice_time_stepping().step;
+  if (input.breaking_stretch) // sites that touch require shorter steps, if they are automatic
+    step = std::max(step, input.fracture_time_stepping().step);
   input.nearest.check_relaxation_times(p, "Nearest neighbours", step);
   if (next_nearest)
     input.next_nearest.check_relaxation_times(p, "Next-nearest neighbours", step);

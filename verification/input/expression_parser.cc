@@ -3,7 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <cstdlib>
+#include <charconv>
+#include <cstring>
 #include <vector>
 
 #include <muParser.h>
@@ -58,9 +59,9 @@ int record_number(const char *text, int *position, double *value)
 {
   if (std::isdigit(static_cast<unsigned char>(*text)) == 0 && *text != '.')
     return 0;
-  char *end = nullptr;
-  const double number = std::strtod(text, &end);
-  if (end == text)
+  double number = 0.;
+  const auto [end, error] = std::from_chars(text, text + std::strlen(text), number);
+  if (error != std::errc())
     return 0;
   *position += static_cast<int>(end - text);
   *value = static_cast<double>(recorded->constant(number));

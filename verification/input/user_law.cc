@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <array>
+#include <map>
+#include <mutex>
 #include <sstream>
 #include <utility>
 #include <vector>
@@ -67,12 +69,35 @@ std::string sha256_of(const std::string &bytes)
 
 std::string sha256_of_library(const std::string &path)
 {
-  if (path.empty())
-    throw UserLaw::Problem("library", "the path of a shared library is required");
   const InputFile file = read_input_file(path);
   if (!file.problem.empty())
     throw UserLaw::Problem("library", "cannot read the library: " + file.problem);
   return sha256_of(file.text);
+}
+
+struct LoadedLibrary
+{
+  lattice::LawLibrary functions;
+  std::string sha256; // of the file that was loaded
+};
+
+// Loads a library at the first call for its path. A process continues with it if the file is replaced: the functions
+// in memory remain those that were loaded.
+const LoadedLibrary &loaded_library(const std::string &path)
+{
+  static std::mutex mutex;
+  static std::map<std::string, LoadedLibrary> loaded;
+  if (path.empty())
+    throw UserLaw::Problem("library", "the path of a shared library is required");
+  const std::lock_guard<std::mutex> lock(mutex);
+  const auto known = loaded.find(path);
+  if (known != loaded.end())
+    return known->second;
+  std::string sha256 = sha256_of_library(path);
+  lattice::LawLibrary functions(path);
+  if (sha256_of_library(path) != sha256)
+    throw UserLaw::Problem("library", "the library changed while it was loaded");
+  return loaded.emplace(path, LoadedLibrary{std::move(functions), std::move(sha256)}).first->second;
 }
 
 std::string list_of(const std::vector<std::string> &names)
@@ -119,9 +144,9 @@ void UserLaw::check(Parameters &p, const std::string &section, Kind kind, const 
 {
   try
   {
-    if (kind == Kind::library && sha256.empty())
-      sha256 = sha256_of_library(library);
     (void)law(kind, constants, longest);
+    if (kind == Kind::library)
+      sha256 = loaded_library(library).sha256;
     is_usable = true;
   }
   catch (const Problem &problem)
@@ -140,12 +165,11 @@ std::shared_ptr<const lattice::CustomBondLaw> UserLaw::law(Kind kind, const Valu
   {
     if (kind == Kind::expression)
       return std::make_shared<lattice::ExpressionLaw>(parse_expression(psi, variable, values), longest);
-    const std::string found = sha256_of_library(library);
-    if (found != sha256)
-      throw Problem("library sha256", "the library " + printable(library) + " has the SHA-256 " + found);
-    lattice::LawLibrary loaded(library);
-    std::vector<double> in_order = in_order_of_library(loaded.parameters(), given, constants);
-    return std::make_shared<lattice::LibraryLaw>(std::move(loaded), std::move(in_order), longest);
+    const LoadedLibrary &loaded = loaded_library(library);
+    if (!sha256.empty() && loaded.sha256 != sha256)
+      throw Problem("library sha256", "the library " + printable(library) + " has the SHA-256 " + loaded.sha256);
+    std::vector<double> in_order = in_order_of_library(loaded.functions.parameters(), given, constants);
+    return std::make_shared<lattice::LibraryLaw>(loaded.functions, std::move(in_order), longest);
   }
   catch (const InvalidExpression &error)
   {

@@ -131,6 +131,18 @@ TEST(Relaxation, FollowsTheClosedForm)
     }
 }
 
+// Stretches of small strains have few digits.
+TEST(Relaxation, HoldsForSmallStrains)
+{
+  for (const double strain : {1e-6, 1e-4, 0.011})
+  {
+    input::Case input = case_with_branches();
+    input.strain_x = input.strain_y = strain;
+    const ClaimOutcome outcome = relaxation_claim(subject(input), {});
+    EXPECT_TRUE(outcome.results.all_hold()) << strain << "\n" << failing(outcome);
+  }
+}
+
 TEST(Relaxation, FailsForWrongBranches)
 {
   for (const PlantedFault &fault : planted_faults())

@@ -66,6 +66,7 @@ TEST(ExpressionParser, NamesTheColumnOfAMistakeAndWhatIsAllowed)
                                                         {"lam)", "parenthesis at column 4"},
                                                         {"sqrt()", "one argument at column 6"},
                                                         {"exp lam", "'(' is missing after 'exp' at column 1"},
+                                                        {"0x10*lam", "'x10' at column 2"},
                                                         {"2lam", "'lam' is not expected at column 2"},
                                                         {"sin(lam)", "unknown 'sin' at column 1"},
                                                         {"lam +", "ends too early"},
@@ -141,6 +142,21 @@ TEST(UserLaw, IsAmongTheInputsOfClaims)
       shell->user_law.*entry = "changed";
       EXPECT_TRUE(texts.insert(claims::claim_inputs_text(input, {})).second);
     }
+}
+
+// A law that claims accept must be one with which the case runs: both have the same largest stretch.
+TEST(UserLaw, HasTheSameLargestStretchInClaims)
+{
+  input::Case input;
+  ASSERT_EQ(problems({"law=expression", psi, "parameters=mu = 0.1 MPa"}, &input), "");
+  input.density = 944.;
+  input.breaking_stretch = 3.;
+  input.toughening = input::Case::Toughening::behind_tip;
+  input.toughening_factor = 2.;
+  EXPECT_EQ(claims::claim_inputs(input).longest_stretch(), 6.);
+  const std::string text = claims::claim_inputs_text(input);
+  input.toughening_factor = 2.5;
+  EXPECT_NE(claims::claim_inputs_text(input), text);
 }
 
 TEST(UserLaw, SaysWhichEntryIsWrong)

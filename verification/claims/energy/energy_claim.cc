@@ -9,6 +9,7 @@
 #include "support/largest_error.h"
 #include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/network_comparison.h"
+#include "verification/claims/claim_inputs.h"
 
 namespace latcon::claims
 {
@@ -37,7 +38,9 @@ double unit_uniform(std::mt19937_64 &generator)
 Eigen::Matrix2d random_deformation(std::mt19937_64 &generator)
 {
   const auto rotation = [&] { return Eigen::Rotation2Dd(2. * M_PI * unit_uniform(generator)).toRotationMatrix(); };
-  const auto stretch = [&] { return 0.7 + 2.8 * unit_uniform(generator); };
+  constexpr double smallest = 0.7, range = 2.8;
+  static_assert(smallest + range <= largest_stretch);
+  const auto stretch = [&] { return smallest + range * unit_uniform(generator); };
   const Eigen::Matrix2d outer = rotation(), inner = rotation();
   const double first = stretch(), second = stretch();
   return outer * Eigen::Vector2d(first, second).asDiagonal() * inner;

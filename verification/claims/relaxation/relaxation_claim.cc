@@ -6,6 +6,8 @@
 #include <limits>
 #include <variant>
 
+#include <Eigen/SVD>
+
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
 #include "support/largest_error.h"
@@ -30,11 +32,14 @@ struct BranchTheory
   Eigen::Matrix2d stress; // at the start [Pa]
 };
 
+// Of changes of stretch this large, the round-off of stretches is 100 epsilon.
+constexpr double smallest_strain = 1e-2;
+
 // The step of strain: from the undeformed sheet to one in which no bond is compressed, which is stable.
 Eigen::Matrix2d strained(const bridge::Subject &subject, const lattice::TriangularLattice &sheet)
 {
   const Eigen::Matrix2d F = subject.deformation;
-  bool is_stretched = subject.is_stable() && !F.isIdentity(1e-6);
+  bool is_stretched = subject.is_stable() && F.jacobiSvd().singularValues()(0) >= 1. + smallest_strain;
   for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
     is_stretched = is_stretched && (F * sheet.bond_vector(kind)).norm() >= sheet.rest_length(kind);
   return is_stretched ? F : 1.2 * Eigen::Matrix2d::Identity();
