@@ -12,27 +12,41 @@ import sys
 COMPLETION = """\
 # Completion of latcon(1) for bash, written from its help.
 _latcon() {
-  local word entry command='' cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD-1]} IFS=$'\\n'
+  local word command='' cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD-1]} IFS=$'\\n'
+  local -i at=COMP_CWORD
   COMPREPLY=()
   for word in "${COMP_WORDS[@]:1:COMP_CWORD-1}"; do
     case $word in
       @commands@) command=$word; break ;;
     esac
   done
+  # Outside quotes bash divides an entry into its name, "=" and its value.
+  [[ $prev != '=' ]] || at+=-1
+  if [[ ${COMP_WORDS[at]} == '=' ]]; then
+    case ${COMP_WORDS[at-2]} in
+      --set|--sweep)
+        cur=${COMP_WORDS[at-1]}=${cur#=}
+        _latcon_values
+        COMPREPLY=("${COMPREPLY[@]#*=}") ;;
+    esac
+    return
+  fi
   case $prev in
     --set|--sweep)
-      # Names hold blanks: within quotes as they are, without them escaped.
-      for entry in @entries@; do
-        case $cur in
-          [\\"\\']*) [[ $entry != "${cur:1}"* ]] || COMPREPLY+=("$entry") ;;
-          *) [[ $(printf %q "$entry") != "$cur"* && $entry != "$cur"* ]] || COMPREPLY+=("$(printf %q "$entry")") ;;
-        esac
-      done
-      compopt -o nospace 2>/dev/null
+      _latcon_words @entries@
+      if ((${#COMPREPLY[@]} < 2)); then
+        word=${COMPREPLY[0]-}
+        COMPREPLY=()
+        _latcon_values
+        if [[ ${#COMPREPLY[@]} == 0 && $word ]]; then
+          COMPREPLY=("$word")
+          compopt -o nospace 2>/dev/null
+        fi
+      fi
       return ;;
     @folder_options@) _latcon_files -d; return ;;
     @file_options@) _latcon_files -f; return ;;
-    @other_options@|=) return ;;
+    @other_options@) return ;;
   esac
   if [[ $cur == -* ]]; then
     case $command in
@@ -56,12 +70,19 @@ _latcon_files() {
   COMPREPLY=($(compgen "$1" -- "$cur"))
   compopt -o filenames 2>/dev/null
 }
-# Words with blanks, which are escaped.
+# The arguments that begin with the typed text; outside quotes their blanks are escaped.
 _latcon_words() {
-  local word
+  local word typed=${cur#[\\"\\']}
+  typed=${typed//\\\\/}
   for word; do
-    [[ $(printf %q "$word") != "$cur"* && $word != "$cur"* ]] || COMPREPLY+=("$(printf %q "$word")")
+    [[ $word == "$typed"* ]] || continue
+    [[ $cur == [\\"\\']* ]] || word=${word// /\\\\ }
+    COMPREPLY+=("$word")
   done
+}
+# Entries with values, where there is a choice.
+_latcon_values() {
+  _latcon_words @values@
 }
 complete -F _latcon latcon
 """
@@ -157,6 +178,11 @@ def quoted(words):
     return " ".join(f"'{word}'" for word in words)
 
 
+def choices(entry):
+    """Words of the schema from which the value of an entry is chosen."""
+    return ("false", "true") if entry["type"] == "boolean" else entry.get("words", ())
+
+
 def completion(latcon, data, program, commands):
     every = program.options + [pair for command in commands.values() for pair in command.options]
 
@@ -172,6 +198,7 @@ def completion(latcon, data, program, commands):
         "commands": "|".join(commands),
         "command_words": r"\n".join(commands),
         "entries": quoted(f"{key}=" for key in keys),
+        "values": quoted(f"{key}={value}" for key, entry in zip(keys, schema["entries"]) for value in choices(entry)),
         "sections": quoted(sections),
         "topics": quoted([*commands, *sections, *keys]),
         "cases": quoted(schema["cases"]),

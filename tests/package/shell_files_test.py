@@ -6,8 +6,11 @@ Usage: shell_files_test.py SOURCE_FOLDER BUILD_FOLDER
 import functools
 import gzip
 import json
+import os
+import pty
 import re
 import subprocess
+import threading
 import unittest
 
 from folders import BUILD, FOLDER, SOURCE, run
@@ -20,6 +23,27 @@ def complete(*words):
     script = f'source {BUILD}/latcon.bash; COMP_WORDS=(latcon "$@"); COMP_CWORD=$#; _latcon; printf "%s\\n" "${{COMPREPLY[@]}}"'
     done = subprocess.run(["bash", "-c", script, "bash", *words], cwd=FOLDER, capture_output=True, text=True, check=True)
     return [line for line in done.stdout.split("\n") if line]
+
+
+def arguments_typed(line):
+    """Arguments of latcon in a line, in which tabs complete, typed at the prompt of bash."""
+    got = FOLDER / "arguments"
+    keyboard, terminal = pty.openpty()
+    bash = subprocess.Popen(["bash", "--norc", "-i"], cwd=FOLDER, stdin=terminal, stdout=terminal, stderr=terminal,
+                            start_new_session=True, env=dict(os.environ, INPUTRC="/dev/null", TERM="dumb", HISTFILE=""))
+    os.close(terminal)
+    os.write(keyboard, f"source {BUILD}/latcon.bash; latcon() {{ printf '%s\\n' \"$@\" > {got}; }}\n{line}\nexit\n".encode())
+    killer = threading.Timer(30, bash.kill)  # of a shell that waits for the rest of a line
+    killer.start()
+    try:
+        while os.read(keyboard, 4096):
+            pass
+    except OSError:  # bash has closed the terminal
+        pass
+    bash.wait()
+    killer.cancel()
+    os.close(keyboard)
+    return got.read_text().splitlines()
 
 
 @functools.cache
@@ -81,6 +105,24 @@ class Shell(unittest.TestCase):
         self.assertEqual(complete("entries", "Near\\ t"), ["Near\\ tip"])
         self.assertEqual(complete("help", "comp"), ["compare"])
         self.assertEqual(complete("help", "Sheet/sp"), ["Sheet/spacing"])
+
+    def test_completes_values_of_entries(self):
+        entries = {f"{entry['section']}/{entry['name']}": entry for entry in json.loads(run(LATCON, "schema"))["entries"]}
+        integrators = entries["Time/integrator"]["words"]
+        self.assertGreater(len(integrators), 1)
+        # Bash divides at "=" outside quotes, and not within.
+        self.assertEqual(complete("fracture", "--set", "Time/integrator", "="), integrators)
+        self.assertEqual(complete("fracture", "--set", "Time/integrator", "=", "run"), ["runge-kutta-chebyshev"])
+        self.assertEqual(complete("study", "--sweep", "Time/integrator", "=", "run"), ["runge-kutta-chebyshev"])
+        self.assertEqual(complete("fracture", "--set", '"Time/integrator='), [f"Time/integrator={word}" for word in integrators])
+        self.assertEqual(complete("fracture", "--set", "Next-nearest\\ neighbours/present", "=", ""), ["false", "true"])
+        self.assertEqual(complete("fracture", "--set", '"Next-nearest neighbours/present=t'),
+                         ["Next-nearest neighbours/present=true"])
+        self.assertEqual(complete("fracture", "--output-dir", "="), [])
+
+    def test_completes_at_the_prompt(self):
+        self.assertEqual(arguments_typed("latcon fracture fig1-\t --set Next-\tpres\tt\t --set 'Near\t tip/ha\t"),
+                         ["fracture", "fig1-wide", "--set", "Next-nearest neighbours/present=true", "--set", "Near tip/half height="])
 
 
 if __name__ == "__main__":
