@@ -29,7 +29,7 @@ LawLibrary::LawLibrary(const std::string &path)
 {
   // A name without a folder would be searched in the system's folders.
   const std::string file = path.find('/') == std::string::npos ? "./" + path : path;
-  // It stays loaded: laws are made anew whenever a case is asked for its material.
+  // It stays loaded: laws may outlive this object.
   void *const library = dlopen(file.c_str(), RTLD_NOW | RTLD_LOCAL | RTLD_NODELETE);
   if (library == nullptr)
   {

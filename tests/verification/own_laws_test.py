@@ -127,8 +127,8 @@ class OwnLaws(TemporaryFolder):
         self.assertNotEqual(first, json.loads((second / "run.json").read_text())["case_hash"])
 
     def test_schema_refuses_an_invalid_law(self):
-        for setting, part in (("Nearest neighbours/psi=mu*lan", "unknown 'mu'"), ("Nearest neighbours/law=library", "library is required")):
-            ended = latcon("schema", CASES / "quick.prm", *bonds(law="expression", psi="a*(lam-1)^2"), "--set", setting)
+        for entries, part in (({"law": "expression", "psi": "a*lan"}, "unknown 'lan'"), ({"law": "library"}, "a shared library is required")):
+            ended = latcon("schema", CASES / "quick.prm", *bonds(**entries))
             self.assertEqual(ended.returncode, 2, ended.stderr)
             self.assertIn(part, ended.stderr)
             self.assertEqual(ended.stdout, "")

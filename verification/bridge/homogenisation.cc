@@ -39,7 +39,7 @@ private:
 };
 
 // Returns the potential of a custom law, made at the first call for a shell. From an expression the continuum takes the
-// energy alone, and from a library other functions than the lattice does.
+// energy alone; from a library it takes the derivatives, of which psi'' is also that of the lattice.
 continuum::CustomPotential custom_potential(const lattice::Shell &shell, continuum::CustomPotential &of_shell)
 {
   const auto &law = std::get<lattice::CustomBond>(shell.law).law();

@@ -9,9 +9,9 @@
 namespace latcon::claims
 {
 
-/// Values in `input` of the entries of which a Subject is made, of those that limit the stretches of a law of the user,
-/// and of the `further` ones: a line `Section/Name=value` for each, in SI and full precision, in the order of declaration. Two cases with the same text are the same to the
-/// claims.
+/// Values in `input` of the entries of which a Subject is made, of those that limit the stretches of a user-defined
+/// law, and of the `further` ones: a line `Section/Name=value` for each, in SI and full precision, in the order of
+/// declaration. Two cases with the same text are the same to the claims.
 /// @throws std::logic_error if a further entry does not exist
 [[nodiscard]] std::string claim_inputs_text(const input::Case &input, const std::vector<std::string> &further = {});
 
@@ -22,7 +22,7 @@ namespace latcon::claims
 /// Largest stretch [-] at which claims evaluate bond laws, except those of a loaded or breaking sheet.
 inline constexpr double largest_stretch = 3.5;
 
-/// Reports laws of the user without values at stretches at which claims evaluate them. To be called before
+/// Reports user-defined laws without values at stretches at which claims evaluate them. To be called before
 /// Parameters::finish() by commands that check claims.
 void check_user_laws(const input::Case &input, input::Parameters &parameters);
 

@@ -1,4 +1,4 @@
-/// Bond laws that a case brings along: an expression, or a shared library.
+/// User-defined bond laws of a case: an expression, or a shared library.
 #pragma once
 
 #include <map>
@@ -24,9 +24,9 @@ struct UserLaw
   std::string psi;        ///< energy [Pa] as an expression of the stretch `lam`
   std::string parameters; ///< NAME = NUMBER, separated by commas
   std::string library;    ///< path of a shared library
-  std::string sha256;     ///< of the library; empty: any. check() sets it, so that it is part of the resolved case
+  std::string sha256;     ///< of the library as loaded; empty: any. check() sets it for the resolved case
 
-  /// An entry without which there is no law; what() says what is wrong.
+  /// An invalid entry of the law; what() gives the reason.
   struct Problem : std::runtime_error
   {
     Problem(std::string entry_, const std::string &text) : std::runtime_error(text), entry(std::move(entry_)) {}
@@ -42,7 +42,7 @@ struct UserLaw
              double longest);
   bool is_usable = false; ///< result of check()
 
-  /// The law, made anew. @throws Problem
+  /// Creates the law. @throws Problem
   std::shared_ptr<const lattice::CustomBondLaw> law(Kind kind, const std::map<std::string, double> &constants,
                                                     double longest) const;
 };

@@ -120,6 +120,25 @@ TEST(TimeStepping, CountsContactsUnderRungeKuttaChebyshev)
   EXPECT_EQ(with("Contact/present=false").first.step, alone.step);
 }
 
+// The stiff contacts of a crack shorten its step, but `latcon lattice` reads the same case.
+TEST(TimeStepping, ComparesRelaxationTimesWithTheLongerStep)
+{
+  Lines lines{chebyshev, "Fracture/breaking stretch=3.05", "Sheet/length=40 mm", "Contact/stiffness=1000",
+              "Nearest neighbours/branch moduli=1 Pa"};
+  Case input;
+  read({lines[0], lines[1], lines[2], lines[3]}, input);
+  const double step = input.lattice_time_stepping().step;
+  ASSERT_LT(input.fracture_time_stepping().step, 0.1 * step);
+  const auto relaxing_in = [&](double time)
+  {
+    Lines all = lines;
+    all.push_back("Nearest neighbours/relaxation times=" + std::to_string(1e9 * time) + "e-9");
+    return all;
+  };
+  expect_refused("Nearest neighbours/relaxation times", relaxing_in(0.5 * step));
+  EXPECT_NO_THROW(stepping(relaxing_in(2. * step)));
+}
+
 TEST(TimeStepping, RefusesStepsThatAmplifyContacts)
 {
   const auto refused = [](const std::string &entry, Lines lines)
