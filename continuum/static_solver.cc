@@ -218,6 +218,8 @@ SolverReport StaticSolver::solve(const Observer &observer)
 
 SolverReport StaticSolver::step_to(const double load_factor)
 {
+  if (!std::isfinite(load_factor))
+    throw InvalidInput("the load factor must be finite");
   SolverReport report;
   advance(load_factor, report, Observer());
   return report;

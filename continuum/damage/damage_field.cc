@@ -155,6 +155,11 @@ double DamageField::minimize(const Sheet &sheet, const Vector &u, const double l
     if (!constraints_.is_constrained(i))
       A.add(i, i, energies(i));
   A.compress(VectorOperation::add);
+  unsigned int n_concave = 0;
+  for (const types::global_dof_index i : owned_)
+    n_concave += !constraints_.is_constrained(i) && !(A.diag_element(i) > 0.) ? 1 : 0;
+  if (Utilities::MPI::sum(n_concave, communicator) > 0)
+    throw NonPhysicalState("the stored energy about a node is so negative that no damage minimises the energy");
   TrilinosWrappers::PreconditionJacobi jacobi;
   jacobi.initialize(A);
 
@@ -169,16 +174,16 @@ double DamageField::minimize(const Sheet &sheet, const Vector &u, const double l
   magnitude.add(law_.threshold, measure_);
   const double accuracy = 1e-13 * magnitude.l2_norm();
   std::vector<char> fixed(owned_.n_elements(), 0);
-  bool settled = false;
+  bool is_converged = false;
   constexpr unsigned int max_sets = 500;
-  for (unsigned int n = 0; n < max_sets && !settled; ++n)
+  for (unsigned int n = 0; n < max_sets && !is_converged; ++n)
   {
     A.vmult(descent, d);
     descent.sadd(-1., b);
     const bool same = select(fixed, [&](const types::global_dof_index i)
                              { return d(i) + descent(i) / A.diag_element(i) <= lowest(i); });
     if (n > 0 && same)
-      settled = true;
+      is_converged = true;
     else
     {
       // Moves the fixed unknowns to their bound, and solves for the others.
@@ -203,8 +208,8 @@ double DamageField::minimize(const Sheet &sheet, const Vector &u, const double l
       d += step;
     }
   }
-  if (!settled)
-    throw LinearSolverFailed("the active set of the damage did not settle");
+  if (!is_converged)
+    throw LinearSolverFailed("the active set of the damage did not converge");
 
   constraints_.distribute(d);
   Vector change(owned_, communicator);

@@ -40,7 +40,8 @@ public:
 
   /// Minimises E(u, d) over d not below the accepted damage, at fixed u [m] (with ghost entries) of a `sheet` on the
   /// same mesh, by a primal-dual active set method, eq. (C.64). Returns the largest change of d at any node [-]. Throws
-  /// NonPhysicalState as Sheet::energy does, and LinearSolverFailed if the active sets do not settle.
+  /// NonPhysicalState as Sheet::energy does and if the energy is not convex in the damage of a node, because its e_a is
+  /// too negative, and LinearSolverFailed if the active sets do not converge.
   double minimize(const Sheet &sheet, const Vector &u, double load_factor);
 
   /// Makes the current damage the lower bound of later ones.

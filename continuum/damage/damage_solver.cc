@@ -2,13 +2,15 @@
 
 #include "continuum/errors.h"
 
+#include <cmath>
+
 using namespace dealii;
 
 namespace latcon::continuum
 {
 namespace
 {
-Constitution damaged(const Constitution &laws, const DamageField &field)
+Constitution with_damage(const Constitution &laws, const DamageField &field)
 {
   if (laws.factor)
     throw InvalidInput("a sheet with damage must not have another stiffness factor");
@@ -22,7 +24,8 @@ DamageSolver::DamageSolver(const Sheet::Mesh &mesh, const Constitution &constitu
                            const BoundaryConditions &conditions, const DamageLaw &law,
                            const std::set<types::boundary_id> &intact, const DamageSettings &settings)
   : settings_(settings), field_(mesh, law, intact, conditions.periodic),
-    statics_(mesh, damaged(constitution, field_), conditions, settings.statics), forces_(statics_.sheet().make_owned())
+    statics_(mesh, with_damage(constitution, field_), conditions, settings.statics),
+    forces_(statics_.sheet().make_owned())
 {
   if (!(settings.tolerance > 0.) || settings.max_iterations == 0)
     throw InvalidInput("tolerance and number of iterations of the damage must be positive");
@@ -38,7 +41,7 @@ DamageSolver::DamageSolver(const Sheet::Mesh &mesh, const Constitution &constitu
 
 void DamageSolver::set_damage(const std::function<double(const Point<2> &)> &damage)
 {
-  if (statics_.load_factor() != 0.)
+  if (statics_.load_factor() != 0. || has_failed_)
     throw InvalidInput("the initial damage must be set before the sheet is loaded");
   field_.set(damage);
   initial_fracture_ = field_.fracture_energy();
@@ -46,6 +49,11 @@ void DamageSolver::set_damage(const std::function<double(const Point<2> &)> &dam
 
 unsigned int DamageSolver::step_to(const double load_factor)
 {
+  if (has_failed_)
+    throw InvalidInput("a sheet with damage cannot be loaded after a load step that failed");
+  if (!std::isfinite(load_factor))
+    throw InvalidInput("the load factor must be finite");
+  has_failed_ = true; // until the step is accepted
   const Sheet &sheet = statics_.sheet();
   const Sheet::Vector before = statics_.displacement();
   unsigned int n = 0;
@@ -76,6 +84,7 @@ unsigned int DamageSolver::step_to(const double load_factor)
   const double work = 0.5 * (forces_ * rise);
   forces_ = forces;
   update_ledger(work);
+  has_failed_ = false;
   return n;
 }
 

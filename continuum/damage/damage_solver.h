@@ -37,9 +37,9 @@ class DamageSolver
 {
 public:
   /// Creates a solver at load factor 0, without damage. `mesh`, which must not change, and the laws must outlive it. On
-  /// `intact` boundaries there is no damage. Throws InvalidInput as StaticSolver and DamageField do, for settings out
-  /// of range, for a constitution that has a stiffness factor, and for prescribed normal gradients, whose work the
-  /// ledger does not include.
+  /// `intact` boundaries damage keeps the value of set_damage(), 0 by default. Throws InvalidInput as StaticSolver and
+  /// DamageField do, for settings out of range, for a constitution that has a stiffness factor, and for prescribed
+  /// normal gradients, whose work the ledger does not include.
   DamageSolver(const Sheet::Mesh &mesh, const Constitution &constitution, const BoundaryConditions &conditions,
                const DamageLaw &law, const std::set<dealii::types::boundary_id> &intact = {},
                const DamageSettings &settings = DamageSettings());
@@ -50,7 +50,9 @@ public:
 
   /// Loads to `load_factor` [-], larger or smaller than the current one, in one step. Returns the number of iterations.
   /// Throws SolverFailed if the displacement does not converge in an iteration, or displacement and damage do not in
-  /// max_iterations; the damage of the failed step is not accepted.
+  /// max_iterations, and as DamageField::minimize does. ledger() is then still that of the last accepted step; field()
+  /// and statics() are in the state of the failure, which belongs to no equilibrium, so that the solver cannot be
+  /// loaded further. Throws InvalidInput after such a failure, and for a load factor that is not finite.
   unsigned int step_to(double load_factor);
 
   const DamageLedger &ledger() const { return ledger_; }
@@ -66,6 +68,7 @@ private:
   std::unique_ptr<Sheet> local_; // without gradient energy
   DamageLedger ledger_;
   double initial_fracture_ = 0.;
-  Sheet::Vector forces_; // dE/du of the last state [N/m]
+  bool has_failed_ = false; // a load step began and did not end
+  Sheet::Vector forces_;    // dE/du of the last state [N/m]
 };
 } // namespace latcon::continuum

@@ -3,10 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include "continuum/dynamic_solver.h"
 #include "continuum/errors.h"
+#include "continuum/field_writer.h"
 #include "tests/continuum/sheets.h"
 
 #include <algorithm>
+#include <filesystem>
 #include <set>
 
 using namespace latcon::continuum;
@@ -34,7 +37,8 @@ DamageLaw law()
 // Bar of one row of square cells in uniaxial strain.
 struct Bar
 {
-  Bar(const double h, const unsigned int cells, const Constitution &laws, const double last_stretch)
+  Bar(const double h, const unsigned int cells, const Constitution &laws, const double last_stretch,
+      const DamageSettings &settings = quick())
     : length(cells * h), height(h), last(last_stretch)
   {
     make_rectangle(mesh, {length, h, cells, 1});
@@ -42,7 +46,7 @@ struct Bar
     const dealii::ComponentMask across(std::vector<bool>{false, true});
     const BoundaryConditions held(
       {{edge::left, field}, {edge::right, field}, {edge::bottom, field, across}, {edge::top, field, across}});
-    solver = std::make_unique<DamageSolver>(mesh, laws, held, law(), std::set<dealii::types::boundary_id>{}, quick());
+    solver = std::make_unique<DamageSolver>(mesh, laws, held, law(), std::set<dealii::types::boundary_id>{}, settings);
   }
   static DamageSettings quick()
   {
@@ -295,6 +299,87 @@ TEST(Damage, BreaksABarWithGradientEnergyForTheSameEnergy)
   const BrokenBar bar(4, Constitution(rubber, gradient), 7.);
   EXPECT_NEAR(bar.energy(), bar.expected(), 2. * bar.missing() * (1.5 + 0.375 / 4.));
   EXPECT_GT(bar.solver->ledger().gradient, 0.);
+}
+
+TEST(Damage, KeepsTheLedgerOfTheLastAcceptedStepAfterAFailure)
+{
+  DamageSettings settings = Bar::quick();
+  settings.max_iterations = 1; // enough below the threshold alone
+  Bar bar(xi / 4., 2, rubber, 3., settings);
+  bar.stretch(1.5);
+  const DamageLedger accepted = bar.solver->ledger();
+  EXPECT_THROW(bar.solver->step_to(std::nan("")), InvalidInput);
+  bar.stretch(1.6); // the state was not touched
+  bar.stretch(1.5);
+  EXPECT_NEAR(bar.solver->ledger().elastic, accepted.elastic, 1e-10 * accepted.elastic);
+  const DamageLedger last = bar.solver->ledger();
+  EXPECT_THROW(bar.stretch(2.5), SolverFailed);
+  EXPECT_EQ(bar.solver->ledger().work, last.work);
+  EXPECT_EQ(bar.solver->ledger().fracture, 0.);
+  EXPECT_THROW(bar.stretch(1.5), InvalidInput);
+  EXPECT_THROW(bar.solver->set_damage([](const Point<2> &) { return 0.; }), InvalidInput);
+  EXPECT_EQ(bar.solver->ledger().work, last.work);
+}
+
+namespace
+{
+// A law whose energy density is shifted below 0.
+class NegativeEnergy : public Material
+{
+public:
+  double energy(const Tensor<2, 2> &F) const override { return rubber.energy(F) - 1e9; }
+  Tensor<2, 2> first_piola_stress(const Tensor<2, 2> &F) const override { return rubber.first_piola_stress(F); }
+  dealii::Tensor<4, 2> tangent(const Tensor<2, 2> &F) const override { return rubber.tangent(F); }
+  double thickness_stretch(const Tensor<2, 2> &F) const override { return rubber.thickness_stretch(F); }
+};
+
+// Text of the InvalidInput that a function throws.
+template <class Function>
+std::string refusal(const Function &function)
+{
+  try
+  {
+    function();
+  }
+  catch (const InvalidInput &error)
+  {
+    return error.what();
+  }
+  return "";
+}
+} // namespace
+
+TEST(Damage, RejectsAnEnergyThatHasNoMinimum)
+{
+  Mesh mesh(MPI_COMM_WORLD);
+  make_rectangle(mesh, sheets::rectangle(2, 2));
+  const NegativeEnergy negative;
+  const Sheet sheet(mesh, negative, 2);
+  DamageField field(mesh, law());
+  const auto u = sheets::nodal(sheet, [](const Point<2> &) { return Tensor<1, 2>(); });
+  EXPECT_THROW(field.minimize(sheet, u, 1.), NonPhysicalState);
+}
+
+TEST(Damage, IsRefusedWhereItIsNotSupported)
+{
+  Mesh mesh(MPI_COMM_WORLD);
+  make_rectangle(mesh, sheets::rectangle(2, 2));
+  const DamageField field(mesh, law());
+  const IsotropicGradient gradient(5e5, xi);
+  BoundaryConditions held(sheets::on_all_edges(sheets::affine(stretched(2.))));
+  held.normal_gradients = {{edge::right, sheets::affine(stretched(1.))}};
+  EXPECT_EQ(refusal([&] { DamageSolver(mesh, Constitution(rubber, gradient), held, law()); }),
+            "a sheet with damage does not support prescribed normal gradients");
+  Constitution factored(rubber);
+  factored.factor = &field;
+  EXPECT_EQ(refusal([&] { DynamicSolver(mesh, factored, {}, {1000.}, DynamicSettings()); }),
+            "a motion does not support a stiffness factor");
+  const Sheet sheet(mesh, factored, 2);
+  const auto folder = std::filesystem::path(testing::TempDir()) / "frames_with_damage";
+  FieldWriter frames(MPI_COMM_WORLD, folder);
+  const auto u = sheets::nodal(sheet, [](const Point<2> &) { return Tensor<1, 2>(); });
+  EXPECT_EQ(refusal([&] { frames.add_frame(0., sheet, u); }), "frames do not support a stiffness factor");
+  std::filesystem::remove_all(folder);
 }
 
 TEST(Damage, RejectsWhatItDoesNotSupport)

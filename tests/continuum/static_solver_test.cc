@@ -13,6 +13,8 @@
 
 #include <gtest/gtest.h>
 
+#include <limits>
+
 using namespace latcon;
 using namespace sheets;
 using continuum::StaticSettings;
@@ -434,6 +436,9 @@ TEST(StaticSolver, RefusesImpossibleInput)
   settings = {};
   settings.smallest_load_step = 0.;
   refuses({{edge::left, held}}, settings);
+  StaticSolver whole(mesh, law, {{edge::left, held}});
+  EXPECT_THROW(whole.step_to(std::numeric_limits<double>::quiet_NaN()), continuum::InvalidInput);
+  EXPECT_THROW(whole.step_to(-std::numeric_limits<double>::infinity()), continuum::InvalidInput);
 
   Mesh empty(MPI_COMM_SELF);
   EXPECT_THROW(continuum::make_rectangle(empty, {0., 1., 1, 1}), continuum::InvalidInput);

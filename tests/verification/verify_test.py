@@ -85,6 +85,28 @@ class WithoutNumbers(TemporaryFolder):
             self.assertTrue(any("it buckles in waves of kd" in quantity for quantity in failing), failing)
 
 
+@unittest.skipIf("--full" in sys.argv, "the quick version is enough")
+class DamagedBars(TemporaryFolder):
+    def test_the_claim_takes_its_constants_from_the_case(self):
+        """Checks another length than the spacing, another threshold and another residual stiffness, each with its effect."""
+        constants = ("Damage/length=2 mm", "Damage/threshold energy=2e6", "Damage/residual stiffness=5e-6")
+        result = latcon("verify", "damage", "--quick", "--case", CASES / "quick.prm",
+                        *(word for entry in constants for word in ("--set", entry)), "--output-dir", self.out)
+        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
+        rows = json.loads((self.out / "results.json").read_text())["claims"]
+        self.assertEqual({row["claim"] for row in rows}, {"damage"})
+        self.assertLessEqual({row["verdict"] for row in rows}, {"holds", "reported"})
+        self.assertGreater(sum(row["verdict"] == "holds" for row in rows), 15)
+        # Energy dissipated in two elements of xi/4: 2 (1 - k) W_c d times an area of 2 (xi/4)^2.
+        energy, = (row for row in rows if "energy dissipated" in row["quantity"])
+        self.assertLess(float(energy["theory"]), 2 * 2e6 * 2 * (2e-3 / 4)**2)
+        self.assertGreater(float(energy["theory"]), 2e6 * 2 * (2e-3 / 4)**2)
+        lines = (self.out / "damaged_bar.csv").read_text().splitlines()
+        self.assertEqual(lines[0], "shells,law,h/xi,X/xi,damage,theory")
+        self.assertEqual(len(lines), 1 + 18 + 34 + 34)  # nodes of bars of 17, 33 and 33 elements
+        self.assertEqual(undocumented(self.out), [])
+
+
 VERSION = [] if "--full" in sys.argv else ["--quick"]
 
 if __name__ == "__main__":

@@ -3,6 +3,7 @@
 #include <iostream>
 #include <sstream>
 #include <tuple>
+#include <utility>
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/numerics/vector_tools_interpolate.h>
@@ -374,9 +375,13 @@ support::ExitCode run_continuum(const input::Options &options)
   input::Parameters parameters;
   read_case(options, input, parameters);
   const bool moves = input.continuum.solution == input::ContinuumCase::Solution::motion;
-  if (input.continuum.damage_length || input.continuum.damage_threshold)
-    parameters.error(input.continuum.damage_length ? "Damage/length" : "Damage/threshold energy",
-                     "`latcon continuum` does not support damage, `latcon verify damage` does; give auto");
+  for (const auto &[name, is_given] :
+       {std::pair("Damage/length", input.continuum.damage_length.has_value()),
+        std::pair("Damage/threshold energy", input.continuum.damage_threshold.has_value()),
+        std::pair("Damage/residual stiffness",
+                  input.continuum.residual_stiffness != input::ContinuumCase().residual_stiffness)})
+    if (is_given)
+      parameters.error(name, "`latcon continuum` does not support damage, `latcon verify damage` does; omit the entry");
   if (moves && !(input.end_time > 0.))
     parameters.error("Time/end", "motion needs an end time larger than 0", {"Continuum/solution"});
   // An equilibrium is that of the relaxed sheet.

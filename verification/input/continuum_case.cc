@@ -352,7 +352,7 @@ void ContinuumCase::declare(Parameters &p)
   p.add("Damage", "threshold energy", damage_threshold, Magnitude{}, "J/m^3",
         "W_c, stored energy density at which damage begins; auto: that of the law cauchy-born stretched along both axes "
         "to the breaking stretch of the bonds, or to 3 if there is none");
-  p.add("Damage", "residual stiffness", residual_stiffness, Between{1e-6, 1e-3}, "1",
+  p.add("Damage", "residual stiffness", residual_stiffness, Between{1e-6, 1e-5}, "1",
         "k, factor of the stored energy where the damage is 1");
 }
 

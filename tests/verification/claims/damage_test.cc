@@ -1,7 +1,9 @@
-// Bars of the damaging continuum, and faults that make their claim fail.
+// Bars of the continuum with damage, and faults that make their claim fail.
 #include "verification/claims/damage/damage_claim.h"
 
 #include <gtest/gtest.h>
+
+#include <algorithm>
 
 #include "tests/verification/claims/faults.h"
 
@@ -15,11 +17,9 @@ using namespace claims;
 using namespace input;
 using namespace output;
 
-ClaimOutcome outcome(const Case &input, double planted_toughness = 1.)
+ClaimOutcome outcome(const Case &input, const DamageOptions &options = DamageOptions())
 {
   const Subject one = subject(input);
-  DamageOptions options;
-  options.planted_toughness = planted_toughness;
   return damage_claim(one, damage_law(input, one), options);
 }
 
@@ -39,24 +39,47 @@ TEST(DamageClaim, Holds)
   EXPECT_TRUE(linear.results.all_hold()) << linear.results.verdict_text(9);
 }
 
-TEST(DamageClaim, FailsForAnotherEnergyOfACrack)
+// Quantities of the rows that fail, without the name of the subject.
+std::vector<std::string> failing(const DamageOptions &options)
 {
   Case input = subjects::paper_case();
   input.breaking_stretch = 3.05;
+  const Results results = outcome(input, options).results;
+  std::vector<std::string> quantities;
+  for (const Result &row : results.rows())
+    if (row.verdict() == Verdict::fails)
+      quantities.push_back(row.quantity.substr(row.quantity.find(": ") + 2));
+  return quantities;
+}
+
+TEST(DamageClaim, FailsForAnotherEnergyOfACrack)
+{
   for (const double factor : {0.99, 1.01})
   {
-    const Results results = outcome(input, factor).results;
-    for (const Result &row : results.rows())
-    {
-      if (row.quantity.find("energy of a crack over G_c, local") != std::string::npos ||
-          row.quantity.find("energy of a crack over G_c, gradient") != std::string::npos ||
-          row.quantity.find("damage of a homogeneous bar") != std::string::npos ||
-          row.quantity.find("energy dissipated") != std::string::npos)
-      {
-        EXPECT_EQ(row.verdict(), Verdict::fails) << row.quantity;
-      }
-    }
+    DamageOptions options;
+    options.planted_toughness = factor;
+    const std::vector<std::string> quantities = failing(options);
+    for (const char *expected :
+         {"energy of a crack over G_c, local, h = xi/2", "energy of a crack over G_c, local, h = xi/4",
+          "energy of a crack over G_c, extrapolated in h", "energy of a crack over G_c, gradient, h = xi/4",
+          "damage of a homogeneous bar at 1.5 of the critical strain", "energy dissipated in a homogeneous bar"})
+      EXPECT_EQ(std::count(quantities.begin(), quantities.end(), expected), 1) << expected << ", " << factor;
   }
+}
+
+TEST(DamageClaim, FailsIfDamageHeals)
+{
+  DamageOptions options;
+  options.planted_healing = true;
+  EXPECT_EQ(failing(options), (std::vector<std::string>{"stress after unloading to 0.5 of the critical strain",
+                                                        "stress after unloading to 1.4 of the critical strain"}));
+}
+
+TEST(DamageClaim, FailsIfDamageLeavesTheGradientEnergy)
+{
+  DamageOptions options;
+  options.planted_undegraded_gradient = true;
+  EXPECT_EQ(failing(options), std::vector<std::string>{"gradient energy with damage 0.5 over that without"});
 }
 
 TEST(DamageClaim, TakesTheConstantsFromTheBonds)

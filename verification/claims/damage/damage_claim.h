@@ -15,8 +15,11 @@ continuum::DamageLaw damage_law(const input::Case &input, const bridge::Subject 
 /// Sizes of the claim `damage`.
 struct DamageOptions
 {
-  unsigned int finest = 4;       ///< elements per xi of the finest bar, 4 or more and a power of two
-  double planted_toughness = 1.; ///< for tests: factor of the threshold in the solver, not in the theory
+  unsigned int finest = 4; ///< elements per xi of the finest bar, 4 or more and a power of two
+  // For tests, errors of the finite elements that the theory does not have:
+  double planted_toughness = 1.;            ///< factor of the threshold
+  bool planted_healing = false;             ///< a homogeneous bar forgets its damage between load steps
+  bool planted_undegraded_gradient = false; ///< damage leaves the gradient energy of a sheet as it is
 };
 
 /// Claim `damage`: bars of the subject's Cauchy-Born law in tension against closed forms (theory-continuum.md, eqs.

@@ -20,7 +20,7 @@ Claim damage_descriptor()
 {
   Claim claim;
   claim.name = "damage";
-  claim.title = "a bar of the damaging continuum breaks as its closed form";
+  claim.title = "a bar of the continuum with damage breaks as predicted by the closed form";
   claim.statement = "Damage of the finite elements begins at its threshold, never heals, and closes the ledger of "
                     "energies. A bar breaks "
                     "for the energy of a crack, with the damage of the closed form, with and without gradient energy. "
