@@ -424,18 +424,13 @@ TEST(StaticSolver, RefusesImpossibleInput)
   refuses({{7, held}}, {});
   refuses({{edge::left, nullptr}}, {});
   refuses({{edge::left, held, dealii::ComponentMask(std::vector<bool>{false, false})}}, {});
-  StaticSettings settings;
-  settings.degree = 0;
-  refuses({{edge::left, held}}, settings);
-  settings = {};
-  settings.relative_tolerance = 0.;
-  refuses({{edge::left, held}}, settings);
-  settings = {};
-  settings.first_load_step = 1.5;
-  refuses({{edge::left, held}}, settings);
-  settings = {};
-  settings.smallest_load_step = 0.;
-  refuses({{edge::left, held}}, settings);
+  StaticSettings no_degree, no_tolerance, long_step, no_step;
+  no_degree.degree = 0;
+  no_tolerance.relative_tolerance = 0.;
+  long_step.first_load_step = 1.5;
+  no_step.smallest_load_step = 0.;
+  for (const StaticSettings &settings : {no_degree, no_tolerance, long_step, no_step})
+    refuses({{edge::left, held}}, settings);
   StaticSolver whole(mesh, law, {{edge::left, held}});
   EXPECT_THROW(whole.step_to(std::numeric_limits<double>::quiet_NaN()), continuum::InvalidInput);
   EXPECT_THROW(whole.step_to(-std::numeric_limits<double>::infinity()), continuum::InvalidInput);
