@@ -11,12 +11,13 @@ and any other language is ignored. A comment on the line before a block of comma
 statements have no exit code:
 
     <!-- not run: REASON -->  it is never run
+    <!-- run weekly: REASON -->  it is run with --full alone
     <!-- exit code: N -->     its last command ends with the non-zero exit code N
 """
 import dataclasses
 import re
 
-MARK = re.compile(r"^<!-- (not run|exit code): (.+) -->$")
+MARK = re.compile(r"^<!-- (not run|run weekly|exit code): (.+) -->$")
 FENCE = re.compile(r"^```(\w*)$")
 
 
@@ -30,7 +31,7 @@ class Block:
     line: int  # of the fence
     language: str
     text: str
-    mark: str = ""  # `not run` or `exit code`
+    mark: str = ""  # `not run`, `run weekly` or `exit code`
     says: str = ""  # what follows the mark
     output: str = ""  # of commands or statements: what the page says they print
 

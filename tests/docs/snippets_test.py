@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Runs the commands and inputs in the documentation and compares their output with the pages; snippets.py has the syntax.
 
-Usage: snippets_test.py PATH_OF_LATCON SOURCE_FOLDER [PAGE...]
+Usage: snippets_test.py PATH_OF_LATCON SOURCE_FOLDER [--full] [PAGE...]     --full: also blocks that are run weekly
 PAGE is relative to the source folder; default: README.md and all of docs/. Blocks that are not run are counted, and
 listed with their reasons.
 """
@@ -101,7 +101,7 @@ class Pages(unittest.TestCase):
                 self.addCleanup(clone.temporary.cleanup)
                 statements = []
                 for block in blocks(page, (SOURCE / page).read_text(encoding="utf-8")):
-                    if block.mark == "not run":
+                    if block.mark == "not run" or (block.mark == "run weekly" and not FULL):
                         counts["left out"] += 1
                         left_out.append(f"{block.place()}: {block.says}")
                     elif block.language in ("sh", "prm", "json"):
@@ -128,6 +128,8 @@ class Snippets(unittest.TestCase):
         one, two, three = blocks("page.md", "```sh\na\n```\n\n```text\nb\n```\n<!-- exit code: 3 -->\n```sh\nc\n```\n"
                                             "words\n\n```text\nd\n```\n")
         self.assertEqual((one.text, one.output, one.line), ("a\n", "b\n", 1))
+        (weekly,) = blocks("page.md", "<!-- run weekly: long -->\n```sh\na\n```\n")
+        self.assertEqual((weekly.mark, weekly.says), ("run weekly", "long"))
         self.assertEqual((two.mark, two.says, two.output), ("exit code", "3", ""))
         self.assertEqual(three.language, "text")
         for text in ("```sh\na\n", "```\na\n```\n", "<!-- not run: so -->\nwords\n", "<!-- not run: so -->\n```text\na\n```\n",
@@ -165,7 +167,8 @@ class Snippets(unittest.TestCase):
 
 if __name__ == "__main__":
     LATCON, SOURCE = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
+    FULL = "--full" in sys.argv
     # The tutorial, which shows that claims are checked, runs before the pages that reuse their verdicts.
-    PAGES = sys.argv[3:] or ["README.md", *sorted((str(path.relative_to(SOURCE)) for path in SOURCE.glob("docs/**/*.md")),
+    PAGES = [word for word in sys.argv[3:] if word != "--full"] or ["README.md", *sorted((str(path.relative_to(SOURCE)) for path in SOURCE.glob("docs/**/*.md")),
                                                   reverse=True)]
     unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -27,7 +27,8 @@ def complete(*words):
 
 def arguments_typed(line):
     """Arguments of latcon in a line, in which tabs complete, typed at the prompt of bash."""
-    got = FOLDER / "arguments"
+    (FOLDER / "cache").mkdir(exist_ok=True)
+    got = FOLDER / "cache" / "arguments"
     keyboard, terminal = pty.openpty()
     bash = subprocess.Popen(["bash", "--norc", "-i"], cwd=FOLDER, stdin=terminal, stdout=terminal, stderr=terminal,
                             start_new_session=True, env=dict(os.environ, INPUTRC="/dev/null", TERM="dumb", HISTFILE=""))

@@ -7,6 +7,7 @@
 #include <variant>
 
 #include "support/full_precision.h"
+#include "support/largest_error.h"
 #include "verification/input/case_text.h"
 
 namespace latcon::claims
@@ -120,7 +121,7 @@ void check_user_laws(const input::Case &input, input::Parameters &parameters)
       return;
     try
     {
-      (void)shell.shell(std::max(largest_stretch, input.longest_stretch()));
+      (void)shell.shell(support::largest_of({largest_stretch, input.longest_stretch()}));
     }
     catch (const input::UserLaw::Problem &problem)
     {
