@@ -49,11 +49,10 @@ class Faults(Folder):
     def test_runs_survive_kills_and_full_disks_at_calls_that_change_files(self):
         rng = random.Random(SEED)
         for name in victims.VICTIMS:
-            samples = 2 if name == "crack" else 1
             for fault in ("kill", "full"):
                 with self.subTest(f"{name}, {fault}"):
                     told = moments.at_moments(PROGRAM, name, self.folder / name, fault,
-                                              lambda n, samples=samples: sorted(rng.sample(range(1, n + 1), samples)))
+                                              lambda n: [rng.randint(1, n)])
                     self.assertGreater(told["calls"], 30)
 
     @unittest.skipUnless(CAN_MOUNT, "no disk can be mounted here")
