@@ -12,6 +12,8 @@ from dataclasses import dataclass
 import matplotlib
 import numpy as np
 
+# Largest size of all sheets of a page [bytes]. With pictures and scripts, at most 3.5 MB for Fig. 1, a page is below 8 MB.
+LARGEST_SHEETS = 4_500_000
 STEPS_PER_SPACING, SPEED_STEPS = 2000, 65535
 LARGEST_INTEGER = 2**29  # largest position, so that differences fit into 32 bits
 FEWEST_FRAMES = 8  # below this number frames are not dropped to save space
