@@ -104,7 +104,9 @@ struct Page
   const char *script, *file; ///< names of the script and of the page
   const char *repeat;        ///< how a command is repeated that found no Python to draw it: its options
 };
+/// The page of `latcon study`.
 inline constexpr Page study_page{"study.py", "study.html", " with --resume, or with --collect after shards,"};
+/// The page of two cracks, of `latcon compare`.
 inline constexpr Page comparison_page{"comparison.py", "compare.html", ""};
 
 /// Draws a page. Without Python, or without packages that the page needs, what is missing is printed on standard error.
