@@ -316,6 +316,12 @@ class ViewerTest(unittest.TestCase):
         return self.browser.value("document.querySelector('[id^=stills-]').id.split('-')[1]")
 
 
+def report_ranges(folder):
+    """Ranges of the colours of a run by itself."""
+    run = read_run(folder)
+    return sheet_data.sheet_data(run, read_motion(run), 10**9).contents["ranges"]
+
+
 class ComparisonTest(unittest.TestCase):
     """The page of two cracks."""
 
@@ -324,6 +330,8 @@ class ComparisonTest(unittest.TestCase):
             folder = Path(name)
             for run in ("one", "other"):
                 write_torn_sheet(folder / run)
+            case = folder / "other" / "case.prm"
+            case.write_text(case.read_text().replace("set breaking stretch = 3", "set breaking stretch = 3.5"))
             listed = folder / "other" / "motion.pvd"
             frames = re.findall(r"<DataSet[^>]*>", listed.read_text())
             fewer = [frame for i, frame in enumerate(frames) if i % 3 != 1]
@@ -354,6 +362,12 @@ class ComparisonTest(unittest.TestCase):
                               "s.dispatchEvent(new Event('change', {bubbles: true})); })()")
                 self.assertEqual(browser.value("[...document.querySelectorAll('.viewer')].map((v) => v.viewer.quantity)"),
                                  ["damage", "damage"])
+                ranges = browser.value("[...document.querySelectorAll('.viewer')].map((v) => v.viewer.sheet.ranges)")
+                own = [report_ranges(folder / run) for run in ("one", "other")]
+                self.assertNotEqual(own[0], own[1])
+                for name, (low, high) in ranges[0].items():
+                    self.assertEqual([low, high], [min(one[name][0] for one in own), max(one[name][1] for one in own)])
+                    self.assertEqual(ranges[1][name], [low, high])
                 text = browser.value("document.body.innerText")
                 self.assertEqual(browser.said, [])
         for words in (f"{len(fewer)} frames", "2.000 ± 0.010", "2.12", "oscillating", "straight", "Loading/strain y"):

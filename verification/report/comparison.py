@@ -19,7 +19,7 @@ from live import has_dygraphs, live_plot, rows_of, scripts, styles, thinned, vie
 from markup import plain_row, table, whole_page
 from motion import read_motion
 from runs import has_rows, read_run
-from sheet_data import LARGEST_SHEETS, sheet_data
+from sheet_data import LARGEST_SHEETS, sheet_data, sheet_of
 from study_quantities import SHOWN
 from summary import with_uncertainty
 
@@ -71,6 +71,15 @@ def paths_plot(runs, names):
             "x": "X in the undeformed sheet [cm]", "y": "Y [mm]", "follows": "tip", "window": None}
 
 
+def with_common_ranges(sheets):
+    """The same sheets with colours for the same values; None where there is no sheet."""
+    if None in sheets:
+        return sheets
+    ranges = [sheet.contents["ranges"] for sheet in sheets]
+    common = {name: [min(one[name][0] for one in ranges), max(one[name][1] for one in ranges)] for name in ranges[0]}
+    return [sheet_of({**sheet.contents, "ranges": common}) for sheet in sheets]
+
+
 def page(comparison, runs, sheets):
     """The whole page; sheets: data for the viewer of each run (sheet_data.py), or None."""
     names = [run.name if runs[0].name != runs[1].name else comparison[side] for run, side in zip(runs, SIDES)]
@@ -115,7 +124,7 @@ def comparison_page(folder, quiet):
     runs = [read_run(folder / comparison[f"{side}_folder"]) for side in SIDES]
     motions = [read_motion(run) for run in runs]
     sheets = [None if motion is None else sheet_data(run, motion, LARGEST_SHEETS // 2) for run, motion in zip(runs, motions)]
-    html = page(comparison, runs, sheets)
+    html = page(comparison, runs, with_common_ranges(sheets))
     write_file(folder / "compare.html", lambda beside: beside.write_text(html, encoding="utf-8"))
     if not quiet:
         print(folder / "compare.html")

@@ -36,13 +36,17 @@ def sheet_data(run, motion, most):
     """
     frames = motion.frames
     while True:
-        found = contents(run, motion, frames)
-        text = json.dumps(found, separators=(",", ":"))
-        if len(text) <= most:
-            return Sheet(found, text)
+        sheet = sheet_of(contents(run, motion, frames))
+        if len(sheet.text) <= most:
+            return sheet
         if len(frames) < 2 * FEWEST_FRAMES:
             return None
         frames = [frames[i] for i in np.round(np.linspace(0, len(frames) - 1, (len(frames) + 1) // 2)).astype(int)]
+
+
+def sheet_of(found):
+    """The Sheet with the given contents."""
+    return Sheet(found, json.dumps(found, separators=(",", ":")))
 
 
 def contents(run, motion, frames):
