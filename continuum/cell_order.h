@@ -26,7 +26,7 @@ public:
 
 private:
   MPI_Comm communicator_;
-  std::size_t n_cells_;               // of all ranks
+  std::size_t n_cells_;                // of all ranks
   std::vector<unsigned int> position_; // in the order, of each locally owned cell
 };
 } // namespace latcon::continuum

@@ -8,8 +8,8 @@ using namespace dealii;
 
 namespace latcon::continuum
 {
-void DynamicSolver::update_energies(EnergyLedger &ledger, const Vector &u, const Vector &v,
-                                    const double load_factor, const std::vector<BranchEnergy> &branches) const
+void DynamicSolver::update_energies(EnergyLedger &ledger, const Vector &u, const Vector &v, const double load_factor,
+                                    const std::vector<BranchEnergy> &branches) const
 {
   ledger.stored = sheet_.energy(with_ghosts(u), load_factor);
   for (const BranchEnergy &branch : branches)

@@ -34,8 +34,8 @@ DynamicSolver::DynamicSolver(const Sheet::Mesh &mesh, const Constitution &consti
                              const Inertia &inertia, const DynamicSettings &settings, const Viscosity *viscosity,
                              LoadFactor load_factor, const FibreMemory *memory)
   : sheet_(mesh, constitution, settings.degree, std::move(conditions)), inertia_(inertia), settings_(settings),
-    duration_(settings.time_step), viscosity_(viscosity), viscous_forces_(sheet_, viscosity),
-    memory_(memory), memory_forces_(sheet_, memory), given_load_factor_(std::move(load_factor))
+    duration_(settings.time_step), viscosity_(viscosity), viscous_forces_(sheet_, viscosity), memory_(memory),
+    memory_forces_(sheet_, memory), given_load_factor_(std::move(load_factor))
 {
   check_input();
   set_up();
@@ -101,8 +101,8 @@ void DynamicSolver::apply_conditions()
   sheet_.make_matrix(homogeneous_, matrix_);
   sheet_.make_matrix(homogeneous_, mass_);
   sheet_.mass(inertia_.density, inertia_.length, homogeneous_, mass_);
-  // Viscosity at finite strain makes the matrix unsymmetric. The matrix of multigrid, which a restart rebuilds, must not
-  // depend on the history of branches.
+  // Viscosity at finite strain makes the matrix unsymmetric. The matrix of multigrid, which a restart rebuilds, must
+  // not depend on the history of branches.
   const bool is_symmetric = viscosity_ == nullptr && memory_ == nullptr;
   linear_solver_ = std::make_unique<LinearSolver>(sheet_, held, settings_.linear,
                                                   is_symmetric ? Symmetry::symmetric : Symmetry::unsymmetric);

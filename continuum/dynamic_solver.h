@@ -83,14 +83,15 @@ struct EnergyLedger
 /// Solves the equation of motion of a sheet at finite strain (total Lagrangian, implicit):
 ///   M a + C(u, v) + Q(u, q) + dE/du(u) = lambda(t) L
 /// (theory-continuum.md, eq. (C.40)), with M the consistent mass with micro-inertia, C the viscous forces, Q those of
-/// Maxwell branches with their overstresses q (theory-viscoelastic.md, eq. (V.1)) and L the dead loads. The load factor lambda(t) multiplies everything that BoundaryConditions prescribe: displacements, u(X,
-/// t) = lambda(t) u(X), weak normal gradients, and loads. A sheet without any condition moves freely.
+/// Maxwell branches with their overstresses q (theory-viscoelastic.md, eq. (V.1)) and L the dead loads. The load factor
+/// lambda(t) multiplies everything that BoundaryConditions prescribe: displacements, u(X, t) = lambda(t) u(X), weak
+/// normal gradients, and loads. A sheet without any condition moves freely.
 ///
-/// Internal and viscous forces are evaluated once per residual, at the mid-state u_(n+1-alpha_f), v_(n+1-alpha_f), those
-/// of Maxwell branches with the overstresses at its time; the load factor is the same mean of its values at both ends of the step. Newton's method with the exact tangent solves
-/// each step for the displacement. It halves a Newton step that leads to det F <= 0 anywhere. The residual converges to
-/// relative_tolerance times the acting forces, or to the round-off of its own evaluation where that is larger (eq.
-/// (C.45)).
+/// Internal and viscous forces are evaluated once per residual, at the mid-state u_(n+1-alpha_f), v_(n+1-alpha_f),
+/// those of Maxwell branches with the overstresses at its time; the load factor is the same mean of its values at both
+/// ends of the step. Newton's method with the exact tangent solves each step for the displacement. It halves a Newton
+/// step that leads to det F <= 0 anywhere. The residual converges to relative_tolerance times the acting forces, or to
+/// the round-off of its own evaluation where that is larger (eq. (C.45)).
 ///
 /// The velocity and acceleration of prescribed displacements follow from lambda(t) by one-sided differences at the
 /// start, and from Newmark's formulas afterwards. Periodic pairs constrain displacement increments and velocities, so

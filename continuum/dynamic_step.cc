@@ -118,8 +118,8 @@ const Sheet::Matrix &DynamicSolver::level_mass(const Sheet &level, const AffineC
 }
 
 // Returns the assembler of the derivative of the residual by the displacement at the end of the step, on a multigrid
-// mesh. The sheet is taken at rest, which drops the unsymmetric part of viscosity: it vanishes with the velocity. Maxwell
-// branches are taken relaxed: coarser meshes have no history.
+// mesh. The sheet is taken at rest, which drops the unsymmetric part of viscosity: it vanishes with the velocity.
+// Maxwell branches are taken relaxed: coarser meshes have no history.
 Multigrid::Assembler DynamicSolver::level_assembler(const double load_factor)
 {
   const NewmarkParameters &rule = settings_.rule;

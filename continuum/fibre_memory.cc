@@ -153,8 +153,7 @@ Tensor<4, 2> FibreMemory::tangent(const Step &step, const Tensor<2, 2> &F, const
     for (unsigned int i = 0; i < 2; ++i)
       for (unsigned int k = 0; k < 2; ++k)
       {
-        const double by_f =
-          fibres.weight * (gain * n[i] * n[k] + overstress / l * ((i == k ? 1. : 0.) - n[i] * n[k]));
+        const double by_f = fibres.weight * (gain * n[i] * n[k] + overstress / l * ((i == k ? 1. : 0.) - n[i] * n[k]));
         for (unsigned int J = 0; J < 2; ++J)
           for (unsigned int L = 0; L < 2; ++L)
             T[i][J][k][L] += by_f * N[J] * N[L];

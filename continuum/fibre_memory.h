@@ -29,7 +29,8 @@ void check(const MaxwellFibres &fibres);
 
 /// Maxwell branches of a network of fibres, parallel to its elastic law and its viscosity (theory-viscoelastic.md, eq.
 /// (V.1)):
-///   P = sum over families k and branches i of  c_k q_ki n_k (x) N_k,   q_ki' = E_i l_k' - q_ki / tau_i,   l_k = |F N_k|
+///   P = sum over families k and branches i of  c_k q_ki n_k (x) N_k,   q_ki' = E_i l_k' - q_ki / tau_i,   l_k = |F
+///   N_k|
 /// The overstresses q [Pa] are the history of a material point: n_variables() numbers, families in their order, the
 /// branches of each in turn. Const and stateless; the caller stores the history.
 class FibreMemory
@@ -45,6 +46,7 @@ public:
   /// Coefficients of an update over one duration, per variable (theory-viscoelastic.md, eqs. (V.2), (V.5)).
   struct Step
   {
+    /// Coefficients of one variable.
     struct Coefficients
     {
       double decay;      ///< e^(-h/tau) [-]

@@ -208,8 +208,7 @@ MemoryForces::History MemoryForces::advanced(const double duration, const Vector
                                              density.data() + n);
                         for (std::size_t i = 0; i < 2 * n; ++i)
                           sums[i] += density[i] * points.values.JxW(q);
-                        next.overstress.insert(next.overstress.end(), state.overstress.begin(),
-                                               state.overstress.end());
+                        next.overstress.insert(next.overstress.end(), state.overstress.begin(), state.overstress.end());
                         next.stretch.insert(next.stretch.end(), state.stretch.begin(), state.stretch.end());
                       }
                     });

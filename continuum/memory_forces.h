@@ -92,16 +92,16 @@ public:
   }
 
 private:
+  // State of one quadrature point.
   struct AtPoint
   {
-    std::vector<double> stretch;
-    std::vector<double> overstress;
+    std::vector<double> stretch;    // [-]
+    std::vector<double> overstress; // [Pa]
   };
 
   std::size_t n_points_per_cell() const;
   const double *stretch_before(std::size_t point) const;
-  void advance(const FibreMemory::Step &step, std::size_t point, const dealii::Tensor<2, 2> &F,
-               AtPoint &state) const;
+  void advance(const FibreMemory::Step &step, std::size_t point, const dealii::Tensor<2, 2> &F, AtPoint &state) const;
 
   const Sheet &sheet_;
   const FibreMemory *law_;

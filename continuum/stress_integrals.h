@@ -19,7 +19,7 @@ namespace latcon::continuum::stress_integrals
 template <std::size_t n_fields>
 struct CellPoints
 {
-  std::size_t cell;                 ///< number among the locally owned cells
+  std::size_t cell;                  ///< number among the locally owned cells
   const dealii::FEValues<2> &values; ///< with gradients and weights
   /// Gradients of the nodal fields, per quadrature point.
   std::array<std::vector<dealii::Tensor<2, 2>>, n_fields> gradients;

@@ -33,19 +33,18 @@ void ViscousForces::add_forces(const Vector &u, const Vector &v, Vector &forces,
     {
       dealii::Vector<double> local(sheet_.element().n_dofs_per_cell());
       dealii::Vector<double> local_magnitude(local.size());
-      for_each_cell(sheet_, u, v,
-                    [&](const auto &points, const auto &F, const auto &Fdot)
-                    {
-                      local = 0.;
-                      local_magnitude = 0.;
-                      for (unsigned int q = 0; q < F.size(); ++q)
-                        stress_integrals::add_stress(points.values, q, viscosity_->stress(F[q], Fdot[q]), local,
-                                                     local_magnitude);
-                      sheet_.conformity_constraints().distribute_local_to_global(local, points.dofs, forces);
-                      if (magnitude != nullptr)
-                        sheet_.conformity_constraints().distribute_local_to_global(local_magnitude, points.dofs,
-                                                                                   *magnitude);
-                    });
+      for_each_cell(
+        sheet_, u, v,
+        [&](const auto &points, const auto &F, const auto &Fdot)
+        {
+          local = 0.;
+          local_magnitude = 0.;
+          for (unsigned int q = 0; q < F.size(); ++q)
+            stress_integrals::add_stress(points.values, q, viscosity_->stress(F[q], Fdot[q]), local, local_magnitude);
+          sheet_.conformity_constraints().distribute_local_to_global(local, points.dofs, forces);
+          if (magnitude != nullptr)
+            sheet_.conformity_constraints().distribute_local_to_global(local_magnitude, points.dofs, *magnitude);
+        });
     });
   forces.compress(VectorOperation::add);
   if (magnitude != nullptr)
@@ -68,11 +67,11 @@ void ViscousForces::add_tangent(const Vector &u, const Vector &v, const double r
                     {
                       local = 0.;
                       for (unsigned int q = 0; q < F.size(); ++q)
-                        stress_integrals::add_stiffness(
-                          points.values, q,
-                          viscosity_->stress_by_F(F[q], Fdot[q]) +
-                            rate_by_displacement * viscosity_->stress_by_rate(F[q], Fdot[q]),
-                          local);
+                        stress_integrals::add_stiffness(points.values, q,
+                                                        viscosity_->stress_by_F(F[q], Fdot[q]) +
+                                                          rate_by_displacement *
+                                                            viscosity_->stress_by_rate(F[q], Fdot[q]),
+                                                        local);
                       constraints.distribute_local_to_global(local, points.dofs, matrix);
                     });
     });

@@ -11,6 +11,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <complex>
 #include <limits>
 #include <set>
 #include <vector>
@@ -54,14 +55,6 @@ std::vector<double> random_overstress(std::mt19937 &generator)
   std::uniform_real_distribution<double> overstress(-1e5, 1e5);
   return {overstress(generator), overstress(generator), overstress(generator)};
 }
-
-double sum(const std::vector<double> &numbers)
-{
-  double total = 0.;
-  for (const double x : numbers)
-    total += x;
-  return total;
-}
 } // namespace
 
 // theory-viscoelastic.md, eq. (V.2), with each overstress on a ramp from its differential equation.
@@ -88,6 +81,29 @@ TEST(FibreMemory, FollowsARampExactly)
     EXPECT_NEAR(sudden[i], q0[i] + moduli[i] * (i < 2 ? 0.3 : -0.1), 20. * epsilon * 1e5);
 }
 
+// theory-viscoelastic.md, eq. (V.7): modulus of the update for a wave e^(st), and its order.
+TEST(FibreMemory, HasAModulusOfSecondOrder)
+{
+  using Complex = std::complex<double>;
+  constexpr double modulus = 2e5;
+  constexpr double time = 1e-3;
+  const FibreMemory law({{Tensor<1, 2>({1., 0.}), 1., {{modulus, time}}, 0}});
+  const Complex s(-120., 900.);
+  const auto difference = [&](const double h)
+  {
+    const auto &of_branch = law.step(h).coefficients.front();
+    const Complex z = std::exp(s * h);
+    const Complex found = of_branch.gain * (z - 1.) / (z - of_branch.decay);
+    const double x = h / time;
+    EXPECT_LT(std::abs(found / (modulus * 2. / x * std::sinh(0.5 * x) * std::sinh(0.5 * s * h) /
+                                std::sinh(0.5 * (x + s * h))) -
+                       1.),
+              1e-12);
+    return std::abs(found * (1. + s * time) / (modulus * s * time) - 1. + x * s * h / 12.);
+  };
+  EXPECT_NEAR(std::log2(difference(4e-4) / difference(2e-4)), 4., 0.1);
+}
+
 // theory-viscoelastic.md, eqs. (V.4) and (V.5): what the branches store and dissipate is the work done on them, here
 // integrated by Gauss quadrature over parts of the ramp; and the dissipation of two halves is that of the whole.
 TEST(FibreMemory, StoresAndDissipatesTheWorkDone)
@@ -99,8 +115,9 @@ TEST(FibreMemory, StoresAndDissipatesTheWorkDone)
   {
     const std::vector<double> q0 = random_overstress(generator);
     const std::vector<double> l1{1.5, 0.8};
-    const auto at = [&](const double share)
-    { return std::vector<double>{l0[0] + share * (l1[0] - l0[0]), l0[1] + share * (l1[1] - l0[1])}; };
+    const auto at = [&](const double share) {
+      return std::vector<double>{l0[0] + share * (l1[0] - l0[0]), l0[1] + share * (l1[1] - l0[1])};
+    };
     std::vector<double> dissipated(3, 0.);
     std::vector<double> in_halves(3, 0.);
     std::vector<double> before(3, 0.);
@@ -215,9 +232,9 @@ public:
       conditions.displacements.push_back({id, strained});
     continuum::DynamicSettings settings{time_step};
     settings.degree = 2;
-    solver_ = std::make_unique<DynamicSolver>(mesh_, continuum::Constitution(law_), conditions,
-                                              continuum::Inertia{density}, settings, nullptr, std::move(load_factor),
-                                              &memory_);
+    solver_ =
+      std::make_unique<DynamicSolver>(mesh_, continuum::Constitution(law_), conditions, continuum::Inertia{density},
+                                      settings, nullptr, std::move(load_factor), &memory_);
   }
 
   static Tensor<2, 2> stretch() { return matrix(0.3, 0.1, 0., 0.5); }
@@ -264,7 +281,8 @@ TEST(MemoryForces, RelaxInAHeldSheet)
     EXPECT_NEAR(solver.branch_energies()[i].stored, decay * expected[i], tolerance);
     EXPECT_NEAR(solver.branch_energies()[i].dissipated, (1. - decay) * expected[i], tolerance);
   }
-  EXPECT_NEAR(solver.ledger().dissipated, stored - solver.branch_energies()[0].stored - solver.branch_energies()[1].stored,
+  EXPECT_NEAR(solver.ledger().dissipated,
+              stored - solver.branch_energies()[0].stored - solver.branch_energies()[1].stored,
               1000. * epsilon * stored);
   EXPECT_NEAR(solver.ledger().imbalance, 0., 1000. * epsilon * solver.ledger().stored);
   // The moment of the reactions is the integral of P.
@@ -297,16 +315,19 @@ TEST(MemoryForces, HaveAConsistentTangent)
   const continuum::Sheet &sheet = held.solver().sheet();
   MemoryForces forces(sheet, &held.memory());
   forces.start(nodal(sheet, [](const Point<2> &X) { return 0.2 * Tensor<1, 2>(X); }),
-               {sheet.make_ghosted(), nodal(sheet, [](const Point<2> &X) { return Tensor<1, 2>({0.3 * X[1], 0.}); })});
+               {sheet.make_ghosted(), nodal(sheet,
+                                            [](const Point<2> &X) {
+                                              return Tensor<1, 2>({0.3 * X[1], 0.});
+                                            })});
   constexpr double duration = 1e-4;
   const auto u_of = [&](const double share)
   {
-    return nodal(
-      sheet, [=](const Point<2> &X)
-      {
-        return Tensor<1, 2>({0.4 * X[0] + share * 0.01 * std::sin(40. * X[1]),
-                             0.3 * X[1] + share * 0.2 * X[0] * X[1] / length});
-      });
+    return nodal(sheet,
+                 [=](const Point<2> &X)
+                 {
+                   return Tensor<1, 2>({0.4 * X[0] + share * 0.01 * std::sin(40. * X[1]),
+                                        0.3 * X[1] + share * 0.2 * X[0] * X[1] / length});
+                 });
   };
   const auto at = [&](const double share)
   {

@@ -47,9 +47,9 @@ protected:
   void make_solver(const continuum::BoundaryConditions &conditions, const continuum::DynamicSettings &settings,
                    const continuum::Viscosity *viscosity, const continuum::FibreMemory *memory)
   {
-    solver_ = std::make_unique<DynamicSolver>(mesh_, continuum::Constitution(law_, gradient_), conditions,
-                                              continuum::Inertia{density, 0.01}, settings, viscosity,
-                                              [](const double t) { return 1. + 0.5 * std::sin(900. * t); }, memory);
+    solver_ = std::make_unique<DynamicSolver>(
+      mesh_, continuum::Constitution(law_, gradient_), conditions, continuum::Inertia{density, 0.01}, settings,
+      viscosity, [](const double t) { return 1. + 0.5 * std::sin(900. * t); }, memory);
   }
 
   const continuum::CauchyBorn law_ = rubber_network();

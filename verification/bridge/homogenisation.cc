@@ -147,31 +147,6 @@ std::unique_ptr<continuum::Viscosity> homogenised_viscosity(const lattice::Trian
   return std::make_unique<continuum::FibreViscosity>(std::move(dashpots));
 }
 
-std::unique_ptr<continuum::FibreMemory> homogenised_memory(const lattice::TriangularLattice &lattice,
-                                                           const lattice::Material &material)
-{
-  std::vector<continuum::MaxwellFibres> families;
-  for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
-  {
-    const lattice::Shell *shell = material.shell(kind);
-    if (shell == nullptr || lattice::n_variables(shell->memory) == 0)
-      continue;
-    const auto *memory = std::get_if<lattice::MaxwellMemory>(&shell->memory);
-    if (memory == nullptr)
-      throw std::invalid_argument("the continuum of bonds with a memory of another program is not supported");
-    const Eigen::Vector2d direction = lattice.bond_vector(kind).normalized();
-    continuum::MaxwellFibres fibres{dealii::Tensor<1, 2>({direction.x(), direction.y()}),
-                                    bond_weight(lattice, *shell, kind),
-                                    {},
-                                    kind < lattice::n_nearest_kinds ? 0
-                                                                    : lattice::n_mechanisms(material.nearest.memory)};
-    for (const auto &[modulus, relaxation_time] : memory->branches())
-      fibres.branches.push_back({modulus, relaxation_time});
-    families.push_back(std::move(fibres));
-  }
-  return families.empty() ? nullptr : std::make_unique<continuum::FibreMemory>(std::move(families));
-}
-
 GradientLengths gradient_lengths(const lattice::TriangularLattice &lattice, const lattice::Material &material)
 {
   double stiffness = 0.;

@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "continuum/cauchy_born.h"
-#include "continuum/fibre_memory.h"
 #include "continuum/isotropic_network.h"
 #include "continuum/lattice_gradient.h"
 #include "continuum/mooney_rivlin.h"
@@ -45,13 +44,6 @@ std::vector<continuum::BondFamily> bond_families(const lattice::TriangularLattic
 /// (H.9)); null if there are no dashpots.
 std::unique_ptr<continuum::Viscosity> homogenised_viscosity(const lattice::TriangularLattice &lattice,
                                                             const lattice::Material &material);
-
-/// Returns the Maxwell branches of a lattice as those of fibres, with weights as in cauchy_born (theory-comparison.md,
-/// eq. (H.9) with branches in place of dashpots); null if there are no branches. Branches are numbered as in
-/// lattice::Simulation::mechanism_energies(): those of nearest-neighbour bonds first.
-/// @throws std::invalid_argument for bonds with a memory of another program
-std::unique_ptr<continuum::FibreMemory> homogenised_memory(const lattice::TriangularLattice &lattice,
-                                                           const lattice::Material &material);
 
 /// Lengths of the gradient continuum.
 struct GradientLengths

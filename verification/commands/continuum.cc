@@ -13,6 +13,7 @@
 #include "support/full_precision.h"
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/continuum_model.h"
+#include "verification/bridge/homogenised_memory.h"
 #include "verification/commands/command.h"
 #include "verification/commands/cost.h"
 #include "verification/commands/signals.h"

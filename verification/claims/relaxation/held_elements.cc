@@ -11,6 +11,7 @@
 #include "support/largest_error.h"
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/homogenisation.h"
+#include "verification/bridge/homogenised_memory.h"
 #include "verification/claims/relaxation/branch_theory.h"
 #include "verification/claims/wave_sheet.h"
 
@@ -49,8 +50,7 @@ void add_held_elements(const bridge::Subject &subject, const lattice::Triangular
   continuum::make_rectangle(mesh, {extent, extent, cells, cells, false, false});
   continuum::BoundaryConditions conditions;
   const auto held = std::make_shared<bridge::AffineDisplacement>(F);
-  for (const auto id :
-       {continuum::edge::left, continuum::edge::right, continuum::edge::bottom, continuum::edge::top})
+  for (const auto id : {continuum::edge::left, continuum::edge::right, continuum::edge::bottom, continuum::edge::top})
     conditions.displacements.push_back({id, held});
   continuum::DynamicSettings settings{time_step};
   settings.degree = 2;
@@ -65,8 +65,7 @@ void add_held_elements(const bridge::Subject &subject, const lattice::Triangular
   std::array<double, lattice::n_bond_kinds> n_bonds;
   n_bonds.fill(area / sheet.site_area()); // one of each kind per site
   const std::vector<BranchTheory> branches = relaxing_branches(sheet, material, n_bonds, F);
-  const Eigen::Matrix2d relaxed =
-    bridge::to_lattice(subject.cauchy_born.first_piola_stress(bridge::to_continuum(F)));
+  const Eigen::Matrix2d relaxed = bridge::to_lattice(subject.cauchy_born.first_piola_stress(bridge::to_continuum(F)));
   double stored_at_start = 0.;
   Eigen::Matrix2d overstress_at_start = Eigen::Matrix2d::Zero();
   for (const BranchTheory &branch : branches)
@@ -113,7 +112,8 @@ void add_held_elements(const bridge::Subject &subject, const lattice::Triangular
                        std::optional<double> theory_value, double error, double tolerance)
   {
     outcome.results.add({"relaxation",
-                         subject.name + ": held sheet after a step of strain, finite elements, " + quantity, unit,
+                         subject.name + ": held sheet after a step of strain, finite elements, " + quantity,
+                         unit,
                          {},
                          continuum_value,
                          theory_value,
@@ -124,8 +124,8 @@ void add_held_elements(const bridge::Subject &subject, const lattice::Triangular
   // which Newton's method leaves undetermined to its tolerance. Sums over 36 quadrature points with gradients of shape
   // functions round less than 1000 times.
   const double round_off = (4. * static_cast<double>(n_steps) + 1000.) * epsilon;
-  const double elastic_over_stored = of_law / stored_at_start, relaxed_over_stress =
-                                                                 relaxed.norm() / overstress_at_start.norm();
+  const double elastic_over_stored = of_law / stored_at_start,
+               relaxed_over_stress = relaxed.norm() / overstress_at_start.norm();
   add("first Piola stress, worst of all times, error over the overstress at the start", "Pa", stress_error.value(),
       stress_error.reference(), stress_error.error(), 10. * round_off * (1. + relaxed_over_stress));
   add("energy stored in a branch, worst of all branches and times, error over that at the start", "J/m",

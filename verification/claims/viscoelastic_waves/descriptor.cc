@@ -50,7 +50,8 @@ Claim viscoelastic_waves_descriptor()
     ", F = I: one branch, frequency of finite elements below the rubbery or above the glassy limit, worst of all waves",
     ", F = I: one branch, w tau at the largest decay of finite elements, worst of both waves",
     ", F = I: own branches, frequency, finite elements against complex modulus, worst of all waves",
-    ", F = I: own branches, decay, finite elements against complex modulus, worst of all waves, error over the frequency",
+    ", F = I: own branches, decay, finite elements against complex modulus, worst of all waves, error over the "
+    "frequency",
     ", F = I: own branches, energy imbalance of finite elements over its bound, worst of all waves"};
   claim.is_about_memory = true;
   return claim;

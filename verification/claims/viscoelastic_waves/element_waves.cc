@@ -127,8 +127,9 @@ std::vector<bridge::BranchMatrix> branch_matrices(const WaveContinuum &medium, c
     const Eigen::Matrix2d per_modulus = fibres.weight * std::pow(N.dot(K), 2) / mass * n * n.transpose();
     for (const auto &[modulus, time] : fibres.branches)
     {
-      const auto same = std::find_if(branches.begin(), branches.end(), [time = time](const bridge::BranchMatrix &b)
-                                     { return b.relaxation_time == time; });
+      const auto same =
+        std::find_if(branches.begin(), branches.end(),
+                     [time = time](const bridge::BranchMatrix &b) { return b.relaxation_time == time; });
       if (same == branches.end())
         branches.push_back({modulus * per_modulus, time});
       else
@@ -159,8 +160,7 @@ ElementWave run_element_wave(const WaveContinuum &medium, const Eigen::Matrix2d 
   ElementWave result{fine.oscillation, fine.imbalance, 0.};
   result.oscillation.frequency += (fine.oscillation.frequency - coarse.oscillation.frequency) / 3.;
   result.oscillation.decay += (fine.oscillation.decay - coarse.oscillation.decay) / 3.;
-  result.imbalance_tolerance =
-    std::pow(rate * 0.5 * time_step, 2) / 6. * periods * 2. * M_PI * rate / wave.frequency();
+  result.imbalance_tolerance = std::pow(rate * 0.5 * time_step, 2) / 6. * periods * 2. * M_PI * rate / wave.frequency();
   return result;
 }
 

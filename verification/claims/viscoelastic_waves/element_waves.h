@@ -19,7 +19,7 @@ std::array<bridge::MemoryWave, 2> continuum_memory_waves(const WaveContinuum &me
 struct ElementWave
 {
   Oscillation oscillation;
-  double imbalance;           ///< largest of the run with the shorter step, over the energy of the wave at the start [-]
+  double imbalance; ///< largest of the run with the shorter step, over the energy of the wave at the start [-]
   double imbalance_tolerance; ///< its bound, theory-viscoelastic.md, eq. (V.8)
 };
 

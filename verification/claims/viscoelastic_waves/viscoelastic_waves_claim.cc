@@ -8,6 +8,7 @@
 #include "support/largest_error.h"
 #include "verification/bridge/bloch.h"
 #include "verification/bridge/homogenisation.h"
+#include "verification/bridge/homogenised_memory.h"
 #include "verification/bridge/memory_waves.h"
 #include "verification/claims/continuum_waves.h"
 #include "verification/claims/state_name.h"
@@ -29,8 +30,8 @@ constexpr double frequency_tolerance = 1e-6, decay_tolerance = 2e-5;
 constexpr double swept_ratio = 0.5;
 constexpr double swept_kd = 0.25;
 // Errors of finite elements: extrapolated time stepping, (w h)^4 / 320 <= 5e-6 of the frequency and as much from the
-// update of branches (theory-viscoelastic.md, eq. (V.7)), and 7e-7 in space (Ainsworth's dispersion error of elements of
-// degree 4, four in a wave).
+// update of branches (theory-viscoelastic.md, eq. (V.7)), and 7e-7 in space (Ainsworth's dispersion error of elements
+// of degree 4, four in a wave).
 constexpr double element_tolerance = 2e-5;
 constexpr WaveMesh element_mesh{4, 4};
 
@@ -43,8 +44,10 @@ struct Medium
 
   Medium(const bridge::Subject &subject, const WaveCell &cell, const lattice::Material &material)
     : viscosity(bridge::homogenised_viscosity(cell.sheet, material)),
-      memory(bridge::homogenised_memory(cell.sheet, material)),
-      waves{{subject.cauchy_born}, {subject.material.density}, viscosity.get(), memory.get()}
+      memory(bridge::homogenised_memory(cell.sheet, material)), waves{{subject.cauchy_born},
+                                                                      {subject.material.density},
+                                                                      viscosity.get(),
+                                                                      memory.get()}
   {
   }
 };
@@ -56,14 +59,14 @@ public:
   Comparison(const bridge::Subject &subject, const Eigen::Matrix2d &F, const ViscoelasticWavesOptions &options,
              ClaimOutcome &outcome)
     : subject_(subject), F_(F), options_(options), outcome_(outcome),
-      table_(
-        outcome.table("viscoelastic_waves", {"shells", "F_xx", "F_yy", "part", "wave", "k d", "w tau",
-                                             "rubbery [rad/s]", "glassy [rad/s]", "theory_frequency [rad/s]",
-                                             "theory_decay [1/s]", "lattice_frequency [rad/s]", "lattice_decay [1/s]"})),
-      element_table_(outcome.table("viscoelastic_elements",
-                                   {"shells", "F_xx", "F_yy", "part", "wave", "k d", "w tau", "rubbery [rad/s]",
-                                    "glassy [rad/s]", "continuum_frequency [rad/s]", "continuum_decay [1/s]",
-                                    "fem_frequency [rad/s]", "fem_decay [1/s]"}))
+      table_(outcome.table("viscoelastic_waves",
+                           {"shells", "F_xx", "F_yy", "part", "wave", "k d", "w tau", "rubbery [rad/s]",
+                            "glassy [rad/s]", "theory_frequency [rad/s]", "theory_decay [1/s]",
+                            "lattice_frequency [rad/s]", "lattice_decay [1/s]"})),
+      element_table_(
+        outcome.table("viscoelastic_elements", {"shells", "F_xx", "F_yy", "part", "wave", "k d", "w tau",
+                                                "rubbery [rad/s]", "glassy [rad/s]", "continuum_frequency [rad/s]",
+                                                "continuum_decay [1/s]", "fem_frequency [rad/s]", "fem_decay [1/s]"}))
   {
   }
 
@@ -215,7 +218,8 @@ void sweep_elements(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
     peaks.add_relative(std::exp(peak(logarithms, decays)), std::exp(peak(logarithms, in_theory)));
   }
   comparison.add_element_rows(part);
-  comparison.add(part + ", frequency of finite elements below the rubbery or above the glassy limit, worst of all waves",
+  comparison.add(part +
+                   ", frequency of finite elements below the rubbery or above the glassy limit, worst of all waves",
                  "1", {}, {}, {}, comparison.outside(), element_tolerance);
   // Decays a factor of three beside the peak are smaller by 0.05 of the frequency, which makes the error of the vertex
   // 45 times that of the decays.
