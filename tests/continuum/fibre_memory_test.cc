@@ -91,7 +91,7 @@ TEST(FibreMemory, HasAModulusOfSecondOrder)
   const Complex s(-120., 900.);
   const auto difference = [&](const double h)
   {
-    const auto &of_branch = law.step(h).coefficients.front();
+    const auto of_branch = law.step(h).coefficients.front();
     const Complex z = std::exp(s * h);
     const Complex found = of_branch.gain * (z - 1.) / (z - of_branch.decay);
     const double x = h / time;
@@ -365,8 +365,8 @@ TEST(MemoryForces, BalanceTheWorkOfAMovingBoundary)
     held.solver().start();
     held.solver().run_until(1.6e-3);
     const continuum::EnergyLedger &ledger = held.solver().ledger();
-    EXPECT_GT(held.solver().branch_energies()[0].dissipated, 0.05 * ledger.work);
-    EXPECT_GT(held.solver().branch_energies()[1].stored, 0.05 * ledger.work);
+    EXPECT_GT(held.solver().branch_energies()[0].dissipated, 0.01 * ledger.work);
+    EXPECT_GT(held.solver().branch_energies()[1].stored, 0.01 * ledger.work);
     return ledger.imbalance / ledger.work;
   };
   const double coarse = imbalance(4e-5);
@@ -378,13 +378,13 @@ TEST(MemoryForces, BalanceTheWorkOfAMovingBoundary)
 // A step that fails leaves the history as it was.
 TEST(MemoryForces, StayAsTheyWereAfterAStepThatFails)
 {
-  HeldSheet held(1e-4, [](const double t) { return t < 2.5e-4 ? 0. : -2.5; });
+  HeldSheet held(1e-4, [](const double t) { return t < 4.5e-4 ? 0. : -2.5; });
   DynamicSolver &solver = held.solver();
   const auto zero = solver.sheet().make_owned();
   const auto half = nodal(solver.sheet(), [](const Point<2> &X) { return -0.1 * Tensor<1, 2>(X); });
   solver.start(zero, zero, 0., {half, half});
-  solver.step();
-  solver.step();
+  for (int step = 0; step < 4; ++step)
+    solver.step();
   const std::vector<BranchEnergy> before = solver.branch_energies();
   const auto reactions = solver.reactions();
   EXPECT_THROW(solver.step(), continuum::SolverFailed);
