@@ -8,10 +8,12 @@ using namespace dealii;
 
 namespace latcon::continuum
 {
-void DynamicSolver::update_energies(EnergyLedger &ledger, const Vector &u, const Vector &v,
-                                    const double load_factor) const
+void DynamicSolver::update_energies(EnergyLedger &ledger, const Vector &u, const Vector &v, const double load_factor,
+                                    const std::vector<BranchEnergy> &branches) const
 {
   ledger.stored = sheet_.energy(with_ghosts(u), load_factor);
+  for (const BranchEnergy &branch : branches)
+    ledger.stored += branch.stored;
   Vector momenta = sheet_.make_owned();
   multiply_by_mass(full_mass_, v, momenta);
   ledger.kinetic = 0.5 * (momenta * v);
@@ -23,11 +25,12 @@ void DynamicSolver::update_energies(EnergyLedger &ledger, const Vector &u, const
   }
 }
 
-// Returns the ledger at the end of a step with displacement u and velocity v.
-EnergyLedger DynamicSolver::ledger_after(const Step &step, const Vector &u, const Vector &v) const
+// Returns the ledger at the end of a step with displacement u, velocity v and energies of branches.
+EnergyLedger DynamicSolver::ledger_after(const Step &step, const Vector &u, const Vector &v,
+                                         const std::vector<BranchEnergy> &branches) const
 {
   EnergyLedger ledger = ledger_;
-  update_energies(ledger, u, v, step.last_load_factor);
+  update_energies(ledger, u, v, step.last_load_factor, branches);
 
   Vector rise = u;
   rise -= step.u;
@@ -36,6 +39,8 @@ EnergyLedger DynamicSolver::ledger_after(const Step &step, const Vector &u, cons
   rate *= 1. / step.dt;
   const Vector middle_velocity = with_ghosts(rate);
   ledger.dissipated += step.dt * viscous_forces_.dissipation(middle, middle_velocity);
+  for (std::size_t i = 0; i < branches.size(); ++i)
+    ledger.dissipated += branches[i].dissipated - branch_energies_[i].dissipated;
 
   const double factor = 0.5 * (step.first_load_factor + step.last_load_factor);
   const double released = -0.5 * (step.first_release_share + step.last_release_share) * (release_forces_ * rise);
@@ -53,6 +58,7 @@ EnergyLedger DynamicSolver::ledger_after(const Step &step, const Vector &u, cons
       Vector magnitude = sheet_.make_owned();
       sheet_.residual(middle, forces, magnitude, factor);
       viscous_forces_.add_forces(middle, middle_velocity, forces, nullptr);
+      memory_forces_.add_forces(0.5 * step.dt, middle, forces, nullptr);
       Vector change = v;
       change -= step.v;
       change *= 1. / step.dt;

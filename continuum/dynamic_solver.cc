@@ -32,10 +32,10 @@ NewmarkParameters NewmarkParameters::generalised_alpha(const double rho_inf)
 
 DynamicSolver::DynamicSolver(const Sheet::Mesh &mesh, const Constitution &constitution, BoundaryConditions conditions,
                              const Inertia &inertia, const DynamicSettings &settings, const Viscosity *viscosity,
-                             LoadFactor load_factor)
+                             LoadFactor load_factor, const FibreMemory *memory)
   : sheet_(mesh, constitution, settings.degree, std::move(conditions)), inertia_(inertia), settings_(settings),
-    duration_(settings.time_step), viscosity_(viscosity), viscous_forces_(sheet_, viscosity),
-    given_load_factor_(std::move(load_factor))
+    duration_(settings.time_step), viscosity_(viscosity), viscous_forces_(sheet_, viscosity), memory_(memory),
+    memory_forces_(sheet_, memory), given_load_factor_(std::move(load_factor))
 {
   check_input();
   set_up();
@@ -101,9 +101,11 @@ void DynamicSolver::apply_conditions()
   sheet_.make_matrix(homogeneous_, matrix_);
   sheet_.make_matrix(homogeneous_, mass_);
   sheet_.mass(inertia_.density, inertia_.length, homogeneous_, mass_);
-  // Viscosity at finite strain makes the matrix unsymmetric.
+  // Viscosity at finite strain makes the matrix unsymmetric. The matrix of multigrid, which a restart rebuilds, must
+  // not depend on the history of branches.
+  const bool is_symmetric = viscosity_ == nullptr && memory_ == nullptr;
   linear_solver_ = std::make_unique<LinearSolver>(sheet_, held, settings_.linear,
-                                                  viscosity_ == nullptr ? Symmetry::symmetric : Symmetry::unsymmetric);
+                                                  is_symmetric ? Symmetry::symmetric : Symmetry::unsymmetric);
 }
 
 // Returns the fraction of the release forces that acts at `time` [-].
@@ -124,6 +126,7 @@ DynamicSolver::Vector DynamicSolver::reactions() const
   multiply_by_mass(full_mass_, a, inertial);
   sheet_.residual(displacement_, forces, magnitude, load_factor_);
   viscous_forces_.add_forces(displacement_, velocity_, forces, nullptr);
+  memory_forces_.add_forces(0., displacement_, forces, nullptr);
   forces += inertial;
   forces.add(-load_factor_, loads_, -release_share(time_), release_forces_);
   return forces;
@@ -230,10 +233,11 @@ void DynamicSolver::start(const VectorField &displacement, const VectorField &ve
 {
   Vector u = interpolate(displacement);
   Vector v = interpolate(velocity);
-  begin(u, v, time);
+  begin(u, v, time, {});
 }
 
-void DynamicSolver::start(const Vector &displacement, const Vector &velocity, const double time)
+void DynamicSolver::start(const Vector &displacement, const Vector &velocity, const double time,
+                          const std::vector<Vector> &relaxed)
 {
   if (displacement.size() != sheet_.dof_handler().n_dofs() || velocity.size() != sheet_.dof_handler().n_dofs())
     throw InvalidInput("an initial nodal vector must have the size of the sheet's vectors");
@@ -241,7 +245,7 @@ void DynamicSolver::start(const Vector &displacement, const Vector &velocity, co
   Vector v = sheet_.make_owned();
   u = displacement;
   v = velocity;
-  begin(u, v, time);
+  begin(u, v, time, relaxed);
 }
 
 bool DynamicSolver::is_prescribed(const types::global_dof_index i) const
@@ -279,7 +283,7 @@ void DynamicSolver::check_start(const Vector &u, const Vector &v, const double t
     throw InvalidInput("the initial displacement of a boundary differs from the prescribed one");
 }
 
-void DynamicSolver::begin(Vector &u, Vector &v, const double time)
+void DynamicSolver::begin(Vector &u, Vector &v, const double time, const std::vector<Vector> &relaxed)
 {
   check_start(u, v, time);
   const double dt = settings_.time_step;
@@ -313,6 +317,11 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time)
   multiply_by_mass(full_mass_, a, rhs);
   sheet_.residual(u_ghosted, forces, magnitude, factors[0]);
   viscous_forces_.add_forces(u_ghosted, v_ghosted, forces, nullptr);
+  std::vector<Vector> relaxed_ghosted;
+  for (const Vector &displacement : relaxed)
+    relaxed_ghosted.push_back(with_ghosts(displacement));
+  memory_forces_.start(u_ghosted, relaxed_ghosted);
+  memory_forces_.add_forces(0., u_ghosted, forces, nullptr);
   rhs += forces;
   rhs.add(-factors[0], loads_);
   rhs *= -1.;
@@ -344,7 +353,8 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time)
   load_factor_ = factors[0];
   ledger_ = EnergyLedger();
   report_ = SolverReport();
-  update_energies(ledger_, u, v, load_factor_);
+  branch_energies_ = memory_forces_.stored(u_ghosted);
+  update_energies(ledger_, u, v, load_factor_, branch_energies_);
   initial_energy_ = ledger_.stored + ledger_.kinetic;
   has_started_ = true;
   has_released_ = false;
@@ -363,7 +373,8 @@ void DynamicSolver::step()
     throw InvalidInput("step() needs a state: call start() first");
   const double target = start_time_ + (n_steps_ + 1) * settings_.time_step;
   const auto restore = [this, time = time_, load_factor = load_factor_, u = displacement_, v = velocity_,
-                        a = acceleration_, ledger = ledger_]
+                        a = acceleration_, ledger = ledger_, history = memory_forces_.history(),
+                        branch_energies = branch_energies_]
   {
     time_ = time;
     load_factor_ = load_factor;
@@ -371,6 +382,8 @@ void DynamicSolver::step()
     velocity_ = v;
     acceleration_ = a;
     ledger_ = ledger;
+    memory_forces_.set_history(history);
+    branch_energies_ = branch_energies;
     linear_solver_->invalidate(); // multigrid may belong to a distant state
   };
   report_ = SolverReport();
@@ -433,13 +446,16 @@ std::string DynamicSolver::advance(const double duration, const double end)
   Vector v;
   Vector a;
   EnergyLedger ledger;
+  MemoryForces::History history;
+  std::vector<BranchEnergy> branch_energies = branch_energies_;
   std::string failure = attempt(step, u);
   if (failure.empty())
     try
     {
       a = step.last_acceleration(u);
       v = step.last_velocity(a);
-      ledger = ledger_after(step, u, v);
+      history = memory_forces_.advanced(duration, with_ghosts(u), branch_energies);
+      ledger = ledger_after(step, u, v, branch_energies);
       if (!std::isfinite(ledger.imbalance) || !std::isfinite(a.l2_norm()))
         failure = "the energy or the acceleration is not finite";
     }
@@ -457,6 +473,8 @@ std::string DynamicSolver::advance(const double duration, const double end)
   load_factor_ = step.last_load_factor;
   time_ = end;
   ledger_ = ledger;
+  memory_forces_.set_history(std::move(history));
+  branch_energies_ = branch_energies;
   return "";
 }
 

@@ -2,6 +2,7 @@
 
 #include "continuum/errors.h"
 #include "continuum/linear_solver.h"
+#include "continuum/memory_forces.h"
 #include "continuum/nodal_order.h"
 #include "continuum/sheet.h"
 #include "continuum/solver_report.h"
@@ -54,13 +55,14 @@ struct DynamicSettings
 };
 
 /// Energy balance [J/m] per unit reference thickness (theory-continuum.md, eq. (C.46)). Dissipation and work are
-/// integrated over the steps since start() by the midpoint rule, to second order in the time step.
+/// integrated over the steps since start() by the midpoint rule, to second order in the time step; energies of Maxwell
+/// branches are those of theory-viscoelastic.md, eqs. (V.4) and (V.5).
 struct EnergyLedger
 {
-  double stored = 0.;        ///< E(u)
+  double stored = 0.;        ///< E(u), and the energy stored in Maxwell branches
   double kinetic = 0.;       ///< (1/2) v.M v, micro-inertia included
   double micro_kinetic = 0.; ///< contribution of micro-inertia to `kinetic`
-  double dissipated = 0.;    ///< by viscosity
+  double dissipated = 0.;    ///< by viscosity and Maxwell branches
   double work = 0.;     ///< done on the sheet by prescribed displacements, dead loads and the forces on released nodes
   double released = 0.; ///< extracted from the sheet at released nodes, included in -`work`; see DynamicSolver::release
   double imbalance = 0.; ///< stored + kinetic + dissipated - work, minus the initial stored + kinetic
@@ -79,16 +81,17 @@ struct EnergyLedger
 };
 
 /// Solves the equation of motion of a sheet at finite strain (total Lagrangian, implicit):
-///   M a + C(u, v) + dE/du(u) = lambda(t) L
-/// (theory-continuum.md, eq. (C.40)), with M the consistent mass with micro-inertia, C the viscous forces and L the
-/// dead loads. The load factor lambda(t) multiplies everything that BoundaryConditions prescribe: displacements, u(X,
-/// t) = lambda(t) u(X), weak normal gradients, and loads. A sheet without any condition moves freely.
+///   M a + C(u, v) + Q(u, q) + dE/du(u) = lambda(t) L
+/// (theory-continuum.md, eq. (C.40)), with M the consistent mass with micro-inertia, C the viscous forces, Q those of
+/// Maxwell branches with their overstresses q (theory-viscoelastic.md, eq. (V.1)) and L the dead loads. The load factor
+/// lambda(t) multiplies everything that BoundaryConditions prescribe: displacements, u(X, t) = lambda(t) u(X), weak
+/// normal gradients, and loads. A sheet without any condition moves freely.
 ///
-/// Internal and viscous forces are evaluated once per residual, at the mid-state u_(n+1-alpha_f), v_(n+1-alpha_f); the
-/// load factor is the same mean of its values at both ends of the step. Newton's method with the exact tangent solves
-/// each step for the displacement. It halves a Newton step that leads to det F <= 0 anywhere. The residual converges to
-/// relative_tolerance times the acting forces, or to the round-off of its own evaluation where that is larger (eq.
-/// (C.45)).
+/// Internal and viscous forces are evaluated once per residual, at the mid-state u_(n+1-alpha_f), v_(n+1-alpha_f),
+/// those of Maxwell branches with the overstresses at its time; the load factor is the same mean of its values at both
+/// ends of the step. Newton's method with the exact tangent solves each step for the displacement. It halves a Newton
+/// step that leads to det F <= 0 anywhere. The residual converges to relative_tolerance times the acting forces, or to
+/// the round-off of its own evaluation where that is larger (eq. (C.45)).
 ///
 /// The velocity and acceleration of prescribed displacements follow from lambda(t) by one-sided differences at the
 /// start, and from Newmark's formulas afterwards. Periodic pairs constrain displacement increments and velocities, so
@@ -102,12 +105,12 @@ public:
   using LoadFactor = std::function<double(double time)>; ///< [-], of the time [s]
   using Observer = std::function<void()>;                ///< called after every step
 
-  /// Creates a solver; start() sets the initial state. `mesh`, the laws and `viscosity` (nullptr: none) must outlive
-  /// the solver. An empty `load_factor` means 1 at all times. Throws InvalidInput for numbers out of range and as Sheet
-  /// does. With a viscosity the matrix of a Newton step is unsymmetric.
+  /// Creates a solver; start() sets the initial state. `mesh`, the laws, `viscosity` and `memory` (nullptr: none) must
+  /// outlive the solver. An empty `load_factor` means 1 at all times. Throws InvalidInput for numbers out of range and
+  /// as Sheet does. With a viscosity the matrix of a Newton step is unsymmetric.
   DynamicSolver(const Sheet::Mesh &mesh, const Constitution &constitution, BoundaryConditions conditions,
                 const Inertia &inertia, const DynamicSettings &settings, const Viscosity *viscosity = nullptr,
-                LoadFactor load_factor = LoadFactor());
+                LoadFactor load_factor = LoadFactor(), const FibreMemory *memory = nullptr);
 
   /// Sets the initial state at `time` [s] by interpolating the fields `displacement` [m] and `velocity` [m/s]; a null
   /// field is zero. Solves the equation of motion for the acceleration and resets the ledger. Throws InvalidInput if
@@ -118,7 +121,12 @@ public:
 
   /// Sets the initial state from nodal vectors of sheet(), with or without ghost entries, for example those of a
   /// StaticSolver on the same mesh with the same degree and conditions. Otherwise as above.
-  void start(const Vector &displacement, const Vector &velocity, double time = 0.);
+  ///
+  /// Maxwell branches start relaxed, or with the overstresses of a sheet that was deformed suddenly to `displacement`
+  /// from the displacements `relaxed`, one for each branch by its number; empty: relaxed. Throws InvalidInput for
+  /// another number of them.
+  void start(const Vector &displacement, const Vector &velocity, double time = 0.,
+             const std::vector<Vector> &relaxed = {});
 
   /// Checks nodal vectors as start() does. Throws InvalidInput if a value is not finite or differs from the
   /// displacement prescribed at `time` [s]. Collective.
@@ -157,11 +165,18 @@ public:
   unsigned long n_divided_steps() const { return n_divided_steps_; }
   double load_factor() const { return load_factor_; }
   const EnergyLedger &ledger() const { return ledger_; }
+  /// Returns the energies of each branch by its number [J/m], which ledger() includes.
+  const std::vector<BranchEnergy> &branch_energies() const { return branch_energies_; }
 
   /// Returns the momentum [kg/s] per unit reference thickness, integral of rho v.
   dealii::Tensor<1, 2> momentum() const;
 
-  /// Returns the states at reference points [m] without the viscous stress; see Sheet::evaluate.
+  /// Returns the nodal reactions at unknowns with prescribed displacement, and the residual of the equation of motion
+  /// at free ones [N/m], per unit reference thickness.
+  Vector reactions() const;
+
+  /// Returns the states at reference points [m] without the stresses of viscosity and Maxwell branches; see
+  /// Sheet::evaluate.
   std::vector<PointState> evaluate(const std::vector<dealii::Point<2>> &points) const;
 
   // Nodal vectors with ghost entries.
@@ -184,11 +199,10 @@ private:
   void set_up();
   void apply_conditions();
   double release_share(double time) const;
-  Vector reactions() const;
   double load_factor_at(double time) const;
   Vector interpolate(const VectorField &field) const;
   bool is_prescribed(dealii::types::global_dof_index i) const;
-  void begin(Vector &u, Vector &v, double time);
+  void begin(Vector &u, Vector &v, double time, const std::vector<Vector> &relaxed);
   Vector with_ghosts(const Vector &owned) const;
   void multiply_by_mass(const Sheet::Matrix &M, const Vector &x, Vector &product) const;
   Residual evaluate(const Step &step, const Vector &u) const;
@@ -205,8 +219,11 @@ private:
   std::string attempt(Step &step, Vector &u);
   std::string advance(double duration, double end);
   std::string advance_in_parts(double duration, double end, unsigned int halvings);
-  EnergyLedger ledger_after(const Step &step, const Vector &u, const Vector &v) const;
-  void update_energies(EnergyLedger &ledger, const Vector &u, const Vector &v, double load_factor) const;
+  EnergyLedger ledger_after(const Step &step, const Vector &u, const Vector &v,
+                            const std::vector<BranchEnergy> &branches) const;
+  void update_energies(EnergyLedger &ledger, const Vector &u, const Vector &v, double load_factor,
+                       const std::vector<BranchEnergy> &branches) const;
+  double mean_duration() const { return (1. - settings_.rule.alpha_f) * duration_; } // to the mean state [s]
 
   Sheet sheet_;
   Inertia inertia_;
@@ -214,6 +231,8 @@ private:
   double duration_; // of the current step or part of a step [s]
   const Viscosity *viscosity_;
   ViscousForces viscous_forces_;
+  const FibreMemory *memory_;
+  MemoryForces memory_forces_; // with the history at the present time
   LoadFactor given_load_factor_;
   std::unique_ptr<LinearSolver> linear_solver_;
   dealii::AffineConstraints<double> homogeneous_;       // conformity constraints, and prescribed unknowns at zero
@@ -249,6 +268,7 @@ private:
   Vector velocity_;
   Vector acceleration_;
   EnergyLedger ledger_;
+  std::vector<BranchEnergy> branch_energies_;
   SolverReport report_;
 };
 
@@ -270,6 +290,13 @@ void DynamicSolver::archive(Archive &archive)
   order.archive(archive, "displacement", displacement_);
   order.archive(archive, "velocity", velocity_);
   order.archive(archive, "acceleration", acceleration_);
+  if (memory_forces_.is_present())
+  {
+    memory_forces_.archive(archive, displacement_);
+    archive.records("branch_energies", branch_energies_);
+    if (branch_energies_.size() != memory_forces_.n_branches())
+      throw InvalidInput("the stored energies of branches are not those of the material");
+  }
   // A reused multigrid preconditioner affects the round-off of every iteration.
   archive("linear_solver", *linear_solver_);
   if (linear_solver_->keeps_multigrid())

@@ -33,6 +33,7 @@ DynamicSolver::Residual DynamicSolver::evaluate(const Step &step, const Vector &
   multiply_by_mass(full_mass_, Step::mean(step.rule.alpha_m, step.a, a_1), inertial);
   state.energy = sheet_.residual(state.u_mean, forces, state.magnitude, factor);
   viscous_forces_.add_forces(state.u_mean, state.v_mean, forces, &state.magnitude);
+  memory_forces_.add_forces(mean_duration(), state.u_mean, forces, &state.magnitude);
   state.residual = inertial;
   state.residual += forces;
   state.residual.add(-factor, loads_, -step.mean_release_share(), release_forces_);
@@ -118,15 +119,18 @@ const Sheet::Matrix &DynamicSolver::level_mass(const Sheet &level, const AffineC
 
 // Returns the assembler of the derivative of the residual by the displacement at the end of the step, on a multigrid
 // mesh. The sheet is taken at rest, which drops the unsymmetric part of viscosity: it vanishes with the velocity.
+// Maxwell branches are taken relaxed: coarser meshes have no history.
 Multigrid::Assembler DynamicSolver::level_assembler(const double load_factor)
 {
   const NewmarkParameters &rule = settings_.rule;
   const double dt = duration_;
+  const double mean = mean_duration();
   return [=](const Sheet &level, const Vector &u, const AffineConstraints<double> &constraints, Sheet::Matrix &K)
   {
     level.tangent(u, constraints, K, load_factor);
     ViscousForces(level, viscosity_)
       .add_tangent(u, level.make_ghosted(), rule.gamma / (rule.beta * dt), constraints, K);
+    MemoryForces::add_relaxed_tangent(level, memory_, mean, u, constraints, K);
     K *= 1. - rule.alpha_f;
     K.add((1. - rule.alpha_m) / (rule.beta * dt * dt), level_mass(level, constraints));
   };
@@ -146,6 +150,7 @@ void DynamicSolver::assemble_matrix(const Vector &u, const Vector &v, const doub
   sheet_.tangent(u, homogeneous_, matrix_, load_factor);
   take_diagonal(elastic_diagonal_);
   viscous_forces_.add_tangent(u, v, rule.gamma / (rule.beta * dt), homogeneous_, matrix_);
+  memory_forces_.add_tangent(mean_duration(), u, homogeneous_, matrix_);
   matrix_ *= 1. - rule.alpha_f;
   matrix_.add((1. - rule.alpha_m) / (rule.beta * dt * dt), mass_);
   take_diagonal(effective_diagonal_);

@@ -1,13 +1,9 @@
 #include "continuum/viscous_forces.h"
 
 #include "continuum/collective.h"
+#include "continuum/stress_integrals.h"
 
 #include <deal.II/base/mpi.h>
-#include <deal.II/base/quadrature_lib.h>
-#include <deal.II/fe/fe_values.h>
-
-#include <cmath>
-#include <vector>
 
 using namespace dealii;
 
@@ -15,28 +11,16 @@ namespace latcon::continuum
 {
 namespace
 {
-// Calls work(values, F, Fdot, dofs) for every locally owned cell; u and v have ghost entries. Local.
+// Calls work(points, F, Fdot) for every locally owned cell; u and v have ghost entries. Local.
 template <typename Work>
 void for_each_cell(const Sheet &sheet, const Sheet::Vector &u, const Sheet::Vector &v, const Work &work)
 {
-  FEValues<2> values(sheet.mapping(), sheet.element(), QGauss<2>(sheet.degree() + 1),
-                     update_gradients | update_JxW_values);
-  const FEValuesExtractors::Vector field(0);
-  std::vector<Tensor<2, 2>> F(values.n_quadrature_points);
-  std::vector<Tensor<2, 2>> Fdot(values.n_quadrature_points);
-  std::vector<types::global_dof_index> dofs(sheet.element().n_dofs_per_cell());
-  for (const auto &cell : sheet.dof_handler().active_cell_iterators())
-    if (cell->is_locally_owned())
-    {
-      values.reinit(cell);
-      values[field].get_function_gradients(u, F);
-      values[field].get_function_gradients(v, Fdot);
-      for (Tensor<2, 2> &at_point : F)
-        for (unsigned int i = 0; i < 2; ++i)
-          at_point[i][i] += 1.;
-      cell->get_dof_indices(dofs);
-      work(values, F, Fdot, dofs);
-    }
+  stress_integrals::for_each_cell<2>(sheet, {&u, &v},
+                                     [&](auto &points)
+                                     {
+                                       stress_integrals::add_identity(points.gradients[0]);
+                                       work(points, points.gradients[0], points.gradients[1]);
+                                     });
 }
 } // namespace
 
@@ -47,30 +31,20 @@ void ViscousForces::add_forces(const Vector &u, const Vector &v, Vector &forces,
   const DeferredException guarded(
     [&]
     {
-      const auto &element = sheet_.element();
-      dealii::Vector<double> local(element.n_dofs_per_cell());
-      dealii::Vector<double> local_magnitude(element.n_dofs_per_cell());
-      for_each_cell(sheet_, u, v,
-                    [&](const auto &values, const auto &F, const auto &Fdot, const auto &dofs)
-                    {
-                      local = 0.;
-                      local_magnitude = 0.;
-                      for (unsigned int q = 0; q < F.size(); ++q)
-                      {
-                        const Tensor<2, 2> P = viscosity_->stress(F[q], Fdot[q]);
-                        for (unsigned int a = 0; a < dofs.size(); ++a)
-                          for (unsigned int J = 0; J < 2; ++J)
-                          {
-                            const double term = P[element.system_to_component_index(a).first][J] *
-                                                values.shape_grad(a, q)[J] * values.JxW(q);
-                            local[a] += term;
-                            local_magnitude[a] += std::abs(term);
-                          }
-                      }
-                      sheet_.conformity_constraints().distribute_local_to_global(local, dofs, forces);
-                      if (magnitude != nullptr)
-                        sheet_.conformity_constraints().distribute_local_to_global(local_magnitude, dofs, *magnitude);
-                    });
+      dealii::Vector<double> local(sheet_.element().n_dofs_per_cell());
+      dealii::Vector<double> local_magnitude(local.size());
+      for_each_cell(
+        sheet_, u, v,
+        [&](const auto &points, const auto &F, const auto &Fdot)
+        {
+          local = 0.;
+          local_magnitude = 0.;
+          for (unsigned int q = 0; q < F.size(); ++q)
+            stress_integrals::add_stress(points.values, q, viscosity_->stress(F[q], Fdot[q]), local, local_magnitude);
+          sheet_.conformity_constraints().distribute_local_to_global(local, points.dofs, forces);
+          if (magnitude != nullptr)
+            sheet_.conformity_constraints().distribute_local_to_global(local_magnitude, points.dofs, *magnitude);
+        });
     });
   forces.compress(VectorOperation::add);
   if (magnitude != nullptr)
@@ -86,29 +60,19 @@ void ViscousForces::add_tangent(const Vector &u, const Vector &v, const double r
   const DeferredException guarded(
     [&]
     {
-      const auto &element = sheet_.element();
-      const unsigned int n = element.n_dofs_per_cell();
+      const unsigned int n = sheet_.element().n_dofs_per_cell();
       FullMatrix<double> local(n, n);
       for_each_cell(sheet_, u, v,
-                    [&](const auto &values, const auto &F, const auto &Fdot, const auto &dofs)
+                    [&](const auto &points, const auto &F, const auto &Fdot)
                     {
                       local = 0.;
                       for (unsigned int q = 0; q < F.size(); ++q)
-                      {
-                        const Tensor<4, 2> T = viscosity_->stress_by_F(F[q], Fdot[q]) +
-                                               rate_by_displacement * viscosity_->stress_by_rate(F[q], Fdot[q]);
-                        for (unsigned int b = 0; b < n; ++b)
-                        {
-                          const unsigned int k = element.system_to_component_index(b).first;
-                          Tensor<2, 2> change; // of the stress with unknown b
-                          for (unsigned int i = 0; i < 2; ++i)
-                            for (unsigned int J = 0; J < 2; ++J)
-                              change[i][J] = T[i][J][k] * values.shape_grad(b, q) * values.JxW(q);
-                          for (unsigned int a = 0; a < n; ++a)
-                            local(a, b) += change[element.system_to_component_index(a).first] * values.shape_grad(a, q);
-                        }
-                      }
-                      constraints.distribute_local_to_global(local, dofs, matrix);
+                        stress_integrals::add_stiffness(points.values, q,
+                                                        viscosity_->stress_by_F(F[q], Fdot[q]) +
+                                                          rate_by_displacement *
+                                                            viscosity_->stress_by_rate(F[q], Fdot[q]),
+                                                        local);
+                      constraints.distribute_local_to_global(local, points.dofs, matrix);
                     });
     });
   matrix.compress(VectorOperation::add);
@@ -124,10 +88,10 @@ double ViscousForces::dissipation(const Vector &u, const Vector &v) const
                    [&]
                    {
                      for_each_cell(sheet_, u, v,
-                                   [&](const auto &values, const auto &F, const auto &Fdot, const auto &)
+                                   [&](const auto &points, const auto &F, const auto &Fdot)
                                    {
                                      for (unsigned int q = 0; q < F.size(); ++q)
-                                       own += viscosity_->dissipation(F[q], Fdot[q]) * values.JxW(q);
+                                       own += viscosity_->dissipation(F[q], Fdot[q]) * points.values.JxW(q);
                                    });
                    });
   return Utilities::MPI::sum(own, sheet_.communicator());

@@ -45,21 +45,22 @@ protected:
   explicit Motion(const MPI_Comm communicator) : mesh_(communicator) {}
 
   void make_solver(const continuum::BoundaryConditions &conditions, const continuum::DynamicSettings &settings,
-                   const continuum::Viscosity *viscosity)
+                   const continuum::Viscosity *viscosity, const continuum::FibreMemory *memory)
   {
-    solver_ = std::make_unique<DynamicSolver>(mesh_, continuum::Constitution(law_, gradient_), conditions,
-                                              continuum::Inertia{density, 0.01}, settings, viscosity,
-                                              [](const double t) { return 1. + 0.5 * std::sin(900. * t); });
+    solver_ = std::make_unique<DynamicSolver>(
+      mesh_, continuum::Constitution(law_, gradient_), conditions, continuum::Inertia{density, 0.01}, settings,
+      viscosity, [](const double t) { return 1. + 0.5 * std::sin(900. * t); }, memory);
   }
 
   const continuum::CauchyBorn law_ = rubber_network();
   const continuum::IsotropicGradient gradient_{5e5, 0.01};
   const continuum::FibreViscosity viscosity_ = network_viscosity(50.);
+  const continuum::FibreMemory memory_ = network_memory(1e5, {5e-4, 4e-3});
   Mesh mesh_;
   std::unique_ptr<DynamicSolver> solver_;
 };
 
-// Periodic, with dashpots.
+// Periodic, with dashpots and Maxwell branches.
 class DirectMotion : public Motion
 {
 public:
@@ -73,12 +74,12 @@ public:
     continuum::DynamicSettings settings{4e-4};
     settings.degree = 2;
     settings.rule = continuum::NewmarkParameters::generalised_alpha(0.8);
-    make_solver(conditions, settings, &viscosity_);
+    make_solver(conditions, settings, &viscosity_, &memory_);
   }
 };
 
 // With hanging nodes and a normal gradient that increases with the load, solved by conjugate gradients or, with
-// dashpots, by GMRES.
+// dashpots and Maxwell branches, by GMRES.
 template <bool has_dashpots>
 class MultigridMotion : public Motion
 {
@@ -96,7 +97,7 @@ public:
     settings.linear.direct_limit = 0;
     settings.linear.multigrid.coarsest_size = 100;
     settings.linear.rebuild_ratio = 1.1; // so that some but not all of the steps rebuild it
-    make_solver(conditions, settings, has_dashpots ? &viscosity_ : nullptr);
+    make_solver(conditions, settings, has_dashpots ? &viscosity_ : nullptr, has_dashpots ? &memory_ : nullptr);
   }
 };
 
@@ -218,12 +219,13 @@ TEST(MotionArchive, GoesOnWithTheSameBitsWithAMultigridThatIsKept)
   expect_same_bits_with_kept_multigrid<MultigridMotion<false>>();
 }
 
-TEST(MotionArchive, GoesOnWithTheSameBitsWithDashpotsAndAMultigridThatIsKept)
+TEST(MotionArchive, GoesOnWithTheSameBitsWithBranchesAndAMultigridThatIsKept)
 {
   expect_same_bits_with_kept_multigrid<MultigridMotion<true>>();
 }
 
-TEST(MotionArchive, IsTakenUpByAnyNumberOfRanks)
+template <class M>
+void expect_taken_up_by_any_number_of_ranks()
 {
   const int n_ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
   const std::set<int> numbers{1, n_ranks};
@@ -234,7 +236,7 @@ TEST(MotionArchive, IsTakenUpByAnyNumberOfRanks)
     Store at_end;
     if (writing)
     {
-      MultigridMotion<false> motion(writing.communicator());
+      M motion(writing.communicator());
       motion.start();
       for (unsigned int step = 0; step < 4; ++step)
         motion.solver().step();
@@ -248,7 +250,7 @@ TEST(MotionArchive, IsTakenUpByAnyNumberOfRanks)
       const FirstRanks reading(readers);
       if (!reading)
         continue;
-      MultigridMotion<false> motion(reading.communicator());
+      M motion(reading.communicator());
       load(at_stop, motion.solver());
       const Store again = stored(motion.solver());
       motion.solver().step();
@@ -261,6 +263,16 @@ TEST(MotionArchive, IsTakenUpByAnyNumberOfRanks)
       EXPECT_NEAR(motion.solver().ledger().work, value<double>(at_end, "ledger/work"), 1e-9 * energy);
     }
   }
+}
+
+TEST(MotionArchive, IsTakenUpByAnyNumberOfRanks)
+{
+  expect_taken_up_by_any_number_of_ranks<MultigridMotion<false>>();
+}
+
+TEST(MotionArchive, IsTakenUpWithBranchesByAnyNumberOfRanks)
+{
+  expect_taken_up_by_any_number_of_ranks<DirectMotion>();
 }
 
 TEST(MotionArchive, PutsNodalValuesInTheirPlacesOnAnyNumberOfRanks)

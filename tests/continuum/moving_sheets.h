@@ -1,6 +1,6 @@
 #pragma once
 
-// Waves, strips and dashpots for tests of dynamics. SI units.
+// Waves, strips, dashpots and Maxwell branches for tests of dynamics. SI units.
 
 #include "continuum/dynamic_solver.h"
 #include "sheets.h"
@@ -45,5 +45,19 @@ inline latcon::continuum::FibreViscosity network_viscosity(const double eta)
   for (const auto &family : network.families())
     dashpots.push_back({family.direction, family.weight, eta});
   return latcon::continuum::FibreViscosity(dashpots);
+}
+
+// Maxwell branches of equal moduli along the bonds of rubber_network.
+inline latcon::continuum::FibreMemory network_memory(const double modulus, const std::vector<double> &relaxation_times)
+{
+  const latcon::continuum::CauchyBorn network = rubber_network();
+  std::vector<latcon::continuum::MaxwellFibres> families;
+  for (const auto &family : network.families())
+  {
+    families.push_back({family.direction, family.weight, {}, 0});
+    for (const double time : relaxation_times)
+      families.back().branches.push_back({modulus, time});
+  }
+  return latcon::continuum::FibreMemory(families);
 }
 } // namespace moving_sheets

@@ -14,6 +14,11 @@ STRIP = ["fracture", SPECTRUM, "--skip-verification", "--no-report", "--quiet", 
          "Sheet/height=1 cm", "--set", "Output/frame interval=0.1 ms", "--set", "Near tip/interval=2e-5"]
 END = ["--set", "Time/end=0.3 ms"]
 VERLET = ["--set", "Checkpoints/steps=200", "--set", "Output/energy interval=50"]
+MOTION = [word for entry in (
+    "Continuum/solution=motion", "Continuum/law=cauchy-born", "Continuum/gradient=none", "Continuum/cells x=6",
+    "Continuum/cells y=4", "Continuum/degree=2", "Continuum/time step=5 us", "Initial state/base=loading",
+    "Initial state/velocity y=20*sin(pi*x/0.03)*sin(pi*y/0.015)", "Time/end=0.1 ms", "Output/frame interval=0.05 ms",
+    "Checkpoints/steps=7") for word in ("--set", entry)]
 CHEBYSHEV = ["--set", "Time/integrator=runge-kutta-chebyshev", "--set", "Checkpoints/steps=40", "--set",
              "Output/energy interval=10"]
 
@@ -108,12 +113,49 @@ class Branches(TemporaryFolder):
             self.assertIn(f"{section}/{key}", run.stderr)
             self.assertIn(words, run.stderr)
 
-    def test_motion_of_finite_elements_refuses_branches(self):
-        run = latcon("continuum", SPECTRUM, "--dry-run", "--set", "Continuum/solution=motion")
-        self.assertEqual(run.returncode, 2, run.stderr)
-        for section in ("Nearest neighbours", "Next-nearest neighbours"):
-            self.assertIn(f"{section}/branch moduli", run.stderr)
+    def test_motion_of_finite_elements_refuses_branches_that_relax_within_a_step(self):
+        for step in ("0.03 ms", "auto"):  # automatic with 2 x 2 cells: 0.05 ms
+            run = latcon("continuum", SPECTRUM, "--dry-run", *MOTION, "--set", f"Continuum/time step={step}", "--set",
+                         "Continuum/cells x=2", "--set", "Continuum/cells y=2")
+            self.assertEqual(run.returncode, 2, run.stderr)
+            for section in ("Nearest neighbours", "Next-nearest neighbours"):
+                self.assertIn(f"{section}/relaxation times", run.stderr)
+            self.assertIn("smaller Continuum/time step", run.stderr)
         self.assertEqual(latcon("continuum", SPECTRUM, "--dry-run").returncode, 0)
+
+    def test_motion_of_finite_elements_records_and_resumes_branches(self):
+        alone = latcon("continuum", SPECTRUM, *MOTION, "--output-dir", self.out)
+        self.assertEqual(alone.returncode, 0, alone.stderr)
+        rows = read_csv(self.out / "energy.csv")
+        names = [f"{shell}_branch_{i}" for shell in ("nearest", "next_nearest") for i in (1, 2, 3)]
+        self.assertEqual(list(rows[0]), ["t", "elastic", "kinetic", "micro_inertia", "viscous", "boundary_work", "imbalance",
+                                         *(f"{name}_{what}" for name in names for what in ("stored", "dissipated"))])
+        first, last = ({key: float(value) for key, value in row.items()} for row in (rows[0], rows[-1]))
+        for name in names:
+            self.assertEqual((first[f"{name}_stored"], first[f"{name}_dissipated"]), (0, 0))
+            self.assertGreater(last[f"{name}_stored"], 0)
+            self.assertGreater(last[f"{name}_dissipated"], 0)
+        self.assertLess(sum(last[f"{name}_dissipated"] for name in names), last["viscous"])
+        # The step resolves the motion to (w h)^2 / 12 with w h = 0.3 for waves as long as two cells.
+        self.assertLess(abs(last["imbalance"]), 0.01 * first["kinetic"])
+        stopped = self.folder / "stopped"
+        shutil.copytree(self.out, stopped)
+        for late in sorted((stopped / "checkpoints").glob("*.h5"))[1:]:
+            late.unlink()
+        run = latcon("continuum", SPECTRUM, *MOTION, "--resume", "--output-dir", stopped)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertGreater(json.loads((stopped / "run.json").read_text())["resumed_from"]["step"], 0)
+        expected, found = files(self.out), files(stopped)
+        for name in ("energy.csv", "results.csv", "results.json"):
+            self.assertEqual(found[name], expected[name], name)
+        self.assertEqual(sorted(found), sorted(expected))
+        # Ranks sum in another order.
+        shared = self.folder / "shared"
+        run = latcon_on_ranks(2, "continuum", SPECTRUM, *MOTION, "--output-dir", shared)
+        self.assertEqual(run.returncode, 0, run.stderr)
+        for ours, theirs in zip(rows, read_csv(shared / "energy.csv")):
+            for key, value in ours.items():
+                self.assertAlmostEqual(float(theirs[key]), float(value), delta=1e-9 * first["elastic"], msg=key)
 
     def test_memory_is_estimated(self):
         def bytes_of(*more):

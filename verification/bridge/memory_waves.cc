@@ -15,13 +15,15 @@ namespace latcon::bridge
 namespace
 {
 
-// One branch of the bonds of one shell.
-struct BranchMatrix
+Eigen::Matrix2d sum_of(const std::vector<BranchMatrix> &branches)
 {
-  Eigen::Matrix2d stiffness; // G_i [1/s^2]
-  double relaxation_time;    // tau_i [s]
-};
+  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
+  for (const BranchMatrix &branch : branches)
+    sum += branch.stiffness;
+  return sum;
+}
 
+// The branches of each shell.
 std::vector<BranchMatrix> branch_matrices(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                                           const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
 {
@@ -54,25 +56,27 @@ std::vector<BranchMatrix> branch_matrices(const lattice::TriangularLattice &latt
 Eigen::Matrix2d glassy_stiffness(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                                  const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
 {
-  Eigen::Matrix2d sum = Eigen::Matrix2d::Zero();
-  for (const BranchMatrix &branch : branch_matrices(lattice, material, F, K))
-    sum += branch.stiffness;
-  return sum;
+  return sum_of(branch_matrices(lattice, material, F, K));
 }
 
 std::array<MemoryWave, 2> memory_waves(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                                        const Eigen::Matrix2d &F, const Eigen::Vector2d &K)
 {
-  const WaveMatrices bloch = bloch_matrices(lattice, material, F, K);
-  const std::vector<BranchMatrix> branches = branch_matrices(lattice, material, F, K);
+  return memory_waves(bloch_matrices(lattice, material, F, K), branch_matrices(lattice, material, F, K),
+                      wave_normal(F, K));
+}
+
+std::array<MemoryWave, 2> memory_waves(const WaveMatrices &relaxed, const std::vector<BranchMatrix> &branches,
+                                       const Eigen::Vector2d &normal)
+{
   // (u, u'/r, r_1, r_2, ...)' = r B (...) with the forces r_i' = G_i u' - r_i / tau_i per mass and r^2, and a rate r
   // that scales the entries to similar size.
-  const double rate = std::sqrt(bloch.stiffness.norm() + glassy_stiffness(lattice, material, F, K).norm());
+  const double rate = std::sqrt(relaxed.stiffness.norm() + sum_of(branches).norm());
   const auto size = static_cast<Eigen::Index>(4 + 2 * branches.size());
   Eigen::MatrixXd B = Eigen::MatrixXd::Zero(size, size);
   B.block<2, 2>(0, 2).setIdentity();
-  B.block<2, 2>(2, 0) = -bloch.stiffness / (rate * rate);
-  B.block<2, 2>(2, 2) = -bloch.damping / rate;
+  B.block<2, 2>(2, 0) = -relaxed.stiffness / (rate * rate);
+  B.block<2, 2>(2, 2) = -relaxed.damping / rate;
   Eigen::Index at = 4;
   for (const BranchMatrix &branch : branches)
   {
@@ -83,7 +87,7 @@ std::array<MemoryWave, 2> memory_waves(const lattice::TriangularLattice &lattice
   }
   // The solver of eigenvalues does not handle values that are not finite.
   if (!B.allFinite())
-    throw std::runtime_error("the stiffness of the lattice is not finite");
+    throw std::runtime_error("the stiffness of a sheet is not finite");
   const Eigen::EigenSolver<Eigen::MatrixXd> solver(B);
   // Everything else relaxes.
   std::vector<Eigen::Index> order;
@@ -98,7 +102,6 @@ std::array<MemoryWave, 2> memory_waves(const lattice::TriangularLattice &lattice
     return MemoryWave{rate * solver.eigenvalues()[i], p / (std::abs(p[0]) > std::abs(p[1]) ? p[0] : p[1])};
   };
   std::array<MemoryWave, 2> waves{wave(order[0]), wave(order[1])};
-  const Eigen::Vector2d normal = wave_normal(F, K);
   const auto along = [&](const MemoryWave &w)
   { return std::abs(w.polarisation.dot(normal.cast<std::complex<double>>())) / w.polarisation.norm(); };
   if (along(waves[0]) < along(waves[1]))

@@ -1,8 +1,9 @@
-/// Plane waves in the lattice whose bonds have Maxwell branches.
+/// Plane waves in sheets with Maxwell branches.
 #pragma once
 
 #include <array>
 #include <complex>
+#include <vector>
 
 #include "verification/bridge/plane_waves.h"
 
@@ -21,9 +22,22 @@ struct MemoryWave
   double decay() const { return -rate.real(); }    ///< g [1/s]
 };
 
-/// Solves (s^2 + s C + D + sum_i s tau_i / (1 + s tau_i) G_i) p = 0 (theory.md, eq. (L.30)) for the two waves
-/// that oscillate: the generalised complex modulus of the lattice's own Bloch matrices, dispersion included. The
-/// longitudinal wave comes first, as in plane_waves().
+/// Branch of a homogeneous sheet for a plane wave, per unit mass.
+struct BranchMatrix
+{
+  Eigen::Matrix2d stiffness; ///< G_i, added to D in fast motion [1/s^2]
+  double relaxation_time;    ///< tau_i [s]
+};
+
+/// Solves (s^2 + s C + D + sum_i s tau_i / (1 + s tau_i) G_i) p = 0 (theory.md, eq. (L.30); theory-viscoelastic.md, eq.
+/// (V.6)) for the two waves that oscillate. The longitudinal wave comes first, as in plane_waves().
+/// @param relaxed C and D, without branches
+/// @param normal as for plane_waves()
+/// @throws std::runtime_error if an entry of the matrices is not finite
+std::array<MemoryWave, 2> memory_waves(const WaveMatrices &relaxed, const std::vector<BranchMatrix> &branches,
+                                       const Eigen::Vector2d &normal);
+
+/// Solves the same for the generalised complex modulus of the lattice's own Bloch matrices, dispersion included.
 /// @param lattice only its bonds matter
 /// @param F homogeneous deformation, whose bonds are relaxed
 /// @param K referential wave vector [1/m], not 0

@@ -2,6 +2,7 @@
 
 #include "continuum/constitution.h"
 #include "continuum/dynamic_solver.h"
+#include "continuum/fibre_memory.h"
 #include "continuum/viscosity.h"
 #include "verification/bridge/plane_waves.h"
 #include "verification/claims/oscillation.h"
@@ -15,6 +16,7 @@ struct WaveContinuum
   continuum::Constitution constitution;
   continuum::Inertia inertia;
   const continuum::Viscosity *viscosity = nullptr; ///< none: elastic
+  const continuum::FibreMemory *memory = nullptr;  ///< none: no Maxwell branches; only element_waves.h uses it
 };
 
 /// Matrices of a plane wave at the homogeneous state F, in closed form from the tangents of the laws

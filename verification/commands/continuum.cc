@@ -2,7 +2,6 @@
 #include <cmath>
 #include <iostream>
 #include <sstream>
-#include <tuple>
 #include <utility>
 
 #include <deal.II/base/mpi.h>
@@ -11,13 +10,16 @@
 #include "continuum/dynamic_solver.h"
 #include "continuum/errors.h"
 #include "continuum/field_writer.h"
+#include "support/full_precision.h"
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/continuum_model.h"
+#include "verification/bridge/homogenised_memory.h"
 #include "verification/commands/command.h"
 #include "verification/commands/cost.h"
 #include "verification/commands/signals.h"
 #include "verification/output/checkpoints.h"
 #include "verification/output/continuum_record.h"
+#include "verification/output/mechanism_names.h"
 #include "verification/output/progress.h"
 #include "verification/resources/resources.h"
 
@@ -183,6 +185,7 @@ struct Motion
 {
   continuum::DynamicSettings settings;
   std::unique_ptr<continuum::Viscosity> viscosity;
+  std::unique_ptr<continuum::FibreMemory> memory;
   continuum::DynamicSolver solver;
   continuum::Sheet::Vector added, velocity; // nodal fields that are added to the base state
 
@@ -190,8 +193,9 @@ struct Motion
   Motion(const input::Case &input, bridge::ContinuumModel &model)
     : settings(dynamic_settings(input, model)),
       viscosity(bridge::homogenised_viscosity(input.lattice(), model.subject().material)),
+      memory(bridge::homogenised_memory(input.lattice(), model.subject().material)),
       solver(model.mesh(), model.constitution(), model.conditions(), {input.density, model.inertia_length()}, settings,
-             viscosity.get()),
+             viscosity.get(), {}, memory.get()),
       added(interpolated(*input.continuum.initial_displacement.field(model.extent()))),
       velocity(interpolated(*input.continuum.initial_velocity.field(model.extent())))
   {
@@ -255,7 +259,7 @@ output::Results move(const input::Case &input, const bridge::ContinuumModel &mod
 {
   const continuum::DynamicSettings &settings = motion.settings;
   continuum::DynamicSolver &solver = motion.solver;
-  output::ContinuumRecord record;
+  output::ContinuumRecord record(output::mechanism_names(model.subject().material));
   continuum::FieldWriter fields(MPI_COMM_WORLD, run.directory());
   double next_frame = input.frame_interval;
   std::size_t step = 0;                     // done
@@ -367,6 +371,30 @@ output::Results move(const input::Case &input, const bridge::ContinuumModel &mod
   return motion_results(solver, settings.time_step);
 }
 
+// Reports a step that makes too many of them, or is longer than a relaxation time.
+void check_time_step(const input::Case &input, double step, input::Parameters &parameters)
+{
+  resources::check_steps(input, step, parameters);
+  const auto check_branches = [&](const input::ShellCase &shell, const std::string &section)
+  {
+    const auto time = std::find_if(shell.relaxation_times.begin(), shell.relaxation_times.end(),
+                                   [step](double tau) { return tau < step; });
+    if (time == shell.relaxation_times.end())
+      return;
+    const double modulus = shell.branch_moduli[time - shell.relaxation_times.begin()];
+    parameters.error(section + "/relaxation times",
+                     "a branch with " + support::full_precision(*time) + " s relaxes within one time step, " +
+                       support::full_precision(step) +
+                       " s, and acts as a dashpot; omit it and add its modulus times its relaxation time, " +
+                       support::full_precision(modulus * *time) +
+                       " Pa s, to the viscosity, or give a smaller Continuum/time step",
+                     {section + "/branch moduli", section + "/viscosity", "Continuum/time step"});
+  };
+  check_branches(input.nearest, "Nearest neighbours");
+  if (input.has_next_nearest)
+    check_branches(input.next_nearest, "Next-nearest neighbours");
+}
+
 } // namespace
 
 support::ExitCode run_continuum(const input::Options &options)
@@ -384,16 +412,8 @@ support::ExitCode run_continuum(const input::Options &options)
       parameters.error(name, "`latcon continuum` does not support damage, `latcon verify damage` does; omit the entry");
   if (moves && !(input.end_time > 0.))
     parameters.error("Time/end", "motion needs an end time larger than 0", {"Continuum/solution"});
-  // An equilibrium is that of the relaxed sheet.
-  for (const auto &[shell, section, is_present] :
-       {std::tuple(&input.nearest, "Nearest neighbours", true),
-        std::tuple(&input.next_nearest, "Next-nearest neighbours", input.has_next_nearest)})
-    if (moves && is_present && !shell->branch_moduli.empty())
-      parameters.error(std::string(section) + "/branch moduli",
-                       "motion of finite elements has no Maxwell branches; omit them, or give solution = equilibrium",
-                       {"Continuum/solution"});
   if (moves && input.continuum.time_step && parameters.good())
-    resources::check_steps(input, *input.continuum.time_step, parameters);
+    check_time_step(input, *input.continuum.time_step, parameters);
   parameters.finish();
 
   const resources::ContinuumSize size = resources::continuum_size(input);
@@ -404,7 +424,7 @@ support::ExitCode run_continuum(const input::Options &options)
   bridge::ContinuumModel model(input);
   if (moves && !input.continuum.time_step)
   {
-    resources::check_steps(input, motion_time_step(input, model), parameters);
+    check_time_step(input, motion_time_step(input, model), parameters);
     parameters.finish();
   }
   std::optional<Motion> motion;

@@ -322,8 +322,8 @@ void ContinuumCase::declare(Parameters &p)
         "relative residual at which Newton's method stops, not below its round-off");
   p.add(
     "Continuum", "direct limit", direct_limit, Between{0., 1e7},
-    "largest number of unknowns for the direct solver; above it multigrid with conjugate gradients or, with viscosity, "
-    "GMRES");
+    "largest number of unknowns for the direct solver; above it multigrid with conjugate gradients or, with viscosity "
+    "or Maxwell branches, GMRES");
   p.add("Continuum", "solution", solution, {{"equilibrium", Solution::equilibrium}, {"motion", Solution::motion}},
         "what `latcon continuum` computes: static equilibrium, or the motion until the end time");
   p.add("Continuum", "time step", time_step, Magnitude{}, "s",

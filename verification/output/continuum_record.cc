@@ -67,8 +67,11 @@ void ContinuumRecord::newton(const continuum::SolverReport &report)
 
 void ContinuumRecord::motion(const continuum::DynamicSolver &solver)
 {
-  if (motion_.empty() || motion_.back().time < solver.time())
-    motion_.push_back({solver.time(), solver.ledger()});
+  if (!motion_.empty() && !(motion_.back().time < solver.time()))
+    return;
+  motion_.push_back({solver.time(), solver.ledger()});
+  for (const continuum::BranchEnergy &branch : solver.branch_energies())
+    branch_energies_.insert(branch_energies_.end(), {branch.stored, branch.dissipated});
 }
 
 double ContinuumRecord::last_time() const
@@ -83,6 +86,8 @@ void ContinuumRecord::check_loaded() const
   for (std::size_t row = 1; row < motion_.size(); ++row)
     if (!(motion_[row].time > motion_[row - 1].time))
       throw std::invalid_argument("times of `motion` do not increase");
+  if (branch_energies_.size() != 2 * branches_.size() * motion_.size())
+    throw std::invalid_argument("the number of `branch_energies` does not match `motion`");
 }
 
 double ContinuumRecord::largest_reaction() const
@@ -105,7 +110,11 @@ void ContinuumRecord::write(const std::string &directory) const
     write_file(directory + "/energy.csv",
                [this](std::ostream &out)
                {
-                 out << "t,elastic,kinetic,micro_inertia,viscous,boundary_work,imbalance\n";
+                 out << "t,elastic,kinetic,micro_inertia,viscous,boundary_work,imbalance";
+                 for (const std::string &branch : branches_)
+                   out << "," << branch << "_stored," << branch << "_dissipated";
+                 out << "\n";
+                 auto of_branch = branch_energies_.begin();
                  for (const auto &[time, ledger] : motion_)
                  {
                    const char *separator = "";
@@ -115,6 +124,8 @@ void ContinuumRecord::write(const std::string &directory) const
                      out << separator << support::full_precision(value);
                      separator = ",";
                    }
+                   for (std::size_t i = 0; i < 2 * branches_.size(); ++i)
+                     out << "," << support::full_precision(*of_branch++);
                    out << "\n";
                  }
                });

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "continuum/dynamic_solver.h"
@@ -13,6 +14,9 @@ namespace latcon::output
 class ContinuumRecord
 {
 public:
+  /// @param branches names of the Maxwell branches of a motion in the columns of energy.csv, as mechanism_names() gives
+  explicit ContinuumRecord(std::vector<std::string> branches = {}) : branches_(std::move(branches)) {}
+
   /// Records load factor, energy and reactions of an equilibrium. Replaces that of the same load factor on a coarser
   /// mesh.
   void equilibrium(const continuum::StaticSolver &solver);
@@ -34,12 +38,14 @@ public:
   /// Returns the time of the last recorded state of a motion [s]; minus infinity before the first.
   double last_time() const;
 
-  /// Saves or loads the recorded states of a motion. @throws std::invalid_argument if there are none, or if their times
-  /// do not increase
+  /// Saves or loads the recorded states of a motion. @throws std::invalid_argument if there are none, if their times do
+  /// not increase, or if their branches are not those of the record
   template <class Archive>
   void archive(Archive &archive)
   {
     archive.records("motion", motion_);
+    if (!branches_.empty())
+      archive("branch_energies", branch_energies_);
     if constexpr (Archive::loads)
       check_loaded();
   }
@@ -82,6 +88,8 @@ private:
   std::vector<MeshRow> meshes_;
   std::vector<std::pair<std::size_t, continuum::NewtonIteration>> iterations_; // with the index of the mesh, from 0
   std::vector<MotionRow> motion_;
+  std::vector<std::string> branches_;
+  std::vector<double> branch_energies_; // stored and dissipated, per branch and state of the motion [J/m]
 };
 
 /// Returns the name of an edge: "left", "right", "bottom", "top", "inner", or its number.

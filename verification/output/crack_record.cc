@@ -14,6 +14,7 @@
 #include "support/full_precision.h"
 #include "support/largest_error.h"
 #include "verification/analysis/fragments.h"
+#include "verification/output/mechanism_names.h"
 #include "verification/output/output_file.h"
 
 namespace latcon::output
@@ -65,17 +66,9 @@ FastestSite fastest_site(const lattice::Simulation &simulation)
 
 } // namespace
 
-CrackRecord::CrackRecord(lattice::Simulation &simulation) : simulation_(simulation)
+CrackRecord::CrackRecord(lattice::Simulation &simulation)
+  : simulation_(simulation), mechanisms_(mechanism_names(simulation.material()))
 {
-  const lattice::Material &material = simulation.material();
-  const auto add = [&](const std::string &shell, const lattice::Shell &bonds)
-  {
-    for (std::size_t m = 1; m <= lattice::n_mechanisms(bonds.memory); ++m)
-      mechanisms_.push_back(shell + "_branch_" + std::to_string(m));
-  };
-  add("nearest", material.nearest);
-  if (material.next_nearest)
-    add("next_nearest", *material.next_nearest);
 }
 
 void CrackRecord::start()

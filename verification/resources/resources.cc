@@ -242,7 +242,13 @@ MemoryNeed continuum_memory(const input::Case &input, const ContinuumSize &size)
                           (c.solution == input::ContinuumCase::Solution::motion ? 30. : 0.);
   const double of_factor = has_face_terms ? 85. : 50.;
   const double fill = 1. + 0.15 * std::max(0., std::log2(size.coarse_unknowns / 2e4));
-  return {size.final_unknowns * (of_unknown + entries * of_entry) + size.coarse_unknowns * entries * of_factor * fill,
+  // Branches: a stretch per direction and an overstress per branch at each quadrature point, as per bond of a site; the
+  // history, that of the start of the step, that of its end, and the image of a checkpoint.
+  const double of_history = c.solution == input::ContinuumCase::Solution::motion
+                              ? 4. * size.cells * std::pow(c.degree + 1., 2) * history_per_place(input.material())
+                              : 0.;
+  return {size.final_unknowns * (of_unknown + entries * of_entry) + size.coarse_unknowns * entries * of_factor * fill +
+            of_history,
           0.};
 }
 

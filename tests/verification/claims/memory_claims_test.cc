@@ -89,6 +89,7 @@ std::ostream &operator<<(std::ostream &out, const PlantedFault &fault)
 {
   return out << fault.name;
 }
+constexpr const char *opposite_sign = "overstress of the opposite sign";
 const std::vector<PlantedFault> &planted_faults()
 {
   static const std::vector<PlantedFault> faults{
@@ -99,7 +100,7 @@ const std::vector<PlantedFault> &planted_faults()
                                                               [](auto &b) {
                                                                 b.push_back({1e5, 1e-4});
                                                               }); }},
-    {"overstress of the opposite sign", with_opposite_sign}};
+    {opposite_sign, with_opposite_sign}};
   return faults;
 }
 
@@ -127,7 +128,7 @@ TEST(Relaxation, FollowsTheClosedForm)
     {
       const ClaimOutcome outcome = relaxation_claim(subject(input, material), {});
       EXPECT_TRUE(outcome.results.all_hold()) << failing(outcome);
-      EXPECT_EQ(outcome.results.rows().size(), 10u); // five for each integrator
+      EXPECT_EQ(outcome.results.rows().size(), 15u); // five for each integrator, and for finite elements
     }
 }
 
@@ -154,6 +155,13 @@ TEST(Relaxation, FailsForWrongBranches)
     for (const char *quantity :
          {"velocity Verlet, first Piola stress", "Chebyshev, first Piola stress", "energy stored", "energy dissipated"})
       EXPECT_NE(rows.find(quantity), std::string::npos) << fault << ": " << quantity;
+    // Memories of other programs have no continuum.
+    if (std::string(fault.name) == opposite_sign)
+      EXPECT_NE(rows.find("finite elements"), std::string::npos) << fault;
+    else
+      for (const char *quantity : {"first Piola stress", "energy stored", "energy dissipated"})
+        EXPECT_NE(rows.find("finite elements, " + std::string(quantity)), std::string::npos)
+          << fault << ": " << quantity;
   }
 }
 
@@ -196,6 +204,7 @@ TEST(MemoryWaves, AreThoseOfDashpotsWithoutBranches)
   }
 }
 
+// theory.md, eq. (L.30) on the lattice; theory-viscoelastic.md, eqs. (V.6) and (V.8) in finite elements.
 TEST(ViscoelasticWaves, FollowTheComplexModulus)
 {
   const input::Case input = case_with_branches();
@@ -203,7 +212,7 @@ TEST(ViscoelasticWaves, FollowTheComplexModulus)
   options.states.push_back(input.deformation());
   const ClaimOutcome outcome = viscoelastic_waves_claim(subject(input), options);
   EXPECT_TRUE(outcome.results.all_hold()) << failing(outcome);
-  EXPECT_EQ(outcome.results.rows().size(), 14u);
+  EXPECT_EQ(outcome.results.rows().size(), 30u);
   const ClaimOutcome nearest = viscoelastic_waves_claim(subject(input, subjects::nearest_only(input)), waves_at_rest());
   EXPECT_TRUE(nearest.results.all_hold()) << failing(nearest);
 }
@@ -216,7 +225,9 @@ TEST(ViscoelasticWaves, FailForWrongBranches)
     options.planted = fault.plant;
     const std::string rows = failing(viscoelastic_waves_claim(subject(case_with_branches()), options));
     for (const char *quantity :
-         {"one branch, frequency, lattice", "one branch, decay", "own branches, frequency", "own branches, decay"})
+         {"one branch, frequency, lattice", "one branch, decay, lattice", "own branches, frequency, lattice",
+          "own branches, decay, lattice", "one branch, frequency, finite", "one branch, decay, finite",
+          "own branches, frequency, finite", "own branches, decay, finite"})
       EXPECT_NE(rows.find(quantity), std::string::npos) << fault << ": " << quantity;
   }
 }

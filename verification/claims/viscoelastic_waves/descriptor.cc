@@ -14,7 +14,10 @@ ClaimOutcome check(const ClaimInput &input)
   ViscoelasticWavesOptions options;
   options.states = wave_states(input.subject, input.quick);
   if (!input.quick)
+  {
     options.frequencies = {0.03, 0.1, 0.2, 0.4, 0.6, 0.8, 1., 1.25, 1.7, 2.5, 5., 10., 30.};
+    options.element_frequencies = {0.1, 0.3, 1., 3., 10.};
+  }
   ClaimOutcome outcome = viscoelastic_waves_claim(input.subject, options);
   if (!input.subject.is_stable())
     outcome.results.add(stability_row(input.subject, "viscoelastic-waves"));
@@ -29,7 +32,8 @@ Claim viscoelastic_waves_descriptor()
   claim.name = "viscoelastic-waves";
   claim.title = "a spectrum of relaxation times disperses and damps waves";
   claim.statement =
-    "Waves in a lattice whose bonds have Maxwell branches have the frequency and the decay of its complex modulus: "
+    "Waves in a lattice whose bonds have Maxwell branches, and in finite elements of its continuum, have the frequency "
+    "and the decay of the complex modulus: "
     "their speed lies between the rubbery and the glassy limit, and they decay fastest at w tau near 1.";
   claim.check = check;
   claim.required_rows = {
@@ -39,7 +43,16 @@ Claim viscoelastic_waves_descriptor()
     ", F = I: one branch, w tau at the largest decay, worst of both waves",
     ", F = I: frequency in the rubbery limit, lattice against local continuum, worst of both waves",
     ", F = I: own branches, frequency, lattice run against complex modulus, worst of all waves",
-    ", F = I: own branches, decay, lattice run against complex modulus, worst of all waves, error over the frequency"};
+    ", F = I: own branches, decay, lattice run against complex modulus, worst of all waves, error over the frequency",
+    ", F = I: one branch, frequency, finite elements against complex modulus, worst of all waves",
+    ", F = I: one branch, decay, finite elements against complex modulus, worst of all waves, error over the frequency",
+    ", F = I: one branch, energy imbalance of finite elements over its bound, worst of all waves",
+    ", F = I: one branch, frequency of finite elements below the rubbery or above the glassy limit, worst of all waves",
+    ", F = I: one branch, w tau at the largest decay of finite elements, worst of both waves",
+    ", F = I: own branches, frequency, finite elements against complex modulus, worst of all waves",
+    ", F = I: own branches, decay, finite elements against complex modulus, worst of all waves, error over the "
+    "frequency",
+    ", F = I: own branches, energy imbalance of finite elements over its bound, worst of all waves"};
   claim.is_about_memory = true;
   return claim;
 }
