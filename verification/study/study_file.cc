@@ -261,9 +261,9 @@ private:
     constexpr std::size_t max_refine = 6; // spacings below a hundredth of the grid's
     if (!place.value().is_number_unsigned() || place.value().get<std::uint64_t>() > max_refine)
       place.problem("must be a whole number from 0 to " + std::to_string(max_refine));
-    else if (study_.swept.empty())
+    else if (place.value() > 0 && study_.swept.empty())
       place.problem("needs the key 'sweep'" + owner);
-    else if (!is_continuous_)
+    else if (place.value() > 0 && !is_continuous_)
       place.problem("needs sweeps of numbers that are not whole");
     else if (owner.empty() || quick_)
       study_.refine = place.value().get<std::size_t>();
