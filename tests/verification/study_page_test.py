@@ -11,6 +11,7 @@ from pathlib import Path
 from unittest import mock
 
 import numpy as np
+from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgb
 from PIL import Image
 
@@ -266,7 +267,7 @@ class Maps(MadeUpStudy):
         np.testing.assert_allclose(boxes, [(x, y, 1, 100) for x in (0.5, 1.5, 2.5) for y in (50, 150)])
         self.assertEqual([patch.get_facecolor()[:3] for patch in axes.patches],
                          [to_rgb(phase_map.COLOURS["straight"])] * 2 + [to_rgb(phase_map.COLOURS["oscillating"])] * 4)
-        self.assertEqual(legend, ["oscillating", "straight"])
+        self.assertEqual(legend, ["oscillating", "straight", "boundary"])
         self.assertEqual(axes.get_title(loc="left"), "contours: wavelength [cm]")
         self.assertIn("Patterns over Sheet/width and Sheet/depth", caption)
 
@@ -276,7 +277,7 @@ class Maps(MadeUpStudy):
         self.assertEqual(widths, [1, 1, 1, 0.5, 0.5, 1])  # the fifth cell was not measured
         (mixed, unmeasured) = axes.lines[-2:]
         self.assertEqual((mixed.get_xydata().tolist(), unmeasured.get_xydata().tolist()), ([[2, 200]], [[3, 100]]))
-        self.assertEqual(legend[2:], ["seeds disagree", "not measured"])
+        self.assertEqual(legend[2:], ["boundary", "seeds disagree", "not measured"])
 
     def test_map_shows_points_of_a_refinement_and_the_boundary(self):
         grid, middle = list(self.GRID.values()), ([0.015, 0.015, 0.02], [1.0, 2.0, 1.5])
@@ -292,7 +293,8 @@ class Maps(MadeUpStudy):
         self.assertEqual(boxes[:6], [(x, y, 1, 100) for x in (0.5, 1.5, 2.5) for y in (50, 150)])
         self.assertEqual(boxes[6:], [(1.25, 75, 0.5, 50), (1.25, 175, 0.25, 50), (1.5, 175, 0.25, 50), (1.75, 125, 0.5, 50)])
         # At the depth of 100 cm between 1.5 and 2 cm, at 200 cm between 1 and 2 cm, since the point between them is mixed.
-        bars = [segment for collection in axes.collections for segment in collection.get_segments()]
+        bars = [segment for collection in axes.collections if isinstance(collection, LineCollection)
+                for segment in collection.get_segments()]
         np.testing.assert_allclose(bars, [[[1.5, 100], [2, 100]], [[1, 200], [2, 200]]])
         self.assertIn("boundary", [text.get_text() for text in axes.figure.legends[0].get_texts()])
 
