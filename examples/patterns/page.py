@@ -23,7 +23,8 @@ from pictures import BLACK, BLUE, RED, WIDTH, Page, save
 
 ENTRIES = {"strain_x": "Loading/strain x", "strain_y": "Loading/strain y", "viscosity": "Nearest neighbours/viscosity"}
 VALUES = ("speed_lagrangian", "wavelength", "amplitude", "periods", "window_begin")
-COLUMNS = ("run", "seed", *ENTRIES, "pattern", *VALUES)
+COLUMNS = ("run", "seed", *ENTRIES, "pattern", *VALUES, "departure")
+LEFT = 1.2 * 0.625e-3  # distance from the first row at which a tip has left it [m]; neighbouring rows are 0.87 d apart
 
 
 def entries(case):
@@ -39,6 +40,13 @@ def entries(case):
     return found
 
 
+def departure(path):
+    """Advance of the tip until it has left its first row by more than LEFT [m]; None if it has not."""
+    with path.open(encoding="utf-8", newline="") as file:
+        tips = [(float(row["X"]), float(row["Y"])) for row in csv.DictReader(file)]
+    return next((X - tips[0][0] for X, Y in tips if abs(Y - tips[0][1]) > LEFT), None)
+
+
 def record(path, studies):
     """Writes the measured runs of studies, SI units, four digits, sorted by name and seed."""
     lines = {}
@@ -48,7 +56,8 @@ def record(path, studies):
         case = entries(crack.parent / "case.prm")
         lines[run, int(seed)] = [
             run, seed, *(f"{float(case[key]):g}" for key in ENTRIES.values()), measured["pattern"],
-            *("" if measured[name] is None else f"{measured[name]:.4g}" for name in VALUES)]
+            *("" if value is None else f"{value:.4g}"
+              for value in (*(measured[name] for name in VALUES), departure(crack.with_name("crack.csv"))))]
     with path.open("w", encoding="utf-8", newline="") as file:
         csv.writer(file, lineterminator="\n").writerows([COLUMNS, *(lines[key] for key in sorted(lines))])
 
