@@ -11,6 +11,7 @@ from pathlib import Path
 from unittest import mock
 
 import numpy as np
+from matplotlib.collections import LineCollection
 from matplotlib.colors import to_rgb
 from PIL import Image
 
@@ -266,7 +267,7 @@ class Maps(MadeUpStudy):
         np.testing.assert_allclose(boxes, [(x, y, 1, 100) for x in (0.5, 1.5, 2.5) for y in (50, 150)])
         self.assertEqual([patch.get_facecolor()[:3] for patch in axes.patches],
                          [to_rgb(phase_map.COLOURS["straight"])] * 2 + [to_rgb(phase_map.COLOURS["oscillating"])] * 4)
-        self.assertEqual(legend, ["oscillating", "straight"])
+        self.assertEqual(legend, ["oscillating", "straight", "boundary"])
         self.assertEqual(axes.get_title(loc="left"), "contours: wavelength [cm]")
         self.assertIn("Patterns over Sheet/width and Sheet/depth", caption)
 
@@ -276,7 +277,54 @@ class Maps(MadeUpStudy):
         self.assertEqual(widths, [1, 1, 1, 0.5, 0.5, 1])  # the fifth cell was not measured
         (mixed, unmeasured) = axes.lines[-2:]
         self.assertEqual((mixed.get_xydata().tolist(), unmeasured.get_xydata().tolist()), ([[2, 200]], [[3, 100]]))
-        self.assertEqual(legend[2:], ["seeds disagree", "not measured"])
+        self.assertEqual(legend[2:], ["boundary", "seeds disagree", "not measured"])
+
+    def test_map_shows_points_of_a_refinement_and_the_boundary(self):
+        grid, middle = list(self.GRID.values()), ([0.015, 0.015, 0.02], [1.0, 2.0, 1.5])
+        self.vary({name: values + more for name, values, more in zip(self.GRID, grid, middle)},
+                  [self.CALM] * 2 + [self.WAVY] * 4 + [self.CALM, ("straight", "oscillating"), self.WAVY])
+        for run in self.document["runs"][6:]:
+            run["level"] = 1
+        with mock.patch.object(phase_map, "save", wraps=phase_map.save) as saved:
+            study_plots.draw_map(self.read(), self.folder / "map.png")
+        axes = saved.call_args.args[0].axes[0]
+        boxes = [tuple(round(number, 9) for number in patch.get_bbox().bounds) for patch in axes.patches]
+        # The cells of the grid are those of the map without the refinement; a cell whose seeds disagree is divided.
+        self.assertEqual(boxes[:6], [(x, y, 1, 100) for x in (0.5, 1.5, 2.5) for y in (50, 150)])
+        self.assertEqual(boxes[6:], [(1.25, 75, 0.5, 50), (1.25, 175, 0.25, 50), (1.5, 175, 0.25, 50), (1.75, 125, 0.5, 50)])
+        # At the depth of 100 cm between 1.5 and 2 cm, at 200 cm between 1 and 2 cm, since the point between them is mixed.
+        bars = [segment for collection in axes.collections if isinstance(collection, LineCollection)
+                for segment in collection.get_segments()]
+        np.testing.assert_allclose(bars, [[[1.5, 100], [2, 100]], [[1, 200], [2, 200]]])
+        self.assertIn("boundary", [text.get_text() for text in axes.figure.legends[0].get_texts()])
+
+    def brackets(self, patterns, values=(0, 1, 2, 3, 4), levels=None):
+        cells = [phase_map.Cell(x, 5.0, dict.fromkeys(both, 1), level=level)
+                 for x, both, level in zip(values, patterns, levels or [0] * len(patterns))]
+        return [(found.low, found.high, *found.patterns) for found in phase_map.brackets(cells)]
+
+    def test_boundary_lies_between_the_nearest_points_that_are_clear(self):
+        a, b, mixed, unclear, none = {"straight"}, {"oscillating"}, {"straight", "oscillating"}, {"undecided"}, {}
+        self.assertEqual(self.brackets([a, a, b, b]), [(1, 2, "straight", "oscillating")])
+        self.assertEqual(self.brackets([a, mixed, unclear, b, a]), [(0, 3, "straight", "oscillating"),
+                                                                    (3, 4, "oscillating", "straight")])
+        self.assertEqual(self.brackets([a, a, mixed, a]), [])
+        self.assertEqual(self.brackets([a, none, b]), [])  # nothing was measured in between
+        self.assertEqual(self.brackets([a, b, b], (0, 1, 0.5), (0, 0, 1)), [(0, 0.5, "straight", "oscillating")])
+
+    def test_sweep_shows_the_power_law_of_a_row(self):
+        self.vary({"Sheet/width": [0.01, 0.02, 0.03]}, [self.CALM, self.WAVY, self.WAVY])
+        fit = {"exponent": {"value": 0.5}, "onset": {"value": 0.01}, "prefactor": 0.2, "p_fit": 0.5}
+        row = made_up_row(["r0", "r1", "r2"], "wavelength", against="Sheet/width", onset=fit)
+        for value, width in zip(row["values"], (0.01, 0.02, 0.03)):
+            value["against"] = width
+        row["against_unit"] = "m"
+        self.document["claims"] = [{"claim": "It does", "paper": "", "note": "", "verdict": "holds", "rows": [row]}]
+        with mock.patch.object(study_plots, "save", wraps=study_plots.save) as saved:
+            study.draw_sweeps(self.read(), 0, self.document["claims"][0], self.folder)
+        (curve,) = [line for line in saved.call_args.args[0].axes[0].lines if len(line.get_xdata()) == 200]
+        np.testing.assert_allclose(curve.get_xdata()[[0, -1]], [1, 3])
+        np.testing.assert_allclose(curve.get_ydata()[[0, -1]], [0, 100 * 0.2 * 0.02 ** 0.5], atol=1e-12)
 
     def test_study_of_two_entries_shows_the_map_and_needs_no_claim(self):
         self.vary(self.GRID, [self.CALM] * 3 + [self.WAVY] * 3)

@@ -83,6 +83,14 @@ void write_sweep(const RequestedStudy &requested)
   write(requested.file, requested.sweep_text);
 }
 
+void require_no_refinement(const study::Study &study)
+{
+  if (study.refine > 0)
+    throw support::InputError(study.file + ": refine = " + std::to_string(study.refine) +
+                              ": a refined study does not run in shards, because its points depend on the patterns of "
+                              "others; allowed: 0, or latcon study without --shard and --collect");
+}
+
 void require_folder_of(const study::Study &study, const std::string &directory)
 {
   for (const auto &[file, key] :

@@ -37,4 +37,8 @@ void write_sweep(const RequestedStudy &requested);
 /// Refuses an output directory with the results of another study. @throws InputError
 void require_folder_of(const study::Study &study, const std::string &directory);
 
+/// Refuses a study whose runs depend on the outcomes of others, and that cannot run in shards therefore.
+/// @throws InputError
+void require_no_refinement(const study::Study &study);
+
 } // namespace latcon::commands

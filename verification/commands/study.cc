@@ -20,6 +20,7 @@
 #include "verification/output/progress.h"
 #include "verification/resources/resources.h"
 #include "verification/study/process_pool.h"
+#include "verification/study/refinement.h"
 #include "verification/study/shard.h"
 #include "verification/study/study_output.h"
 
@@ -236,6 +237,35 @@ resources::MemoryNeed memory_of(const std::vector<study::PlannedRun> &plan, std:
   return {std::accumulate(needs.begin(), needs.end(), 0.), 0.};
 }
 
+// Runs the points between neighbours of the sweep that differ, level by level. @return whether all runs ended
+bool refine_sweep(study::StudyResults &results, const RequestedStudy &requested, Selection selection,
+                  bool skip_verification, std::size_t n_cores, Run &run)
+{
+  for (std::size_t level = 1; level <= results.study.refine; ++level)
+  {
+    study::Study added = results.study;
+    added.claims.clear();
+    added.runs = study::refined_runs(results.study, results.plan, results.outcomes, level);
+    const std::vector<study::PlannedRun> plan = study::plan_runs(added, requested.base, requested.settings);
+    selection.runs.clear();
+    for (const study::PlannedRun &planned : plan)
+    {
+      selection.runs.push_back(results.plan.size());
+      results.plan.push_back(planned);
+      results.outcomes.emplace_back();
+      results.outcomes.back().run = planned.run;
+      results.outcomes.back().seed = planned.seed;
+    }
+    results.study.runs.insert(results.study.runs.end(), added.runs.begin(), added.runs.end());
+    if (run.is_verbose())
+      std::cout << "refinement " << level << ": " << added.runs.size() << " cases between neighbours that differ"
+                << std::endl;
+    if (!run_children(results, selection, skip_verification, n_cores, run))
+      return false;
+  }
+  return true;
+}
+
 support::ExitCode exit_code_of(const study::StudyResults &results, const output::Results &rows)
 {
   const auto any = [&](study::RunState state)
@@ -337,10 +367,13 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
     throw support::InputError("`latcon study` starts its own processes, one a core; run it without mpirun");
   if (chosen.collect && !chosen.shard.empty())
     throw support::InputError("--collect judges the runs of all shards; give it without --shard");
+  const bool in_shards = chosen.collect || !chosen.shard.empty();
   const study::Shard shard = chosen.shard.empty() ? study::Shard() : study::parse_shard(chosen.shard);
   study::StudyResults results;
   const RequestedStudy requested = read_requested_study(options, chosen.study, chosen.sweep);
   results.study = requested.study;
+  if (in_shards)
+    require_no_refinement(results.study);
   results.plan = study::plan_runs(results.study, requested.base, requested.settings);
   for (const study::PlannedRun &planned : results.plan)
   {
@@ -399,7 +432,9 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
   run.info().add("study", results.study.title);
   if (options.quick && !options.skip_verification && !chosen.collect)
     verify_base(results.study, requested.base, requested.settings, run);
-  const bool complete = chosen.collect || run_children(results, selection, skip_verification, n_cores, run);
+  const bool complete =
+    chosen.collect || (run_children(results, selection, skip_verification, n_cores, run) &&
+                       refine_sweep(results, requested, selection, skip_verification, n_cores, run));
   if (!chosen.shard.empty())
     return run.end({}, complete ? exit_code_of(results, {}) : support::ExitCode::interrupted);
   return judge_runs(results, options, complete, run);

@@ -85,7 +85,8 @@ def draw_sweeps(study, number, claim, folder):
     for sweep in sweeps_of(claim["rows"]):
         quantities = asked_quantities(sweep)
         png = folder / f"sweep-{number + 1}-{len(drawn) + 1}.png"
-        if draw_sweep(study, sweep[0], quantities, png):
+        onsets = {row["quantity"]: row["onset"] for row in sweep if row.get("onset")}
+        if draw_sweep(study, sweep[0], quantities, png, onsets):
             names = ", ".join(name.replace("_", " ") for name in quantities)
             drawn.append((sweep_caption(names, sweep[0]["against"]), png))
     return drawn

@@ -41,13 +41,14 @@ def draw_map(study, path):
     means = {quantity: [mean_of(seeds, quantity) for _, _, seeds in study.runs.values()] for quantity in CONTOURS}
     quantity = next((name for name in CONTOURS if any(means[name])), CONTOURS[0])
     scale, label = quantity_axis(quantity, study.document["units"][quantity])
-    cells = [Cell(x_unit * x, y_unit * y, patterns_of(seeds), scale * mean.mean if mean else None)
-             for x, y, (_, _, seeds), mean in zip(varied[0]["values"], varied[1]["values"], study.runs.values(),
-                                                  means[quantity])]
+    cells = [Cell(x_unit * x, y_unit * y, patterns_of(seeds), scale * mean.mean if mean else None, study.levels[name])
+             for x, y, (name, (_, _, seeds)), mean in zip(varied[0]["values"], varied[1]["values"], study.runs.items(),
+                                                          means[quantity])]
     if not draw_phase_map(cells, x_label, y_label, path, label):
         return None
     return (f"Patterns over {varied[0]['entry']} and {varied[1]['entry']}. A cell whose seeds disagree is divided between "
-            f"their patterns and has a dot. Contours, where neighbouring cells have one: {label}, mean over the seeds.")
+            f"their patterns and has a dot. Bars: between the nearest points on a line at which all seeds show one pattern and "
+            f"another, the boundary with its uncertainty. Contours, where neighbouring cells have one: {label}, mean over the seeds.")
 
 
 def draw_paths(study, names, path):
@@ -79,8 +80,9 @@ def pattern_text(seeds):
     return ", ".join(f"{pattern} {count}/{len(seeds)}" for pattern, count in patterns_of(seeds).items()) or "not run"
 
 
-def draw_sweep(study, row, quantities, path):
-    """Draws quantities against the abscissa of a row, one panel each. @return whether any run was measured"""
+def draw_sweep(study, row, quantities, path, onsets=None):
+    """Draws quantities against the abscissa of a row, one panel each, with the power laws that were fitted to them,
+    {quantity: "onset" of a row}. @return whether any run was measured"""
     points = [(value["against"], study.runs[value["run"]][2]) for value in row["values"]
               if value["against"] is not None]
     points = [(x, seeds) for x, seeds in points if patterns_of(seeds)]
@@ -99,6 +101,8 @@ def draw_sweep(study, row, quantities, path):
             y, error = (scale * found.mean, scale * found.deviation) if found else (0.0, 0.0)
             axes.errorbar(x, y, yerr=error, marker=marker, color=colour, capsize=3, markersize=6, linestyle="none",
                           markerfacecolor=colour if found else "white")
+        if onsets and quantity in onsets:
+            draw_onset(axes, onsets[quantity], unit, scale, max(x for x, _ in points))
         axes.set(xlabel=name, ylabel=label)
         if axes.get_ylim()[0] >= 0:  # the axis begins at 0 unless values are negative
             top = max(axes.get_ylim()[1], 1e-12)
@@ -110,6 +114,13 @@ def draw_sweep(study, row, quantities, path):
                               loc="upper left", bbox_to_anchor=(LEFT / WIDTH, 1), ncol=4)
     save(panels.page.figure, path)
     return True
+
+
+def draw_onset(axes, fit, unit, scale, end):
+    """Draws the power law of a row above its onset, from there to `end`."""
+    distance = np.linspace(0, end / unit - fit["onset"]["value"], 200)
+    axes.plot(unit * (fit["onset"]["value"] + distance), scale * fit["prefactor"] * distance ** fit["exponent"]["value"],
+              color=GREY, linewidth=1)
 
 
 def legend_entry(pattern):

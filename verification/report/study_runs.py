@@ -40,6 +40,11 @@ class Study:
         return self.document.get("varied", [])
 
     @property
+    def levels(self):
+        """Level of refinement of each run: {name: level}."""
+        return {run["run"]: run.get("level", 0) for run in self.document["runs"]}
+
+    @property
     def abscissas(self):
         """Entries over which the page may begin with a map or plot: those that the runs of a sweep vary, if all values
         are numbers and no point occurs twice; none for studies without a sweep."""

@@ -5,12 +5,10 @@
 #include <filesystem>
 #include <map>
 #include <set>
-#include <stdexcept>
 
 #include "support/errors.h"
 #include "verification/input/case.h"
 #include "verification/input/case_text.h"
-#include "verification/input/data_folder.h"
 #include "verification/input/input_file.h"
 #include "verification/study/quantities.h"
 #include "verification/study/study_check.h"
@@ -63,7 +61,8 @@ public:
   {
     const nlohmann::ordered_json document = parse_json(text, study_.file);
     const JsonPlace top(document, study_.file, "", problems_);
-    top.is_object({"title", "base", "set", "seeds", "quick", "sweep", "runs", "claims", "checks", "pictures"});
+    top.is_object(
+      {"title", "base", "set", "seeds", "quick", "sweep", "refine", "runs", "claims", "checks", "pictures"});
     if (const auto title = top.required("title"))
       study_.title = title->text();
     if (const auto base = top.required("base"))
@@ -71,13 +70,16 @@ public:
     whole_ = change(top);
     if (top.has("quick"))
     {
-      top.at("quick").is_object({"set", "seeds", "sweep"});
+      top.at("quick").is_object({"set", "seeds", "sweep", "refine"});
       quick_change_ = change(top.at("quick"));
     }
     study_.settings = whole_.set;
     if (quick_)
       override_settings(study_.settings, quick_change_.set);
     sweeps(top);
+    refinement(top, "");
+    if (top.has("quick"))
+      refinement(top.at("quick"), " of the study");
     if (const auto runs = top.has("sweep") && !top.has("runs") ? std::nullopt : top.required("runs"))
     {
       for (const auto &[name, place] : runs->members())
@@ -212,6 +214,7 @@ private:
       run.all = study_.settings;
       override_settings(run.all, run.own);
       run.seeds = quick_ ? quick_seeds : seeds;
+      run.is_swept = true;
       names.insert(run.name);
       names_.push_back(run.name);
       study_.runs.push_back(std::move(run));
@@ -236,7 +239,10 @@ private:
       std::vector<SweptCase> cases = combinations(found, n_seeds);
       for (const Sweep &of_entry : found)
         if (is_run)
+        {
           study_.swept.push_back(of_entry.entry);
+          is_continuous_ = is_continuous_ && is_continuous(of_entry);
+        }
       return cases;
     }
     catch (const support::InputError &error)
@@ -244,6 +250,23 @@ private:
       place.problem(error.what());
       return {};
     }
+  }
+
+  // Reads the number of refinements of the study, or of its quick version.
+  void refinement(const JsonPlace &of, const std::string &owner)
+  {
+    if (!of.has("refine"))
+      return;
+    const JsonPlace place = of.at("refine");
+    constexpr std::size_t max_refine = 6; // spacings below a hundredth of the grid's
+    if (!place.value().is_number_unsigned() || place.value().get<std::uint64_t>() > max_refine)
+      place.problem("must be a whole number from 0 to " + std::to_string(max_refine));
+    else if (place.value() > 0 && study_.swept.empty())
+      place.problem("needs the key 'sweep'" + owner);
+    else if (place.value() > 0 && !is_continuous_)
+      place.problem("needs sweeps of numbers that are not whole");
+    else if (owner.empty() || quick_)
+      study_.refine = place.value().get<std::size_t>();
   }
 
   void checks(const JsonPlace &place)
@@ -282,7 +305,7 @@ private:
     StudyRow row;
     row.place = place.place();
     if (!place.is_object({"run", "runs", "quantity", "is", "is near", "tolerance", "above", "below", "rises", "falls",
-                          "bracket", "against", "quick"}))
+                          "bracket", "onset exponent", "against", "quick"}))
       return row;
     if (place.has("run") == place.has("runs"))
       place.problem("a row needs either \"run\" or \"runs\"");
@@ -317,8 +340,10 @@ private:
   void read_rule(const JsonPlace &place, StudyRow &row)
   {
     static const std::map<std::string, Rule> rules{
-      {"is", Rule::is},       {"is near", Rule::is_near}, {"above", Rule::above},    {"below", Rule::below},
-      {"rises", Rule::rises}, {"falls", Rule::falls},     {"bracket", Rule::bracket}};
+      {"is", Rule::is},           {"is near", Rule::is_near},
+      {"above", Rule::above},     {"below", Rule::below},
+      {"rises", Rule::rises},     {"falls", Rule::falls},
+      {"bracket", Rule::bracket}, {"onset exponent", Rule::onset_exponent}};
     for (const auto &[key, rule] : rules)
       if (place.has(key))
       {
@@ -331,15 +356,16 @@ private:
     if (row.rule != Rule::reported && !row.quantity.empty() && of_patterns != (row.quantity == pattern_quantity))
       place.problem(of_patterns ? "this rule is only for the quantity \"pattern\""
                                 : "this rule is only for numbers, not for patterns");
-    if (place.has("tolerance") != (row.rule == Rule::is_near))
-      place.problem("\"is near\" and \"tolerance\" must be given together");
-    else if (row.rule == Rule::is_near)
+    const bool is_near = row.rule == Rule::is_near || row.rule == Rule::onset_exponent;
+    if (place.has("tolerance") != is_near)
+      place.problem("\"is near\" or \"onset exponent\" and \"tolerance\" must be given together");
+    else if (is_near)
     {
       row.tolerance = place.at("tolerance").number();
       if (!(row.tolerance > 0.))
         place.at("tolerance").problem("must be larger than 0");
     }
-    const bool along = row.rule == Rule::rises || row.rule == Rule::falls || row.rule == Rule::bracket;
+    const bool along = is_along(row.rule);
     if (along && row.against.empty())
       place.problem("this rule needs \"against\"");
     if (along && row.runs.size() == 1)
@@ -369,6 +395,11 @@ private:
       if (!place.value().is_boolean() || !place.boolean())
         place.problem("must be true");
       break;
+    case Rule::onset_exponent:
+      row.bound = place.number();
+      if (!(row.bound > 0.))
+        place.problem("must be larger than 0");
+      break;
     default:
       if (place.value().is_object())
       {
@@ -397,71 +428,13 @@ private:
   std::map<std::string, std::string> units_{{"zeta", "1"}}; // of everything that `against` can be
   std::vector<std::string> names_;                          // names of all runs of the file
   std::size_t n_swept_ = 0;                                 // the first of them, of sweeps
+  bool is_continuous_ = true;                               // the values of the sweeps
   std::vector<std::string> problems_;
   Change whole_, quick_change_;
   Study study_;
 };
 
 } // namespace
-
-void override_settings(Settings &settings, const Settings &others)
-{
-  for (const auto &[key, value] : others)
-  {
-    const auto same = [&key = key](const auto &setting) { return setting.first == key; };
-    const auto found = std::find_if(settings.begin(), settings.end(), same);
-    if (found == settings.end())
-      settings.emplace_back(key, value);
-    else
-      found->second = value;
-  }
-}
-
-std::string StudyRow::unit() const
-{
-  return quantity == pattern_quantity ? "1" : unit_of(quantity);
-}
-
-const StudyRun &Study::run(const std::string &name) const
-{
-  const auto found = std::find_if(runs.begin(), runs.end(), [&name](const StudyRun &run) { return run.name == name; });
-  if (found == runs.end())
-    throw std::logic_error("study: '" + name + "' is not a run");
-  return *found;
-}
-
-std::string entry_unit(const std::string &key)
-{
-  input::Case input;
-  input::Parameters parameters;
-  input.declare(parameters);
-  return parameters.unit(key);
-}
-
-std::vector<std::string> shipped_studies()
-{
-  std::vector<std::string> names;
-  std::error_code status;
-  for (const auto &file : std::filesystem::directory_iterator(input::data_folder() + "/studies", status))
-    if (file.path().extension() == ".json")
-      names.push_back(file.path().stem());
-  std::sort(names.begin(), names.end());
-  return names;
-}
-
-std::string study_choices()
-{
-  const std::vector<std::string> names = shipped_studies();
-  return "study file (.json)" +
-         (names.empty() ? std::string() : ", or a shipped one: " + input::comma_separated(names));
-}
-
-std::string study_path(const std::string &name)
-{
-  const std::vector<std::string> names = shipped_studies();
-  const bool is_shipped = std::find(names.begin(), names.end(), name) != names.end();
-  return is_shipped && !std::filesystem::exists(name) ? input::data_folder() + "/studies/" + name + ".json" : name;
-}
 
 Study read_study(const std::string &text, const std::string &path, const bool quick)
 {

@@ -26,20 +26,29 @@ struct StudyRun
   Settings own;                     ///< changes of this run to the base case
   Settings all;                     ///< settings of the study, overridden by `own`
   std::vector<std::uint64_t> seeds; ///< seeds of the noise: distinct, at least one
+  bool is_swept = false;            ///< true for a combination of the values of sweeps, and between those
+  std::size_t level = 0;            ///< of refinement; 0: in the file
 };
 
 /// Rule of a row. Each rule except `reported` is the key of that name in the file, with blanks for underscores.
 enum class Rule
 {
-  reported, ///< no rule: informational
-  is,       ///< every seed has the pattern
-  is_near,  ///< |mean / bound - 1| <= tolerance
-  above,    ///< mean >= bound
-  below,    ///< mean <= bound
-  rises,    ///< means rise along `against`
-  falls,    ///< means fall along `against`
-  bracket   ///< one pattern at small values of `against`, another at large values
+  reported,      ///< no rule: informational
+  is,            ///< every seed has the pattern
+  is_near,       ///< |mean / bound - 1| <= tolerance
+  above,         ///< mean >= bound
+  below,         ///< mean <= bound
+  rises,         ///< means rise along `against`
+  falls,         ///< means fall along `against`
+  bracket,       ///< one pattern at small values of `against`, another at large values
+  onset_exponent ///< |exponent of fit_onset() along `against` - bound| <= tolerance, with 95 % confidence
 };
+
+/// Returns true for the rules about runs along an abscissa, which need `against` and two runs or more.
+[[nodiscard]] constexpr bool is_along(Rule rule)
+{
+  return rule == Rule::rises || rule == Rule::falls || rule == Rule::bracket || rule == Rule::onset_exponent;
+}
 
 /// Statement about one quantity of one or more runs.
 struct StudyRow
@@ -48,11 +57,12 @@ struct StudyRow
   std::vector<std::string> runs; ///< at least one
   std::string quantity;
   Rule rule = Rule::reported;
-  std::string pattern;      ///< of `is`
-  std::string from, to;     ///< of `bracket`: patterns at small and at large values
-  double bound = 0.;        ///< of `is near`, `above`, `below`, in the SI unit of the quantity
+  std::string pattern;  ///< of `is`
+  std::string from, to; ///< of `bracket`: patterns at small and at large values
+  /// Of `is near`, `above`, `below`, in the SI unit of the quantity; the exponent of `onset exponent`.
+  double bound = 0.;
   std::string bound_run;    ///< run whose mean is the bound instead; empty if there is none
-  double tolerance = 0.;    ///< of `is near`, relative
+  double tolerance = 0.;    ///< of `is near`, relative; of `onset exponent`, absolute
   std::string against;      ///< "zeta" or an entry `Section/Name`; empty if there is none
   std::string against_unit; ///< SI unit of `against`, "1" for a pure number
   std::string unit() const; ///< returns the SI unit of the quantity; "1" for the pattern, whose number is a fraction
@@ -76,6 +86,7 @@ struct Study
   Settings settings; ///< of the whole study, for all runs
   std::vector<StudyRun> runs;
   std::vector<std::string> swept;    ///< entries that `sweep` varies
+  std::size_t refine = 0;            ///< number of refinements of the sweep, see refined_runs()
   std::vector<std::string> left_out; ///< runs of the file that the quick version omits
   std::vector<StudyClaim> claims;
   std::vector<std::string> checks;   ///< see study_checks()

@@ -68,6 +68,21 @@ Json json_of(const SeedStatistics &seeds)
   return run;
 }
 
+Json json_of(const Interval &interval)
+{
+  return {{"value", interval.value}, {"low", interval.low}, {"high", interval.high}};
+}
+
+Json json_of(const std::optional<OnsetFit> &fit)
+{
+  if (!fit)
+    return nullptr;
+  return {{"exponent", json_of(fit->exponent)},
+          {"onset", json_of(fit->onset)},
+          {"prefactor", fit->prefactor},
+          {"p_fit", fit->p_fit}};
+}
+
 Json json_of(const RowOutcome &outcome)
 {
   Json row;
@@ -79,6 +94,8 @@ Json json_of(const RowOutcome &outcome)
   row["expected"] = outcome.expected;
   row["measured"] = outcome.measured;
   row["number"] = json_of(outcome.number);
+  if (outcome.row.rule == Rule::onset_exponent)
+    row["onset"] = json_of(outcome.onset);
   row["note"] = outcome.note;
   row["verdict"] = to_string(outcome.verdict);
   row["values"] = Json::array();
@@ -199,7 +216,8 @@ std::string study_json(const StudyResults &results)
     document["units"][quantity.name] = quantity.unit;
   document["runs"] = Json::array();
   for (const StudyRun &run : results.study.runs)
-    document["runs"].push_back({{"run", run.name}, {"about", run.about}, {"set", json_of(run.own)}});
+    document["runs"].push_back(
+      {{"run", run.name}, {"about", run.about}, {"set", json_of(run.own)}, {"level", run.level}});
   document["swept"] = results.study.swept;
   document["varied"] = varied_entries(results);
   document["left_out"] = results.study.left_out;
@@ -324,6 +342,9 @@ void print_plan(std::ostream &out, const Study &study, const std::vector<Planned
   }
   out << plan.size() << " runs, about " << std::llround(std::ceil(total / 60.)) << " core minutes, "
       << std::llround(std::ceil(total / 60. / static_cast<double>(n_cores))) << " minutes on " << n_cores << " cores\n";
+  if (study.refine > 0)
+    out << "refined " << study.refine << (study.refine == 1 ? " time" : " times")
+        << " where neighbours differ, at a cost that depends on the patterns\n";
   for (const std::string &check : study.checks)
     out << "check " << check << ", after the runs\n";
 }

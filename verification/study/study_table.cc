@@ -24,7 +24,8 @@ void append(std::string &text, const std::string &more, const std::string &separ
 
 bool has_bound(const StudyRow &row)
 {
-  return row.rule == Rule::is_near || row.rule == Rule::above || row.rule == Rule::below;
+  return row.rule == Rule::is_near || row.rule == Rule::above || row.rule == Rule::below ||
+         row.rule == Rule::onset_exponent;
 }
 
 std::string expectation(const StudyRow &row, const std::optional<double> &bound)
@@ -48,6 +49,9 @@ std::string expectation(const StudyRow &row, const std::optional<double> &bound)
     return "rises with " + row.against;
   case Rule::falls:
     return "falls with " + row.against;
+  case Rule::onset_exponent:
+    return "rises above an onset with an exponent of " + quantity_text(row.bound, {}, "1") + " ± " +
+           quantity_text(row.tolerance, {}, "1");
   case Rule::bracket:
     return row.from + " at small " + row.against + ", " + row.to + " at large";
   default:
@@ -223,6 +227,40 @@ void judge_bracket(RowOutcome &outcome)
   append(outcome.measured, outcome.row.against + " between " + number(last_from) + " and " + number(first_to));
 }
 
+// The confidence interval of the exponent must be within the tolerance of the bound; if it reaches beyond, nothing is
+// said about the exponent.
+void judge_onset(RowOutcome &outcome)
+{
+  std::vector<OnsetPoint> points;
+  for (const SeedStatistics *run : measurements_along(outcome))
+    points.push_back({*run->abscissa, run->sample()});
+  outcome.onset = fit_onset(points);
+  if (!outcome.onset)
+  {
+    append(outcome.note, "no curve: five runs with different abscissas and positive means are needed, and " +
+                           std::string(no_scatter));
+    return;
+  }
+  const auto text = [](const Interval &interval)
+  {
+    const auto number = [](double value) { return quantity_text(value, {}, "1"); };
+    return number(interval.value) + " (" + number(interval.low) + " to " + number(interval.high) + ")";
+  };
+  const OnsetFit &fit = *outcome.onset;
+  outcome.number = fit.exponent.value;
+  append(outcome.measured, "exponent " + text(fit.exponent) + ", onset at " + text(fit.onset) + ", 95 % confidence");
+  append(outcome.measured, "means on the curve: " + p_text(fit.p_fit));
+  // Distances of the bound from the far and from the near end of the interval.
+  const double low = outcome.row.bound - fit.exponent.low, high = fit.exponent.high - outcome.row.bound;
+  const double far = support::largest_of({low, high}), near = support::largest_of({-low, -high});
+  if (fit.is_bounded() && far <= outcome.row.tolerance)
+    outcome.misfit = far;
+  else if (near > outcome.row.tolerance)
+    outcome.misfit = near;
+  else
+    append(outcome.note, "the interval of the exponent is too wide to tell");
+}
+
 // Lists seeds and runs without the quantity, with the reasons.
 std::string missing_text(const RowOutcome &outcome, const std::vector<std::string> &left_out)
 {
@@ -275,10 +313,11 @@ RowOutcome judge(const StudyRow &row, const std::vector<PlannedRun> &plan, const
   std::stable_sort(outcome.runs.begin(), outcome.runs.end(),
                    [](const SeedStatistics &a, const SeedStatistics &b) { return a.abscissa < b.abscissa; });
 
-  const bool along = row.rule == Rule::rises || row.rule == Rule::falls || row.rule == Rule::bracket;
   if (row.rule == Rule::bracket)
     judge_bracket(outcome);
-  else if (along)
+  else if (row.rule == Rule::onset_exponent)
+    judge_onset(outcome);
+  else if (is_along(row.rule))
     judge_trend(outcome);
   else if (row.rule != Rule::reported && without.empty() && !outcome.is_test())
     judge_each(outcome);
@@ -338,7 +377,7 @@ bool RowOutcome::is_test() const
 
 double RowOutcome::allowed() const
 {
-  return row.rule == Rule::is_near ? row.tolerance : is_test() ? significance : 0.;
+  return row.rule == Rule::is_near || row.rule == Rule::onset_exponent ? row.tolerance : is_test() ? significance : 0.;
 }
 
 std::optional<output::Result> RowOutcome::result(const std::string &claim) const
@@ -353,7 +392,7 @@ std::optional<output::Result> RowOutcome::result(const std::string &claim) const
     result.theory = bound;
   if (row.rule == Rule::is)
     result.theory = 1.;
-  if (row.rule == Rule::rises || row.rule == Rule::falls || row.rule == Rule::bracket)
+  if (is_along(row.rule))
   {
     result.quantity += ", " + expected;
     result.unit = "1";

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "verification/output/results.h"
+#include "verification/study/onset_fit.h"
 #include "verification/study/run_outcome.h"
 #include "verification/study/statistical_tests.h"
 #include "verification/study/study_file.h"
@@ -68,9 +69,10 @@ struct RowOutcome
   std::string measured;             ///< description of the result
   std::string note;                 ///< missing seeds and runs; empty if there are none
   std::vector<SeedStatistics> runs; ///< in the order of the row, or sorted by `against` if given
-  std::optional<double> number; ///< of the row as a whole: mean, share of seeds with the pattern, exponent, middle of
-                                ///< the bracket
-  std::optional<double> misfit; ///< the row holds if it is not larger than allowed(); none unless the row was judged
+  std::optional<double> number;  ///< of the row as a whole: mean, share of seeds with the pattern, exponent, middle of
+                                 ///< the bracket
+  std::optional<OnsetFit> onset; ///< of `onset exponent`, if the curve could be fitted
+  std::optional<double> misfit;  ///< the row holds if it is not larger than allowed(); none unless the row was judged
   /// Returns true if the rule is a statistical test, whose misfit is a p-value.
   bool is_test() const;
   /// Returns the largest misfit with which the row holds.

@@ -26,7 +26,6 @@ namespace
 {
 
 constexpr std::size_t max_runs = 100000; // of a sweep, with all seeds
-constexpr std::size_t max_name = 150; // letters of the name of a run, which is the name of a folder
 
 [[noreturn]] void refuse(const std::string &text, const std::string &reason)
 {
@@ -67,14 +66,6 @@ End parse_end(const std::string &text, const std::string &part, const std::strin
   return end;
 }
 
-// Twelve digits, so that 1.7 is not 1.7000000000000002.
-std::string plain_number(const double number)
-{
-  std::array<char, 32> digits{};
-  std::snprintf(digits.data(), digits.size(), "%.12g", number);
-  return digits.data();
-}
-
 std::vector<std::string> grid(const std::string &text, const std::string &values, const std::string &unit)
 {
   const std::vector<std::string> parts = split(values, ':');
@@ -91,8 +82,8 @@ std::vector<std::string> grid(const std::string &text, const std::string &values
   std::size_t count = 0;
   const auto [end, error] = std::from_chars(parts[2].data(), parts[2].data() + parts[2].size(), count);
   if (error != std::errc() || end != parts[2].data() + parts[2].size() || count < 2 || count > max_runs)
-    refuse(text, "COUNT '" + input::printable(parts[2]) + "' must be a whole number from 2 to " +
-                   std::to_string(max_runs));
+    refuse(text,
+           "COUNT '" + input::printable(parts[2]) + "' must be a whole number from 2 to " + std::to_string(max_runs));
   if (start.number == stop.number)
     refuse(text, "START and STOP must differ");
   if (!std::isfinite(stop.number - start.number))
@@ -143,6 +134,40 @@ std::string short_name(const Sweep &sweep, const std::vector<Sweep> &all)
 }
 
 } // namespace
+
+std::string plain_number(const double number)
+{
+  std::array<char, 32> digits{};
+  std::snprintf(digits.data(), digits.size(), "%.12g", number);
+  return digits.data();
+}
+
+bool is_continuous(const Sweep &sweep)
+{
+  input::Case input;
+  input::Parameters parameters;
+  input.declare(parameters);
+  const std::vector<input::Declaration> declarations = parameters.declarations();
+  const auto entry = std::find_if(declarations.begin(), declarations.end(),
+                                  [&sweep](const input::Declaration &declaration)
+                                  { return declaration.section + "/" + declaration.name == sweep.entry; });
+  return entry != declarations.end() && entry->type == input::ValueType::number &&
+         std::all_of(sweep.values.begin(), sweep.values.end(),
+                     [&entry](const std::string &value)
+                     { return input::read_quantity(value, entry->unit.empty() ? "1" : entry->unit).wrong.empty(); });
+}
+
+SweptCase combination(const std::vector<Sweep> &sweeps, const std::vector<std::size_t> &at)
+{
+  SweptCase found;
+  for (std::size_t i = 0; i < sweeps.size(); ++i)
+  {
+    const std::string &value = sweeps[i].values.at(at.at(i));
+    found.set.emplace_back(sweeps[i].entry, value);
+    found.name += (found.name.empty() ? "" : "_") + short_name(sweeps[i], sweeps) + "-" + name_of(value, "");
+  }
+  return found;
+}
 
 Sweep parse_sweep(const std::string &text)
 {
@@ -216,14 +241,8 @@ std::vector<SweptCase> combinations(const std::vector<Sweep> &sweeps, const std:
   std::vector<std::size_t> at(sweeps.size(), 0); // index of the value of each sweep
   while (cases.size() < n_cases)
   {
-    SweptCase found;
-    for (std::size_t i = 0; i < sweeps.size(); ++i)
-    {
-      const std::string &value = sweeps[i].values[at[i]];
-      found.set.emplace_back(sweeps[i].entry, value);
-      found.name += (found.name.empty() ? "" : "_") + short_name(sweeps[i], sweeps) + "-" + name_of(value, "");
-    }
-    if (found.name.size() > max_name || !names.insert(found.name).second)
+    SweptCase found = combination(sweeps, at);
+    if (found.name.size() > max_name_length || !names.insert(found.name).second)
       found.name = "run-" + std::to_string(cases.size() + 1);
     cases.push_back(std::move(found));
     for (std::size_t i = sweeps.size(); i > 0 && ++at[i - 1] == sweeps[i - 1].values.size(); --i)

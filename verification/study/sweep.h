@@ -32,6 +32,18 @@ struct SweptCase
   Settings set;
 };
 
+/// Largest number of letters of the name of a run of a sweep, which is the name of a folder.
+inline constexpr std::size_t max_name_length = 150;
+
+/// Returns the case with one value of each sweep. @param at index of the value of each sweep
+[[nodiscard]] SweptCase combination(const std::vector<Sweep> &sweeps, const std::vector<std::size_t> &at);
+
+/// Formats a number with twelve digits, as the values of a grid: 1.7 instead of 1.7000000000000002.
+[[nodiscard]] std::string plain_number(double number);
+
+/// Returns true if all values of a sweep are numbers between which there are others: not whole numbers or words.
+[[nodiscard]] bool is_continuous(const Sweep &sweep);
+
 /// All combinations of values; those of the last sweep vary fastest. Names are distinct.
 /// @param n_seeds number of seeds of each combination
 /// @throws InputError for an entry that is swept twice, or more than 100,000 runs

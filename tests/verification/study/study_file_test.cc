@@ -237,8 +237,8 @@ TEST(StudyFile, RowsKnowTheUnitOfWhatTheyAreAgainst)
 
 TEST(StudyFile, ShippedStudiesAreThoseInTheFolder)
 {
-  EXPECT_EQ(shipped_studies(), (std::vector<std::string>{"map", "paper", "patterns", "time-stepping"}));
-  EXPECT_EQ(study_choices(), "study file (.json), or a shipped one: map, paper, patterns, time-stepping");
+  EXPECT_EQ(shipped_studies(), (std::vector<std::string>{"map", "onset", "paper", "patterns", "time-stepping"}));
+  EXPECT_EQ(study_choices(), "study file (.json), or a shipped one: map, onset, paper, patterns, time-stepping");
   try
   {
     (void)read_study_file(study_path("nosuch"), false);
@@ -284,6 +284,68 @@ TEST(StudyFile, CasesThatAreWrongAreNamedOnceWithTheirRun)
   EXPECT_HAS(problem_after([](Json &d) { d["set"]["Material/density"] = -1; }), "Material/density = -1");
   EXPECT_HAS(problem_after([](Json &d) { d["claims"][0]["rows"][1]["against"] = "Sheet/orientation"; }),
              "is not a number in any of these runs");
+}
+
+TEST(StudyFile, OnsetExponentHasATolerance)
+{
+  using Json = nlohmann::ordered_json;
+  const auto row = [](Json &d) -> Json & { return d["claims"][0]["rows"][1]; };
+  Json document = example();
+  row(document).erase("falls");
+  row(document)["onset exponent"] = 0.5;
+  row(document)["tolerance"] = 0.2;
+  const StudyRow read_row = read(document).claims.front().rows[1];
+  EXPECT_EQ(read_row.rule, Rule::onset_exponent);
+  EXPECT_EQ(read_row.bound, 0.5);
+  EXPECT_EQ(read_row.tolerance, 0.2);
+  const auto problem = [&](const auto &change)
+  {
+    return problem_after(
+      [&](Json &d)
+      {
+        d = document;
+        change(row(d));
+      });
+  };
+  EXPECT_HAS(problem([](Json &r) { r["onset exponent"] = 0; }), "onset exponent: must be larger than 0");
+  EXPECT_HAS(problem([](Json &r) { r.erase("tolerance"); }), "must be given together");
+  EXPECT_HAS(problem([](Json &r) { r.erase("against"); }), "needs \"against\"");
+  EXPECT_HAS(problem([](Json &r) { r["falls"] = true; }), "only one rule");
+  EXPECT_HAS(problem([](Json &r) { r["quantity"] = "pattern"; }), "not for patterns");
+}
+
+TEST(StudyFile, RefinementNeedsASweepOfNumbers)
+{
+  using Json = nlohmann::ordered_json;
+  Json document = example();
+  document["sweep"] = {"Loading/strain y=1.7,1.8", "Sheet/height=1 cm:2 cm:3"};
+  document["set"].erase("Sheet/height");
+  document["refine"] = 2;
+  EXPECT_EQ(read(document).refine, 2u);
+  EXPECT_EQ(read(document, true).refine, 2u);
+  document["quick"]["refine"] = 0;
+  EXPECT_EQ(read(document).refine, 2u);
+  EXPECT_EQ(read(document, true).refine, 0u);
+  EXPECT_EQ(read(example()).refine, 0u);
+  const std::vector<StudyRun> runs = read(document).runs;
+  EXPECT_TRUE(runs.front().is_swept);
+  EXPECT_FALSE(runs.back().is_swept);
+  const auto problem = [&](const auto &change)
+  {
+    return problem_after(
+      [&](Json &d)
+      {
+        d = document;
+        change(d);
+      });
+  };
+  EXPECT_HAS(problem([](Json &d) { d["refine"] = 7; }), "refine: must be a whole number from 0 to 6");
+  EXPECT_HAS(problem([](Json &d) { d["refine"] = -1; }), "refine: must be a whole number from 0 to 6");
+  EXPECT_HAS(problem([](Json &d) { d["quick"]["refine"] = "1"; }), "quick/refine: must be a whole number");
+  EXPECT_HAS(problem([](Json &d) { d.erase("sweep"); }), "refine: needs the key 'sweep'");
+  EXPECT_HAS(problem([](Json &d) { d["sweep"] = {"Fracture/seed sites=6,8"}; }), "refine: needs sweeps of numbers");
+  EXPECT_HAS(problem([](Json &d) { d["sweep"] = {"Sheet/orientation=rows-along-crack,rows-across-crack"}; }),
+             "refine: needs sweeps of numbers");
 }
 
 TEST(StudyFile, TextThatIsNoStudyIsRefused)

@@ -332,6 +332,51 @@ TEST(StudyTable, ExponentOfATrend)
   EXPECT_NEAR(row.number.value(), 0.5, 1e-12);
 }
 
+// Means 0.01 m (zeta - 0.9)^exponent at zeta = 1 to 6, with a scatter of 0.0001 m, and a straight crack before them.
+MadeUpStudy above_onset(double exponent, double scatter = 1e-4)
+{
+  MadeUpStudy table;
+  for (int i = 1; i <= 6; ++i)
+  {
+    const double mean = 0.01 * std::pow(i - 0.9, exponent);
+    table.add("z" + std::to_string(i), {mean - scatter, mean + scatter, mean});
+  }
+  table.add("straight", {NAN, NAN, NAN});
+  return table;
+}
+
+StudyRow onset_row(double exponent, double tolerance)
+{
+  StudyRow row = row_of({"straight", "z1", "z2", "z3", "z4", "z5", "z6"}, Rule::onset_exponent, exponent, tolerance);
+  row.against = "zeta";
+  return row;
+}
+
+TEST(StudyTable, OnsetExponentNeedsAnIntervalWithinItsTolerance)
+{
+  const RowOutcome holds = above_onset(0.5).judged(onset_row(0.5, 0.2));
+  EXPECT_EQ(holds.verdict, RowVerdict::holds);
+  EXPECT_NEAR(holds.number.value(), 0.5, 1e-6);
+  EXPECT_NEAR(holds.onset.value().onset.value, 0.9, 1e-6);
+  EXPECT_EQ(holds.allowed(), 0.2);
+  EXPECT_HAS(holds.measured, "exponent 0.5 (0.4");
+  EXPECT_HAS(holds.measured, "onset at 0.9 (0.8");
+  EXPECT_EQ(holds.expected, "rises above an onset with an exponent of 0.5 ± 0.2");
+  EXPECT_HAS(holds.note, "straight: not measured in 3 of 3");
+  EXPECT_EQ(above_onset(1.).judged(onset_row(0.5, 0.2)).verdict, RowVerdict::does_not_hold);
+  EXPECT_EQ(above_onset(0.25).judged(onset_row(0.5, 0.2)).verdict, RowVerdict::does_not_hold);
+
+  const RowOutcome wide = above_onset(0.5, 3e-3).judged(onset_row(0.5, 0.2));
+  EXPECT_EQ(wide.verdict, RowVerdict::not_measured);
+  EXPECT_HAS(wide.note, "too wide to tell");
+  StudyRow few = onset_row(0.5, 0.2);
+  few.runs.resize(5); // four above the onset
+  const RowOutcome none = above_onset(0.5).judged(few);
+  EXPECT_EQ(none.verdict, RowVerdict::not_measured);
+  EXPECT_FALSE(none.onset);
+  EXPECT_HAS(none.note, "five runs");
+}
+
 TEST(StudyTable, TrendLeavesOutRunsWithoutTheNumberAndSaysSo)
 {
   MadeUpStudy table;
@@ -386,7 +431,7 @@ TEST(StudyTable, ResultsHaveTheVerdictsOfTheTable)
        {row_of({"a"}, Rule::is_near, 0.0105, 0.01), row_of({"a"}, Rule::is_near, 0.02, 0.1),
         row_of({"a"}, Rule::above, 1.), row_of({"a"}, Rule::below, 1.), row_of({"a", "b"}, Rule::rises),
         row_of({"a", "b"}, Rule::falls), row_of({"s"}, Rule::above), pattern_row({"a"}, "oscillating"),
-        pattern_row({"a"}, "straight"), bracket_row({"a", "s"}), row_of({"a"}, Rule::reported)})
+        pattern_row({"a"}, "straight"), bracket_row({"a", "s"}), row_of({"a"}, Rule::reported), onset_row(0.5, 0.2)})
   {
     const RowOutcome outcome = table.judged(row);
     const Result result = outcome.result("c").value();

@@ -1,0 +1,132 @@
+#!/usr/bin/python3
+"""Makes the record and the pictures of docs/patterns.md.
+
+Usage: page.py record FILE.csv STUDY...     the runs of output directories of `latcon study` in one table
+       page.py pictures FOLDER              patterns-map.png, patterns-spectrum.png and patterns-onset.png of the record
+"""
+import argparse
+import csv
+import json
+import pathlib
+import sys
+
+sys.dont_write_bytecode = True
+HERE = pathlib.Path(__file__).resolve().parent
+sys.path.insert(0, str(HERE.parents[1] / "verification" / "report"))
+
+import own_settings  # before matplotlib
+
+import numpy as np
+
+from phase_map import Cell, draw_phase_map
+from pictures import BLACK, BLUE, RED, WIDTH, Page, save
+
+ENTRIES = {"strain_x": "Loading/strain x", "strain_y": "Loading/strain y", "viscosity": "Nearest neighbours/viscosity"}
+VALUES = ("speed_lagrangian", "wavelength", "amplitude", "periods", "window_begin")
+COLUMNS = ("run", "seed", *ENTRIES, "pattern", *VALUES, "departure")
+LEFT = 1.2 * 0.625e-3  # distance from the first row at which a tip has left it [m]; neighbouring rows are 0.87 d apart
+
+
+def entries(case):
+    """Entries of a resolved case: {"Section/Name": text}."""
+    section, found = "", {}
+    for line in case.read_text(encoding="utf-8").splitlines():
+        words = line.split("#")[0].split()
+        if words[:1] == ["subsection"]:
+            section = " ".join(words[1:])
+        elif words[:1] == ["set"]:
+            equals = words.index("=")
+            found[f"{section}/{' '.join(words[1:equals])}"] = " ".join(words[equals + 1:])
+    return found
+
+
+def departure(path):
+    """Advance of the tip until it has left its first row by more than LEFT [m]; None if it has not."""
+    with path.open(encoding="utf-8", newline="") as file:
+        tips = [(float(row["X"]), float(row["Y"])) for row in csv.DictReader(file)]
+    return next((X - tips[0][0] for X, Y in tips if abs(Y - tips[0][1]) > LEFT), None)
+
+
+def record(path, studies):
+    """Writes the measured runs of studies, SI units, four digits, sorted by name and seed."""
+    lines = {}
+    for crack in (crack for study in studies for crack in study.glob("runs/*[0-9]/crack.json")):
+        measured = json.loads(crack.read_text(encoding="utf-8"))
+        run, seed = crack.parent.name.rsplit("-", 1)
+        case = entries(crack.parent / "case.prm")
+        lines[run, int(seed)] = [
+            run, seed, *(f"{float(case[key]):g}" for key in ENTRIES.values()), measured["pattern"],
+            *("" if value is None else f"{value:.4g}"
+              for value in (*(measured[name] for name in VALUES), departure(crack.with_name("crack.csv"))))]
+    with path.open("w", encoding="utf-8", newline="") as file:
+        csv.writer(file, lineterminator="\n").writerows([COLUMNS, *(lines[key] for key in sorted(lines))])
+
+
+def read(name):
+    """The record of a study: [{column: number, text, or None}, ...]."""
+    with (HERE / "record" / f"{name}.csv").open(encoding="utf-8", newline="") as file:
+        rows = list(csv.DictReader(file))
+    for row in rows:
+        for column in row:
+            if column not in ("run", "pattern"):
+                row[column] = float(row[column]) if row[column] else None
+    return rows
+
+
+def cells(rows):
+    """Cells of the map: patterns by number of seeds, mean wavelength [cm] where there is one."""
+    points = {}
+    for row in rows:
+        points.setdefault((row["strain_x"], row["strain_y"]), []).append(row)
+    found = []
+    for (x, y), seeds in points.items():
+        names = [seed["pattern"] for seed in seeds]
+        wavelengths = [seed["wavelength"] for seed in seeds if seed["wavelength"] is not None]
+        found.append(Cell(x, y, {name: names.count(name) for name in names}, 100 * np.mean(wavelengths) if wavelengths else None))
+    return found
+
+
+def draw_onset(rows, path):
+    """Squared amplitude, wavelength and pattern of every crack over the strain, from the centre line and off it."""
+    page = Page(4.1)
+    columns = (("(amplitude / 0.1 cm)²", lambda row: (1000 * row["amplitude"]) ** 2), ("wavelength [cm]", lambda row: 100 * row["wavelength"]))
+    for number, (label, value) in enumerate(columns):
+        axes = page.axes(0.8 + number * 4.8, 0.5, 4.1, 2.9)
+        for start, colour, marker, words in (("y-", BLUE, "o", "small perturbation"), ("off-centre-", RED, "^", "4 d off the centre line")):
+            seeds = [row for row in rows if row["run"].startswith(start)]
+            wavy = [row for row in seeds if row["amplitude"] is not None]
+            calm = [row for row in seeds if row["pattern"] == "straight"]
+            axes.plot([row["strain_y"] for row in wavy], [value(row) for row in wavy], marker, color=colour, markersize=5, label=words)
+            axes.plot([row["strain_y"] for row in calm], [0] * len(calm), marker, color=colour, markerfacecolor="white", markersize=5)
+        axes.set(xlabel="strain y, across the crack", ylabel=label)
+        axes.set_ylim(bottom=-0.04 * axes.get_ylim()[1])
+        if number == 0:
+            axes.axhline((0.75 * 0.625) ** 2, color=BLACK, linestyle="--", linewidth=1)
+            page.figure.legend(loc="upper left", bbox_to_anchor=(0.8 / WIDTH, 1), ncol=2)
+    save(page.figure, path)
+
+
+def draw(folder):
+    """Draws all pictures whose record exists."""
+    for name in ("map", "spectrum"):
+        draw_phase_map(cells(read(name)), "strain x, along the crack", "strain y, across the crack", folder / f"patterns-{name}.png",
+                       "wavelength [cm]", height=4.2)
+    draw_onset(read("onset"), folder / "patterns-onset.png")
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    commands = parser.add_subparsers(dest="command", required=True)
+    for name, words in (("record", ("file", "studies")), ("pictures", ("folder",))):
+        command = commands.add_parser(name)
+        for word in words:
+            command.add_argument(word, type=pathlib.Path, **({"nargs": "+"} if word == "studies" else {}))
+    given = parser.parse_args()
+    if given.command == "record":
+        record(given.file, given.studies)
+    else:
+        draw(given.folder)
+
+
+if __name__ == "__main__":
+    main()
