@@ -1,6 +1,7 @@
 // Gradient laws: forms and their derivatives, symmetries, positivity, and the dispersion of the lattice.
 #include "continuum/network_gradient.h"
 #include "gradient_checks.h"
+#include "support/largest_error.h"
 
 using namespace latcon;
 using namespace gradient_checks;
@@ -110,8 +111,8 @@ TEST(LatticeGradient, IsHexagonalAndNotIsotropic)
     const Tensor<2, 2> sixth = rotation(pi / 3.);
     EXPECT_NEAR(law.energy(F * transpose(sixth), turned(G, sixth)), W, roundings * epsilon * W);
     const Tensor<2, 2> twelfth = rotation(pi / 6.);
-    largest_difference =
-      std::max(largest_difference, std::abs(law.energy(F * transpose(twelfth), turned(G, twelfth)) / W - 1.));
+    largest_difference = support::largest_of(
+      {largest_difference, std::abs(law.energy(F * transpose(twelfth), turned(G, twelfth)) / W - 1.)});
   }
   EXPECT_GT(largest_difference, 0.01);
 }

@@ -144,17 +144,17 @@ std::vector<Store> undisturbed()
 template <class M>
 void expect_same_bits_after_resuming(const std::vector<Store> &states)
 {
-  for (const unsigned int at : {0u, 5u, 9u})
+  for (const auto &[at, until] : {std::pair(0u, 2u), std::pair(5u, n_steps), std::pair(9u, n_steps)})
   {
     M motion(MPI_COMM_WORLD);
     load(dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, states[at]), motion.solver());
     EXPECT_EQ(motion.solver().time(), value<double>(states[at], "time"));
-    for (unsigned int step = at; step < n_steps; ++step)
+    for (unsigned int step = at; step < until; ++step)
       motion.solver().step();
     const Store end = stored(motion.solver());
     if (!is_first_rank())
       continue;
-    EXPECT_EQ(differing(end, states.back()), std::vector<std::string>()) << "resumed after step " << at;
+    EXPECT_EQ(differing(end, states[until]), std::vector<std::string>()) << "resumed after step " << at;
   }
 }
 

@@ -1,6 +1,7 @@
 // Edges that open during a motion, and planes of symmetry of sheets with a gradient energy.
 #include "continuum/errors.h"
 #include "moving_sheets.h"
+#include "support/largest_error.h"
 
 #include <deal.II/grid/grid_generator.h>
 
@@ -175,7 +176,7 @@ TEST(SymmetryPlane, HalvesASheet)
     const auto found = solver.evaluate(points);
     double largest = 0.;
     for (std::size_t n = 0; n < points.size(); ++n)
-      largest = std::max(largest, (found[n].F - expected[n].F).norm());
+      largest = support::largest_of({largest, (found[n].F - expected[n].F).norm()});
     return largest;
   };
   // The whole sheet has faces on the plane, with penalised jumps, so both agree up to the discretisation error.

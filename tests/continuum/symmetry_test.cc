@@ -2,6 +2,7 @@
 // units that are powers of two, bits must not change either. Objectivity is tested in materials_test.cc and
 // gradient_laws_test.cc.
 #include "moving_sheets.h"
+#include "support/largest_error.h"
 
 #include <gtest/gtest.h>
 
@@ -93,8 +94,8 @@ TEST(MaterialSymmetry, OnlyTheNetworkKnowsATwelfthOfATurn)
   {
     const Tensor<2, 2> F = random_deformation(generator, 1.5, 3.);
     const Tensor<2, 2> turned = F * transpose(rotation(pi / 6.));
-    network = std::max(network, std::abs(laws.network.energy(turned) / laws.network.energy(F) - 1.));
-    sheet = std::max(sheet, std::abs(laws.sheet.energy(turned) / laws.sheet.energy(F) - 1.));
+    network = support::largest_of({network, std::abs(laws.network.energy(turned) / laws.network.energy(F) - 1.)});
+    sheet = support::largest_of({sheet, std::abs(laws.sheet.energy(turned) / laws.sheet.energy(F) - 1.)});
   }
   EXPECT_GT(network, 1e-4);
   EXPECT_LT(sheet, 100. * epsilon);

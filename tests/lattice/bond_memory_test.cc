@@ -13,6 +13,7 @@
 
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
+#include "support/largest_error.h"
 #include "tests/lattice/sheets.h"
 
 using namespace latcon;
@@ -430,7 +431,7 @@ TEST(BondMemory, ActsOnOneSiteAsInTheLoop)
         const Eigen::Vector2d force = forces.on_site(state, state.vx, state.vy, place);
         ASSERT_EQ(force.x(), forces.fx()[place]);
         ASSERT_EQ(force.y(), forces.fy()[place]);
-        difference = std::max(difference, std::abs(force.x() - without.fx()[place]));
+        difference = support::largest_of({difference, std::abs(force.x() - without.fx()[place])});
       }
     EXPECT_GT(difference, 0.);
     // An update changes neither forces nor power.

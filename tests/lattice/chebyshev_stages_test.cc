@@ -6,6 +6,7 @@
 
 #include "lattice/contact.h"
 #include "lattice/time_step.h"
+#include "support/largest_error.h"
 #include "tests/lattice/plane_modes.h"
 
 using namespace latcon;
@@ -85,7 +86,7 @@ TEST(ChebyshevStages, HoldAllWavesOfTheLattice)
       for (const Complex &rate : plane_modes::rates(sheet, material, F))
       {
         EXPECT_LE(std::abs(stages.amplification(stepping.step * rate)), 1. + roundoff) << stepping.step * rate;
-        fastest = std::max(fastest, std::abs(rate));
+        fastest = support::largest_of({fastest, std::abs(rate)});
       }
       EXPECT_LT(fastest * limits.viscous, 1.);
       EXPECT_GT(fastest * limits.viscous, 0.4);

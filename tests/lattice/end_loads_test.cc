@@ -7,6 +7,7 @@
 
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
+#include "support/largest_error.h"
 #include "tests/lattice/sheets.h"
 
 using namespace latcon;
@@ -45,7 +46,7 @@ TEST_P(Ends, KeepTheLoadedSheetInEquilibrium)
   {
     double largest = 0.;
     for (std::size_t place = 0; place < sheet.n_places(); ++place)
-      largest = std::max(largest, std::hypot(simulation.state().ax[place], simulation.state().ay[place]));
+      largest = support::largest_of({largest, std::hypot(simulation.state().ax[place], simulation.state().ay[place])});
     return largest * site_mass(bonds, sheet) / (cross_section(bonds.nearest, sheet) * force(bonds.nearest.law, 2.5));
   };
   EXPECT_GT(largest_residual(), 0.5);
@@ -116,7 +117,7 @@ double reflection(const Material &bonds, Orientation orientation, const Eigen::V
   double left = 0.;
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
     if (simulation.state().inverse_mass[place] > 0.)
-      left = std::max(left, std::hypot(simulation.state().vx[place], simulation.state().vy[place]));
+      left = support::largest_of({left, std::hypot(simulation.state().vx[place], simulation.state().vy[place])});
   return left / largest;
 }
 

@@ -9,6 +9,7 @@
 #include <omp.h>
 
 #include "lattice/energy.h"
+#include "support/largest_error.h"
 #include "tests/lattice/reference_forces.h"
 #include "tests/lattice/sheets.h"
 
@@ -58,7 +59,7 @@ TEST(Forces, FreeSheetFeelsNoResultant)
     fx += x;
     fy += y;
     moment += noisy.state.x[i] * y - noisy.state.y[i] * x;
-    largest = std::max(largest, std::hypot(x, y));
+    largest = support::largest_of({largest, std::hypot(x, y)});
   }
   // n sites, each force a sum of 12 terms: round-off grows at most with n.
   const double round_off = 1e-16 * 12. * static_cast<double>(noisy.sheet.n_sites()) * largest;

@@ -4,6 +4,7 @@
 #include "lattice/energy.h"
 #include "lattice/relaxation.h"
 #include "lattice/site_fields.h"
+#include "support/largest_error.h"
 #include "tests/lattice/sheets.h"
 
 using namespace latcon;
@@ -157,7 +158,10 @@ TEST(PeriodicLattice, SmallestCellFeelsWhatItsCopiesFeelInALargeSheet)
     in_cell.evaluate(small, small.vx, small.vy);
     in_large.evaluate(copies, copies.vx, copies.vy);
     double largest = 0.;
-    for_each_site(cell, [&](std::size_t place) { largest = std::max(largest, std::abs(in_cell.fx()[place])); });
+    for_each_site(cell,
+                  [&](std::size_t place) {
+                    largest = support::largest_of({largest, std::abs(in_cell.fx()[place])});
+                  });
     for_each_site(large,
                   [&](std::size_t place)
                   {

@@ -7,6 +7,7 @@
 #include <omp.h>
 
 #include "lattice/simulation.h"
+#include "support/largest_error.h"
 #include "tests/lattice/plane_modes.h"
 #include "tests/lattice/smooth_motion.h"
 
@@ -113,7 +114,7 @@ TEST(RungeKuttaChebyshev, IsStableUpToItsLimitAndNotBeyond)
     const Material material = sheets::rubber();
     double fastest = 0.;
     for (const Complex &rate : plane_modes::rates(sheet, material, F))
-      fastest = std::max(fastest, std::abs(rate));
+      fastest = support::largest_of({fastest, std::abs(rate)});
     for (const unsigned int n_stages : {2u, 5u, 8u})
     {
       const double limit = ChebyshevStages(n_stages).real_limit() / fastest;

@@ -8,6 +8,7 @@
 #include <gtest/gtest.h>
 
 #include "lattice/simulation.h"
+#include "support/largest_error.h"
 #include "tests/lattice/smooth_motion.h"
 
 using namespace latcon;
@@ -388,8 +389,8 @@ Return there_and_back(double viscosity)
   {
     double largest = 0.;
     for (std::size_t place = 0; place < sheet.n_places(); ++place)
-      largest = std::max(
-        largest, std::hypot(simulation.state().x[place] - home.x[place], simulation.state().y[place] - home.y[place]));
+      largest = support::largest_of({largest, std::hypot(simulation.state().x[place] - home.x[place],
+                                                         simulation.state().y[place] - home.y[place])});
     return largest;
   };
   for (std::size_t step = 0; step < steps; ++step)

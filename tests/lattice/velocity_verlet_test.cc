@@ -8,6 +8,7 @@
 
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
+#include "support/largest_error.h"
 #include "tests/lattice/sheets.h"
 #include "tests/lattice/smooth_motion.h"
 
@@ -173,7 +174,7 @@ TEST(Noise, DependsOnSeedAloneAndKeepsItsAmplitude)
     if (still.inverse_mass[i] > 0.)
       for (const double u : {a.x[i] - still.x[i], a.y[i] - still.y[i]})
       {
-        largest = std::max(largest, std::abs(u));
+        largest = support::largest_of({largest, std::abs(u)});
         sum += u;
         square += u * u;
         ++n;

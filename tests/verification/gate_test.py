@@ -114,6 +114,7 @@ class Gate(WithStore):
         self.assertFalse(second["verification"]["reused"])
         self.assertNotEqual(second["verification"]["hash"], self.first["verification"]["hash"])
 
+    @in_full
     def test_damaged_file_is_said_and_replaced(self):
         path = self.stored()[0]
         whole = path.read_text()

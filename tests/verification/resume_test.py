@@ -10,9 +10,11 @@ import json
 import math
 import pathlib
 import re
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
 
@@ -32,6 +34,18 @@ def files(folder):
 
 
 class Resume(TemporaryFolder):
+    @classmethod
+    def setUpClass(cls):
+        """Runs the strip to its end, once for all tests that begin with it."""
+        folder = tempfile.TemporaryDirectory()
+        cls.addClassCleanup(folder.cleanup)
+        cls.ended = pathlib.Path(folder.name) / "out"
+        run = latcon(*STRIP, "--output-dir", cls.ended)
+        assert run.returncode in (0, 3), run.stderr
+
+    def begin_with_the_end(self):
+        shutil.copytree(self.ended, self.out)
+
     def run_to_end(self, *more):
         run = latcon(*STRIP, "--output-dir", self.out, *more)
         self.assertIn(run.returncode, (0, 3), run.stderr)
@@ -44,7 +58,7 @@ class Resume(TemporaryFolder):
         return json.loads((self.out / "run.json").read_text())["resumed_from"]["step"]
 
     def test_last_two_are_kept_and_tell_what_they_are(self):
-        self.run_to_end()
+        self.begin_with_the_end()
         found = self.checkpoints()
         self.assertEqual(len(found), 2)
         steps = []
@@ -62,16 +76,14 @@ class Resume(TemporaryFolder):
         self.assertEqual(steps[1] - steps[0], 160)
 
     def test_case_hash_is_that_of_the_run(self):
-        self.run_to_end()
+        self.begin_with_the_end()
         with h5py.File(self.checkpoints()[-1], "r") as file:
             case, case_hash = file["run/case"][0], file["run/case_hash"][0].decode()
         self.assertEqual(case_hash, hashlib.sha256(case).hexdigest())
         self.assertEqual(json.loads((self.out / "run.json").read_text())["case_hash"], case_hash)
 
     def test_stopped_run_goes_on_with_the_same_bits_on_other_ranks_and_threads(self):
-        self.run_to_end()
-        expected = files(self.out)
-        self.out = self.folder / "stopped"
+        expected = files(self.ended)
         with subprocess.Popen([LATCON, *map(str, STRIP), "--output-dir", str(self.out), "--threads", "2"],
                               stdout=subprocess.DEVNULL) as run:
             while len(self.checkpoints()) < 2:
@@ -95,7 +107,7 @@ class Resume(TemporaryFolder):
             self.assertEqual(found[name] == content, True, name)
 
     def test_checkpoint_of_another_program_is_named(self):
-        self.run_to_end()
+        self.begin_with_the_end()
         own = json.loads((self.out / "run.json").read_text())["program_hash"]
         program = pathlib.Path(LATCON).resolve()
         self.assertEqual(own, hashlib.sha256(program.read_bytes()).hexdigest())
@@ -138,7 +150,7 @@ class Resume(TemporaryFolder):
         self.assertNotIn("resumed_from", json.loads((self.out / "run.json").read_text()))
 
     def test_files_may_be_renamed(self):
-        self.run_to_end()
+        self.begin_with_the_end()
         first, last = self.checkpoints()
         with h5py.File(last, "r") as file:
             step = int(file["run/step"][0])
@@ -149,7 +161,7 @@ class Resume(TemporaryFolder):
         self.assertEqual(self.step_told(), step)
 
     def test_older_one_is_taken_if_the_last_is_damaged(self):
-        self.run_to_end()
+        self.begin_with_the_end()
         expected = files(self.out)
         first, last = self.checkpoints()
         content = bytearray(last.read_bytes())
@@ -161,7 +173,7 @@ class Resume(TemporaryFolder):
         self.assertEqual(files(self.out) == expected, True)
 
     def test_nothing_is_touched_if_none_can_be_used(self):
-        self.run_to_end()
+        self.begin_with_the_end()
         first, last = self.checkpoints()
         first.write_bytes(first.read_bytes()[:1000])
         last.write_text("not a checkpoint at all\n")
@@ -175,7 +187,7 @@ class Resume(TemporaryFolder):
         self.assertEqual({path: path.stat().st_mtime_ns for path in self.out.rglob("*")}, before)
 
     def test_those_of_another_case_are_refused_with_the_difference(self):
-        self.run_to_end()
+        self.begin_with_the_end()
         run = latcon(*STRIP, "--output-dir", self.out, "--resume", "--set", "Fracture/breaking stretch=3.1")
         self.assertEqual(run.returncode, 2)
         self.assertIn("another case: Fracture/breaking stretch = 3.05 in the checkpoint, 3.1 in this case", run.stderr)
@@ -184,12 +196,12 @@ class Resume(TemporaryFolder):
         self.assertIn("written by `latcon fracture`", run.stderr)
 
     def test_how_often_they_are_written_may_change(self):
-        self.run_to_end()
+        self.begin_with_the_end()
         run = self.run_to_end("--resume", "--set", "Checkpoints/interval=1")
         self.assertIn("Resuming from", run.stdout)
 
     def test_new_start_keeps_those_of_the_run_before(self):
-        self.run_to_end()
+        self.begin_with_the_end()
         before = [path.name for path in self.checkpoints()]
         self.run_to_end()
         self.assertEqual(sorted(path.name for path in (self.out / "checkpoints.old").glob("*.h5")), before)

@@ -4,12 +4,14 @@
 Usage: shards_test.py PATH_OF_LATCON
 """
 import copy
+import functools
 import json
 import os
 import pathlib
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 import unittest
 
@@ -19,6 +21,22 @@ from slurm import Slurm, missing
 from study_test import TINY
 
 RUNS = 4  # of TINY: base twice, low, thin
+
+
+def result(folder):
+    """Results of a study, as bytes."""
+    return [(folder / name).read_bytes() for name in ("study.json", "study.csv", "results.csv")]
+
+
+@functools.cache
+def undisturbed(text=json.dumps(TINY)):
+    """Results of a study without shards."""
+    with tempfile.TemporaryDirectory() as folder:
+        study, out = pathlib.Path(folder) / "tiny.json", pathlib.Path(folder) / "out"
+        study.write_text(text)
+        run = latcon("study", study, "--output-dir", out, "--skip-verification")
+        assert run.returncode == 0, run.stdout + run.stderr
+        return result(out)
 
 
 class Shards(TemporaryFolder):
@@ -36,15 +54,6 @@ class Shards(TemporaryFolder):
         self.assertEqual(run.returncode, expect, run.stdout + run.stderr)
         return run.stdout + run.stderr
 
-    def result(self, folder):
-        """Results of the study, as bytes."""
-        return [(folder / name).read_bytes() for name in ("study.json", "study.csv", "results.csv")]
-
-    def undisturbed(self):
-        folder = self.folder / "undisturbed"
-        self.study(out=folder)
-        return self.result(folder)
-
     def files(self):
         return {path: path.read_bytes() for path in self.out.rglob("*") if path.is_file()}
 
@@ -57,7 +66,7 @@ class Shards(TemporaryFolder):
         self.assertFalse((self.out / "study.json").exists())
         self.assertEqual(json.loads((self.out / "shards/2-of-3/run.json").read_text())["exit_code"], 0)
         self.study("--collect")
-        self.assertEqual(self.result(self.out), self.undisturbed())
+        self.assertEqual(result(self.out), undisturbed())
         self.assertTrue((self.out / "study.html").exists())
 
     def test_runs_side_by_side_verify_a_rubber_once(self):
@@ -89,7 +98,7 @@ class Shards(TemporaryFolder):
         self.study("--shard", "1/1")
         self.assertEqual(measured[0].stat().st_mtime_ns, before)
         self.study("--collect")
-        self.assertEqual(self.result(self.out), self.undisturbed())
+        self.assertEqual(result(self.out), undisturbed())
 
     def test_folder_of_another_plan_is_refused_untouched(self):
         self.study("--shard", "1/4", "--quiet")
@@ -177,13 +186,16 @@ class Shards(TemporaryFolder):
         self.assertIn("resumed_from", json.loads((self.out / "runs/base-1/run.json").read_text()))
         self.assertEqual((self.folder / "requeued").read_text(), "requeue 42_1\n")  # once
         subprocess.run(["bash", self.out / "batch/collect.sh"], check=True, timeout=300)
-        self.assertEqual(self.result(self.out), self.result(self.folder / "undisturbed"))
+        self.assertEqual(result(self.out), result(self.folder / "undisturbed"))
 
     @unittest.skipIf(missing() or os.geteuid() != 0, "needs Slurm and root, which slurmd requires")
     def test_array_cancelled_half_way_continues_in_slurm(self):
+        # In short steps, so that some runs are left when the jobs are cancelled.
+        document = dict(TINY, set=dict(TINY["set"], **{"Time/integrator": "velocity-verlet"}))
+        study = self.write_study(document)
         with Slurm(self.folder / "slurm") as cluster:
             def submit():
-                run = latcon(*self.words("--slurm", "--submit", "--tasks", "2", "--time", "10", command="batch"),
+                run = latcon(*self.words("--slurm", "--submit", "--tasks", "2", "--time", "10", command="batch", study=study),
                              env=cluster.environment)
                 self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
 
@@ -196,7 +208,7 @@ class Shards(TemporaryFolder):
             self.assertFalse((self.out / "study.json").exists())
             submit()
             cluster.wait_for(lambda: not cluster.jobs(), "the end of the jobs", limit=600)
-            self.assertEqual(self.result(self.out), self.undisturbed(), (self.out / "batch/collect.log").read_text())
+            self.assertEqual(result(self.out), undisturbed(json.dumps(document)), (self.out / "batch/collect.log").read_text())
 
 
 if __name__ == "__main__":

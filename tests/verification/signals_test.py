@@ -22,7 +22,9 @@ TINY = [QUICK, "--set", "Sheet/length=10 mm", "--set", "Sheet/height=6 mm"]
 INTERRUPTED = 130
 # Longest time [s] in which a command must end after a signal.
 HANGS = 20
-ALL = ("SIGINT", "SIGTERM", "SIGHUP", "SIGUSR1", "SIGUSR2", "SIGALRM", "SIGXCPU")
+# From the keyboard, from a scheduler, and from a limit; all are caught alike.
+SOME = ("SIGINT", "SIGUSR1", "SIGXCPU")
+ALL = (*SOME, "SIGTERM", "SIGHUP", "SIGUSR2", "SIGALRM")
 
 
 class Interrupted(Started):
@@ -168,10 +170,11 @@ class Motions(Interrupted):
         self.assertTrue((self.out / "crack.csv").exists())
 
     def test_every_signal_saves_and_draws_no_report(self):
-        for name in ALL:
+        for name in SOME:
             with self.subTest(name):
                 process = self.start(*self.motion())
                 self.assertTrue(wait_for((self.out / "lattice.pvd").exists, process))
+                self.assertEqual([other for other in ALL if not catches(process, getattr(signal, other))], [])
                 process.send_signal(getattr(signal, name))
                 self.is_saved(process)
                 self.assertFalse((self.out / "report.html").exists())
@@ -182,12 +185,10 @@ class Motions(Interrupted):
         self.is_saved(process)
 
     def test_a_signal_to_one_of_two_ranks(self):
-        for _ in range(3):
-            process = self.start(*self.motion("--set", "Fracture/stop position=0.99", length="10 cm"), launcher=["mpirun", "--oversubscribe", "-n", "2"])
-            self.assertTrue(wait_for((self.out / "lattice.pvd").exists, process))
-            os.kill(max(children(process.pid)), signal.SIGTERM)
-            self.is_saved(process)
-            shutil.rmtree(self.out)
+        process = self.start(*self.motion("--set", "Fracture/stop position=0.99", length="10 cm"), launcher=["mpirun", "--oversubscribe", "-n", "2"])
+        self.assertTrue(wait_for((self.out / "lattice.pvd").exists, process))
+        os.kill(max(children(process.pid)), signal.SIGTERM)
+        self.is_saved(process)
 
     def test_a_signal_to_one_of_two_ranks_before_the_motion(self):
         process = self.start("fracture", QUICK, "--output-dir", self.out, launcher=["mpirun", "--oversubscribe", "-n", "2"])

@@ -7,6 +7,7 @@
 #include <Eigen/Geometry>
 #include <gtest/gtest.h>
 
+#include "support/largest_error.h"
 #include "tests/verification/claims/subjects.h"
 #include "verification/bridge/homogenisation.h"
 
@@ -89,8 +90,8 @@ TEST(RotationMean, BoundsWhatTheNetworkLeavesOut)
     for (int k = 0; k < 100; ++k) // of these angles only 0 is one of the rotations
     {
       const Eigen::Matrix2d R = Eigen::Rotation2Dd(M_PI / 3. * k / 100.).toRotationMatrix();
-      farthest_energy = std::max(farthest_energy, (energy_of(R) - W.mean).norm());
-      farthest_stress = std::max(farthest_stress, (stress_of(R) - P.mean).norm());
+      farthest_energy = support::largest_of({farthest_energy, (energy_of(R) - W.mean).norm()});
+      farthest_stress = support::largest_of({farthest_stress, (stress_of(R) - P.mean).norm()});
     }
     const double rounding = 1e-13;
     EXPECT_LE(farthest_energy, W.bound + rounding * W.mean.norm());

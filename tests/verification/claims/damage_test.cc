@@ -54,32 +54,24 @@ std::vector<std::string> failing(const DamageOptions &options)
 
 TEST(DamageClaim, FailsForAnotherEnergyOfACrack)
 {
-  for (const double factor : {0.99, 1.01})
-  {
-    DamageOptions options;
-    options.planted_toughness = factor;
-    const std::vector<std::string> quantities = failing(options);
-    for (const char *expected :
-         {"energy of a crack over G_c, local, h = xi/2", "energy of a crack over G_c, local, h = xi/4",
-          "energy of a crack over G_c, extrapolated in h", "energy of a crack over G_c, gradient, h = xi/4",
-          "damage of a homogeneous bar at 1.5 of the critical strain", "energy dissipated in a homogeneous bar"})
-      EXPECT_EQ(std::count(quantities.begin(), quantities.end(), expected), 1) << expected << ", " << factor;
-  }
+  DamageOptions options;
+  options.planted_toughness = 1.01;
+  const std::vector<std::string> quantities = failing(options);
+  for (const char *expected :
+       {"energy of a crack over G_c, local, h = xi/2", "energy of a crack over G_c, local, h = xi/4",
+        "energy of a crack over G_c, extrapolated in h", "energy of a crack over G_c, gradient, h = xi/4",
+        "damage of a homogeneous bar at 1.5 of the critical strain", "energy dissipated in a homogeneous bar"})
+    EXPECT_EQ(std::count(quantities.begin(), quantities.end(), expected), 1) << expected;
 }
 
-TEST(DamageClaim, FailsIfDamageHeals)
+// Two faults in one run: neither has a part in the rows of the other.
+TEST(DamageClaim, FailsIfDamageHealsOrLeavesTheGradientEnergy)
 {
   DamageOptions options;
-  options.planted_healing = true;
+  options.planted_healing = options.planted_undegraded_gradient = true;
   EXPECT_EQ(failing(options), (std::vector<std::string>{"stress after unloading to 0.5 of the critical strain",
-                                                        "stress after unloading to 1.4 of the critical strain"}));
-}
-
-TEST(DamageClaim, FailsIfDamageLeavesTheGradientEnergy)
-{
-  DamageOptions options;
-  options.planted_undegraded_gradient = true;
-  EXPECT_EQ(failing(options), std::vector<std::string>{"gradient energy with damage 0.5 over that without"});
+                                                        "stress after unloading to 1.4 of the critical strain",
+                                                        "gradient energy with damage 0.5 over that without"}));
 }
 
 TEST(DamageClaim, TakesTheConstantsFromTheBonds)

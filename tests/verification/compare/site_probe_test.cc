@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "frames.h"
+#include "support/largest_error.h"
 #include "tests/support/temporary_folder.h"
 
 using namespace latcon;
@@ -32,7 +33,7 @@ double largest(const FieldValues &field)
 {
   double value = 0.;
   for (const double v : field.values)
-    value = std::max(value, std::abs(v));
+    value = support::largest_of({value, std::abs(v)});
   return value;
 }
 
