@@ -33,7 +33,7 @@ enum class BondProperty
 };
 
 /// Factors of a property in the rows that `band` knows, for the kinds of bonds that the material has (theory.md, eq.
-/// (L.34)). The factor of a bond depends on the seed, the property and the bond alone, which is named by its row, its
+/// (L.37)). The factor of a bond depends on the seed, the property and the bond alone, which is named by its row, its
 /// column and its kind: the same bits for any number of ranks and threads, and whatever other shells there are.
 BondFactors bond_factors(const RowPartition &band, const Material &material, BondProperty property);
 

@@ -5,7 +5,7 @@
 namespace latcon::lattice
 {
 
-/// Distribution of a factor with mean 1 that multiplies a property of a bond (theory.md, eq. (L.33)).
+/// Distribution of a factor with mean 1 that multiplies a property of a bond (theory.md, eq. (L.36)).
 class Distribution
 {
 public:

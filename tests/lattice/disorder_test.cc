@@ -39,7 +39,8 @@ Moments moments(const Distribution &distribution, std::uint64_t n)
   return sums;
 }
 
-// Five standard errors of the mean and of the variance, by central limit; beyond with a probability of 6e-7.
+// theory.md, eq. (L.36): five standard errors of the mean and of the variance, by central limit; beyond with a
+// probability of 6e-7.
 TEST(Distribution, HasMeanOneAndItsWidth)
 {
   constexpr std::uint64_t n = 200000;
@@ -110,7 +111,7 @@ Material disordered(std::uint64_t seed = 1)
   return material;
 }
 
-// The factors of a bond depend on the seed, the property and the bond; not on other shells, the orientation or periods.
+// theory.md, eq. (L.37): the factors of a bond depend on the seed, the property and the bond; not on other shells, the orientation or periods.
 TEST(BondFactors, BelongToTheirBond)
 {
   const TriangularLattice sheet = sheets::square(20);

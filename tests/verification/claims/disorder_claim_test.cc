@@ -85,6 +85,7 @@ TEST(EffectiveMedium, IsThatOfTheTriangularNet)
   }
 }
 
+// theory-comparison.md, eqs. (H.21) to (H.24).
 TEST(DisorderClaim, HoldsForEveryDistribution)
 {
   const input::Case input = subjects::paper_case();

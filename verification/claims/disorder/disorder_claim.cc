@@ -177,8 +177,8 @@ private:
     }
     const double sampling = of_student * std::sqrt(squares / (n * (n - 1.)));
     // Pairs of bonds are what the effective medium leaves out, in the fourth order; the next orders are below the fifth
-    // power of the width (theory-comparison.md, eq. (H.23)).
-    const double of_pairs = share * (1. - share) * support::smallest_of({share, 1. - share}) * std::pow(width, 4);
+    // power of the width (theory-comparison.md, eq. (H.24)).
+    const double of_pairs = 0.5 * share * (1. - share) * std::pow(width, 4);
     const double order = of_pairs + std::pow(width, 5);
     const double nonlinear = of_nonlinearity * (1. - theory);
     outcome.results.add({"disorder",

@@ -22,8 +22,8 @@ struct DisorderOptions
 inline constexpr double widest_checked_disorder = 0.1;
 
 /// Claim `disorder`: energy of periodic sheets with disorder of the stiffness, relaxed at a small dilation and a small
-/// shear about the undeformed state, over the energy at homogeneous deformation (theory-comparison.md, eqs. (H.20) to
-/// (H.23)): bounds of Voigt and Reuss for every sheet, and the effective medium for the mean over sheets; mean and
+/// shear about the undeformed state, over the energy at homogeneous deformation (theory-comparison.md, eqs. (H.21) to
+/// (H.24)): bounds of Voigt and Reuss for every sheet, and the effective medium for the mean over sheets; mean and
 /// standard deviation of the factors of the bonds. Tolerances are sampling errors and the order of the effective
 /// medium.
 ClaimOutcome disorder_claim(const bridge::Subject &subject, const DisorderOptions &options);

@@ -13,7 +13,8 @@ namespace latcon::claims
 /// @param distribution not none
 double mean_over(const lattice::Distribution &distribution, const std::function<double(double)> &function);
 
-/// Effective medium of the bonds of a periodic, undeformed sheet (theory-comparison.md, eq. (H.22)): of each kind the
+/// Effective medium of the bonds of a periodic, undeformed sheet (theory-comparison.md, eqs. (H.22)
+/// and (H.23)): of each kind the
 /// factor of the stiffness, and the share a of a bond in its own response.
 struct EffectiveMedium
 {
