@@ -131,7 +131,9 @@ TEST(BondFactors, BelongToTheirBond)
       {
         const std::size_t place = sheet.index(row, column);
         if (TriangularLattice::is_nearest(kind))
+        {
           EXPECT_EQ(of_nearest.of(place, kind), stiffness.of(place, kind));
+        }
         n += 1.;
         with_strength += x(stiffness, place, kind) * x(strength, place, kind) / (0.2 * 0.1);
         with_next += x(stiffness, place, kind) * x(stiffness, place + 1, kind) / (0.2 * 0.2);
