@@ -15,7 +15,8 @@ double elastic_energy(const State &state, const RowPartition &band, const Materi
                 [&](std::size_t place, std::size_t kind, std::size_t)
                 {
                   of_rows[lattice.row_of(place)] +=
-                    volume[kind] * energy(material.shell(kind)->law, stretch(state, lattice, place, kind));
+                    state.stiffness.of(place, kind) *
+                    (volume[kind] * energy(material.shell(kind)->law, stretch(state, lattice, place, kind)));
                 });
   return band.sum(of_rows);
 }
@@ -32,7 +33,7 @@ void for_each_mechanism(const State &state, const TriangularLattice &lattice, co
   if (history.variables.empty())
     return;
   const Shell &shell = *material.shell(kind);
-  const double volume = cross_section(shell, lattice) * lattice.rest_length(kind);
+  const double volume = state.stiffness.of(place, kind) * (cross_section(shell, lattice) * lattice.rest_length(kind));
   std::array<double, max_history_variables> variables{};
   state.history.variables_of(place, kind, variables.data());
   for (std::size_t m = 0; m < n_mechanisms(shell.memory); ++m)

@@ -4,6 +4,8 @@
 
 #include <omp.h>
 
+#include "lattice/shell_kernels.h"
+
 namespace latcon::lattice
 {
 namespace
@@ -19,6 +21,12 @@ kernels::RememberedRow<Pointer> remembered_from(Kind &kind, std::size_t place)
   for (std::size_t v = 0; v < kind.variables.size(); ++v)
     row.variable[v] = kind.variables[v].data() + place;
   return row;
+}
+
+// Returns whether bonds have factors of their own.
+bool has_factors(const State &state)
+{
+  return !state.stiffness.empty() || !state.strength.empty();
 }
 
 } // namespace
@@ -169,13 +177,25 @@ kernels::RowOfBonds Forces::row_of_bonds(const Motion &motion, std::size_t row) 
                             nullptr,
                             0};
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  {
     bonds.shift[kind] = lattice_.shift(kind, row);
+    const auto from = [near](const Field &factors) { return factors.empty() ? nullptr : factors.data() + near; };
+    bonds.stiffness[kind] = from(state.stiffness.kinds[kind]);
+    bonds.strength[kind] = from(state.strength.kinds[kind]);
+  }
   return bonds;
 }
 
 bool Forces::row_has_events_ahead(const State &state, std::size_t row, double ahead) const
 {
-  return kernels::any_event_ahead(constants_, row_of_bonds({state, state.vx, state.vy}, row), ahead);
+  const kernels::RowOfBonds bonds = row_of_bonds({state, state.vx, state.vy}, row);
+  if (!has_factors(state))
+    return kernels::any_event_ahead(constants_, bonds, ahead);
+  for (std::size_t shell = 0; shell < laws_.size(); ++shell)
+    if (constants_.shells[shell].cross_section > 0. &&
+        kernels::any_event_ahead_in_shell(constants_, bonds, shell, ahead))
+      return true;
+  return false;
 }
 
 // The bonds of row `from` as those of `row`: the same, or below the edge of a periodic sheet.
@@ -188,7 +208,13 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
     for (std::size_t component = 0; component < 2; ++component)
       all.force[kind][component] = scratch.bonds.at(row, kind, component);
-  kernels::RowSums sums = kernels::bonds_of_row(laws_, constants_, all);
+  kernels::RowSums sums;
+  if (!has_factors(motion.state))
+    sums = kernels::bonds_of_row(laws_, constants_, all);
+  else
+    for (std::size_t shell = 0; shell < laws_.size(); ++shell)
+      if (constants_.shells[shell].cross_section > 0.)
+        kernels::bonds_of_shell(laws_[shell], constants_, all, shell, sums);
   if (!row_mechanism_power_.empty())
   {
     add_overstress(motion.state, from, all, scratch.mechanism_power);
@@ -257,17 +283,23 @@ void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, s
 
 kernels::Overstress Forces::overstress(const State &state, std::size_t place, std::size_t kind, double stretch) const
 {
-  return kernels::overstress(memory_steps_[kind / n_nearest_kinds], constants_.shell(kind), stretch, place,
-                             remembered_from<const double *>(state.history.kinds[kind], 0));
+  kernels::Overstress over = kernels::overstress(memory_steps_[kind / n_nearest_kinds], constants_.shell(kind), stretch,
+                                                 place, remembered_from<const double *>(state.history.kinds[kind], 0));
+  const double factor = state.stiffness.of(place, kind);
+  over.axial *= factor;
+  for (double &power : over.dissipation)
+    power *= factor;
+  return over;
 }
 
 kernels::BondForce Forces::single_bond(const Motion &motion, std::size_t place, std::size_t kind) const
 {
   const State &state = motion.state;
   const std::size_t far = place + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(place)));
-  kernels::BondForce bond = kernels::bond_force(laws_[kind / n_nearest_kinds], constants_.shell(kind),
-                                                state.x[far] - state.x[place], state.y[far] - state.y[place],
-                                                motion.vx[far] - motion.vx[place], motion.vy[far] - motion.vy[place]);
+  kernels::BondForce bond =
+    kernels::bond_force(laws_[kind / n_nearest_kinds], constants_.shell(kind), state.stiffness.of(place, kind),
+                        state.x[far] - state.x[place], state.y[far] - state.y[place], motion.vx[far] - motion.vx[place],
+                        motion.vy[far] - motion.vy[place]);
   if (!state.history.kinds[kind].variables.empty())
   {
     const kernels::Overstress over = overstress(state, place, kind, bond.stretch);

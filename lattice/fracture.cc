@@ -57,6 +57,7 @@ void Fracture::configure(State &state, Forces &forces) const
 {
   state.breaking_stretch = breaking_stretch_;
   state.toughened_stretch = toughened_stretch_;
+  state.strength = bond_factors(band_, material_, BondProperty::strength);
   forces.set_retraction_threshold(retraction_stretch_);
 }
 
@@ -94,8 +95,9 @@ Fracture::Event Fracture::event(const State &state, std::size_t place, std::size
 double Fracture::bond_energy(const State &state, std::size_t place, std::size_t kind) const
 {
   const Shell &shell = *material_.shell(kind);
-  const double elastic = cross_section(shell, lattice_) * lattice_.rest_length(kind) *
-                         energy(shell.law, stretch(state, lattice_, place, kind));
+  const double elastic =
+    state.stiffness.of(place, kind) * (cross_section(shell, lattice_) * lattice_.rest_length(kind) *
+                                       energy(shell.law, stretch(state, lattice_, place, kind)));
   return elastic + memory_energy(state, lattice_, material_, place, kind);
 }
 
@@ -172,7 +174,8 @@ double Fracture::remove_sites(State &state, const std::vector<std::size_t> &plac
 const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, const Field &evaluated_vx,
                                                const Field &evaluated_vy, int *number)
 {
-  if (state.breaking_stretch != breaking_stretch_ || state.toughened_stretch != toughened_stretch_)
+  if (state.breaking_stretch != breaking_stretch_ || state.toughened_stretch != toughened_stretch_ ||
+      state.strength.empty() != material_.disorder.strength.is_none())
     throw std::logic_error("the breaking stretches of a state are set by configure() before bonds break");
   std::vector<Loss> own;
   std::vector<std::uint8_t> ahead;

@@ -66,6 +66,8 @@ struct BrokenBond
 
 /// Permanent breaking at lam_f, toughening, and the crack tip (theory.md, section "Fracture").
 ///
+/// With disorder of the strength each bond has its own lam_f, toughened or not: lam_f times its factor.
+///
 /// The tip is the right-most site (reference X) that has lost at least a quarter of its bonds, rounded up: 3 of 12 as
 /// in the source paper, 2 of 6 where there are nearest neighbours alone. Held and removed sites do not count. Among
 /// sites at the same X the one nearest the previous tip is taken, then the one stored first.

@@ -4,6 +4,7 @@
 
 #include "lattice/bonds/bond_law.h"
 #include "lattice/bonds/bond_memory.h"
+#include "lattice/disorder.h"
 #include "lattice/triangular_lattice.h"
 
 namespace latcon::lattice
@@ -28,6 +29,7 @@ struct Material
   double density; ///< rho [kg/m^3], > 0
   Shell nearest;
   std::optional<Shell> next_nearest; ///< none: a lattice of nearest neighbours alone
+  Disorder disorder = {};            ///< factors of the bonds of all shells; none by default
 
   /// Shell of a bond kind; nullptr where the lattice has no such bonds.
   const Shell *shell(std::size_t kind) const

@@ -69,7 +69,14 @@ void add_overstress_of(const Step &step, const BondConstants &bond, const RowOfB
     Lanes variables[max_history_variables], dissipation[max_history_variables];
     load_variables(remembered, step.n, site, variables);
     const Lanes stress = advance(step, load(remembered.stretch + site), bonds.stretch, variables, dissipation);
-    const Lanes axial = bond.cross_section * bonds.where_present(stress);
+    Lanes axial = bond.cross_section * bonds.where_present(stress);
+    if (row.stiffness[kind] != nullptr)
+    {
+      const Lanes factor = load(row.stiffness[kind] + site);
+      axial = factor * axial;
+      for (std::size_t m = 0; m < step.n_mechanisms(); ++m)
+        dissipation[m] = factor * dissipation[m];
+    }
     store(load(fx + site) + axial * bonds.nx, fx + site);
     store(load(fy + site) + axial * bonds.ny, fy + site);
     for (std::size_t m = 0; m < step.n_mechanisms(); ++m)

@@ -62,6 +62,9 @@ struct RowOfBonds
   /// `n_ahead` arrays whose same slots are prefetched, since they are needed next.
   const double *const *ahead;
   std::size_t n_ahead;
+  /// Factors of the bonds of each kind by site, as in State; null: all 1. bonds_of_row() and any_event_ahead() do not
+  /// take them into account; see shell_kernels.h.
+  std::array<const double *, n_bond_kinds> stiffness{}, strength{};
 };
 
 /// Sums over the bonds that start in a row.
@@ -121,6 +124,8 @@ struct BondForce
   double viscous_power; ///< [W/m]
 };
 /// Returns the force of a bond whose ends are at a distance (dx, dy) [m] and move apart with (dvx, dvy) [m/s].
-BondForce bond_force(const BondLaw &law, const BondConstants &bond, double dx, double dy, double dvx, double dvy);
+/// @param factor of its cross-section
+BondForce bond_force(const BondLaw &law, const BondConstants &bond, double factor, double dx, double dy, double dvx,
+                     double dvy);
 
 } // namespace latcon::lattice::kernels

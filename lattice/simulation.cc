@@ -47,9 +47,12 @@ Simulation::Simulation(const RowPartition &band, const Material &material, State
   if (material_.has_memory() && state_.history.empty())
     relax_memory(state_, band_, material_);
   require_history(state_, lattice_, material_);
+  if (state_.stiffness.empty() != material_.disorder.stiffness.is_none())
+    throw std::invalid_argument("the stiffness of the bonds does not have the disorder of the material");
   if (fracture_)
     fracture_->configure(state_, forces_);
-  forces_.set_shortness_threshold(watched_stretch(time_stepping, lattice_, material_, state_.toughened_stretch));
+  forces_.set_shortness_threshold(watched_stretch(time_stepping, lattice_, material_,
+                                                  state_.toughened_stretch * material_.disorder.strength.largest()));
   forces_.update_memory(state_);
   reinitialize_forces();
   initial_energy_ = stored_energy() + kinetic_energy(state_, band_);
@@ -290,6 +293,8 @@ const State &Simulation::gather(Rows rows)
       for (Field &variable : history.variables)
         band_.gather(variable, rows);
     }
+  state_.stiffness.gather(band_, rows);
+  state_.strength.gather(band_, rows);
   for (SiteFlags *marks : {&state_.held, &state_.removed, &state_.lost_bonds})
     band_.gather(*marks, rows);
   if (band_.is_first())

@@ -64,12 +64,12 @@ SiteValues SiteEvaluator::at(const State &state, std::size_t place) const
       const double length = bond.norm();
       const Eigen::Vector2d direction = bond / length;
       const double stretch = length / kind.rest_length;
-      double axial =
-        kind.section * (force(shell.law, stretch) + shell.viscosity * rate.dot(direction) / kind.rest_length);
+      const double section = state.stiffness.of(near, number) * kind.section;
+      double axial = section * (force(shell.law, stretch) + shell.viscosity * rate.dot(direction) / kind.rest_length);
       if (!state.history.kinds[number].variables.empty())
-        axial += kind.section * overstress(kind.at_rest, state.history, near, number);
+        axial += section * overstress(kind.at_rest, state.history, near, number);
       ++values.bonds;
-      values.strain_energy_density += 0.5 * kind.section * kind.rest_length * energy(shell.law, stretch);
+      values.strain_energy_density += 0.5 * section * kind.rest_length * energy(shell.law, stretch);
       values.first_piola_stress += 0.5 * axial * direction * kind.reference.transpose();
       reference_moment += kind.reference_moment;
       mixed_moment += bond * kind.reference.transpose();

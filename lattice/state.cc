@@ -2,19 +2,12 @@
 
 #include <cmath>
 
+#include "lattice/counter_hash.h"
+
 namespace latcon::lattice
 {
 namespace
 {
-
-// SplitMix64 (Steele, Lea, Flood 2014): a counter-based generator, so that no order of sites is implied.
-std::uint64_t splitmix64(std::uint64_t counter)
-{
-  std::uint64_t z = counter + 0x9e3779b97f4a7c15ull;
-  z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9ull;
-  z = (z ^ (z >> 27)) * 0x94d049bb133111ebull;
-  return z ^ (z >> 31);
-}
 
 // Uniform in [-1, 1), from the upper 53 bits.
 double symmetric_uniform(std::uint64_t bits)
@@ -101,6 +94,7 @@ State homogeneous_state(const RowPartition &band, const Material &material, cons
     state.y[place] = position.y();
   }
 
+  state.stiffness = bond_factors(band, material, BondProperty::stiffness);
   const double inverse_mass = 1. / site_mass(material, lattice);
   for (const std::size_t row : band.known_rows())
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)

@@ -7,6 +7,7 @@
 
 #include <Eigen/Core>
 
+#include "lattice/bond_factors.h"
 #include "lattice/bond_history.h"
 #include "lattice/bond_states.h"
 #include "lattice/material.h"
@@ -36,8 +37,10 @@ struct State
   Field ax, ay;                           ///< acceleration [m/s^2]; 0 at held sites and in the margin
   BondStates bonds;                       ///< by the place where they start
   BondHistory history;                    ///< of bonds with a memory; see relax_memory()
+  BondFactors stiffness;                  ///< of cross-sections, hence of all forces of bonds; from homogeneous_state()
   double breaking_stretch = unbreakable;  ///< lam_f [-], beyond which a bond breaks; set by Fracture::configure()
   double toughened_stretch = unbreakable; ///< that of toughened bonds [-]; set likewise
+  BondFactors strength;                   ///< of both, bond by bond; set likewise
   Field inverse_mass;                     ///< h / m [m/kg]; 0 at held and removed sites and in the margin
   SiteFlags held;                         ///< 1 at sites whose motion is prescribed, 0 at removed ones
   SiteFlags removed;                      ///< 1 at sites cut out as seed crack
@@ -68,7 +71,8 @@ State homogeneous_state(const RowPartition &band, const Material &material, cons
 /// Stretch beyond which a bond that is present breaks [-].
 inline double breaking_stretch_of(const State &state, std::size_t place, std::size_t kind)
 {
-  return state.bonds.toughened(place, kind) ? state.toughened_stretch : state.breaking_stretch;
+  return (state.bonds.toughened(place, kind) ? state.toughened_stretch : state.breaking_stretch) *
+         state.strength.of(place, kind);
 }
 
 /// Moves every free site in the rows that `band` knows by a random displacement, uniform in [-amplitude, amplitude]

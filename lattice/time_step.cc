@@ -36,6 +36,12 @@ TimeStepLimits limits(const Rates &rates)
 // The smallest stretch of the bonds of each shell.
 using SmallestStretch = std::array<double, 2>;
 
+// Largest factor of the force of a bond: all bonds of a site may be as stiff as the stiffest.
+double stiffest(const Material &material)
+{
+  return material.disorder.stiffness.largest();
+}
+
 // Largest stiffness in motions that leave memories no time to relax [Pa].
 double fast_stiffness(const Shell &shell, double smallest_stretch)
 {
@@ -51,7 +57,8 @@ Rates bound_of_bonds(const TriangularLattice &lattice, const Material &material,
     if (const Shell *shell = material.shell(kind))
     {
       // A site has two bonds of each kind, and the bound is twice the sum over its bonds.
-      const double per_length = 4. * cross_section(*shell, lattice) / (lattice.rest_length(kind) * mass);
+      const double per_length =
+        stiffest(material) * (4. * cross_section(*shell, lattice) / (lattice.rest_length(kind) * mass));
       rates.omega_square += per_length * fast_stiffness(*shell, smallest_stretch[kind / n_nearest_kinds]);
       rates.gamma += per_length * shell->viscosity;
     }
@@ -150,11 +157,13 @@ double watched_stretch(const TimeStepping &stepping, const TriangularLattice &la
     {
       // No overstress exceeds that of a bond that is stretched at once.
       const double overstress = largest_stiffness(shell->memory) * breaking_stretch;
-      site_energy += cross_section(*shell, lattice) * lattice.rest_length(kind) *
+      site_energy += stiffest(material) * cross_section(*shell, lattice) * lattice.rest_length(kind) *
                      (energy(shell->law, breaking_stretch) + 0.5 * overstress * breaking_stretch);
       of_forces = std::max(of_forces, 0.5 * material.coordination() *
                                         (force(shell->law, breaking_stretch) + overstress) / shell->viscosity);
     }
+  // Stiff bonds may pull on one whose dashpot is the weakest.
+  of_forces *= stiffest(material) / material.disorder.stiffness.smallest();
   const double of_energy = std::sqrt(8. * site_energy / site_mass(material, lattice)) / lattice.spacing();
   const double loss = stepping.step * std::min(of_energy, of_forces);
   return short_stretch + (loss < most ? loss : most);

@@ -30,7 +30,8 @@ struct TimeStepLimits
 /// Limits that hold in every configuration in which no bond is shorter than `smallest_stretch`.
 ///
 /// omega^2 <= 2 sum_j A0 psi''_max / (l m) and gamma <= 2 sum_j A0 eta / (l m), sums over the bonds of a site and
-/// psi''_max = largest_stiffness(law, smallest_stretch): bonds all in line would attain them. In the undeformed lattice
+/// psi''_max = largest_stiffness(law, smallest_stretch): bonds all in line would attain them. With disorder all bonds
+/// are taken to be as stiff as the distribution allows. In the undeformed lattice
 /// of nearest neighbours the true limit is larger by a factor of 2 for the dashpots (attained by the shortest waves),
 /// of sqrt2 for the springs.
 /// @param smallest_stretch lam_min [-] in (0, 1]
@@ -54,7 +55,7 @@ double recoil_step(const TimeStepping &stepping, const TriangularLattice &lattic
 
 /// Stretch below which bonds are checked after each step for whether the next step must be divided [-]: short_stretch
 /// plus what a bond may lose in one step, at most 0.3 (theory.md, eq. (L.26)).
-/// @param breaking_stretch of toughened bonds, if there are such; infinite: bonds do not break
+/// @param breaking_stretch of toughened bonds, if there are such, and of the strongest; infinite: bonds do not break
 double watched_stretch(const TimeStepping &stepping, const TriangularLattice &lattice, const Material &material,
                        double breaking_stretch);
 

@@ -71,9 +71,13 @@ TEST(Forces, FreeSheetFeelsNoResultant)
 
 TEST(Forces, AreMinusTheEnergyGradient)
 {
-  for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
+  Material disordered = sheets::rubber();
+  disordered.disorder = sheets::disordered_rubber().disorder;
+  for (const auto &[orientation, material] : {std::pair(Orientation::rows_along_crack, sheets::rubber()),
+                                              {Orientation::rows_across_crack, sheets::rubber()},
+                                              {Orientation::rows_along_crack, disordered}})
   {
-    NoisySheet noisy(sheets::rubber(), Edges::held, orientation);
+    NoisySheet noisy(material, Edges::held, orientation);
     const Field rest(noisy.sheet.n_places(), 0.);
     noisy.forces.evaluate(noisy.state, rest, rest);
     // Along a random direction the remainder of a central difference falls with h^2.
@@ -216,14 +220,24 @@ Material with_branches()
   return material;
 }
 
+// Bonds of one stiffness and one shell with a law from outside.
+Material differently_strong()
+{
+  Material material = sheets::rubber_from_outside();
+  material.next_nearest.reset();
+  material.disorder.strength = {Distribution::Kind::uniform, 0.2};
+  return material;
+}
+
 std::vector<Subject> subjects()
 {
   std::vector<Subject> all;
   // Few and many columns, of all remainders that a vector of up to eight sites leaves.
   for (const double columns : {3., 10., 11., 12., 13., 14., 15., 16., 17., 40.})
     for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
-      for (const Material &material : {sheets::rubber(), sheets::nearest_only(), linear(),
-                                       sheets::rubber_from_outside(), mixed(), with_branches()})
+      for (const Material &material :
+           {sheets::rubber(), sheets::nearest_only(), linear(), sheets::rubber_from_outside(), mixed(), with_branches(),
+            sheets::disordered_rubber(), differently_strong()})
         for (const Periodic periodic : {Periodic{}, Periodic{true, false}, Periodic{false, true}, Periodic{true, true}})
           all.push_back({material, orientation, periodic, columns});
   return all;
@@ -252,6 +266,7 @@ State random_state(const TriangularLattice &sheet, const Material &material, uns
         overstress = 1e5 * (uniform() - 0.5);
   state.breaking_stretch = first_limit;
   state.toughened_stretch = toughened_limit;
+  state.strength = bond_factors(sheet, material, BondProperty::strength);
   for (std::size_t place = 0; place < sheet.n_places(); ++place)
   {
     if (!sheet.is_site(place))
@@ -371,8 +386,10 @@ TEST(Forces, BitsDoNotDependOnThreads)
   const int before = omp_get_max_threads();
   for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
     for (const Periodic periodic : {Periodic{}, Periodic{true, true}})
-      for (const auto &[rows, material] :
-           {std::pair(20., sheets::rubber()), {90., sheets::rubber()}, {20., sheets::rubber_from_outside()}})
+      for (const auto &[rows, material] : {std::pair(20., sheets::rubber()),
+                                           {90., sheets::rubber()},
+                                           {20., sheets::rubber_from_outside()},
+                                           {20., sheets::disordered_rubber()}})
       {
         const TriangularLattice sheet = sheet_of({material, orientation, periodic, 5000. / rows}, rows);
         ASSERT_GE(sheet.n_places(), min_places_for_threads);

@@ -136,18 +136,21 @@ TEST(Fracture, LooksAheadToTheMomentOfRetraction)
 TEST(Fracture, FlagsARowIfAndOnlyIfOneOfItsBondsHasAnEvent)
 {
   const TriangularLattice sheet = sheets::square(8);
-  const Material material = sheets::rubber();
   const Eigen::Matrix2d F = Eigen::Matrix2d::Identity();
-  State state = homogeneous_state(sheet, material, F, Edges::free);
-  state.bonds.clear(sheet.n_places());
   const std::size_t row = 4, near = sheet.index(row, 3);
   int n_events = 0, n_none = 0;
-  for (const double ahead : {0., 1e-6})
+  for (const auto &[ahead, material] : {std::pair(0., sheets::rubber()),
+                                        {1e-6, sheets::rubber()},
+                                        {0., sheets::disordered_rubber()},
+                                        {1e-6, sheets::disordered_rubber()}})
     for (const bool breaks : {true, false})
       for (const std::size_t kind : {std::size_t{1}, std::size_t{4}})
       {
-        // 1.5 is the limit, 0.8 the fraction of retraction.
-        const double limit = breaks ? 1.5 : 0.8, l = sheet.rest_length(kind);
+        State state = homogeneous_state(sheet, material, F, Edges::free);
+        state.bonds.clear(sheet.n_places());
+        const double strength = bond_factors(sheet, material, BondProperty::strength).of(near, kind);
+        // 1.5 is the limit of a bond of mean strength, 0.8 the fraction of retraction.
+        const double limit = breaks ? 1.5 * strength : 0.8, l = sheet.rest_length(kind);
         const std::size_t far = near + static_cast<std::size_t>(sheet.shift(kind, row));
         for (int direction = 0; direction < 60; ++direction)
           for (int ulps = -3; ulps <= 3; ++ulps)

@@ -66,7 +66,8 @@ reference_forces(const latcon::lattice::State &state, const latcon::lattice::Tri
   const auto visit = [&](std::size_t near, std::size_t kind, std::size_t far)
   {
     const latcon::lattice::Shell &shell = *material.shell(kind);
-    const double section = cross_section(shell, sheet), rest_length = sheet.rest_length(kind);
+    const double section = state.stiffness.of(near, kind) * cross_section(shell, sheet);
+    const double rest_length = sheet.rest_length(kind);
     const Vector2d bond(state.x[far] - state.x[near], state.y[far] - state.y[near]);
     const Vector2d velocity(state.vx[far] - state.vx[near], state.vy[far] - state.vy[near]);
     const double stretch = bond.norm() / rest_length;

@@ -116,6 +116,17 @@ inline latcon::lattice::Material rubber_with_memory(double viscosity = 65.625)
   return material;
 }
 
+/// Rubber with three Maxwell branches in nearest-neighbour bonds and one in the others, and disorder of all bonds.
+inline latcon::lattice::Material disordered_rubber(double viscosity = 65.625)
+{
+  using latcon::lattice::Distribution;
+  latcon::lattice::Material material = rubber(viscosity);
+  material.nearest.memory = latcon::lattice::MaxwellMemory({{2e5, 2e-5}, {1e5, 2e-4}, {3e4, 1e-3}});
+  material.next_nearest->memory = latcon::lattice::MaxwellMemory({{1.5e5, 5e-5}});
+  material.disorder = {{Distribution::Kind::weibull, 0.05}, {Distribution::Kind::normal, 0.2}, 7};
+  return material;
+}
+
 inline Eigen::Matrix2d stretched(double x, double y)
 {
   return Eigen::Vector2d(x, y).asDiagonal();

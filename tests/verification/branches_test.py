@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests of cases with Maxwell branches: same files for ranks and threads, restart, energy ledger, refusals.
+"""Tests of cases with Maxwell branches and disorder: same files for ranks and threads, restart, energy ledger, refusals.
 
 Usage: branches_test.py PATH_OF_LATCON
 """
@@ -22,6 +22,10 @@ MOTION = [word for entry in (
     "Checkpoints/steps=7") for word in ("--set", entry)]
 CHEBYSHEV = ["--set", "Time/integrator=runge-kutta-chebyshev", "--set", "Checkpoints/steps=40", "--set",
              "Output/energy interval=10"]
+
+
+DISORDER = ["--set", "Disorder/strength=weibull", "--set", "Disorder/strength width=0.05", "--set", "Disorder/stiffness=normal",
+            "--set", "Disorder/stiffness width=0.2"]
 
 
 def files(folder):
@@ -76,6 +80,32 @@ class Branches(TemporaryFolder):
 
     def test_crack_with_runge_kutta_chebyshev(self):
         self.check_ledger(self.crack(CHEBYSHEV), 1e-3)  # long steps miss waves that breaking bonds emit
+
+    def test_crack_with_disorder(self):
+        self.check_ledger(self.crack([*VERLET, *DISORDER]))
+
+    def test_checkpoint_of_another_disorder_is_refused(self):
+        short = [*STRIP, *DISORDER, "--set", "Time/end=0.02 ms", "--set", "Checkpoints/steps=10", "--output-dir", self.out]
+        run = latcon(*short)
+        self.assertIn(run.returncode, (0, 3), run.stderr)
+        run = latcon(*short, "--resume", "--set", "Disorder/seed=2")
+        self.assertEqual(run.returncode, 2, run.stderr)
+        self.assertIn("another case: Disorder/seed = 1 in the checkpoint", run.stderr)
+
+    def test_bad_disorder_is_refused_by_name(self):
+        for entries, key, words in (
+                (["stiffness=uniform", "stiffness width=0.6"], "stiffness width", "below 0.577"),
+                (["strength=normal", "strength width=0.33"], "strength width", "below 0.328"),
+                (["strength=weibull", "strength width=1.1"], "strength width", "<= 1"),
+                (["strength=weibull", "strength width=0"], "strength width", ">= 1e-04"),
+                (["strength=weibull", "strength width=nan"], "strength width", "<= 1"),
+                (["stiffness=weibul"], "stiffness", "perhaps weibull"),
+                (["seed=-1"], "seed", "whole number")):
+            sets = [word for entry in entries for word in ("--set", f"Disorder/{entry}")]
+            run = latcon("fracture", SPECTRUM, "--dry-run", *sets)
+            self.assertEqual(run.returncode, 2, (entries, run.stderr))
+            self.assertIn(f"Disorder/{key}", run.stderr)
+            self.assertIn(words, run.stderr)
 
     def test_checkpoint_of_other_branches_is_refused(self):
         short = [*STRIP, "--set", "Time/end=0.05 ms", "--set", "Checkpoints/steps=10", "--output-dir", self.out]

@@ -28,8 +28,8 @@ from made_up_claims import DECAY, FIRST_ROW, RUN_ERROR, write_claims
 
 decay_of = MODULES["intrinsic-length"].decay_of
 # In the order in which they are checked.
-CLAIMS = ("energy", "wave-speeds", "viscoelastic-waves", "relaxation", "intrinsic-length", "prestretch", "running-crack",
-          "damage")
+CLAIMS = ("energy", "wave-speeds", "viscoelastic-waves", "relaxation", "intrinsic-length", "disorder", "prestretch",
+          "running-crack", "damage")
 FULL = "--full" in sys.argv  # also the layout of the plots
 
 
@@ -104,6 +104,7 @@ class ClaimSections(unittest.TestCase):
             "relaxation": ("NN+NNN, velocity Verlet: off the closed form by up to 0.0e+00",),
             "intrinsic-length": (f"{DECAY:+.4f} (theory {DECAY:+.4f})", f"(theory {FIRST_ROW:+.3e})",
                                  "NN: no layer, every row within 3.0e-16", "off the exact one by up to 1.0e-02"),
+            "disorder": ("NN, bulk modulus: mean off the effective medium by up to", "reduction by disorder 6.70e-03"),
             "prestretch": ("local: order of displacement 1.00, stress 1.00, energy 1.00, reaction 1.00, shape 1.00",
                            "gradient: order of displacement 2.00, stress 2.00, energy 2.00, reaction 2.00<"),
             "running-crack": ("NN+NNN: most negative velocity ahead of the tip [m/s]: lattice -1.00, local continuum "

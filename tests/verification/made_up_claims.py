@@ -68,6 +68,7 @@ def write_claims(folder):
           + [["NN", j, 3e-16 * (-1) ** j, 0.0] for j in rows])
     write_running_crack(folder)
     write_branches(folder)
+    write_disorder(folder)
     write_damaged_bar(folder)
     for name, size in (("hole", "R/d"), ("notch", "length/d")):
         write_cut(folder, name, size)
@@ -92,6 +93,13 @@ def write_branches(folder):
     write(folder, "relaxation", ["shells", "integrator", "t [s]", *(
         f"{side}_{what}" for what in ("overstress [Pa]", "stored [J/m]", "dissipated [J/m]")
         for side in ("lattice", "theory"))], rows)
+
+
+def write_disorder(folder):
+    """Moduli of sheets about their effective medium."""
+    rows = [[shells, modulus, i, 0.9933 + 1e-4 * (-1) ** i, 0.99, 0.9933, 0.1]
+            for shells, modulus, i in itertools.product(("NN+NNN", "NN"), ("bulk modulus", "shear modulus"), range(10))]
+    write(folder, "disorder", ["shells", "modulus", "sheet", "ratio [1]", "reuss [1]", "effective_medium [1]", "width [1]"], rows)
 
 
 def write_dispersion(folder):

@@ -75,8 +75,9 @@ std::size_t n_overstretched_bonds(const lattice::State &state, const lattice::Tr
 {
   std::size_t n = 0;
   for_each_bond(state, lattice,
-                [&](std::size_t near, std::size_t kind, std::size_t)
-                { n += stretch(state, lattice, near, kind) > breaking_stretch ? 1 : 0; });
+                [&](std::size_t near, std::size_t kind, std::size_t) {
+                  n += stretch(state, lattice, near, kind) > breaking_stretch * state.strength.of(near, kind) ? 1 : 0;
+                });
   return n;
 }
 

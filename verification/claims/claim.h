@@ -49,10 +49,14 @@ struct Claim
   /// The quick version is run on the shells of the case, and not also on the nearest neighbours alone.
   bool quick_on_own_shells_only = false;
 
+  /// The claim is about disorder of bonds: part of `latcon verify` without names for materials with disorder only.
+  bool is_about_disorder = false;
+
   /// Returns whether `latcon verify` without names includes the claim. @param material of the lattice
   [[nodiscard]] bool is_default_for(const lattice::Material &material) const
   {
-    return is_default && (!is_about_memory || material.has_memory());
+    return is_default && (!is_about_memory || material.has_memory()) &&
+           (!is_about_disorder || !material.disorder.is_none());
   }
   /// Returns whether verification before fracture includes the claim. @param material of the sheet that breaks
   [[nodiscard]] bool is_before_fracture(const lattice::Material &material) const

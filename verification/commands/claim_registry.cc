@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "verification/claims/damage/descriptor.h"
+#include "verification/claims/disorder/descriptor.h"
 #include "verification/claims/energy/descriptor.h"
 #include "verification/claims/intrinsic_length/descriptor.h"
 #include "verification/claims/prestretch/descriptor.h"
@@ -35,6 +36,7 @@ std::vector<Claim> all_claims()
   list.push_back(claims::viscoelastic_waves_descriptor());
   list.push_back(claims::relaxation_descriptor());
   list.push_back(claims::intrinsic_length_descriptor());
+  list.push_back(claims::disorder_descriptor());
   list.push_back(claims::prestretch_descriptor());
   list.push_back(claims::running_crack_descriptor());
   list.push_back(claims::damage_descriptor());

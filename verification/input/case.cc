@@ -220,6 +220,7 @@ void Case::declare(Parameters &p)
   nearest.declare(p, "Nearest neighbours");
   p.add("Next-nearest neighbours", "present", has_next_nearest, "include bonds between next-nearest neighbours");
   next_nearest.declare(p, "Next-nearest neighbours");
+  disorder.declare(p);
 
   p.add("Loading", "strain x", strain_x, Range({-1., false}, {1000., true}), "1",
         "eps_x: engineering strain along x; the stretch is 1 + eps_x", Presence::required);
@@ -328,6 +329,7 @@ void Case::check(Parameters &p)
   nearest.check(p, "Nearest neighbours", longest_stretch());
   if (has_next_nearest)
     next_nearest.check(p, "Next-nearest neighbours", longest_stretch());
+  disorder.check(p);
 
   check_size(*this, p);
   check_cutout(*this, p);
@@ -386,13 +388,15 @@ lattice::Material Case::material() const
   lattice::Material material{density, nearest.shell(longest_stretch()), std::nullopt};
   if (has_next_nearest)
     material.next_nearest = next_nearest.shell(longest_stretch());
+  material.disorder = disorder.disorder();
   return material;
 }
 
 double Case::longest_stretch() const
 {
   if (breaking_stretch)
-    return *breaking_stretch * (toughening == Toughening::none ? 1. : toughening_factor);
+    return *breaking_stretch * disorder.strength.distribution().largest() *
+           (toughening == Toughening::none ? 1. : toughening_factor);
   constexpr double margin = 1.2;
   return margin * std::max(1., deformation().jacobiSvd().singularValues()(0));
 }

@@ -9,6 +9,7 @@
 #include "lattice/material.h"
 #include "lattice/time_step.h"
 #include "verification/input/continuum_case.h"
+#include "verification/input/disorder_case.h"
 #include "verification/input/parameters.h"
 #include "verification/input/user_law.h"
 
@@ -81,6 +82,7 @@ struct Case
   ShellCase nearest;
   bool has_next_nearest = true;
   ShellCase next_nearest;
+  DisorderCase disorder;
 
   // Loading
   double strain_x = 0.; ///< eps_x [-]
@@ -182,8 +184,8 @@ struct Case
   /// The lattice of the sheet, periodic where its edges are.
   lattice::TriangularLattice lattice() const;
   lattice::Material material() const;
-  /// Largest stretch of an unbroken bond [-], up to which user-defined laws must have values: the breaking stretch,
-  /// with toughening; in a sheet that does not break, that of the loading and a fifth more.
+  /// Largest stretch of an unbroken bond [-], up to which user-defined laws must have values: the breaking stretch of
+  /// the strongest bond, with toughening; in a sheet that does not break, that of the loading and a fifth more.
   double longest_stretch() const;
   /// Returns whether the sheet has an inner edge, that of a hole or a notch.
   bool has_inner_edge() const { return hole_radius > 0. || notch_length > 0.; }

@@ -118,12 +118,13 @@ std::vector<Number> field_numbers(const analysis::NearTipField &field, std::opti
 }
 
 // Returns the Cauchy stress of the loaded sheet [Pa], evaluated at a site in the middle of a homogeneously deformed
-// sheet.
+// sheet whose bonds have their mean stiffness.
 Eigen::Matrix2d stress_of_loaded_sheet(const input::Case &input)
 {
   const double side = 12. * input.spacing;
   const lattice::TriangularLattice sheet(input.spacing, side, side, input.orientation);
-  const lattice::Material material = input.material();
+  lattice::Material material = input.material();
+  material.disorder = {};
   const lattice::RowPartition whole(sheet);
   const lattice::State state =
     lattice::homogeneous_state(whole, material, input.deformation(), {true, true, true, true});

@@ -105,6 +105,14 @@ OnMachine on_machine(const MemoryNeed &need)
   return {sums[0], sums[1]};
 }
 
+// Bytes of the factors of bonds per slot.
+double factors_per_place(const input::Case &input, bool breaks)
+{
+  const lattice::Disorder disorder = input.disorder.disorder();
+  const double fields = (disorder.stiffness.is_none() ? 0. : 1.) + (breaks && !disorder.strength.is_none() ? 1. : 0.);
+  return bytes_of_variable * fields * (input.has_next_nearest ? 6. : 3.);
+}
+
 // Bytes of the history of bonds per slot.
 double history_per_place(const lattice::Material &material)
 {
@@ -169,7 +177,8 @@ MemoryNeed lattice_memory(const input::Case &input, const RunKind run, const boo
   const double frame = sites * (bytes_of_site_in_frame + bonds * bytes_of_bond_in_frame);
   const double history = run != RunKind::equilibrium ? history_per_place(input.material()) : 0.;
   const double checkpoint = run != RunKind::equilibrium ? sites * (bytes_of_site_in_checkpoint + history) : 0.;
-  const double fields = places * (bytes_of_place + (is_chebyshev ? bytes_of_chebyshev_place : 0.) + history);
+  const double fields = places * (bytes_of_place + (is_chebyshev ? bytes_of_chebyshev_place : 0.) + history +
+                                  factors_per_place(input, run == RunKind::fracture));
   MemoryNeed need;
   // Equilibrium is computed on the root rank only.
   (run == RunKind::equilibrium ? need.first_rank : need.shared) = fields;

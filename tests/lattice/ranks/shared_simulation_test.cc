@@ -110,6 +110,8 @@ INSTANTIATE_TEST_SUITE_P(
     Variant{Orientation::rows_along_crack, 16., NoToughening{}, 0., EndLoads::End::held, sheets::rubber_from_outside()},
     Variant{Orientation::rows_along_crack, 16., BehindTipToughening{behind, 3.}, 3., EndLoads::End::held,
             sheets::rubber_with_memory()},
+    Variant{Orientation::rows_across_crack, 16., BehindTipToughening{behind, 3.}, 3., EndLoads::End::held,
+            sheets::disordered_rubber()},
     // Nine rows: bands of one or two for five ranks.
     Variant{Orientation::rows_along_crack, 7., NoToughening{}, 5., EndLoads::End::free}));
 
@@ -191,7 +193,9 @@ TEST_P(SharedMotion, HasTheBitsOfOneRank)
     for (const Orientation orientation : {Orientation::rows_along_crack, Orientation::rows_across_crack})
     {
       const TriangularLattice sheet(sheets::spacing, n * sheets::spacing, n * sheets::spacing, orientation, GetParam());
-      const Material material = n == 6. ? sheets::rubber_with_memory() : sheets::rubber();
+      const Material material = n == 6.   ? sheets::rubber_with_memory()
+                                : n == 4. ? sheets::disordered_rubber()
+                                          : sheets::rubber();
       const auto start = [&](const RowPartition &band)
       {
         State state = homogeneous_state(band, material, sheets::stretched(1.3, 1.6), Edges::held);

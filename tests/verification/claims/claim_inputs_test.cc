@@ -31,6 +31,11 @@ const std::set<std::string> no_claim_reads{
   "Sheet/height",
   "Sheet/hole radius",
   "Sheet/notch length",
+  "Disorder/strength",
+  "Disorder/strength width",
+  "Disorder/stiffness",
+  "Disorder/stiffness width",
+  "Disorder/seed",
   "Lattice/solution",
   "Lattice/noise amplitude",
   "Lattice/noise seed",
@@ -132,7 +137,8 @@ std::optional<Case> with_another(const std::string &key, const std::string &valu
                             "clamped",
                             "undeformed",
                             "other.msh",
-                            "runge-kutta-chebyshev"})
+                            "runge-kutta-chebyshev",
+                            "uniform"})
     candidates.emplace_back(other);
   for (const std::string &candidate : candidates)
   {

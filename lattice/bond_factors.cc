@@ -1,0 +1,50 @@
+#include "lattice/bond_factors.h"
+
+#include "lattice/counter_hash.h"
+#include "lattice/material.h"
+
+namespace latcon::lattice
+{
+
+bool BondFactors::empty() const
+{
+  for (const Field &factors : kinds)
+    if (!factors.empty())
+      return false;
+  return true;
+}
+
+void BondFactors::gather(const RowPartition &band, Rows rows)
+{
+  for (Field &factors : kinds)
+    if (!factors.empty())
+      band.gather(factors, rows);
+}
+
+BondFactors bond_factors(const RowPartition &band, const Material &material, BondProperty property)
+{
+  const bool is_strength = property == BondProperty::strength;
+  const Distribution &distribution = is_strength ? material.disorder.strength : material.disorder.stiffness;
+  BondFactors factors;
+  if (distribution.is_none())
+    return factors;
+  const TriangularLattice &lattice = band.lattice();
+  const std::uint64_t stream = splitmix64(splitmix64(material.disorder.seed) + (is_strength ? 1 : 2));
+  constexpr std::uint64_t most_kinds = 16; // not n_bond_kinds: further kinds do not change the factors of others
+  // Sites are numbered with two places between rows, whatever the storage.
+  const auto number = [&](std::size_t row, std::size_t column) { return row * (lattice.columns() + 2) + column; };
+  const std::vector<std::size_t> rows = band.known_rows();
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  {
+    if (material.shell(kind) == nullptr)
+      continue;
+    Field &of_kind = factors.kinds[kind];
+    of_kind = Field(lattice.n_places());
+    for (const std::size_t row : rows)
+      for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
+        of_kind[lattice.index(row, column)] = distribution.factor(stream + most_kinds * number(row, column) + kind);
+  }
+  return factors;
+}
+
+} // namespace latcon::lattice

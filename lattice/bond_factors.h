@@ -1,0 +1,40 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+
+#include "lattice/disorder.h"
+#include "lattice/row_partition.h"
+
+namespace latcon::lattice
+{
+
+struct Material;
+
+/// One factor per bond, by the place where it starts; nothing is stored if all are 1.
+struct BondFactors
+{
+  std::array<Field, n_bond_kinds> kinds; ///< empty: all 1, or no such bonds [-]
+
+  /// Factor of a bond [-].
+  double of(std::size_t place, std::size_t kind) const { return kinds[kind].empty() ? 1. : kinds[kind][place]; }
+  /// Returns whether all factors are 1.
+  bool empty() const;
+
+  /// Gives the first rank the factors in `rows`. Collective.
+  void gather(const RowPartition &band, Rows rows);
+};
+
+/// Property of a bond that disorder multiplies.
+enum class BondProperty
+{
+  strength,
+  stiffness
+};
+
+/// Factors of a property in the rows that `band` knows, for the kinds of bonds that the material has (theory.md, eq.
+/// (L.37)). The factor of a bond depends on the seed, the property and the bond alone, which is named by its row, its
+/// column and its kind: the same bits for any number of ranks and threads, and whatever other shells there are.
+BondFactors bond_factors(const RowPartition &band, const Material &material, BondProperty property);
+
+} // namespace latcon::lattice

@@ -1,0 +1,252 @@
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include <gtest/gtest.h>
+
+#include "lattice/energy.h"
+#include "lattice/simulation.h"
+#include "lattice/site_fields.h"
+#include "tests/lattice/sheets.h"
+
+using namespace latcon::lattice;
+
+namespace
+{
+
+using Kind = Distribution::Kind;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+
+struct Moments
+{
+  double mean = 0., variance = 0., third = 0., fourth = 0.; // of the factor less 1; moments about 1
+  double smallest = infinity, largest = -infinity;
+};
+
+Moments moments(const Distribution &distribution, std::uint64_t n)
+{
+  Moments sums;
+  for (std::uint64_t key = 0; key < n; ++key)
+  {
+    const double factor = distribution.factor(key), x = factor - 1.;
+    sums.mean += x / static_cast<double>(n);
+    sums.variance += x * x / static_cast<double>(n);
+    sums.third += x * x * x / static_cast<double>(n);
+    sums.fourth += x * x * x * x / static_cast<double>(n);
+    sums.smallest = std::min(sums.smallest, factor);
+    sums.largest = std::max(sums.largest, factor);
+  }
+  return sums;
+}
+
+// theory.md, eq. (L.36): five standard errors of the mean and of the variance, by central limit; beyond with a
+// probability of 6e-7.
+TEST(Distribution, HasMeanOneAndItsWidth)
+{
+  constexpr std::uint64_t n = 200000;
+  const double root = std::sqrt(static_cast<double>(n));
+  for (const auto &[kind, width] : {std::pair(Kind::uniform, 0.05),
+                                    {Kind::uniform, 0.5},
+                                    {Kind::normal, 0.02},
+                                    {Kind::normal, 0.3},
+                                    {Kind::weibull, 0.05},
+                                    {Kind::weibull, 0.4},
+                                    {Kind::weibull, 1.}})
+  {
+    SCOPED_TRACE(testing::Message() << "kind " << static_cast<int>(kind) << ", width " << width);
+    const Distribution distribution(kind, width);
+    const Moments found = moments(distribution, n);
+    EXPECT_NEAR(found.mean, 0., 5. * width / root);
+    EXPECT_NEAR(found.variance, width * width, 5. * std::sqrt(found.fourth - std::pow(found.variance, 2)) / root);
+    EXPECT_GE(found.smallest, distribution.smallest());
+    EXPECT_LE(found.largest, distribution.largest());
+    EXPECT_GT(found.smallest, 0.);
+    EXPECT_EQ(distribution.width(), width);
+  }
+}
+
+// What tells the shapes apart: fourth moments over squared variances of 9/5 for uniform, less than 3 for normal factors
+// that are cut off, 9 for exponential ones about their mean; a uniform distribution fills its range.
+TEST(Distribution, HasItsShape)
+{
+  constexpr std::uint64_t n = 400000;
+  const auto kurtosis = [&](const Distribution &d)
+  {
+    const Moments found = moments(d, n);
+    return found.fourth / (found.variance * found.variance);
+  };
+  EXPECT_NEAR(kurtosis({Kind::uniform, 0.3}), 1.8, 0.01);
+  // (3 (2 Phi(3) - 1) - (2 * 27 + 6 * 3) phi(3)) / (2 Phi(3) - 1) over the squared variance 0.97334.
+  EXPECT_NEAR(kurtosis({Kind::normal, 0.2}), 2.8287, 0.03);
+  // Five standard errors of an exponential distribution's fourth moment: its eighth is 14833.
+  EXPECT_NEAR(kurtosis({Kind::weibull, 1.}), 9., 5. * 1.3 * std::sqrt(14833. / n));
+  const Moments found = moments({Kind::uniform, 0.3}, n);
+  EXPECT_NEAR(found.largest, 1. + 0.3 * std::sqrt(3.), 20. / n);
+  EXPECT_NEAR(found.smallest, 1. - 0.3 * std::sqrt(3.), 20. / n);
+  // The hazard of the strongest of many Weibull factors grows with the shape: skewness changes its sign near 3.6.
+  EXPECT_LT(moments({Kind::weibull, 0.1}, n).third, 0.);
+  EXPECT_GT(moments({Kind::weibull, 0.6}, n).third, 0.);
+}
+
+TEST(Distribution, RejectsWidthsOutOfRange)
+{
+  for (const Kind kind : {Kind::uniform, Kind::normal, Kind::weibull})
+  {
+    const double widest = Distribution::widest(kind);
+    for (const double width : {0., -0.1, 1.01 * widest, std::nan(""), infinity})
+      EXPECT_THROW(Distribution(kind, width), std::invalid_argument) << width;
+    EXPECT_NO_THROW(Distribution(kind, 0.99 * widest));
+    EXPECT_GT(Distribution(kind, 0.99 * widest).factor(3), 0.);
+  }
+  EXPECT_THROW(Distribution(Kind::uniform, Distribution::widest(Kind::uniform)), std::invalid_argument);
+  EXPECT_NO_THROW(Distribution(Kind::weibull, 1.));
+  EXPECT_EQ(Distribution(Kind::none, 0.3).factor(5), 1.);
+  EXPECT_EQ(Distribution().width(), 0.);
+}
+
+Material disordered(std::uint64_t seed = 1)
+{
+  Material material = sheets::rubber();
+  material.disorder = {{Kind::uniform, 0.1}, {Kind::normal, 0.2}, seed};
+  return material;
+}
+
+// theory.md, eq. (L.37): the factors of a bond depend on the seed, the property and the bond; not on other shells, the orientation or periods.
+TEST(BondFactors, BelongToTheirBond)
+{
+  const TriangularLattice sheet = sheets::square(20);
+  const Material material = disordered();
+  const BondFactors stiffness = bond_factors(sheet, material, BondProperty::stiffness);
+  const BondFactors strength = bond_factors(sheet, material, BondProperty::strength);
+  Material nearest = material;
+  nearest.next_nearest.reset();
+  const BondFactors of_nearest = bond_factors(sheet, nearest, BondProperty::stiffness);
+  const BondFactors reseeded = bond_factors(sheet, disordered(2), BondProperty::stiffness);
+  double n = 0., with_strength = 0., with_next = 0., with_above = 0., with_kind = 0., with_seed = 0.;
+  const auto x = [](const BondFactors &factors, std::size_t place, std::size_t kind)
+  { return factors.of(place, kind) - 1.; };
+  for (std::size_t row = 0; row + 1 < sheet.rows(); ++row)
+    for (std::size_t column = 0; column + 2 < sheet.columns(); ++column)
+      for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+      {
+        const std::size_t place = sheet.index(row, column);
+        if (TriangularLattice::is_nearest(kind))
+        {
+          EXPECT_EQ(of_nearest.of(place, kind), stiffness.of(place, kind));
+        }
+        n += 1.;
+        with_strength += x(stiffness, place, kind) * x(strength, place, kind) / (0.2 * 0.1);
+        with_next += x(stiffness, place, kind) * x(stiffness, place + 1, kind) / (0.2 * 0.2);
+        with_above += x(stiffness, place, kind) * x(stiffness, place + sheet.stride(), kind) / (0.2 * 0.2);
+        with_kind += x(stiffness, place, kind) * x(stiffness, place, (kind + 1) % n_bond_kinds) / (0.2 * 0.2);
+        with_seed += x(stiffness, place, kind) * x(reseeded, place, kind) / (0.2 * 0.2);
+      }
+  // Correlations of independent numbers: five standard errors.
+  for (const double sum : {with_strength, with_next, with_above, with_kind, with_seed})
+    EXPECT_LT(std::abs(sum) / n, 5. / std::sqrt(n));
+  EXPECT_TRUE(of_nearest.kinds[n_nearest_kinds].empty());
+}
+
+TEST(BondFactors, AreNotStoredWithoutDisorder)
+{
+  const TriangularLattice sheet = sheets::square(10);
+  const State state = homogeneous_state(sheet, sheets::rubber(), Eigen::Matrix2d::Identity(), Edges::held);
+  EXPECT_TRUE(state.stiffness.empty());
+  EXPECT_TRUE(state.strength.empty());
+  EXPECT_EQ(state.stiffness.of(sheet.index(2, 2), 1), 1.);
+}
+
+// The energy of the homogeneous sheet is the sum over bonds with their factors, and so are the stresses of sites.
+TEST(BondFactors, MultiplyEnergyAndStress)
+{
+  const TriangularLattice sheet = sheets::square(12);
+  const Eigen::Matrix2d F = sheets::stretched(1.4, 1.3);
+  const Material material = disordered(), plain = sheets::rubber();
+  const State state = homogeneous_state(sheet, material, F, Edges::held);
+  double expected = 0.;
+  for_each_bond(state, sheet,
+                [&](std::size_t place, std::size_t kind, std::size_t)
+                {
+                  const Shell &shell = *material.shell(kind);
+                  expected += state.stiffness.of(place, kind) * cross_section(shell, sheet) * sheet.rest_length(kind) *
+                              energy(shell.law, stretch(state, sheet, place, kind));
+                });
+  EXPECT_NEAR(elastic_energy(state, sheet, material), expected, 1e-12 * expected);
+
+  const std::size_t middle = sheet.index(sheet.rows() / 2, sheet.columns() / 2);
+  Eigen::Matrix2d stress = Eigen::Matrix2d::Zero();
+  double density = 0.;
+  for_each_bond_of_site(state, sheet, middle,
+                        [&](std::size_t near, std::size_t kind)
+                        {
+                          const Shell &shell = *material.shell(kind);
+                          const Eigen::Vector2d R = sheet.bond_vector(kind), r = F * R;
+                          const double lam = r.norm() / R.norm();
+                          const double half =
+                            0.5 * state.stiffness.of(near, kind) * cross_section(shell, sheet) / sheet.site_area();
+                          stress += half * force(shell.law, lam) * r.normalized() * R.transpose();
+                          density += half * R.norm() * energy(shell.law, lam);
+                        });
+  const SiteValues found = SiteEvaluator(sheet, material).at(state, middle);
+  EXPECT_LT((found.first_piola_stress - stress).norm(), 1e-13 * stress.norm());
+  EXPECT_NEAR(found.strain_energy_density, density, 1e-13 * density);
+}
+
+// Each bond breaks beyond its own stretch, and beyond that times the factor of toughening where it is toughened.
+TEST(Disorder, MultipliesTheBreakingStretchAndToughening)
+{
+  const TriangularLattice sheet = sheets::square(12);
+  const Material material = disordered();
+  State state = homogeneous_state(sheet, material, sheets::stretched(1.5, 1.5), Edges::free);
+  Forces forces(sheet, material);
+  const Fracture fracture(sheet, material, 1.5, GivenToughening{2.}, Eigen::Matrix2d::Identity());
+  fracture.configure(state, forces);
+  const BondFactors strength = bond_factors(sheet, material, BondProperty::strength);
+  const std::size_t place = sheet.index(4, 4);
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  {
+    EXPECT_EQ(breaking_stretch_of(state, place, kind), 1.5 * strength.of(place, kind));
+    state.bonds.toughen(place, kind);
+    EXPECT_EQ(breaking_stretch_of(state, place, kind), 3. * strength.of(place, kind));
+  }
+  // All bonds are at 1.5: the weak half breaks.
+  forces.evaluate(state, state.vx, state.vy);
+  Fracture breaking = fracture;
+  breaking.configure(state, forces);
+  std::size_t weak = 0, bonds = 0;
+  for_each_bond(state, sheet,
+                [&](std::size_t near, std::size_t kind, std::size_t)
+                {
+                  ++bonds;
+                  if (stretch(state, sheet, near, kind) > breaking_stretch_of(state, near, kind))
+                    ++weak;
+                });
+  forces.evaluate(state, state.vx, state.vy);
+  EXPECT_EQ(breaking.apply(state, forces, state.vx, state.vy).size(), weak);
+  EXPECT_NEAR(static_cast<double>(weak) / static_cast<double>(bonds), 0.5, 0.1);
+}
+
+TEST(Disorder, BoundsTheTimeStepByItsStiffestBond)
+{
+  const TriangularLattice sheet = sheets::square(12);
+  const TimeStepLimits plain = time_step_limits(sheet, sheets::rubber(), 0.5);
+  const Material material = disordered();
+  const TimeStepLimits limits = time_step_limits(sheet, material, 0.5);
+  const double stiffest = material.disorder.stiffness.largest();
+  EXPECT_NEAR(limits.elastic, plain.elastic / std::sqrt(stiffest), 1e-12 * limits.elastic);
+  EXPECT_NEAR(limits.viscous, plain.viscous / stiffest, 1e-12 * limits.viscous);
+}
+
+TEST(Disorder, RefusesStatesOfOtherMaterials)
+{
+  const TriangularLattice sheet = sheets::square(12);
+  const Eigen::Matrix2d F = sheets::stretched(1.2, 1.2);
+  const auto start = [&](const Material &of_state, const Material &material) {
+    return Simulation(RowPartition(sheet), material, homogeneous_state(sheet, of_state, F, Edges::held), {1e-8, 0});
+  };
+  EXPECT_NO_THROW(start(disordered(), disordered()));
+  EXPECT_THROW(start(sheets::rubber(), disordered()), std::invalid_argument);
+  EXPECT_THROW(start(disordered(), sheets::rubber()), std::invalid_argument);
+}
+
+} // namespace

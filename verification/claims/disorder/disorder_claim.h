@@ -1,0 +1,31 @@
+#pragma once
+
+#include <functional>
+
+#include "lattice/state.h"
+#include "verification/bridge/subject.h"
+#include "verification/claims/claim_outcome.h"
+
+namespace latcon::claims
+{
+
+/// Size of the claim.
+struct DisorderOptions
+{
+  lattice::Disorder disorder = {};                    ///< of the case; its strength does not matter
+  std::size_t n_sheets = 24;                          ///< with different seeds, at least 2
+  std::size_t columns = 24;                           ///< sites along and rows across a periodic sheet, even
+  std::function<void(lattice::State &)> planted = {}; ///< changes a sheet before it relaxes; for tests
+};
+
+/// Widest distribution of stiffness for which the claim is checked [-]; a wider one is taken with this width.
+inline constexpr double widest_checked_disorder = 0.1;
+
+/// Claim `disorder`: energy of periodic sheets with disorder of the stiffness, relaxed at a small dilation and a small
+/// shear about the undeformed state, over the energy at homogeneous deformation (theory-comparison.md, eqs. (H.21) to
+/// (H.24)): bounds of Voigt and Reuss for every sheet, and the effective medium for the mean over sheets; mean and
+/// standard deviation of the factors of the bonds. Tolerances are sampling errors and the order of the effective
+/// medium.
+ClaimOutcome disorder_claim(const bridge::Subject &subject, const DisorderOptions &options);
+
+} // namespace latcon::claims
