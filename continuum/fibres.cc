@@ -30,6 +30,17 @@ PotentialDerivatives of(const CustomPotential &p, const double l)
 }
 } // namespace
 
+std::vector<dealii::Tensor<1, 2>> directions(const unsigned int n)
+{
+  std::vector<dealii::Tensor<1, 2>> all;
+  for (unsigned int k = 0; k < n; ++k)
+  {
+    const double angle = std::acos(-1.) * k / n;
+    all.push_back(dealii::Tensor<1, 2>({std::cos(angle), std::sin(angle)}));
+  }
+  return all;
+}
+
 PotentialDerivatives derivatives(const FibrePotential &potential, const double l)
 {
   return std::visit([l](const auto &p) { return of(p, l); }, potential);

@@ -4,6 +4,7 @@
 
 #include <memory>
 #include <variant>
+#include <vector>
 
 namespace latcon::continuum
 {
@@ -38,6 +39,9 @@ class CustomPotentialLaw
 {
 public:
   virtual ~CustomPotentialLaw() = default;
+
+  /// Returns n unit vectors that are equally spaced over half a turn, the first along X_1.
+  std::vector<dealii::Tensor<1, 2>> directions(unsigned int n);
 
   /// Returns psi(l) and its first four derivatives at stretch l > 0 [-]; NaN where there are none.
   virtual PotentialDerivatives derivatives(double l) const = 0;

@@ -2,8 +2,6 @@
 
 #include "continuum/errors.h"
 
-#include <cmath>
-
 using dealii::Tensor;
 
 namespace latcon::continuum
@@ -26,11 +24,8 @@ void add_in_all_directions(std::vector<FibreFamily> &fibres, const FibreFamily &
   while (first < fibres.size() && !(fibres[first].potential == family.potential))
     first += n;
   if (first == fibres.size())
-    for (unsigned int k = 0; k < n; ++k)
-    {
-      const double angle = std::acos(-1.) * k / n;
-      fibres.push_back({Tensor<1, 2>({std::cos(angle), std::sin(angle)}), 0., family.potential});
-    }
+    for (const Tensor<1, 2> &direction : directions(n))
+      fibres.push_back({direction, 0., family.potential});
   for (std::size_t k = first; k < first + n; ++k)
     fibres[k].weight += family.weight / n;
 }

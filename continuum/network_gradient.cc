@@ -37,10 +37,9 @@ std::vector<BondFamily> in_all_directions(const std::vector<BondFamily> &familie
   for (BondFamily family : merge_families(families))
   {
     family.fibre.weight /= NetworkGradient::n_directions;
-    for (unsigned int k = 0; k < NetworkGradient::n_directions; ++k)
+    for (const dealii::Tensor<1, 2> &direction : directions(NetworkGradient::n_directions))
     {
-      const double angle = std::acos(-1.) * k / NetworkGradient::n_directions;
-      family.fibre.direction = dealii::Tensor<1, 2>({std::cos(angle), std::sin(angle)});
+      family.fibre.direction = direction;
       result.push_back(family);
     }
   }

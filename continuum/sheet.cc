@@ -3,6 +3,7 @@
 #include "continuum/collective.h"
 #include "continuum/errors.h"
 #include "continuum/homogeneous_constraints.h"
+#include "continuum/point_location.h"
 #include "continuum/stiffness_factor.h"
 
 #include <deal.II/base/mpi.h>
@@ -10,7 +11,6 @@
 #include <deal.II/dofs/dof_tools.h>
 #include <deal.II/fe/fe_q.h>
 #include <deal.II/fe/fe_values.h>
-#include <deal.II/grid/grid_tools_cache.h>
 #include <deal.II/numerics/vector_tools_boundary.h>
 
 #include <algorithm>
@@ -169,7 +169,7 @@ std::vector<PointState> Sheet::evaluate(const Vector &u, const std::vector<Point
       std::vector<Tensor<1, 2>> values;
       std::vector<Tensor<2, 2>> gradients;
       std::vector<Tensor<3, 2>> hessians;
-      for (const auto &[cell, located] : locate(points))
+      for (const auto &[cell, located] : locate(mesh_, mapping_, points))
       {
         FEValues<2> there(mapping_, element_, Quadrature<2>(located.unit_points),
                           update_values | update_gradients | update_hessians);
@@ -232,41 +232,6 @@ std::vector<PointState> Sheet::evaluate(const Vector &u, const std::vector<Point
     state.energy_density *= factor;
   }
   return states;
-}
-
-std::map<Sheet::Cell, Sheet::PointsInCell> Sheet::locate(const std::vector<Point<2>> &points) const
-{
-  constexpr double slack = 1e-8; // of a cell, so that a point on a cell boundary is found from both sides
-  std::map<Cell, PointsInCell> located;
-  const GridTools::Cache<2> cache(mesh_, mapping_);
-  const auto &tree = cache.get_locally_owned_cell_bounding_boxes_rtree();
-  if (tree.empty())
-    return located;
-  const auto bounds = tree.bounds();
-  const double margin = slack * boost::geometry::distance(bounds.min_corner(), bounds.max_corner());
-  std::vector<std::pair<BoundingBox<2>, Cell>> candidates;
-  for (std::size_t p = 0; p < points.size(); ++p)
-  {
-    const Point<2> shift(margin, margin);
-    const BoundingBox<2> box({points[p] - Tensor<1, 2>(shift), points[p] + shift});
-    candidates.clear();
-    tree.query(boost::geometry::index::intersects(box), std::back_inserter(candidates));
-    for (const auto &candidate : candidates)
-      try
-      {
-        const Point<2> unit = mapping_.transform_real_to_unit_cell(candidate.second, points[p]);
-        if (GeometryInfo<2>::distance_to_unit_cell(unit) > slack)
-          continue;
-        PointsInCell &there = located[candidate.second];
-        there.indices.push_back(p);
-        there.unit_points.push_back(unit);
-      }
-      catch (const Mapping<2>::ExcTransformationFailed &)
-      {
-        // The point is in the bounding box but far outside the distorted cell.
-      }
-  }
-  return located;
 }
 
 void Sheet::for_each_owned_dof(

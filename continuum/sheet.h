@@ -13,7 +13,6 @@
 #include <deal.II/lac/trilinos_vector.h>
 
 #include <functional>
-#include <map>
 #include <memory>
 #include <vector>
 
@@ -60,8 +59,8 @@ public:
   Sheet(const Mesh &mesh, const Constitution &constitution, unsigned int degree,
         BoundaryConditions conditions = BoundaryConditions());
 
-  /// Creates a sheet with the same laws, elements and conditions on another mesh of the same domain, without a stiffness
-  /// factor, which belongs to one mesh.
+  /// Creates a sheet with the same laws, elements and conditions on another mesh of the same domain, without a
+  /// stiffness factor, which belongs to one mesh.
   std::unique_ptr<Sheet> clone_on(const Mesh &mesh) const;
 
   /// Renumbers the unknowns after a change of the mesh. Existing vectors become invalid.
@@ -133,17 +132,7 @@ public:
   MPI_Comm communicator() const { return mesh_.get_communicator(); }
 
 private:
-  using Cell = Mesh::active_cell_iterator;
-  struct PointsInCell
-  {
-    std::vector<std::size_t> indices;          // in the list of points
-    std::vector<dealii::Point<2>> unit_points; // on the reference cell
-  };
-
   void check_input() const;
-
-  // Returns the locally owned cells that contain any of the points. Local.
-  std::map<Cell, PointsInCell> locate(const std::vector<dealii::Point<2>> &points) const;
 
   const Mesh &mesh_;
   Constitution constitution_;

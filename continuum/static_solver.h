@@ -69,7 +69,8 @@ public:
   SolverReport equilibrate();
 
   /// Finds the equilibrium at `load_factor` [-], which may be larger than the current one, smaller or the same, from
-  /// the current state in load steps as solve(). Throws SolverFailed as solve() does.
+  /// the current state in load steps as solve(). Throws SolverFailed as solve() does, and InvalidInput for a load
+  /// factor that is not finite.
   SolverReport step_to(double load_factor);
 
   /// Returns the stored energy E [J/m] of the current state, per unit reference thickness.

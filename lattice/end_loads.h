@@ -20,7 +20,8 @@ bool waves_run_along_x(const TriangularLattice &lattice, const Material &materia
 /// Dead load: what the bonds that are missing would pull with in the sheet at x = F X, so that this sheet is an exact
 /// equilibrium. Absorbing: besides, on the outermost site of each row that ends there, -sqrt(rho A) v times the row
 /// pitch, A being tangent_along_x: long plane waves that arrive along x leave the sheet (Lysmer and Kuhlemeyer 1969).
-/// Bonds with a memory enter A with their stiffness in fast motion, so that waves with w tau >> 1 leave; of slower
+/// Bonds with a memory enter A with its largest_stiffness(): for Maxwell branches their stiffness in fast motion, so
+/// that waves with w tau >> 1 leave; for a CustomMemory the bound that it declares, and as exact as that. Of slower
 /// waves, a share of (sqrt(A) - sqrt(A_relaxed)) / (sqrt(A) + sqrt(A_relaxed)) of the amplitude is reflected.
 class EndLoads : public SiteForces
 {

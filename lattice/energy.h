@@ -14,7 +14,8 @@ double elastic_energy(const State &state, const RowPartition &band, const Materi
 /// Energy stored in the memory of all bonds as of its last update, per sheet thickness [J/m]. Collective.
 double memory_energy(const State &state, const RowPartition &band, const Material &material);
 
-/// The same by mechanism of the material [J/m]. Collective.
+/// Energy stored by each mechanism [J/m], in the order of Material::n_mechanisms(), as of the last update, per sheet
+/// thickness. Collective.
 std::vector<double> memory_energies(const State &state, const RowPartition &band, const Material &material);
 
 /// Energy in the memory of one bond.

@@ -151,6 +151,12 @@ double watched_stretch(const TimeStepping &stepping, const TriangularLattice &la
   constexpr double most = 0.3;
   if (!std::isfinite(breaking_stretch))
     return short_stretch + most;
+  const double loss = stepping.step * largest_stretch_rate(lattice, material, breaking_stretch);
+  return short_stretch + (loss < most ? loss : most);
+}
+
+double largest_stretch_rate(const TriangularLattice &lattice, const Material &material, double breaking_stretch)
+{
   double site_energy = 0., of_forces = 0.; // per sheet thickness [J/m], rate [1/s]
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
     if (const Shell *shell = material.shell(kind))
@@ -165,8 +171,7 @@ double watched_stretch(const TimeStepping &stepping, const TriangularLattice &la
   // Stiff bonds may pull on one whose dashpot is the weakest.
   of_forces *= stiffest(material) / material.disorder.stiffness.smallest();
   const double of_energy = std::sqrt(8. * site_energy / site_mass(material, lattice)) / lattice.spacing();
-  const double loss = stepping.step * std::min(of_energy, of_forces);
-  return short_stretch + (loss < most ? loss : most);
+  return std::min(of_energy, of_forces);
 }
 
 TimeStepping chebyshev_time_stepping(double step, const TimeStepLimits &limits, unsigned int stages)

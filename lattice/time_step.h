@@ -59,6 +59,10 @@ double recoil_step(const TimeStepping &stepping, const TriangularLattice &lattic
 double watched_stretch(const TimeStepping &stepping, const TriangularLattice &lattice, const Material &material,
                        double breaking_stretch);
 
+/// Estimate r of the largest rate of stretch of a bond [1/s], > 0 (theory.md, eq. (L.26)).
+/// @param breaking_stretch of toughened bonds, if there are such, finite
+double largest_stretch_rate(const TriangularLattice &lattice, const Material &material, double breaking_stretch);
+
 /// Step of Runge-Kutta-Chebyshev at which waves and the breaking of bonds are resolved [s]: a share of the elastic
 /// limit of the undeformed sheet, or, where it is smaller, h = 1 / kappa: all oscillating modes are stable then for any
 /// number of stages (theory.md, eq. (L.22)). kappa is the largest psi''_max / eta.

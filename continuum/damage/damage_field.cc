@@ -4,6 +4,7 @@
 #include "continuum/element_integrals.h"
 #include "continuum/errors.h"
 #include "continuum/homogeneous_constraints.h"
+#include "continuum/point_location.h"
 
 #include <deal.II/base/mpi.h>
 #include <deal.II/base/quadrature_lib.h>
@@ -12,8 +13,6 @@
 #include <deal.II/lac/solver_cg.h>
 #include <deal.II/lac/trilinos_precondition.h>
 #include <deal.II/lac/trilinos_sparsity_pattern.h>
-#include <deal.II/numerics/fe_field_function.h>
-#include <deal.II/numerics/vector_tools_interpolate.h>
 
 #include <algorithm>
 #include <array>
@@ -308,16 +307,23 @@ double DamageField::largest() const
 std::vector<double> DamageField::evaluate(const std::vector<Point<2>> &points) const
 {
   std::vector<double> sums(2 * points.size(), 0.);
-  for (const auto &cell : dof_handler_.active_cell_iterators())
-    if (cell->is_locally_owned())
-      for (std::size_t p = 0; p < points.size(); ++p)
-        if (cell->point_inside(points[p]))
-        {
-          const auto shapes = bilinear(mapping_.transform_real_to_unit_cell(cell, points[p]));
-          for (unsigned int v = 0; v < n_vertices; ++v)
-            sums[2 * p] += shapes[v] * damage_(cell->vertex_dof_index(v, 0));
-          sums[2 * p + 1] += 1.;
-        }
+  run_collectively(dof_handler_.get_communicator(),
+                   [&]
+                   {
+                     for (const auto &[cell, located] : locate(dof_handler_.get_triangulation(), mapping_, points))
+                     {
+                       const typename DoFHandler<2>::active_cell_iterator there(
+                         &dof_handler_.get_triangulation(), cell->level(), cell->index(), &dof_handler_);
+                       for (std::size_t n = 0; n < located.indices.size(); ++n)
+                       {
+                         const auto shapes = bilinear(located.unit_points[n]);
+                         double *sum = &sums[2 * located.indices[n]];
+                         for (unsigned int v = 0; v < n_vertices; ++v)
+                           sum[0] += shapes[v] * damage_(there->vertex_dof_index(v, 0));
+                         sum[1] += 1.;
+                       }
+                     }
+                   });
   Utilities::MPI::sum(sums, dof_handler_.get_communicator(), sums);
   std::vector<double> values;
   for (std::size_t p = 0; p < points.size(); ++p)

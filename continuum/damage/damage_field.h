@@ -53,7 +53,8 @@ public:
   /// Returns the largest damage of any node [-].
   double largest() const;
 
-  /// Returns the damage [-] at reference points [m] in the sheet. Every rank passes the same points.
+  /// Returns the damage [-] at reference points [m]. Every rank passes the same points and gets all values. Throws
+  /// InvalidInput if a point is outside the mesh by more than 1e-8 of a cell.
   std::vector<double> evaluate(const std::vector<dealii::Point<2>> &points) const;
 
   /// Returns the interpolated g(d_a) [-].

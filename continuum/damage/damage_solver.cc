@@ -27,8 +27,8 @@ DamageSolver::DamageSolver(const Sheet::Mesh &mesh, const Constitution &constitu
     statics_(mesh, with_damage(constitution, field_), conditions, settings.statics),
     forces_(statics_.sheet().make_owned())
 {
-  if (!(settings.tolerance > 0.) || settings.max_iterations == 0)
-    throw InvalidInput("tolerance and number of iterations of the damage must be positive");
+  if (!(settings.tolerance > 0. && std::isfinite(settings.tolerance)) || settings.max_iterations == 0)
+    throw InvalidInput("tolerance and number of iterations of the damage must be positive and finite");
   if (!conditions.normal_gradients.empty())
     throw InvalidInput("a sheet with damage does not support prescribed normal gradients");
   if (constitution.has_gradient())
@@ -41,7 +41,7 @@ DamageSolver::DamageSolver(const Sheet::Mesh &mesh, const Constitution &constitu
 
 void DamageSolver::set_damage(const std::function<double(const Point<2> &)> &damage)
 {
-  if (statics_.load_factor() != 0. || has_failed_)
+  if (is_loaded_)
     throw InvalidInput("the initial damage must be set before the sheet is loaded");
   field_.set(damage);
   initial_fracture_ = field_.fracture_energy();
@@ -53,6 +53,7 @@ unsigned int DamageSolver::step_to(const double load_factor)
     throw InvalidInput("a sheet with damage cannot be loaded after a load step that failed");
   if (!std::isfinite(load_factor))
     throw InvalidInput("the load factor must be finite");
+  is_loaded_ = true;
   has_failed_ = true; // until the step is accepted
   const Sheet &sheet = statics_.sheet();
   const Sheet::Vector before = statics_.displacement();

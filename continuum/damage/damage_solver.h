@@ -10,7 +10,7 @@ namespace latcon::continuum
 /// Settings of DamageSolver.
 struct DamageSettings
 {
-  /// Largest change of damage at any node [-] in the last iteration of a load step, > 0.
+  /// Largest change of damage at any node [-] in the last iteration of a load step, > 0 and finite.
   double tolerance = 1e-6;
   unsigned int max_iterations = 2000; ///< per load step, > 0
   StaticSettings statics;
@@ -45,7 +45,7 @@ public:
                const DamageSettings &settings = DamageSettings());
 
   /// Sets the damage, and its lower bound, of a sheet that has not been loaded; see DamageField::set. Throws
-  /// InvalidInput after the first load step.
+  /// InvalidInput after the first load step, also at load factor 0: damage does not heal.
   void set_damage(const std::function<double(const dealii::Point<2> &)> &damage);
 
   /// Loads to `load_factor` [-], larger or smaller than the current one, in one step. Returns the number of iterations.
@@ -68,6 +68,7 @@ private:
   std::unique_ptr<Sheet> local_; // without gradient energy
   DamageLedger ledger_;
   double initial_fracture_ = 0.;
+  bool is_loaded_ = false;  // a load step began
   bool has_failed_ = false; // a load step began and did not end
   Sheet::Vector forces_;    // dE/du of the last state [N/m]
 };

@@ -114,9 +114,14 @@ def counts(result):
             f"Least misfit {result.misfit:.1f}."]
 
 
+def oscillating(result):
+    """Points with a crack that oscillates, and has a wavelength."""
+    return result.points[(result.points["crack.pattern"] == 1) & np.isfinite(result.points["crack.wavelength"])]
+
+
 def bridges(result, others):
     """Sentences on the bridged length, which was not fitted."""
-    points = result.points[np.isfinite(result.points["crack.wavelength"])]
+    points = oscillating(result)
     length = np.array([100 * others[str(number)]["bridged_length"] for number in points.index])
     ratio = (points["crack.crest_amplitude"] / points["crack.wavelength"]).to_numpy()
     near, short = points.index.isin(result.near_equal.index), length == length.min()
@@ -136,7 +141,7 @@ def best_runs(best):
 def draw(result, others, folder):
     """Pictures: each quantity over each parameter; amplitude over wavelength, coloured by the bridged length."""
     from matplotlib.figure import Figure
-    points = result.points[(result.points["crack.pattern"] == 1) & np.isfinite(result.points["crack.wavelength"])]
+    points = oscillating(result)
     near = points[points.index.isin(result.near_equal.index)]
     best = points.loc[[number_of_best(result)]]
     keys = list(result.parameters.index)

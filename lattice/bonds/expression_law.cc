@@ -14,7 +14,7 @@ namespace
 using support::Expression;
 using Operation = Expression::Operation;
 
-constexpr std::size_t most_stretches = 8; // of one call
+constexpr std::size_t most_stretches = CustomBond::max_bonds; // of one call
 
 // Nodes of an expression, without operations that change nothing.
 class Builder

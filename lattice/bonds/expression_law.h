@@ -12,9 +12,9 @@ namespace latcon::lattice
 
 /// Bond law whose energy psi(lam) [Pa] is an expression. psi' and psi'' follow from it by the rules of differentiation.
 ///
-/// Forces of several bonds are computed together, operation by operation. Integer powers are products, so that laws of
-/// + - * / and such powers have the same bits on all processors; other powers, sqrt, exp and log are those of the
-/// system's mathematical library.
+/// Forces of several bonds are computed together, operation by operation. Integer powers from -64 to 64 are
+/// products, so that laws of + - * /, sqrt and such powers have the same bits on all processors; other powers, exp and
+/// log are those of the system's mathematical library.
 class ExpressionLaw : public CustomBondLaw
 {
 public:
@@ -32,13 +32,14 @@ public:
 
   const support::Expression &psi() const { return psi_; } ///< as given
 
-  /// Operations in an order in which they can be done. Operands are values of earlier ones, or constants.
+private:
+  // Operations in an order in which they can be done. Operands are values of earlier ones, or constants.
   class Program
   {
   public:
     Program() = default;
     explicit Program(const support::Expression &function);
-    /// Values at n stretches, n being 1, 2, 4 or 8.
+    // Values at n stretches, n being 1, 2, 4 or 8.
     template <std::size_t n>
     void run(const double *stretches, double *values) const;
 
@@ -54,14 +55,10 @@ public:
     std::size_t result_ = 0;
   };
 
-private:
   support::Expression psi_;
   double at_rest_ = 0.; // [Pa], psi(1) as given
   Program energy_, force_, stiffness_;
   std::unique_ptr<const StiffnessBound> bound_;
 };
-
-/// Shortest stretch [-] at which a law of a case must have a value.
-inline constexpr double smallest_checked_stretch = 0.3;
 
 } // namespace latcon::lattice

@@ -43,6 +43,8 @@ void check_slope(const std::function<double(double)> &function, const std::funct
     return (above - below) / (2. * distance);
   };
   const double difference = quotient(h), wider = quotient(2. * h), given = slope(stretch);
+  if (!std::isfinite(difference) || !std::isfinite(wider)) // the tolerance would be infinite
+    throw InvalidBondLaw(name(derivative - 1) + " is not finite near stretch " + text(stretch));
   // Values are sums of terms that may be a hundred times larger than they are.
   const double tolerance = std::abs(wider - difference) + 100. * eps * largest / h + 1e-9 * std::abs(given);
   if (!(std::abs(given - difference) <= tolerance)) // also for no number

@@ -14,6 +14,9 @@ public:
   using std::invalid_argument::invalid_argument;
 };
 
+/// Shortest stretch [-] at which a law of a case must have a value.
+inline constexpr double smallest_checked_stretch = 0.3;
+
 /// Checks the functions of a law: psi, psi', psi'' [Pa] and possibly further derivatives by the stretch, in this order.
 /// From `shortest` to `longest` [-] all are finite, and each agrees with differences of the one before it; psi'(1) = 0
 /// to 1e-12 psi''(1), and psi''(1) > 0.

@@ -6,7 +6,6 @@
 
 #include <dlfcn.h>
 
-#include "lattice/bonds/expression_law.h"
 #include "lattice/bonds/law_check.h"
 
 namespace latcon::lattice

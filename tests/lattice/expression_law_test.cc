@@ -238,20 +238,32 @@ TEST(LawCheck, RefusesDifferencesWithoutValue)
     checked *= 1.01;
   const Functions right{[](double l) { return 0.5 * (l - 1.) * (l - 1.); }, [](double l) { return l - 1.; },
                         [](double) { return 1.; }};
-  const auto without_values_from = [&](double distance)
+  const auto with = [&](double value, double distance)
   {
     Functions functions = right;
     functions[0] = [=, psi = right[0]](double l)
     {
       const double away = std::abs(l / checked - 1.);
-      return away > distance && away < 1e-3 ? std::numeric_limits<double>::quiet_NaN() : psi(l);
+      return away > distance && away < 1e-3 ? value : psi(l);
     };
     return functions;
   };
-  EXPECT_THROW(lattice::check_law(without_values_from(0.5e-4), 0.3, 3.), lattice::InvalidBondLaw);
-  EXPECT_NO_THROW(lattice::check_law(without_values_from(2.5e-4), 0.3, 3.));
-  // Beyond the last stretch a law needs no value.
-  EXPECT_NO_THROW(lattice::check_law(without_values_from(1e-12), 0.3, checked));
+  for (const double value : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+  {
+    EXPECT_THROW(lattice::check_law(with(value, 0.5e-4), 0.3, 3.), lattice::InvalidBondLaw) << value; // both steps
+    EXPECT_THROW(lattice::check_law(with(value, 1.5e-4), 0.3, 3.), lattice::InvalidBondLaw) << value; // the wider one
+    EXPECT_NO_THROW(lattice::check_law(with(value, 2.5e-4), 0.3, 3.)) << value;
+    // Beyond the last stretch a law needs no value.
+    EXPECT_NO_THROW(lattice::check_law(with(value, 1e-12), 0.3, checked)) << value;
+  }
+  // Of opposite sign on the two sides: the difference itself is infinite.
+  Functions odd = right;
+  odd[0] = [=, psi = right[0]](double l)
+  {
+    const double away = l / checked - 1.;
+    return std::abs(away) > 0.5e-4 && std::abs(away) < 1e-3 ? std::copysign(INFINITY, away) : psi(l);
+  };
+  EXPECT_THROW(lattice::check_law(odd, 0.3, 3.), lattice::InvalidBondLaw);
 }
 
 } // namespace

@@ -5,12 +5,13 @@ Usage: own_laws_test.py PATH_OF_LATCON
 """
 import json
 import pathlib
+import shutil
 import subprocess
 import sys
 import unittest
 
 sys.dont_write_bytecode = True
-from program import CASES, TemporaryFolder, latcon, latcon_on_ranks, read_csv
+from program import CASES, LATCON, TemporaryFolder, latcon, latcon_on_ranks, read_csv
 
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 # A crack that takes a second.
@@ -126,6 +127,35 @@ class OwnLaws(TemporaryFolder):
         second = self.crack("third", law="library", library=gent, parameters=parameters)
         self.assertNotEqual(first, json.loads((second / "run.json").read_text())["case_hash"])
 
+    def test_all_ranks_need_the_same_library(self):
+        self.library("gent")
+        for name in ("one", "two", "none"):
+            (self.folder / name).mkdir()
+        shutil.copy(self.folder / "gent.so", self.folder / "one")
+        self.library("gent", "-DANOTHER=1", "-O0")
+        shutil.copy(self.folder / "gent.so", self.folder / "two")
+        case = ["fracture", CASES / "quick.prm", *TINY, "--threads", 1, "--output-dir", self.folder / "ranks",
+                *bonds(law="library", library="gent.so", parameters="mu = 0.25 MPa, Jm = 120")]
+        for others in ("two", "none"):
+            for ranks in (("one", others), (others, "one")):
+                command = ["mpirun", "--oversubscribe"]
+                for folder in ranks:
+                    command += [*([":"] if ":" not in command and len(command) > 2 else []), "-n", 1, "--wdir", self.folder / folder,
+                                LATCON, *case]
+                ended = subprocess.run([str(word) for word in command], capture_output=True, text=True, timeout=600)
+                self.assertEqual(ended.returncode, 2, ended.stderr)
+                self.assertIn("the ranks find different libraries, or some none" if ranks[0] == "one" or others == "two" else
+                              "cannot read the library", ended.stderr)
+                self.assertFalse((self.folder / "ranks").exists())
+
+    def test_large_library(self):
+        large = self.library("large", text=(SOURCE / "examples/own-laws/gent_law.c").read_text() +
+                             "\nconst char ballast[20 << 20] = {1};\n")
+        self.assertGreater(large.stat().st_size, 20 << 20)
+        ended = latcon("fracture", CASES / "quick.prm", *TINY, "--dry-run",
+                       *bonds(law="library", library=large, parameters="mu = 0.25 MPa, Jm = 120"))
+        self.assertEqual(ended.returncode, 0, ended.stderr)
+
     def test_schema_refuses_an_invalid_law(self):
         for entries, part in (({"law": "expression", "psi": "a*lan"}, "unknown 'lan'"), ({"law": "library"}, "a shared library is required")):
             ended = latcon("schema", CASES / "quick.prm", *bonds(**entries))
@@ -143,10 +173,16 @@ class OwnLaws(TemporaryFolder):
                      library=self.library("later", text=text.replace("return LATCON_BOND_LAW_VERSION", "return 2")))
         gent = self.library("gent")
         self.refused("the library needs 'Jm'", law="library", library=gent, parameters="mu = 0.25 MPa")
+        # The entries a, b and modulus belong to other laws.
+        borrowing = self.library("borrowing", text=text.replace('"mu Jm"', '"modulus Jm"'))
+        self.refused("the library needs 'modulus'", law="library", library=borrowing, parameters="Jm = 120")
         self.refused("has no parameter 'k'", law="library", library=gent, parameters="mu = 0.25 MPa, Jm = 120, k = 1")
         # The chains lock before the toughened bonds break, at 9.15.
         self.refused("it must be finite for all stretches of bonds, 0.3 to 9.15", law="library", library=gent,
                      parameters="mu = 0.25 MPa, Jm = 30")
+        # They lock at 9.16, which a bond can reach in the step in which it breaks.
+        self.refused("than its breaking stretch before the time step ends in which it breaks", law="library", library=gent,
+                     parameters="mu = 0.25 MPa, Jm = 81.12")
 
 
 if __name__ == "__main__":

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <variant>
 #include <vector>
@@ -14,6 +15,8 @@ namespace latcon::bridge
 {
 namespace
 {
+
+constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 Eigen::Matrix2d sum_of(const std::vector<BranchMatrix> &branches)
 {
@@ -32,6 +35,8 @@ std::vector<BranchMatrix> branch_matrices(const lattice::TriangularLattice &latt
   for (const bool is_nearest : {true, false})
   {
     const lattice::Shell *shell = is_nearest ? &material.nearest : material.shell(lattice::n_nearest_kinds);
+    if (shell != nullptr && std::holds_alternative<lattice::CustomMemory>(shell->memory))
+      throw std::invalid_argument("waves in bonds with a custom memory have no closed form");
     const auto *memory = shell != nullptr ? std::get_if<lattice::MaxwellMemory>(&shell->memory) : nullptr;
     if (memory == nullptr)
       continue;
@@ -98,13 +103,16 @@ std::array<MemoryWave, 2> memory_waves(const WaveMatrices &relaxed, const std::v
                    { return solver.eigenvalues()[a].imag() > solver.eigenvalues()[b].imag(); });
   const auto wave = [&](Eigen::Index i)
   {
+    if (!(solver.eigenvalues()[i].imag() > 0.)) // some mode that relaxes
+      return MemoryWave{{nothing, nothing}, Eigen::Vector2cd::Constant(std::complex<double>(nothing, nothing))};
     const Eigen::Vector2cd p = solver.eigenvectors().col(i).head<2>();
     return MemoryWave{rate * solver.eigenvalues()[i], p / (std::abs(p[0]) > std::abs(p[1]) ? p[0] : p[1])};
   };
   std::array<MemoryWave, 2> waves{wave(order[0]), wave(order[1])};
   const auto along = [&](const MemoryWave &w)
   { return std::abs(w.polarisation.dot(normal.cast<std::complex<double>>())) / w.polarisation.norm(); };
-  if (along(waves[0]) < along(waves[1]))
+  const double along_first = along(waves[0]), along_second = along(waves[1]);
+  if (along_first < (std::isnan(along_second) ? std::sqrt(0.5) : along_second))
     std::swap(waves[0], waves[1]);
   return waves;
 }

@@ -27,6 +27,21 @@ bool first_rank()
   return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
 }
 
+// Reports libraries of bond laws that are not the same on all ranks: other machines may have others below one path.
+// Collective.
+void require_same_libraries(const input::Case &input, input::Parameters &parameters)
+{
+  for (const auto &[shell, section] :
+       {std::pair(&input.nearest, "Nearest neighbours"), std::pair(&input.next_nearest, "Next-nearest neighbours")})
+  {
+    const std::string &own = shell->user_law.sha256;
+    const int differs = own != dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, own) ? 1 : 0;
+    if (dealii::Utilities::MPI::max(differs, MPI_COMM_WORLD) > 0)
+      parameters.error(std::string(section) + "/library", "the ranks find different libraries, or some none",
+                       {std::string(section) + "/law"});
+  }
+}
+
 } // namespace
 
 void read_case(const input::Options &options, input::Case &input, input::Parameters &parameters)
@@ -35,6 +50,7 @@ void read_case(const input::Options &options, input::Case &input, input::Paramet
   parameters.read_file(options.case_file);
   parameters.read_overrides(options.overrides);
   input.check(parameters);
+  require_same_libraries(input, parameters);
 }
 
 void print_dry_run(const input::Options &options, const std::string &text)

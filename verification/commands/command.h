@@ -113,7 +113,7 @@ inline constexpr Page comparison_page{"comparison.py", "compare.html", ""};
 /// @throws OutputError
 void draw_page(const Page &page, const std::string &directory);
 
-/// Reads and checks the case that the options name. @throws InputError
+/// Reads and checks the case that the options name; parameters.finish() throws its problems. Collective.
 void read_case(const input::Options &options, input::Case &input, input::Parameters &parameters);
 
 /// Prints a part of the output of --dry-run, on the root rank, unless --quiet.

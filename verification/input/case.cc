@@ -164,6 +164,31 @@ void check_relaxation_times(const Case &input, Parameters &p)
     input.next_nearest.check_relaxation_times(p, "Next-nearest neighbours", step);
 }
 
+// Reports a user-defined law without values where a bond can be before it breaks: beyond the breaking stretch by what a
+// bond gains within a time step.
+void check_laws_within_a_step(const Case &input, Parameters &p)
+{
+  if (!input.breaking_stretch || !p.good())
+    return;
+  const double longest = input.longest_stretch();
+  const double gain =
+    input.fracture_time_stepping().step * lattice::largest_stretch_rate(input.lattice(), input.material(), longest);
+  for (const auto &[shell, section] :
+       {std::pair(&input.nearest, "Nearest neighbours"), std::pair(&input.next_nearest, "Next-nearest neighbours")})
+    if (shell->has_user_law() && (shell == &input.nearest || input.has_next_nearest))
+      try
+      {
+        (void)shell->shell(longest + gain);
+      }
+      catch (const UserLaw::Problem &problem)
+      {
+        p.error(std::string(section) + "/" + problem.entry,
+                "a bond can be longer by " + support::full_precision(gain) +
+                  " than its breaking stretch before the time step ends in which it breaks: " + problem.what(),
+                {std::string(section) + "/law", "Fracture/breaking stretch", "Fracture/factor", "Time/step"});
+      }
+}
+
 void check_time_stepping(const Case &input, Parameters &p)
 {
   const bool chebyshev = input.integrator == Case::Integrator::runge_kutta_chebyshev;
@@ -191,6 +216,7 @@ void check_time_stepping(const Case &input, Parameters &p)
       check_contact_step(input, p);
     }
     check_relaxation_times(input, p);
+    check_laws_within_a_step(input, p);
   }
 }
 

@@ -185,7 +185,8 @@ struct Case
   lattice::TriangularLattice lattice() const;
   lattice::Material material() const;
   /// Largest stretch of an unbroken bond [-], up to which user-defined laws must have values: the breaking stretch of
-  /// the strongest bond, with toughening; in a sheet that does not break, that of the loading and a fifth more.
+  /// the strongest bond, with toughening; in a sheet that does not break, that of the loading and a fifth more. check()
+  /// requires values also for what a bond gains beyond the breaking stretch within a time step.
   double longest_stretch() const;
   /// Returns whether the sheet has an inner edge, that of a hole or a notch.
   bool has_inner_edge() const { return hole_radius > 0. || notch_length > 0.; }

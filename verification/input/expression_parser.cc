@@ -5,6 +5,8 @@
 #include <cctype>
 #include <charconv>
 #include <cstring>
+#include <set>
+#include <system_error>
 #include <vector>
 
 #include <muParser.h>
@@ -61,6 +63,8 @@ int record_number(const char *text, int *position, double *value)
     return 0;
   double number = 0.;
   const auto [end, error] = std::from_chars(text, text + std::strlen(text), number);
+  if (error == std::errc::result_out_of_range) // muParser would read it, as the index of a node
+    throw InvalidExpression("the number " + std::string(static_cast<const char *>(text), end) + " is out of range");
   if (error != std::errc())
     return 0;
   *position += static_cast<int>(end - text);
@@ -145,7 +149,7 @@ bool is_value_name(const std::string &word)
 }
 
 support::Expression parse_expression(const std::string &text, const std::string &variable,
-                                     const std::map<std::string, double> &values)
+                                     const std::map<std::string, double> &values, std::set<std::string> *used)
 {
   std::vector<std::string> names{variable};
   for (const auto &[name, value] : values)
@@ -176,11 +180,16 @@ support::Expression parse_expression(const std::string &text, const std::string 
   {
     mu::Parser parser;
     define_grammar(parser);
-    parser.DefineConst(variable, static_cast<double>(expression.variable()));
+    auto node = static_cast<double>(expression.variable());
+    parser.DefineVar(variable, &node);
+    std::map<std::string, double> nodes; // muParser refers to them
     for (const auto &[name, value] : values)
-      parser.DefineConst(name, static_cast<double>(expression.constant(value)));
+      parser.DefineVar(name, &(nodes[name] = static_cast<double>(expression.constant(value))));
     parser.SetExpr(text);
     expression.result = static_cast<std::size_t>(parser.Eval());
+    if (used != nullptr)
+      for (const auto &[name, place] : parser.GetUsedVar())
+        used->insert(name);
   }
   catch (const mu::Parser::exception_type &error)
   {

@@ -1,9 +1,13 @@
 #include "verification/input/user_law.h"
 
 #include <algorithm>
+#include <cerrno>
+#include <filesystem>
 #include <map>
 #include <mutex>
+#include <set>
 #include <sstream>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -12,7 +16,6 @@
 #include "lattice/bonds/library_law.h"
 #include "verification/input/case_text.h"
 #include "verification/input/expression_parser.h"
-#include "verification/input/input_file.h"
 #include "verification/input/sha256.h"
 #include "verification/input/spelling.h"
 #include "verification/input/units.h"
@@ -54,10 +57,15 @@ Values parameters_of(const std::string &text)
 
 std::string sha256_of_library(const std::string &path)
 {
-  const InputFile file = read_input_file(path);
-  if (!file.problem.empty())
-    throw UserLaw::Problem("library", "cannot read the library: " + file.problem);
-  return sha256(file.text);
+  std::error_code error;
+  const bool is_file = std::filesystem::is_regular_file(path, error); // others, such as devices, may be endless
+  errno = 0;
+  std::string sha256 = is_file ? sha256_of_file(path) : "";
+  if (!sha256.empty())
+    return sha256;
+  if (is_file)
+    error = std::error_code(errno, std::generic_category());
+  throw UserLaw::Problem("library", "cannot read the library: " + (error ? error.message() : "it is not a file"));
 }
 
 struct LoadedLibrary
@@ -93,8 +101,7 @@ std::string list_of(const std::vector<std::string> &names)
   return text.empty() ? "none" : text;
 }
 
-std::vector<double> in_order_of_library(const std::vector<std::string> &names, const Values &given,
-                                        const Values &constants)
+std::vector<double> in_order_of_library(const std::vector<std::string> &names, const Values &given)
 {
   for (const auto &[name, value] : given)
     if (std::find(names.begin(), names.end(), name) == names.end())
@@ -103,12 +110,25 @@ std::vector<double> in_order_of_library(const std::vector<std::string> &names, c
   for (const std::string &name : names)
   {
     const auto own = given.find(name);
-    const auto constant = constants.find(name);
-    if (own == given.end() && constant == constants.end())
+    if (own == given.end())
       throw UserLaw::Problem("parameters", "the library needs '" + name + "'; its parameters: " + list_of(names));
-    values.push_back(own != given.end() ? own->second : constant->second);
+    values.push_back(own->second);
   }
   return values;
+}
+
+// Values that psi does not use would suggest that they matter.
+support::Expression expression_of(const std::string &psi, const Values &given, const Values &constants)
+{
+  Values values = given;
+  values.insert(constants.begin(), constants.end()); // names of parameters come first
+  std::set<std::string> used;
+  support::Expression expression = parse_expression(psi, variable, values, &used);
+  for (const auto &[name, value] : given)
+    if (used.count(name) == 0)
+      throw UserLaw::Problem("parameters", "psi does not use '" + name + "'; it uses: " +
+                                             list_of(std::vector<std::string>(used.begin(), used.end())));
+  return expression;
 }
 
 } // namespace
@@ -119,7 +139,7 @@ void UserLaw::declare(Parameters &p, const std::string &section)
         "law = expression: energy of a bond per reference volume in Pa, as a function of its stretch `lam`, of a, b, "
         "modulus and the parameters, with + - * / ^ ( ) sqrt exp log");
   p.add(section, "parameters", parameters,
-        "laws expression and library: values of their parameters, as in `mu = 0.1 MPa, k = 2`");
+        "laws expression and library: values of the parameters that they use, as in `mu = 0.1 MPa, k = 2`");
   p.add(section, "library", library, "law = library: path of a shared library with the functions of a bond law");
   p.add(section, "library sha256", sha256,
         "SHA-256 that the library must have; if empty, that of the library found, in the resolved case");
@@ -143,17 +163,15 @@ void UserLaw::check(Parameters &p, const std::string &section, Kind kind, const 
 std::shared_ptr<const lattice::CustomBondLaw> UserLaw::law(Kind kind, const Values &constants, double longest) const
 {
   const Values given = parameters_of(parameters);
-  Values values = given;
-  values.insert(constants.begin(), constants.end()); // names of parameters come first
   const std::string entry = kind == Kind::expression ? "psi" : "library";
   try
   {
     if (kind == Kind::expression)
-      return std::make_shared<lattice::ExpressionLaw>(parse_expression(psi, variable, values), longest);
+      return std::make_shared<lattice::ExpressionLaw>(expression_of(psi, given, constants), longest);
     const LoadedLibrary &loaded = loaded_library(library);
     if (!sha256.empty() && loaded.sha256 != sha256)
       throw Problem("library sha256", "the library " + printable(library) + " has the SHA-256 " + loaded.sha256);
-    std::vector<double> in_order = in_order_of_library(loaded.functions.parameters(), given, constants);
+    std::vector<double> in_order = in_order_of_library(loaded.functions.parameters(), given);
     return std::make_shared<lattice::LibraryLaw>(loaded.functions, std::move(in_order), longest);
   }
   catch (const InvalidExpression &error)

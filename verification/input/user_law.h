@@ -36,7 +36,7 @@ struct UserLaw
   void declare(Parameters &p, const std::string &section);
 
   /// Reports a law that cannot be used, and sets `is_usable` and `sha256`.
-  /// @param constants further values that psi may name [SI]
+  /// @param constants further values that psi, but no library, may name [SI]
   /// @param longest largest stretch of an unbroken bond [-]
   void check(Parameters &p, const std::string &section, Kind kind, const std::map<std::string, double> &constants,
              double longest);

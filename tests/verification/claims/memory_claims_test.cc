@@ -204,6 +204,36 @@ TEST(MemoryWaves, AreThoseOfDashpotsWithoutBranches)
   }
 }
 
+// Dashpots so strong that no wave oscillates leave no frequency and no decay.
+TEST(MemoryWaves, AreNoNumbersWhereNothingOscillates)
+{
+  const input::Case input = subjects::paper_case();
+  const lattice::TriangularLattice sheet = input.lattice();
+  const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
+  const Eigen::Vector2d K(0.7 / input.spacing, 0.);
+  Material material = without_memory(input.material());
+  const double first = material.nearest.viscosity;
+  int alone = 0;
+  for (const double factor : {0., 0.1, 0.3, 1., 10.})
+  {
+    material.nearest.viscosity = factor * first;
+    if (material.next_nearest)
+      material.next_nearest->viscosity = factor * first;
+    const auto waves = memory_waves(sheet, material, I, K);
+    const auto expected = plane_waves(bloch_matrices(sheet, material, I, K), wave_normal(I, K));
+    for (std::size_t w = 0; w < 2; ++w)
+      if (expected[w].frequency > 0.)
+        EXPECT_NEAR(waves[w].frequency(), expected[w].frequency, 1e-8 * expected[w].frequency) << factor << ' ' << w;
+      else
+        EXPECT_TRUE(std::isnan(waves[w].frequency()) && std::isnan(waves[w].decay()) &&
+                    std::isnan(waves[w].polarisation[0].real()))
+          << factor << ' ' << w;
+    alone += (expected[0].frequency > 0.) != (expected[1].frequency > 0.) ? 1 : 0;
+  }
+  EXPECT_TRUE(std::isnan(memory_waves(sheet, material, I, K)[0].frequency()));
+  EXPECT_GT(alone, 0);
+}
+
 // theory.md, eq. (L.30) on the lattice; theory-viscoelastic.md, eqs. (V.6) and (V.8) in finite elements.
 TEST(ViscoelasticWaves, FollowTheComplexModulus)
 {

@@ -53,6 +53,15 @@ TEST(ExpressionParser, HasTheUsualGrammar)
   EXPECT_NEAR(value(input::parse_expression("lam^lam", "lam", constants), 2.), 4., 1e-14);
 }
 
+TEST(ExpressionParser, ListsTheNamesInAnExpression)
+{
+  std::set<std::string> used;
+  (void)input::parse_expression("1e5*mu + exp(mu)", "lam", constants, &used);
+  EXPECT_EQ(used, (std::set<std::string>{"mu"}));
+  (void)input::parse_expression("lam", "lam", constants, &used);
+  EXPECT_EQ(used, (std::set<std::string>{"lam", "mu"}));
+}
+
 TEST(ExpressionParser, NamesTheColumnOfAMistakeAndWhatIsAllowed)
 {
   for (const auto &[text, part] :
@@ -71,7 +80,9 @@ TEST(ExpressionParser, NamesTheColumnOfAMistakeAndWhatIsAllowed)
                                                         {"sin(lam)", "unknown 'sin' at column 1"},
                                                         {"lam +", "ends too early"},
                                                         {"", "an expression is required"},
-                                                        {"  ", "an expression is required"}})
+                                                        {"  ", "an expression is required"},
+                                                        {"1e-400*lam", "the number 1e-400 is out of range"},
+                                                        {"lam + 1e400", "the number 1e400 is out of range"}})
     try
     {
       (void)input::parse_expression(text, "lam", constants);
@@ -87,8 +98,9 @@ TEST(ExpressionParser, NamesTheColumnOfAMistakeAndWhatIsAllowed)
   EXPECT_THROW((void)input::parse_expression(std::string(3000, '('), "lam", constants), input::InvalidExpression);
 }
 
-// What a case says about the entries; empty for nothing.
-std::string problems(const std::vector<std::string> &settings, input::Case *read = nullptr)
+// What a case says about the entries of nearest neighbours, and others; empty for nothing.
+std::string problems(const std::vector<std::string> &settings, const std::vector<std::string> &others = {},
+                     input::Case *read = nullptr)
 {
   input::Case input;
   input::Parameters parameters;
@@ -97,6 +109,7 @@ std::string problems(const std::vector<std::string> &settings, input::Case *read
                                "Material/density=944", "Loading/strain x=0.5", "Loading/strain y=0.5"};
   for (const std::string &setting : settings)
     all.push_back("Nearest neighbours/" + setting);
+  all.insert(all.end(), others.begin(), others.end());
   parameters.read_overrides(all);
   input.check(parameters);
   try
@@ -117,16 +130,32 @@ const std::string psi = "psi=mu/2*(lam^2 + 2/lam - 3)";
 TEST(UserLaw, IsThatOfTheExpressionAndItsParameters)
 {
   input::Case input;
-  ASSERT_EQ(problems({"law=expression", psi, "parameters= mu = 0.1 MPa"}, &input), "");
+  ASSERT_EQ(problems({"law=expression", psi, "parameters= mu = 0.1 MPa"}, {}, &input), "");
   const lattice::BondLaw law = input.material().nearest.law;
   EXPECT_NEAR(lattice::force(law, 2.), 1e5 * (2. - 0.25), 1e-9);
   // Entries of the section are values as well, unless a parameter has their name.
-  ASSERT_EQ(problems({"law=expression", "psi=a*(lam-1)^2 + b*(lam-1)^2", "a=3", "parameters=b=0.5"}, &input), "");
+  ASSERT_EQ(problems({"law=expression", "psi=a*(lam-1)^2 + b*(lam-1)^2", "a=3", "parameters=b=0.5"}, {}, &input), "");
   EXPECT_EQ(lattice::stiffness(input.material().nearest.law, 2.), 7.);
   // The law need not have values where no bond gets.
   const std::string locks = "psi=-lam-(k-1)*log(k-lam)";
   EXPECT_EQ(problems({"law=expression", locks, "parameters=k=1.9"}), "");
   EXPECT_NE(problems({"law=expression", locks, "parameters=k=1.7"}), "");
+}
+
+// At the end of the step in which it breaks, a bond is longer than its breaking stretch, by h r of eq. (L.26). Without
+// dashpots r^2 = 8 e / m / d^2 = 24 s psi / (rho d^2), with the area factor s = 2/3.
+TEST(UserLaw, NeedsValuesForWhatABondGainsWithinAStep)
+{
+  const auto found = [](const std::string &limit, const std::string &step)
+  {
+    return problems({"law=expression", "psi=-lam-(k-1)*log(k-lam)", "parameters=k=" + limit},
+                    {"Next-nearest neighbours/present=false", "Fracture/breaking stretch=2", "Contact/present=false",
+                     "Time/step=" + step});
+  };
+  // psi(2) - psi(1) = 1.1 ln 11 - 1 Pa: 166.6 per second
+  EXPECT_EQ(found("2.1", "0.3 ms"), "");
+  EXPECT_NE(found("2.1", "1 ms").find("a bond can be longer by 0.1666"), std::string::npos) << found("2.1", "1 ms");
+  EXPECT_EQ(found("2.3", "1 ms"), "");
 }
 
 // A verdict on one law must not be reused for another.
@@ -148,7 +177,7 @@ TEST(UserLaw, IsAmongTheInputsOfClaims)
 TEST(UserLaw, HasTheSameLargestStretchInClaims)
 {
   input::Case input;
-  ASSERT_EQ(problems({"law=expression", psi, "parameters=mu = 0.1 MPa"}, &input), "");
+  ASSERT_EQ(problems({"law=expression", psi, "parameters=mu = 0.1 MPa"}, {}, &input), "");
   input.density = 944.;
   input.breaking_stretch = 3.;
   input.toughening = input::Case::Toughening::behind_tip;
@@ -157,6 +186,23 @@ TEST(UserLaw, HasTheSameLargestStretchInClaims)
   const std::string text = claims::claim_inputs_text(input);
   input.toughening_factor = 2.5;
   EXPECT_NE(claims::claim_inputs_text(input), text);
+}
+
+// A short text can have many derivatives.
+TEST(UserLaw, RefusesExpressionsWithTooManyOperations)
+{
+  std::string product = "psi=lam", tower = "psi=lam";
+  for (int i = 101; i <= 200; ++i)
+    product += "*(lam+" + std::to_string(i) + ")";
+  for (int i = 0; i < 390; ++i)
+    tower += "^-lam";
+  for (const auto &[text, part] : {std::pair(product, "its derivatives are too long: more than 1000 operations"),
+                                   std::pair(tower, "it is too long: more than 1000 operations")})
+  {
+    ASSERT_LT(text.size(), 2000u);
+    const std::string found = problems({"law=expression", text});
+    EXPECT_NE(found.find(part), std::string::npos) << found;
+  }
 }
 
 TEST(UserLaw, SaysWhichEntryIsWrong)
@@ -171,11 +217,13 @@ TEST(UserLaw, SaysWhichEntryIsWrong)
          {{"law=expression", psi, "parameters=mu = 1, mu = 2"}, "'mu = 2': set twice"},
          {{"law=expression", psi, "parameters=mu = 1, lam = 2"}, "'lam = 2': a name is"},
          {{"law=expression", psi, "parameters=mu = 1, exp = 2"}, "'exp = 2': a name is"},
+         {{"law=expression", psi, "parameters=mu = 1, alpha = 2"}, "psi does not use 'alpha'; it uses: lam, mu"},
          {{"law=expression", psi, "parameters=mu = -1"}, "psi''(1) is -3 Pa; a bond at rest needs a stiffness > 0"},
          {{"law=expression", "psi=lam^2"}, "psi'(1) is 2 Pa; a bond at rest has no force"},
          {{"law=library"}, key + "library = : the path of a shared library is required"},
          {{"law=library", "library=none.so"}, key + "library = none.so: cannot read the library"},
-         {{"law=library", "library=/dev/null"}, key + "library = /dev/null: "}})
+         {{"law=library", "library=/dev/zero"}, key + "library = /dev/zero: cannot read the library: it is not a file"},
+         {{"law=library", "library=/"}, key + "library = /: cannot read the library: it is not a file"}})
   {
     const std::string found = problems(settings);
     EXPECT_NE(found.find(part), std::string::npos) << part << "\n" << found;

@@ -279,9 +279,9 @@ void own_branches(const bridge::Subject &subject, const Eigen::Matrix2d &F, cons
     const auto cell_of = [&](double of) { return wave_cell(subject.spacing, subject.orientation, {1, 0}, of); };
     const WaveCell cell = cell_of(kd);
     const auto waves = bridge::memory_waves(cell.sheet, subject.material, F, cell.K);
-    if (support::largest_of({waves[0].decay() / waves[0].frequency(), waves[1].decay() / waves[1].frequency()}) >
-          largest_ratio &&
-        kd > 0.01)
+    const double ratio =
+      support::largest_of({waves[0].decay() / waves[0].frequency(), waves[1].decay() / waves[1].frequency()});
+    if (!(ratio <= largest_ratio) && kd > 0.01) // also where a wave does not oscillate
       continue;
     for (const double of : {kd, 0.5 * kd})
       for (std::size_t w = 0; w < 2; ++w)
