@@ -143,7 +143,7 @@ class Branches(TemporaryFolder):
             self.assertIn(words, run.stderr)
 
     def test_motion_of_finite_elements_refuses_branches_that_relax_within_a_step(self):
-        for step in ("0.03 ms", "auto"):  # automatic with 2 x 2 cells: 0.05 ms
+        for step in ("0.03 ms", "auto"):  # automatic with 2 x 2 cells: 0.025 ms
             run = latcon("continuum", SPECTRUM, "--dry-run", *MOTION, "--set", f"Continuum/time step={step}", "--set",
                          "Continuum/cells x=2", "--set", "Continuum/cells y=2")
             self.assertEqual(run.returncode, 2, run.stderr)

@@ -17,6 +17,7 @@ ClaimOutcome check(const ClaimInput &input)
   {
     options.frequencies = {0.03, 0.1, 0.2, 0.4, 0.6, 0.8, 1., 1.25, 1.7, 2.5, 5., 10., 30.};
     options.element_frequencies = {0.1, 0.3, 1., 3., 10.};
+    options.element_states = options.states.size();
   }
   ClaimOutcome outcome = viscoelastic_waves_claim(input.subject, options);
   if (!input.subject.is_stable())

@@ -15,9 +15,10 @@ struct ViscoelasticWavesOptions
   std::vector<Eigen::Matrix2d> states; ///< F about which waves are evaluated
   /// w tau of the branch that is swept, w being the frequency of the wave without branches; increasing, 5 or more.
   std::vector<double> frequencies{0.1, 0.3, 0.6, 1., 1.7, 3., 10.};
-  /// The same for the finite elements; three or more.
+  /// The same for the finite elements; three or more, or none: no finite elements.
   std::vector<double> element_frequencies{0.3, 1., 3.};
-  PlantedBranches planted = {}; ///< for tests
+  std::size_t element_states = 1; ///< number of states, from the first, with finite elements
+  PlantedBranches planted = {};   ///< for tests
 };
 
 /// Claim `viscoelastic-waves`: free waves in lattices whose bonds have Maxwell branches have the frequency and the
