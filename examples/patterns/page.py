@@ -77,15 +77,14 @@ def read(name):
 
 
 def cells(rows):
-    """Cells of the map: patterns by number of seeds, mean wavelength [cm] where there is one."""
+    """Cells of the map: patterns by number of seeds."""
     points = {}
     for row in rows:
         points.setdefault((row["strain_x"], row["strain_y"]), []).append(row)
     found = []
     for (x, y), seeds in points.items():
         names = [seed["pattern"] for seed in seeds]
-        wavelengths = [seed["wavelength"] for seed in seeds if seed["wavelength"] is not None]
-        found.append(Cell(x, y, {name: names.count(name) for name in names}, 100 * np.mean(wavelengths) if wavelengths else None))
+        found.append(Cell(x, y, {name: names.count(name) for name in names}))
     return found
 
 
@@ -146,7 +145,7 @@ def draw(folder):
     """Draws all pictures whose record exists."""
     for name in ("map", "spectrum"):
         draw_phase_map(cells(read(name)), "strain x, along the crack", "strain y, across the crack", folder / f"patterns-{name}.png",
-                       "wavelength [cm]", height=4.2)
+                       height=4.2)
     draw_onset(read("onset"), folder / "patterns-onset.png")
 
 
