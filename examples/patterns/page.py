@@ -27,7 +27,7 @@ VALUES = ("speed_lagrangian", "wavelength", "amplitude", "periods", "window_begi
 # zeta = (eta / a) / (d sqrt(rho / a)) over the viscosity of nearest neighbours [1/(Pa s)]: theory.md, eq. (L.5)
 ZETA = 1 / (0.1e6 * 0.625e-3 * np.sqrt(944 / 0.1e6))
 COLUMNS = ("run", "seed", *ENTRIES, "pattern", *VALUES, "departure")
-LEFT = 1.2 * 0.625e-3  # distance from the first row at which a tip has left it [m]; neighbouring rows are 0.87 d apart
+LEFT = 2 * 0.625e-3  # distance from the centre line that a tip reaches only in an oscillation [m]; a start in noise reaches 1.73 d
 
 
 def entries(case):
@@ -44,10 +44,10 @@ def entries(case):
 
 
 def departure(path):
-    """Advance of the tip until it has left its first row by more than LEFT [m]; None if it has not."""
+    """Advance of the tip until it has left the centre line by more than LEFT [m]; None if it has not."""
     with path.open(encoding="utf-8", newline="") as file:
         tips = [(float(row["X"]), float(row["Y"])) for row in csv.DictReader(file)]
-    return next((X - tips[0][0] for X, Y in tips if abs(Y - tips[0][1]) > LEFT), None)
+    return next((X - tips[0][0] for X, Y in tips if abs(Y) > LEFT), None)
 
 
 def record(path, studies):
