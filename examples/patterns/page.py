@@ -76,15 +76,16 @@ def read(name):
     return rows
 
 
-def cells(rows):
-    """Cells of the map: patterns by number of seeds."""
+def cells(rows, refined):
+    """Cells of a map: patterns by number of seeds. @param refined whether points beside the grid of the study map are a refinement"""
     points = {}
     for row in rows:
         points.setdefault((row["strain_x"], row["strain_y"]), []).append(row)
     found = []
     for (x, y), seeds in points.items():
         names = [seed["pattern"] for seed in seeds]
-        found.append(Cell(x, y, {name: names.count(name) for name in names}))
+        level = 0 if all(abs(steps - round(steps)) < 1e-6 for steps in ((x - 0.25) / 0.15, (y - 1) / 0.08)) or not refined else 1
+        found.append(Cell(x, y, {name: names.count(name) for name in names}, level=level))
     return found
 
 
@@ -144,7 +145,7 @@ def draw_onset(rows, path):
 def draw(folder):
     """Draws all pictures whose record exists."""
     for name in ("map", "spectrum"):
-        draw_phase_map(cells(read(name)), "strain x, along the crack", "strain y, across the crack", folder / f"patterns-{name}.png",
+        draw_phase_map(cells(read(name), name == "map"), "strain x, along the crack", "strain y, across the crack", folder / f"patterns-{name}.png",
                        height=4.2)
     draw_onset(read("onset"), folder / "patterns-onset.png")
 
