@@ -99,6 +99,25 @@ class Sweeps(Folder):
         self.assertIn("differs from", printed)
         self.assertEqual(self.files(), before)
 
+    def test_is_refined_between_cases_that_differ(self):
+        def change(document):  # one crack stays in its seed, the other runs
+            document.update(sweep=["Loading/strain y=0.05,1.8"], refine=1, runs={"beside": {"set": {"Loading/strain y": 1.9}}})
+        path = self.write_study(change)
+        printed = self.run_study(path, "-o", self.out)
+        self.assertIn("refinement 1: 1 cases between neighbours that differ", printed)
+        document = json.loads((self.out / "study.json").read_text())
+        self.assertEqual([(run["run"], run["level"]) for run in document["runs"]],
+                         [("strain-y-0.05", 0), ("strain-y-1.8", 0), ("beside", 0), ("strain-y-0.925", 1)])
+        self.assertEqual([seed["values"]["end_time"] is not None for seed in document["seeds"]], [True] * 4)
+        before = (self.out / "study.json").read_bytes()
+        self.assertIn("0 runs, 1 are finished already", self.run_study(path, "-o", self.out, "--resume"))
+        self.assertEqual((self.out / "study.json").read_bytes(), before)
+        self.assertIn("refined 1 time where neighbours differ", self.run_study(path, "--dry-run"))
+        for words in (["--shard", "1/2"], ["--collect"]):
+            self.assertIn("refine = 1: a refined study does not run in shards",
+                          self.run_study(path, "-o", self.folder / "shards", *words, expect=2))
+        self.assertIn("does not run in shards", self.run_study(path, "--slurm", "-o", self.folder / "shards", command="batch", expect=2))
+
     def test_runs_in_shards(self):
         self.out.mkdir()
         with Events(self.out) as events:

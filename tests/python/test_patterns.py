@@ -1,0 +1,26 @@
+"""Checks that the page on patterns has the tables that its record gives, and small pictures."""
+import pathlib
+import re
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+PAGE = (ROOT / "docs" / "patterns.md").read_text(encoding="utf-8")
+
+
+def test_page_has_the_tables_of_the_record():
+    sys.path.insert(0, str(ROOT / "examples" / "patterns"))
+    sys.modules.pop("page", None)  # that of another example
+    import page
+    tables = page.tables()
+    assert len(tables) == 2 and all(len(lines) > 5 for lines in tables)
+    for lines in tables:
+        assert "\n".join(lines) in PAGE
+    sys.path.pop(0)
+    del sys.modules["page"]
+
+
+def test_pictures_are_small():
+    pictures = re.findall(r"\(pictures/(patterns-\w+\.png)\)", PAGE)
+    assert len(pictures) == 3
+    for name in pictures:
+        assert (ROOT / "docs" / "pictures" / name).stat().st_size < 150 * 1024
