@@ -267,7 +267,7 @@ class Hole(unittest.TestCase):
                 out = self.out.parent / law
                 run = latcon("continuum", HOLE, "--output-dir", out,
                              *settings(*self.FIG1, f"Continuum/law={law}", f"Continuum/gradient={gradient}",
-                                       "Continuum/adaptive cycles=2"))
+                                       "Continuum/adaptive cycles=5"))
                 self.assertEqual(run.returncode, 0, run.stderr)
                 self.assertGreater(results(out)["largest area ratio"], 6.)
 

@@ -17,7 +17,7 @@ from pathlib import Path
 import PIL
 
 sys.dont_write_bytecode = True
-from program import CASES, LATCON, TemporaryFolder, children, wait_for
+from program import CASES, LATCON, TemporaryFolder, children, latcon, wait_for
 from study_test import TINY
 
 SMALL = [word for entry, value in TINY["set"].items() for word in ("--set", f"{entry}={str(value).lower()}")]
@@ -29,8 +29,9 @@ CAN_MOUNT = os.geteuid() == 0 and subprocess.run(["unshare", "-m", "mount", "-t"
 
 class Folder(TemporaryFolder):
     def run_study(self, *arguments, expect=0, command="study", launcher=()):
-        words = [*launcher, LATCON, command, *map(str, arguments), "--skip-verification"]
-        run = subprocess.run(words, capture_output=True, text=True, timeout=600, check=False)
+        words = [command, *arguments, "--skip-verification"]
+        run = (subprocess.run([*launcher, LATCON, *map(str, words)], capture_output=True, text=True, timeout=600, check=False)
+               if launcher else latcon(*words))
         self.assertEqual(run.returncode, expect, run.stdout + run.stderr)
         return run.stdout + run.stderr
 

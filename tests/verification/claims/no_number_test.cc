@@ -372,9 +372,16 @@ class NoNumberInCutSheets : public testing::TestWithParam<Plant>
 INSTANTIATE_TEST_SUITE_P(Claims, NoNumber, testing::ValuesIn(plants(false)), name_of);
 INSTANTIATE_TEST_SUITE_P(Claims, NoNumberInCutSheets, testing::ValuesIn(plants(true)), name_of);
 
+// Its laws are fitted once. Plants replace laws in copies of it.
+const Subject &right_subject()
+{
+  static const Subject right = subject(subjects::paper_case());
+  return right;
+}
+
 void expect_that_the_claim_fails(const Plant &plant)
 {
-  Subject wrong = subject(subjects::paper_case());
+  Subject wrong = right_subject();
   plant.plant(wrong);
   const Results results = plant.claim.check(wrong);
   EXPECT_EQ(results.verdict(), Verdict::fails);
@@ -404,7 +411,7 @@ INSTANTIATE_TEST_SUITE_P(Claims, SoundWrappers,
 
 TEST_P(SoundWrappers, HoldTheClaim)
 {
-  Subject right = subject(subjects::paper_case());
+  Subject right = right_subject();
   without_values_beyond(right, std::numeric_limits<double>::infinity());
   right.lattice_gradient =
     std::make_shared<faults::Combination>(1., right.lattice_gradient, 0., right.lattice_gradient);
