@@ -40,9 +40,6 @@ class CustomPotentialLaw
 public:
   virtual ~CustomPotentialLaw() = default;
 
-  /// Returns n unit vectors that are equally spaced over half a turn, the first along X_1.
-  std::vector<dealii::Tensor<1, 2>> directions(unsigned int n);
-
   /// Returns psi(l) and its first four derivatives at stretch l > 0 [-]; NaN where there are none.
   virtual PotentialDerivatives derivatives(double l) const = 0;
 };
@@ -64,6 +61,9 @@ struct FibreFamily
   double weight;                  ///< c [-] > 0
   FibrePotential potential;       ///< psi [Pa]
 };
+
+/// Returns n unit vectors that are equally spaced over half a turn, the first along X_1.
+std::vector<dealii::Tensor<1, 2>> directions(unsigned int n);
 
 /// Returns psi(l) and its first four derivatives at stretch l > 0 [-] (theory-continuum.md, eqs. (C.12), (C.13)).
 PotentialDerivatives derivatives(const FibrePotential &potential, double l);

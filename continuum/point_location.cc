@@ -4,6 +4,7 @@
 #include <deal.II/base/geometry_info.h>
 #include <deal.II/grid/grid_tools_cache.h>
 
+#include <cmath>
 #include <iterator>
 #include <utility>
 
@@ -30,6 +31,8 @@ std::map<Cell, PointsInCell> locate(const Triangulation<2> &mesh, const Mapping<
   std::vector<std::pair<BoundingBox<2>, Cell>> candidates;
   for (std::size_t p = 0; p < points.size(); ++p)
   {
+    if (!std::isfinite(points[p].square())) // deal.II finds such points in cells
+      continue;
     const Point<2> shift(margin, margin);
     const BoundingBox<2> box({points[p] - Tensor<1, 2>(shift), points[p] + shift});
     candidates.clear();
@@ -38,7 +41,7 @@ std::map<Cell, PointsInCell> locate(const Triangulation<2> &mesh, const Mapping<
       try
       {
         const Point<2> unit = mapping.transform_real_to_unit_cell(candidate.second, points[p]);
-        if (!(GeometryInfo<2>::distance_to_unit_cell(unit) <= slack))
+        if (GeometryInfo<2>::distance_to_unit_cell(unit) > slack)
           continue;
         PointsInCell &there = located[candidate.second];
         there.indices.push_back(p);

@@ -97,8 +97,8 @@ public:
 
   /// Returns the states at reference points [m]. Every rank passes the same points and gets all states. On a cell
   /// boundary, F and G are means over the adjacent cells, independent of the partition. P, Q and the energy density
-  /// include the stiffness factor. Throws InvalidInput if a point
-  /// is outside the mesh by more than 1e-8 of a cell.
+  /// include the stiffness factor. Throws InvalidInput if a point is outside the mesh by more than 1e-8 of a cell, or
+  /// not finite.
   std::vector<PointState> evaluate(const Vector &u, const std::vector<dealii::Point<2>> &points) const;
 
   /// Returns the range of det F over all quadrature points. Does not throw for det F <= 0.

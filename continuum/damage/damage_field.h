@@ -54,7 +54,7 @@ public:
   double largest() const;
 
   /// Returns the damage [-] at reference points [m]. Every rank passes the same points and gets all values. Throws
-  /// InvalidInput if a point is outside the mesh by more than 1e-8 of a cell.
+  /// InvalidInput if a point is outside the mesh by more than 1e-8 of a cell, or not finite.
   std::vector<double> evaluate(const std::vector<dealii::Point<2>> &points) const;
 
   /// Returns the interpolated g(d_a) [-].

@@ -64,7 +64,8 @@ int record_number(const char *text, int *position, double *value)
   double number = 0.;
   const auto [end, error] = std::from_chars(text, text + std::strlen(text), number);
   if (error == std::errc::result_out_of_range) // muParser would read it, as the index of a node
-    throw InvalidExpression("the number " + std::string(static_cast<const char *>(text), end) + " is out of range");
+    throw InvalidExpression("the number " + std::string(text, end) + " at column " + std::to_string(*position + 1) +
+                            " is out of range");
   if (error != std::errc())
     return 0;
   *position += static_cast<int>(end - text);
@@ -194,6 +195,10 @@ support::Expression parse_expression(const std::string &text, const std::string 
   catch (const mu::Parser::exception_type &error)
   {
     throw InvalidExpression(problem_with(error, text, names) + allowed);
+  }
+  catch (const InvalidExpression &error)
+  {
+    throw InvalidExpression(error.what() + allowed);
   }
   catch (const std::length_error &error)
   {

@@ -214,7 +214,7 @@ TEST(MemoryWaves, AreNoNumbersWhereNothingOscillates)
   Material material = without_memory(input.material());
   const double first = material.nearest.viscosity;
   int alone = 0;
-  for (const double factor : {0., 0.1, 0.3, 1., 10.})
+  for (double factor = 0.001; factor < 10.; factor *= 1.2) // a longitudinal wave stops sooner
   {
     material.nearest.viscosity = factor * first;
     if (material.next_nearest)

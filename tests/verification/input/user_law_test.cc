@@ -64,25 +64,25 @@ TEST(ExpressionParser, ListsTheNamesInAnExpression)
 
 TEST(ExpressionParser, NamesTheColumnOfAMistakeAndWhatIsAllowed)
 {
-  for (const auto &[text, part] :
-       std::vector<std::pair<std::string, std::string>>{{"1 + lan", "unknown 'lan' at column 5; nearest: lam"},
-                                                        {"lam,2", "unknown ',' at column 4"},
-                                                        {"lam$", "unknown '$' at column 4"},
-                                                        {"lam?1:2", "unknown '?' at column 4"},
-                                                        {"lam = 2", "unknown '=' at column 5"},
-                                                        {"lam \xc2\xb2", "at column 5"},
-                                                        {"sqrt(lam", "')' is missing at the end"},
-                                                        {"lam)", "parenthesis at column 4"},
-                                                        {"sqrt()", "one argument at column 6"},
-                                                        {"exp lam", "'(' is missing after 'exp' at column 1"},
-                                                        {"0x10*lam", "'x10' at column 2"},
-                                                        {"2lam", "'lam' is not expected at column 2"},
-                                                        {"sin(lam)", "unknown 'sin' at column 1"},
-                                                        {"lam +", "ends too early"},
-                                                        {"", "an expression is required"},
-                                                        {"  ", "an expression is required"},
-                                                        {"1e-400*lam", "the number 1e-400 is out of range"},
-                                                        {"lam + 1e400", "the number 1e400 is out of range"}})
+  for (const auto &[text, part] : std::vector<std::pair<std::string, std::string>>{
+         {"1 + lan", "unknown 'lan' at column 5; nearest: lam"},
+         {"lam,2", "unknown ',' at column 4"},
+         {"lam$", "unknown '$' at column 4"},
+         {"lam?1:2", "unknown '?' at column 4"},
+         {"lam = 2", "unknown '=' at column 5"},
+         {"lam \xc2\xb2", "at column 5"},
+         {"sqrt(lam", "')' is missing at the end"},
+         {"lam)", "parenthesis at column 4"},
+         {"sqrt()", "one argument at column 6"},
+         {"exp lam", "'(' is missing after 'exp' at column 1"},
+         {"0x10*lam", "'x10' at column 2"},
+         {"2lam", "'lam' is not expected at column 2"},
+         {"sin(lam)", "unknown 'sin' at column 1"},
+         {"lam +", "ends too early"},
+         {"", "an expression is required"},
+         {"  ", "an expression is required"},
+         {"1e-400*lam", "the number 1e-400 at column 1 is out of range"},
+         {"lam + 1e400", "the number 1e400 at column 7 is out of range"}})
     try
     {
       (void)input::parse_expression(text, "lam", constants);
@@ -192,7 +192,7 @@ TEST(UserLaw, HasTheSameLargestStretchInClaims)
 TEST(UserLaw, RefusesExpressionsWithTooManyOperations)
 {
   std::string product = "psi=lam", tower = "psi=lam";
-  for (int i = 101; i <= 200; ++i)
+  for (int i = 101; i <= 270; ++i)
     product += "*(lam+" + std::to_string(i) + ")";
   for (int i = 0; i < 390; ++i)
     tower += "^-lam";
