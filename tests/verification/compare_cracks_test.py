@@ -33,7 +33,7 @@ class CompareCracks(TemporaryFolder):
         cls.runs.cleanup()
 
     def compare(self, *arguments):
-        run = latcon("compare", *arguments, "--output-dir", self.out)
+        run = latcon("compare", *arguments, "--no-report", "--output-dir", self.out)
         self.assertEqual(run.returncode, 0, run.stderr)
         return run.stdout, json.loads((self.out / "compare.json").read_text())
 
@@ -89,6 +89,20 @@ class CompareCracks(TemporaryFolder):
         self.assertEqual((found["entries"], found["paths"]["rms_distance"], found["paths"]["largest_distance"]), ([], 0., 0.))
         self.assertIn("The cases have the same entries.", text)
         self.assertEqual(json.loads((self.out / "run.json").read_text())["exit_code"], 0)
+
+    def test_the_page_shows_both_runs(self):
+        run = latcon("compare", self.one, self.other, "--output-dir", self.out)
+        self.assertEqual((run.returncode, run.stderr), (0, ""))
+        self.assertIn(f"{self.out}/compare.json, compare.csv, compare.html", run.stdout)
+        found = json.loads((self.out / "compare.json").read_text())
+        for side, folder in (("first", self.one), ("second", self.other)):
+            self.assertEqual((self.out / found[f"{side}_folder"]).resolve(), folder.resolve())
+        html = (self.out / "compare.html").read_text(encoding="utf-8")
+        self.assertEqual(html.count('class="viewer"'), 2)
+        self.assertIn("Loading/strain y", html)
+        shutil.rmtree(self.out)
+        self.compare(self.one, self.other)
+        self.assertFalse((self.out / "compare.html").exists())
 
     def test_what_is_no_pair_of_cracks_is_refused(self):
         empty = self.folder / "empty"

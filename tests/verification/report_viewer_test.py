@@ -3,6 +3,7 @@
 import base64
 import hashlib
 import io
+import json
 import re
 import sys
 import tempfile
@@ -23,6 +24,7 @@ from browser import Browser
 from made_up_sheet import FRAMES, SPACING, write_torn_sheet
 from report_test import FAILS, HOLDS, REPORTED, report, write_verification
 
+import comparison
 import sheet_data
 from motion import read_motion
 from runs import read_run
@@ -314,6 +316,71 @@ class ViewerTest(unittest.TestCase):
         return self.browser.value("document.querySelector('[id^=stills-]').id.split('-')[1]")
 
 
+def report_ranges(folder):
+    """Ranges of the colours of a run by itself."""
+    run = read_run(folder)
+    return sheet_data.sheet_data(run, read_motion(run), 10**9).contents["ranges"]
+
+
+class ComparisonTest(unittest.TestCase):
+    """The page of two cracks."""
+
+    def test_both_sheets_show_the_same_time(self):
+        with tempfile.TemporaryDirectory() as name:
+            folder = Path(name)
+            for run in ("one", "other"):
+                write_torn_sheet(folder / run)
+            case = folder / "other" / "case.prm"
+            case.write_text(case.read_text().replace("set breaking stretch = 3", "set breaking stretch = 3.5"))
+            listed = folder / "other" / "motion.pvd"
+            frames = re.findall(r"<DataSet[^>]*>", listed.read_text())
+            fewer = [frame for i, frame in enumerate(frames) if i % 3 != 1]
+            listed.write_text("<VTKFile><Collection>" + "".join(fewer) + "</Collection></VTKFile>")
+            times = [[time for time, _ in series(folder / run / "motion.pvd")] for run in ("one", "other")]
+            quantity = {"name": "wavelength", "unit": "m", "first": 0.02, "first_uncertainty": 1e-4, "second": 0.0212,
+                        "second_uncertainty": None, "difference": 0.0012, "difference_over_uncertainty": None}
+            document = {"first": "one", "second": "other", "first_folder": "../one", "second_folder": "../other",
+                        "pattern": {"first": "oscillating", "second": "straight"}, "quantities": [quantity],
+                        "entries": [{"key": "Loading/strain y", "unit": "1", "first": "1.8", "second": "1.9"}], "paths": None}
+            (folder / "compare").mkdir()
+            (folder / "compare" / "compare.json").write_text(json.dumps(document))
+            self.assertEqual(comparison.main([str(folder / "compare"), "--quiet"]), 0)
+            with Browser(1280, SCREEN) as browser:
+                browser.open(folder / "compare" / "compare.html")
+                browser.wait("document.querySelectorAll('.viewer.ready').length === 2")
+
+                def shown():
+                    return browser.value("[...document.querySelectorAll('.viewer')].map((v) => v.viewer.frame)")
+
+                for moved in (0, 1):
+                    for frame, time in enumerate(times[moved]):
+                        browser.value(f"(() => {{ const s = document.querySelectorAll('.viewer .slider')[{moved}];"
+                                      f"s.value = {frame}; s.dispatchEvent(new Event('input', {{bubbles: true}})); }})()")
+                        nearest = [int(np.abs(np.array(all_times) - time).argmin()) for all_times in times]
+                        self.assertEqual(shown(), nearest)
+                browser.value("(() => { const s = document.querySelectorAll('.viewer .colour')[1]; s.value = 'damage';"
+                              "s.dispatchEvent(new Event('change', {bubbles: true})); })()")
+                self.assertEqual(browser.value("[...document.querySelectorAll('.viewer')].map((v) => v.viewer.quantity)"),
+                                 ["damage", "damage"])
+                ranges = browser.value("[...document.querySelectorAll('.viewer')].map((v) => v.viewer.sheet.ranges)")
+                own = [report_ranges(folder / run) for run in ("one", "other")]
+                self.assertNotEqual(own[0], own[1])
+                for name, (low, high) in ranges[0].items():
+                    self.assertEqual([low, high], [min(one[name][0] for one in own), max(one[name][1] for one in own)])
+                    self.assertEqual(ranges[1][name], [low, high])
+                text = browser.value("document.body.innerText")
+                self.assertEqual(browser.said, [])
+        for words in (f"{len(fewer)} frames", "2.000 ± 0.010", "2.12", "oscillating", "straight", "Loading/strain y"):
+            self.assertIn(words, text)
+
+    def test_a_damaged_comparison_is_bad_input(self):
+        with tempfile.TemporaryDirectory() as name:
+            self.assertEqual(comparison.main([name]), 2)
+            (Path(name) / "compare.json").write_text('{"first": "one"}')
+            self.assertEqual(comparison.main([name]), 2)
+            self.assertFalse((Path(name) / "compare.html").exists())
+
+
 class SizeTest(unittest.TestCase):
     def test_a_sheet_takes_no_more_than_it_may(self):
         """Random displacements do not compress: frames are dropped until they fit."""
@@ -343,7 +410,7 @@ class SizeTest(unittest.TestCase):
         """Checks the limits of a page. For Fig. 1 see fig1_test.py, which checks that its pictures are below 3 MB."""
         scripts = sum(path.stat().st_size for path in [*(report.Path(report.__file__).parent).glob("*.js"),
                                                        report.Path("/usr/share/javascript/dygraphs/dygraph.min.js")])
-        self.assertLess(report.LARGEST_SHEETS + scripts + 3_000_000, 8_000_000)
+        self.assertLess(sheet_data.LARGEST_SHEETS + scripts + 3_000_000, 8_000_000)
 
     def test_stored_numbers_are_read_back(self):
         generator = np.random.default_rng(3)

@@ -23,9 +23,9 @@
 #include "support/atomic_file.h"
 #include "support/errors.h"
 #include "verification/claims/claim_inputs.h"
+#include "verification/input/sha256.h"
 #include "verification/output/output_file.h"
 #include "verification/output/run_info.h"
-#include "verification/output/sha256.h"
 
 namespace latcon::claims
 {
@@ -100,7 +100,7 @@ std::string hash_of_libraries()
         return 0; // the program itself, and the vdso
       const std::string id = build_id(*library);
       static_cast<std::vector<std::string> *>(list)->push_back(file.filename().string() + ' ' +
-                                                               (id.empty() ? output::sha256_of_file(file) : id) + '\n');
+                                                               (id.empty() ? input::sha256_of_file(file) : id) + '\n');
       return 0;
     },
     &libraries);
@@ -108,7 +108,7 @@ std::string hash_of_libraries()
   std::string text;
   for (const std::string &library : libraries)
     text += library;
-  return output::sha256(text);
+  return input::sha256(text);
 }
 
 std::string now()
@@ -124,7 +124,7 @@ std::string now()
 std::string checksum(Json document)
 {
   document.erase("checksum");
-  return output::sha256(document.dump());
+  return input::sha256(document.dump());
 }
 
 // Parses a number of results.json.
@@ -151,7 +151,7 @@ output::Result row(const Json &entry)
 
 } // namespace
 
-VerdictKey::VerdictKey(std::string inputs) : text(std::move(inputs)), hash(output::sha256(text)) {}
+VerdictKey::VerdictKey(std::string inputs) : text(std::move(inputs)), hash(input::sha256(text)) {}
 
 VerdictKey verdict_key(const input::Case &input, const std::vector<Claim> &claims, bool quick, unsigned int n_ranks)
 {

@@ -12,10 +12,10 @@
 #include "verification/commands/recorded_output.h"
 #include "verification/commands/signals.h"
 #include "verification/input/input_file.h"
+#include "verification/input/sha256.h"
 #include "verification/output/checkpoints.h"
 #include "verification/output/output_file.h"
 #include "verification/output/output_list.h"
-#include "verification/output/sha256.h"
 
 namespace latcon::commands
 {
@@ -93,7 +93,7 @@ Run::Run(const input::Options &options, const input::Parameters *parameters)
     is_verbose_(is_root_ && !options.quiet), prints_all_(options.verbose), resumes_(options.resume)
 {
   if (parameters != nullptr)
-    info().add("case_hash", output::sha256(input::case_lines(*parameters)));
+    info().add("case_hash", input::sha256(input::case_lines(*parameters)));
   if (is_root_)
   {
     std::error_code error;

@@ -49,7 +49,7 @@ struct SweepOptions
 /// Options of `latcon study`.
 struct StudyOptions
 {
-  std::string study;    ///< file, name of a shipped study, or case of a sweep
+  std::string study; ///< file, name of a shipped study, or case of a sweep
   SweepOptions sweep;
   std::string shard;    ///< `I/N`: run this share alone, without verdict; empty: run all
   bool collect = false; ///< run nothing, judge the runs of all shards
@@ -58,7 +58,7 @@ struct StudyOptions
 /// Options of `latcon batch`.
 struct BatchOptions
 {
-  std::string study;               ///< file, name of a shipped study, or case of a sweep
+  std::string study; ///< file, name of a shipped study, or case of a sweep
   SweepOptions sweep;
   bool slurm = false;              ///< write scripts for Slurm, the only batch system supported
   bool submit = false;             ///< pass the scripts to sbatch
@@ -98,8 +98,20 @@ support::ExitCode init(const input::Options &options, const std::string &directo
 /// @return the exit code of the script @throws OutputError
 support::ExitCode draw_report(const std::string &directory, bool quiet, bool shows_progress = false);
 
-/// Draws the page of a study, study.html, from the files in its output directory. @throws OutputError
-void study_page(const std::string &directory);
+/// A page that a script of the folder report/ draws from the files in an output directory.
+struct Page
+{
+  const char *script, *file; ///< names of the script and of the page
+  const char *repeat;        ///< how a command is repeated that found no Python to draw it: its options
+};
+/// The page of `latcon study`.
+inline constexpr Page study_page{"study.py", "study.html", " with --resume, or with --collect after shards,"};
+/// The page of two cracks, of `latcon compare`.
+inline constexpr Page comparison_page{"comparison.py", "compare.html", ""};
+
+/// Draws a page. Without Python, or without packages that the page needs, what is missing is printed on standard error.
+/// @throws OutputError
+void draw_page(const Page &page, const std::string &directory);
 
 /// Reads and checks the case that the options name. @throws InputError
 void read_case(const input::Options &options, input::Case &input, input::Parameters &parameters);

@@ -344,6 +344,7 @@ support::ExitCode run_program(int argc, char **argv)
                  "crack tip; repeatable")
     ->allow_extra_args(false)
     ->type_name("X,Y,R");
+  compare_command->add_flag("--no-report", options.no_report, "of two cracks, draw no page");
   compare_command->callback(
     [&]
     {

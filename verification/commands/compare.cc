@@ -118,12 +118,16 @@ support::ExitCode compare_cracks(const input::Options &options, const CompareOpt
   run.info().add("second_run", chosen.continuum);
   if (run.is_root())
   {
-    output::write_file(run.directory() + "/compare.json", comparison.json());
+    output::write_file(run.directory() + "/compare.json", comparison.json(run.directory()));
     output::write_file(run.directory() + "/compare.csv", comparison.csv());
   }
   run.end({}, support::ExitCode::done);
+  if (run.is_root() && !options.no_report)
+    draw_page(comparison_page, run.directory());
   if (run.is_verbose())
-    std::cout << "\n" << run.directory() << "/compare.json, compare.csv" << std::endl;
+    std::cout << "\n"
+              << run.directory() << "/compare.json, compare.csv"
+              << (std::filesystem::exists(run.directory() + "/compare.html") ? ", compare.html" : "") << std::endl;
   return support::ExitCode::done;
 }
 

@@ -111,28 +111,25 @@ support::ExitCode draw_report(const std::string &directory, bool quiet, bool sho
   return static_cast<support::ExitCode>(status);
 }
 
-void study_page(const std::string &directory)
+void draw_page(const Page &page, const std::string &directory)
 {
   // Nodes of a cluster may have no Python, or no packages; all results are written.
   std::string problem;
   try
   {
-    const int status = run_script("study.py", directory, "study.html", true);
+    const int status = run_script(page.script, directory, page.file, true);
     if (status == packages_missing)
-      problem = "cannot draw " + directory + "/study.html without these packages";
+      problem = "cannot draw " + directory + "/" + page.file + " without these packages";
     else if (status != 0)
-      throw support::OutputError(directory + "/study.html", "the report script failed");
+      throw support::OutputError(directory + "/" + page.file, "the report script failed");
   }
   catch (const NoPython &error)
   {
     problem = error.what();
   }
   if (!problem.empty())
-    std::cerr
-      << "latcon: " << problem
-      << "; every other file is complete. To draw the page, repeat the command with --resume, or with --collect "
-         "after shards, on a machine with Python and the packages of the report"
-      << std::endl;
+    std::cerr << "latcon: " << problem << "; every other file is complete. To draw the page, repeat the command"
+              << page.repeat << " on a machine with Python and the packages of the report" << std::endl;
 }
 
 } // namespace latcon::commands

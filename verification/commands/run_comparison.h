@@ -59,8 +59,9 @@ struct RunComparison
   double spacing = 0.; ///< lattice spacing d of the first run [m]
 
   [[nodiscard]] std::string text() const; ///< tables for a terminal
-  [[nodiscard]] std::string json() const; ///< all of it, full precision
-  [[nodiscard]] std::string csv() const;  ///< the quantities, full precision
+  /// All of it, full precision. @param output_directory from which `first_folder` and `second_folder` lead to the runs
+  [[nodiscard]] std::string json(const std::string &output_directory) const;
+  [[nodiscard]] std::string csv() const; ///< the quantities, full precision
 };
 
 /// Returns whether a directory holds a measured crack: the file crack.json.

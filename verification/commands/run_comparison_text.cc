@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 
 #include <nlohmann/json.hpp>
 
@@ -89,9 +90,13 @@ std::string RunComparison::text() const
          length(paths->largest) + " at X = " + study::quantity_text(paths->largest_X, {}, "m") + "\n";
 }
 
-std::string RunComparison::json() const
+std::string RunComparison::json(const std::string &output_directory) const
 {
-  Json document{{"first", first}, {"second", second}};
+  namespace fs = std::filesystem;
+  const auto folder = [&](const std::string &run)
+  { return fs::canonical(run).lexically_proximate(fs::canonical(output_directory)).string(); };
+  Json document{
+    {"first", first}, {"second", second}, {"first_folder", folder(first)}, {"second_folder", folder(second)}};
   document["pattern"] = {{"first", first_pattern}, {"second", second_pattern}};
   document["quantities"] = Json::array();
   for (const QuantityPair &pair : quantities)

@@ -322,7 +322,7 @@ support::ExitCode judge_runs(study::StudyResults &results, const input::Options 
     run.end(rows, complete ? exit_code_of(results, rows) : support::ExitCode::interrupted);
   if (complete)
   {
-    study_page(run.directory());
+    draw_page(study_page, run.directory());
     if (run.is_verbose() && fs::exists(run.directory() + "/study.html"))
       std::cout << run.directory() << "/study.html" << std::endl;
   }

@@ -1,14 +1,11 @@
 #include "verification/input/user_law.h"
 
 #include <algorithm>
-#include <array>
 #include <map>
 #include <mutex>
 #include <sstream>
 #include <utility>
 #include <vector>
-
-#include <openssl/evp.h>
 
 #include "lattice/bonds/expression_law.h"
 #include "lattice/bonds/law_check.h"
@@ -16,6 +13,7 @@
 #include "verification/input/case_text.h"
 #include "verification/input/expression_parser.h"
 #include "verification/input/input_file.h"
+#include "verification/input/sha256.h"
 #include "verification/input/spelling.h"
 #include "verification/input/units.h"
 
@@ -54,25 +52,12 @@ Values parameters_of(const std::string &text)
   return values;
 }
 
-std::string sha256_of(const std::string &bytes)
-{
-  std::array<unsigned char, EVP_MAX_MD_SIZE> digest{};
-  unsigned int size = 0;
-  if (EVP_Digest(bytes.data(), bytes.size(), digest.data(), &size, EVP_sha256(), nullptr) != 1)
-    throw std::runtime_error("OpenSSL has no SHA-256");
-  std::string text;
-  for (unsigned int i = 0; i < size; ++i)
-    for (const unsigned int shift : {4U, 0U})
-      text += "0123456789abcdef"[(digest[i] >> shift) & 15U];
-  return text;
-}
-
 std::string sha256_of_library(const std::string &path)
 {
   const InputFile file = read_input_file(path);
   if (!file.problem.empty())
     throw UserLaw::Problem("library", "cannot read the library: " + file.problem);
-  return sha256_of(file.text);
+  return sha256(file.text);
 }
 
 struct LoadedLibrary

@@ -15,9 +15,9 @@
 #include "verification/input/case.h"
 #include "verification/input/options.h"
 #include "verification/input/parameters.h"
+#include "verification/input/sha256.h"
 #include "verification/output/output_file.h"
 #include "verification/output/run_info.h"
-#include "verification/output/sha256.h"
 
 namespace latcon::output
 {
@@ -91,8 +91,8 @@ void require_matching_time(const CheckpointPlace &place, std::size_t step, doubl
 Checkpoints::Checkpoints(const input::Options &options, const input::Parameters &parameters, const input::Case &input,
                          std::string command)
   : folder_(fs::path(options.output_dir) / "checkpoints"), command_(std::move(command)),
-    case_text_(input::case_lines(parameters)), case_hash_(sha256(case_text_)), step_interval_(input.checkpoint_steps),
-    wall_interval_(input.checkpoint_interval),
+    case_text_(input::case_lines(parameters)), case_hash_(input::sha256(case_text_)),
+    step_interval_(input.checkpoint_steps), wall_interval_(input.checkpoint_interval),
     first_rank_(dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
 {
   if (!options.resume)
@@ -152,7 +152,7 @@ std::string Checkpoints::problem_of(const fs::path &path, CheckpointPlace &place
   const std::string hash = hash_in(path);
   if (hash.empty())
     return "it is not a checkpoint";
-  if (sha256_of_file(path, Hdf5Image::user_block) != hash)
+  if (input::sha256_of_file(path, Hdf5Image::user_block) != hash)
     return "it is corrupt: its checksum does not match";
   try
   {
@@ -230,7 +230,7 @@ void Checkpoints::save(std::size_t step, double time, const std::function<void(C
   if (first_rank_)
   {
     std::string bytes = image->take_bytes();
-    const std::string head = first_words + sha256(std::string_view(bytes).substr(Hdf5Image::user_block)) + "\n";
+    const std::string head = first_words + input::sha256(std::string_view(bytes).substr(Hdf5Image::user_block)) + "\n";
     bytes.replace(0, head.size(), head);
     std::error_code error;
     support::require_in_place(folder_);

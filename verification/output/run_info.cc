@@ -1,8 +1,8 @@
 #include "verification/output/run_info.h"
 
 #include "support/full_precision.h"
+#include "verification/input/sha256.h"
 #include "verification/output/output_file.h"
-#include "verification/output/sha256.h"
 
 #include <latcon_build_facts.h>
 #include <latcon_git_commit.h>
@@ -168,7 +168,7 @@ const std::string &program_hash()
 {
   static const std::string hash = []
   {
-    std::string digits = sha256_of_file("/proc/self/exe");
+    std::string digits = input::sha256_of_file("/proc/self/exe");
     if (digits.empty())
       throw std::runtime_error("cannot read the executable of this program");
     return digits;

@@ -2,8 +2,31 @@
 import base64
 import re
 from html import escape
+from pathlib import Path
 
 MARKS = {"holds": "✓", "fails": "✗", "reported": "·", "warns": "!", "interrupted": "!", "unfinished": "!"}
+
+
+def whole_page(title, body, styles="", scripts=""):
+    """A self-contained page.
+
+    title: text; body: HTML from the heading on; styles: CSS before that of all pages; scripts: script elements at the end.
+    """
+    style = (Path(__file__).parent / "style.css").read_text(encoding="utf-8")
+    return f"""<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<title>latcon: {escape(title)}</title>
+<style>
+{styles}{style}</style>
+</head>
+<body id="top">
+{body}
+{scripts}</body>
+</html>
+"""
 
 
 def plural(count, one, many):

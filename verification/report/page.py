@@ -1,13 +1,13 @@
 """The report as one self-contained HTML file."""
 import json
 from html import escape
-from pathlib import Path
 
 from claim_sections import WORDS, claim_sections
 from crack_section import crack_section, pattern_phrase
 from live import has_dygraphs, scripts, styles
-from markup import details, number, plural, row, superscripts, table
+from markup import details, number, plural, row, superscripts, table, whole_page
 from summary import comparisons, percent, ratio_text, tallies, tally_of, unpublished, with_uncertainty
+
 
 def page(title, runs, pictures, plots, sheets, unreadable=()):
     """The whole page.
@@ -17,22 +17,12 @@ def page(title, runs, pictures, plots, sheets, unreadable=()):
     plots: plots of claims, {folder of a run: {plot name: (PNG file, error metrics)}}
     sheets: viewer data of cracks (sheet_data.py), {folder of a run: data or None}
     """
-    style = (Path(__file__).parent / "style.css").read_text(encoding="utf-8")
     versions = sorted({f"latcon {run.info['version']}" for run in runs if run.info and "version" in run.info})
     cracks = [crack_section(run, number, pictures.get(run.folder, {}), sheets.get(run.folder))
               for number, run in enumerate(runs) if run.is_fracture]
     with_plots = has_dygraphs() and bool(cracks)
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>latcon: {escape(title)}</title>
-<style>
-{styles(with_plots)}{style}</style>
-</head>
-<body id="top">
-<h1>latcon report: {escape(title)} <small>{escape(", ".join(versions) or "latcon")}</small></h1>
+    heading = f'latcon report: {escape(title)} <small>{escape(", ".join(versions) or "latcon")}</small>'
+    body = f"""<h1>{heading}</h1>
 {contents(runs)}
 <main>
 <div class="result">
@@ -45,10 +35,8 @@ def page(title, runs, pictures, plots, sheets, unreadable=()):
 {overview(runs)}
 <h2 id="inputs">Inputs and versions</h2>
 {"".join(inputs_section(run, number) for number, run in enumerate(runs))}
-</main>
-{scripts(any(sheet is not None for sheet in sheets.values()), with_plots)}</body>
-</html>
-"""
+</main>"""
+    return whole_page(title, body, styles(with_plots), scripts(any(sheet is not None for sheet in sheets.values()), with_plots))
 
 
 def contents(runs):

@@ -24,12 +24,8 @@ from near_tip_plots import opening_stress_picture, velocity_picture
 from page import page
 from pictures import draw_energy, draw_sheet
 from runs import Unreadable, find_runs, has_rows
-from sheet_data import sheet_data
+from sheet_data import LARGEST_SHEETS, sheet_data
 from summary import text_summary
-
-
-# Largest size of all sheets of a page [bytes]. With pictures and scripts, at most 3.5 MB for Fig. 1, a page is below 8 MB.
-LARGEST_SHEETS = 4_500_000
 
 
 def draw_pictures(run, motion):

@@ -12,6 +12,8 @@ from dataclasses import dataclass
 import matplotlib
 import numpy as np
 
+# Largest size of all sheets of a page [bytes]. With pictures and scripts, at most 3.5 MB for Fig. 1, a page is below 8 MB.
+LARGEST_SHEETS = 4_500_000
 STEPS_PER_SPACING, SPEED_STEPS = 2000, 65535
 LARGEST_INTEGER = 2**29  # largest position, so that differences fit into 32 bits
 FEWEST_FRAMES = 8  # below this number frames are not dropped to save space
@@ -34,13 +36,17 @@ def sheet_data(run, motion, most):
     """
     frames = motion.frames
     while True:
-        found = contents(run, motion, frames)
-        text = json.dumps(found, separators=(",", ":"))
-        if len(text) <= most:
-            return Sheet(found, text)
+        sheet = sheet_of(contents(run, motion, frames))
+        if len(sheet.text) <= most:
+            return sheet
         if len(frames) < 2 * FEWEST_FRAMES:
             return None
         frames = [frames[i] for i in np.round(np.linspace(0, len(frames) - 1, (len(frames) + 1) // 2)).astype(int)]
+
+
+def sheet_of(found):
+    """The Sheet with the given contents."""
+    return Sheet(found, json.dumps(found, separators=(",", ":")))
 
 
 def contents(run, motion, frames):

@@ -407,3 +407,29 @@ for (const root of document.querySelectorAll(".viewer"))
     root.querySelector(".values").textContent = `The sheet cannot be shown: ${error.message}. Pictures of it are below.`;
     console.error(error);
   });
+
+/** Viewers side by side show the same time, or their frame nearest to it, and the same colour and configuration. */
+for (const pair of document.querySelectorAll(".pair")) {
+  const others = (root) => [...pair.querySelectorAll(".viewer.ready")].filter((other) => other !== root);
+  let following = false;
+  pair.addEventListener("frame", ({target, detail}) => {
+    if (following) return;
+    following = true;
+    for (const {viewer} of others(target)) {
+      viewer.play(false);
+      const away = viewer.sheet.times.map((time) => Math.abs(time - detail.time));
+      viewer.show(away.indexOf(Math.min(...away)));
+    }
+    following = false;
+  });
+  pair.addEventListener("change", ({target}) => {
+    if (following || target.tagName !== "SELECT") return;
+    following = true;
+    for (const root of others(target.closest(".viewer"))) {
+      const own = root.querySelector(`.${target.className}`);
+      own.value = target.value;
+      own.dispatchEvent(new Event("change", {bubbles: true}));
+    }
+    following = false;
+  });
+}

@@ -1,9 +1,8 @@
 """The page of a study: table of its claims, their plots, its runs. One self-contained HTML file."""
 import re
 from html import escape
-from pathlib import Path
 
-from markup import figure, first_sentence, number, plain_row, plural, row, table
+from markup import figure, first_sentence, number, plain_row, plural, row, table, whole_page
 from study_plots import pattern_text
 from study_quantities import MEASURED, NEAR_TIP
 from study_runs import mean_of, value_text
@@ -26,21 +25,9 @@ def page(study, pictures):
     "sweeps": {claim number: [(caption, PNG), ...]}, "speeds": PNG or None,
     "checks": {name: (caption, PNG)}, "runs": [(run, seed, {kind of RUN_PICTURES: PNG}), ...]}
     """
-    document = study.document
-    style = (Path(__file__).parent / "style.css").read_text(encoding="utf-8")
-    title = escape(document["title"])
+    title = study.document["title"]
     sections = [claim_section(number, claim, pictures) for number, claim in enumerate(study.claims)]
-    return f"""<!DOCTYPE html>
-<html lang="en">
-<head>
-<meta charset="utf-8">
-<meta name="viewport" content="width=device-width, initial-scale=1">
-<title>latcon: {title}</title>
-<style>
-{style}</style>
-</head>
-<body>
-<h1>{title}</h1>
+    return whole_page(title, f"""<h1>{escape(title)}</h1>
 <p class="soft">{escape(facts(study))}</p>
 {banner(study)}
 {"".join(figure(png, first_sentence(caption), escape(caption)) for caption, png in pictures["overview"])}
@@ -54,10 +41,7 @@ def page(study, pictures):
 {measured_table(study, MEASURED)}
 <h3>Near the tip</h3>
 {measured_table(study, NEAR_TIP)}
-{settings(document)}
-</body>
-</html>
-"""
+{settings(study.document)}""")
 
 
 def facts(study):

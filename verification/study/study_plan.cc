@@ -13,7 +13,7 @@
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/input/case.h"
 #include "verification/input/case_text.h"
-#include "verification/output/sha256.h"
+#include "verification/input/sha256.h"
 #include "verification/resources/resources.h"
 
 namespace latcon::study
@@ -88,7 +88,7 @@ void plan_seeds(const StudyRun &run, const Settings &settings, const std::set<st
   for (const std::uint64_t seed : run.seeds)
   {
     of_seed.seed = input.noise_seed = seed; // any number is allowed
-    of_seed.case_sha256 = output::sha256(parameters.lines());
+    of_seed.case_sha256 = input::sha256(parameters.lines());
     runs.push_back(of_seed);
   }
 }

@@ -3,7 +3,7 @@
 
 #include "support/errors.h"
 #include "verification/claims/verdict_store.h"
-#include "verification/output/sha256.h"
+#include "verification/input/sha256.h"
 
 #include <gtest/gtest.h>
 #include <nlohmann/json.hpp>
@@ -19,7 +19,7 @@ using claims::VerdictKey;
 using claims::Verdicts;
 using claims::VerdictStore;
 using input::Case;
-using output::sha256;
+using input::sha256;
 
 namespace
 {

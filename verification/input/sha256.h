@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-namespace latcon::output
+namespace latcon::input
 {
 
 /// Returns the SHA-256 (FIPS 180-4) of `bytes`, as 64 hexadecimal digits.
@@ -14,4 +14,4 @@ namespace latcon::output
 /// Returns the SHA-256 of a file without its first `skipped` bytes; empty if the file cannot be read.
 [[nodiscard]] std::string sha256_of_file(const std::filesystem::path &path, std::size_t skipped = 0);
 
-} // namespace latcon::output
+} // namespace latcon::input

@@ -1,4 +1,4 @@
-#include "verification/output/sha256.h"
+#include "verification/input/sha256.h"
 
 #include <array>
 #include <fstream>
@@ -8,7 +8,7 @@
 
 #include <openssl/evp.h>
 
-namespace latcon::output
+namespace latcon::input
 {
 namespace
 {
@@ -73,4 +73,4 @@ std::string sha256_of_file(const std::filesystem::path &path, std::size_t skippe
   return in.eof() ? digest.text() : "";
 }
 
-} // namespace latcon::output
+} // namespace latcon::input
