@@ -128,6 +128,7 @@ TEST(DisorderClaim, FailsForWrongFactors)
   for (const Fault &fault : faults)
   {
     DisorderOptions options = with(Distribution(Kind::uniform, 0.1));
+    options.n_sheets = 12;
     options.planted = [&](lattice::State &state)
     {
       for (lattice::Field &factors : state.stiffness.kinds)
@@ -146,6 +147,7 @@ TEST(DisorderClaim, FailsForBondsThatAreNotIndependent)
 {
   const input::Case input = subjects::paper_case();
   DisorderOptions options = with(Distribution(Kind::uniform, 0.1));
+  options.n_sheets = 12;
   options.planted = [](lattice::State &state)
   {
     for (lattice::Field &factors : state.stiffness.kinds)
