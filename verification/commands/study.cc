@@ -320,12 +320,9 @@ support::ExitCode judge_runs(study::StudyResults &results, const input::Options 
     study::print_table(std::cout, results);
   const support::ExitCode exit_code =
     run.end(rows, complete ? exit_code_of(results, rows) : support::ExitCode::interrupted);
-  if (complete)
-  {
-    draw_page(study_page, run.directory());
-    if (run.is_verbose() && fs::exists(run.directory() + "/study.html"))
-      std::cout << run.directory() << "/study.html" << std::endl;
-  }
+  // A page of an earlier run may remain.
+  if (complete && draw_page(study_page, run.directory()) && run.is_verbose())
+    std::cout << run.directory() << "/study.html" << std::endl;
   return exit_code;
 }
 
