@@ -28,9 +28,9 @@ CAN_MOUNT = os.geteuid() == 0 and subprocess.run(["unshare", "-m", "mount", "-t"
 
 
 class Folder(TemporaryFolder):
-    def run_study(self, *arguments, expect=0, command="study", launcher=()):
+    def run_study(self, *arguments, expect=0, command="study", launcher=(), cwd=None):
         words = [*launcher, LATCON, command, *map(str, arguments), "--skip-verification"]
-        run = subprocess.run(words, capture_output=True, text=True, timeout=600, check=False)
+        run = subprocess.run(words, capture_output=True, text=True, timeout=600, check=False, cwd=cwd)
         self.assertEqual(run.returncode, expect, run.stdout + run.stderr)
         return run.stdout + run.stderr
 
@@ -91,6 +91,9 @@ class Sweeps(Folder):
         printed = self.run_study(self.out / "sweep.json", "--resume")
         self.assertIn("0 runs, 4 are finished already", printed)
         self.assertEqual((self.out / "study.json").read_bytes(), result)
+        printed = self.run_study("sweep.json", "--resume", cwd=self.out)
+        self.assertIn("0 runs, 4 are finished already", printed)
+        self.assertFalse((self.out / "output").exists())
 
         before = self.files()
         printed = self.run_study("quick", *SWEEP, "-o", self.out, expect=2)
@@ -98,6 +101,12 @@ class Sweeps(Folder):
         printed = self.run_study("fig1", *SWEEP, "--sweep", "Time/safety factor=0.5,0.9", "-o", self.out, expect=2)
         self.assertIn("differs from", printed)
         self.assertEqual(self.files(), before)
+
+    def test_own_study_of_this_name_does_not_run_beside_its_file(self):
+        study = self.write_study().rename(self.folder / "sweep.json")
+        self.run_study(study, "--quiet", cwd=self.folder)
+        self.assertFalse((self.folder / "study.json").exists())
+        self.assertTrue((self.folder / "output" / "sweep" / "study.json").exists())
 
     def test_runs_in_shards(self):
         self.out.mkdir()
@@ -166,6 +175,8 @@ class Troubles(Folder):
         self.assertFalse((bare / "study.html").exists())
         self.run_study(study, "-o", bare, "--resume", "--quiet")
         self.assertTrue((bare / "study.html").exists())
+        # A page of an earlier run is not announced.
+        self.assertNotIn(f"{bare}/study.html", self.run_study(study, "-o", bare, "--resume", launcher=without).splitlines())
 
     def test_run_that_failed_continues_from_its_checkpoint(self):
         def longer(document):
