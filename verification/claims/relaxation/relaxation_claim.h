@@ -10,7 +10,7 @@ namespace latcon::claims
 /// Size of the claim.
 struct RelaxationOptions
 {
-  std::size_t max_steps = 2000; ///< time steps of each integrator; fewer if all branches relax before
+  std::size_t max_steps = 2000; ///< time steps of each integrator; fewer if three of the longest relaxation times pass before
   PlantedBranches planted = {}; ///< for tests
 };
 
