@@ -205,26 +205,6 @@ void run_checks(study::StudyResults &results, bool quick, Run &run)
   }
 }
 
-// Checks the claims on the base case, small version, instead of on each run. @throws ClaimFailed
-void verify_base(const study::Study &study, const input::InputFile &base, const std::vector<std::string> &settings,
-                 Run &run)
-{
-  study::Settings all = study.settings;
-  for (const std::string &setting : settings)
-    study::override_settings(all, {{setting.substr(0, setting.find('=')), setting.substr(setting.find('=') + 1)}});
-  std::vector<std::string> changes;
-  for (const auto &[key, value] : all)
-    changes.push_back(key + "=" + value);
-  input::Case input;
-  input::Parameters parameters;
-  input.declare(parameters);
-  parameters.read_text(base.text, study.base);
-  parameters.read_overrides(changes);
-  input.check(parameters);
-  parameters.finish();
-  (void)require_verified(input, run);
-}
-
 // Memory of the largest runs that can run concurrently, each in its own process.
 resources::MemoryNeed memory_of(const std::vector<study::PlannedRun> &plan, std::size_t n_cores)
 {
@@ -335,10 +315,11 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
   if (chosen.collect && !chosen.shard.empty())
     throw support::InputError("--collect judges the runs of all shards; give it without --shard");
   const study::Shard shard = chosen.shard.empty() ? study::Shard() : study::parse_shard(chosen.shard);
+  const study::Verification verification = verification_of(options);
   study::StudyResults results;
   const RequestedStudy requested = read_requested_study(options, chosen.study, chosen.sweep);
   results.study = requested.study;
-  results.plan = study::plan_runs(results.study, requested.base, requested.settings);
+  results.plan = study::plan_runs(results.study, requested.base, requested.settings, verification);
   for (const study::PlannedRun &planned : results.plan)
   {
     results.outcomes.emplace_back();
@@ -360,10 +341,11 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
   }
   require_memory(options, memory);
 
-  const bool skip_verification = options.skip_verification || options.quick;
-  results.verification = options.skip_verification ? "none (--skip-verification)"
-                         : options.quick           ? "material and pre-stretch of the base case alone (--quick)"
-                                                   : "material and pre-stretch of every run";
+  const bool skip_verification = verification != study::Verification::every_run; // of the runs
+  results.verification = verification == study::Verification::none ? "none (--skip-verification)"
+                         : verification == study::Verification::base_case
+                           ? "material and pre-stretch of the base case alone (--quick)"
+                           : "material and pre-stretch of every run";
   results.is_verified = !skip_verification;
 
   const std::string plan =
@@ -394,8 +376,8 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
     write_sweep(requested);
   run.info().add("skip_verification", options.skip_verification);
   run.info().add("study", results.study.title);
-  if (options.quick && !options.skip_verification && !chosen.collect)
-    verify_base(results.study, requested.base, requested.settings, run);
+  if (verification == study::Verification::base_case && !chosen.collect)
+    (void)require_verified(study::base_case(results.study, requested.base, requested.settings), run);
   const bool complete = chosen.collect || run_children(results, selection, skip_verification, n_cores, run);
   if (!chosen.shard.empty())
     return run.end({}, complete ? exit_code_of(results, {}) : support::ExitCode::interrupted);
