@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/errors.h"
+#include "verification/input/case.h"
 #include "verification/study/study_file.h"
 #include "verification/study/study_plan.h"
 
