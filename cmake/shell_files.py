@@ -13,11 +13,12 @@ COMPLETION = """\
 # Completion of latcon(1) for bash, written from its help.
 _latcon() {
   local word command='' cur=${COMP_WORDS[COMP_CWORD]} prev=${COMP_WORDS[COMP_CWORD-1]} IFS=$'\\n'
-  local -i at=COMP_CWORD
+  local -i at=COMP_CWORD sweeps=0
   COMPREPLY=()
   for word in "${COMP_WORDS[@]:1:COMP_CWORD-1}"; do
     case $word in
-      @commands@) command=$word; break ;;
+      @commands@) command=${command:-$word} ;;
+      --sweep|--sweep=*) sweeps+=1 ;;
     esac
   done
   # Outside quotes bash divides an entry into its name, "=" and its value.
@@ -58,7 +59,13 @@ _latcon() {
   case $command in
     '') COMPREPLY=($(compgen -W $'@command_words@' -- "$cur")) ;;
     verify) COMPREPLY=($(compgen -W $'@claims@' -- "$cur")) ;;
-    study) _latcon_files -f; COMPREPLY+=($(compgen -W $'@studies@' -- "$cur")) ;;
+    study|batch)
+      _latcon_files -f
+      if ((sweeps)); then
+        _latcon_words @cases@
+      else
+        COMPREPLY+=($(compgen -W $'@studies@' -- "$cur"))
+      fi ;;
     report|init) _latcon_files -d ;;
     fracture|lattice|continuum|schema) _latcon_files -f; _latcon_words @cases@ ;;
     entries) _latcon_words @sections@ ;;

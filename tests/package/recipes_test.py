@@ -33,7 +33,7 @@ NAMES = {
     "libmuparser-dev": ("muparser", "muparser"),
     "nlohmann-json3-dev": ("nlohmann-json", "nlohmann_json"), "python3": ("python", "python"),
     "python3-numpy": ("py-numpy", "numpy"), "python3-matplotlib": ("py-matplotlib", "matplotlib-base"),
-    "python3-pil": ("py-pillow", "pillow"),
+    "python3-pil": None,  # of the report, as below
     "python3-vtk9": None,  # the modules come with VTK
     "libjs-dygraphs": None,  # the report is drawn by Debian's interpreter
 }
@@ -126,8 +126,14 @@ class Spack(unittest.TestCase):
         for name, version in versions(0).items():
             self.assertRegex(needs[name], rf"^{re.escape(name)}@{re.escape(version)}:( |$)")
 
+    def test_python_modules_come_with_vtk(self):
+        self.assertIn("+python", next(spec for spec in self.values("depends_on") if spec.startswith("vtk@")))
+
     def test_options_are_those_of_the_build(self):
-        options = dict(self.recipe.Latcon().cmake_args())
+        package = self.recipe.Latcon()
+        package.spec = {"python": types.SimpleNamespace(command=types.SimpleNamespace(path="/spack/python3"))}
+        options = dict(package.cmake_args())
+        self.assertEqual(options.pop("Python3_EXECUTABLE"), "/spack/python3")
         self.assertLessEqual(set(options), OPTIONS)
         self.assertIn("BUILD_TESTING", options)
 
@@ -158,7 +164,9 @@ class Conda(unittest.TestCase):
 
     def test_script_builds_the_program_and_the_package(self):
         self.assertEqual(syntax_of_shell(self.script), "")
-        given = set(re.findall(r"-D (\w+)=", self.script)) - {"CMAKE_BUILD_TYPE", "CMAKE_INSTALL_PREFIX", "CMAKE_PREFIX_PATH"}
+        self.assertIn('-D Python3_EXECUTABLE="$PYTHON"', self.script)
+        given = set(re.findall(r"-D (\w+)=", self.script)) - {"CMAKE_BUILD_TYPE", "CMAKE_INSTALL_PREFIX", "CMAKE_PREFIX_PATH",
+                                                              "Python3_EXECUTABLE"}
         self.assertLessEqual(given, OPTIONS)
         self.assertIn("BUILD_TESTING", given)
         self.assertTrue((SOURCE / re.search(r"--no-index \./(\S+)", self.script)[1] / "pyproject.toml").is_file())

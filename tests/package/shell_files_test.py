@@ -86,6 +86,11 @@ class Shell(unittest.TestCase):
         self.assertIn("energy", complete("verify", ""))
         self.assertEqual(set(complete("study", "")) - {"cache"},
                          {path.stem for path in (SOURCE / "verification/studies").glob("*.json")})
+        self.assertEqual(complete("batch", "--slurm", "patt"), ["patterns"])
+        # Of --sweep STUDY is a case.
+        for command in ("study", "batch"):
+            self.assertEqual(complete(command, "--sweep", "Sheet/height=1 cm,2 cm", "fig1"), ["fig1", "fig1-wide"])
+            self.assertEqual(complete(command, "--sweep", "Sheet/height", "=", "1,2", "patt"), [])
         (FOLDER / "my case.prm").touch()
         self.assertEqual(complete("fracture", "my"), ["my case.prm"])
         self.assertEqual(complete("verify", "--case", "my"), ["my case.prm"])

@@ -6,6 +6,7 @@ import fcntl
 import json
 import math
 import time
+import types
 
 import numpy as np
 import pytest
@@ -14,7 +15,7 @@ from scipy.stats import chi2
 import latcon
 from latcon import commands
 from latcon.errors import error_of
-from latcon.fit import Observation, Parameter, fit_case
+from latcon.fit import Fit, Observation, Parameter, fit_case
 from latcon.fit.local_model import PRIOR, fit_local_model
 from latcon.fit.misfit import UNDETERMINED, tabulate
 from latcon.fit.problem import Axis, Problem
@@ -424,6 +425,15 @@ def test_undetermined_directions_do_not_depend_on_round_off():
         np.testing.assert_allclose(basis.T @ basis, np.eye(2), atol=1e-12)
         np.testing.assert_allclose(basis @ basis.T, plane @ plane.T, atol=1e-12)
     np.testing.assert_allclose(found[0][:, 0], [0, 1, 0, 0], atol=1e-12)  # the parameter that is free
+
+
+def test_directions_within_round_off_are_equally_undetermined(tmp_path):
+    result = Fit(tmp_path, made_problem(3, [Observation("a", 0.5, 0.01)], seeds=1), [])
+    result.__dict__["model"] = types.SimpleNamespace(metric=np.diag([1e10, 3e-3, -2e-3]) + np.eye(3) / PRIOR**2)
+    directions = result.directions
+    assert list(directions["determined"]) == [True, False, False]
+    assert directions["uncertainty"][0] == pytest.approx(1e-5)
+    assert directions["uncertainty"][1] == directions["uncertainty"][2]
 
 
 def test_integers_and_logarithmic_parameters(small_fit, crack, tmp_path):

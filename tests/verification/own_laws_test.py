@@ -100,6 +100,28 @@ class OwnLaws(TemporaryFolder):
             self.assertFalse((self.folder / "bad").exists())
         self.assertEqual(latcon("fracture", *case, "--skip-verification", "--dry-run").returncode, 0)
 
+    def test_studies_need_the_law_up_to_the_largest_stretch_of_their_claims(self):
+        law = {"law": "expression", "psi": "-lam - (k-1)*log(k-lam)", "parameters": "k=3.2"}
+        sweep = (CASES / "quick.prm", "--sweep", "Sheet/height=1 cm,1.5 cm", "--set", "Fracture/toughening=none", "--set",
+                 "Fracture/factor=1", "--set", "Fracture/breaking stretch=2.9", *bonds(**law), "--output-dir", self.folder / "bad")
+        for command in (("study",), ("study", "--dry-run"), ("study", "--quick"), ("study", "--quick", "--dry-run"),
+                        ("batch", "--slurm"), ("batch", "--slurm", "--quick")):
+            ended = latcon(*command, *sweep)
+            self.assertEqual(ended.returncode, 2, ended.stdout + ended.stderr)
+            self.assertIn("claims evaluate the law at stretches up to 3.5: psi is nan at stretch 3.2", ended.stderr)
+            self.assertFalse((self.folder / "bad").exists())
+        self.assertEqual(latcon("study", *sweep, "--skip-verification", "--dry-run").returncode, 0)
+
+    def test_damage_is_not_checked_for_laws_of_the_user(self):
+        for options in ((), ("--dry-run",)):
+            ended = latcon("verify", "energy", "damage", "--quick", "--case", CASES / "quick.prm", *bonds(**MOONEY_RIVLIN), *options,
+                           "--output-dir", self.folder / "bad")
+            self.assertEqual(ended.returncode, 2, ended.stdout + ended.stderr)
+            self.assertIn("Nearest neighbours/law = expression: the claim damage evaluates laws far beyond the stretch of 3.5",
+                          ended.stderr)
+            self.assertIn("allowed: mooney-rivlin, linear", ended.stderr)
+            self.assertFalse((self.folder / "bad").exists())
+
     def test_claims_hold(self):
         ended = latcon("verify", "energy", "wave-speeds", "--quick", "--case", CASES / "quick.prm", "--set",
                        "Next-nearest neighbours/present=false", *bonds(**MOONEY_RIVLIN), "--output-dir", self.folder / "claims")

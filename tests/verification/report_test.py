@@ -5,6 +5,7 @@ import contextlib
 import io
 import json
 import math
+import os
 import re
 import shutil
 import subprocess
@@ -481,6 +482,30 @@ class ReportTest(ReportCase):
         write_verification(self.folder, [HOLDS])
         (self.folder / "report.html").mkdir()
         self.assertIn("report.html", self.report(expect=5)[1])
+
+
+class Packages(unittest.TestCase):
+    def refusal(self, error):
+        """What the report says where importing Pillow raises this error."""
+        with tempfile.TemporaryDirectory() as folder:
+            package = Path(folder, "PIL")
+            package.mkdir()
+            (package / "__init__.py").touch()
+            (package / "Image.py").write_text(f"raise {error}")
+            done = subprocess.run([sys.executable, FOLDER / "own_settings.py"], env=dict(os.environ, PYTHONPATH=folder),
+                                  capture_output=True, text=True, check=False)
+        self.assertEqual(done.returncode, 69, done.stderr)
+        self.assertIn("(apt-get install python3-pil", done.stderr)
+        return done.stderr
+
+    def test_broken_package_is_not_called_absent(self):
+        self.assertIn("; PIL.Image: libjpeg.so.62: cannot open", self.refusal("ImportError('libjpeg.so.62: cannot open')"))
+        self.assertIn("; PIL.Image: No module named 'olefile'",
+                      self.refusal("ModuleNotFoundError(\"No module named 'olefile'\", name='olefile')"))
+
+    def test_absent_package_is_named_alone(self):
+        absent = self.refusal("ModuleNotFoundError(\"No module named 'PIL.Image'\", name='PIL.Image')")
+        self.assertTrue(absent.endswith("python3-matplotlib)\n"), absent)
 
 
 class FitSinusoid(unittest.TestCase):

@@ -271,6 +271,9 @@ class Maps(MadeUpStudy):
         self.assertEqual(axes.get_title(loc="left"), "contours: wavelength [cm]")
         self.assertIn("Patterns over Sheet/width and Sheet/depth", caption)
 
+    def test_patterns_have_the_colours_of_the_map_in_all_plots(self):
+        self.assertEqual({pattern: colour for pattern, (_, colour) in study_plots.PATTERNS.items()}, phase_map.COLOURS)
+
     def test_map_divides_and_marks_cells_whose_seeds_disagree(self):
         axes, legend, _ = self.drawn([self.CALM] * 3 + [("straight", "oscillating"), (None, None), self.WAVY])
         widths = [round(patch.get_width(), 9) for patch in axes.patches]

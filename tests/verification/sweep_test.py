@@ -28,10 +28,10 @@ CAN_MOUNT = os.geteuid() == 0 and subprocess.run(["unshare", "-m", "mount", "-t"
 
 
 class Folder(TemporaryFolder):
-    def run_study(self, *arguments, expect=0, command="study", launcher=()):
+    def run_study(self, *arguments, expect=0, command="study", launcher=(), **keywords):
         words = [command, *arguments, "--skip-verification"]
         run = (subprocess.run([*launcher, LATCON, *map(str, words)], capture_output=True, text=True, timeout=600, check=False)
-               if launcher else latcon(*words))
+               if launcher else latcon(*words, **keywords))
         self.assertEqual(run.returncode, expect, run.stdout + run.stderr)
         return run.stdout + run.stderr
 
@@ -92,6 +92,9 @@ class Sweeps(Folder):
         printed = self.run_study(self.out / "sweep.json", "--resume")
         self.assertIn("0 runs, 4 are finished already", printed)
         self.assertEqual((self.out / "study.json").read_bytes(), result)
+        printed = self.run_study("sweep.json", "--resume", cwd=self.out)
+        self.assertIn("0 runs, 4 are finished already", printed)
+        self.assertFalse((self.out / "output").exists())
 
         before = self.files()
         printed = self.run_study("quick", *SWEEP, "-o", self.out, expect=2)
@@ -118,6 +121,12 @@ class Sweeps(Folder):
             self.assertIn("refine = 1: a refined study does not run in shards",
                           self.run_study(path, "-o", self.folder / "shards", *words, expect=2))
         self.assertIn("does not run in shards", self.run_study(path, "--slurm", "-o", self.folder / "shards", command="batch", expect=2))
+
+    def test_own_study_of_this_name_does_not_run_beside_its_file(self):
+        study = self.write_study().rename(self.folder / "sweep.json")
+        self.run_study(study, "--quiet", cwd=self.folder)
+        self.assertFalse((self.folder / "study.json").exists())
+        self.assertTrue((self.folder / "output" / "sweep" / "study.json").exists())
 
     def test_runs_in_shards(self):
         self.out.mkdir()
@@ -186,6 +195,8 @@ class Troubles(Folder):
         self.assertFalse((bare / "study.html").exists())
         self.run_study(study, "-o", bare, "--resume", "--quiet")
         self.assertTrue((bare / "study.html").exists())
+        # A page of an earlier run is not announced.
+        self.assertNotIn(f"{bare}/study.html", self.run_study(study, "-o", bare, "--resume", launcher=without).splitlines())
 
     def test_run_that_failed_continues_from_its_checkpoint(self):
         def longer(document):

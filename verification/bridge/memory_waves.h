@@ -30,8 +30,8 @@ struct BranchMatrix
 };
 
 /// Solves (s^2 + s C + D + sum_i s tau_i / (1 + s tau_i) G_i) p = 0 (theory.md, eq. (L.30); theory-viscoelastic.md, eq.
-/// (V.6)) for the two waves that oscillate. The longitudinal wave comes first, as in plane_waves(). A wave that does not
-/// oscillate, because it is overdamped or the sheet is unstable, is NaN.
+/// (V.6)) for the two waves that oscillate. The longitudinal wave comes first, as in plane_waves(). A wave that does
+/// not oscillate, because it is overdamped or the sheet is unstable, is NaN.
 /// @param relaxed C and D, without branches
 /// @param normal as for plane_waves()
 /// @throws std::runtime_error if an entry of the matrices is not finite

@@ -34,6 +34,9 @@ struct Claim
 
   bool is_default = true; ///< part of `latcon verify` without names
 
+  /// False: the claim evaluates laws far beyond `largest_stretch` (claim_inputs.h), and refuses user-defined ones.
+  bool takes_user_laws = true;
+
   /// Quantities, without the name of the shells in front, that the quick version compares with a tolerance for every
   /// lattice. If there are any, the claim is part of the verification before fracture, and cached verdicts that lack
   /// one of these rows are not used. Empty: a crack does not need the claim.

@@ -136,4 +136,20 @@ void check_user_laws(const input::Case &input, input::Parameters &parameters)
     check(input.next_nearest, "Next-nearest neighbours");
 }
 
+void check_user_laws_of(const std::vector<Claim> &claims, const input::Case &input, input::Parameters &parameters)
+{
+  for (const Claim &claim : claims)
+  {
+    if (claim.takes_user_laws)
+      continue;
+    const std::string reason = "the claim " + claim.name + " evaluates laws far beyond the stretch of " +
+                               support::full_precision(largest_stretch) +
+                               " up to which user-defined ones are checked; allowed: mooney-rivlin, linear";
+    if (input.nearest.has_user_law())
+      parameters.error("Nearest neighbours/law", reason);
+    if (input.has_next_nearest && input.next_nearest.has_user_law())
+      parameters.error("Next-nearest neighbours/law", reason);
+  }
+}
+
 } // namespace latcon::claims

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <functional>
+#include <stdexcept>
 #include <variant>
 #include <vector>
 
@@ -17,10 +18,14 @@ inline bool has_branches(const lattice::Material &material)
          (material.next_nearest && std::holds_alternative<lattice::MaxwellMemory>(material.next_nearest->memory));
 }
 
-/// Gives all bonds branches with these moduli over the stiffness of a bond at rest [-], and these relaxation times [s].
+/// Gives all bonds branches with these moduli over the stiffness of a bond at rest [-], > 0, and these relaxation times
+/// [s], > 0: one of each per branch, 1 to lattice::max_history_variables of them.
+/// @throws std::invalid_argument for other numbers or values
 inline lattice::Material with_branches(lattice::Material material, const std::vector<double> &ratios,
                                        const std::vector<double> &relaxation_times)
 {
+  if (ratios.size() != relaxation_times.size())
+    throw std::invalid_argument("branches need as many relaxation times as moduli");
   const auto give = [&](lattice::Shell &shell)
   {
     std::vector<lattice::MaxwellMemory::Branch> branches;

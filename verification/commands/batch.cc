@@ -127,7 +127,8 @@ support::ExitCode write_batch(const input::Options &options, const BatchOptions 
   const RequestedStudy requested = read_requested_study(options, chosen.study, chosen.sweep);
   const study::Study &study = requested.study;
   require_no_refinement(study);
-  const std::vector<study::PlannedRun> plan = study::plan_runs(study, requested.base, requested.settings);
+  const std::vector<study::PlannedRun> plan =
+    study::plan_runs(study, requested.base, requested.settings, verification_of(options));
   const std::size_t n_tasks = std::min(plan.size(), chosen.tasks > 0 ? chosen.tasks : max_default_tasks);
   if (options.dry_run)
   {

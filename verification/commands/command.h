@@ -110,8 +110,8 @@ inline constexpr Page study_page{"study.py", "study.html", " with --resume, or w
 inline constexpr Page comparison_page{"comparison.py", "compare.html", ""};
 
 /// Draws a page. Without Python, or without packages that the page needs, what is missing is printed on standard error.
-/// @throws OutputError
-void draw_page(const Page &page, const std::string &directory);
+/// @return whether the page was drawn @throws OutputError
+bool draw_page(const Page &page, const std::string &directory);
 
 /// Reads and checks the case that the options name; parameters.finish() throws its problems. Collective.
 void read_case(const input::Options &options, input::Case &input, input::Parameters &parameters);

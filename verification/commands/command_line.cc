@@ -138,12 +138,17 @@ std::string joined(const std::vector<std::string> &words)
   return text;
 }
 
-// Default output directory of a study; of the study file that a sweep wrote, its own folder.
+// Default output directory of a study; of the study file that a sweep wrote beside a copy of its case, its own folder.
 std::string study_folder(const std::string &study, const SweepOptions &sweep)
 {
-  const std::filesystem::path path(study);
-  if (path.filename() == study::sweep_file_name && path.has_parent_path())
-    return path.parent_path().string();
+  const std::filesystem::path path(study), folder = std::filesystem::absolute(path).parent_path();
+  const auto has = [&folder](const char *file)
+  {
+    std::error_code none;
+    return std::filesystem::exists(folder / file, none);
+  };
+  if (path.filename() == study::sweep_file_name && (has("base.prm") || has("base.json")))
+    return path.has_parent_path() ? path.parent_path().string() : folder.string();
   return "output/" + path.stem().string() + (sweep.sweeps.empty() ? "" : "-sweep");
 }
 

@@ -122,12 +122,11 @@ support::ExitCode compare_cracks(const input::Options &options, const CompareOpt
     output::write_file(run.directory() + "/compare.csv", comparison.csv());
   }
   run.end({}, support::ExitCode::done);
-  if (run.is_root() && !options.no_report)
-    draw_page(comparison_page, run.directory());
+  const bool drawn = run.is_root() && !options.no_report && draw_page(comparison_page, run.directory());
   if (run.is_verbose())
     std::cout << "\n"
               << run.directory() << "/compare.json, compare.csv"
-              << (std::filesystem::exists(run.directory() + "/compare.html") ? ", compare.html" : "") << std::endl;
+              << (drawn ? ", compare.html" : "") << std::endl;
   return support::ExitCode::done;
 }
 

@@ -111,7 +111,7 @@ support::ExitCode draw_report(const std::string &directory, bool quiet, bool sho
   return static_cast<support::ExitCode>(status);
 }
 
-void draw_page(const Page &page, const std::string &directory)
+bool draw_page(const Page &page, const std::string &directory)
 {
   // Nodes of a cluster may have no Python, or no packages; all results are written.
   std::string problem;
@@ -130,6 +130,7 @@ void draw_page(const Page &page, const std::string &directory)
   if (!problem.empty())
     std::cerr << "latcon: " << problem << "; every other file is complete. To draw the page, repeat the command"
               << page.repeat << " on a machine with Python and the packages of the report" << std::endl;
+  return problem.empty();
 }
 
 } // namespace latcon::commands

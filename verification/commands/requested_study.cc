@@ -11,7 +11,6 @@
 #include "verification/input/case_text.h"
 #include "verification/input/shipped_cases.h"
 #include "verification/study/shard.h"
-#include "verification/study/study_plan.h"
 #include "verification/study/sweep.h"
 
 namespace latcon::commands
@@ -68,6 +67,13 @@ RequestedStudy read_requested_study(const input::Options &options, const std::st
   requested.base = input::read_input_file(requested.study.base);
   requested.settings = options.overrides;
   return requested;
+}
+
+study::Verification verification_of(const input::Options &options)
+{
+  if (options.skip_verification)
+    return study::Verification::none;
+  return options.quick ? study::Verification::base_case : study::Verification::every_run;
 }
 
 void write_sweep(const RequestedStudy &requested)

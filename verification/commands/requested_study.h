@@ -6,7 +6,7 @@
 
 #include "verification/commands/command.h"
 #include "verification/input/input_file.h"
-#include "verification/study/study_file.h"
+#include "verification/study/study_plan.h"
 
 namespace latcon::commands
 {
@@ -28,6 +28,9 @@ struct RequestedStudy
 /// @throws InputError also if the output directory has the files of another sweep
 [[nodiscard]] RequestedStudy read_requested_study(const input::Options &options, const std::string &study,
                                                   const SweepOptions &sweep);
+
+/// Cases whose claims the study checks, as chosen by --quick and --skip-verification.
+[[nodiscard]] study::Verification verification_of(const input::Options &options);
 
 /// Writes the study file of a sweep and the copy of its case into the existing output directory, unless they exist.
 /// Later runs do not archive them. The directory must be locked by this process. No effect for other studies.

@@ -206,26 +206,6 @@ void run_checks(study::StudyResults &results, bool quick, Run &run)
   }
 }
 
-// Checks the claims on the base case, small version, instead of on each run. @throws ClaimFailed
-void verify_base(const study::Study &study, const input::InputFile &base, const std::vector<std::string> &settings,
-                 Run &run)
-{
-  study::Settings all = study.settings;
-  for (const std::string &setting : settings)
-    study::override_settings(all, {{setting.substr(0, setting.find('=')), setting.substr(setting.find('=') + 1)}});
-  std::vector<std::string> changes;
-  for (const auto &[key, value] : all)
-    changes.push_back(key + "=" + value);
-  input::Case input;
-  input::Parameters parameters;
-  input.declare(parameters);
-  parameters.read_text(base.text, study.base);
-  parameters.read_overrides(changes);
-  input.check(parameters);
-  parameters.finish();
-  (void)require_verified(input, run);
-}
-
 // Memory of the largest runs that can run concurrently, each in its own process.
 resources::MemoryNeed memory_of(const std::vector<study::PlannedRun> &plan, std::size_t n_cores)
 {
@@ -239,14 +219,15 @@ resources::MemoryNeed memory_of(const std::vector<study::PlannedRun> &plan, std:
 
 // Runs the points between neighbours of the sweep that differ, level by level. @return whether all runs ended
 bool refine_sweep(study::StudyResults &results, const RequestedStudy &requested, Selection selection,
-                  bool skip_verification, std::size_t n_cores, Run &run)
+                  study::Verification verification, bool skip_verification, std::size_t n_cores, Run &run)
 {
   for (std::size_t level = 1; level <= results.study.refine; ++level)
   {
     study::Study added = results.study;
     added.claims.clear();
     added.runs = study::refined_runs(results.study, results.plan, results.outcomes, level);
-    const std::vector<study::PlannedRun> plan = study::plan_runs(added, requested.base, requested.settings);
+    const std::vector<study::PlannedRun> plan =
+      study::plan_runs(added, requested.base, requested.settings, verification);
     selection.runs.clear();
     for (const study::PlannedRun &planned : plan)
     {
@@ -350,12 +331,9 @@ support::ExitCode judge_runs(study::StudyResults &results, const input::Options 
     study::print_table(std::cout, results);
   const support::ExitCode exit_code =
     run.end(rows, complete ? exit_code_of(results, rows) : support::ExitCode::interrupted);
-  if (complete)
-  {
-    draw_page(study_page, run.directory());
-    if (run.is_verbose() && fs::exists(run.directory() + "/study.html"))
-      std::cout << run.directory() << "/study.html" << std::endl;
-  }
+  // A page of an earlier run may remain.
+  if (complete && draw_page(study_page, run.directory()) && run.is_verbose())
+    std::cout << run.directory() << "/study.html" << std::endl;
   return exit_code;
 }
 
@@ -369,12 +347,13 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
     throw support::InputError("--collect judges the runs of all shards; give it without --shard");
   const bool in_shards = chosen.collect || !chosen.shard.empty();
   const study::Shard shard = chosen.shard.empty() ? study::Shard() : study::parse_shard(chosen.shard);
+  const study::Verification verification = verification_of(options);
   study::StudyResults results;
   const RequestedStudy requested = read_requested_study(options, chosen.study, chosen.sweep);
   results.study = requested.study;
   if (in_shards)
     require_no_refinement(results.study);
-  results.plan = study::plan_runs(results.study, requested.base, requested.settings);
+  results.plan = study::plan_runs(results.study, requested.base, requested.settings, verification);
   for (const study::PlannedRun &planned : results.plan)
   {
     results.outcomes.emplace_back();
@@ -396,10 +375,11 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
   }
   require_memory(options, memory);
 
-  const bool skip_verification = options.skip_verification || options.quick;
-  results.verification = options.skip_verification ? "none (--skip-verification)"
-                         : options.quick           ? "material and pre-stretch of the base case alone (--quick)"
-                                                   : "material and pre-stretch of every run";
+  const bool skip_verification = verification != study::Verification::every_run; // of the runs
+  results.verification = verification == study::Verification::none ? "none (--skip-verification)"
+                         : verification == study::Verification::base_case
+                           ? "material and pre-stretch of the base case alone (--quick)"
+                           : "material and pre-stretch of every run";
   results.is_verified = !skip_verification;
 
   const std::string plan =
@@ -430,11 +410,11 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
     write_sweep(requested);
   run.info().add("skip_verification", options.skip_verification);
   run.info().add("study", results.study.title);
-  if (options.quick && !options.skip_verification && !chosen.collect)
-    verify_base(results.study, requested.base, requested.settings, run);
+  if (verification == study::Verification::base_case && !chosen.collect)
+    (void)require_verified(study::base_case(results.study, requested.base, requested.settings), run);
   const bool complete =
     chosen.collect || (run_children(results, selection, skip_verification, n_cores, run) &&
-                       refine_sweep(results, requested, selection, skip_verification, n_cores, run));
+                       refine_sweep(results, requested, selection, verification, skip_verification, n_cores, run));
   if (!chosen.shard.empty())
     return run.end({}, complete ? exit_code_of(results, {}) : support::ExitCode::interrupted);
   return judge_runs(results, options, complete, run);

@@ -20,8 +20,8 @@ SIZES = [(width, shades) for width in (900, 750, 600, 450) for shades in (192, 9
 LEFT, TOP, FOOT, BAR = 0.85, 0.5, 0.62, 0.75  # margins of the axes and room of the colour bar [in]
 
 
-def draw_animation(motion, gif, still=None, largest=None):
-    """Writes the animation as GIF of at most `largest` bytes, by default LARGEST, and its last picture as PNG."""
+def draw_animation(motion, gif, still=None, largest=LARGEST):
+    """Writes the animation as GIF of at most `largest` bytes, and its last picture as PNG."""
     shown = durations([frame.time for frame in motion.frames])
     film = None
     for width, shades in SIZES:
@@ -29,7 +29,7 @@ def draw_animation(motion, gif, still=None, largest=None):
             film = Film(motion.frames, motion.mesh, width)
         pictures = film.pictures(shades)
         write_file(gif, lambda beside: write_gif(pictures, shown, beside))
-        if gif.stat().st_size <= (largest or LARGEST):
+        if gif.stat().st_size <= largest:
             break
     if still is not None:
         save_png(pictures[-1].convert("RGB"), still)

@@ -6,23 +6,26 @@ import os
 import sys
 from pathlib import Path
 
-# Debian packages by a module of each; matplotlib imports those before it.
+# Modules that show that a Debian package is installed; the order is that of the imports, matplotlib importing those before it.
 PACKAGES = {"numpy.linalg": "python3-numpy", "PIL.Image": "python3-pil", "matplotlib.figure": "python3-matplotlib",
             "vtkmodules.util": "python3-vtk9"}
 PACKAGES_MISSING = 69  # exit code, which latcon replaces by its own: EX_UNAVAILABLE of sysexits.h
 
 
 def require_packages():
-    missing = []
+    missing, reason = [], ""
     for module, package in PACKAGES.items():
         try:
             importlib.import_module(module)
-        except ImportError:
+        except ImportError as error:
+            is_absent = isinstance(error, ModuleNotFoundError) and error.name in (module, module.partition(".")[0])
+            if not missing and not is_absent:  # installed, but broken; the following may fail for the same reason
+                reason = f"; {module}: {error}"
             missing.append(package)
     if missing:
         names = " ".join(missing)
         print(f"error: cannot import the Python modules of the Debian packages {names}; install them "
-              f"(apt-get install {names})", file=sys.stderr)
+              f"(apt-get install {names}){reason}", file=sys.stderr)
         sys.exit(PACKAGES_MISSING)
 
 

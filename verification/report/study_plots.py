@@ -2,13 +2,14 @@
 import numpy as np
 from matplotlib.lines import Line2D
 
-from phase_map import Cell, draw_phase_map
+from phase_map import COLOURS, Cell, draw_phase_map
 from pictures import BLACK, BLUE, GREEN, GREY, RED, SKY, WIDTH, Page, save
 from study_quantities import against_axis, entry_axis, quantity_axis
 from study_runs import mean_of, patterns_of, tip_path
 
-PATTERNS = {"oscillating": ("o", BLUE), "straight": ("s", GREEN), "branching": ("v", RED), "arrested": ("X", GREY),
-            "undecided": ("D", SKY)}
+# Marker and colour of each pattern, as in the map.
+PATTERNS = {pattern: (marker, COLOURS[pattern]) for pattern, marker in (
+    ("oscillating", "o"), ("straight", "s"), ("branching", "v"), ("arrested", "X"), ("undecided", "D"))}
 LEFT, RIGHT, GAP = 0.75, 0.2, 0.75  # of a grid of panels [in]
 SEED_COLOURS = [BLUE, RED, GREEN, SKY, BLACK, GREY]
 CONTOURS = ("wavelength", "speed_lagrangian")  # of the map of patterns: the first that was measured

@@ -96,8 +96,8 @@ struct Study
   const StudyRun &run(const std::string &name) const;
 };
 
-/// Returns the SI unit of an entry of a case: "1" for a pure number, empty for what is no quantity.
-/// @throws std::logic_error for no entry
+/// Returns the SI unit of an entry of a case: "1" for a pure number, empty for entries that are not quantities.
+/// @throws std::logic_error if the entry does not exist
 [[nodiscard]] std::string entry_unit(const std::string &key);
 
 /// Returns the sorted names of the shipped studies, which are in the data folder.

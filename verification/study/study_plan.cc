@@ -11,6 +11,7 @@
 #include "support/errors.h"
 #include "verification/bridge/homogenisation.h"
 #include "verification/bridge/lattice_sheet.h"
+#include "verification/claims/claim_inputs.h"
 #include "verification/input/case.h"
 #include "verification/input/case_text.h"
 #include "verification/input/sha256.h"
@@ -29,18 +30,36 @@ double number_or_nan(const std::string &text)
   return !text.empty() && *end == '\0' && std::isfinite(value) ? value : std::numeric_limits<double>::quiet_NaN();
 }
 
-void resolve(const PlannedCase &planned, const std::uint64_t seed, input::Case &input, input::Parameters &parameters)
+std::vector<std::string> assignments(const Settings &settings)
+{
+  std::vector<std::string> texts;
+  for (const auto &[key, value] : settings)
+    texts.push_back(key + "=" + value);
+  return texts;
+}
+
+// Reads a base case with changes `Section/Name=value`, and checks it. The caller calls Parameters::finish().
+void read_case(const input::InputFile &base, const std::string &base_name, const std::vector<std::string> &changes,
+               input::Case &input, input::Parameters &parameters)
 {
   input.declare(parameters);
-  if (planned.base->problem.empty())
-    parameters.read_text(planned.base->text, planned.base_name);
+  if (base.problem.empty())
+    parameters.read_text(base.text, base_name);
   else
-    parameters.read_file(planned.base_name); // throws the same problems
-  std::vector<std::string> changes = planned.changes;
-  changes.push_back(std::string(seed_entry) + "=" + std::to_string(seed));
+    parameters.read_file(base_name); // throws the same problems
   parameters.read_overrides(changes);
   input.check(parameters);
+}
+
+void resolve(const PlannedCase &planned, const std::uint64_t seed, const Verification verification, input::Case &input,
+             input::Parameters &parameters)
+{
+  std::vector<std::string> changes = planned.changes;
+  changes.push_back(std::string(seed_entry) + "=" + std::to_string(seed));
+  read_case(*planned.base, planned.base_name, changes, input, parameters);
   bridge::require_fracture_case(input, parameters);
+  if (verification == Verification::every_run)
+    claims::check_user_laws(input, parameters);
   parameters.finish();
 }
 
@@ -48,18 +67,17 @@ void resolve(const PlannedCase &planned, const std::uint64_t seed, input::Case &
 // @param changed entries that a run of the study changes
 // @param shared base case, its name, and `keys` once the first case has been resolved
 void plan_seeds(const StudyRun &run, const Settings &settings, const std::set<std::string> &changed,
-                PlannedCase &shared, std::vector<PlannedRun> &runs)
+                const Verification verification, PlannedCase &shared, std::vector<PlannedRun> &runs)
 {
   Settings all = run.all;
   override_settings(all, settings);
   override_settings(all, {{"Output/frame interval", "0"}, {"Output/motion frames", "0"}});
   const auto planned = std::make_shared<PlannedCase>(shared);
-  for (const auto &[key, value] : all)
-    planned->changes.push_back(key + "=" + value);
+  planned->changes = assignments(all);
 
   input::Case input;
   input::Parameters parameters;
-  resolve(*planned, run.seeds.front(), input, parameters);
+  resolve(*planned, run.seeds.front(), verification, input, parameters);
   const std::vector<std::pair<std::string, std::string>> values = parameters.values();
   if (shared.keys == nullptr)
   {
@@ -152,7 +170,7 @@ std::string PlannedRun::case_text() const
 {
   input::Case input;
   input::Parameters parameters;
-  resolve(*planned_case, seed, input, parameters);
+  resolve(*planned_case, seed, Verification::none, input, parameters); // checked when it was planned
   return parameters.resolved_text();
 }
 
@@ -174,7 +192,7 @@ Settings parse_settings(const std::vector<std::string> &texts)
 }
 
 std::vector<PlannedRun> plan_runs(const Study &study, const input::InputFile &base,
-                                  const std::vector<std::string> &settings)
+                                  const std::vector<std::string> &settings, const Verification verification)
 {
   const Settings overrides = parse_settings(settings);
   for (const auto &[key, value] : overrides)
@@ -192,7 +210,7 @@ std::vector<PlannedRun> plan_runs(const Study &study, const input::InputFile &ba
   for (const StudyRun &run : study.runs)
     try
     {
-      plan_seeds(run, overrides, changed, shared, runs);
+      plan_seeds(run, overrides, changed, verification, shared, runs);
     }
     catch (const support::InputError &error)
     {
@@ -210,7 +228,21 @@ std::vector<PlannedRun> plan_runs(const Study &study, const input::InputFile &ba
     check_abscissas(study, runs, problems);
   if (!problems.empty())
     throw support::InputError(problems);
+  if (verification == Verification::base_case)
+    (void)base_case(study, base, settings);
   return runs;
+}
+
+input::Case base_case(const Study &study, const input::InputFile &base, const std::vector<std::string> &settings)
+{
+  Settings all = study.settings;
+  override_settings(all, parse_settings(settings));
+  input::Case input;
+  input::Parameters parameters;
+  read_case(base, study.base, assignments(all), input, parameters);
+  claims::check_user_laws(input, parameters);
+  parameters.finish();
+  return input;
 }
 
 std::vector<std::size_t> longest_first(const std::vector<PlannedRun> &runs)

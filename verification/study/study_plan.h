@@ -32,7 +32,7 @@ struct PlannedCase
   std::map<std::string, std::string> texts; ///< other values, of the entries that a run of the study changes
 };
 
-/// Fracture run: a case with one seed. It keeps no text, so that thousands of runs take little memory.
+/// Fracture run: a case with one seed. It keeps no text of its case, so that thousands of runs take little memory.
 struct PlannedRun
 {
   std::string run;
@@ -44,7 +44,7 @@ struct PlannedRun
   std::size_t sites = 0;
   double steps = 0.; ///< expected number, for a crack at the shear wave speed of the unloaded sheet
 
-  /// Resolves the case with all entries, as in the case.prm of the run, in about 3 ms.
+  /// Resolves the case with all entries, as in the case.prm of the run.
   [[nodiscard]] std::string case_text() const;
   std::string folder() const { return run + "-" + std::to_string(seed); }
   double memory = 0.; ///< estimated, in addition to that of the program itself [bytes]
@@ -63,6 +63,15 @@ struct PlannedRun
 /// @throws InputError for other texts, and for the seed
 [[nodiscard]] Settings parse_settings(const std::vector<std::string> &texts);
 
+/// Cases of a study whose claims are checked before its cracks run. Their user-defined laws need values at all
+/// stretches at which claims evaluate them.
+enum class Verification
+{
+  none,      ///< --skip-verification
+  base_case, ///< --quick
+  every_run
+};
+
 /// Returns all runs of a study with all their seeds, in the order of the file. Sets the noise seed, and disables all
 /// frames except the first and the last.
 /// @param base file of the base case, read once for all runs
@@ -70,7 +79,15 @@ struct PlannedRun
 /// @throws InputError with the problems of all cases, of rows whose `against` is not a number in any of their runs, and
 /// of settings of entries that the study sweeps
 [[nodiscard]] std::vector<PlannedRun> plan_runs(const Study &study, const input::InputFile &base,
-                                                const std::vector<std::string> &settings);
+                                                const std::vector<std::string> &settings,
+                                                Verification verification = Verification::every_run);
+
+/// Returns the base case with the settings of all runs, for claims that are checked on it alone.
+/// @param base file of the base case
+/// @param settings `Section/Name=value`; override those of the study
+/// @throws InputError with its problems, user-defined laws included that have no values for the claims
+[[nodiscard]] input::Case base_case(const Study &study, const input::InputFile &base,
+                                    const std::vector<std::string> &settings);
 
 /// Returns the indices of the runs in the order of decreasing cost; stable for equal cost.
 [[nodiscard]] std::vector<std::size_t> longest_first(const std::vector<PlannedRun> &runs);

@@ -28,7 +28,9 @@ inline constexpr const char *sweep_file_name = "sweep.json";
 /// One combination of the values of several sweeps.
 struct SweptCase
 {
-  std::string name; ///< of a run: the values, such as "strain-y-1.5_height-2cm"
+  /// Name of the run, formed from the values, such as "strain-y-1.5_height-2cm". A name that is too long, or that an
+  /// earlier combination has, is cut, and ends in 16 digits of the SHA-256 of the settings.
+  std::string name;
   Settings set;
 };
 

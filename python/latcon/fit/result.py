@@ -22,7 +22,7 @@ from .record import Evaluation
 # uniform distribution between the bounds.
 _DETERMINED = 0.5
 _CONFIDENCE = 0.95
-# Eigenvalues of half the Hessian over the largest that round-off makes of zero: of (parameters) sums in double precision.
+# Eigenvalues of half the Hessian below this fraction of the largest are round-off and count as zero.
 _ROUND_OFF = 1e-12
 # Components of a direction that its description names.
 _NAMED = 0.3
@@ -144,7 +144,7 @@ class Fit:
         order = np.argsort(-values)
         free = values[order] <= _ROUND_OFF * values.max()
         vectors[:, order[free]] = _pivoted_basis(vectors[:, order[free]])
-        uncertainty = 1 / np.sqrt(np.maximum(values[order], 1e-12))
+        uncertainty = 1 / np.sqrt(np.maximum(np.where(free, 0, values[order]), 1e-12))
         total = 1 / np.sqrt(1 / uncertainty**2 + 1 / PRIOR**2)
         table = pd.DataFrame(_with_positive_largest(vectors[:, order].T), columns=names)
         table.insert(0, "determined", total < _DETERMINED * PRIOR)

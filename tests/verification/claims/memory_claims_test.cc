@@ -121,6 +121,12 @@ std::string failing(const ClaimOutcome &outcome)
   return text;
 }
 
+TEST(Branches, HaveOneRelaxationTimeEach)
+{
+  const Material material = subjects::paper_case().material();
+  EXPECT_THROW((void)with_branches(material, {0.5, 0.2}, {1e-4}), std::invalid_argument);
+}
+
 TEST(Relaxation, FollowsTheClosedForm)
 {
   for (const input::Case &input : {case_with_branches(), subjects::paper_case()})
@@ -142,6 +148,25 @@ TEST(Relaxation, HoldsForSmallStrains)
     const ClaimOutcome outcome = relaxation_claim(subject(input), {});
     EXPECT_TRUE(outcome.results.all_hold()) << strain << "\n" << failing(outcome);
   }
+}
+
+// A branch that relaxes within a stable time step: the tolerance of the trapezoidal rule stays small.
+TEST(Relaxation, ResolvesTheShortestRelaxationTime)
+{
+  input::Case input = case_with_branches();
+  input.nearest.relaxation_times = {5e-8, 2e-7};
+  input.has_next_nearest = false;
+  const ClaimOutcome outcome = relaxation_claim(subject(input), {});
+  EXPECT_TRUE(outcome.results.all_hold()) << failing(outcome);
+  std::size_t n_rows = 0;
+  for (const output::Result &row : outcome.results.rows())
+    if (row.quantity.find("energy imbalance") != std::string::npos)
+    {
+      ++n_rows;
+      EXPECT_LT(row.tolerance.value(), 0.0301) << row.quantity; // (0.3)^2 / 3 and round-off
+      EXPECT_GT(row.error.value(), 1e-4) << row.quantity; // the branch loses energy within few steps
+    }
+  EXPECT_EQ(n_rows, 2u);
 }
 
 TEST(Relaxation, FailsForWrongBranches)

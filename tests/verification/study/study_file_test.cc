@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 
 #include "support/errors.h"
+#include "verification/input/case.h"
 #include "verification/study/study_file.h"
 #include "verification/study/study_plan.h"
 
@@ -117,6 +118,15 @@ TEST(StudyFile, QuickVersionHasAnotherBaseAndLeavesRunsOut)
   EXPECT_EQ(study.left_out, std::vector<std::string>{"big"});
   EXPECT_EQ(study.claims[0].rows[0].rule, Rule::reported);
   EXPECT_EQ(read(example()).claims[0].rows[0].rule, Rule::is_near);
+}
+
+TEST(StudyFile, BaseCaseHasTheSettingsOfAllRuns)
+{
+  const Study study = read(example());
+  const InputFile file = read_input_file(study.base);
+  EXPECT_EQ(base_case(study, file, {}).height, 0.02);
+  EXPECT_EQ(base_case(study, file, {" Sheet/height = 1.5 cm "}).height, 0.015);
+  EXPECT_THROW((void)base_case(study, file, {"Sheet/height"}), latcon::support::InputError);
 }
 
 TEST(StudyFile, RowsHaveTheirRules)

@@ -108,6 +108,18 @@ TEST(Sweep, NamesOfRunsAreDistinct)
   EXPECT_EQ(study.runs[0].name, "Nearest-neighbours-viscosity-1Ns-m_Next-nearest-neighbours-viscosity-1");
 }
 
+// Of a combination alone, so that the quick version, or a study with further values, names it alike.
+TEST(Sweep, NamesThatAreTooLongDependOnTheirValuesAlone)
+{
+  const std::string first = "lam^2 + " + std::string(200, '1'), second = first + " + lam";
+  const Sweep pair{"Nearest neighbours/psi", {first, second}}, swapped{pair.entry, {second, first}};
+  const std::vector<SweptCase> found = combinations({pair}, 1), other = combinations({swapped}, 1);
+  EXPECT_EQ(found[0].name, other[1].name);
+  EXPECT_EQ(found[1].name, other[0].name);
+  EXPECT_NE(found[0].name, found[1].name);
+  EXPECT_TRUE(std::regex_match(found[0].name, std::regex("psi-lam-21{124}-[0-9a-f]{16}"))) << found[0].name;
+}
+
 TEST(Sweep, EntriesSweptTwiceOrAlsoSetAreRefused)
 {
   const Sweep sweep = parse_sweep("Sheet/height=2 cm,3 cm");

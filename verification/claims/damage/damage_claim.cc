@@ -205,7 +205,7 @@ void broken_bars(const Problem &problem, const DamageOptions &options, Rows &row
   std::vector<BrokenEnergy> energies;
   for (unsigned int n = 2; n <= options.finest; n *= 2)
     energies.push_back(broken_bar_rows(problem, problem.material(), n, "local", rows, outcome));
-  // What (C.68) leaves of second order: a 16th of (h/xi)^2 of the finer mesh. The errors of both meshes may add up.
+  // Second-order remainder of (C.68): (h/xi)^2 / 16 with h of the finer mesh. The errors of both meshes may add up.
   const BrokenEnergy &fine = energies.back(), &coarse = energies[energies.size() - 2];
   const double remainder = std::pow(1. / options.finest, 2) / 16.;
   rows.compare("energy of a crack over G_c, extrapolated in h", "1", 2. * fine.ratio - coarse.ratio, 1. - remainder,

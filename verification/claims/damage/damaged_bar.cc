@@ -63,9 +63,9 @@ DamagedBar::DamagedBar(const continuum::Constitution &laws, const continuum::Dam
 
 void DamagedBar::weaken_middle(double amount)
 {
-  solver_->set_damage(
-    [this, amount](const dealii::Point<2> &X)
-    { return std::abs(X[0] - 0.5 * length_) < 0.75 * height_ ? amount : 0.; }); // half an element is where it ends
+  // The column ends half an element from the centre; 0.75 selects its nodes only.
+  solver_->set_damage([this, amount](const dealii::Point<2> &X)
+                      { return std::abs(X[0] - 0.5 * length_) < 0.75 * height_ ? amount : 0.; });
 }
 
 double DamagedBar::stress() const

@@ -20,13 +20,21 @@ namespace latcon::claims
 class DamagedBar
 {
 public:
-  /// @param size h of an element [m] @param last stretch at load factor 1, > 1
+  /// @param laws of the undamaged material
+  /// @param damage threshold, length and residual stiffness
+  /// @param size side h of an element, and height of the bar [m], > 0
+  /// @param cells number of elements along the bar; odd for weaken_middle()
+  /// @param last largest stretch [-] of the bar, at load factor 1; > 1
   DamagedBar(const continuum::Constitution &laws, const continuum::DamageLaw &damage, double size, unsigned int cells,
              double last);
 
-  /// Gives the nodes of the middle column of elements the initial damage `amount` [-].
+  /// Gives the nodes of the middle column of elements the initial damage `amount` [-], from 0 to 1. To be called before
+  /// the first stretch().
   void weaken_middle(double amount);
 
+  /// Loads the bar in one quasi-static load step until its length is `stretch` [-] times that at rest: 1 to `last` of the
+  /// constructor, also less than before.
+  /// @throws as continuum::DamageSolver::step_to
   void stretch(double stretch) { solver_->step_to((stretch - 1.) / (last_ - 1.)); }
 
   double length() const { return length_; } ///< [m]

@@ -26,6 +26,9 @@ constexpr double epsilon = std::numeric_limits<double>::epsilon();
 // Branches for lattices without any: moduli over the stiffness of a bond, relaxation times in time steps.
 const std::vector<double> ratios{0.5, 0.3, 0.2}, times_in_steps{30., 100., 300.};
 
+// Time step over the shortest relaxation time: the tolerance of the energy imbalance is at most 0.03.
+constexpr double longest_step = 0.3;
+
 // Of changes of stretch this large, the round-off of stretches is 100 epsilon.
 constexpr double smallest_strain = 1e-2;
 
@@ -180,6 +183,16 @@ private:
   std::vector<std::array<double, 7>> points_; // of the table
 };
 
+support::Extremes relaxation_times(const lattice::Material &material) // [s]
+{
+  support::Extremes times;
+  for (const lattice::Shell *shell : {material.shell(0), material.shell(lattice::n_nearest_kinds)})
+    if (const auto *memory = shell != nullptr ? std::get_if<lattice::MaxwellMemory>(&shell->memory) : nullptr)
+      for (const lattice::MaxwellMemory::Branch &branch : memory->branches())
+        times.add(branch.relaxation_time);
+  return times;
+}
+
 bool is_damped(const lattice::Material &material)
 {
   return material.nearest.viscosity > 0. && (!material.next_nearest || material.next_nearest->viscosity > 0.);
@@ -200,9 +213,13 @@ ClaimOutcome relaxation_claim(const bridge::Subject &subject, const RelaxationOp
     {
       constexpr double safety = 0.9;
       const lattice::TimeStepLimits limits = lattice::time_step_limits(sheet, material, 1.);
+      const double stable = is_chebyshev ? lattice::chebyshev_step(sheet, material, 1.) : limits.combined;
+      double step = safety * stable;
+      if (has_branches(material))
+        step = support::smallest_of({step, longest_step * relaxation_times(material).smallest()});
       if (!is_chebyshev)
-        return safety * limits.combined;
-      return lattice::chebyshev_time_stepping(safety * lattice::chebyshev_step(sheet, material, 1.), limits, 0);
+        return step;
+      return lattice::chebyshev_time_stepping(step, limits, 0);
     };
     if (!has_branches(material))
     {
@@ -215,13 +232,8 @@ ClaimOutcome relaxation_claim(const bridge::Subject &subject, const RelaxationOp
     }
     const lattice::Material planted = options.planted ? options.planted(material) : material;
     HeldSheet held(subject, sheet, material, planted, F, stepping());
-    support::Extremes times;
-    for (const lattice::Shell *shell : {material.shell(0), material.shell(lattice::n_nearest_kinds)})
-      if (const auto *memory = shell != nullptr ? std::get_if<lattice::MaxwellMemory>(&shell->memory) : nullptr)
-        for (const lattice::MaxwellMemory::Branch &branch : memory->branches())
-          times.add(branch.relaxation_time);
-    const auto n_steps = static_cast<std::size_t>(std::ceil(
-      support::smallest_of({static_cast<double>(options.max_steps), 3. * times.largest() / stepping().step})));
+    const auto n_steps = static_cast<std::size_t>(std::ceil(support::smallest_of(
+      {static_cast<double>(options.max_steps), 3. * relaxation_times(material).largest() / stepping().step})));
     held.run(n_steps);
     held.add_rows(subject, integrator, n_steps, outcome);
     if (is_chebyshev)

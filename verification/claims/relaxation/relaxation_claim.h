@@ -10,7 +10,8 @@ namespace latcon::claims
 /// Size of the claim.
 struct RelaxationOptions
 {
-  std::size_t max_steps = 2000; ///< time steps of each integrator of the lattice; fewer if all branches relax before
+  /// Time steps of each integrator of the lattice; fewer if three of the longest relaxation times pass before.
+  std::size_t max_steps = 2000;
   PlantedBranches planted = {}; ///< for tests
 };
 

@@ -42,7 +42,7 @@ def draw_viscoelastic_waves(tables, path):
 PLOTS = (
     Plot("viscoelastic_waves", draw_viscoelastic_waves,
          "Waves are as fast as in the rubbery limit for short relaxation times, as fast as in the glassy limit for long "
-         "ones, and decay fastest between them, as the complex modulus of the lattice says.",
+         "ones, and decay fastest between them, as predicted by the complex modulus of the lattice.",
          "Frequency and decay rate of free waves at one wavelength against the relaxation time τ of one Maxwell branch "
          "per bond, ω being the frequency of the wave without the branch. Dashed: complex modulus; circles: measured in a "
          "run of the lattice; dotted: frequencies without and with the stiffness of the branch."),

@@ -21,7 +21,7 @@ class Latcon(CMakePackage):
     depends_on("blas")
     depends_on("eigen@3.4:")
     depends_on("highway@1.0:")
-    depends_on("vtk@9.1:")
+    depends_on("vtk@9.1: +python")
     depends_on("boost@1.74:")
     depends_on("cli11@2.1:")
     depends_on("hdf5@1.10: +mpi")
@@ -29,17 +29,18 @@ class Latcon(CMakePackage):
     depends_on("muparser")
     depends_on("nlohmann-json@3.11:")
 
-    # The build generates the manual page with Python; the Python package imports these.
+    # The build writes the manual page with Python; the Python package imports the others. Pages are drawn by /usr/bin/python3
+    # of the system, with its packages.
     depends_on("python@3.11:", type=("build", "run"))
     depends_on("py-numpy", type="run")
     depends_on("py-pandas", type="run")
     depends_on("py-matplotlib", type="run")
-    depends_on("py-pillow", type="run")
 
     generator("ninja")
 
     def cmake_args(self):
-        return [self.define(option, False) for option in ("BUILD_TESTING", "LATCON_BENCHMARKS", "LATCON_DOCS", "LATCON_PACKAGE")]
+        off = ("BUILD_TESTING", "LATCON_BENCHMARKS", "LATCON_DOCS", "LATCON_PACKAGE")
+        return [self.define("Python3_EXECUTABLE", self.spec["python"].command.path), *(self.define(option, False) for option in off)]
 
     def setup_run_environment(self, env):
         env.prepend_path("PYTHONPATH", join_path(self.prefix, "lib", "python3", "dist-packages"))
