@@ -13,6 +13,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 using namespace latcon;
@@ -469,6 +470,7 @@ TEST(Sheet, EvaluatesOnCellBoundariesAndCorners)
     EXPECT_NEAR((state.displacement - (F * Tensor<1, 2>(state.X) - Tensor<1, 2>(state.X))).norm(), 0., 1e-10 * length);
   }
   EXPECT_THROW(solver.evaluate({{1.01 * length, 0.}}), continuum::InvalidInput);
+  EXPECT_THROW(solver.evaluate({{0., std::nan("")}}), continuum::InvalidInput);
 }
 
 TEST(Rectangle, HasItsSizeCellsAndEdges)
