@@ -127,6 +127,9 @@ TEST(Refinement, SeedsThatDisagreeDifferFromAllNeighbours)
   sweep.show("strain-x-1_strain-y-1.5", "straight", "oscillating");
   const Names both{"strain-x-1_strain-y-1.6", "strain-x-1.2_strain-y-1.5"};
   EXPECT_EQ(sweep.names(1), both);
+  sweep.show("strain-x-1_strain-y-1.7", "oscillating", "straight"); // as mixed as its neighbour
+  EXPECT_EQ(sweep.names(1), (Names{both[0], both[1], "strain-x-1.2_strain-y-1.7"}));
+  sweep.show("strain-x-1_strain-y-1.7", "straight", "straight");
   sweep.show("strain-x-1_strain-y-1.5", "undecided", "undecided");
   EXPECT_EQ(sweep.names(1), both);
 }
