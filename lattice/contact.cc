@@ -1,8 +1,11 @@
 #include "lattice/contact.h"
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <stdexcept>
+
+#include <omp.h>
 
 namespace latcon::lattice
 {
@@ -12,6 +15,34 @@ namespace
 // Skin over the contact distance. The number of candidate pairs grows with its square, the time between rebuilds in
 // proportion.
 constexpr double skin_over_distance = 1.;
+
+// Pairs, or candidates to be paired, below which one thread is faster.
+constexpr std::size_t min_pairs_for_threads = 1024;
+
+// Calls work(begin, end, part) for shares of 0 ... n - 1 that follow each other, each by another thread, and appends
+// the parts to `all` in the order of the shares, which does not depend on their number.
+// @param parts scratch
+template <class Item, class Work>
+void in_shares(std::size_t n, std::vector<std::vector<Item>> &parts, std::vector<Item> &all, const Work &work)
+{
+  if (n < min_pairs_for_threads)
+  {
+    work(std::size_t{0}, n, all);
+    return;
+  }
+  parts.resize(static_cast<std::size_t>(omp_get_max_threads()));
+#pragma omp parallel
+  {
+    const auto count = static_cast<std::size_t>(omp_get_num_threads()),
+               i = static_cast<std::size_t>(omp_get_thread_num());
+    parts[i].clear();
+    work(n * i / count, n * (i + 1) / count, parts[i]);
+#pragma omp barrier
+#pragma omp single
+    for (std::size_t part = 0; part < count; ++part)
+      all.insert(all.end(), parts[part].begin(), parts[part].end());
+  }
+}
 
 } // namespace
 
@@ -60,15 +91,19 @@ void Contact::rebuild(const State &state)
     cells_.insert(index, found_.back().x(), found_.back().y());
   }
   const double reach_square = (law_.distance + skin_) * (law_.distance + skin_);
-  for (std::size_t first = 0; first < places_.size(); ++first)
-    cells_.for_each_near(found_[first].x(), found_[first].y(),
-                         [&](std::size_t second)
-                         {
-                           if (places_[first] < places_[second] &&
-                               (found_[second] - found_[first]).squaredNorm() <= reach_square &&
-                               may_touch(state, places_[first], places_[second]))
-                             pairs_.push_back({places_[first], places_[second]});
-                         });
+  const auto find = [&](std::size_t begin, std::size_t end, std::vector<Pair> &pairs)
+  {
+    for (std::size_t first = begin; first < end; ++first)
+      cells_.for_each_near(found_[first].x(), found_[first].y(),
+                           [&](std::size_t second)
+                           {
+                             if (places_[first] < places_[second] &&
+                                 (found_[second] - found_[first]).squaredNorm() <= reach_square &&
+                                 may_touch(state, places_[first], places_[second]))
+                               pairs.push_back({places_[first], places_[second]});
+                           });
+  };
+  in_shares(places_.size(), pairs_of_threads_, pairs_, find);
   std::sort(pairs_.begin(), pairs_.end());
 }
 
@@ -149,27 +184,35 @@ const std::vector<SiteForce> &Contact::evaluate(const State &state, const Field 
     ++n_list_builds_;
   }
   forces_.clear();
-  n_touching_ = 0;
-  for (const auto &[first, second] : pairs_)
+  std::atomic<std::size_t> n_touching{0};
+  const auto push_apart = [&](std::size_t begin, std::size_t end, std::vector<SiteForce> &forces)
   {
-    const Eigen::Vector2d between(state.x[second] - state.x[first], state.y[second] - state.y[first]);
-    const double square = between.squaredNorm();
-    // Sites in one place have no line between them to act along.
-    if (!(square < law_.distance * law_.distance) || square == 0.)
-      continue;
-    n_touching_ += band_.owns(first) ? 1 : 0;
-    const double r = std::sqrt(square);
-    const Eigen::Vector2d direction = between / r;
-    const double approach = -direction.dot(Eigen::Vector2d(vx[second] - vx[first], vy[second] - vy[first]));
-    const double repulsion = law_.stiffness * (law_.distance - r) + law_.viscosity * approach;
-    if (!(repulsion > 0.))
-      continue;
-    const Eigen::Vector2d force = repulsion * direction;
-    if (band_.owns(first))
-      forces_.push_back({first, -force});
-    if (band_.owns(second))
-      forces_.push_back({second, force});
-  }
+    std::size_t touching = 0;
+    for (std::size_t pair = begin; pair < end; ++pair)
+    {
+      const auto &[first, second] = pairs_[pair];
+      const Eigen::Vector2d between(state.x[second] - state.x[first], state.y[second] - state.y[first]);
+      const double square = between.squaredNorm();
+      // Sites in one place have no line between them to act along.
+      if (!(square < law_.distance * law_.distance) || square == 0.)
+        continue;
+      touching += band_.owns(first) ? 1 : 0;
+      const double r = std::sqrt(square);
+      const Eigen::Vector2d direction = between / r;
+      const double approach = -direction.dot(Eigen::Vector2d(vx[second] - vx[first], vy[second] - vy[first]));
+      const double repulsion = law_.stiffness * (law_.distance - r) + law_.viscosity * approach;
+      if (!(repulsion > 0.))
+        continue;
+      const Eigen::Vector2d force = repulsion * direction;
+      if (band_.owns(first))
+        forces.push_back({first, -force});
+      if (band_.owns(second))
+        forces.push_back({second, force});
+    }
+    n_touching += touching;
+  };
+  in_shares(pairs_.size(), forces_of_threads_, forces_, push_apart);
+  n_touching_ = n_touching;
   return forces_;
 }
 

@@ -89,6 +89,8 @@ private:
   std::vector<Eigen::Vector2d> found_; // where each was when its pairs were found; empty: no list was made of them yet
   SiteFlags is_candidate_;             // by place
   std::vector<Pair> pairs_;
+  std::vector<std::vector<Pair>> pairs_of_threads_;       // scratch
+  std::vector<std::vector<SiteForce>> forces_of_threads_; // scratch
   std::size_t n_touching_ = 0;
   std::size_t n_list_builds_ = 0;
 };

@@ -3,6 +3,27 @@
 namespace latcon::lattice
 {
 
+namespace
+{
+
+// Sum of energy(place, kind) over all bonds. Each row is summed by one thread.
+template <class Energy>
+double sum_over_bonds(const State &state, const RowPartition &band, const Energy &energy)
+{
+  std::vector<double> of_rows(band.lattice().rows(), 0.);
+  for_each_row(band.lattice(), band.rows(),
+               [&](std::size_t row)
+               {
+                 double sum = 0.;
+                 for_each_bond(state, band.lattice(), {row, row + 1},
+                               [&](std::size_t place, std::size_t kind, std::size_t) { sum += energy(place, kind); });
+                 of_rows[row] = sum;
+               });
+  return band.sum(of_rows);
+}
+
+} // namespace
+
 double elastic_energy(const State &state, const RowPartition &band, const Material &material)
 {
   const TriangularLattice &lattice = band.lattice();
@@ -10,15 +31,13 @@ double elastic_energy(const State &state, const RowPartition &band, const Materi
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
     if (const Shell *shell = material.shell(kind))
       volume[kind] = cross_section(*shell, lattice) * lattice.rest_length(kind);
-  std::vector<double> of_rows(lattice.rows(), 0.);
-  for_each_bond(state, lattice, band.rows(),
-                [&](std::size_t place, std::size_t kind, std::size_t)
-                {
-                  of_rows[lattice.row_of(place)] +=
-                    state.stiffness.of(place, kind) *
-                    (volume[kind] * energy(material.shell(kind)->law, stretch(state, lattice, place, kind)));
-                });
-  return band.sum(of_rows);
+  return sum_over_bonds(state, band,
+                        [&](std::size_t place, std::size_t kind)
+                        {
+                          return state.stiffness.of(place, kind) *
+                                 (volume[kind] *
+                                  energy(material.shell(kind)->law, stretch(state, lattice, place, kind)));
+                        });
 }
 
 namespace
@@ -44,28 +63,32 @@ void for_each_mechanism(const State &state, const TriangularLattice &lattice, co
 
 double memory_energy(const State &state, const RowPartition &band, const Material &material)
 {
-  const TriangularLattice &lattice = band.lattice();
-  std::vector<double> of_rows(lattice.rows(), 0.);
-  if (!state.history.empty())
-    for_each_bond(state, lattice, band.rows(),
-                  [&](std::size_t place, std::size_t kind, std::size_t)
-                  { of_rows[lattice.row_of(place)] += memory_energy(state, lattice, material, place, kind); });
-  return band.sum(of_rows);
+  if (state.history.empty())
+    return 0.;
+  return sum_over_bonds(state, band,
+                        [&](std::size_t place, std::size_t kind)
+                        { return memory_energy(state, band.lattice(), material, place, kind); });
 }
 
 std::vector<double> memory_energies(const State &state, const RowPartition &band, const Material &material)
 {
   const TriangularLattice &lattice = band.lattice();
   std::vector<std::vector<double>> of_rows(material.n_mechanisms(), std::vector<double>(lattice.rows(), 0.));
+  if (of_rows.empty())
+    return {};
   const std::size_t of_nearest = n_mechanisms(material.nearest.memory);
-  for_each_bond(state, lattice, band.rows(),
-                [&](std::size_t place, std::size_t kind, std::size_t)
-                {
-                  const std::size_t first = TriangularLattice::is_nearest(kind) ? 0 : of_nearest;
-                  for_each_mechanism(state, lattice, material, place, kind,
-                                     [&](std::size_t m, double energy)
-                                     { of_rows[first + m][lattice.row_of(place)] += energy; });
-                });
+  for_each_row(lattice, band.rows(),
+               [&](std::size_t row)
+               {
+                 for_each_bond(state, lattice, {row, row + 1},
+                               [&](std::size_t place, std::size_t kind, std::size_t)
+                               {
+                                 const std::size_t first = TriangularLattice::is_nearest(kind) ? 0 : of_nearest;
+                                 for_each_mechanism(state, lattice, material, place, kind,
+                                                    [&](std::size_t m, double energy)
+                                                    { of_rows[first + m][row] += energy; });
+                               });
+               });
   std::vector<double> energies;
   for (const std::vector<double> &rows : of_rows)
     energies.push_back(band.sum(rows));
@@ -84,14 +107,19 @@ double kinetic_energy(const State &state, const RowPartition &band)
 {
   const TriangularLattice &lattice = band.lattice();
   std::vector<double> of_rows(lattice.rows(), 0.);
-  for (std::size_t row = band.rows().begin; row < band.rows().end; ++row)
+  const auto of_row = [&](std::size_t row)
+  {
+    double sum = 0.;
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
     {
       const std::size_t place = lattice.index(row, column);
       if (state.inverse_mass[place] > 0.)
-        of_rows[row] +=
+        sum +=
           0.5 / state.inverse_mass[place] * (state.vx[place] * state.vx[place] + state.vy[place] * state.vy[place]);
     }
+    of_rows[row] = sum;
+  };
+  for_each_row(lattice, band.rows(), of_row);
   return band.sum(of_rows);
 }
 

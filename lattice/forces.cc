@@ -92,8 +92,8 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy, cons
 {
   const bool threads = lattice_.n_places() >= min_places_for_threads;
   const std::size_t n_scratch = threads ? static_cast<std::size_t>(omp_get_max_threads()) : 1;
-  if (scratch_.size() != n_scratch)
-    scratch_.resize(n_scratch, Scratch(lattice_.stride()));
+  while (scratch_.size() < n_scratch)
+    scratch_.emplace_back(lattice_.stride());
 #pragma omp parallel if (threads)
   {
     const auto first = static_cast<std::ptrdiff_t>(band_.rows().begin);
@@ -124,20 +124,20 @@ void Forces::evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrd
 {
   if (begin == end)
     return;
+  scratch.ahead.clear();
   bonds_from_below(motion, begin - 2, scratch);
   bonds_from_below(motion, begin - 1, scratch);
-  std::vector<const double *> ahead;
   for (std::ptrdiff_t row = begin; row < end; ++row)
   {
     const auto index = static_cast<std::size_t>(row);
     // As far up as bonds of this row reach, and where this has not been done for the thread next to it.
     if (work.pre_force && row + 2 * reach < end)
       work.pre_force(index + reach);
-    ahead.clear();
-    if (row + 2 * reach + 1 < end)
-      for (const Field *field : work.fields)
-        ahead.push_back(&(*field)[lattice_.index(index + reach + 1, 0)]);
-    const kernels::RowSums sums = bonds_of_row(motion, index, row, scratch, ahead);
+    scratch.ahead.clear();
+    if (work.fields != nullptr && row + 2 * reach + 1 < end)
+      for (const Field *field : *work.fields)
+        scratch.ahead.push_back(&(*field)[lattice_.index(index + reach + 1, 0)]);
+    const kernels::RowSums sums = bonds_of_row(motion, index, row, scratch);
     row_viscous_power_[index] = sums.viscous_power;
     for (std::size_t m = 0; m < row_mechanism_power_.size(); ++m)
       row_mechanism_power_[m][index] = scratch.mechanism_power[m];
@@ -199,12 +199,12 @@ bool Forces::row_has_events_ahead(const State &state, std::size_t row, double ah
 }
 
 // The bonds of row `from` as those of `row`: the same, or below the edge of a periodic sheet.
-kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, Scratch &scratch,
-                                      const std::vector<const double *> &ahead) const
+kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row,
+                                      Scratch &scratch) const
 {
   kernels::RowOfBonds all = row_of_bonds(motion, from);
-  all.ahead = ahead.data();
-  all.n_ahead = ahead.size();
+  all.ahead = scratch.ahead.data();
+  all.n_ahead = scratch.ahead.size();
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
     for (std::size_t component = 0; component < 2; ++component)
       all.force[kind][component] = scratch.bonds.at(row, kind, component);
@@ -261,7 +261,7 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy)
     std::copy_n(fx, lattice_.columns(), &fx_[lattice_.index(row, 0)]);
     std::copy_n(fy, lattice_.columns(), &fy_[lattice_.index(row, 0)]);
   };
-  evaluate(state, vx, vy, {{}, {}, keep});
+  evaluate(state, vx, vy, {{}, nullptr, std::ref(keep)});
 }
 
 void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, std::size_t place, std::size_t kind)

@@ -51,8 +51,9 @@ public:
     /// Before any bond of the row is looked at; may give the row its positions and velocities to be evaluated. Not for
     /// sheets that are periodic, whose images must be there too. May be empty.
     std::function<void(std::size_t row)> pre_force;
-    /// Fields that `pre_force` works on; they are fetched from memory while the row before is computed.
-    std::vector<const Field *> fields;
+    /// Fields that the callbacks work on; they are fetched from memory while the rows before are computed. nullptr:
+    /// none.
+    const std::vector<const Field *> *fields = nullptr;
     /// Takes the forces on the sites of the row [N/m]; may change all but those positions and velocities.
     std::function<void(std::size_t row, const double *fx, const double *fy)> post_force;
   };
@@ -131,14 +132,14 @@ private:
     BondRows bonds;
     Field fx, fy;                             // forces on the sites of a row
     std::vector<double> mechanism_power = {}; // of the bonds that start in a row
+    std::vector<const double *> ahead = {};   // what is fetched during a row
   };
 
   void evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
                      const RowCallbacks &work);
   kernels::RowOfBonds row_of_bonds(const Motion &motion, std::size_t row) const;
   void bonds_from_below(const Motion &motion, std::ptrdiff_t row, Scratch &scratch) const;
-  kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, Scratch &scratch,
-                                const std::vector<const double *> &ahead = {}) const;
+  kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, Scratch &scratch) const;
   void gather_row(std::ptrdiff_t row, Scratch &scratch) const;
   void add_overstress(const State &state, std::size_t from, const kernels::RowOfBonds &bonds,
                       std::vector<double> &mechanism_power) const;

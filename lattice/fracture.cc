@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 
 #include "lattice/energy.h"
@@ -222,6 +223,7 @@ void Fracture::locate_tip(State &state)
   for (std::size_t row = 0; row < lattice_.rows(); ++row)
     for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
       consider_tip(state, lattice_.index(row, column));
+  toughened_to_ = -std::numeric_limits<double>::infinity();
   toughen_behind_tip(state);
 }
 
@@ -251,13 +253,39 @@ void Fracture::toughen_behind_tip(State &state)
   if (behind == nullptr || !tip_)
     return;
   const double boundary = tip_x_ - behind->distance;
-  for_each_bond(state, lattice_, band_.rows(),
-                [&](std::size_t place, std::size_t kind, std::size_t)
-                {
-                  const double midpoint_x = lattice_.reference(place).x() + 0.5 * lattice_.bond_vector(kind).x();
-                  if (midpoint_x < boundary)
-                    state.bonds.toughen(place, kind);
-                });
+  // The tip never retreats: bonds behind the last boundary are toughened already.
+  const auto [rows, columns] = strip_around(toughened_to_, boundary);
+  for (std::size_t row = rows.begin; row < rows.end; ++row)
+    for (std::size_t column = columns.begin; column < std::min(columns.end, lattice_.sites_in_row(row)); ++column)
+    {
+      const std::size_t place = lattice_.index(row, column);
+      for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+        if (state.bonds.present(place, kind) &&
+            lattice_.reference(place).x() + 0.5 * lattice_.bond_vector(kind).x() < boundary)
+          state.bonds.toughen(place, kind);
+    }
+  toughened_to_ = boundary;
+}
+
+// Returns rows of the band and columns that contain the near ends of all bonds with a midpoint at from <= X < to.
+std::pair<Rows, Rows> Fracture::strip_around(double from, double to) const
+{
+  const bool along = lattice_.orientation() == Orientation::rows_along_crack;
+  const Rows own = band_.rows(), columns{0, lattice_.columns()};
+  const double pitch = along ? lattice_.spacing() : std::sqrt(3.) / 2. * lattice_.spacing();
+  double reach = 0.; // of midpoints from near ends, along X
+  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+    reach = std::max(reach, 0.5 * std::abs(lattice_.bond_vector(kind).x()));
+  // Columns of odd rows are half a pitch further; the rest of a pitch is for rounding.
+  const auto clamped = [&](double x, const Rows &range)
+  {
+    return static_cast<std::size_t>(
+      std::clamp(x / pitch, static_cast<double>(range.begin), static_cast<double>(range.end)));
+  };
+  const auto cut = [&](const Rows &range) {
+    return Rows{clamped(from - reach - pitch, range), clamped(to + reach + 2. * pitch, range)};
+  };
+  return along ? std::pair(own, cut(columns)) : std::pair(cut(own), columns);
 }
 
 std::optional<StretchedBond> nearest_to_breaking(const State &state, const TriangularLattice &lattice)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <limits>
 #include <optional>
 #include <utility>
 #include <variant>
@@ -146,6 +147,7 @@ private:
   std::vector<BrokenBond> lose_bonds(State &state, const std::vector<Loss> &own, int *number) const;
   void consider_tip(const State &state, std::size_t place);
   void toughen_behind_tip(State &state);
+  std::pair<Rows, Rows> strip_around(double from, double to) const;
   double bond_energy(const State &state, std::size_t place, std::size_t kind) const;
 
   RowPartition band_;
@@ -158,8 +160,9 @@ private:
   double lookahead_ = 0.; // [s]
   unsigned int tip_losses_;
   std::optional<std::size_t> tip_;
-  double tip_x_ = 0.; // reference X of the tip
-  double tip_y_ = 0.; // reference Y of the tip before this step
+  double tip_x_ = 0.;                                              // reference X of the tip
+  double tip_y_ = 0.;                                              // reference Y of the tip before this step
+  double toughened_to_ = -std::numeric_limits<double>::infinity(); // X [m] behind which all bonds are toughened
   std::vector<BrokenBond> broken_;
 };
 

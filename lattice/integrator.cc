@@ -1,5 +1,6 @@
 #include "lattice/integrator.h"
 
+#include <algorithm>
 #include <stdexcept>
 
 #include "lattice/row_kernels.h"
@@ -8,6 +9,9 @@ namespace latcon::lattice
 {
 namespace
 {
+
+// Sites, each with its up to twelve bonds one by one, below which one thread is faster.
+constexpr std::size_t min_sites_for_threads = 64;
 
 // Calls visit(place, acceleration) for every site force.
 template <class Visitor>
@@ -54,9 +58,8 @@ void Integrator::kick(State &state, std::size_t row, const double *fx, const dou
 
 void Integrator::accelerate(State &state)
 {
-  forces_.evaluate(
-    state, evaluated_vx(state), evaluated_vy(state),
-    {{}, {}, [&](std::size_t row, const double *fx, const double *fy) { kick(state, row, fx, fy, 0.); }});
+  const auto after = [&](std::size_t row, const double *fx, const double *fy) { kick(state, row, fx, fy, 0.); };
+  forces_.evaluate(state, evaluated_vx(state), evaluated_vy(state), {{}, nullptr, std::ref(after)});
   evaluate_site_forces(state);
   accelerate_sites(state);
 }
@@ -98,12 +101,19 @@ void Integrator::update_accelerations(State &state, const std::vector<std::size_
     state.ax[place] = force.x() * state.inverse_mass[place];
     state.ay[place] = force.y() * state.inverse_mass[place];
   };
+  std::vector<std::size_t> changed; // each site once, however many bonds it lost and forces act on it
   for (const std::size_t place : places)
     if (band_.owns(place))
-      of_bonds(place);
+      changed.push_back(place);
   for (const SiteForces *forces : site_forces_)
     for (const SiteForce &force : forces->last())
-      of_bonds(force.place);
+      changed.push_back(force.place);
+  std::sort(changed.begin(), changed.end());
+  changed.erase(std::unique(changed.begin(), changed.end()), changed.end());
+  const auto n = static_cast<std::ptrdiff_t>(changed.size());
+#pragma omp parallel for schedule(static) if (changed.size() >= min_sites_for_threads)
+  for (std::ptrdiff_t i = 0; i < n; ++i)
+    of_bonds(changed[static_cast<std::size_t>(i)]);
   accelerate_sites(state);
 }
 

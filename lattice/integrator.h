@@ -69,15 +69,4 @@ private:
   std::vector<SiteForces *> site_forces_;
 };
 
-/// Calls operation(row) for each of some rows, which are shared out among threads. For operations that couple no two
-/// sites, whose bits then cannot depend on how.
-template <class RowOperation>
-void for_each_row(const TriangularLattice &lattice, Rows rows, const RowOperation &operation)
-{
-  const auto end = static_cast<std::ptrdiff_t>(rows.end);
-#pragma omp parallel for schedule(static) if ((rows.end - rows.begin) * lattice.stride() >= min_places_for_threads)
-  for (auto row = static_cast<std::ptrdiff_t>(rows.begin); row < end; ++row)
-    operation(static_cast<std::size_t>(row));
-}
-
 } // namespace latcon::lattice

@@ -1,5 +1,7 @@
 #include "lattice/runge_kutta_chebyshev.h"
 
+#include <functional>
+
 #include "lattice/row_kernels.h"
 
 namespace latcon::lattice
@@ -25,20 +27,39 @@ void RungeKuttaChebyshev::initialise(State &state)
   accelerate(state);
 }
 
+void RungeKuttaChebyshev::first_stage(State &state, std::size_t row)
+{
+  const double duration = time_step() * stages_.first();
+  const std::size_t i = lattice_.index(row, 0), n = lattice_.columns();
+  kernels::first_stage(duration, n, &state.ax[i], &state.x[i], &state.vx[i], &start_.x[i], &start_.vx[i],
+                       &previous_.x[i], &previous_.vx[i]);
+  kernels::first_stage(duration, n, &state.ay[i], &state.y[i], &state.vy[i], &start_.y[i], &start_.vy[i],
+                       &previous_.y[i], &previous_.vy[i]);
+}
+
 void RungeKuttaChebyshev::step(State &state)
 {
   const double h = time_step();
-  for_each_row(lattice_, band_.rows(),
-               [&](std::size_t row)
-               {
-                 const double duration = h * stages_.first();
-                 const std::size_t i = lattice_.index(row, 0), n = lattice_.columns();
-                 kernels::first_stage(duration, n, &state.ax[i], &state.x[i], &state.vx[i], &start_.x[i], &start_.vx[i],
-                                      &previous_.x[i], &previous_.vx[i]);
-                 kernels::first_stage(duration, n, &state.ay[i], &state.y[i], &state.vy[i], &start_.y[i], &start_.vy[i],
-                                      &previous_.y[i], &previous_.vy[i]);
-               });
+  const Rows own = band_.rows(), interior = halo_.interior();
+  const auto move_row = [&](std::size_t row) { first_stage(state, row); };
+  const auto move_interior = [&](std::size_t row)
+  {
+    if (row >= interior.begin && row < interior.end)
+      first_stage(state, row);
+  };
+  for_each_row(lattice_, {own.begin, interior.begin}, move_row);
+  for_each_row(lattice_, {interior.end, own.end}, move_row);
+  // In a periodic sheet all rows must have moved before those of the images can be evaluated.
+  const bool in_one_pass = lattice_.images().empty();
+  if (!in_one_pass)
+    for_each_row(lattice_, interior, move_row);
   exchange_ghosts(state);
+  touched_ = {&state.x,  &state.y,   &state.vx,  &state.vy,    &state.ax,    &state.ay,     &start_.x,
+              &start_.y, &start_.vx, &start_.vy, &previous_.x, &previous_.y, &previous_.vx, &previous_.vy};
+  Forces::RowCallbacks work;
+  work.fields = &touched_;
+  if (in_one_pass)
+    work.pre_force = std::ref(move_interior);
   for (const ChebyshevStages::Stage &stage : stages_.stages())
   {
     const auto next = [&](std::size_t row, const double *fx, const double *fy)
@@ -51,7 +72,9 @@ void RungeKuttaChebyshev::step(State &state)
                           &state.vy[i], &previous_.y[i], &previous_.vy[i]);
     };
     forces_.set_elapsed(stage.elapsed * h);
-    forces_.evaluate(state, state.vx, state.vy, {{}, {}, next});
+    work.post_force = std::ref(next);
+    forces_.evaluate(state, state.vx, state.vy, work);
+    work.pre_force = nullptr;
     evaluate_site_forces(state);
     state.x.swap(previous_.x);
     state.y.swap(previous_.y);

@@ -26,6 +26,7 @@ public:
 
 private:
   std::vector<Field *> evaluated_fields(State &state) override;
+  void first_stage(State &state, std::size_t row);
 
   /// Positions and velocities.
   struct Motion
@@ -34,8 +35,9 @@ private:
   };
 
   ChebyshevStages stages_;
-  Motion start_;    // of the step, in own rows
-  Motion previous_; // those of the stage before the one that the state holds
+  Motion start_;                       // of the step, in own rows
+  Motion previous_;                    // those of the stage before the one that the state holds
+  std::vector<const Field *> touched_; // by a stage
 };
 
 } // namespace latcon::lattice

@@ -75,8 +75,7 @@ int Simulation::needed_parts() const
   const double h = time_stepping_.step;
   const ContactLaw *const contact = contact_law_ ? &*contact_law_ : nullptr;
   const Field &vx = integrator_->evaluated_vx(state_), &vy = integrator_->evaluated_vy(state_);
-  int parts = 1;
-  const auto divide_for = [&](std::size_t near, std::size_t kind, std::size_t far)
+  const auto divide_for = [&](std::size_t near, std::size_t kind, std::size_t far, int &parts)
   {
     if (!stiffens_when_short(material_.shell(kind)->law))
       return;
@@ -84,17 +83,31 @@ int Simulation::needed_parts() const
     const double now = stretch(state_, lattice_, near, kind);
     const double rate =
       bond.dot(Eigen::Vector2d(vx[far] - vx[near], vy[far] - vy[near])) / (bond.norm() * lattice_.rest_length(kind));
-    for (; parts < most_parts; parts *= 2)
+    int needed = 1;
+    for (; needed < most_parts; needed *= 2)
     {
-      const double then = now + std::min(rate, 0.) * h / parts;
+      const double then = now + std::min(rate, 0.) * h / needed;
       if (!(then < short_stretch) ||
-          !(h / parts > recoil_step(time_stepping_, lattice_, material_, kind, std::max(then, shortest), contact)))
-        return;
+          !(h / needed > recoil_step(time_stepping_, lattice_, material_, kind, std::max(then, shortest), contact)))
+        break;
     }
+    parts = std::max(parts, needed);
   };
+  std::vector<std::size_t> rows;
   for (std::size_t row = band_.rows().begin; row < band_.rows().end; ++row)
     if (forces_.row_has_short_bonds(row))
-      for_each_bond(state_, lattice_, {row, row + 1}, divide_for);
+      rows.push_back(row);
+  int parts = 1;
+  const auto n = static_cast<std::ptrdiff_t>(rows.size());
+#pragma omp parallel for schedule(static)                                                                              \
+  reduction(max                                                                                                        \
+            : parts) if (rows.size() * lattice_.stride() >= min_places_for_threads)
+  for (std::ptrdiff_t i = 0; i < n; ++i)
+  {
+    const std::size_t row = rows[static_cast<std::size_t>(i)];
+    for_each_bond(state_, lattice_, {row, row + 1},
+                  [&](std::size_t near, std::size_t kind, std::size_t far) { divide_for(near, kind, far, parts); });
+  }
   return parts;
 }
 
@@ -181,15 +194,25 @@ void Simulation::cut_bonds(const std::vector<std::pair<std::size_t, std::size_t>
   reinitialize_forces();
 }
 
+template <class Visitor>
+void Simulation::for_each_known_site(const Visitor &visit) const
+{
+  for (const std::size_t row : band_.known_rows())
+    for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
+      visit(lattice_.index(row, column));
+}
+
 void Simulation::move_edges(const Eigen::Matrix2d &velocity_gradient)
 {
-  for (std::size_t place = 0; place < lattice_.n_places(); ++place)
-    if (state_.held[place] != 0)
+  for_each_known_site(
+    [&](std::size_t place)
     {
+      if (state_.held[place] == 0)
+        return;
       const Eigen::Vector2d velocity = velocity_gradient * lattice_.reference(place);
       state_.vx[place] = velocity.x();
       state_.vy[place] = velocity.y();
-    }
+    });
   edges_move_ = true;
   reinitialize_forces();
 }
@@ -197,12 +220,14 @@ void Simulation::move_edges(const Eigen::Matrix2d &velocity_gradient)
 void Simulation::set_velocities(const Field &vx, const Field &vy)
 {
   const double before = kinetic_energy(state_, band_);
-  for (std::size_t place = 0; place < lattice_.n_places(); ++place)
-    if (state_.inverse_mass[place] > 0.)
+  for_each_known_site(
+    [&](std::size_t place)
     {
+      if (!(state_.inverse_mass[place] > 0.))
+        return;
       state_.vx[place] = vx[place];
       state_.vy[place] = vy[place];
-    }
+    });
   initial_energy_ += kinetic_energy(state_, band_) - before;
   reinitialize_forces();
 }

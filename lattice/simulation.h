@@ -110,6 +110,8 @@ private:
     }
   };
 
+  template <class Visitor>
+  void for_each_known_site(const Visitor &visit) const;
   double stored_energy() const; // in bonds and their memory [J/m]
   void reinitialize_forces();
   void update_powers();

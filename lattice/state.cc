@@ -84,14 +84,18 @@ State homogeneous_state(const RowPartition &band, const Material &material, cons
   state.bonds.clear(n);
 
   state.periods = F;
-  for (std::size_t place = 0; place < n; ++place)
+  const std::size_t stride = lattice.stride(), below = lattice.index(0, 0) / stride;
+  for (std::size_t row = 0; row < n / stride; ++row)
   {
-    const bool in_margin = lattice.row_of(place) >= lattice.rows(); // unsigned, so below the first row as well
-    if (!band.is_relevant(place) && !in_margin)
+    const bool in_margin = row < below || row >= below + lattice.rows();
+    if (!in_margin && !band.is_relevant(row * stride))
       continue;
-    const Eigen::Vector2d position = F * lattice.reference(place);
-    state.x[place] = position.x();
-    state.y[place] = position.y();
+    for (std::size_t place = row * stride; place < (row + 1) * stride; ++place)
+    {
+      const Eigen::Vector2d position = F * lattice.reference(place);
+      state.x[place] = position.x();
+      state.y[place] = position.y();
+    }
   }
 
   state.stiffness = bond_factors(band, material, BondProperty::stiffness);

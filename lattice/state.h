@@ -89,19 +89,35 @@ void relax_memory(State &state, const RowPartition &band, const Material &materi
 /// Current stretch |x_j - x_i| / l of a bond [-].
 double stretch(const State &state, const TriangularLattice &lattice, std::size_t place, std::size_t kind);
 
+/// Calls operation(row) for each of some rows, which are shared out among threads. For operations that couple no two
+/// sites, whose bits then cannot depend on how.
+template <class RowOperation>
+void for_each_row(const TriangularLattice &lattice, Rows rows, const RowOperation &operation)
+{
+  const auto end = static_cast<std::ptrdiff_t>(rows.end);
+#pragma omp parallel for schedule(static) if ((rows.end - rows.begin) * lattice.stride() >= min_places_for_threads)
+  for (auto row = static_cast<std::ptrdiff_t>(rows.begin); row < end; ++row)
+    operation(static_cast<std::size_t>(row));
+}
+
 /// Calls visit(place, kind, far_place) for every bond present that starts in a row of `rows`, row by row; far_place may
 /// be an image.
 template <class Visitor>
 void for_each_bond(const State &state, const TriangularLattice &lattice, Rows rows, Visitor &&visit)
 {
   for (std::size_t row = rows.begin; row < rows.end; ++row)
+  {
+    std::array<std::size_t, n_bond_kinds> shift{};
+    for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+      shift[kind] = static_cast<std::size_t>(lattice.shift(kind, row));
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
     {
       const std::size_t place = lattice.index(row, column);
       for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
         if (state.bonds.present(place, kind))
-          visit(place, kind, place + static_cast<std::size_t>(lattice.shift(kind, row)));
+          visit(place, kind, place + shift[kind]);
     }
+  }
 }
 
 /// Visits the bonds of all rows.

@@ -56,17 +56,15 @@ void VelocityVerlet::step(State &state)
         drift(state, row);
     };
     halo_.finish();
-    forces_.evaluate(state, predicted_vx_, predicted_vy_,
-                     {before,
-                      {&state.x, &state.y, &state.vx, &state.vy, &state.ax, &state.ay, &predicted_vx_, &predicted_vy_},
-                      after});
+    touched_ = {&state.x, &state.y, &state.vx, &state.vy, &state.ax, &state.ay, &predicted_vx_, &predicted_vy_};
+    forces_.evaluate(state, predicted_vx_, predicted_vy_, {std::ref(before), &touched_, std::ref(after)});
   }
   else
   {
     for_each_row(lattice_, interior, drift_row);
     halo_.finish();
     update_all_images(state);
-    forces_.evaluate(state, predicted_vx_, predicted_vy_, {{}, {}, after});
+    forces_.evaluate(state, predicted_vx_, predicted_vy_, {{}, nullptr, std::ref(after)});
   }
   forces_.update_memory(state);
   evaluate_site_forces(state);

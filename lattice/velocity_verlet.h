@@ -31,6 +31,7 @@ private:
   void drift(State &state, std::size_t row);
 
   Field predicted_vx_, predicted_vy_;
+  std::vector<const Field *> touched_; // by a step
 };
 
 } // namespace latcon::lattice

@@ -442,4 +442,40 @@ TEST(Contact, GivesTheSameBitsOnOneThreadAndOnTwo)
   EXPECT_EQ(std::memcmp(one.data(), two.data(), one.size() * sizeof(double)), 0);
 }
 
+// Pairs and forces in the same order, with the same bits, for any number of threads that share them.
+TEST(Contact, ListsDoNotDependOnThreads)
+{
+  const TriangularLattice sheet = sheets::square(50);
+  const Material material = sheets::rubber();
+  std::vector<std::size_t> places;
+  for (std::size_t place = 0; place < sheet.n_places(); ++place)
+    if (sheet.is_site(place))
+      places.push_back(place);
+  State state = loose_sites(sheet, material, places);
+  add_noise(state, sheet, 0.3 * sheets::spacing, 1);
+  const auto forces = [&](int threads)
+  {
+    omp_set_num_threads(threads);
+    Contact contact(sheet, contact_like_nearest_bond(sheet, material, 1.1 * sheets::spacing, 1., 1.));
+    contact.find_candidates(state);
+    const std::vector<SiteForce> all = contact.evaluate(state, state.vx, state.vy);
+    return std::pair(all, contact.n_touching());
+  };
+  const int before = omp_get_max_threads();
+  const auto [one, one_touching] = forces(1);
+  EXPECT_GT(one_touching, 2048u); // so many that they are shared
+  for (const int threads : {2, 3})
+  {
+    const auto [several, touching] = forces(threads);
+    EXPECT_EQ(touching, one_touching);
+    ASSERT_EQ(several.size(), one.size());
+    for (std::size_t i = 0; i < one.size(); ++i)
+    {
+      ASSERT_EQ(several[i].place, one[i].place);
+      ASSERT_EQ(several[i].force, one[i].force);
+    }
+  }
+  omp_set_num_threads(before);
+}
+
 } // namespace
