@@ -35,13 +35,16 @@ TEST(DamageClaim, Holds)
   input.has_next_nearest = false;
   input.nearest = {ShellCase::Law::linear, 0., 0., 1e6, 1., 0.};
   input.breaking_stretch = 1.02;
-  const ClaimOutcome linear = outcome(input);
+  DamageOptions at_rest;
+  at_rest.has_motion = false; // short
+  const ClaimOutcome linear = outcome(input, at_rest);
   EXPECT_TRUE(linear.results.all_hold()) << linear.results.verdict_text(9);
 }
 
 // Quantities of the rows that fail, without the name of the subject.
-std::vector<std::string> failing(const DamageOptions &options)
+std::vector<std::string> failing(DamageOptions options, bool has_motion = false)
 {
+  options.has_motion = has_motion;
   Case input = subjects::paper_case();
   input.breaking_stretch = 3.05;
   const Results results = outcome(input, options).results;
@@ -62,6 +65,19 @@ TEST(DamageClaim, FailsForAnotherEnergyOfACrack)
         "energy of a crack over G_c, extrapolated in h", "energy of a crack over G_c, gradient, h = xi/4",
         "damage of a homogeneous bar at 1.5 of the critical strain", "energy dissipated in a homogeneous bar"})
     EXPECT_EQ(std::count(quantities.begin(), quantities.end(), expected), 1) << expected;
+}
+
+TEST(DamageClaim, FailsForAnotherEnergyOfACrackInMotion)
+{
+  for (const double factor : {0.8, 1.3}) // the second one does not run
+  {
+    DamageOptions options;
+    options.planted_toughness = factor;
+    const std::vector<std::string> quantities = failing(options, true);
+    EXPECT_EQ(
+      std::count(quantities.begin(), quantities.end(), "in motion, energy of a steady crack over G_c, h = xi/2"), 1)
+      << factor;
+  }
 }
 
 // Two faults in one run: neither has a part in the rows of the other.

@@ -5,6 +5,7 @@
 
 #include "continuum/rectangle.h"
 #include "support/largest_error.h"
+#include "verification/claims/damage/damage_motion_rows.h"
 #include "verification/claims/damage/damaged_bar.h"
 
 namespace latcon::claims
@@ -273,6 +274,8 @@ ClaimOutcome damage_claim(const bridge::Subject &subject, const DamageLaw &law, 
                               [&] { degraded_energy(problem, options.planted_undegraded_gradient, rows); });
                  rows.attempt("broken bars", [&] { broken_bars(problem, options, rows, outcome); });
                });
+  if (options.has_motion)
+    add_damage_motion_rows(subject, law, options, outcome);
   return outcome;
 }
 

@@ -20,10 +20,11 @@ Claim damage_descriptor()
 {
   Claim claim;
   claim.name = "damage";
-  claim.title = "a bar of the continuum with damage breaks as predicted by the closed form";
+  claim.title = "the continuum with damage breaks as predicted by closed forms";
   claim.statement = "Damage of the finite elements begins at its threshold, never heals, and closes the ledger of "
                     "energies. A bar breaks for the energy of a crack, with the damage of the closed form, with and "
-                    "without gradient energy. This claim is about the continuum alone.";
+                    "without gradient energy; in motion its crack runs if the energy that it releases exceeds that of "
+                    "the crack. This claim is about the continuum alone.";
   claim.check = check;
   claim.is_default = false;
   claim.entries = {"Damage/length", "Damage/threshold energy", "Damage/residual stiffness",

@@ -1,0 +1,217 @@
+#include "continuum/damage/damage_motion.h"
+
+#include "continuum/errors.h"
+
+#include <cmath>
+#include <string>
+
+using dealii::Point;
+using dealii::Tensor;
+
+namespace latcon::continuum
+{
+namespace
+{
+std::vector<char> intact_nodes(const NodeGrid &grid, const DamageMotionSetup &setup)
+{
+  std::vector<char> intact(grid.n_nodes(), 0);
+  if (setup.is_intact)
+    for (std::size_t a = 0; a < intact.size(); ++a)
+      intact[a] = setup.is_intact(grid.position(a)) ? 1 : 0;
+  return intact;
+}
+
+GridVector zero_vector(const NodeGrid &grid)
+{
+  return {std::vector<double>(grid.n_nodes(), 0.), std::vector<double>(grid.n_nodes(), 0.)};
+}
+
+// State of the equations of motion, or its rate.
+struct PhasePoint
+{
+  GridVector u, v;
+  double dissipated = 0.; // [J/m]
+};
+} // namespace
+
+DamageMotion::DamageMotion(const DamageMotionSetup &setup)
+  : setup_(setup), forces_(NodeGrid(setup.rectangle), setup.families, setup.dashpots, setup.loading),
+    damage_(forces_.grid(), setup.damage, intact_nodes(forces_.grid(), setup)), mass_(grid().n_nodes(), 0.),
+    u_(zero_vector(grid())), v_(zero_vector(grid()))
+{
+  const auto require = [](const bool holds, const char *rule)
+  {
+    if (!holds)
+      throw InvalidInput(rule);
+  };
+  require(setup.density > 0. && std::isfinite(setup.density), "the density must be positive and finite");
+  require(setup.step > 0. && std::isfinite(setup.step), "the time step must be positive and finite");
+  require(static_cast<bool>(setup.is_held), "a sheet in motion needs to know its held nodes");
+  for (const unsigned int i : {0u, 1u})
+    for (std::size_t a = 0; a < grid().n_nodes(); ++a)
+      held_[i].push_back(setup.is_held(grid().position(a), i) ? 1 : 0);
+  if (const double rate = forces_.viscous_rate(setup.density); rate > 0.)
+    stages_.emplace(ViscousStages::required(setup.step * rate));
+  else
+    require(setup.step < stable_step(), "the time step exceeds the stability limit of a sheet without viscosity");
+  update_masses();
+  restart_ledger();
+}
+
+void DamageMotion::set_motion(const std::function<Tensor<1, 2>(const Point<2> &)> &displacement,
+                              const std::function<Tensor<1, 2>(const Point<2> &)> &velocity)
+{
+  for (std::size_t a = 0; a < grid().n_nodes(); ++a)
+  {
+    const Tensor<1, 2> u = displacement(grid().position(a)), v = velocity(grid().position(a));
+    for (const unsigned int i : {0u, 1u})
+      if (!held_[i][a])
+      {
+        u_[i][a] = u[i];
+        v_[i][a] = v[i];
+      }
+  }
+  restart_ledger();
+}
+
+void DamageMotion::set_damage(const std::function<double(const Point<2> &)> &damage)
+{
+  std::vector<double> nodal;
+  for (std::size_t a = 0; a < grid().n_nodes(); ++a)
+    nodal.push_back(damage(grid().position(a)));
+  damage_.set(nodal);
+  update_masses();
+  restart_ledger();
+}
+
+void DamageMotion::restart_ledger()
+{
+  forces_.energies(u_, damage_.cell_factors(), cell_energies_);
+  ledger_ = {};
+  initial_fracture_ = damage_.fracture_energy();
+  initial_energy_ = 0.;
+  update_energies();
+  initial_energy_ = ledger_.elastic + ledger_.kinetic;
+  update_energies();
+}
+
+void DamageMotion::update_masses()
+{
+  const std::size_t columns = grid().columns();
+  mass_.assign(grid().n_nodes(), 0.);
+  for (std::size_t j = 0; j < grid().cells_y; ++j)
+    for (std::size_t i = 0; i < grid().cells_x; ++i)
+    {
+      const double share = 0.25 * setup_.density * grid().area() * damage_.cell_factors()[j * grid().cells_x + i];
+      const std::size_t a = j * columns + i;
+      for (const std::size_t b : {a, a + 1, a + columns, a + columns + 1})
+        mass_[b] += share;
+    }
+}
+
+double DamageMotion::kinetic_energy() const
+{
+  double sum = 0.;
+  for (std::size_t a = 0; a < mass_.size(); ++a)
+    sum += 0.5 * mass_[a] * (v_[0][a] * v_[0][a] + v_[1][a] * v_[1][a]);
+  return sum;
+}
+
+void DamageMotion::update_energies()
+{
+  ledger_.elastic = 0.;
+  for (std::size_t c = 0; c < cell_energies_.size(); ++c)
+    ledger_.elastic += damage_.cell_factors()[c] * cell_energies_[c];
+  ledger_.kinetic = kinetic_energy();
+  ledger_.fracture = damage_.fracture_energy() - initial_fracture_;
+  ledger_.imbalance =
+    initial_energy_ - ledger_.elastic - ledger_.kinetic - ledger_.viscous - ledger_.fracture - ledger_.shed;
+  if (!std::isfinite(ledger_.imbalance))
+    throw NonPhysicalState("the energy of the sheet is not finite at time " + std::to_string(time()) + " s");
+}
+
+void DamageMotion::accelerate(const GridVector &u, const GridVector &v, GridVector &acceleration, double &power) const
+{
+  power = forces_.forces(u, v, damage_.cell_factors(), acceleration);
+  for (const unsigned int i : {0u, 1u})
+  {
+#pragma omp parallel for schedule(static) if (grid().n_cells() >= FibreForces::min_cells_for_threads)
+    for (std::size_t a = 0; a < mass_.size(); ++a)
+      acceleration[i][a] = held_[i][a] ? 0. : acceleration[i][a] / mass_[a];
+  }
+}
+
+// Eq. (C.73). The dissipated energy is one more unknown of the method, with the power as its rate: quadrature between
+// steps alone would miss the fast relaxation after damage.
+void DamageMotion::advance_viscous()
+{
+  const double h = setup_.step;
+  const PhasePoint initial{u_, v_, ledger_.viscous};
+  PhasePoint before = initial, last = initial, rate, initial_rate;
+  initial_rate.u = initial.v;
+  accelerate(initial.u, initial.v, initial_rate.v, initial_rate.dissipated);
+  const auto combine = [&](const ViscousStages::Stage &c, std::vector<double> &to, const std::vector<double> &Y0,
+                           const std::vector<double> &Y1, const std::vector<double> &F0, const std::vector<double> &F1)
+  {
+#pragma omp parallel for simd schedule(static) if (parallel : grid().n_cells() >= FibreForces::min_cells_for_threads)
+    for (std::size_t a = 0; a < to.size(); ++a)
+      to[a] = (1. - c.mu - c.nu) * Y0[a] + c.mu * Y1[a] + c.nu * to[a] + h * (c.now * F1[a] + c.start * F0[a]);
+  };
+  const auto advance = [&](const ViscousStages::Stage &c, const PhasePoint &F1)
+  {
+    // Overwrites Y_{j-2} by Y_j.
+    for (const unsigned int i : {0u, 1u})
+    {
+      combine(c, before.u[i], initial.u[i], last.u[i], initial_rate.u[i], F1.u[i]);
+      combine(c, before.v[i], initial.v[i], last.v[i], initial_rate.v[i], F1.v[i]);
+    }
+    before.dissipated = (1. - c.mu - c.nu) * initial.dissipated + c.mu * last.dissipated + c.nu * before.dissipated +
+                        h * (c.now * F1.dissipated + c.start * initial_rate.dissipated);
+    std::swap(before, last);
+  };
+  advance({0., 0., stages_->first(), 0.}, initial_rate); // Y_1
+  for (const ViscousStages::Stage &stage : stages_->stages())
+  {
+    rate.u = last.v;
+    accelerate(last.u, last.v, rate.v, rate.dissipated);
+    advance(stage, rate);
+  }
+  u_ = std::move(last.u);
+  v_ = std::move(last.v);
+  ledger_.viscous = last.dissipated;
+}
+
+void DamageMotion::advance_elastic()
+{
+  GridVector acceleration;
+  double power = 0.;
+  const auto add = [&](GridVector &to, const double factor, const GridVector &from)
+  {
+    for (const unsigned int i : {0u, 1u})
+      for (std::size_t a = 0; a < mass_.size(); ++a)
+        to[i][a] += factor * from[i][a];
+  };
+  accelerate(u_, v_, acceleration, power);
+  add(v_, 0.5 * setup_.step, acceleration);
+  add(u_, setup_.step, v_);
+  accelerate(u_, v_, acceleration, power);
+  add(v_, 0.5 * setup_.step, acceleration);
+}
+
+void DamageMotion::advance()
+{
+  if (stages_)
+    advance_viscous();
+  else
+    advance_elastic();
+  ++n_steps_;
+  forces_.energies(u_, damage_.cell_factors(), cell_energies_);
+  const double kinetic = kinetic_energy();
+  if (damage_.minimize(cell_energies_))
+  {
+    update_masses();
+    ledger_.shed += kinetic - kinetic_energy();
+  }
+  update_energies();
+}
+} // namespace latcon::continuum

@@ -1,0 +1,101 @@
+#pragma once
+
+#include "continuum/damage/fibre_forces.h"
+#include "continuum/damage/viscous_stages.h"
+
+#include <functional>
+#include <optional>
+
+namespace latcon::continuum
+{
+/// A sheet in motion with damage.
+struct DamageMotionSetup
+{
+  Rectangle rectangle;
+  dealii::Tensor<2, 2> loading; ///< F_0 [-]; displacements are relative to it
+  std::vector<FibreFamily> families;
+  std::vector<FibreDashpot> dashpots; ///< may be empty
+  double density;                     ///< rho > 0 [kg/m^3] of the undamaged material
+  DamageLaw damage;
+  /// Returns true where component i of the position x = F_0 X is prescribed, for ever. The argument is a node.
+  std::function<bool(const dealii::Point<2> &, unsigned int i)> is_held;
+  /// Returns true for nodes whose initial damage does not change; empty: none.
+  std::function<bool(const dealii::Point<2> &)> is_intact;
+  double step; ///< [s] > 0
+};
+
+/// Energies of a sheet in motion with damage [J/m], per unit reference thickness, eq. (C.74).
+struct DamageMotionLedger
+{
+  double elastic = 0.;   ///< sum of g_c E_c
+  double kinetic = 0.;   ///< sum of m_a |v_a|^2 / 2
+  double viscous = 0.;   ///< dissipated since the start
+  double fracture = 0.;  ///< S(d), without that of the initial damage
+  double shed = 0.;      ///< kinetic energy of the mass that was removed with damage
+  double imbalance = 0.; ///< initial energy - all of the above
+};
+
+/// Motion of a sheet of fibres with damage on a uniform grid of bilinear elements, mass, stress and viscosity degraded
+/// alike (theory-continuum.md, "Motion with damage", eqs. (C.69) to (C.74)): the waves of damaged material are as fast
+/// as those of intact material, and damage does not limit the time step. Held nodes do not move, so that edges do no
+/// work; other edges are free. There is no gradient energy.
+///
+/// Steps are explicit: Runge-Kutta-Chebyshev with as many stages as the viscosity requires, or velocity Verlet without
+/// viscosity. After each step the damage is minimised at fixed displacement and velocity.
+///
+/// Serial (threads only); bits do not depend on the number of threads.
+class DamageMotion
+{
+public:
+  /// Creates a homogeneous sheet x = F_0 X at rest. Throws InvalidInput and InvalidMaterial as NodeGrid, GridDamage,
+  /// FibreForces and ViscousStages do, for a density or step that is not positive and finite, and, without viscosity,
+  /// for a step beyond stable_step().
+  explicit DamageMotion(const DamageMotionSetup &setup);
+
+  /// Sets the excess displacement u = x - F_0 X [m] and the velocity [m/s] of the nodes, except held components.
+  /// Restarts the ledger.
+  void set_motion(const std::function<dealii::Tensor<1, 2>(const dealii::Point<2> &)> &displacement,
+                  const std::function<dealii::Tensor<1, 2>(const dealii::Point<2> &)> &velocity);
+
+  /// Sets the nodal damage [-], such as that of a seed crack. Restarts the ledger. Throws InvalidInput for values out
+  /// of [0, 1].
+  void set_damage(const std::function<double(const dealii::Point<2> &)> &damage);
+
+  /// Advances by one step. Throws NonPhysicalState as FibreForces::energies and GridDamage::minimize do; the motion
+  /// cannot be continued then.
+  void advance();
+
+  double time() const { return static_cast<double>(n_steps_) * setup_.step; } ///< [s]
+  std::size_t n_steps() const { return n_steps_; }
+  const DamageMotionLedger &ledger() const { return ledger_; }
+  const GridDamage &damage() const { return damage_; }
+  const NodeGrid &grid() const { return forces_.grid(); }
+  const GridVector &displacement() const { return u_; } ///< excess over F_0 X [m]
+  const GridVector &velocity() const { return v_; }     ///< [m/s]
+  unsigned int n_stages() const { return stages_ ? static_cast<unsigned int>(stages_->stages().size()) + 1 : 1; }
+
+  /// Returns the longest stable step [s] of velocity Verlet at F_0.
+  double stable_step() const { return 2. / forces_.elastic_frequency(setup_.density); }
+
+private:
+  void restart_ledger();
+  void update_masses();
+  void update_energies();
+  void accelerate(const GridVector &u, const GridVector &v, GridVector &acceleration, double &power) const;
+  void advance_viscous();
+  void advance_elastic();
+  double kinetic_energy() const;
+
+  DamageMotionSetup setup_;
+  FibreForces forces_;
+  GridDamage damage_;
+  std::array<std::vector<char>, 2> held_;
+  std::optional<ViscousStages> stages_; // none without viscosity
+  std::vector<double> mass_;            // [kg/m]
+  std::vector<double> cell_energies_;   // [J/m]
+  GridVector u_, v_;
+  std::size_t n_steps_ = 0;
+  DamageMotionLedger ledger_;
+  double initial_energy_ = 0., initial_fracture_ = 0.; // [J/m]
+};
+} // namespace latcon::continuum

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <vector>
+
+namespace latcon::continuum
+{
+/// Stages of the damped Runge-Kutta-Chebyshev method of second order for equations whose stiffness is viscous
+/// (theory-continuum.md, eqs. (C.72), (C.73)):
+///   Y_1 = Y_0 + first h F_0,
+///   Y_j = (1 - mu - nu) Y_0 + mu Y_{j-1} + nu Y_{j-2} + h (now F_{j-1} + start F_0),   j = 2 ... s.
+/// Y_s is the state after the step h. Written independently of the stepper of the lattice, with which it is compared.
+class ViscousStages
+{
+public:
+  /// Coefficients of stage j >= 2 [-].
+  struct Stage
+  {
+    double mu, nu;
+    double now, start;
+  };
+
+  /// Creates the method with `n` >= 2 stages. Throws InvalidInput for fewer.
+  explicit ViscousStages(unsigned int n);
+
+  double first() const { return first_; }
+  const std::vector<Stage> &stages() const { return stages_; }
+
+  /// Returns beta(n) [-]: a step h is stable for real eigenvalues from -beta/h to 0.
+  static double real_limit(unsigned int n);
+
+  /// Returns the smallest n with real_limit(n) >= `limit` [-]. Throws InvalidInput unless `limit` is finite and not
+  /// negative, and if more than max_stages are necessary.
+  static unsigned int required(double limit);
+
+  static constexpr unsigned int max_stages = 500;
+
+private:
+  double first_;
+  std::vector<Stage> stages_;
+};
+} // namespace latcon::continuum

@@ -1,0 +1,402 @@
+// Motion of a sheet with damage (theory-continuum.md, eqs. (C.69) to (C.74)).
+#include "continuum/damage/damage_motion.h"
+
+#include <gtest/gtest.h>
+
+#include "continuum/cauchy_born.h"
+#include "continuum/errors.h"
+#include "continuum/isotropic_network.h"
+
+#include <omp.h>
+
+#include <cmath>
+#include <complex>
+#include <random>
+
+using namespace latcon::continuum;
+using dealii::Point;
+using dealii::Tensor;
+
+namespace
+{
+constexpr double pi = 3.14159265358979323846;
+
+Tensor<2, 2> matrix(const double xx, const double xy, const double yx, const double yy)
+{
+  Tensor<2, 2> F;
+  F[0][0] = xx;
+  F[0][1] = xy;
+  F[1][0] = yx;
+  F[1][1] = yy;
+  return F;
+}
+
+std::vector<FibreFamily> springs()
+{
+  std::vector<FibreFamily> fibres;
+  for (const double angle : {0., pi / 3., 2. * pi / 3.})
+    fibres.push_back({Tensor<1, 2>({std::cos(angle), std::sin(angle)}), 1., LinearPotential{1e6}});
+  return fibres;
+}
+
+std::vector<FibreFamily> rods()
+{
+  std::vector<FibreFamily> fibres = springs();
+  for (FibreFamily &fibre : fibres)
+    fibre.potential = RodPotential{1e5, 1.5e5};
+  return fibres;
+}
+
+std::vector<FibreDashpot> dashpots(const double viscosity)
+{
+  std::vector<FibreDashpot> fibres;
+  for (const FibreFamily &spring : springs())
+    fibres.push_back({spring.direction, 1., viscosity});
+  return fibres;
+}
+
+// Multiplies the solution of y' = z y by the factor of one step.
+template <class Number>
+Number amplification(const ViscousStages &method, const Number z)
+{
+  Number before = 1., last = 1. + method.first() * z;
+  for (const ViscousStages::Stage &c : method.stages())
+  {
+    const Number next = 1. - c.mu - c.nu + c.mu * last + c.nu * before + z * (c.now * last + c.start);
+    before = last;
+    last = next;
+  }
+  return last;
+}
+
+TEST(ViscousStages, AreOfSecondOrderAndStableToTheirLimit)
+{
+  for (const unsigned int n : {2u, 3u, 9u, 40u})
+  {
+    const ViscousStages method(n);
+    // R(z) - e^z = O(z^3): the third derivatives of R are at most 1.
+    for (const double z : {-1e-2, 1e-2})
+      EXPECT_LT(std::abs(amplification(method, z) - std::exp(z)), 0.2 * std::abs(z * z * z)) << n;
+    const double limit = ViscousStages::real_limit(n);
+    for (unsigned int k = 0; k <= 1000; ++k)
+      EXPECT_LE(std::abs(amplification(method, -limit * k / 1000.)), 1. + 1e-10) << n << ' ' << k;
+    EXPECT_GT(std::abs(amplification(method, -1.5 * limit)), 1.) << n; // damped at the limit itself
+    EXPECT_EQ(ViscousStages::required(limit * (1. - 1e-12)), n);
+    EXPECT_EQ(ViscousStages::required(limit * (1. + 1e-12)), n + 1);
+  }
+  EXPECT_THROW(ViscousStages(1), InvalidInput);
+  EXPECT_THROW(ViscousStages::required(std::nan("")), InvalidInput);
+  EXPECT_THROW(ViscousStages::required(1e12), InvalidInput);
+}
+
+struct RandomSheet
+{
+  RandomSheet() : grid(Rectangle{3., 1.6, 3, 2})
+  {
+    std::mt19937 random(7);
+    std::uniform_real_distribution<double> some(-0.1, 0.1);
+    for (const unsigned int i : {0u, 1u})
+      for (std::size_t a = 0; a < grid.n_nodes(); ++a)
+      {
+        u[i].push_back(some(random));
+        v[i].push_back(some(random));
+      }
+    for (std::size_t c = 0; c < grid.n_cells(); ++c)
+      factors.push_back(0.5 + some(random));
+  }
+  NodeGrid grid;
+  GridVector u, v;
+  std::vector<double> factors;
+};
+
+double energy(const FibreForces &forces, const RandomSheet &sheet)
+{
+  std::vector<double> cells;
+  forces.energies(sheet.u, sheet.factors, cells);
+  double sum = 0.;
+  for (std::size_t c = 0; c < cells.size(); ++c)
+    sum += sheet.factors[c] * cells[c];
+  return sum;
+}
+
+TEST(FibreForces, AreTheGradientOfTheDegradedEnergy)
+{
+  std::vector<FibreFamily> fibres = springs();
+  for (const FibreFamily &rod : rods())
+    fibres.push_back(rod);
+  RandomSheet sheet;
+  const FibreForces forces(sheet.grid, fibres, dashpots(50.), matrix(1.3, 0.1, 0., 1.5));
+  const GridVector rest{std::vector<double>(sheet.grid.n_nodes(), 0.), std::vector<double>(sheet.grid.n_nodes(), 0.)};
+  GridVector elastic, all;
+  EXPECT_EQ(forces.forces(sheet.u, rest, sheet.factors, elastic), 0.);
+  constexpr double step = 1e-5; // central differences: 1e-10 of third derivatives, 1e-16/1e-5 of round-off
+  const double scale = 1e6;     // force of a spring at a strain of 1
+  for (const unsigned int i : {0u, 1u})
+    for (std::size_t a = 0; a < sheet.grid.n_nodes(); ++a)
+    {
+      const double before = sheet.u[i][a];
+      sheet.u[i][a] = before + step;
+      const double high = energy(forces, sheet);
+      sheet.u[i][a] = before - step;
+      const double low = energy(forces, sheet);
+      sheet.u[i][a] = before;
+      EXPECT_NEAR(elastic[i][a], -(high - low) / (2. * step), 1e-8 * scale);
+    }
+  // The dissipated power is that of the viscous forces.
+  const double power = forces.forces(sheet.u, sheet.v, sheet.factors, all);
+  double work = 0.;
+  for (const unsigned int i : {0u, 1u})
+    for (std::size_t a = 0; a < sheet.grid.n_nodes(); ++a)
+      work += (all[i][a] - elastic[i][a]) * sheet.v[i][a];
+  EXPECT_GT(power, 0.);
+  EXPECT_NEAR(power, -work, 1e-12 * scale);
+}
+
+TEST(FibreForces, AgreeWithTheLawsOfOtherSheets)
+{
+  RandomSheet sheet;
+  for (std::vector<double> &component : sheet.u)
+    std::fill(component.begin(), component.end(), 0.);
+  const Tensor<2, 2> F = matrix(2.3, 0.2, -0.1, 2.8);
+  std::vector<double> cells;
+  FibreForces(sheet.grid, rods(), {}, F).energies(sheet.u, sheet.factors, cells);
+  const double W = CauchyBorn(rods()).energy(F);
+  for (const double E : cells)
+    EXPECT_NEAR(E, W * sheet.grid.area(), 1e-14 * W);
+  FibreForces(sheet.grid, in_all_directions(rods(), 12), {}, F).energies(sheet.u, sheet.factors, cells);
+  const double network = IsotropicNetwork(rods()).energy(F);
+  for (const double E : cells) // principal stretches differ by less than a tenth of their sum
+    EXPECT_NEAR(E, network * sheet.grid.area(), 1e-11 * network);
+
+  // A cell that is inverted is an error unless it is broken.
+  for (std::size_t j = 0; j < sheet.grid.rows(); ++j)
+    sheet.u[0][j * sheet.grid.columns() + 1] = -3. * 2.3;
+  const FibreForces forces(sheet.grid, rods(), {}, F);
+  std::fill(sheet.factors.begin(), sheet.factors.end(), 1.);
+  EXPECT_THROW(forces.energies(sheet.u, sheet.factors, cells), NonPhysicalState);
+  std::fill(sheet.factors.begin(), sheet.factors.end(), 1e-3);
+  EXPECT_NO_THROW(forces.energies(sheet.u, sheet.factors, cells));
+}
+
+TEST(GridDamage, MinimisesTheEnergyAndNeverHeals)
+{
+  const NodeGrid grid(Rectangle{12., 10., 12, 10});
+  const DamageLaw law{1., 2., 1e-6};
+  std::vector<char> intact(grid.n_nodes(), 0);
+  for (std::size_t i = 0; i < grid.columns(); ++i)
+    intact[i] = 1;
+  GridDamage field(grid, law, intact);
+  std::mt19937 random(3);
+  std::uniform_real_distribution<double> some(0., 4.);
+  std::vector<double> energies(grid.n_cells());
+  const auto total = [&](const GridDamage &damage)
+  {
+    double sum = damage.fracture_energy();
+    for (std::size_t c = 0; c < energies.size(); ++c)
+      sum += damage.cell_factors()[c] * energies[c];
+    return sum;
+  };
+  for (unsigned int round = 0; round < 3; ++round)
+  {
+    for (double &E : energies)
+      E = some(random) * (round == 1 ? 0.1 : 1.);
+    const std::vector<double> before = field.nodal();
+    const bool changed = field.minimize(energies);
+    EXPECT_EQ(changed, round != 1); // a tenth of the energies drives nothing
+    const double lowest = total(field);
+    // First-order conditions: no admissible change of one node lowers the energy.
+    for (std::size_t a = 0; a < grid.n_nodes(); ++a)
+    {
+      const double d = field.nodal()[a];
+      EXPECT_GE(d, before[a]);
+      EXPECT_LE(d, 1.);
+      if (intact[a])
+      {
+        EXPECT_EQ(d, 0.);
+        continue;
+      }
+      constexpr double change = 1e-3; // raises E by 1e-6 of its curvature, much more than the tolerance 1e-7 lowers it
+      for (const double sign : {-1., 1.})
+        if (const double other = d + sign * change; other >= before[a] && other <= 1.)
+        {
+          GridDamage moved(grid, law, intact);
+          std::vector<double> nodal = field.nodal();
+          nodal[a] = other;
+          moved.set(nodal);
+          EXPECT_GT(total(moved), lowest) << round << ' ' << a << ' ' << sign;
+        }
+    }
+  }
+}
+
+TEST(GridDamage, OfAHomogeneousSheetIsInClosedForm)
+{
+  // eq. (C.66): 1 - d = W_c/W.
+  const NodeGrid grid(Rectangle{6., 5., 6, 5});
+  GridDamage field(grid, {1., 2., 1e-6});
+  EXPECT_FALSE(field.minimize(std::vector<double>(grid.n_cells(), 1. - 1e-6)));
+  EXPECT_TRUE(field.minimize(std::vector<double>(grid.n_cells(), 4.)));
+  for (const double d : field.nodal())
+    EXPECT_NEAR(d, 0.75, 1e-5); // 100 times the tolerance of the iteration
+  const double uniform = field.nodal()[0];
+  EXPECT_NEAR(field.fracture_energy(), 2. * (1. - 1e-6) * 30. * uniform, 1e-3);
+  EXPECT_THROW(field.set(std::vector<double>(grid.n_nodes(), 1.1)), InvalidInput);
+  EXPECT_THROW(field.minimize(std::vector<double>(grid.n_cells(), std::nan(""))), NonPhysicalState);
+  EXPECT_THROW(GridDamage(NodeGrid(Rectangle{6., 5., 6, 2}), {1., 2.}), InvalidInput);
+}
+
+// Bar between held ends, in uniaxial strain, whose fundamental mode is excited.
+DamageMotion bar(const double viscosity, const double step)
+{
+  constexpr unsigned int n = 16;
+  DamageMotionSetup setup{
+    Rectangle{1., 1. / n, n, 1}, matrix(1., 0., 0., 1.), springs(), {}, 1000., {1e9, 0.1}, {}, {}, step};
+  if (viscosity > 0.)
+    setup.dashpots = dashpots(viscosity);
+  setup.is_held = [](const Point<2> &X, const unsigned int i) { return i == 1 || X[0] < 1e-9 || X[0] > 1. - 1e-9; };
+  DamageMotion motion(setup);
+  motion.set_motion(
+    [](const Point<2> &X) {
+      return Tensor<1, 2>({1e-7 * std::sin(pi * X[0]), 0.});
+    },
+    [](const Point<2> &) { return Tensor<1, 2>(); });
+  return motion;
+}
+
+TEST(DamageMotion, DoesNotSlowWavesDown)
+{
+  // Semi-discrete frequency of linear elements with lumped mass, and that of velocity Verlet: exact for this mode. The
+  // modulus of uniaxial strain is 9/8 of that of a spring.
+  const double h = 1. / 16., dt = 2e-4;
+  const double omega = 2. / h * std::sin(0.5 * pi * h) * std::sqrt(9. / 8. * 1e6 / 1000.);
+  const double with_steps = 2. / dt * std::asin(0.5 * omega * dt);
+  for (const double d : {0., 0.5, 0.99})
+  {
+    DamageMotion motion = bar(0., dt);
+    motion.set_damage([d](const Point<2> &) { return d; });
+    const double all = motion.ledger().elastic;
+    for (unsigned int n = 0; n < 60; ++n)
+      motion.advance();
+    // Non-linear terms: the strain 3e-7, over two radians.
+    EXPECT_NEAR(motion.displacement()[0][8] / 1e-7, std::cos(with_steps * motion.time()), 2e-6) << d;
+    // Velocity Verlet conserves m v^2 / 2 + m omega^2 u^2 (1 - (omega dt)^2 / 4) / 2.
+    EXPECT_LT(std::abs(motion.ledger().imbalance), 0.25 * std::pow(omega * dt, 2) * all) << d;
+  }
+}
+
+TEST(DamageMotion, DampsWavesOfDamagedMaterialAsThoseOfIntactOnes)
+{
+  const double h = 1. / 16., viscosity = 3000.;
+  const double k = 2. / h * std::sin(0.5 * pi * h);
+  const double omega = k * std::sqrt(9. / 8. * 1e6 / 1000.);
+  const double g = 0.5 * k * k * 9. / 8. * viscosity / 1000.; // eq. (C.48)
+  const double own = std::sqrt(omega * omega - g * g);
+  for (const unsigned int i : {0u, 1u})
+  {
+    const double dt = i == 0 ? 4e-4 : 2e-4;
+    DamageMotion motion = bar(viscosity, dt);
+    EXPECT_GT(motion.n_stages(), 1u);
+    motion.set_damage([](const Point<2> &) { return 0.5; });
+    const double all = motion.ledger().elastic;
+    while (motion.time() < 0.012 - 0.5 * dt)
+      motion.advance();
+    const double t = motion.time();
+    const double error = std::abs(motion.displacement()[0][8] / 1e-7 -
+                                  std::exp(-g * t) * (std::cos(own * t) + g / own * std::sin(own * t)));
+    // The mode is the real part of an exponential, of which each step multiplies by R(lambda dt). Non-linear terms.
+    const std::complex<double> R =
+      amplification(ViscousStages(motion.n_stages()), std::complex<double>(-g * dt, own * dt));
+    const std::complex<double> expected = std::complex<double>(1., -g / own) * std::pow(R, motion.n_steps());
+    EXPECT_NEAR(motion.displacement()[0][8] / 1e-7, expected.real(), 2e-6);
+    // A method of second order: (omega dt)^2 for each radian, with a constant below 1.
+    EXPECT_LT(error, std::pow(omega * dt, 2) * omega * t) << dt;
+    EXPECT_LT(std::abs(motion.ledger().imbalance), 2. * std::pow(omega * dt, 2) * omega * t * all) << dt;
+    EXPECT_GT(motion.ledger().viscous, 0.1 * all);
+  }
+}
+
+// Strip with a slit, stretched so that the crack runs.
+DamageMotion strip(const unsigned int refinement = 1)
+{
+  DamageMotionSetup setup{Rectangle{0.02, 0.0105, 40 * refinement, 21 * refinement},
+                          matrix(1., 0., 0., 1.02),
+                          springs(),
+                          dashpots(10.),
+                          1000.,
+                          {295., 1e-3},
+                          {},
+                          {},
+                          2e-6};
+  setup.is_held = [](const Point<2> &X, unsigned int) { return std::abs(X[1]) > 0.00524; };
+  setup.is_intact = [](const Point<2> &X) { return std::abs(X[1]) > 0.004; };
+  return DamageMotion(setup);
+}
+
+TEST(DamageMotion, RunsACrackWithTheSameBitsOnAnyNumberOfThreads)
+{
+  std::vector<double> damage[2];
+  const int threads = omp_get_max_threads();
+  for (const int n : {0, 1})
+  {
+    omp_set_num_threads(n + 1);
+    DamageMotion motion = strip(3); // large enough for threads
+    motion.set_damage(
+      [](const Point<2> &X)
+      {
+        const double depth = 1. - std::hypot(std::max(0., X[0] - 0.006), std::max(0., std::abs(X[1]) - 3e-4)) / 2e-3;
+        return depth > 0. ? depth * depth : 0.;
+      });
+    const double before = motion.ledger().elastic;
+    for (unsigned int step = 0; step < 30; ++step)
+      motion.advance();
+    EXPECT_GT(motion.ledger().fracture, 0.);
+    EXPECT_LT(motion.ledger().elastic, before);
+    EXPECT_LT(std::abs(motion.ledger().imbalance), 0.02 * before);
+    damage[n] = motion.damage().nodal();
+  }
+  omp_set_num_threads(threads);
+  EXPECT_EQ(damage[0], damage[1]);
+}
+
+TEST(DamageMotion, DoesNotBreakWithoutASeed)
+{
+  DamageMotion motion = strip();
+  for (unsigned int step = 0; step < 20; ++step)
+    motion.advance();
+  EXPECT_EQ(motion.ledger().fracture, 0.);
+  for (const double d : motion.damage().nodal())
+    EXPECT_EQ(d, 0.);
+}
+
+TEST(DamageMotion, RefusesInvalidInput)
+{
+  DamageMotionSetup setup{Rectangle{1., 1., 4, 4},
+                          matrix(1., 0., 0., 1.),
+                          springs(),
+                          {},
+                          1000.,
+                          {1e3, 0.5},
+                          [](const Point<2> &, unsigned int) { return false; },
+                          {},
+                          1e-4};
+  EXPECT_NO_THROW(DamageMotion{setup});
+  DamageMotionSetup wrong = setup;
+  wrong.density = -1.;
+  EXPECT_THROW(DamageMotion{wrong}, InvalidInput);
+  wrong = setup;
+  wrong.step = std::nan("");
+  EXPECT_THROW(DamageMotion{wrong}, InvalidInput);
+  wrong = setup;
+  wrong.step = 1.; // unstable without viscosity
+  EXPECT_THROW(DamageMotion{wrong}, InvalidInput);
+  wrong = setup;
+  wrong.rectangle.periodic_x = true;
+  EXPECT_THROW(DamageMotion{wrong}, InvalidInput);
+  wrong = setup;
+  wrong.families.clear();
+  EXPECT_THROW(DamageMotion{wrong}, InvalidMaterial);
+  wrong = setup;
+  wrong.is_held = nullptr;
+  EXPECT_THROW(DamageMotion{wrong}, InvalidInput);
+}
+} // namespace
