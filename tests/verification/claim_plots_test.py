@@ -152,7 +152,7 @@ class ClaimSections(unittest.TestCase):
             lines = (self.folder / f"{name}.csv").read_text().splitlines()
             header = lines[0].split(",")
             kept = {"shells", "law", "wave", "F_xx", "F_yy", "k d", "angle [deg]", "R/d", "length/d", "row", "side", "X/d", "Y/d", "part",
-                    "w tau", "integrator", "t [s]"}
+                    "w tau", "integrator", "t [s]", "modulus", "sheet"}
             rows = [",".join(cell if column in kept else "nan" for column, cell in zip(header, line.split(",")))
                     for line in lines[1:]]
             (self.folder / f"{name}.csv").write_text("\n".join([lines[0], *rows]) + "\n")
