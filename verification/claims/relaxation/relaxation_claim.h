@@ -10,7 +10,8 @@ namespace latcon::claims
 /// Size of the claim.
 struct RelaxationOptions
 {
-  std::size_t max_steps = 2000; ///< time steps of each integrator; fewer if three of the longest relaxation times pass before
+  /// Time steps of each integrator; fewer if three of the longest relaxation times pass before.
+  std::size_t max_steps = 2000;
   PlantedBranches planted = {}; ///< for tests
 };
 
