@@ -125,8 +125,7 @@ support::ExitCode compare_cracks(const input::Options &options, const CompareOpt
   const bool drawn = run.is_root() && !options.no_report && draw_page(comparison_page, run.directory());
   if (run.is_verbose())
     std::cout << "\n"
-              << run.directory() << "/compare.json, compare.csv"
-              << (drawn ? ", compare.html" : "") << std::endl;
+              << run.directory() << "/compare.json, compare.csv" << (drawn ? ", compare.html" : "") << std::endl;
   return support::ExitCode::done;
 }
 

@@ -164,7 +164,8 @@ TEST(Relaxation, ResolvesTheShortestRelaxationTime)
     {
       ++n_rows;
       EXPECT_LT(row.tolerance.value(), 0.0301) << row.quantity; // (0.3)^2 / 3 and round-off
-      EXPECT_GT(row.error.value(), 1e-4) << row.quantity; // the branch loses energy within few steps
+      // The branch loses energy within few steps.
+      EXPECT_GT(row.error.value(), 1e-4) << row.quantity;
     }
   EXPECT_EQ(n_rows, 2u);
 }

@@ -32,8 +32,8 @@ public:
   /// the first stretch().
   void weaken_middle(double amount);
 
-  /// Loads the bar in one quasi-static load step until its length is `stretch` [-] times that at rest: 1 to `last` of the
-  /// constructor, also less than before.
+  /// Loads the bar in one quasi-static load step until its length is `stretch` [-] times that at rest: 1 to `last` of
+  /// the constructor, also less than before.
   /// @throws as continuum::DamageSolver::step_to
   void stretch(double stretch) { solver_->step_to((stretch - 1.) / (last_ - 1.)); }
 
