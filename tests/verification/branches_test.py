@@ -82,7 +82,7 @@ class Branches(TemporaryFolder):
         self.check_ledger(self.crack(CHEBYSHEV), 1e-3)  # long steps miss waves that breaking bonds emit
 
     def test_crack_with_disorder(self):
-        self.check_ledger(self.crack([*VERLET, *DISORDER]))
+        self.check_ledger(self.crack([*VERLET, *DISORDER]), 1e-4)
 
     def test_checkpoint_of_another_disorder_is_refused(self):
         short = [*STRIP, *DISORDER, "--set", "Time/end=0.02 ms", "--set", "Checkpoints/steps=10", "--output-dir", self.out]
@@ -143,8 +143,10 @@ class Branches(TemporaryFolder):
             self.assertIn(words, run.stderr)
 
     def test_motion_of_finite_elements_refuses_branches_that_relax_within_a_step(self):
+        own = ("Continuum/time step", "Continuum/cells")
+        motion = [word for entry in MOTION[1::2] if not entry.startswith(own) for word in ("--set", entry)]
         for step in ("0.03 ms", "auto"):  # automatic with 2 x 2 cells: 0.025 ms
-            run = latcon("continuum", SPECTRUM, "--dry-run", *MOTION, "--set", f"Continuum/time step={step}", "--set",
+            run = latcon("continuum", SPECTRUM, "--dry-run", *motion, "--set", f"Continuum/time step={step}", "--set",
                          "Continuum/cells x=2", "--set", "Continuum/cells y=2")
             self.assertEqual(run.returncode, 2, run.stderr)
             for section in ("Nearest neighbours", "Next-nearest neighbours"):

@@ -23,9 +23,11 @@ struct OnsetPoint
   SampleMean mean;  ///< A, in any unit
 };
 
-/// Smallest and largest exponent that fit_onset() considers. Their range holds every bifurcation that theory knows:
-/// 1/4 (tricritical), 1/2 (Hopf), 1 (transcritical).
-inline constexpr double min_onset_exponent = 0.05, max_onset_exponent = 3.;
+/// Smallest exponent that fit_onset() considers. The range includes 1/4 (tricritical), 1/2 (Hopf) and 1 (transcritical
+/// bifurcation).
+inline constexpr double min_onset_exponent = 0.05;
+/// Largest exponent that fit_onset() considers.
+inline constexpr double max_onset_exponent = 3.;
 
 /// Fit of A = C (p - p_c)^beta.
 struct OnsetFit

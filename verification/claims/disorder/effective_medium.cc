@@ -3,6 +3,7 @@
 #include <cmath>
 
 #include <Eigen/LU>
+#include <boost/math/quadrature/tanh_sinh.hpp>
 
 namespace latcon::claims
 {
@@ -11,15 +12,11 @@ namespace
 
 using Kind = lattice::Distribution::Kind;
 
-// Simpson's rule.
+// Also of functions whose derivatives are singular at an end, as those of the density of a Weibull distribution.
 double integral(double from, double to, const std::function<double(double)> &f)
 {
-  constexpr int n = 2000; // even
-  const double step = (to - from) / n;
-  double sum = f(from) + f(to);
-  for (int i = 1; i < n; ++i)
-    sum += (i % 2 == 1 ? 4. : 2.) * f(from + i * step);
-  return sum * step / 3.;
+  static thread_local boost::math::quadrature::tanh_sinh<double> rule; // integrate() is not const
+  return rule.integrate(f, from, to, 1e-12);
 }
 
 double weibull_mean(double shape, double scale, const std::function<double(double)> &f)
