@@ -23,6 +23,9 @@ REQUIRED = {"Sheet/spacing": "1 mm", "Sheet/length": "4 cm", "Sheet/height": "2 
             "Loading/strain x": "0.1", "Loading/strain y": "0.1"}
 
 
+# Run weekly as a whole: tests/python covers what they show.
+WEEKLY = {"docs/python.md"}
+
 # Verdicts on claims and the list of fonts, once for all pages.
 CACHE = tempfile.TemporaryDirectory()
 
@@ -169,6 +172,6 @@ if __name__ == "__main__":
     LATCON, SOURCE = (pathlib.Path(argument).resolve() for argument in sys.argv[1:3])
     FULL = "--full" in sys.argv
     # The tutorial, which shows that claims are checked, runs before the pages that reuse their verdicts.
-    PAGES = [word for word in sys.argv[3:] if word != "--full"] or ["README.md", *sorted((str(path.relative_to(SOURCE)) for path in SOURCE.glob("docs/**/*.md")),
-                                                  reverse=True)]
+    every = ["README.md", *sorted((str(path.relative_to(SOURCE)) for path in SOURCE.glob("docs/**/*.md")), reverse=True)]
+    PAGES = [word for word in sys.argv[3:] if word != "--full"] or [page for page in every if FULL or page not in WEEKLY]
     unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -136,6 +136,7 @@ class Gate(WithStore):
         self.assertIn("it belongs to other inputs", text)
         self.assertFalse(run["verification"]["reused"])
 
+    @in_full
     def test_file_that_others_may_have_written_is_not_used(self):
         path = self.stored()[0]
         mode = path.stat().st_mode & 0o777

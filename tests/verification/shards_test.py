@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """latcon study --shard and --collect, and latcon batch: files, exit codes, signals, and a job array of a real Slurm.
 
-Usage: shards_test.py PATH_OF_LATCON
+Usage: shards_test.py PATH_OF_LATCON [--full]     --full: also in a real Slurm, half a minute
 """
 import copy
 import functools
@@ -20,6 +20,7 @@ from program import CASES, LATCON, TemporaryFolder, latcon
 from slurm import Slurm, missing
 from study_test import TINY
 
+FULL = "--full" in sys.argv
 RUNS = 4  # of TINY: base twice, low, thin
 
 
@@ -189,6 +190,7 @@ class Shards(TemporaryFolder):
         subprocess.run(["bash", self.out / "batch/collect.sh"], check=True, timeout=300)
         self.assertEqual(result(self.out), result(self.folder / "undisturbed"))
 
+    @unittest.skipUnless(FULL, "in full only")
     @unittest.skipIf(missing() or os.geteuid() != 0, "needs Slurm and root, which slurmd requires")
     def test_array_cancelled_half_way_continues_in_slurm(self):
         with Slurm(self.folder / "slurm") as cluster:
@@ -210,4 +212,4 @@ class Shards(TemporaryFolder):
 
 
 if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+    unittest.main(argv=sys.argv[:1], verbosity=2)

@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Tests of latcon study: runs, exit codes, files, resuming, kills, and refusals.
 
-Usage: study_test.py PATH_OF_LATCON
+Usage: study_test.py PATH_OF_LATCON [--full]     --full: also the check of steady cracks
 """
 import copy
 import json
@@ -19,6 +19,7 @@ import unittest
 sys.dont_write_bytecode = True
 from program import CASES, LATCON, TemporaryFolder, children, latcon, read_csv
 
+FULL = "--full" in sys.argv
 # Strips so small that a crack runs through in a moment, with nearest neighbours alone, which are faster to check.
 TINY = {
     "title": "A tiny study",
@@ -284,8 +285,9 @@ class Study(TemporaryFolder):
 
     def test_quick_study_verifies_the_base_case_once(self):
         # The row is not measured: no crack of the quick version runs far enough to have a speed.
+        # The check takes half a minute: once a week.
         printed = self.study("--quick", skip=False, expect=3,
-                             change=lambda document: document.update(checks=["steady-crack"]))
+                             change=lambda document: document.update({"checks": ["steady-crack"]} if FULL else {}))
         self.assertIn("claims: checked now", printed)
         document = json.loads(self.text("study.json"))
         self.assertTrue(document["quick"])
@@ -295,7 +297,10 @@ class Study(TemporaryFolder):
         self.assertTrue(info["skip_verification"])
         self.assertFalse(json.loads(self.text("run.json"))["skip_verification"])
         self.assertIn("base case alone", self.text("study.html"))
+        if FULL:
+            self.check_steady_cracks(printed, document)
 
+    def check_steady_cracks(self, printed, document):
         self.assertIn("Check steady-crack: holds", printed)
         (check,) = document["checks"]
         judged = [row["verdict"] for row in check["rows"] if row["verdict"] != "reported"]
@@ -341,4 +346,4 @@ class Study(TemporaryFolder):
 
 
 if __name__ == "__main__":
-    unittest.main(verbosity=2)
+    unittest.main(argv=[word for word in sys.argv if word != "--full"], verbosity=2)

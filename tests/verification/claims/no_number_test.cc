@@ -422,7 +422,7 @@ TEST_P(SoundWrappers, HoldTheClaim)
 }
 
 // Each side of the steady crack: the run of the simulator, and the exact solution.
-TEST(NoNumber, FailsTheCheckOfSteadyCracks)
+TEST(NoNumberInSteadyCracks, FailsTheirCheck)
 {
   const std::pair<SteadyCrackSeries, const char *> wrong[] = {
     {{3., {1.1}, 0.}, "the crack stopped"},                                // the run throws
