@@ -7,7 +7,7 @@ from matplotlib.patches import Patch, Rectangle
 
 from pictures import BLACK, BLUE, GREEN, GREY, RED, WIDTH, Page, save
 
-COLOURS = {"oscillating": BLUE, "straight": GREEN, "branching": RED, "arrested": GREY, "undecided": "#e69f00"}
+COLOURS = {"oscillating": BLUE, "straight": GREEN, "branching": RED, "arrested": GREY, "undecided": "#e6c800"}
 OTHER = "#cc79a7"  # of a pattern that is not in COLOURS
 SHADE = 0.6  # opacity of the cells, on which contours and numbers are black
 LEFT, FOOT, HEAD, RIGHT = 0.95, 0.7, 0.75, 0.3  # around the axes [in]
