@@ -330,3 +330,31 @@ TEST(ErrorIndicator, VanishesInHomogeneousDeformation)
   EXPECT_LT(continuum::error_indicators(solver.sheet(), solver.displacement()).l2_norm(),
             1e-9 * std::sqrt(solver.total_energy()));
 }
+
+TEST(Rectangle, HasItsSizeCellsAndEdges)
+{
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::make_rectangle(mesh, rectangle(12, 8));
+  EXPECT_EQ(mesh.n_global_active_cells(), 96u);
+  EXPECT_EQ(mesh.n_levels(), 3u); // 12 x 8 = 3 x 2 halved twice
+  unsigned int faces[4] = {0, 0, 0, 0};
+  for (const auto &cell : mesh.active_cell_iterators())
+  {
+    EXPECT_NEAR(cell->extent_in_direction(0), length / 12, 1e-15);
+    EXPECT_NEAR(cell->extent_in_direction(1), height / 8, 1e-15);
+    for (const auto &face : cell->face_iterators())
+      if (face->at_boundary())
+      {
+        const auto X = face->center();
+        const auto id = face->boundary_id();
+        ASSERT_LT(id, 4u);
+        ++faces[id];
+        const double distances[4] = {X[0], X[0] - length, X[1] + height / 2, X[1] - height / 2};
+        EXPECT_NEAR(distances[id], 0., 1e-15);
+      }
+  }
+  EXPECT_EQ(faces[continuum::edge::left], 8u);
+  EXPECT_EQ(faces[continuum::edge::right], 8u);
+  EXPECT_EQ(faces[continuum::edge::bottom], 12u);
+  EXPECT_EQ(faces[continuum::edge::top], 12u);
+}

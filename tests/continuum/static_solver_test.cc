@@ -472,31 +472,3 @@ TEST(Sheet, EvaluatesOnCellBoundariesAndCorners)
   EXPECT_THROW(solver.evaluate({{1.01 * length, 0.}}), continuum::InvalidInput);
   EXPECT_THROW(solver.evaluate({{0., std::nan("")}}), continuum::InvalidInput);
 }
-
-TEST(Rectangle, HasItsSizeCellsAndEdges)
-{
-  Mesh mesh(MPI_COMM_SELF);
-  continuum::make_rectangle(mesh, rectangle(12, 8));
-  EXPECT_EQ(mesh.n_global_active_cells(), 96u);
-  EXPECT_EQ(mesh.n_levels(), 3u); // 12 x 8 = 3 x 2 halved twice
-  unsigned int faces[4] = {0, 0, 0, 0};
-  for (const auto &cell : mesh.active_cell_iterators())
-  {
-    EXPECT_NEAR(cell->extent_in_direction(0), length / 12, 1e-15);
-    EXPECT_NEAR(cell->extent_in_direction(1), height / 8, 1e-15);
-    for (const auto &face : cell->face_iterators())
-      if (face->at_boundary())
-      {
-        const auto X = face->center();
-        const auto id = face->boundary_id();
-        ASSERT_LT(id, 4u);
-        ++faces[id];
-        const double distances[4] = {X[0], X[0] - length, X[1] + height / 2, X[1] - height / 2};
-        EXPECT_NEAR(distances[id], 0., 1e-15);
-      }
-  }
-  EXPECT_EQ(faces[edge::left], 8u);
-  EXPECT_EQ(faces[edge::right], 8u);
-  EXPECT_EQ(faces[edge::bottom], 12u);
-  EXPECT_EQ(faces[edge::top], 12u);
-}

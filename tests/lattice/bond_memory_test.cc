@@ -480,19 +480,6 @@ TEST(CustomMemory, RelaxesAsTheSameBranchInTheHotLoop)
   EXPECT_NEAR(in.kinetic, out.kinetic, 1e-11 * in.kinetic);
 }
 
-// Fast motion sees the springs of all branches.
-TEST(BondMemory, BoundsTheTimeStepByItsStiffness)
-{
-  const TriangularLattice sheet = sheets::square(6);
-  Material material = sheets::nearest_only(0.);
-  material.nearest.law = LinearBond{2e5};
-  const double elastic = time_step_limits(sheet, material, 0.5).elastic;
-  material.nearest.memory = MaxwellMemory({{4e5, 1e-4}, {2e5, 1e-3}});
-  EXPECT_DOUBLE_EQ(time_step_limits(sheet, material, 0.5).elastic, 0.5 * elastic);
-  material.nearest.viscosity = 1e-3;
-  EXPECT_DOUBLE_EQ(chebyshev_step(sheet, material, 0.5), 1e-3 / 8e5);
-}
-
 // A material without memory stores nothing, and statics is that of the law alone.
 TEST(BondMemory, IsLeftOutOfEquilibrium)
 {

@@ -166,4 +166,17 @@ TEST(Simulation, KeepsItsClockInDividedSteps)
   EXPECT_GT(recoil.simulation->n_divided_steps(), 3u);
 }
 
+// Fast motion sees the springs of all branches.
+TEST(TimeStepLimits, CountTheSpringsOfAllBranches)
+{
+  const TriangularLattice sheet = sheets::square(6);
+  Material material = sheets::nearest_only(0.);
+  material.nearest.law = LinearBond{2e5};
+  const double elastic = time_step_limits(sheet, material, 0.5).elastic;
+  material.nearest.memory = MaxwellMemory({{4e5, 1e-4}, {2e5, 1e-3}});
+  EXPECT_DOUBLE_EQ(time_step_limits(sheet, material, 0.5).elastic, 0.5 * elastic);
+  material.nearest.viscosity = 1e-3;
+  EXPECT_DOUBLE_EQ(chebyshev_step(sheet, material, 0.5), 1e-3 / 8e5);
+}
+
 } // namespace
