@@ -2,6 +2,7 @@
 
 #include "continuum/damage/fibre_forces.h"
 #include "continuum/damage/viscous_stages.h"
+#include "continuum/errors.h"
 
 #include <functional>
 #include <optional>
@@ -33,6 +34,18 @@ struct DamageMotionLedger
   double fracture = 0.;  ///< S(d), without that of the initial damage
   double shed = 0.;      ///< kinetic energy of the mass that was removed with damage
   double imbalance = 0.; ///< initial energy - all of the above
+
+  /// Saves or loads the energies, for checkpoints.
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive("elastic", elastic);
+    archive("kinetic", kinetic);
+    archive("viscous", viscous);
+    archive("fracture", fracture);
+    archive("shed", shed);
+    archive("imbalance", imbalance);
+  }
 };
 
 /// Motion of a sheet of fibres with damage on a uniform grid of bilinear elements, mass, stress and viscosity degraded
@@ -72,12 +85,43 @@ public:
   const NodeGrid &grid() const { return forces_.grid(); }
   const GridVector &displacement() const { return u_; } ///< excess over F_0 X [m]
   const GridVector &velocity() const { return v_; }     ///< [m/s]
+  /// Energies E_c of the undegraded cells [J/m], by the index of a cell.
+  const std::vector<double> &cell_energies() const { return cell_energies_; }
   unsigned int n_stages() const { return stages_ ? static_cast<unsigned int>(stages_->stages().size()) + 1 : 1; }
 
   /// Returns the longest stable step [s] of velocity Verlet at F_0.
   double stable_step() const { return 2. / forces_.elastic_frequency(setup_.density); }
 
+  /// Saves the motion, or loads it into one of the same setup, which continues bitwise. `archive` is called with names
+  /// and values; `Archive::loads` is true if it loads. Throws InvalidInput for values of another grid and for damage out
+  /// of [0, 1].
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    std::vector<double> damage = damage_.nodal();
+    archive("n_steps", n_steps_);
+    archive("displacement_x", u_[0]);
+    archive("displacement_y", u_[1]);
+    archive("velocity_x", v_[0]);
+    archive("velocity_y", v_[1]);
+    archive("damage", damage);
+    archive("ledger", ledger_);
+    archive("initial_energy", initial_energy_);
+    archive("initial_fracture", initial_fracture_);
+    if constexpr (Archive::loads)
+      resume(damage);
+  }
+
 private:
+  void resume(const std::vector<double> &damage)
+  {
+    for (const std::vector<double> *values : {&u_[0], &u_[1], &v_[0], &v_[1]})
+      if (values->size() != grid().n_nodes())
+        throw InvalidInput("a motion with damage was saved on another grid");
+    damage_.set(damage);
+    update_masses();
+    forces_.energies(u_, damage_.cell_factors(), cell_energies_);
+  }
   void restart_ledger();
   void update_masses();
   void update_energies();

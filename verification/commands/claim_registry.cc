@@ -82,6 +82,12 @@ std::vector<Claim> claims_before_fracture(const lattice::Material &material)
   return claims_where([&](const Claim &claim) { return claim.is_before_fracture(material); });
 }
 
+std::vector<Claim> claims_before_continuum_fracture(const lattice::Material &material)
+{
+  const std::string damage = claims::damage_descriptor().name;
+  return claims_where([&](const Claim &claim) { return claim.is_before_fracture(material) || claim.name == damage; });
+}
+
 std::string unknown_claim(const std::string &name)
 {
   const std::vector<std::string> known = names();

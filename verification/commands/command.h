@@ -73,6 +73,7 @@ support::ExitCode verify(const input::Options &options);                        
 support::ExitCode run_lattice(const input::Options &options);                                  ///< `latcon lattice`
 support::ExitCode run_continuum(const input::Options &options);                                ///< `latcon continuum`
 support::ExitCode run_fracture(const input::Options &options);                                 ///< `latcon fracture`
+support::ExitCode run_continuum_fracture(const input::Options &options); ///< `latcon fracture --side continuum`
 support::ExitCode compare_frames(const input::Options &options, const CompareOptions &chosen); ///< `latcon compare`
 support::ExitCode report(const input::Options &options, const std::string &directory);         ///< `latcon report`
 support::ExitCode run_study(const input::Options &options, const StudyOptions &chosen);        ///< `latcon study`
@@ -213,8 +214,9 @@ claims::ClaimOutcome run_claims(const input::Case &input, const std::vector<clai
 /// Checks the claims, in their small versions, on the case's own material, shells and pre-stretch, or reuses the
 /// verdicts cached for exactly these inputs and this program. Reports which of the two, in words and in run.json, and
 /// writes the tables. Collective; all ranks return the same.
+/// @param claims those that the crack depends on
 /// @return the rows, at least one of them checked and none failing
 /// @throws ClaimFailed that names the rows which fail, if any; results.json and run.json are then written
-output::Results require_verified(const input::Case &input, Run &run);
+output::Results require_verified(const input::Case &input, const std::vector<claims::Claim> &claims, Run &run);
 
 } // namespace latcon::commands

@@ -252,10 +252,18 @@ support::ExitCode run_program(int argc, char **argv)
                    "-continuum", run_continuum);
   CLI::App *fracture_command =
     add_case_command("fracture", "verify the case's material and pre-stretch, then run its crack",
-                     "latcon fracture quick --set \"Loading/strain y=1.7\"", "", run_fracture);
+                     "latcon fracture quick --set \"Loading/strain y=1.7\"", "",
+                     [](const input::Options &chosen)
+                     { return chosen.on_continuum ? run_continuum_fracture(chosen) : run_fracture(chosen); });
   fracture_command->add_flag("--skip-verification", options.skip_verification,
                              "run the crack unverified; noted in every output");
   fracture_command->add_flag("--no-report", options.no_report, "draw neither pictures nor page");
+  fracture_command
+    ->add_option_function<std::string>(
+      "--side", [&options](const std::string &side) { options.on_continuum = side == "continuum"; },
+      "which side breaks, the lattice or the continuum with damage; default: lattice")
+    ->check(CLI::IsMember({"lattice", "continuum"}))
+    ->type_name("SIDE");
 
   StudyOptions study;
   BatchOptions batch;

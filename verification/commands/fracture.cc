@@ -1,15 +1,13 @@
-#include <iostream>
 #include <sstream>
 
-#include "support/largest_error.h"
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/claims/claim_inputs.h"
+#include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/commands/cost.h"
-#include "verification/commands/crack_summary.h"
+#include "verification/commands/crack_run.h"
 #include "verification/commands/dry_run.h"
 #include "verification/commands/lattice_motion.h"
-#include "verification/commands/signals.h"
 #include "verification/output/crack_film.h"
 #include "verification/output/near_tip_record.h"
 
@@ -36,40 +34,6 @@ lattice::EndLoads::End end_load(input::Case::End end)
 double allowed_imbalance(const input::Case &input)
 {
   return input.integrator == input::Case::Integrator::velocity_verlet ? 1e-4 : 1e-3;
-}
-
-output::Results measured_results(const input::Case &input, const output::CrackRecord &record,
-                                 const analysis::CrackMeasurement &crack)
-{
-  output::Results results;
-  const auto add = [&](const std::string &quantity, const std::string &unit,
-                       const std::optional<analysis::Measured> &measured, const std::optional<double> &published)
-  {
-    output::Result row{"fracture", quantity, unit, {}, {}, published, {}, {}};
-    if (measured)
-      row.lattice = measured->value;
-    if (published)
-    {
-      row.tolerance = input.reference_tolerance;
-      // A published quantity that could not be measured does not agree.
-      row.error =
-        measured ? support::relative_error(measured->value, *published) : std::numeric_limits<double>::quiet_NaN();
-    }
-    results.add(row);
-  };
-  add("Lagrangian crack speed", "m/s", crack.speed_lagrangian, input.reference_speed);
-  add("laboratory crack speed", "m/s", crack.speed_laboratory, {});
-  add("wavelength, undeformed", "m", crack.wavelength, input.reference_wavelength);
-  add("amplitude, undeformed", "m", crack.amplitude, input.reference_amplitude);
-  results.add({"fracture",
-               "energy imbalance over energy given",
-               "1",
-               record.largest_imbalance(),
-               {},
-               {},
-               record.largest_imbalance(),
-               allowed_imbalance(input)});
-  return results;
 }
 
 std::string progress_text(const lattice::Simulation &simulation, const output::CrackRecord &record)
@@ -137,48 +101,7 @@ Crack run_crack(const input::Case &input, const lattice::TriangularLattice &shee
   record.write_measurement(run.directory(), crack, seed_tip, *input.breaking_stretch, skip_verification);
   if (run.is_root())
     near_tip.write(run.directory(), crack);
-  return {crack, measured_results(input, record, crack)};
-}
-
-// Draws pictures and page of a run, then prints the seconds of each phase and the path of the page. Collective: an
-// exception on one rank would end the others while rank 0 draws. @return exit code of the drawing, on rank 0
-support::ExitCode draw_page(Run &run)
-{
-  support::ExitCode exit_code = support::ExitCode::done;
-  if (run.is_root())
-  {
-    auto phase = run.info().stopwatch().phase("report");
-    const support::ExitCode drawn = draw_report(run.directory(), true, run.is_verbose());
-    phase.stop();
-    if (drawn != support::ExitCode::claim_failed)
-      exit_code = drawn;
-    if (run.is_verbose() && exit_code == support::ExitCode::done)
-      std::cout << times_text(run.info().stopwatch().times()) << "; " << run.directory() << "/report.html" << std::endl;
-  }
-  MPI_Barrier(MPI_COMM_WORLD);
-  return exit_code;
-}
-
-// Checks the claims on the case's own material and pre-stretch. A crack that they refuse leaves its page all the same.
-output::Results passed_or_reported(const input::Case &input, const input::Options &options, Run &run)
-{
-  try
-  {
-    return require_verified(input, run);
-  }
-  catch (const support::ClaimFailed &)
-  {
-    if (!options.no_report)
-      try
-      {
-        draw_page(run);
-      }
-      catch (const support::OutputError &error) // the failed claims are the message that matters
-      {
-        std::cerr << "latcon: " << error.what() << std::endl;
-      }
-    throw;
-  }
+  return {crack, measured_results(input, crack, Side::lattice, record.largest_imbalance(), allowed_imbalance(input))};
 }
 
 } // namespace
@@ -219,26 +142,10 @@ support::ExitCode run_fracture(const input::Options &options)
   run.info().add("skip_verification", options.skip_verification);
   output::Results results;
   if (claims)
-    results = passed_or_reported(input, options, run);
+    results = passed_or_reported(input, claims_before_fracture(material), options, run);
   const Crack crack = run_crack(input, sheet, material, options.skip_verification, checkpoints, run);
   results.add(crack.results);
-  const support::ExitCode exit_code =
-    run.end(results, interrupted() ? support::ExitCode::interrupted : exit_code_of(results));
-  if (run.is_verbose())
-  {
-    if (options.verbose)
-      results.print(std::cout);
-    std::cout << crack_summary(input, crack.measurement, results) << std::flush;
-  }
-  if (options.no_report || exit_code == support::ExitCode::interrupted)
-  {
-    if (run.is_verbose())
-      std::cout << times_text(run.info().stopwatch().times()) << "; " << run.directory() << std::endl;
-    return exit_code;
-  }
-  // The verdict in the page is the one returned here; a crack without its page has failed.
-  const support::ExitCode drawn = draw_page(run);
-  return exit_code == support::ExitCode::done ? drawn : exit_code;
+  return end_crack(input, options, run, results, crack.measurement);
 }
 
 } // namespace latcon::commands

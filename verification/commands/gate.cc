@@ -33,12 +33,13 @@ std::string unused(const std::string &path, const std::string &reason)
   return path + " is not used: " + reason;
 }
 
-Stored look_up(const input::Case &input, const std::optional<std::string> &folder)
+Stored look_up(const input::Case &input, const std::vector<claims::Claim> &required,
+               const std::optional<std::string> &folder)
 {
   Stored stored;
   try
   {
-    const claims::VerdictKey key = claims::verdict_key(input, claims_before_fracture(input.material()), quick,
+    const claims::VerdictKey key = claims::verdict_key(input, required, quick,
                                                        dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD));
     stored.key = key.text;
     if (!folder)
@@ -67,9 +68,10 @@ Stored look_up(const input::Case &input, const std::optional<std::string> &folde
 }
 
 // Returns the same on all ranks.
-Stored look_up_on_root_rank(const input::Case &input, const Run &run, const std::optional<std::string> &folder)
+Stored look_up_on_root_rank(const input::Case &input, const std::vector<claims::Claim> &required, const Run &run,
+                            const std::optional<std::string> &folder)
 {
-  Stored stored = run.is_root() ? look_up(input, folder) : Stored();
+  Stored stored = run.is_root() ? look_up(input, required, folder) : Stored();
   const auto shared = [](const std::string &text) { return dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, text); };
   return {shared(stored.key), shared(stored.text), shared(stored.note), std::move(stored.turn)};
 }
@@ -81,11 +83,11 @@ void append(std::string &note, const std::string &more)
 
 } // namespace
 
-output::Results require_verified(const input::Case &input, Run &run)
+output::Results require_verified(const input::Case &input, const std::vector<claims::Claim> &required, Run &run)
 {
   const auto phase = run.info().stopwatch().phase("claims");
   const std::optional<std::string> folder = claims::VerdictStore::folder_of_user();
-  Stored stored = look_up_on_root_rank(input, run, folder);
+  Stored stored = look_up_on_root_rank(input, required, run, folder);
   const claims::VerdictKey key(stored.key);
   const std::string path = folder ? claims::VerdictStore(*folder).path(key) : "";
 
@@ -96,7 +98,7 @@ output::Results require_verified(const input::Case &input, Run &run)
       verdicts = claims::read_verdicts(key, stored.text);
       // Verdicts that refuse a crack need not be complete.
       if (const std::string problem = claims::row_problem(verdicts->results, bridge::shells_name(input.material()),
-                                                          claims_before_fracture(input.material()));
+                                                          required);
           verdicts->results.all_hold() && !problem.empty())
       {
         verdicts.reset();
@@ -111,7 +113,7 @@ output::Results require_verified(const input::Case &input, Run &run)
   bool kept = false;
   if (!reused)
   {
-    verdicts.emplace(run_claims(input, claims_before_fracture(input.material()), quick, Shells::own,
+    verdicts.emplace(run_claims(input, required, quick, Shells::own,
                                 bridge::laws_of_lattice())); // bonds break, no finite elements
     if (run.is_root() && folder && !key.text.empty())
       try
@@ -142,7 +144,7 @@ output::Results require_verified(const input::Case &input, Run &run)
   }
   if (run.is_root())
   {
-    write_claims(claims_before_fracture(input.material()), run.directory());
+    write_claims(required, run.directory());
     verdicts->write_tables(run.directory());
   }
   if (!verdicts->results.all_hold())

@@ -12,6 +12,7 @@
 #include "support/available_cores.h"
 #include "support/folder_lock.h"
 #include "support/machine_memory.h"
+#include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/commands/cost.h"
 #include "verification/commands/requested_study.h"
@@ -411,7 +412,10 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
   run.info().add("skip_verification", options.skip_verification);
   run.info().add("study", results.study.title);
   if (verification == study::Verification::base_case && !chosen.collect)
-    (void)require_verified(study::base_case(results.study, requested.base, requested.settings), run);
+  {
+    const input::Case base = study::base_case(results.study, requested.base, requested.settings);
+    (void)require_verified(base, claims_before_fracture(base.material()), run);
+  }
   const bool complete =
     chosen.collect || (run_children(results, selection, skip_verification, n_cores, run) &&
                        refine_sweep(results, requested, selection, verification, skip_verification, n_cores, run));

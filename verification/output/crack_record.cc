@@ -7,13 +7,12 @@
 #include <ostream>
 #include <sstream>
 
-#include <nlohmann/json.hpp>
-
 #include "lattice/archive_rows.h"
 #include "support/errors.h"
 #include "support/full_precision.h"
 #include "support/largest_error.h"
 #include "verification/analysis/fragments.h"
+#include "verification/output/crack_json.h"
 #include "verification/output/mechanism_names.h"
 #include "verification/output/output_file.h"
 
@@ -249,24 +248,7 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory,
   const lattice::State &state = simulation_.gather();
   if (!simulation_.band().is_first())
     return;
-  nlohmann::ordered_json json;
-  json["pattern"] = to_string(measurement.pattern);
-  json["reason"] = measurement.reason;
-  const auto put = [&json](const std::string &name, const std::optional<analysis::Measured> &measured)
-  {
-    json[name] = measured ? nlohmann::ordered_json(measured->value) : nlohmann::ordered_json(nullptr);
-    json[name + "_uncertainty"] =
-      measured ? nlohmann::ordered_json(measured->uncertainty) : nlohmann::ordered_json(nullptr);
-  };
-  put("speed_lagrangian", measurement.speed_lagrangian);
-  put("speed_laboratory", measurement.speed_laboratory);
-  put("wavelength", measurement.wavelength);
-  put("amplitude", measurement.amplitude);
-  put("crest_amplitude", measurement.crest_amplitude);
-  json["periods"] = measurement.periods;
-  json["window_begin"] = measurement.X_begin;
-  json["window_end"] = measurement.X_end;
-  json["branched_fraction"] = measurement.branched_fraction;
+  nlohmann::ordered_json json = crack_json(measurement);
   const auto put_flanks = [&](const std::string &name, double analysis::FlankDamage::*number)
   { json[name] = measurement.flanks ? nlohmann::ordered_json((*measurement.flanks).*number) : nullptr; };
   put_flanks("flank_damage_depth", &analysis::FlankDamage::depth);

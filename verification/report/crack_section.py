@@ -27,6 +27,20 @@ CAPTIONS = {
                            "kidney-shaped.",
 }
 
+# Of a crack of the continuum, instead of those of the same name, or in addition; it has no others.
+CONTINUUM_CAPTIONS = {
+    "damage.png": "Last frame. Above: the deformed sheet, coloured by the speed of the material; white: damage of 0.5 and "
+                  "more. Below: damage in the undeformed sheet.",
+    "crack_edges.png": "Both edges of the crack, where the damage is 0.5, and the line midway between the outermost ones, "
+                       "in the undeformed sheet with Y exaggerated; below, the width of the damage above 0.5. Shaded: the "
+                       "window of the measurement. Edges that move towards and away from each other hide in the path.",
+    "crack_path.png": "The tip of the crack in the undeformed sheet, where the damage of 0.5 reaches farthest; the dashed "
+                      "sinusoid has the measured wavelength and amplitude.",
+    "energy.png": "Energy balance per metre of sheet thickness, since the seed crack. The dashed line is the elastic energy "
+                  "released; the areas are the energies that it was converted to. Broken material takes its motion with it. "
+                  "The small axis is the difference, over the initial energy.",
+}
+
 NEAR_TIP = ("near_tip_velocity.png", "near_tip_stress.png")
 PATH_CAPTION = ("Path of the tip in the undeformed sheet, with Y exaggerated. Shaded: the window of the measurement. Drag "
                 "across the plot to zoom in, double-click to reset.")
@@ -45,9 +59,11 @@ def crack_section(run, position, pictures, sheet):
             for name, caption in (("path", PATH_CAPTION), ("energy", ENERGY_CAPTION)) if plots.get(name) is not None}
     if sheet is not None:
         live["motion"] = viewer(position, run, sheet)
-    stills = {"path": ("crack_path.png",), "motion": ("animation.gif", "sheet.png", "sheet_fields.png"),
+    captions = CONTINUUM_CAPTIONS if run.on_continuum else CAPTIONS
+    stills = {"path": ("crack_path.png",),
+              "motion": ("animation.gif", "sheet.png", "sheet_fields.png", "damage.png", "crack_edges.png"),
               "energy": ("energy.png",)}
-    parts = [f'<h2 id="crack-{position}">Crack: {escape(run.name)}</h2>', pattern_sentence(run)]
+    parts = [f'<h2 id="crack-{position}">Crack{" of the continuum" if run.on_continuum else ""}: {escape(run.name)}</h2>', pattern_sentence(run)]
     for name, names in stills.items():
         parts += ([f'<div id="{name}-{position}">{live[name]}</div>'] if name in live
                   else drawn(run, pictures, names))
@@ -57,7 +73,7 @@ def crack_section(run, position, pictures, sheet):
     collapsed = [name for name in live for name in stills[name]]
     parts += expandable(f"stills-{position}", "<b>Still pictures</b> of the same",
                         drawn(run, pictures, collapsed, still=True))
-    missing = [name for name in CAPTIONS if name not in pictures]
+    missing = [name for name in captions if name not in pictures]
     if missing:
         parts.append(f'<p class="soft">Not drawn, because the run has no data for it: {", ".join(missing)}</p>')
     return "\n".join(parts)
@@ -66,11 +82,12 @@ def crack_section(run, position, pictures, sheet):
 def drawn(run, pictures, names, still=False):
     """Figures of the named pictures, where they exist; still: without animation."""
     found = []
+    captions = CONTINUUM_CAPTIONS if run.on_continuum else CAPTIONS
     for name in names:
         if name in pictures:
             moving, last = pictures[name]
             shown, instead = (last, None) if still and last is not None else (moving, last)
-            found.append(figure(shown, f"{run.name}: {first_sentence(CAPTIONS[name])}", CAPTIONS[name], instead))
+            found.append(figure(shown, f"{run.name}: {first_sentence(captions[name])}", captions[name], instead))
     return found
 
 

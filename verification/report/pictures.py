@@ -122,15 +122,15 @@ def limits(position):
 
 
 # Forms into which elastic energy is converted: {column of energy.csv: (label, colour)}.
-SHARES = {"broken": ("in broken bonds", RED), "viscous": ("viscous heat", SKY), "kinetic": ("kinetic", BLUE),
-          "contact": ("contact", GREEN)}
+SHARES = {"broken": ("in what broke", RED), "viscous": ("viscous heat", SKY), "kinetic": ("kinetic", BLUE),
+          "contact": ("contact", GREEN), "shed": ("motion of broken material", GREY)}
 
 
 def energy_shares(energy):
     """Released elastic energy including the work of the edges, and its non-zero shares [(column, values), ...]; all relative
     to the first row [J/m]."""
     released = energy["elastic"][0] - energy["elastic"] + energy["boundary_work"] - energy["boundary_work"][0]
-    shares = [(name, energy[name] - energy[name][0]) for name in SHARES]
+    shares = [(name, energy[name] - energy[name][0]) for name in SHARES if name in energy]
     return released, [(name, values) for name, values in shares if values.any()]
 
 

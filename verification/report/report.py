@@ -16,6 +16,7 @@ import own_settings  # before matplotlib
 from animation import draw_animation
 from claim_plots import all_plots
 from crack_path import draw_crack_path
+from damage_pictures import draw_damage, draw_edges, read_edges, read_last_damage_frame
 from field_pictures import draw_fields, has_fields
 from files import BAD_INPUT, CLAIM_FAILS, DONE, DamagedFile, exit_code_of, write_file
 from frame import read_last_frame
@@ -48,6 +49,12 @@ def draw_pictures(run, motion):
         draw_sheet(frame, run.input_number("Fracture", "breaking stretch"), place("sheet.png"))
         if has_fields(frame):
             draw_fields(frame, place("sheet_fields.png"))
+    broken = read_last_damage_frame(run.folder) if run.on_continuum else None
+    if broken is not None:
+        draw_damage(broken, place("damage.png"))
+    edges = read_edges(run.folder) if run.on_continuum else None
+    if edges is not None and len(edges["X"]) > 1:
+        draw_edges(edges, run.crack, place("crack_edges.png"))
     if has_rows(run.tip, 2):
         draw_crack_path(run, place("crack_path.png"))
     if has_rows(run.energy, 2):

@@ -77,6 +77,11 @@ class Run:
         return self.crack is not None or has_rows(self.tip) or any(c.claim == "fracture" for c in self.checks)
 
     @property
+    def on_continuum(self):
+        """True if the crack ran through the continuum."""
+        return (self.info or {}).get("side") == "continuum"
+
+    @property
     def state(self):
         """State of the run: "complete", "interrupted" or "unfinished"."""
         exit_code = (self.info or {"exit_code": 0}).get("exit_code")
@@ -163,12 +168,14 @@ def read_run(folder):
 
 
 def read_energy(path):
-    """Reads energy.csv of a motion of the lattice. None if there is none, or for the two forms written by the continuum
-    (docs/reference.md), which have other columns."""
+    """Reads energy.csv of a motion of the lattice, or of a crack of the continuum, which also has the column "shed". None if
+    there is none, or for the two other forms written by the continuum (docs/reference.md), which have other columns."""
     text = read_text(path)
     if text is None or text.startswith(CONTINUUM_ENERGIES):
         return None
-    return read_table(path, ("t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "imbalance"))
+    columns = ("t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "imbalance")
+    has_shed = "shed" in text.partition("\n")[0].split(",")
+    return read_table(path, columns + ("shed",) if has_shed else columns)
 
 
 def read_checks(path, results, verified):

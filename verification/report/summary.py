@@ -67,9 +67,10 @@ def comparisons(run):
             continue
         scale, unit = (100, "cm") if check.unit == "m" else (1, check.unit)
         uncertainty = uncertainty_of(check.quantity, run.crack)
+        measured = check.continuum if check.lattice is None else check.lattice
         result.append(Comparison(
             run, check.quantity, unit, scale * check.theory,
-            None if check.lattice is None else scale * check.lattice,
+            None if measured is None else scale * measured,
             None if uncertainty is None else scale * uncertainty, check))
     return result
 

@@ -1,0 +1,150 @@
+#!/usr/bin/python3
+"""Tests of `latcon fracture --side continuum` on a sheet that takes seconds: its files, its ledger of energies, stops and
+resumes, input that it refuses, and the comparison with the lattice.
+
+Usage: continuum_fracture_test.py PATH_OF_LATCON
+"""
+import csv
+import json
+import os
+import signal
+import subprocess
+import sys
+import time
+import unittest
+
+from vtkmodules.util.numpy_support import vtk_to_numpy
+from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
+
+sys.dont_write_bytecode = True
+from program import CASES, LATCON, TemporaryFolder, frames, latcon, latcon_on_ranks, read, read_csv
+
+# Crosses the sheet in 40 to 80 steps. Frames and checkpoints every few.
+SHEET = {"Sheet/spacing": "1 mm", "Sheet/length": "30 mm", "Sheet/height": "16 mm", "Damage/cells per length": 2,
+         "Fracture/seed sites": 5, "Damage/threshold energy": "3.2 MPa", "Time/end": "2 ms", "Output/frame interval": "0.3 ms",
+         "Checkpoints/steps": 5}
+BAD_INPUT, OUTPUT_FAILED, INTERRUPTED = 2, 5, 130
+
+
+def command(folder, *more, entries=None, side="continuum"):
+    sets = [word for key, value in {**SHEET, **(entries or {})}.items() for word in ("--set", f"{key}={value}")]
+    return ["fracture", str(CASES / "quick.prm"), "--side", side, "--skip-verification", *sets, "--output-dir", str(folder), *more]
+
+
+def files(folder):
+    return {path.name: path.read_bytes() for path in folder.iterdir()
+            if path.is_file() and path.name not in ("run.json", "log.txt", "report.html") and path.suffix != ".png"}
+
+
+class ContinuumFracture(TemporaryFolder):
+    def run_to_end(self, *more, **keywords):
+        run = latcon(*command(self.out, *more, **keywords))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        return run
+
+    def test_files(self):
+        self.run_to_end()
+        crack = json.loads((self.out / "crack.json").read_text())
+        self.assertEqual(crack["side"], "continuum")
+        self.assertTrue(crack["skip_verification"])
+        self.assertGreater(crack["speed_lagrangian"], 1.0)
+        tip = read_csv(self.out / "crack.csv")
+        self.assertGreater(float(tip[-1]["X"]), 0.9 * 0.93 * 30e-3)
+        edges = read_csv(self.out / "crack_edges.csv")
+        self.assertTrue(all(float(row["lower"]) < float(row["upper"]) for row in edges))
+        # Every energy is in the table: their sum is that of the start.
+        sums = [sum(float(row[name]) for name in ("elastic", "kinetic", "viscous", "broken", "shed", "imbalance"))
+                for row in read_csv(self.out / "energy.csv")]
+        for total in sums:
+            self.assertAlmostEqual(total / sums[0], 1.0, delta=1e-12)
+        self.assertLess(crack["energy_imbalance"], 1e-2)
+        shown = frames(self.out / "continuum.pvd")
+        self.assertGreater(len(shown), 3)
+        for when, path in (shown[0], shown[-1]):
+            sheet = read(vtkXMLPolyDataReader(), path)
+            self.assertEqual(sheet.GetFieldData().GetArray("TimeValue").GetValue(0), when)
+            damage = vtk_to_numpy(sheet.GetPointData().GetArray("damage"))
+            self.assertEqual((damage.min(), damage.max()), (0.0, 1.0))
+            for name in ("displacement", "velocity", "strain_energy_density"):
+                self.assertIsNotNone(sheet.GetPointData().GetArray(name), name)
+            # Held corners are where the loading of quick.prm puts them.
+            corner = vtk_to_numpy(sheet.GetPointData().GetArray("displacement"))[-1]
+            self.assertAlmostEqual(corner[0] / (1.3 * sheet.GetBounds()[1]), 1.0, delta=1e-6)
+            self.assertAlmostEqual(corner[1] / (1.8 * sheet.GetBounds()[3]), 1.0, delta=1e-6)
+        page = (self.out / "report.html").read_text()
+        self.assertIn("Crack of the continuum", page)
+        for picture in ("damage.png", "crack_edges.png", "crack_path.png", "energy.png"):
+            self.assertTrue((self.out / picture).exists(), picture)
+
+    def test_stop_and_resume(self):
+        self.run_to_end("--no-report", "--threads", "2")
+        expected = files(self.out)
+        self.out = self.folder / "stopped"
+        with subprocess.Popen([LATCON, *command(self.out, "--no-report")], stdout=subprocess.DEVNULL,
+                              stderr=subprocess.DEVNULL) as run:
+            while not list(self.out.glob("checkpoints/*.h5")):
+                self.assertIsNone(run.poll(), "it ended too soon")
+                time.sleep(0.002)
+            os.kill(run.pid, signal.SIGTERM)
+            self.assertEqual(run.wait(timeout=600), INTERRUPTED)
+        self.assertNotEqual(files(self.out)["crack.csv"], expected["crack.csv"])
+        self.assertIn("step", self.run_to_end("--no-report", "--resume", "--threads", "1").stdout)
+        found = files(self.out)
+        self.assertEqual(sorted(found), sorted(expected))
+        for name, content in expected.items():
+            self.assertEqual(found[name] == content, True, name)
+
+    def test_checkpoint_of_the_other_side_is_refused(self):
+        self.run_to_end("--no-report", side="lattice")
+        run = latcon(*command(self.out, "--resume"))
+        self.assertEqual(run.returncode, BAD_INPUT)
+        self.assertIn("fracture --side continuum", run.stderr)
+
+    def test_bad_input(self):
+        for entries, message in (({"Continuum/law": "mooney-rivlin"}, "Continuum/law"),
+                                 ({"Continuum/gradient": "isotropic", "Continuum/degree": 2}, "Continuum/gradient"),
+                                 ({"Fracture/left end": "free"}, "Fracture/left end"),
+                                 ({"Disorder/strength": "uniform"}, "Disorder/strength"),
+                                 ({"Nearest neighbours/branch moduli": "0.1 MPa",
+                                   "Nearest neighbours/relaxation times": "1 s"}, "Nearest neighbours/branch moduli"),
+                                 ({"Damage/threshold energy": "1 MPa"}, "would be damaged everywhere"),
+                                 ({"Damage/length": "3 mm"}, "Damage/length"),
+                                 ({"Damage/cells per length": 0}, "Damage/cells per length"),
+                                 ({"Sheet/hole radius": "2 mm"}, "Sheet/hole radius"),
+                                 ({"Fracture/breaking stretch": "auto"}, "Fracture/breaking stretch")):
+            with self.subTest(entries):
+                run = latcon(*command(self.out, entries=entries))
+                self.assertEqual(run.returncode, BAD_INPUT, run.stderr)
+                self.assertIn(message, run.stderr)
+                self.assertFalse(self.out.exists())
+        self.assertEqual(latcon(*command(self.out), "--side", "both").returncode, BAD_INPUT)
+
+    def test_ranks(self):
+        run = latcon_on_ranks(2, *command(self.out))
+        self.assertEqual(run.returncode, BAD_INPUT, run.stderr)
+        self.assertIn("one rank", run.stderr)
+        self.assertFalse(self.out.exists())
+
+    def test_table_that_cannot_be_written(self):
+        (self.out / "crack_edges.csv").mkdir(parents=True)
+        self.assertEqual(latcon(*command(self.out, "--no-report")).returncode, OUTPUT_FAILED)
+
+    def test_dry_run(self):
+        run = latcon(*command(self.out, "--dry-run"))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("# damage: length 0.001 m, threshold 3.2e+06 J/m^3", run.stdout)
+        self.assertFalse(self.out.exists())
+
+    def test_comparison_with_the_lattice(self):
+        self.run_to_end("--no-report")
+        lattice = self.folder / "lattice"
+        self.assertEqual(latcon(*command(lattice, "--no-report", side="lattice")).returncode, 0)
+        run = latcon("compare", lattice, self.out, "--output-dir", self.folder / "both", "--no-report")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        with open(self.folder / "both" / "compare.csv", newline="") as table:
+            speeds = [row for row in csv.reader(table) if row and row[0] == "speed_lagrangian"]
+        self.assertEqual(len(speeds), 1)
+
+
+if __name__ == "__main__":
+    unittest.main(verbosity=2)

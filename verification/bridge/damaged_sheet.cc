@@ -1,0 +1,165 @@
+#include "verification/bridge/damaged_sheet.h"
+
+#include <algorithm>
+#include <cmath>
+#include <tuple>
+
+#include "lattice/counter_hash.h"
+#include "verification/bridge/lattice_sheet.h"
+
+namespace latcon::bridge
+{
+namespace
+{
+
+using dealii::Point;
+using dealii::Tensor;
+
+constexpr double most_cells = 1e8; // of a grid; their indices and memory have room for them
+
+// Directions of the fibres that stand for all directions, see continuum::in_all_directions(): an error of 1e-12 in a
+// sheet at strains (1.3, 1.8), but of some percent where one stretch is ten times the other.
+constexpr unsigned int n_directions = 12;
+
+continuum::Rectangle rectangle(const input::Case &input, const continuum::DamageLaw &law)
+{
+  const double h = cell_size(input, law);
+  const lattice::TriangularLattice sheet = input.lattice();
+  const auto cells_x = static_cast<unsigned int>(std::max(1., std::round(sheet.length() / h)));
+  // Odd: the sheet then has a row of cells in the middle, which a crack opens, and is its own mirror image.
+  const auto pairs = static_cast<unsigned int>(std::max(0., std::round((sheet.height() / h - 1.) / 2.)));
+  return {sheet.length(), sheet.height(), cells_x, 2 * pairs + 1};
+}
+
+continuum::DamageMotionSetup setup(const input::Case &input, const Subject &subject, const continuum::DamageLaw &law)
+{
+  const continuum::Rectangle sheet = rectangle(input, law);
+  const continuum::NodeGrid grid(sheet);
+  std::vector<continuum::FibreFamily> families = subject.cauchy_born.families();
+  std::vector<continuum::FibreDashpot> dashpots;
+  if (const auto viscosity = homogenised_viscosity(input.lattice(), subject.material))
+    dashpots = dynamic_cast<const continuum::FibreViscosity &>(*viscosity).dashpots();
+  if (input.continuum.law == input::ContinuumLaw::mooney_rivlin_network)
+  {
+    families = continuum::in_all_directions(families, n_directions);
+    dashpots = continuum::in_all_directions(dashpots, n_directions);
+  }
+  continuum::DamageMotionSetup setup{
+    sheet, to_continuum(input.deformation()), families, dashpots, input.density, law, {}, {}, 0.};
+  const double length = sheet.length, top = 0.5 * sheet.height;
+  // Distance from the nearest edge.
+  const auto inside = [length, top](const Point<2> &X)
+  { return std::min({X[0], length - X[0], top - X[1], top + X[1]}); };
+  const double on_edge = 1e-3 * std::min(grid.size_x, grid.size_y), near_edge = 2. * law.length;
+  setup.is_held = [inside, on_edge](const Point<2> &X, unsigned int) { return inside(X) < on_edge; };
+  setup.is_intact = [inside, near_edge](const Point<2> &X) { return inside(X) < near_edge; };
+  setup.step = input.continuum.time_step.value_or(
+    1. / continuum::FibreForces(grid, families, dashpots, setup.loading).elastic_frequency(input.density));
+  return setup;
+}
+
+// Random displacement of a point of the square lattice (i, j), in units of the amplitude.
+Tensor<1, 2> noise_at(const double i, const double j, const std::uint64_t seed)
+{
+  const auto place = static_cast<std::uint64_t>(static_cast<std::int64_t>(i)) * 0x100000001ull +
+                     static_cast<std::uint64_t>(static_cast<std::int64_t>(j));
+  Tensor<1, 2> noise;
+  for (const unsigned int axis : {0u, 1u})
+  {
+    const std::uint64_t bits = lattice::splitmix64(lattice::splitmix64(seed) ^ lattice::splitmix64(2 * place + axis));
+    noise[axis] = std::ldexp(static_cast<double>(bits >> 11), -52) - 1.;
+  }
+  return noise;
+}
+
+} // namespace
+
+double cell_size(const input::Case &input, const continuum::DamageLaw &law)
+{
+  return law.length / input.continuum.damage_cells;
+}
+
+double damage_time_step(const input::Case &input, const Subject &subject, const continuum::DamageLaw &law)
+{
+  return setup(input, subject, law).step;
+}
+
+SeedSegment seed_segment(const input::Case &input, const continuum::NodeGrid &grid)
+{
+  const lattice::TriangularLattice sheet = input.lattice();
+  const std::vector<std::size_t> sites = input.seed(sheet);
+  SeedSegment seed{sheet.reference(sites.front()).x() - 0.5 * sheet.spacing(),
+                   sheet.reference(sites.back()).x() + 0.5 * sheet.spacing(), 0.};
+  for (const std::size_t site : sites)
+    seed.Y += sheet.reference(site).y() / static_cast<double>(sites.size());
+  seed.Y = grid.bottom + (std::floor((seed.Y - grid.bottom) / grid.size_y) + 0.5) * grid.size_y;
+  return seed;
+}
+
+continuum::DamageMotion damaged_sheet(const input::Case &input, const Subject &subject,
+                                      const continuum::DamageLaw &law)
+{
+  continuum::DamageMotion motion(setup(input, subject, law));
+  const continuum::NodeGrid &grid = motion.grid();
+  const SeedSegment seed = seed_segment(input, grid);
+  motion.set_damage(
+    [&](const Point<2> &X)
+    {
+      // The nodes on both sides of the row of cells have the damage 1: its cells are open.
+      const double x = std::max({seed.left - X[0], X[0] - seed.right, 0.});
+      const double y = std::max(std::abs(X[1] - seed.Y) - 0.5 * grid.size_y, 0.);
+      const double left = std::min(1. - std::hypot(x, y) / (2. * law.length), 1.);
+      return left > 0. ? left * left : 0.;
+    });
+  const double spacing = input.spacing, amplitude = input.noise_amplitude * spacing;
+  if (amplitude > 0.)
+    motion.set_motion(
+      [&](const Point<2> &X)
+      {
+        const double i = std::floor(X[0] / spacing), j = std::floor(X[1] / spacing);
+        const double p = X[0] / spacing - i, q = X[1] / spacing - j;
+        const auto at = [&](double k, double l) { return noise_at(k, l, input.noise_seed); };
+        return amplitude * ((1. - q) * ((1. - p) * at(i, j) + p * at(i + 1., j)) +
+                            q * ((1. - p) * at(i, j + 1.) + p * at(i + 1., j + 1.)));
+      },
+      [](const Point<2> &) { return Tensor<1, 2>(); });
+  return motion;
+}
+
+void require_damaged_sheet(const input::Case &input, input::Parameters &p)
+{
+  const std::string command = "`latcon fracture --side continuum`";
+  const input::ContinuumCase &c = input.continuum;
+  for (const auto &[end, name] :
+       {std::pair(input.left_end, "Fracture/left end"), std::pair(input.right_end, "Fracture/right end")})
+    if (end != input::Case::End::held)
+      p.error(name, command + " holds both ends; give held");
+  if (c.law == input::ContinuumLaw::mooney_rivlin)
+    p.error("Continuum/law", command + " needs a law of fibres; give cauchy-born or mooney-rivlin-network");
+  if (c.gradient != input::ContinuumGradient::none)
+    p.error("Continuum/gradient", command + " has no gradient energy; give none");
+  if (!c.mesh_file.empty())
+    p.error("Continuum/mesh file", command + " makes its own mesh; omit the entry");
+  for (const auto &[shell, section, is_there] :
+       {std::tuple(&input.nearest, std::string("Nearest neighbours"), true),
+        std::tuple(&input.next_nearest, std::string("Next-nearest neighbours"), input.has_next_nearest)})
+  {
+    if (is_there && shell->has_user_law())
+      p.error(section + "/law", command + " supports mooney-rivlin and linear");
+    if (is_there && !shell->branch_moduli.empty())
+      p.error(section + "/branch moduli", command + " does not support bonds with memory; give none");
+  }
+  if (input.disorder.strength.kind != lattice::Distribution::Kind::none)
+    p.error("Disorder/strength", command + " does not support disorder; give none");
+  if (input.disorder.stiffness.kind != lattice::Distribution::Kind::none)
+    p.error("Disorder/stiffness", command + " does not support disorder; give none");
+  const double h = c.damage_length.value_or(input.spacing) / c.damage_cells;
+  if (p.good() && !(input.length / h * (input.height / h) <= most_cells))
+    p.error("Damage/cells per length", "the mesh would have more than 1e8 cells",
+            {"Damage/length", "Sheet/length", "Sheet/height"});
+  if (p.good() && !(std::min(input.length, input.height) >= 8. * c.damage_length.value_or(input.spacing)))
+    p.error("Damage/length", "the edges stay intact within 2 xi, so the sheet must be 8 xi high and long at least",
+            {"Sheet/length", "Sheet/height"});
+}
+
+} // namespace latcon::bridge

@@ -1,0 +1,235 @@
+#include <cmath>
+#include <sstream>
+
+#include <omp.h>
+
+#include <deal.II/base/mpi.h>
+
+#include "lattice/archive_rows.h"
+#include "verification/bridge/damaged_sheet.h"
+#include "verification/bridge/lattice_sheet.h"
+#include "verification/claims/damage/damage_claim.h"
+#include "verification/commands/claim_registry.h"
+#include "verification/commands/command.h"
+#include "verification/commands/cost.h"
+#include "verification/commands/crack_run.h"
+#include "verification/commands/signals.h"
+#include "verification/output/checkpoints.h"
+#include "verification/output/damage_record.h"
+#include "verification/output/damage_writer.h"
+#include "verification/output/progress.h"
+
+namespace latcon::commands
+{
+namespace
+{
+
+// Largest remainder of the ledger with which a run holds, over the initial energy. Damage follows the displacement at
+// the ends of steps, so that the remainder is of first order in the step. Chosen: a tenth of what a crack across the
+// whole of a strip that it drives ten times as hard as necessary would take up.
+constexpr double allowed_imbalance = 1e-2;
+
+// Steps between two rows of energies.
+constexpr std::size_t energy_steps = 10;
+
+// Measured on one core: time of a cell in one stage of a step [s], and memory of a cell [bytes].
+constexpr double seconds_per_cell = 1.2e-7, bytes_per_cell = 600.;
+
+using analysis::CrackMeasurement;
+
+// A crack of the continuum between steps: frames, tables, checkpoints, signals, progress.
+class DamageRun
+{
+public:
+  DamageRun(const input::Case &input, continuum::DamageMotion &motion, output::Checkpoints &checkpoints, Run &run)
+    : input_(input), motion_(motion), checkpoints_(checkpoints), run_(run),
+      seed_tip_(bridge::seed_segment(input, motion.grid()).right), record_(input, motion, seed_tip_),
+      frames_(run.directory(), bridge::to_continuum(input.deformation())), next_frame_(input.frame_interval)
+  {
+  }
+
+  // Moves the sheet until the crack reaches the stop position, the time ends or a signal comes.
+  void go()
+  {
+    const bool resumed = checkpoints_.resume([this](auto &archive) { parts(archive); });
+    const SignalDeferral deferral;
+    if (resumed)
+    {
+      // Removes what was written after the checkpoint.
+      record_.write_tables(run_.directory());
+      frames_.series().write_collection();
+    }
+    else
+    {
+      record_.step();
+      record_.energies();
+      frames_.add_frame(motion_);
+    }
+    output::Progress progress(run_.is_verbose());
+    const auto phase = run_.info().stopwatch().phase("fracture");
+    const double stop = input_.stop_position * input_.length;
+    while (motion_.time() < input_.end_time && record_.tip_X() < stop)
+    {
+      const bool is_stopped = any_rank_interrupted(); // a step takes far longer
+      if (is_stopped || checkpoints_.due(motion_.n_steps()))
+        checkpoints_.write(motion_.n_steps(), motion_.time(), [this](auto &archive) { parts(archive); });
+      if (is_stopped)
+        break;
+      step();
+      if (progress.due())
+        progress.show(progress_text(), std::max((record_.tip_X() - seed_tip_) / (stop - seed_tip_),
+                                                motion_.time() / input_.end_time));
+    }
+    record_.energies();
+    frames_.add_frame(motion_);
+    record_.write_tables(run_.directory());
+  }
+
+  const output::DamageRecord &record() const { return record_; }
+
+private:
+  void step()
+  {
+    try
+    {
+      motion_.advance();
+    }
+    // The input has been checked, so the computed state is wrong. It cannot be shown; the records until then can.
+    catch (const std::exception &failure)
+    {
+      record_.write_tables(run_.directory());
+      throw support::SolverError(std::string(failure.what()) + ", in step " + std::to_string(motion_.n_steps()) +
+                                 "; try a smaller Continuum/time step");
+    }
+    record_.step();
+    if (motion_.n_steps() % energy_steps == 0)
+      record_.energies();
+    if (input_.frame_interval > 0. && motion_.time() >= next_frame_)
+    {
+      // All results so far are on disk from here on.
+      frames_.add_frame(motion_);
+      record_.write_tables(run_.directory());
+      next_frame_ += input_.frame_interval;
+    }
+  }
+
+  std::string progress_text() const
+  {
+    std::ostringstream text;
+    text.precision(3);
+    text << "step " << motion_.n_steps() << ", t " << 1e3 * motion_.time() << " ms, tip " << 100. * record_.tip_X()
+         << " cm, speed " << record_.speed() << " m/s";
+    return text.str();
+  }
+
+  template <class Archive>
+  void parts(Archive &archive)
+  {
+    std::size_t step = motion_.n_steps();
+    archive("motion", motion_);
+    archive("record", record_);
+    archive("frames", frames_);
+    archive("next_frame", next_frame_);
+    archive("step", step);
+    if constexpr (Archive::loads)
+    {
+      output::require_matching_time(*checkpoints_.found(), step, motion_.time(), motion_.time(), 0.);
+      lattice::require_archived(step == motion_.n_steps(), "`step` is not that of the motion");
+      const double frames = static_cast<double>(frames_.series().n_frames());
+      lattice::require_archived(input_.frame_interval == 0. ||
+                                  std::abs(next_frame_ - frames * input_.frame_interval) <=
+                                    frames * std::numeric_limits<double>::epsilon() * next_frame_,
+                                "`next_frame` does not follow the frames that there are");
+    }
+  }
+
+  const input::Case &input_;
+  continuum::DamageMotion &motion_;
+  output::Checkpoints &checkpoints_;
+  Run &run_;
+  double seed_tip_; // [m]
+  output::DamageRecord record_;
+  output::DamageWriter frames_;
+  double next_frame_; // [s]
+};
+
+// Reports a sheet that breaks everywhere at once: its homogeneous state is damaged.
+void check_threshold(const input::Case &input, const bridge::Subject &subject, const continuum::DamageLaw &law,
+                     input::Parameters &parameters)
+{
+  const double stored = subject.cauchy_born.energy(bridge::to_continuum(input.deformation()));
+  if (stored < law.threshold)
+    return;
+  std::ostringstream text;
+  text << "the loaded sheet stores " << stored << " J/m^3 and would be damaged everywhere, since damage begins at "
+       << law.threshold << " J/m^3; give a larger threshold or a smaller strain";
+  parameters.error("Damage/threshold energy", text.str(),
+                   {"Loading/strain x", "Loading/strain y", "Fracture/breaking stretch"});
+}
+
+} // namespace
+
+support::ExitCode run_continuum_fracture(const input::Options &options)
+{
+  if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+    throw support::InputError("latcon fracture --side continuum runs on one rank, with threads: start it without mpirun");
+  input::Case input;
+  input::Parameters parameters;
+  read_case(options, input, parameters);
+  bridge::require_fracture_case(input, parameters);
+  bridge::require_damaged_sheet(input, parameters);
+  parameters.finish();
+  const bridge::Subject subject = bridge::subject(input);
+  const continuum::DamageLaw law = claims::damage_law(input, subject);
+  check_threshold(input, subject, law, parameters);
+  const double step = bridge::damage_time_step(input, subject, law), h = bridge::cell_size(input, law);
+  resources::check_steps(input, step, parameters);
+  parameters.finish();
+
+  const double cells = input.length / h * (input.height / h), steps = std::ceil(input.end_time / step);
+  const resources::MemoryNeed memory{bytes_per_cell * cells, 0.};
+  if (options.dry_run)
+    print_dry_run(options, parameters.resolved_text() + resources::memory_text(memory));
+  require_memory(options, memory);
+  continuum::DamageMotion motion = bridge::damaged_sheet(input, subject, law);
+  const double seconds = cells * steps * motion.n_stages() * seconds_per_cell / omp_get_max_threads();
+  if (options.dry_run)
+  {
+    const continuum::NodeGrid &grid = motion.grid();
+    std::ostringstream text;
+    text << "# continuum: " << grid.cells_x << " x " << grid.cells_y << " cells of " << grid.size_x << " m x "
+         << grid.size_y << " m\n# damage: length " << law.length << " m, threshold " << law.threshold
+         << " J/m^3, energy of a crack " << law.fracture_energy() << " J/m^2\n# time step: " << step << " s, " << steps
+         << " steps at most of " << motion.n_stages() << " stages each\n# time: about " << std::ceil(seconds)
+         << " s at most on " << omp_get_max_threads() << " threads, without claims, pictures and page\n";
+    print_dry_run(options, text.str());
+    require_time(options, seconds);
+    return support::ExitCode::done;
+  }
+  require_time(options, seconds);
+
+  output::Checkpoints checkpoints(options, parameters, input, "fracture --side continuum");
+  Run run(options, parameters);
+  run.record_checkpoint(checkpoints);
+  run.info().add("side", std::string("continuum"));
+  run.info().add("skip_verification", options.skip_verification);
+  output::Results results;
+  if (!options.skip_verification)
+    results =
+      passed_or_reported(input, claims_before_continuum_fracture(subject.material), options, run);
+  DamageRun crack(input, motion, checkpoints, run);
+  crack.go();
+  const CrackMeasurement measurement = crack.record().measure();
+  crack.record().write_measurement(run.directory(), measurement, options.skip_verification);
+  run.info().add("damage_length_m", law.length);
+  run.info().add("damage_threshold_J_m3", law.threshold);
+  run.info().add("fracture_energy_J_m2", law.fracture_energy());
+  run.info().add("cell_size_m", motion.grid().size_x);
+  run.info().add("time_step_s", step);
+  run.info().add("stages", static_cast<std::uint64_t>(motion.n_stages()));
+  results.add(measured_results(input, measurement, Side::continuum, crack.record().largest_imbalance(),
+                               allowed_imbalance));
+  return end_crack(input, options, run, results, measurement);
+}
+
+} // namespace latcon::commands

@@ -1,0 +1,13 @@
+#pragma once
+
+#include <nlohmann/json.hpp>
+
+#include "verification/analysis/crack_measurement.h"
+
+namespace latcon::output
+{
+
+/// What crack.json says of every crack, on either side: pattern, reason, and measured quantities with uncertainties.
+[[nodiscard]] nlohmann::ordered_json crack_json(const analysis::CrackMeasurement &measurement);
+
+} // namespace latcon::output

@@ -1,0 +1,178 @@
+#include "verification/output/damage_record.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "lattice/archive_rows.h"
+#include "support/largest_error.h"
+#include "verification/output/crack_json.h"
+#include "verification/output/csv.h"
+#include "verification/output/output_file.h"
+
+namespace latcon::output
+{
+namespace
+{
+
+// The tip advances by cells, so its speed is meaningful only over several of them.
+constexpr double speed_baseline = 6.; // in spacings
+constexpr double not_passed = -1., in_seed = -2.;
+
+} // namespace
+
+DamageRecord::DamageRecord(const input::Case &input, const continuum::DamageMotion &motion, const double seed_tip)
+  : input_(input), motion_(motion), seed_tip_(seed_tip),
+    column_(static_cast<std::size_t>(std::floor(seed_tip / motion.grid().size_x))),
+    passed_(motion.grid().n_nodes(), not_passed)
+{
+  for (std::size_t a = 0; a < passed_.size(); ++a)
+    if (motion.damage().nodal()[a] >= analysis::contour_level)
+      passed_[a] = in_seed;
+}
+
+analysis::DamageImage DamageRecord::image() const
+{
+  const continuum::NodeGrid &grid = motion_.grid();
+  return {grid.columns(), grid.rows(), grid.size_x, grid.size_y, grid.bottom, &motion_.damage().nodal()};
+}
+
+void DamageRecord::step()
+{
+  const std::vector<double> &damage = motion_.damage().nodal();
+  for (std::size_t a = 0; a < passed_.size(); ++a)
+    if (passed_[a] == not_passed && damage[a] >= analysis::contour_level)
+      passed_[a] = motion_.time();
+  const std::optional<analysis::ContourTip> tip = analysis::contour_tip(image(), column_);
+  if (!tip || (!tip_.empty() && tip->column == column_))
+    return;
+  column_ = tip->column;
+  const continuum::NodeGrid &grid = motion_.grid();
+  const double X = tip->X, Y = tip->Y, time = motion_.time();
+  // Displacement between the nodes of a cell.
+  const double along = std::min(X / grid.size_x, static_cast<double>(grid.cells_x) - 1e-9);
+  const double across = std::min((Y - grid.bottom) / grid.size_y, static_cast<double>(grid.cells_y) - 1e-9);
+  const double p = along - std::floor(along), q = across - std::floor(across);
+  const std::size_t a =
+    static_cast<std::size_t>(across) * grid.columns() + static_cast<std::size_t>(along);
+  const std::size_t up = grid.columns();
+  Eigen::Vector2d x = input_.deformation() * Eigen::Vector2d(X, Y);
+  for (const int axis : {0, 1})
+  {
+    const std::vector<double> &u = motion_.displacement()[static_cast<std::size_t>(axis)];
+    x(axis) += (1. - q) * ((1. - p) * u[a] + p * u[a + 1]) + q * ((1. - p) * u[a + up] + p * u[a + up + 1]);
+  }
+  tip_.push_back({time, X, Y, x.x(), x.y()});
+  double speed = 0.;
+  for (std::size_t i = tip_.size() - 1; i-- > 0;)
+    if (X - tip_[i].X >= speed_baseline * input_.spacing && time > tip_[i].t)
+    {
+      speed = (X - tip_[i].X) / (time - tip_[i].t);
+      break;
+    }
+  speeds_.push_back(speed);
+}
+
+void DamageRecord::energies()
+{
+  if (energies_.empty() || energies_.back().time < motion_.time())
+    energies_.push_back({motion_.time(), motion_.ledger()});
+}
+
+double DamageRecord::largest_imbalance() const
+{
+  support::LargestError largest;
+  for (const EnergyRow &row : energies_)
+    largest.add(std::abs(row.ledger.imbalance) /
+                (energies_.front().ledger.elastic + energies_.front().ledger.kinetic));
+  return largest.error();
+}
+
+analysis::CrackMeasurement DamageRecord::measure() const
+{
+  std::vector<analysis::BreakRecord> breaks;
+  for (std::size_t a = 0; a < passed_.size(); ++a)
+    if (passed_[a] >= 0.)
+    {
+      const dealii::Point<2> X = motion_.grid().position(a);
+      breaks.push_back({passed_[a], X[0], X[1]});
+    }
+  analysis::CrackMeasurementOptions options;
+  options.strip_length = input_.length;
+  options.lattice_spacing = input_.spacing;
+  options.end_time = motion_.time();
+  options.seed_tip_X = seed_tip_;
+  return analysis::measure_crack(tip_, breaks, options);
+}
+
+void DamageRecord::write_tables(const std::filesystem::path &directory) const
+{
+  Table crack({"t", "X", "Y", "x", "y", "speed"});
+  for (std::size_t i = 0; i < tip_.size(); ++i)
+    crack.add({tip_[i].t, tip_[i].X, tip_[i].Y, tip_[i].x, tip_[i].y, speeds_[i]});
+  write_file(directory / "crack.csv", crack.csv());
+  Table edges({"X", "strands", "lower", "upper", "damaged"});
+  for (const analysis::ContourColumn &column : analysis::contour(image(), seed_tip_))
+    edges.add({column.X, static_cast<double>(column.n_strands), column.lower, column.upper, column.damaged});
+  write_file(directory / "crack_edges.csv", edges.csv());
+  // Columns of the lattice's table, whose edges do no work here either, and whose cracks do not touch themselves here.
+  Table energy({"t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "shed", "imbalance"});
+  for (const auto &[time, e] : energies_)
+    energy.add({time, e.elastic, e.kinetic, e.viscous, e.fracture, 0., 0., e.shed, e.imbalance});
+  write_file(directory / "energy.csv", energy.csv());
+}
+
+void DamageRecord::write_measurement(const std::filesystem::path &directory,
+                                     const analysis::CrackMeasurement &measurement, const bool skip_verification) const
+{
+  nlohmann::ordered_json json = crack_json(measurement);
+  const analysis::CrackMeasurementOptions options;
+  if (const std::optional<analysis::ContourMeasurement> contour =
+        analysis::measure_contour(analysis::contour(image(), seed_tip_), measurement.X_begin, measurement.X_end,
+                                  input_.spacing, options.min_wavelength))
+  {
+    json["width"] = contour->mean_width;
+    json["width_rms"] = contour->rms_width;
+    json["centre_rms"] = contour->rms_centre;
+    json["several_strands"] = contour->several_strands;
+    const auto put = [&json](const std::string &line, const std::optional<analysis::SinusoidFit> &fit)
+    {
+      json[line + "_wavelength"] = fit ? nlohmann::ordered_json(fit->wavelength.value) : nullptr;
+      json[line + "_amplitude"] = fit ? nlohmann::ordered_json(fit->amplitude.value) : nullptr;
+      json[line + "_log_evidence"] = fit ? nlohmann::ordered_json(fit->log_evidence) : nullptr;
+    };
+    put("centre", contour->centre);
+    put("lower_edge", contour->lower);
+    put("upper_edge", contour->upper);
+    put("width", contour->width);
+  }
+  json["side"] = "continuum";
+  json["end_time"] = motion_.time();
+  json["energy_imbalance"] = largest_imbalance();
+  json["skip_verification"] = skip_verification;
+  json["units"] = "speeds m/s, lengths m in the undeformed sheet, time s; uncertainties are one standard deviation";
+  write_file(directory / "crack.json", json.dump(2) + "\n");
+}
+
+void DamageRecord::check_loaded() const
+{
+  using lattice::require_archived;
+  const double now = motion_.time();
+  require_archived(passed_.size() == motion_.grid().n_nodes(), "`passed` is of a sheet of another size");
+  require_archived(column_ < motion_.grid().columns(), "`column` is outside the sheet");
+  require_archived(speeds_.size() == tip_.size(), "the numbers of `speeds` and records of the tip do not match");
+  require_archived(!energies_.empty(), "`energies` is empty");
+  double before = 0.;
+  for (const analysis::TipRecord &tip : tip_)
+  {
+    require_archived(tip.t >= before && tip.t <= now, "times of `tip` do not increase up to the current time");
+    before = tip.t;
+  }
+  before = 0.;
+  for (const EnergyRow &row : energies_)
+  {
+    require_archived(row.time >= before && row.time <= now, "times of `energies` do not increase up to the present");
+    before = row.time;
+  }
+}
+
+} // namespace latcon::output

@@ -1,0 +1,84 @@
+#pragma once
+
+#include <filesystem>
+#include <vector>
+
+#include "continuum/damage/damage_motion.h"
+#include "verification/analysis/damage_contour.h"
+#include "verification/input/case.h"
+
+namespace latcon::output
+{
+
+/// Record of a crack of the continuum: positions of its tip, nodes that it passed, energies over time. Its edge is the
+/// contour of damage 0.5. Units and configuration as in analysis::TipRecord.
+class DamageRecord
+{
+public:
+  /// @param motion at its first step; must outlive the record
+  /// @param seed_tip reference X of the right end of the seed [m]
+  DamageRecord(const input::Case &input, const continuum::DamageMotion &motion, double seed_tip);
+
+  /// Records the tip and the nodes that are damaged, after a step or before the first.
+  void step();
+
+  /// Records the energies.
+  void energies();
+
+  double tip_X() const { return tip_.empty() ? 0. : tip_.back().X; } ///< [m]; 0 before the first step
+  double speed() const { return speeds_.empty() ? 0. : speeds_.back(); } ///< over the last few spacings [m/s]; 0: unknown
+
+  /// Returns the largest |imbalance| recorded over the initial energy [-]; NaN if none is recorded.
+  double largest_imbalance() const;
+
+  analysis::CrackMeasurement measure() const;
+
+  /// Writes crack.csv, crack_edges.csv and energy.csv. @throws OutputError
+  void write_tables(const std::filesystem::path &directory) const;
+
+  /// Writes crack.json. @param skip_verification true if the material was not verified @throws OutputError
+  void write_measurement(const std::filesystem::path &directory, const analysis::CrackMeasurement &measurement,
+                         bool skip_verification) const;
+
+  /// Saves or loads the record; the motion must be loaded first. @throws std::invalid_argument for records that do not
+  /// belong to it
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive("column", column_);
+    archive.records("tip", tip_);
+    archive("speeds", speeds_);
+    archive("passed", passed_);
+    archive.records("energies", energies_);
+    if constexpr (Archive::loads)
+      check_loaded();
+  }
+
+private:
+  void check_loaded() const;
+  analysis::DamageImage image() const;
+
+  struct EnergyRow
+  {
+    double time;
+    continuum::DamageMotionLedger ledger;
+
+    template <class Archive>
+    void archive(Archive &archive)
+    {
+      archive("time", time);
+      archive("ledger", ledger);
+    }
+  };
+
+  const input::Case &input_;
+  const continuum::DamageMotion &motion_;
+  double seed_tip_;    // [m]
+  std::size_t column_; // of nodes, that the tip has reached
+  std::vector<analysis::TipRecord> tip_;
+  std::vector<double> speeds_; // per tip record [m/s]
+  std::vector<double> passed_; // time at which the crack passed each node [s]; negative: not yet, or part of the seed
+  std::vector<EnergyRow> energies_;
+};
+
+} // namespace latcon::output
