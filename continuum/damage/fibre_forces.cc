@@ -302,16 +302,16 @@ double FibreForces::largest_eigenvalue(const std::array<double, 3> &conductivity
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(K, Eigen::EigenvaluesOnly).eigenvalues()(3);
 }
 
-double FibreForces::viscous_rate(const double density) const
+std::array<double, 3> FibreForces::viscous_conductivity() const
 {
   // (n . w)^2 <= |w|^2: the bound does not depend on the deformation.
   std::array<double, 3> D{};
   for (const DampedFibre &k : fibres_)
     D = {D[0] + k.eta * k.X * k.X, D[1] + k.eta * k.X * k.Y, D[2] + k.eta * k.Y * k.Y};
-  return largest_eigenvalue(D) / density;
+  return D;
 }
 
-double FibreForces::elastic_frequency(const double density) const
+std::array<double, 3> FibreForces::elastic_conductivity() const
 {
   std::array<double, 3> D{};
   for (const DampedFibre &k : fibres_)
@@ -322,6 +322,16 @@ double FibreForces::elastic_frequency(const double density) const
     const double stiffness = std::max(along, across);
     D = {D[0] + stiffness * k.X * k.X, D[1] + stiffness * k.X * k.Y, D[2] + stiffness * k.Y * k.Y};
   }
-  return std::sqrt(largest_eigenvalue(D) / density);
+  return D;
+}
+
+double FibreForces::viscous_rate(const double density) const
+{
+  return largest_eigenvalue(viscous_conductivity()) / density;
+}
+
+double FibreForces::elastic_frequency(const double density) const
+{
+  return std::sqrt(largest_eigenvalue(elastic_conductivity()) / density);
 }
 } // namespace latcon::continuum

@@ -56,6 +56,11 @@ public:
   /// Returns an upper bound [1/s] of the angular frequencies of the elastic cells at F_0, for any damage.
   double elastic_frequency(double density) const;
 
+  /// Returns the tensor D of eq. (C.72), entries XX, XY, YY [Pa s].
+  std::array<double, 3> viscous_conductivity() const;
+  /// Returns the corresponding bound of the stiffness against Grad u at F_0 [Pa].
+  std::array<double, 3> elastic_conductivity() const;
+
   const NodeGrid &grid() const { return grid_; }
 
   static constexpr double min_stretch = 0.25;
