@@ -70,7 +70,8 @@ DamageMotion::DamageMotion(const DamageMotionSetup &setup)
     gradient_.emplace(grid(), setup.gradient->bonds, setup.gradient->length, setup.loading);
   }
   if (const double rate = viscous_rate(); rate > 0.)
-    stages_.emplace(ViscousStages::required(setup.step * rate));
+    stages_.emplace(gradient_ ? ViscousStages::required(setup.step * rate, 2. * setup.step / stable_step())
+                              : ViscousStages::required(setup.step * rate));
   else
     require(setup.step < stable_step(), "the time step exceeds the stability limit of a sheet without viscosity");
   restart_ledger();

@@ -78,7 +78,8 @@ public:
   const GridVector &velocity() const { return v_; }     ///< [m/s]
   unsigned int n_stages() const { return stages_ ? static_cast<unsigned int>(stages_->stages().size()) + 1 : 1; }
 
-  /// Returns the longest stable step [s] of velocity Verlet at F_0.
+  /// Returns the longest stable step [s] of velocity Verlet at F_0, without viscosity. With it and with gradient energy,
+  /// the constructor refuses steps in which waves grow.
   double stable_step() const;
 
 private:
