@@ -88,7 +88,8 @@ double DamageMotion::stable_step() const
 {
   if (!gradient_)
     return 2. / forces_.elastic_frequency(setup_.density);
-  return 2. / std::sqrt(patch_bound(grid(), forces_.elastic_conductivity(), gradient_->patch_terms(), setup_.density,
+  return 2. / std::sqrt(patch_bound(grid(), forces_.elastic_conductivity(FibreForces::relaxed_stretch),
+                                    gradient_->patch_terms(FibreForces::relaxed_stretch), setup_.density,
                                     inertia_length(setup_)));
 }
 

@@ -78,8 +78,9 @@ public:
   const GridVector &velocity() const { return v_; }     ///< [m/s]
   unsigned int n_stages() const { return stages_ ? static_cast<unsigned int>(stages_->stages().size()) + 1 : 1; }
 
-  /// Returns the longest stable step [s] of velocity Verlet at F_0, without viscosity. With it and with gradient energy,
-  /// the constructor refuses steps in which waves grow.
+  /// Returns the longest stable step [s] of velocity Verlet, without viscosity: at F_0; with gradient energy, also where
+  /// fibres have shortened to FibreForces::relaxed_stretch. With gradient energy and viscosity, the constructor refuses
+  /// steps in which waves of such a sheet grow.
   double stable_step() const;
 
 private:

@@ -259,7 +259,7 @@ void GradientForces::energies(const GridVector &u, std::vector<double> &node_ene
     visit(Row<false>{j, u, nullptr, nullptr, &node_energies});
 }
 
-std::vector<GradientForces::PatchTerm> GradientForces::patch_terms() const
+std::vector<GradientForces::PatchTerm> GradientForces::patch_terms(const double relaxed) const
 {
   const double xx = 1. / (grid_.size_x * grid_.size_x), yy = 1. / (grid_.size_y * grid_.size_y),
                xy = 0.25 / grid_.area();
@@ -270,8 +270,9 @@ std::vector<GradientForces::PatchTerm> GradientForces::patch_terms() const
   for (const Bond &k : bonds_)
   {
     const double l = (loading_ * Tensor<1, 2>({k.X, k.Y})).norm();
-    const Stiffness h = stiffness(k, l);
-    const double largest = std::max(h.across, h.across + h.coupling * l * l);
+    const double shortest = std::min(l, relaxed);
+    const Stiffness loaded = stiffness(k, l), unloaded = stiffness(k, shortest);
+    const double largest = std::max(loaded.across, unloaded.across + unloaded.coupling * shortest * shortest);
     PatchTerm across{{}, largest * k.across}, along{{}, largest * k.along};
     for (unsigned int b = 0; b < 9; ++b)
     {

@@ -47,8 +47,9 @@ public:
     std::array<double, 9> S; ///< [1/m^2]
     double stiffness;        ///< [Pa m^2]
   };
-  /// Returns the terms that bound the energies of a patch around F_0, for either component of u.
-  std::vector<PatchTerm> patch_terms() const;
+  /// Returns the terms that bound the energies of a patch, for either component of u, at F_0 or with bonds that have
+  /// shortened to `relaxed` [-].
+  std::vector<PatchTerm> patch_terms(double relaxed) const;
 
   /// Bond family with its two squares of eq. (C.25).
   struct Bond
