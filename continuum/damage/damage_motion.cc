@@ -1,5 +1,6 @@
 #include "continuum/damage/damage_motion.h"
 
+#include "continuum/damage/patch_bound.h"
 #include "continuum/errors.h"
 
 #include <cmath>
@@ -26,6 +27,22 @@ GridVector zero_vector(const NodeGrid &grid)
   return {std::vector<double>(grid.n_nodes(), 0.), std::vector<double>(grid.n_nodes(), 0.)};
 }
 
+std::array<std::vector<char>, 2> held_nodes(const NodeGrid &grid, const DamageMotionSetup &setup)
+{
+  if (!setup.is_held)
+    throw InvalidInput("a sheet in motion needs to know its held nodes");
+  std::array<std::vector<char>, 2> held;
+  for (const unsigned int i : {0u, 1u})
+    for (std::size_t a = 0; a < grid.n_nodes(); ++a)
+      held[i].push_back(setup.is_held(grid.position(a), i) ? 1 : 0);
+  return held;
+}
+
+double inertia_length(const DamageMotionSetup &setup)
+{
+  return setup.gradient && setup.gradient->has_micro_inertia ? setup.gradient->length : 0.;
+}
+
 // State of the equations of motion, or its rate.
 struct PhasePoint
 {
@@ -36,8 +53,8 @@ struct PhasePoint
 
 DamageMotion::DamageMotion(const DamageMotionSetup &setup)
   : setup_(setup), forces_(NodeGrid(setup.rectangle), setup.families, setup.dashpots, setup.loading),
-    damage_(forces_.grid(), setup.damage, intact_nodes(forces_.grid(), setup)), mass_(grid().n_nodes(), 0.),
-    u_(zero_vector(grid())), v_(zero_vector(grid()))
+    damage_(forces_.grid(), setup.damage, intact_nodes(forces_.grid(), setup)), held_(held_nodes(grid(), setup)),
+    mass_(grid(), setup.density, inertia_length(setup), held_), u_(zero_vector(grid())), v_(zero_vector(grid()))
 {
   const auto require = [](const bool holds, const char *rule)
   {
@@ -46,16 +63,34 @@ DamageMotion::DamageMotion(const DamageMotionSetup &setup)
   };
   require(setup.density > 0. && std::isfinite(setup.density), "the density must be positive and finite");
   require(setup.step > 0. && std::isfinite(setup.step), "the time step must be positive and finite");
-  require(static_cast<bool>(setup.is_held), "a sheet in motion needs to know its held nodes");
-  for (const unsigned int i : {0u, 1u})
-    for (std::size_t a = 0; a < grid().n_nodes(); ++a)
-      held_[i].push_back(setup.is_held(grid().position(a), i) ? 1 : 0);
-  if (const double rate = forces_.viscous_rate(setup.density); rate > 0.)
-    stages_.emplace(ViscousStages::required(setup.step * rate));
+  if (setup.gradient)
+  {
+    require(setup.gradient->length > 0. && std::isfinite(setup.gradient->length),
+            "the intrinsic length must be positive and finite");
+    gradient_.emplace(grid(), setup.gradient->bonds, setup.gradient->length, setup.loading);
+  }
+  if (const double rate = viscous_rate(); rate > 0.)
+    stages_.emplace(gradient_ ? ViscousStages::required(setup.step * rate, 2. * setup.step / stable_step())
+                              : ViscousStages::required(setup.step * rate));
   else
     require(setup.step < stable_step(), "the time step exceeds the stability limit of a sheet without viscosity");
-  update_masses();
   restart_ledger();
+}
+
+double DamageMotion::viscous_rate() const
+{
+  if (!gradient_)
+    return forces_.viscous_rate(setup_.density);
+  return patch_bound(grid(), forces_.viscous_conductivity(), {}, setup_.density, inertia_length(setup_));
+}
+
+double DamageMotion::stable_step() const
+{
+  if (!gradient_)
+    return 2. / forces_.elastic_frequency(setup_.density);
+  return 2. / std::sqrt(patch_bound(grid(), forces_.elastic_conductivity(FibreForces::relaxed_stretch),
+                                    gradient_->patch_terms(FibreForces::relaxed_stretch), setup_.density,
+                                    inertia_length(setup_)));
 }
 
 void DamageMotion::set_motion(const std::function<Tensor<1, 2>(const Point<2> &)> &displacement,
@@ -86,35 +121,20 @@ void DamageMotion::set_damage(const std::function<double(const Point<2> &)> &dam
 
 void DamageMotion::restart_ledger()
 {
-  forces_.energies(u_, damage_.cell_factors(), cell_energies_);
+  compute_energies();
   ledger_ = {};
   initial_fracture_ = damage_.fracture_energy();
   initial_energy_ = 0.;
   update_energies();
-  initial_energy_ = ledger_.elastic + ledger_.kinetic;
+  initial_energy_ = ledger_.elastic + ledger_.kinetic + ledger_.gradient;
   update_energies();
 }
 
-void DamageMotion::update_masses()
+void DamageMotion::compute_energies()
 {
-  const std::size_t columns = grid().columns();
-  mass_.assign(grid().n_nodes(), 0.);
-  for (std::size_t j = 0; j < grid().cells_y; ++j)
-    for (std::size_t i = 0; i < grid().cells_x; ++i)
-    {
-      const double share = 0.25 * setup_.density * grid().area() * damage_.cell_factors()[j * grid().cells_x + i];
-      const std::size_t a = j * columns + i;
-      for (const std::size_t b : {a, a + 1, a + columns, a + columns + 1})
-        mass_[b] += share;
-    }
-}
-
-double DamageMotion::kinetic_energy() const
-{
-  double sum = 0.;
-  for (std::size_t a = 0; a < mass_.size(); ++a)
-    sum += 0.5 * mass_[a] * (v_[0][a] * v_[0][a] + v_[1][a] * v_[1][a]);
-  return sum;
+  forces_.energies(u_, damage_.cell_factors(), cell_energies_);
+  if (gradient_)
+    gradient_->energies(u_, node_energies_);
 }
 
 void DamageMotion::update_energies()
@@ -122,10 +142,13 @@ void DamageMotion::update_energies()
   ledger_.elastic = 0.;
   for (std::size_t c = 0; c < cell_energies_.size(); ++c)
     ledger_.elastic += damage_.cell_factors()[c] * cell_energies_[c];
-  ledger_.kinetic = kinetic_energy();
+  ledger_.gradient = 0.;
+  for (std::size_t a = 0; a < node_energies_.size(); ++a)
+    ledger_.gradient += damage_.node_factors()[a] * node_energies_[a];
+  ledger_.kinetic = mass_.kinetic_energy(v_);
   ledger_.fracture = damage_.fracture_energy() - initial_fracture_;
-  ledger_.imbalance =
-    initial_energy_ - ledger_.elastic - ledger_.kinetic - ledger_.viscous - ledger_.fracture - ledger_.shed;
+  ledger_.imbalance = initial_energy_ - ledger_.elastic - ledger_.kinetic - ledger_.viscous - ledger_.fracture -
+                      ledger_.shed - ledger_.gradient;
   if (!std::isfinite(ledger_.imbalance))
     throw NonPhysicalState("the energy of the sheet is not finite at time " + std::to_string(time()) + " s");
 }
@@ -133,12 +156,9 @@ void DamageMotion::update_energies()
 void DamageMotion::accelerate(const GridVector &u, const GridVector &v, GridVector &acceleration, double &power) const
 {
   power = forces_.forces(u, v, damage_.cell_factors(), acceleration);
-  for (const unsigned int i : {0u, 1u})
-  {
-#pragma omp parallel for schedule(static) if (grid().n_cells() >= FibreForces::min_cells_for_threads)
-    for (std::size_t a = 0; a < mass_.size(); ++a)
-      acceleration[i][a] = held_[i][a] ? 0. : acceleration[i][a] / mass_[a];
-  }
+  if (gradient_)
+    gradient_->add_forces(u, damage_.node_factors(), acceleration);
+  mass_.solve(acceleration);
 }
 
 // Eq. (C.73). The dissipated energy is one more unknown of the method, with the power as its rate: quadrature between
@@ -188,7 +208,7 @@ void DamageMotion::advance_elastic()
   const auto add = [&](GridVector &to, const double factor, const GridVector &from)
   {
     for (const unsigned int i : {0u, 1u})
-      for (std::size_t a = 0; a < mass_.size(); ++a)
+      for (std::size_t a = 0; a < to[i].size(); ++a)
         to[i][a] += factor * from[i][a];
   };
   accelerate(u_, v_, acceleration, power);
@@ -205,12 +225,12 @@ void DamageMotion::advance()
   else
     advance_elastic();
   ++n_steps_;
-  forces_.energies(u_, damage_.cell_factors(), cell_energies_);
-  const double kinetic = kinetic_energy();
-  if (damage_.minimize(cell_energies_))
+  compute_energies();
+  const double kinetic = mass_.kinetic_energy(v_);
+  if (damage_.minimize(cell_energies_, node_energies_))
   {
     update_masses();
-    ledger_.shed += kinetic - kinetic_energy();
+    ledger_.shed += kinetic - mass_.kinetic_energy(v_);
   }
   update_energies();
 }

@@ -1,6 +1,7 @@
 #pragma once
 
-#include "continuum/damage/fibre_forces.h"
+#include "continuum/damage/gradient_forces.h"
+#include "continuum/damage/mass_operator.h"
 #include "continuum/damage/viscous_stages.h"
 #include "continuum/errors.h"
 
@@ -23,17 +24,19 @@ struct DamageMotionSetup
   /// Returns true for nodes whose initial damage does not change; empty: none.
   std::function<bool(const dealii::Point<2> &)> is_intact;
   double step; ///< [s] > 0
+  std::optional<GradientSetup> gradient = std::nullopt; ///< none: local law
 };
 
 /// Energies of a sheet in motion with damage [J/m], per unit reference thickness, eq. (C.74).
 struct DamageMotionLedger
 {
   double elastic = 0.;   ///< sum of g_c E_c
-  double kinetic = 0.;   ///< sum of m_a |v_a|^2 / 2
+  double kinetic = 0.;   ///< sum of m_a |v_a|^2 / 2, and that of the micro-inertia
   double viscous = 0.;   ///< dissipated since the start
   double fracture = 0.;  ///< S(d), without that of the initial damage
   double shed = 0.;      ///< kinetic energy of the mass that was removed with damage
-  double imbalance = 0.; ///< initial energy - all of the above
+  double imbalance = 0.; ///< initial energy - all of the others
+  double gradient = 0.;  ///< sum of g(d_a) E^g_a
 
   /// Saves or loads the energies, for checkpoints.
   template <class Archive>
@@ -45,13 +48,15 @@ struct DamageMotionLedger
     archive("fracture", fracture);
     archive("shed", shed);
     archive("imbalance", imbalance);
+    archive("gradient", gradient);
   }
 };
 
 /// Motion of a sheet of fibres with damage on a uniform grid of bilinear elements, mass, stress and viscosity degraded
 /// alike (theory-continuum.md, "Motion with damage", eqs. (C.69) to (C.74)): the waves of damaged material are as fast
 /// as those of intact material, and damage does not limit the time step. Held nodes do not move, so that edges do no
-/// work; other edges are free. There is no gradient energy.
+/// work; other edges are free. Optionally there are a gradient energy and micro-inertia (theory-damage.md, "Gradient energy
+/// in motion", eqs. (C.75) to (C.81)).
 ///
 /// Steps are explicit: Runge-Kutta-Chebyshev with as many stages as the viscosity requires, or velocity Verlet without
 /// viscosity. After each step the damage is minimised at fixed displacement and velocity.
@@ -61,7 +66,7 @@ class DamageMotion
 {
 public:
   /// Creates a homogeneous sheet x = F_0 X at rest. Throws InvalidInput and InvalidMaterial as NodeGrid, GridDamage,
-  /// FibreForces and ViscousStages do, for a density or step that is not positive and finite, and, without viscosity,
+  /// FibreForces, GradientForces, MassOperator and ViscousStages do, for a density or step that is not positive and finite, and, without viscosity,
   /// for a step beyond stable_step().
   explicit DamageMotion(const DamageMotionSetup &setup);
 
@@ -89,8 +94,10 @@ public:
   const std::vector<double> &cell_energies() const { return cell_energies_; }
   unsigned int n_stages() const { return stages_ ? static_cast<unsigned int>(stages_->stages().size()) + 1 : 1; }
 
-  /// Returns the longest stable step [s] of velocity Verlet at F_0.
-  double stable_step() const { return 2. / forces_.elastic_frequency(setup_.density); }
+  /// Returns the longest stable step [s] of velocity Verlet, without viscosity: at F_0; with gradient energy, also where
+  /// fibres have shortened to FibreForces::relaxed_stretch. With gradient energy and viscosity, the constructor refuses
+  /// steps in which waves of such a sheet grow.
+  double stable_step() const;
 
   /// Saves the motion, or loads it into one of the same setup, which continues bitwise. `archive` is called with names
   /// and values; `Archive::loads` is true if it loads. Throws InvalidInput for values of another grid and for damage out
@@ -120,23 +127,25 @@ private:
         throw InvalidInput("a motion with damage was saved on another grid");
     damage_.set(damage);
     update_masses();
-    forces_.energies(u_, damage_.cell_factors(), cell_energies_);
+    compute_energies();
   }
+  double viscous_rate() const;
   void restart_ledger();
-  void update_masses();
+  void update_masses() { mass_.update(damage_.cell_factors()); }
+  void compute_energies();
   void update_energies();
   void accelerate(const GridVector &u, const GridVector &v, GridVector &acceleration, double &power) const;
   void advance_viscous();
   void advance_elastic();
-  double kinetic_energy() const;
 
   DamageMotionSetup setup_;
   FibreForces forces_;
   GridDamage damage_;
   std::array<std::vector<char>, 2> held_;
-  std::optional<ViscousStages> stages_; // none without viscosity
-  std::vector<double> mass_;            // [kg/m]
-  std::vector<double> cell_energies_;   // [J/m]
+  std::optional<GradientForces> gradient_; // none without gradient energy
+  MassOperator mass_;
+  std::optional<ViscousStages> stages_;              // none without viscosity
+  std::vector<double> cell_energies_, node_energies_; // [J/m]
   GridVector u_, v_;
   std::size_t n_steps_ = 0;
   DamageMotionLedger ledger_;

@@ -302,26 +302,36 @@ double FibreForces::largest_eigenvalue(const std::array<double, 3> &conductivity
   return Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(K, Eigen::EigenvaluesOnly).eigenvalues()(3);
 }
 
-double FibreForces::viscous_rate(const double density) const
+std::array<double, 3> FibreForces::viscous_conductivity() const
 {
   // (n . w)^2 <= |w|^2: the bound does not depend on the deformation.
   std::array<double, 3> D{};
   for (const DampedFibre &k : fibres_)
     D = {D[0] + k.eta * k.X * k.X, D[1] + k.eta * k.X * k.Y, D[2] + k.eta * k.Y * k.Y};
-  return largest_eigenvalue(D) / density;
+  return D;
 }
 
-double FibreForces::elastic_frequency(const double density) const
+std::array<double, 3> FibreForces::elastic_conductivity(const double relaxed) const
 {
   std::array<double, 3> D{};
   for (const DampedFibre &k : fibres_)
   {
+    const auto along = [&k](const double l) { return k.a * (1. + 2. / (l * l * l)) + 3. * k.b / (l * l * l * l) + k.e; };
     const double l = (loading_ * Tensor<1, 2>({k.X, k.Y})).norm();
-    const double along = k.a * (1. + 2. / (l * l * l)) + 3. * k.b / (l * l * l * l) + k.e;
     const double across = (k.a * (l - 1. / (l * l)) + k.b * (1. - 1. / (l * l * l)) + k.e * (l - 1.)) / l;
-    const double stiffness = std::max(along, across);
+    const double stiffness = std::max(along(std::min(l, relaxed)), across);
     D = {D[0] + stiffness * k.X * k.X, D[1] + stiffness * k.X * k.Y, D[2] + stiffness * k.Y * k.Y};
   }
-  return std::sqrt(largest_eigenvalue(D) / density);
+  return D;
+}
+
+double FibreForces::viscous_rate(const double density) const
+{
+  return largest_eigenvalue(viscous_conductivity()) / density;
+}
+
+double FibreForces::elastic_frequency(const double density) const
+{
+  return std::sqrt(largest_eigenvalue(elastic_conductivity(std::numeric_limits<double>::max())) / density);
 }
 } // namespace latcon::continuum

@@ -56,10 +56,19 @@ public:
   /// Returns an upper bound [1/s] of the angular frequencies of the elastic cells at F_0, for any damage.
   double elastic_frequency(double density) const;
 
+  /// Returns the tensor D of eq. (C.72), entries XX, XY, YY [Pa s].
+  std::array<double, 3> viscous_conductivity() const;
+  /// Returns the corresponding bound of the stiffness against Grad u [Pa] at F_0, or, if that is more, of fibres that
+  /// have shortened to `relaxed` [-], as a crack lets them.
+  std::array<double, 3> elastic_conductivity(double relaxed) const;
+
   const NodeGrid &grid() const { return grid_; }
 
   static constexpr double min_stretch = 0.25;
   static constexpr double sound_factor = 0.5;
+  /// Stretch of fibres across a sheet that relaxes behind a crack while it is held along the crack: rubber fibres at the
+  /// stretches of the standard sheet reach 0.77.
+  static constexpr double relaxed_stretch = 0.75;
   /// Fewer cells are visited by one thread: synchronisation would cost more than other threads save.
   static constexpr std::size_t min_cells_for_threads = 5000;
 

@@ -102,7 +102,7 @@ double GridDamage::sweep(const Window &window, const bool forward)
   return largest;
 }
 
-bool GridDamage::minimize(const std::vector<double> &cell_energies)
+bool GridDamage::minimize(const std::vector<double> &cell_energies, const std::vector<double> &node_energies)
 {
   const std::size_t columns = grid_.columns();
   if (cell_energies.size() != grid_.n_cells())
@@ -118,6 +118,14 @@ bool GridDamage::minimize(const std::vector<double> &cell_energies)
       for (const std::size_t b : {a, a + 1, a + columns, a + columns + 1})
         drive_[b] += share;
     }
+  if (!node_energies.empty() && node_energies.size() != grid_.n_nodes())
+    throw InvalidInput("the energies of nodes belong to another grid");
+  for (std::size_t a = 0; a < node_energies.size(); ++a)
+  {
+    if (!std::isfinite(node_energies[a]))
+      throw NonPhysicalState("the gradient energy of a node is not finite");
+    drive_[a] += node_energies[a];
+  }
   lower_bound_ = damage_;
 
   const double stiffness = 2. * law_.threshold * law_.length * law_.length;
@@ -161,7 +169,8 @@ bool GridDamage::minimize(const std::vector<double> &cell_energies)
 void GridDamage::update_factors()
 {
   const std::size_t columns = grid_.columns();
-  std::vector<double> g(damage_.size());
+  nodal_factor_.resize(damage_.size());
+  std::vector<double> &g = nodal_factor_;
   for (std::size_t a = 0; a < g.size(); ++a)
     g[a] = law_.degradation(damage_[a]);
   for (std::size_t j = 0; j < grid_.cells_y; ++j)

@@ -46,10 +46,11 @@ public:
   /// Sets the nodal damage [-]. Throws InvalidInput for values out of [0, 1].
   void set(const std::vector<double> &damage);
 
-  /// Minimises over d, at given energies E_c [J/m] >= 0 of the undegraded cells. Returns true if any node changed. Only
-  /// the neighbourhood of nodes that are driven is visited. Throws NonPhysicalState if an energy is not finite and
-  /// LinearSolverFailed if the iteration does not converge.
-  bool minimize(const std::vector<double> &cell_energies);
+  /// Minimises over d, at given energies [J/m] >= 0 of the undegraded cells, E_c, and nodes, which have the factor
+  /// g(d_a); empty: no energy of nodes. Returns true if any node changed. Only the neighbourhood of nodes that are
+  /// driven is visited. Throws NonPhysicalState if an energy is not finite and LinearSolverFailed if the iteration does
+  /// not converge.
+  bool minimize(const std::vector<double> &cell_energies, const std::vector<double> &node_energies = {});
 
   /// Returns S(d) [J/m], eq. (C.61).
   double fracture_energy() const;
@@ -57,6 +58,7 @@ public:
   const DamageLaw &law() const { return law_; }
   const std::vector<double> &nodal() const { return damage_; }        ///< d_a [-]
   const std::vector<double> &cell_factors() const { return factor_; } ///< g_c [-]
+  const std::vector<double> &node_factors() const { return nodal_factor_; } ///< g(d_a) [-]
 
   /// Change of d in the last sweep over the nodes at which minimize() stops [-].
   static constexpr double tolerance = 1e-7;
@@ -74,7 +76,7 @@ private:
   NodeGrid grid_;
   DamageLaw law_;
   std::vector<char> intact_;
-  std::vector<double> damage_, lower_bound_, factor_;
+  std::vector<double> damage_, lower_bound_, factor_, nodal_factor_;
   std::vector<double> drive_;                    // e_a [J/m]
   double diagonal_, along_x_, along_y_, across_; // of the Laplacian of one cell [-]
 };

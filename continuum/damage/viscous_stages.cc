@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <complex>
 #include <string>
 
 namespace latcon::continuum
@@ -67,5 +68,39 @@ unsigned int ViscousStages::required(const double limit)
     throw InvalidInput("the time step is too long for the viscosity: a step would have more than " +
                        std::to_string(max_stages) + " stages");
   return n;
+}
+
+// Waves with damping proportional to stiffness, from long to short ones.
+bool ViscousStages::damps(const double rate, const double wave) const
+{
+  constexpr unsigned int n_waves = 60;
+  for (unsigned int k = 0; k < n_waves; ++k)
+  {
+    const double q = std::pow(10., -4. * k / (n_waves - 1.));
+    const std::complex<double> half = -0.5 * rate * q, root = std::sqrt(half * half - wave * wave * q);
+    for (const std::complex<double> z : {half + root, half - root})
+    {
+      std::complex<double> before = 1., last = 1. + first_ * z;
+      for (const Stage &c : stages_)
+      {
+        const std::complex<double> next =
+          1. - c.mu - c.nu + c.mu * last + c.nu * before + z * (c.now * last + c.start);
+        before = last;
+        last = next;
+      }
+      if (!(std::abs(last) <= 1. + 1e-9))
+        return false;
+    }
+  }
+  return true;
+}
+
+unsigned int ViscousStages::required(const double limit, const double wave)
+{
+  const unsigned int fewest = required(limit);
+  for (unsigned int n = fewest; n < fewest + 10; ++n)
+    if (const ViscousStages method(n); method.damps(limit, wave) && method.damps(0.25 * limit, wave))
+      return n;
+  throw InvalidInput("the time step is too long for the waves of a sheet with gradient energy");
 }
 } // namespace latcon::continuum

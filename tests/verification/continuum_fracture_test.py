@@ -103,7 +103,7 @@ class ContinuumFracture(TemporaryFolder):
 
     def test_bad_input(self):
         for entries, message in (({"Continuum/law": "mooney-rivlin"}, "Continuum/law"),
-                                 ({"Continuum/gradient": "isotropic", "Continuum/degree": 2}, "Continuum/gradient"),
+                                 ({"Continuum/gradient": "network"}, "Continuum/gradient"),
                                  ({"Fracture/left end": "free"}, "Fracture/left end"),
                                  ({"Disorder/strength": "uniform"}, "Disorder/strength"),
                                  ({"Nearest neighbours/branch moduli": "0.1 MPa",

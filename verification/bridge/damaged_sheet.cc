@@ -53,8 +53,22 @@ continuum::DamageMotionSetup setup(const input::Case &input, const Subject &subj
   const double on_edge = 1e-3 * std::min(grid.size_x, grid.size_y), near_edge = 2. * law.length;
   setup.is_held = [inside, on_edge](const Point<2> &X, unsigned int) { return inside(X) < on_edge; };
   setup.is_intact = [inside, near_edge](const Point<2> &X) { return inside(X) < near_edge; };
-  setup.step = input.continuum.time_step.value_or(
-    1. / continuum::FibreForces(grid, families, dashpots, setup.loading).elastic_frequency(input.density));
+  if (input.continuum.gradient != input::ContinuumGradient::none)
+  {
+    std::vector<continuum::BondFamily> bonds = bond_families(input.lattice(), subject.material);
+    if (input.continuum.gradient == input::ContinuumGradient::network)
+      bonds = continuum::in_all_directions(bonds, n_directions);
+    setup.gradient =
+      continuum::GradientSetup{bonds, input.continuum.inertia_length.value_or(subject.lengths.lattice), true};
+  }
+  if (input.continuum.time_step)
+    setup.step = *input.continuum.time_step;
+  else
+  {
+    continuum::DamageMotionSetup probe = setup;
+    probe.step = 1e-3 / continuum::FibreForces(grid, families, dashpots, setup.loading).elastic_frequency(input.density);
+    setup.step = 0.5 * continuum::DamageMotion(probe).stable_step();
+  }
   return setup;
 }
 
@@ -136,8 +150,12 @@ void require_damaged_sheet(const input::Case &input, input::Parameters &p)
       p.error(name, command + " holds both ends; give held");
   if (c.law == input::ContinuumLaw::mooney_rivlin)
     p.error("Continuum/law", command + " needs a law of fibres; give cauchy-born or mooney-rivlin-network");
-  if (c.gradient != input::ContinuumGradient::none)
-    p.error("Continuum/gradient", command + " has no gradient energy; give none");
+  const bool is_network = c.law == input::ContinuumLaw::mooney_rivlin_network;
+  if (c.gradient != input::ContinuumGradient::none &&
+      c.gradient != (is_network ? input::ContinuumGradient::network : input::ContinuumGradient::lattice))
+    p.error("Continuum/gradient",
+            command + (is_network ? " supports none and, with this law, network" : " supports none and, with this law, lattice"),
+            {"Continuum/law"});
   if (!c.mesh_file.empty())
     p.error("Continuum/mesh file", command + " makes its own mesh; omit the entry");
   for (const auto &[shell, section, is_there] :

@@ -82,8 +82,8 @@ double DamageRecord::largest_imbalance() const
 {
   support::LargestError largest;
   for (const EnergyRow &row : energies_)
-    largest.add(std::abs(row.ledger.imbalance) /
-                (energies_.front().ledger.elastic + energies_.front().ledger.kinetic));
+    largest.add(std::abs(row.ledger.imbalance) / (energies_.front().ledger.elastic +
+                                                  energies_.front().ledger.gradient + energies_.front().ledger.kinetic));
   return largest.error();
 }
 
@@ -115,9 +115,10 @@ void DamageRecord::write_tables(const std::filesystem::path &directory) const
     edges.add({column.X, static_cast<double>(column.n_strands), column.lower, column.upper, column.damaged});
   write_file(directory / "crack_edges.csv", edges.csv());
   // Columns of the lattice's table, whose edges do no work here either, and whose cracks do not touch themselves here.
-  Table energy({"t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "shed", "imbalance"});
+  Table energy({"t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "shed", "imbalance",
+                "gradient"});
   for (const auto &[time, e] : energies_)
-    energy.add({time, e.elastic, e.kinetic, e.viscous, e.fracture, 0., 0., e.shed, e.imbalance});
+    energy.add({time, e.elastic + e.gradient, e.kinetic, e.viscous, e.fracture, 0., 0., e.shed, e.imbalance, e.gradient});
   write_file(directory / "energy.csv", energy.csv());
 }
 
