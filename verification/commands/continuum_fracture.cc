@@ -41,8 +41,9 @@ using analysis::CrackMeasurement;
 class DamageRun
 {
 public:
-  DamageRun(const input::Case &input, continuum::DamageMotion &motion, output::Checkpoints &checkpoints, Run &run)
-    : input_(input), motion_(motion), checkpoints_(checkpoints), run_(run),
+  DamageRun(const input::Case &input, continuum::DamageMotion &motion, bool skip_verification,
+            output::Checkpoints &checkpoints, Run &run)
+    : input_(input), motion_(motion), skip_verification_(skip_verification), checkpoints_(checkpoints), run_(run),
       seed_tip_(bridge::seed_segment(input, motion.grid()).right), record_(input, motion, seed_tip_),
       frames_(run.directory(), bridge::to_continuum(input.deformation())), next_frame_(input.frame_interval)
   {
@@ -98,8 +99,10 @@ private:
     catch (const std::exception &failure)
     {
       record_.write_tables(run_.directory());
+      record_.write_measurement(run_.directory(), record_.measure(), skip_verification_);
       throw support::SolverError(std::string(failure.what()) + ", in step " + std::to_string(motion_.n_steps()) +
-                                 "; try a smaller Continuum/time step");
+                                 "; crack.json is of what the crack did until then; try a smaller Continuum/time step, "
+                                 "or more viscosity if the flanks of the crack collapse against the held edges");
     }
     record_.step();
     if (motion_.n_steps() % energy_steps == 0)
@@ -145,6 +148,7 @@ private:
 
   const input::Case &input_;
   continuum::DamageMotion &motion_;
+  bool skip_verification_;
   output::Checkpoints &checkpoints_;
   Run &run_;
   double seed_tip_; // [m]
@@ -215,9 +219,8 @@ support::ExitCode run_continuum_fracture(const input::Options &options)
   run.info().add("skip_verification", options.skip_verification);
   output::Results results;
   if (!options.skip_verification)
-    results =
-      passed_or_reported(input, claims_before_continuum_fracture(subject.material), options, run);
-  DamageRun crack(input, motion, checkpoints, run);
+    results = passed_or_reported(input, claims_before_continuum_fracture(subject.material), options, run);
+  DamageRun crack(input, motion, options.skip_verification, checkpoints, run);
   crack.go();
   const CrackMeasurement measurement = crack.record().measure();
   crack.record().write_measurement(run.directory(), measurement, options.skip_verification);
