@@ -6,7 +6,7 @@
 namespace latcon::continuum
 {
 /// Factor of the stored energy that depends on the reference position, such as the degradation of a damage field
-/// (theory-continuum.md, eq. (C.60)). It multiplies every term of the functional (C.28) at a point: W, W_g and the
+/// (theory-damage.md, eq. (C.60)). It multiplies every term of the functional (C.28) at a point: W, W_g and the
 /// terms on faces, and therefore stress, double stress and tangents.
 class StiffnessFactor
 {

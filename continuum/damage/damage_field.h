@@ -18,7 +18,7 @@ namespace latcon::continuum
 {
 /// Damage field d(X) of a sheet: bilinear (Q1) on the mesh of the sheet, with the energy
 ///   E(u, d) = sum over nodes a of g(d_a) e_a(u) + S(d),    S(d) = 2 (1 - k) W_c integral of d + xi^2 |Grad d|^2 dX
-/// (theory-continuum.md, eqs. (C.59) to (C.63)). As a StiffnessFactor it interpolates g(d_a) bilinearly, so that the
+/// (theory-damage.md, eqs. (C.59) to (C.63)). As a StiffnessFactor it interpolates g(d_a) bilinearly, so that the
 /// nodal energies e_a, the integrals of the stored energy density times shape function, are exactly conjugate to
 /// g(d_a).
 ///

@@ -2,7 +2,7 @@
 
 namespace latcon::continuum
 {
-/// Constants of a damage field d in [0, 1] (theory-continuum.md, eqs. (C.59) to (C.61)).
+/// Constants of a damage field d in [0, 1] (theory-damage.md, eqs. (C.59) to (C.61)).
 struct DamageLaw
 {
   double threshold; ///< W_c > 0 [J/m^3]: stored energy density of a homogeneous state at which damage begins

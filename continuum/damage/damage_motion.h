@@ -53,7 +53,7 @@ struct DamageMotionLedger
 };
 
 /// Motion of a sheet of fibres with damage on a uniform grid of bilinear elements, mass, stress and viscosity degraded
-/// alike (theory-continuum.md, "Motion with damage", eqs. (C.69) to (C.74)): the waves of damaged material are as fast
+/// alike (theory-damage.md, "Motion with damage", eqs. (C.69) to (C.74)): the waves of damaged material are as fast
 /// as those of intact material, and damage does not limit the time step. Held nodes do not move, so that edges do no
 /// work; other edges are free. Optionally there are a gradient energy and micro-inertia (theory-damage.md, "Gradient energy
 /// in motion", eqs. (C.75) to (C.81)).

@@ -27,7 +27,7 @@ struct DamageLedger
 };
 
 /// Quasi-static loading of a sheet with damage: in every load step displacement and damage are minimised in turn until
-/// neither changes, from the state of the previous step (theory-continuum.md, "Damage"). The energy E(u, d) falls in
+/// neither changes, from the state of the previous step (theory-damage.md, "Damage"). The energy E(u, d) falls in
 /// every iteration. The result is a state in which neither field alone can lower the energy, not necessarily the lowest
 /// minimum. Where the sheet softens faster than it unloads, a crack runs within one load step; energy that a dynamic
 /// crack would carry away is then missing from the ledger: `imbalance` is positive.

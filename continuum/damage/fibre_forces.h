@@ -27,7 +27,8 @@ std::vector<FibreFamily> in_all_directions(const std::vector<FibreFamily> &famil
 std::vector<FibreDashpot> in_all_directions(const std::vector<FibreDashpot> &dashpots, unsigned int n);
 
 /// Nodal forces, energies and dissipation of bilinear elements (2 x 2 Gauss points) of a grid, for CauchyBorn and
-/// FibreViscosity with the deformation gradient F = F_0 + Grad u (theory-continuum.md, eqs. (C.11), (C.41), (C.71)).
+/// FibreViscosity with the deformation gradient F = F_0 + Grad u (theory-continuum.md, eqs. (C.11), (C.41);
+/// theory-damage.md, eq. (C.71)).
 ///
 /// Unlike CauchyBorn, a fibre shorter than min_stretch keeps the force it has there, and a cell may be inverted: both
 /// happen in cells that are broken. In cells with a factor above sound_factor they are errors.

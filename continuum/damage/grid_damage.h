@@ -33,7 +33,7 @@ struct NodeGrid
 
 /// Damage d at the nodes of a grid for a sheet in motion: minimises
 ///   sum over cells c of g_c E_c + S(d),   g_c = mean of g(d_a) over the nodes a of c,
-/// over d not below its last values (theory-continuum.md, eqs. (C.69), (C.70)). The factor g_c of a cell multiplies its
+/// over d not below its last values (theory-damage.md, eqs. (C.69), (C.70)). The factor g_c of a cell multiplies its
 /// energy, its stress and its mass alike. Serial and deterministic.
 class GridDamage
 {

@@ -5,7 +5,7 @@
 namespace latcon::continuum
 {
 /// Stages of the damped Runge-Kutta-Chebyshev method of second order for equations whose stiffness is viscous
-/// (theory-continuum.md, eqs. (C.72), (C.73)):
+/// (theory-damage.md, eqs. (C.72), (C.73)):
 ///   Y_1 = Y_0 + first h F_0,
 ///   Y_j = (1 - mu - nu) Y_0 + mu Y_{j-1} + nu Y_{j-2} + h (now F_{j-1} + start F_0),   j = 2 ... s.
 /// Y_s is the state after the step h. Written independently of the stepper of the lattice, with which it is compared.

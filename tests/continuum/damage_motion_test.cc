@@ -1,4 +1,4 @@
-// Motion of a sheet with damage (theory-continuum.md, eqs. (C.69) to (C.74)).
+// Motion of a sheet with damage (theory-damage.md, eqs. (C.69) to (C.74)).
 #include "continuum/damage/damage_motion.h"
 
 #include <gtest/gtest.h>

@@ -1,4 +1,4 @@
-// Damage field and quasi-static fracture of a bar (theory-continuum.md, eqs. (C.59) to (C.68)).
+// Damage field and quasi-static fracture of a bar (theory-damage.md, eqs. (C.59) to (C.68)).
 #include "continuum/damage/damage_solver.h"
 
 #include <gtest/gtest.h>

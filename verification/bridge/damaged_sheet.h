@@ -25,7 +25,7 @@ struct SeedSegment
 [[nodiscard]] double cell_size(const input::Case &input, const continuum::DamageLaw &law);
 
 /// Returns the sheet at rest at the homogeneous loading of the case, all edges held, without damage within 2 xi of
-/// them, with the damage of a straight crack about the seed (theory-continuum.md, eq. (C.67)), and displaced by the
+/// them, with the damage of a straight crack about the seed (theory-damage.md, eq. (C.67)), and displaced by the
 /// noise of the case: random numbers in [-1, 1] times the amplitude at the points of a square lattice with the spacing
 /// of the case, linear in between, so that it does not depend on the mesh.
 /// @throws InvalidInput, InvalidMaterial as DamageMotion does

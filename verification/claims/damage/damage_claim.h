@@ -9,7 +9,7 @@ namespace latcon::claims
 
 /// Returns the constants of the damage of a case: those of section `Damage`. By default the length is the spacing, and
 /// the threshold the energy density of the subject's Cauchy-Born law stretched along both axes to the breaking stretch,
-/// or to 3 if the case has none (theory-continuum.md, eq. (C.61)).
+/// or to 3 if the case has none (theory-damage.md, eq. (C.61)).
 continuum::DamageLaw damage_law(const input::Case &input, const bridge::Subject &subject);
 
 /// Sizes of the claim `damage`.
@@ -23,7 +23,7 @@ struct DamageOptions
   bool planted_undegraded_gradient = false; ///< damage leaves the gradient energy of a sheet as it is
 };
 
-/// Claim `damage`: bars of the subject's Cauchy-Born law in tension against closed forms (theory-continuum.md, eqs.
+/// Claim `damage`: bars of the subject's Cauchy-Born law in tension against closed forms (theory-damage.md, eqs.
 /// (C.60) to (C.68)), without gradient energy and with the isotropic one; the degradation of the lattice's gradient
 /// energy in a sheet; waves and a crack in motion (see add_damage_motion_rows).
 ///

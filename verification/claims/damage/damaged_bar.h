@@ -16,7 +16,7 @@ namespace latcon::claims
 [[nodiscard]] double stretch_of_energy(const continuum::Material &law, double energy);
 
 /// Bar with damage, one row of square elements of degree 2, in uniaxial strain: both ends held, and the long edges held
-/// across the bar (theory-continuum.md, eqs. (C.66) to (C.68)). All functions are collective.
+/// across the bar (theory-damage.md, eqs. (C.66) to (C.68)). All functions are collective.
 class DamagedBar
 {
 public:
