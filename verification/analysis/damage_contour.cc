@@ -114,8 +114,11 @@ std::optional<ContourMeasurement> measure_contour(const std::vector<ContourColum
 {
   std::vector<double> X, centre, lower, upper, width;
   ContourMeasurement measured;
+  double widest = 0.;
   for (const ContourColumn &column : columns)
-    if (column.X >= X_begin && column.X <= X_end)
+    widest = std::max(widest, column.upper - column.lower);
+  for (const ContourColumn &column : columns)
+    if (column.X >= X_begin && column.X <= std::min(X_end, columns.back().X - widest))
     {
       X.push_back(column.X);
       centre.push_back(column.centre());

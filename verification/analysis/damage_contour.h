@@ -64,7 +64,8 @@ struct ContourMeasurement
   double several_strands = 0.; ///< fraction of the columns with two strands or more [-]
 };
 
-/// Measures a contour between X_begin and X_end [m].
+/// Measures a contour between X_begin and X_end [m], without the columns closer to its tip than its largest width: the
+/// crack is narrower there.
 /// @param spacing length over which lines are averaged, see ColumnMeans, [m], > 0
 /// @param min_wavelength of the fits, in spacings
 /// @return none if there are fewer than two columns
