@@ -37,7 +37,7 @@ struct Stiffness
 
 inline __attribute__((always_inline)) Stiffness stiffness(const GradientForces::Bond &k, const double l)
 {
-  constexpr double shortest = FibreForces::min_stretch, width = LatticeGradient::full_stretch - 1.;
+  constexpr double shortest = FibreForces::relaxed_stretch, width = LatticeGradient::full_stretch - 1.;
   const double s = std::max(l, shortest);
   const double r = 1. / s, r2 = r * r, r3 = r2 * r, r4 = r2 * r2;
   const double first = k.a * (s - r2) + k.b * (1. - r3) + k.e * (s - 1.);

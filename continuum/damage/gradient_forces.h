@@ -24,7 +24,7 @@ std::vector<BondFamily> in_all_directions(const std::vector<BondFamily> &bonds, 
 /// the 3 x 3 nodes around a. Nodes on edges have none.
 ///
 /// Bonds of one direction and one potential are merged, as in NetworkGradient. A bond shorter than
-/// FibreForces::min_stretch has the axial stiffness it has there.
+/// FibreForces::relaxed_stretch has the axial stiffness it has there: broken cells would limit the time step otherwise.
 ///
 /// Threads share the rows of nodes; results do not depend on their number.
 class GradientForces

@@ -95,7 +95,7 @@ TEST(GradientForces, CarryTheEnergyOfTheLaw)
   const auto turned = in_all_directions(lattice(), NetworkGradient::n_directions);
   const LatticeGradient law(lattice(), l_d);
   const NetworkGradient network(lattice(), l_d);
-  for (const Tensor<2, 2> &F0 : {matrix(1., 0., 0., 1.), matrix(2.3, 0.1, -0.2, 2.8), matrix(2., 0., 0., 0.7)})
+  for (const Tensor<2, 2> &F0 : {matrix(1., 0., 0., 1.), matrix(2.3, 0.1, -0.2, 2.8), matrix(2., 0., 0., 0.8)})
   {
     const GradientForces of_lattice(grid, lattice(), l_d, F0), of_network(grid, turned, l_d, F0);
     GradientLaw::Gradient G;
