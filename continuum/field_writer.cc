@@ -9,10 +9,14 @@
 #include <deal.II/numerics/data_out.h>
 #include <deal.II/numerics/data_postprocessor.h>
 
+#include <boost/iostreams/device/back_inserter.hpp>
+#include <boost/iostreams/stream.hpp>
+
 #include <filesystem>
 #include <iomanip>
 #include <limits>
 #include <sstream>
+#include <string_view>
 
 using namespace dealii;
 
@@ -87,16 +91,22 @@ private:
   const Constitution &laws_;
 };
 
-void write_whole(const std::filesystem::path &path, const std::string &text)
+template <class Write>
+void as_output_failed(const Write &write)
 {
   try
   {
-    support::write_atomically(path, text, support::Sync::no);
+    write();
   }
   catch (const support::OutputError &error)
   {
     throw OutputFailed(error.what());
   }
+}
+
+void write_whole(const std::filesystem::path &path, const std::string &text)
+{
+  as_output_failed([&] { support::write_atomically(path, text, support::Sync::no); });
 }
 
 // deal.II writes the date in a comment regardless of its flags; equal fields must give equal files.
@@ -114,18 +124,27 @@ std::string frame_name(const std::string &name, const std::size_t frame)
   return out.str();
 }
 
-// Adds the time as field data; deal.II's flag for it writes single precision.
-std::string with_time(std::string vtu, const double time)
+// Writes a VTU text with the time as field data; deal.II's flag for it writes single precision. The text of a large sheet
+// is not copied.
+void write_with_time(const std::filesystem::path &path, const std::string_view vtu, const double time)
 {
-  const std::string grid = "<UnstructuredGrid>";
+  const std::string_view grid = "<UnstructuredGrid>";
   const std::size_t at = vtu.find(grid);
-  if (at == std::string::npos)
+  if (at == std::string_view::npos)
     throw OutputFailed("the VTU text contains no unstructured grid");
   std::ostringstream field;
   field << std::setprecision(17)
         << "\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">" << time
         << "</DataArray>\n</FieldData>";
-  return vtu.insert(at + grid.size(), field.str());
+  as_output_failed(
+    [&]
+    {
+      support::AtomicFile file(path);
+      file.write(vtu.substr(0, at + grid.size()));
+      file.write(field.str());
+      file.write(vtu.substr(at + grid.size()));
+      file.commit(support::Sync::no);
+    });
 }
 } // namespace
 
@@ -179,9 +198,12 @@ void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::
                    [&]
                    {
                      output.build_patches(sheet.mapping(), sheet.degree());
-                     std::ostringstream text;
-                     output.write_vtu(text);
-                     write_whole(directory_ / piece(rank), with_time(text.str(), time));
+                     std::string text;
+                     {
+                       boost::iostreams::stream<boost::iostreams::back_insert_device<std::string>> stream(text);
+                       output.write_vtu(stream);
+                     }
+                     write_with_time(directory_ / piece(rank), text, time);
                    });
 
   frames_.push_back({time, n_ranks});

@@ -55,17 +55,12 @@ void SinglePrecisionMatrix::copy_from(const Sheet::Matrix &K)
   for (int column = 0; column < matrix.NumMyCols(); ++column)
     position[column] = layout->global_to_local(matrix.GCID(column));
 
-  first_block_.assign(1, 0);
-  columns_.clear();
-  values_.clear();
-  columns_.reserve(matrix.NumMyNonzeros() / 4);
-  values_.reserve(matrix.NumMyNonzeros());
+  int n_entries[2];
+  double *values[2];
+  int *columns[2];
   std::vector<unsigned int> pairs;
-  for (int row = 0; row < n_owned; row += 2)
+  const auto extract = [&](const int row)
   {
-    int n_entries[2];
-    double *values[2];
-    int *columns[2];
     pairs.clear();
     for (int r = 0; r < 2; ++r)
     {
@@ -76,21 +71,36 @@ void SinglePrecisionMatrix::copy_from(const Sheet::Matrix &K)
     }
     std::sort(pairs.begin(), pairs.end());
     pairs.erase(std::unique(pairs.begin(), pairs.end()), pairs.end());
-    const std::size_t first = columns_.size();
-    columns_.insert(columns_.end(), pairs.begin(), pairs.end());
-    values_.resize(4 * columns_.size(), 0.f);
+  };
+
+  // Counted first: arrays that grow would take up to twice the memory, and their number is not that of the entries,
+  // since rows of constrained unknowns have fewer.
+  first_block_.assign(1, 0);
+  for (int row = 0; row < n_owned; row += 2)
+  {
+    extract(row);
+    first_block_.push_back(first_block_.back() + pairs.size());
+  }
+  columns_.resize(first_block_.back());
+  columns_.shrink_to_fit();
+  values_.assign(4 * columns_.size(), 0.f);
+  values_.shrink_to_fit();
+  for (int row = 0; row < n_owned; row += 2)
+  {
+    extract(row);
+    const std::size_t first = first_block_[row / 2];
+    const auto last = std::copy(pairs.begin(), pairs.end(), columns_.begin() + first);
     for (int r = 0; r < 2; ++r)
     {
       std::size_t block = first;
       for (int k = 0; k < n_entries[r]; ++k)
       {
         const unsigned int at = position[columns[r][k]];
-        if (block == columns_.size() || columns_[block] != at / 2)
-          block = std::lower_bound(columns_.begin() + first, columns_.end(), at / 2) - columns_.begin();
+        if (block == first_block_[row / 2 + 1] || columns_[block] != at / 2)
+          block = std::lower_bound(columns_.begin() + first, last, at / 2) - columns_.begin();
         values_[4 * block + 2 * r + at % 2] = static_cast<float>(values[r][k]);
       }
     }
-    first_block_.push_back(columns_.size());
   }
 }
 

@@ -446,3 +446,37 @@ def test_integers_and_logarithmic_parameters(small_fit, crack, tmp_path):
     assert kept[:2] == ["00000-1", "00000-2"] and len(kept) == 16
     overrides = next(found for name, _, found in crack.runs if name == "00000-1")
     assert overrides["Fracture/seed sites"] == f"{points['Fracture/seed sites'][0]:.0f}"
+
+
+def test_entries_are_made_of_parameters_that_are_none(small_fit, crack, tmp_path):
+    """The product of modulus and relaxation time of a branch, and a factor of two entries."""
+    def entries(values):
+        return {DENSITY: 1000 * values["scale"], "Nearest neighbours/branch moduli": [values["branch viscosity"] / 1e-4],
+                "Nearest neighbours/relaxation times": [1e-4]}
+    parameters = [PARAMETERS[0], Parameter("scale", 0.5, 1.5, unit="1"), Parameter("branch viscosity", 1, 10, True, "Pa s")]
+    result = small_fit(tmp_path / "fit", parameters=parameters, entries=entries, evaluations=24)
+    table = result.parameters
+    assert list(table["unit"]) == ["1", "1", "Pa s"] and list(table["determined"]) == [True, True, False]
+    assert table.loc["scale", "estimate"] == pytest.approx(1, abs=0.1 * table.loc["scale", "uncertainty"])
+    overrides = crack.runs[0][2]
+    assert float(overrides["Nearest neighbours/branch moduli"]) == pytest.approx(result.points["branch viscosity"][0] / 1e-4)
+    assert result.case[DENSITY] == 1000 * result.best["scale"]
+    # Continued with the same function, refused with another.
+    count = len(crack.runs)
+    small_fit(tmp_path / "fit", parameters=parameters, entries=entries, evaluations=24)
+    assert len(crack.runs) == count
+    with pytest.raises(latcon.LatconError, match="different: entries"):
+        small_fit(tmp_path / "fit", parameters=parameters, entries=lambda values: {**entries(values), DENSITY: 900 * values["scale"]})
+
+
+def test_parameters_that_are_no_entries_are_checked(small_fit, crack, tmp_path):
+    scale = Parameter("scale", 0.5, 1.5, unit="1")
+    for change, message in ((dict(parameters=[scale]), "`entries` must make"),
+                            (dict(parameters=[Parameter(STRETCH, 2.8, 3.2, unit="1")]), "leave out `unit`"),
+                            (dict(parameters=[Parameter("scale", "1 mm", "2 mm", unit="m")]), "must be numbers in m")):
+        with pytest.raises(ValueError, match=message):
+            small_fit(tmp_path / "fit", **change)
+    for made, error in (({"Material/weight": 1}, latcon.UnknownEntry), ({DENSITY: -1}, latcon.BadInput)):
+        with pytest.raises(error):
+            small_fit(tmp_path / "fit", parameters=[scale], entries=lambda _, made=made: made)
+    assert not crack.runs and not (tmp_path / "fit").exists()

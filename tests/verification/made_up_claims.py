@@ -76,15 +76,15 @@ def write_claims(folder):
 
 def write_branches(folder):
     """Waves with one branch and with those of the case, and relaxation of one."""
-    columns = ["rubbery [rad/s]", "glassy [rad/s]", *(f"{side}_{what}" for side in ("theory", "lattice")
-                                                    for what in ("frequency [rad/s]", "decay [1/s]"))]
     rows = []
     for state, wave in itertools.product(STATES, "LS"):
         for x in (0.1, 0.3, 1.0, 3.0, 10.0):
             frequency, decay = 1e4 * (1 + 0.22 * x**2 / (1 + x**2)), 2e3 * x / (1 + x**2)
             rows.append([*state, "one branch", wave, 0.25, x, 1e4, 1.22e4, frequency, decay, frequency * 1.0001, decay])
         rows.append([*state, "own branches", wave, 0.5, NAN, 1e4, 1.3e4, 1.1e4, 1e3, 1.1e4, 1e3])
-    write(folder, "viscoelastic_waves", ["shells", "F_xx", "F_yy", "part", "wave", "k d", "w tau", *columns], rows)
+    for name, sides in (("viscoelastic_waves", ("theory", "lattice")), ("viscoelastic_elements", ("continuum", "fem"))):
+        write(folder, name, ["shells", "F_xx", "F_yy", "part", "wave", "k d", "w tau", "rubbery [rad/s]", "glassy [rad/s]", *(
+            f"{side}_{what}" for side in sides for what in ("frequency [rad/s]", "decay [1/s]"))], rows)
     rows = []
     for shells, integrator in itertools.product(("NN+NNN", "NN"), ("velocity Verlet", "Runge-Kutta-Chebyshev")):
         for t in np.linspace(0, 1e-3, 9):

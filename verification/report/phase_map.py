@@ -2,14 +2,14 @@
 from dataclasses import dataclass
 
 import numpy as np
-from matplotlib.colors import to_rgba
+from matplotlib.colors import to_rgb
 from matplotlib.patches import Patch, Rectangle
 
 from pictures import BLACK, BLUE, GREEN, GREY, RED, WIDTH, Page, save
 
 COLOURS = {"oscillating": BLUE, "straight": GREEN, "branching": RED, "arrested": GREY, "undecided": "#e6c800"}
 OTHER = "#cc79a7"  # of a pattern that is not in COLOURS
-SHADE = 0.6  # opacity of the cells, on which contours and numbers are black
+SHADE = 0.6  # share of the colour of a cell, the rest white: contours and numbers on it are black
 LEFT, FOOT, HEAD, RIGHT = 0.95, 0.7, 0.75, 0.3  # around the axes [in]
 
 
@@ -143,13 +143,18 @@ def draw_brackets(axes, found):
     return handles
 
 
+def shaded(pattern):
+    """Colour of a cell. Opaque, since points of a refinement lie on cells of the grid."""
+    return tuple(1 - SHADE * (1 - part) for part in to_rgb(COLOURS.get(pattern, OTHER)))
+
+
 def fill(axes, x, y, patterns):
     """Fills a cell with the colours of its patterns, side by side, the most frequent first."""
     total = sum(patterns.values())
     left = x[0]
     for pattern, count in sorted(patterns.items(), key=lambda item: (-item[1], item[0])):
         width = (x[1] - x[0]) * count / total
-        axes.add_patch(Rectangle((left, y[0]), width, y[1] - y[0], facecolor=to_rgba(COLOURS.get(pattern, OTHER), SHADE),
+        axes.add_patch(Rectangle((left, y[0]), width, y[1] - y[0], facecolor=shaded(pattern),
                                  edgecolor="white", linewidth=0.6))
         left += width
 
@@ -158,7 +163,7 @@ def legend(cells):
     """Legend entries of the patterns that occur, in a fixed order."""
     found = {pattern for cell in cells for pattern in cell.patterns}
     order = [pattern for pattern in COLOURS if pattern in found] + sorted(found - set(COLOURS))
-    return [Patch(facecolor=COLOURS.get(pattern, OTHER), alpha=SHADE, label=pattern) for pattern in order]
+    return [Patch(facecolor=shaded(pattern), label=pattern) for pattern in order]
 
 
 def draw_contours(axes, xs, ys, values):

@@ -21,25 +21,31 @@ COMMANDS = ("fracture", "lattice", "continuum")
 Measurement = tuple[float | str | bool, float]
 """Quantity of one run, and its uncertainty; both not-a-number if undetermined."""
 
+Entries = Callable[[Mapping[str, float]], Mapping[str, Settable]]
+"""Function that turns the values of all parameters into entries of the case."""
+
 
 @dataclasses.dataclass(frozen=True)
 class Parameter:
-    """Entry of the case that the fit varies.
+    """Entry of the case that the fit varies, or a quantity with a `unit` of which `entries` of :func:`fit_case` makes entries.
 
     Attributes
     ----------
     key : str
-        ``Section/Name`` of a number or an integer.
+        ``Section/Name`` of a number or an integer; with a `unit` any other name.
     lower, upper : float or str
         Bounds: numbers in the SI unit of the entry, or texts with a unit (``"5 cm"``) with which the program accepts the case.
     logarithmic : bool
         Whether the parameter is searched on a logarithmic scale; then both bounds are positive.
+    unit : str, optional
+        SI unit of a quantity that is no entry of the case (``"1"`` without dimension); its bounds are numbers.
     """
 
     key: str
     lower: float | str
     upper: float | str
     logarithmic: bool = False
+    unit: str | None = None
 
 
 @dataclasses.dataclass(frozen=True)
@@ -144,6 +150,18 @@ class Problem:
     observations: tuple[Observation, ...]
     seeds: tuple[int, ...]
     skip_verification: bool
+    entries: Entries | None = None
+
+    def of(self, base: Case, values: Mapping[str, float]) -> Case:
+        """Case with the values of a point."""
+        case = base
+        for axis in self.axes:
+            if axis.key in schema():
+                case = case.set(axis.key, int(values[axis.key]) if axis.integer else values[axis.key])
+        if self.entries:
+            for key, value in self.entries(dict(values)).items():
+                case = case.set(key, value)
+        return case
 
     def coordinates(self, values: Mapping[str, float]) -> Floats:
         """Coordinates of a set of values."""
@@ -155,13 +173,18 @@ class Problem:
 
     def identity(self) -> dict[str, Any]:
         """Everything that the evaluated points of a fit depend on, except the base case."""
-        return {"command": self.command, "skip_verification": self.skip_verification, "seeds": list(self.seeds),
-                "parameters": [dataclasses.asdict(axis) for axis in self.axes],
-                "quantities": [observation.quantity for observation in self.observations]}
+        found = {"command": self.command, "skip_verification": self.skip_verification, "seeds": list(self.seeds),
+                 "parameters": [dataclasses.asdict(axis) for axis in self.axes],
+                 "quantities": [observation.quantity for observation in self.observations]}
+        if self.entries:
+            # A function cannot be compared; its entries at two points can.
+            found["entries"] = [{key: repr(value) for key, value in self.entries(self.values([at] * len(self.axes))).items()}
+                                for at in (0.3, 0.7)]
+        return found
 
 
 def resolve_problem(case: CaseLike, parameters: Sequence[Parameter], observations: Sequence[Observation], command: str,
-                    seeds: Sequence[int] | None, skip_verification: bool) -> Problem:
+                    seeds: Sequence[int] | None, skip_verification: bool, entries: Entries | None = None) -> Problem:
     """Checks a problem of a fit and converts its bounds.
 
     Raises
@@ -188,8 +211,15 @@ def resolve_problem(case: CaseLike, parameters: Sequence[Parameter], observation
     chosen = [own_seed] if seeds is None else list(seeds)
     if not chosen or len(set(chosen)) < len(chosen) or not all(isinstance(seed, int) for seed in chosen):
         raise ValueError("seeds must be different integers, at least one")
-    return Problem(command, base.text(), tuple(_axis(base, parameter) for parameter in parameters), tuple(observations),
-                   tuple(seed for seed in chosen if isinstance(seed, int)), skip_verification)
+    axes = tuple(_axis(base, parameter) for parameter in parameters)
+    problem = Problem(command, base.text(), axes, tuple(observations),
+                      tuple(seed for seed in chosen if isinstance(seed, int)), skip_verification, entries)
+    if entries is None:
+        if derived := [axis.key for axis in axes if axis.key not in schema()]:
+            raise ValueError(f"parameter {derived[0]}: is no entry of the case; `entries` must make entries of it")
+    else:
+        problem.of(base, problem.values([0.5] * len(axes))).resolved()
+    return problem
 
 
 def _check(observation: Observation, command: str) -> None:
@@ -206,15 +236,22 @@ def _check(observation: Observation, command: str) -> None:
 
 
 def _axis(base: Case, parameter: Parameter) -> Axis:
-    base = base.set(parameter.key, parameter.lower)  # raises UnknownEntry
-    entry = schema()[parameter.key]
-    if entry.type not in ("number", "integer"):
-        raise ValueError(f"parameter {parameter.key}: is of the type {entry.type}; only numbers and integers can be fitted")
+    unit, integer = parameter.unit, False
+    if unit is None:
+        base = base.set(parameter.key, parameter.lower)  # raises UnknownEntry
+        entry = schema()[parameter.key]
+        if entry.type not in ("number", "integer"):
+            raise ValueError(f"parameter {parameter.key}: is of the type {entry.type}; only numbers and integers can be fitted")
+        unit, integer = entry.unit or "1", entry.type == "integer"
+    elif parameter.key in schema():
+        raise ValueError(f"parameter {parameter.key}: is an entry of the case, which has its unit; leave out `unit`")
+    elif isinstance(parameter.lower, str) or isinstance(parameter.upper, str):
+        raise ValueError(f"parameter {parameter.key}: is no entry of the case; its bounds must be numbers in {unit}")
     lower, upper = (_bound(base, parameter.key, bound) for bound in (parameter.lower, parameter.upper))
     if not lower < upper or (parameter.logarithmic and lower <= 0):
         raise ValueError(f"parameter {parameter.key}: the bounds {lower} and {upper} must increase"
                          + (" and be positive" if parameter.logarithmic else ""))
-    return Axis(parameter.key, entry.unit or "1", lower, upper, parameter.logarithmic, entry.type == "integer")
+    return Axis(parameter.key, unit, lower, upper, parameter.logarithmic, integer)
 
 
 def _bound(base: Case, key: str, bound: Settable) -> float:

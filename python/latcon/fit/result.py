@@ -95,10 +95,7 @@ class Fit:
     @property
     def case(self) -> Case:
         """Base case with the values of `best`."""
-        case = Case(self.directory / "case.prm")
-        for axis in self._axes:
-            case = case.set(axis.key, axis.value(axis.coordinate(self.best[axis.key])))
-        return case
+        return self.problem.of(Case(self.directory / "case.prm"), self.best)
 
     @functools.cached_property
     def near_equal(self) -> pd.DataFrame:

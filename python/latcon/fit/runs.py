@@ -70,10 +70,7 @@ def evaluate(record: Record, points: Iterable[Point], workers: int, keep_runs: b
 
 def case_of(problem: Problem, file: pathlib.Path, values: Mapping[str, float], seed: int) -> Case:
     """Case of one run: the base case with the values of a point and a seed."""
-    case = Case(file)
-    for axis in problem.axes:
-        case = case.set(axis.key, int(values[axis.key]) if axis.integer else values[axis.key])
-    return case.set(SEED, seed)
+    return problem.of(Case(file), values).set(SEED, seed)
 
 
 def _run_one(record: Record, number: int, values: Mapping[str, float], seed: int, keep_runs: bool, stop: threading.Event

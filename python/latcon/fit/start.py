@@ -10,7 +10,7 @@ from ..commands import CaseLike
 from ..errors import LatconError
 from ..program import Progress, progress_indicator
 from .misfit import tabulate
-from .problem import Observation, Parameter, Problem, resolve_problem
+from .problem import Entries, Observation, Parameter, Problem, resolve_problem
 from .record import Record
 from .result import Fit
 from .runs import available_cores, evaluate
@@ -19,8 +19,8 @@ from .search import propose
 
 def fit_case(case: CaseLike, parameters: Sequence[Parameter], observations: Sequence[Observation],
              directory: str | os.PathLike[str], *, command: str = "fracture", seeds: Sequence[int] | None = None,
-             evaluations: int = 40, batch: int = 8, workers: int | None = None, skip_verification: bool = False,
-             keep_runs: bool = False, search_seed: int = 0, progress: Progress = True) -> Fit:
+             entries: Entries | None = None, evaluations: int = 40, batch: int = 8, workers: int | None = None,
+             skip_verification: bool = False, keep_runs: bool = False, search_seed: int = 0, progress: Progress = True) -> Fit:
     """Fits parameters of a case to observations.
 
     Sobol points come first, then those of Optuna's TPE sampler, and the second half of the points lies around the minimum of a
@@ -42,6 +42,9 @@ def fit_case(case: CaseLike, parameters: Sequence[Parameter], observations: Sequ
         ``fracture``, ``lattice`` or ``continuum``.
     seeds
         Noise seeds over which quantities are averaged; default: that of the case.
+    entries
+        Function of the values of all parameters, by name, that returns further entries of the case: for parameters with a unit
+        of their own, such as a factor of several entries or a number in a list. It must return the same for the same values.
     evaluations
         Points to evaluate, those of earlier calls included.
     batch
@@ -79,7 +82,7 @@ def fit_case(case: CaseLike, parameters: Sequence[Parameter], observations: Sequ
     for name, number in (("evaluations", evaluations), ("batch", batch), ("workers", workers or 1)):
         if number < 1:
             raise ValueError(f"{name} = {number}: must be positive")
-    problem = resolve_problem(case, parameters, observations, command, seeds, skip_verification)
+    problem = resolve_problem(case, parameters, observations, command, seeds, skip_verification, entries)
     with Record(pathlib.Path(directory), problem) as record:
         _Search(problem, record, evaluations, batch, workers or available_cores(), keep_runs, search_seed).run(progress)
         return Fit(record.directory, problem, tuple(record.evaluations.values()))

@@ -3,19 +3,22 @@ from claim_tables import Plot, groups, largest_text, sorted_by, states
 from panels import WAVES, Grid, entry, logarithmic_along_x
 from pictures import BLUE, GREY, save
 
-TABLES = {
-    "viscoelastic_waves": ({"shells": None, "part": ("one branch", "own branches"), "wave": ("L", "S")},
-                           ("F_xx", "F_yy", "k d", "w tau", "rubbery [rad/s]", "glassy [rad/s]",
-                            "theory_frequency [rad/s]", "theory_decay [1/s]", "lattice_frequency [rad/s]",
-                            "lattice_decay [1/s]")),
-}
+
+def columns(theory, run):
+    """Columns of the table of the waves in a run, compared with a theory."""
+    return ({"shells": None, "part": ("one branch", "own branches"), "wave": ("L", "S")},
+            ("F_xx", "F_yy", "k d", "w tau", "rubbery [rad/s]", "glassy [rad/s]",
+             *(f"{side}_{quantity}" for side in (theory, run) for quantity in ("frequency [rad/s]", "decay [1/s]"))))
 
 
-def draw_viscoelastic_waves(tables, path):
+TABLES = {"viscoelastic_waves": columns("theory", "lattice"), "viscoelastic_elements": columns("continuum", "fem")}
+
+
+def draw_waves(table, path, theory, run, run_name):
     """Frequency and decay of waves against the relaxation time of one branch."""
-    rows = [(f"{name}, {WAVES[wave]} waves", part) for name, state in states(tables["viscoelastic_waves"])
+    rows = [(f"{name}, {WAVES[wave]} waves", part) for name, state in states(table)
             for (kind, wave), part in groups(state, "part", "wave") if kind == "one branch"]
-    legend = [entry("complex modulus", "--"), entry("lattice, run in time", "", marker="o"),
+    legend = [entry("complex modulus", "--"), entry(f"{run_name}, run in time", "", marker="o"),
               entry("rubbery and glassy limits", ":", GREY)]
     grid = Grid([name for name, _ in rows], 2, legend)
     metrics = []
@@ -25,25 +28,39 @@ def draw_viscoelastic_waves(tables, path):
         panels = [grid.axes(number, column, title=title, xlabel="ω τ [1]") for column, title in enumerate(
             ("frequency over that of the rubbery limit [1]", "decay rate over that frequency [1]"))]
         for axes, quantity in zip(panels, ("frequency [rad/s]", "decay [1/s]")):
-            axes.plot(part["w tau"], part[f"theory_{quantity}"] / unit, "--", color=BLUE)
-            axes.plot(part["w tau"], part[f"lattice_{quantity}"] / unit, "o", color=BLUE, markerfacecolor="none",
+            axes.plot(part["w tau"], part[f"{theory}_{quantity}"] / unit, "--", color=BLUE)
+            axes.plot(part["w tau"], part[f"{run}_{quantity}"] / unit, "o", color=BLUE, markerfacecolor="none",
                       markersize=6)
         for limit in ("rubbery [rad/s]", "glassy [rad/s]"):
             panels[0].plot(part["w tau"], part[limit] / unit, ":", color=GREY)
         for axes in panels:
             logarithmic_along_x(axes)
         panels[1].set_ylim(bottom=0)
-        error = (part["lattice_frequency [rad/s]"] - part["theory_frequency [rad/s]"]) / unit
+        error = (part[f"{run}_frequency [rad/s]"] - part[f"{theory}_frequency [rad/s]"]) / unit
         metrics.append(f"{name}: frequency of a run off the complex modulus by {largest_text(error)} of the rubbery one")
     save(grid.page.figure, path)
     return metrics
 
 
+def draw_lattice(tables, path):
+    """Waves in the lattice."""
+    return draw_waves(tables["viscoelastic_waves"], path, "theory", "lattice", "lattice")
+
+
+def draw_elements(tables, path):
+    """Waves in finite elements."""
+    return draw_waves(tables["viscoelastic_elements"], path, "continuum", "fem", "finite elements")
+
+
 PLOTS = (
-    Plot("viscoelastic_waves", draw_viscoelastic_waves,
+    Plot("viscoelastic_waves", draw_lattice,
          "Waves are as fast as in the rubbery limit for short relaxation times, as fast as in the glassy limit for long "
          "ones, and decay fastest between them, as predicted by the complex modulus of the lattice.",
          "Frequency and decay rate of free waves at one wavelength against the relaxation time τ of one Maxwell branch "
          "per bond, ω being the frequency of the wave without the branch. Dashed: complex modulus; circles: measured in a "
          "run of the lattice; dotted: frequencies without and with the stiffness of the branch."),
+    Plot("viscoelastic_elements", draw_elements,
+         "Waves in finite elements with the same branches have the frequencies and decay rates that the complex modulus "
+         "of the continuum predicts.",
+         "As above, for finite elements with Maxwell branches along the bonds, and the complex modulus of the continuum."),
 )
