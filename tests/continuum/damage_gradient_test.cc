@@ -22,12 +22,8 @@ constexpr double spacing = 1.; // of the bonds [m]
 
 Tensor<2, 2> matrix(const double xx, const double xy, const double yx, const double yy)
 {
-  Tensor<2, 2> F;
-  F[0][0] = xx;
-  F[0][1] = xy;
-  F[1][0] = yx;
-  F[1][1] = yy;
-  return F;
+  const double F[2][2] = {{xx, xy}, {yx, yy}};
+  return Tensor<2, 2>(F);
 }
 
 // Triangular lattice with both shells, of rubber.
@@ -184,18 +180,11 @@ TEST(GradientForces, AreTheGradientOfTheDegradedEnergy)
   }
 }
 
-std::array<std::vector<char>, 2> held_bottom(const NodeGrid &grid)
-{
-  std::array<std::vector<char>, 2> held{std::vector<char>(grid.n_nodes(), 0), std::vector<char>(grid.n_nodes(), 0)};
-  for (std::size_t i = 0; i < grid.columns(); ++i)
-    held[1][i] = 1;
-  return held;
-}
-
 TEST(MassOperator, InvertsTheMassOfDamagedSheets)
 {
   const NodeGrid grid(Rectangle{6., 4.4, 6, 4});
-  const auto held = held_bottom(grid);
+  std::array<std::vector<char>, 2> held{std::vector<char>(grid.n_nodes(), 0), std::vector<char>(grid.n_nodes(), 0)};
+  std::fill(held[1].begin(), held[1].begin() + 7, 1); // the lowest row, in Y
   for (const double length : {0., 0.3, 2.})
   {
     MassOperator mass(grid, 950., length, held);
@@ -204,9 +193,7 @@ TEST(MassOperator, InvertsTheMassOfDamagedSheets)
                                     [](const Point<2> &X) {
                                       return Tensor<1, 2>({2. * X[0] + X[1], 3. * X[1]});
                                     });
-    double translation = 0.;
-    for (std::size_t a = 0; a < grid.n_nodes(); ++a)
-      translation += 0.5 * mass.lumped()[a] * (linear[0][a] * linear[0][a] + linear[1][a] * linear[1][a]);
+    const double translation = MassOperator(grid, 950., 0., held).kinetic_energy(linear);
     const double expected = translation + 0.5 * 950. * length * length * 14. * 6. * 4.4;
     EXPECT_NEAR(mass.kinetic_energy(linear), expected, 1e-13 * expected);
 
@@ -338,7 +325,7 @@ TEST(DamageMotion, MovesWavesAsTheirDispersionSays)
     for (const double d : {0., 0.5})
     {
       const double omega2 = stiffness_of_waves(F, 0, 0, K, 0.5 * spacing, has_micro_inertia ? 0.5 * spacing : 0.) / 950.;
-      const double step = 0.1 / std::sqrt(omega2);
+      const double step = 0.02 / std::sqrt(omega2);
       DamageMotionSetup setup = sheet(F, {n * h, n * h, n, n}, step);
       setup.gradient->has_micro_inertia = has_micro_inertia;
       DamageMotion motion(setup);
@@ -350,7 +337,7 @@ TEST(DamageMotion, MovesWavesAsTheirDispersionSays)
       const std::size_t middle = n / 2 * motion.grid().columns() + n / 2;
       const double moved = motion.displacement()[0][middle] / amplitude - 1.;
       // Non-linear terms and the tolerance of the mass operator: 1e-6 of omega^2.
-      EXPECT_NEAR(moved, -0.5 * omega2 * step * step, 2e-6 * 0.005) << has_micro_inertia << ' ' << d;
+      EXPECT_NEAR(moved, -0.5 * omega2 * step * step, 1e-6 * omega2 * step * step) << has_micro_inertia << ' ' << d;
     }
 }
 
@@ -410,7 +397,7 @@ TEST(DamageMotion, ClosesTheLedgerWithGradientEnergy)
 {
   for (const double viscosity : {0., 300.})
   {
-    const DamageMotionLedger coarse = wave_ledger(viscosity, 2e-3, 0.04), fine = wave_ledger(viscosity, 1e-3, 0.04);
+    const DamageMotionLedger coarse = wave_ledger(viscosity, 2e-4, 0.02), fine = wave_ledger(viscosity, 1e-4, 0.02);
     EXPECT_GT(fine.kinetic, 0.);
     EXPECT_GT(fine.gradient, 0.);
     // Of second order in the step, or better where that term is small.
@@ -452,25 +439,17 @@ TEST(DamageMotion, IsStableUpToTheStepThatItStates)
       setup.is_held = [](const Point<2> &X, unsigned int)
       { return X[0] < 1e-9 || X[0] > 3. - 1e-9 || std::abs(X[1]) > 1.5 - 1e-9; };
       DamageMotion motion(setup);
-      std::size_t a = 0;
-      const std::vector<double> damage = random_factors(motion.grid().n_nodes());
+      std::mt19937 random(5);
+      std::uniform_real_distribution<double> some(0., 1.);
       if (!is_stretched)
-        motion.set_damage([&](const Point<2> &) { return damage[a++]; });
-      const GridVector noise = random_field(motion.grid(), 1e-8);
-      a = 0;
-      motion.set_motion(
-        [&](const Point<2> &)
-        {
-          const std::size_t own = a++;
-          return Tensor<1, 2>({noise[0][own], noise[1][own]});
-        },
-        [](const Point<2> &) { return Tensor<1, 2>(); });
+        motion.set_damage([&](const Point<2> &) { return some(random); });
+      motion.set_motion([&](const Point<2> &) { return 1e-8 * some(random) * Tensor<1, 2>({1., -0.7}); },
+                        [](const Point<2> &) { return Tensor<1, 2>(); });
       for (unsigned int step = 0; step < 150; ++step)
         motion.advance();
       double sum = 0.;
-      for (const unsigned int i : {0u, 1u})
-        for (const double u : motion.displacement()[i])
-          sum += u * u;
+      for (std::size_t b = 0; b < motion.grid().n_nodes(); ++b)
+        sum += std::pow(motion.displacement()[0][b], 2) + std::pow(motion.displacement()[1][b], 2);
       // Far above the noise, far below growth by 1 % a step.
       EXPECT_LT(std::sqrt(sum), 3e-6) << has_micro_inertia << ' ' << viscosity << ' ' << is_stretched;
       setup.step *= 1.03;
