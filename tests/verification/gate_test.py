@@ -15,30 +15,37 @@ import unittest
 
 sys.dont_write_bytecode = True
 from program import CASES, LATCON, TemporaryFolder, claims_where, latcon, latcon_on_ranks
+from verdicts_fixture import REFUSED, TINY
 
-# A strip in which a crack does not advance far, with nearest neighbours alone, which are faster to check.
-TINY = ["--set", "Sheet/length=2.5 cm", "--set", "Sheet/height=1.5 cm", "--set", "Time/end=0.01 ms", "--set",
-        "Next-nearest neighbours/present=false"]
-# A sheet that is compressed along x, and buckles.
-FAILING = ["--set", "Loading/strain x=-0.3"]
 FULL = "--full" in sys.argv
+# Runs of the fixture, or, where each test checks the claims, of this script: the same, with nearest neighbours alone.
+MADE = None if FULL else pathlib.Path(os.environ["LATCON_VERDICTS"])
+NEAREST = ["--set", "Next-nearest neighbours/present=false"] if FULL else []
 # Seconds each. What they show is shown of the store and of its keys by verdict_store_test.cc, of the claims by claims_test.cc.
 in_full = unittest.skipUnless(FULL, "in full only")
 
 
 class WithStore(TemporaryFolder):
     """Every test starts with the cached verdicts of one verified run, in its own cache."""
-    MORE, EXPECT = [], 0  # entries of that run, its exit code
+    MADE_RUN, MORE, EXPECT = "accepted", NEAREST, 0  # its name in the fixture, its entries, its exit code
 
     @classmethod
     def setUpClass(cls):
         cls.shared = tempfile.TemporaryDirectory()
         cls.addClassCleanup(cls.shared.cleanup)
         before = cls("stored")
+        if MADE:
+            before.out, before.cache = MADE / "runs" / cls.MADE_RUN, pathlib.Path(cls.shared.name) / "cache"
+            cls.first_text, cls.first = (before.out / "log.txt").read_text(), json.loads((before.out / "run.json").read_text())
+            name = f"{cls.first['verification']['hash']}.json"
+            (before.cache / "latcon" / "verdicts").mkdir(parents=True, mode=0o700)
+            shutil.copy2(MADE / "latcon" / "verdicts" / name, before.cache / "latcon" / "verdicts" / name)
+            cls.first_rows, cls.first_cache = before.claims(), before.cache
+            return
         before.folder = pathlib.Path(cls.shared.name)
         before.out, before.cache = before.folder / "out", before.folder / "cache"
         before.environment = dict(os.environ, XDG_CACHE_HOME=str(before.cache))
-        cls.first_text, cls.first = before.fracture(*cls.MORE, expect=cls.EXPECT)
+        cls.first_text, cls.first = before.fracture(expect=cls.EXPECT)
         cls.first_rows, cls.first_cache = before.claims(), before.cache
 
     def setUp(self):
@@ -49,7 +56,7 @@ class WithStore(TemporaryFolder):
 
     def fracture(self, *arguments, expect=0, ranks=1):
         """Runs the crack. @return (what was printed, run.json)"""
-        words = ["fracture", CASES / "quick.prm", "--no-report", "--output-dir", self.out, *TINY, *arguments]
+        words = ["fracture", CASES / "quick.prm", "--no-report", "--output-dir", self.out, *TINY, *self.MORE, *arguments]
         run = (latcon(*words, env=self.environment) if ranks == 1
                else latcon_on_ranks(ranks, *words, env=self.environment))
         self.assertEqual(run.returncode, expect, run.stdout + run.stderr)
@@ -108,7 +115,7 @@ class Gate(WithStore):
         with open(LATCON, "rb") as file:
             other.write_bytes(file.read() + b"\0")  # behind its end, which is not read
         other.chmod(0o755)
-        words = ["fracture", CASES / "quick.prm", "--no-report", "--output-dir", self.out, *TINY]
+        words = ["fracture", CASES / "quick.prm", "--no-report", "--output-dir", self.out, *TINY, *self.MORE]
         self.assertEqual(latcon(*words, program=other, env=self.environment).returncode, 0)
         second = json.loads((self.out / "run.json").read_text())
         self.assertFalse(second["verification"]["reused"])
@@ -203,11 +210,11 @@ class Gate(WithStore):
 
 class Refused(WithStore):
     """A crack whose claims fail."""
-    MORE, EXPECT = FAILING, 3
+    MADE_RUN, MORE, EXPECT = "refused", REFUSED, 3
 
     def test_failure_is_refused_also_from_the_store(self):
         self.assertFalse(self.first["verification"]["reused"])
-        text, run = self.fracture(*FAILING, expect=3)
+        text, run = self.fracture(expect=3)
         self.assertTrue(run["verification"]["reused"])
         self.assertIn("no crack was run", text)
         self.assertIn(f"delete {self.stored()[0]}", text)
@@ -215,7 +222,7 @@ class Refused(WithStore):
         self.assertFalse([path.name for path in self.out.iterdir() if re.match(r"crack|broken|lattice", path.name)])
 
     def test_last_lines_name_the_rows_that_fail(self):
-        text, run = self.fracture(*FAILING, expect=3)
+        text, run = self.fracture(expect=3)
         failing = [row for row in self.claims() if row["verdict"] == "fails"]
         self.assertEqual(run["exit_code"], 3)
         lines = text.splitlines()
@@ -226,7 +233,7 @@ class Refused(WithStore):
         self.assertLess(len(lines), 16)
 
     def test_refused_crack_leaves_its_report(self):
-        words = ["fracture", CASES / "quick.prm", "--output-dir", self.out, *TINY, *FAILING]
+        words = ["fracture", CASES / "quick.prm", "--output-dir", self.out, *TINY, *self.MORE]
         run = latcon(*words, env=self.environment)
         self.assertEqual(run.returncode, 3)
         self.assertIn(f"{self.out}/report.html\n", run.stdout)

@@ -8,7 +8,7 @@
 #include <limits>
 #include <random>
 
-#include <boost/math/distributions/normal.hpp>
+#include "tests/verification/study/normal_numbers.h"
 
 using namespace latcon;
 using namespace study;
@@ -17,12 +17,6 @@ namespace
 {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
-double standard_normal(std::mt19937_64 &generator)
-{
-  const double uniform = (static_cast<double>(generator() >> 11) + 0.5) * 0x1p-53;
-  return boost::math::quantile(boost::math::normal(), uniform);
-}
 
 // Means of three seeds that scatter by `deviation` about 2 (p - 1)^exponent.
 std::vector<OnsetPoint> drawn(std::mt19937_64 &generator, double exponent, double deviation,

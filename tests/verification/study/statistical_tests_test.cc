@@ -8,8 +8,7 @@
 #include <limits>
 #include <random>
 
-#include <boost/math/distributions/normal.hpp>
-
+#include "tests/verification/study/normal_numbers.h"
 #include "verification/study/study_table.h"
 
 using namespace latcon;
@@ -19,12 +18,6 @@ namespace
 {
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
-
-double standard_normal(std::mt19937_64 &generator)
-{
-  const double uniform = (static_cast<double>(generator() >> 11) + 0.5) * 0x1p-53;
-  return boost::math::quantile(boost::math::normal(), uniform);
-}
 
 // Draws n normal numbers with a mean and a standard deviation, and returns their sample mean and variance.
 SampleMean drawn(std::mt19937_64 &generator, double mean, std::size_t n, double deviation = 1.)
