@@ -51,7 +51,9 @@ void expect_same_state(Simulation &shared, const State &alone)
       ASSERT_EQ(state.held[place], alone.held[place]);
       ASSERT_EQ(state.bonds.words()[place], alone.bonds.words()[place]);
       if (const BondStates::Word *third = alone.bonds.words(BondStates::kinds_per_word))
+      {
         ASSERT_EQ(state.bonds.words(BondStates::kinds_per_word)[place], third[place]);
+      }
       if (band.owns(place))
       {
         ASSERT_EQ(state.ax[place], alone.ax[place]);
