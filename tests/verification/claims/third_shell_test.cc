@@ -54,17 +54,17 @@ void expect_none_fails(const Results &results)
 
 TEST(ThirdShell, EnergyAndPrestretchHoldInBothOrientations)
 {
-  for (const auto orientation : {lattice::Orientation::rows_along_crack, lattice::Orientation::rows_across_crack})
-    for (const bool has_next_nearest : {true, false})
-    {
-      Case input = with_third_shell(orientation);
-      input.has_next_nearest = has_next_nearest;
-      const Subject three = subject(input);
-      EXPECT_EQ(three.name, has_next_nearest ? "NN+NNN+3NN" : "NN+3NN");
-      EXPECT_EQ(three.material.coordination(), has_next_nearest ? 18u : 12u);
-      expect_none_fails(energy_claim(three, samples));
-      expect_none_fails(prestretch_claim(three, small_sheet()));
-    }
+  for (const auto &[orientation, has_next_nearest] :
+       {std::pair(lattice::Orientation::rows_along_crack, true), {lattice::Orientation::rows_across_crack, false}})
+  {
+    Case input = with_third_shell(orientation);
+    input.has_next_nearest = has_next_nearest;
+    const Subject three = subject(input);
+    EXPECT_EQ(three.name, has_next_nearest ? "NN+NNN+3NN" : "NN+3NN");
+    EXPECT_EQ(three.material.coordination(), has_next_nearest ? 18u : 12u);
+    expect_none_fails(energy_claim(three, samples));
+    expect_none_fails(prestretch_claim(three, small_sheet()));
+  }
 }
 
 // The table after theory-comparison.md, eq. (W.2), with two digits more, and (C.26).
