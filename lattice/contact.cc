@@ -168,7 +168,7 @@ bool Contact::may_touch(const State &state, std::size_t first, std::size_t secon
   if (!band_.owns(first) && !band_.owns(second))
     return false;
   for (const auto &[near, far] : {std::pair(first, second), std::pair(second, first)})
-    for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+    for (std::size_t kind = 0; kind < state.bonds.n_kinds(); ++kind)
       if (near + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(near))) == far)
         return !state.bonds.present(near, kind);
   return true;

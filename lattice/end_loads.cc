@@ -50,11 +50,9 @@ Eigen::Vector2d missing_force(const TriangularLattice &lattice, const Material &
     const double length = bond.norm();
     const double axial =
       cross_section(*shell, lattice) * lattice::force(shell->law, length / lattice.rest_length(kind));
-    // The bond from below starts in a row of the other parity, except along the row and two rows down.
-    const std::size_t near_row = (kind == 0 || kind == n_bond_kinds - 1) ? row : row + 1;
     if (!lattice.is_occupied(place + static_cast<std::size_t>(lattice.shift(kind, row))))
       force += axial / length * bond;
-    if (!lattice.is_occupied(place - static_cast<std::size_t>(lattice.shift(kind, near_row))))
+    if (!lattice.is_occupied(place - static_cast<std::size_t>(lattice.shift_into(kind, row))))
       force -= axial / length * bond;
   }
   return force;

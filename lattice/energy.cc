@@ -76,17 +76,18 @@ std::vector<double> memory_energies(const State &state, const RowPartition &band
   std::vector<std::vector<double>> of_rows(material.n_mechanisms(), std::vector<double>(lattice.rows(), 0.));
   if (of_rows.empty())
     return {};
-  const std::size_t of_nearest = n_mechanisms(material.nearest.memory);
+  std::array<std::size_t, n_shells> first{};
+  for (std::size_t shell = 0; shell < n_shells; ++shell)
+    first[shell] = material.first_mechanism(shell);
   for_each_row(lattice, band.rows(),
                [&](std::size_t row)
                {
                  for_each_bond(state, lattice, {row, row + 1},
                                [&](std::size_t place, std::size_t kind, std::size_t)
                                {
-                                 const std::size_t first = TriangularLattice::is_nearest(kind) ? 0 : of_nearest;
                                  for_each_mechanism(state, lattice, material, place, kind,
                                                     [&](std::size_t m, double energy)
-                                                    { of_rows[first + m][row] += energy; });
+                                                    { of_rows[first[shell_of(kind)] + m][row] += energy; });
                                });
                });
   std::vector<double> energies;

@@ -13,6 +13,9 @@ namespace
 
 constexpr std::ptrdiff_t reach = 2; // of bonds, in rows
 
+// The first shell that is not among n_row_kinds.
+constexpr std::size_t first_further_shell = kernels::n_row_kinds / n_kinds_per_shell;
+
 // History of the bonds of one kind that start at a place and the places after it.
 template <class Pointer, class Kind>
 kernels::RememberedRow<Pointer> remembered_from(Kind &kind, std::size_t place)
@@ -21,6 +24,14 @@ kernels::RememberedRow<Pointer> remembered_from(Kind &kind, std::size_t place)
   for (std::size_t v = 0; v < kind.variables.size(); ++v)
     row.variable[v] = kind.variables[v].data() + place;
   return row;
+}
+
+// Those of shells that the sheet lacks are unused.
+kernels::BondLaws laws_of(const Material &material)
+{
+  const auto law = [&](std::size_t number)
+  { return material.in_shell(number) != nullptr ? material.in_shell(number)->law : material.nearest.law; };
+  return {{law(0), law(1), law(2)}};
 }
 
 // Returns whether bonds have factors of their own.
@@ -32,22 +43,22 @@ bool has_factors(const State &state)
 } // namespace
 
 Forces::Forces(const RowPartition &band, const Material &material)
-  : band_(band),
-    lattice_(band.lattice()), laws_{{material.nearest.law, material.shell(n_nearest_kinds) ? material.next_nearest->law
-                                                                                           : material.nearest.law}},
+  : band_(band), lattice_(band.lattice()), laws_(laws_of(material)),
+    n_kinds_(material.third_nearest ? n_bond_kinds : kernels::n_row_kinds),
     rows_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - lattice_.stride())),
     columns_repeat_(lattice_.is_occupied(lattice_.index(0, 0) - 1)), row_viscous_power_(lattice_.rows(), 0.),
     row_mechanism_power_(material.n_mechanisms(), Field(lattice_.rows(), 0.)), row_events_(lattice_.rows(), 0),
     row_short_bonds_(lattice_.rows(), 0)
 {
-  for (const std::size_t kind : {std::size_t{0}, n_nearest_kinds})
-    if (const Shell *shell = material.shell(kind))
+  for (std::size_t number = 0; number < n_shells; ++number)
+    if (const Shell *shell = material.in_shell(number))
     {
-      const double rest_length = lattice_.rest_length(kind), section = cross_section(*shell, lattice_);
-      constants_.shells[kind / n_nearest_kinds] = {rest_length, section, section * shell->viscosity / rest_length};
-      memories_[kind / n_nearest_kinds] = shell->memory;
+      const double rest_length = lattice_.rest_length(number * n_kinds_per_shell);
+      const double section = cross_section(*shell, lattice_);
+      constants_.shells[number] = {rest_length, section, section * shell->viscosity / rest_length};
+      memories_[number] = shell->memory;
+      first_mechanism_[number] = material.first_mechanism(number);
     }
-  first_mechanism_ = {0, n_mechanisms(memories_[0])};
   set_elapsed(0.);
 }
 
@@ -68,10 +79,10 @@ void Forces::update_memory(State &state)
   {
     const std::size_t row = rows[static_cast<std::size_t>(i)];
     const kernels::RowOfBonds bonds = row_of_bonds({state, state.vx, state.vy}, row);
-    for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+    for (std::size_t kind = 0; kind < n_kinds_; ++kind)
       if (BondHistory::Kind &history = state.history.kinds[kind]; !history.variables.empty())
-        kernels::update_memory(memory_steps_[kind / n_nearest_kinds], constants_.shell(kind), bonds, kind,
-                               remembered_from<double *>(history, lattice_.index(row, 0)));
+        kernels::update_memory(memory_steps_[shell_of(kind)], constants_.shell(kind), of_kind(bonds, state, row, kind),
+                               kind, remembered_from<double *>(history, lattice_.index(row, 0)));
   }
   set_elapsed(0.);
 }
@@ -81,11 +92,11 @@ void Forces::add_overstress(const State &state, std::size_t from, const kernels:
                             std::vector<double> &mechanism_power) const
 {
   mechanism_power.assign(row_mechanism_power_.size(), 0.);
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  for (std::size_t kind = 0; kind < n_kinds_; ++kind)
     if (const BondHistory::Kind &history = state.history.kinds[kind]; !history.variables.empty())
-      kernels::add_overstress(memory_steps_[kind / n_nearest_kinds], constants_.shell(kind), bonds, kind,
-                              remembered_from<const double *>(history, lattice_.index(from, 0)),
-                              &mechanism_power[first_mechanism_[kind / n_nearest_kinds]]);
+      kernels::add_overstress(memory_steps_[shell_of(kind)], constants_.shell(kind), of_kind(bonds, state, from, kind),
+                              kind, remembered_from<const double *>(history, lattice_.index(from, 0)),
+                              &mechanism_power[first_mechanism_[shell_of(kind)]]);
 }
 
 void Forces::evaluate(const State &state, const Field &vx, const Field &vy, const RowCallbacks &work)
@@ -93,7 +104,7 @@ void Forces::evaluate(const State &state, const Field &vx, const Field &vy, cons
   const bool threads = lattice_.n_places() >= min_places_for_threads;
   const std::size_t n_scratch = threads ? static_cast<std::size_t>(omp_get_max_threads()) : 1;
   while (scratch_.size() < n_scratch)
-    scratch_.emplace_back(lattice_.stride());
+    scratch_.emplace_back(lattice_.stride(), n_kinds_);
 #pragma omp parallel if (threads)
   {
     const auto first = static_cast<std::ptrdiff_t>(band_.rows().begin);
@@ -155,7 +166,7 @@ void Forces::bonds_from_below(const Motion &motion, std::ptrdiff_t row, Scratch 
   else if (rows_repeat_)
     bonds_of_row(motion, lattice_.rows() - static_cast<std::size_t>(-row), row, scratch);
   else
-    for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+    for (std::size_t kind = 0; kind < n_kinds_; ++kind)
       for (std::size_t component = 0; component < 2; ++component)
         std::fill_n(scratch.bonds.at(row, kind, component) - TriangularLattice::row_alignment, lattice_.stride(), 0.);
 }
@@ -176,7 +187,7 @@ kernels::RowOfBonds Forces::row_of_bonds(const Motion &motion, std::size_t row) 
                             {},
                             nullptr,
                             0};
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  for (std::size_t kind = 0; kind < n_kinds_; ++kind)
   {
     bonds.shift[kind] = lattice_.shift(kind, row);
     const auto from = [near](const Field &factors) { return factors.empty() ? nullptr : factors.data() + near; };
@@ -186,14 +197,23 @@ kernels::RowOfBonds Forces::row_of_bonds(const Motion &motion, std::size_t row) 
   return bonds;
 }
 
+// The same row with the words that hold a kind of its bonds.
+kernels::RowOfBonds Forces::of_kind(kernels::RowOfBonds bonds, const State &state, std::size_t row,
+                                    std::size_t kind) const
+{
+  bonds.bonds = state.bonds.words(kind) + lattice_.index(row, 0);
+  return bonds;
+}
+
 bool Forces::row_has_events_ahead(const State &state, std::size_t row, double ahead) const
 {
   const kernels::RowOfBonds bonds = row_of_bonds({state, state.vx, state.vy}, row);
-  if (!has_factors(state))
-    return kernels::any_event_ahead(constants_, bonds, ahead);
-  for (std::size_t shell = 0; shell < laws_.size(); ++shell)
-    if (constants_.shells[shell].cross_section > 0. &&
-        kernels::any_event_ahead_in_shell(constants_, bonds, shell, ahead))
+  const bool one_by_one = has_factors(state);
+  if (!one_by_one && kernels::any_event_ahead(constants_, bonds, ahead))
+    return true;
+  for (std::size_t shell = one_by_one ? 0 : first_further_shell; shell < n_shells; ++shell)
+    if (has_shell(shell) && kernels::any_event_ahead_in_shell(
+                              constants_, of_kind(bonds, state, row, shell * n_kinds_per_shell), shell, ahead))
       return true;
   return false;
 }
@@ -205,16 +225,17 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
   kernels::RowOfBonds all = row_of_bonds(motion, from);
   all.ahead = scratch.ahead.data();
   all.n_ahead = scratch.ahead.size();
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  for (std::size_t kind = 0; kind < n_kinds_; ++kind)
     for (std::size_t component = 0; component < 2; ++component)
       all.force[kind][component] = scratch.bonds.at(row, kind, component);
   kernels::RowSums sums;
-  if (!has_factors(motion.state))
+  const bool one_by_one = has_factors(motion.state);
+  if (!one_by_one)
     sums = kernels::bonds_of_row(laws_, constants_, all);
-  else
-    for (std::size_t shell = 0; shell < laws_.size(); ++shell)
-      if (constants_.shells[shell].cross_section > 0.)
-        kernels::bonds_of_shell(laws_[shell], constants_, all, shell, sums);
+  for (std::size_t shell = one_by_one ? 0 : first_further_shell; shell < n_shells; ++shell)
+    if (has_shell(shell))
+      kernels::bonds_of_shell(laws_[shell], constants_, of_kind(all, motion.state, from, shell * n_kinds_per_shell),
+                              shell, sums);
   if (!row_mechanism_power_.empty())
   {
     add_overstress(motion.state, from, all, scratch.mechanism_power);
@@ -224,8 +245,8 @@ kernels::RowSums Forces::bonds_of_row(const Motion &motion, std::size_t from, st
   // A site gathers from the places around it, so bonds that start beyond a periodic edge must be there.
   const std::size_t columns = lattice_.columns();
   if (columns_repeat_)
-    for (const auto &force : all.force)
-      for (double *component : force)
+    for (std::size_t kind = 0; kind < n_kinds_; ++kind)
+      for (double *component : all.force[kind])
       {
         std::copy_n(component, 2, component + columns);
         std::copy_n(component + columns - 2, 2, component - 2);
@@ -239,8 +260,8 @@ void Forces::gather_row(std::ptrdiff_t row, Scratch &scratch) const
   const auto index = static_cast<std::size_t>(row);
   for (std::size_t component = 0; component < 2; ++component)
   {
-    std::array<const double *, n_bond_kinds> start, end;
-    for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+    std::array<const double *, kernels::n_row_kinds> start, end;
+    for (std::size_t kind = 0; kind < kernels::n_row_kinds; ++kind)
       start[kind] = bonds.at(row, kind, component);
     end[0] = start[0] - 1;
     end[5] = bonds.at(row - 2, 5, component);
@@ -248,7 +269,16 @@ void Forces::gather_row(std::ptrdiff_t row, Scratch &scratch) const
     for (std::size_t kind = 1; kind < 5; ++kind)
       end[kind] = bonds.at(row - 1, kind, component) + static_cast<std::ptrdiff_t>(lattice_.stride()) -
                   lattice_.shift(kind, index + 1);
-    kernels::gather_row(lattice_.columns(), start, end, (component == 0 ? scratch.fx : scratch.fy).data());
+    double *const total = (component == 0 ? scratch.fx : scratch.fy).data();
+    kernels::gather_row(lattice_.columns(), start, end, total);
+    if (n_kinds_ == kernels::n_row_kinds)
+      continue;
+    constexpr std::size_t first = kernels::n_row_kinds;
+    const std::array<const double *, n_kinds_per_shell> third_start{
+      {bonds.at(row, first, component), bonds.at(row, first + 1, component), bonds.at(row, first + 2, component)}};
+    const std::array<const double *, n_kinds_per_shell> third_end{
+      {third_start[0] - 2, bonds.at(row - 2, first + 1, component) - 1, bonds.at(row - 2, first + 2, component) + 1}};
+    kernels::add_third_shell(lattice_.columns(), third_start, third_end, total);
   }
 }
 
@@ -273,7 +303,7 @@ void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, s
     row_viscous_power_[row] -= bond.viscous_power;
     if (!state.history.kinds[kind].variables.empty())
     {
-      const std::size_t shell = kind / n_nearest_kinds;
+      const std::size_t shell = shell_of(kind);
       const kernels::Overstress over = overstress(state, place, kind, bond.stretch);
       for (std::size_t m = 0; m < n_mechanisms(memories_[shell]); ++m)
         row_mechanism_power_[first_mechanism_[shell] + m][row] -= over.dissipation[m];
@@ -283,8 +313,8 @@ void Forces::remove_bond(const State &state, const Field &vx, const Field &vy, s
 
 kernels::Overstress Forces::overstress(const State &state, std::size_t place, std::size_t kind, double stretch) const
 {
-  kernels::Overstress over = kernels::overstress(memory_steps_[kind / n_nearest_kinds], constants_.shell(kind), stretch,
-                                                 place, remembered_from<const double *>(state.history.kinds[kind], 0));
+  kernels::Overstress over = kernels::overstress(memory_steps_[shell_of(kind)], constants_.shell(kind), stretch, place,
+                                                 remembered_from<const double *>(state.history.kinds[kind], 0));
   const double factor = state.stiffness.of(place, kind);
   over.axial *= factor;
   for (double &power : over.dissipation)
@@ -296,10 +326,9 @@ kernels::BondForce Forces::single_bond(const Motion &motion, std::size_t place, 
 {
   const State &state = motion.state;
   const std::size_t far = place + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(place)));
-  kernels::BondForce bond =
-    kernels::bond_force(laws_[kind / n_nearest_kinds], constants_.shell(kind), state.stiffness.of(place, kind),
-                        state.x[far] - state.x[place], state.y[far] - state.y[place], motion.vx[far] - motion.vx[place],
-                        motion.vy[far] - motion.vy[place]);
+  kernels::BondForce bond = kernels::bond_force(
+    laws_[shell_of(kind)], constants_.shell(kind), state.stiffness.of(place, kind), state.x[far] - state.x[place],
+    state.y[far] - state.y[place], motion.vx[far] - motion.vx[place], motion.vy[far] - motion.vy[place]);
   if (!state.history.kinds[kind].variables.empty())
   {
     const kernels::Overstress over = overstress(state, place, kind, bond.stretch);
@@ -315,7 +344,7 @@ Eigen::Vector2d Forces::on_site(const State &state, const Field &vx, const Field
 {
   const std::size_t row = lattice_.row_of(place);
   std::array<std::array<double, n_bond_kinds>, 2> start{}, end{};
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  for (std::size_t kind = 0; kind < n_kinds_; ++kind)
   {
     const auto note = [&](std::size_t near_place, auto &force)
     {
@@ -325,12 +354,15 @@ Eigen::Vector2d Forces::on_site(const State &state, const Field &vx, const Field
       force[0][kind] = bond.x;
       force[1][kind] = bond.y;
     };
-    // As in gather_row, along the row and two rows down the parity is the site's own.
-    const std::size_t near_row = (kind == 0 || kind == 5) ? row : row + 1;
     note(place, start);
-    note(lattice_.canonical_place(place - static_cast<std::size_t>(lattice_.shift(kind, near_row))), end);
+    note(lattice_.canonical_place(place - static_cast<std::size_t>(lattice_.shift_into(kind, row))), end);
   }
-  return {sum_of_bonds(start[0], end[0]), sum_of_bonds(start[1], end[1])};
+  Eigen::Vector2d force(sum_of_bonds(start[0], end[0]), sum_of_bonds(start[1], end[1]));
+  constexpr std::size_t third = kernels::n_row_kinds;
+  if (n_kinds_ > third)
+    force += Eigen::Vector2d(sum_of_third_shell(&start[0][third], &end[0][third]),
+                             sum_of_third_shell(&start[1][third], &end[1][third]));
+  return force;
 }
 
 } // namespace latcon::lattice

@@ -16,7 +16,7 @@ namespace latcon::lattice
 /// A bond pulls with A0 psi'(lam) + A0 eta (v_rel . n) / l along its current direction n (theory.md, eq. (L.3)), and
 /// with the overstress A0 q of its memory (eq. (L.27)) if the state has a history. Every thread takes some of the rows
 /// from its lower to its upper end. It computes the bonds that start in a row, keeps those of the last three rows, and
-/// lets the sites of the row gather their twelve bonds while these are in cache. Bonds that reach into these from below
+/// lets the sites of the row gather their bonds while these are in cache. Bonds that reach into these from below
 /// are computed once more there. The order of a gather is symmetric under both mirrors of the lattice, so the bits of a
 /// result depend neither on the number of threads nor on which side of a symmetry line a site stands.
 class Forces
@@ -101,7 +101,7 @@ private:
   class BondRows
   {
   public:
-    explicit BondRows(std::size_t stride) : stride_(stride), values_(n_rows * 2 * stride, 0.) {}
+    BondRows(std::size_t stride, std::size_t n_kinds) : stride_(stride), values_(first[n_kinds] * 2 * stride, 0.) {}
 
     /// The x (0) or y (1) component for the bonds of a kind that start in a row >= -2: column 0, with
     /// TriangularLattice::row_alignment places before it.
@@ -112,8 +112,7 @@ private:
     }
 
   private:
-    static constexpr std::array<std::size_t, n_bond_kinds + 1> first{{0, 1, 3, 5, 7, 9, 12}};
-    static constexpr std::size_t n_rows = first.back();
+    static constexpr std::array<std::size_t, n_bond_kinds + 1> first{{0, 1, 3, 5, 7, 9, 12, 13, 16, 19}};
     std::size_t stride_;
     Field values_;
   };
@@ -128,7 +127,7 @@ private:
   /// Scratch arrays of a thread.
   struct Scratch
   {
-    explicit Scratch(std::size_t stride) : bonds(stride), fx(stride, 0.), fy(stride, 0.) {}
+    Scratch(std::size_t stride, std::size_t n_kinds) : bonds(stride, n_kinds), fx(stride, 0.), fy(stride, 0.) {}
     BondRows bonds;
     Field fx, fy;                             // forces on the sites of a row
     std::vector<double> mechanism_power = {}; // of the bonds that start in a row
@@ -138,6 +137,8 @@ private:
   void evaluate_rows(const Motion &motion, std::ptrdiff_t begin, std::ptrdiff_t end, Scratch &scratch,
                      const RowCallbacks &work);
   kernels::RowOfBonds row_of_bonds(const Motion &motion, std::size_t row) const;
+  kernels::RowOfBonds of_kind(kernels::RowOfBonds bonds, const State &state, std::size_t row, std::size_t kind) const;
+  bool has_shell(std::size_t shell) const { return constants_.shells[shell].cross_section > 0.; }
   void bonds_from_below(const Motion &motion, std::ptrdiff_t row, Scratch &scratch) const;
   kernels::RowSums bonds_of_row(const Motion &motion, std::size_t from, std::ptrdiff_t row, Scratch &scratch) const;
   void gather_row(std::ptrdiff_t row, Scratch &scratch) const;
@@ -149,9 +150,10 @@ private:
   RowPartition band_;
   const TriangularLattice &lattice_;
   kernels::BondLaws laws_;
-  std::array<BondMemory, 2> memories_;
-  std::array<MemoryStep, 2> memory_steps_;
-  std::array<std::size_t, 2> first_mechanism_; // of each shell
+  std::array<BondMemory, n_shells> memories_;
+  std::array<MemoryStep, n_shells> memory_steps_;
+  std::array<std::size_t, n_shells> first_mechanism_{}; // of each shell
+  std::size_t n_kinds_;                                 // of bonds: the first so many
   kernels::SheetConstants constants_;
   bool rows_repeat_;    // periodic across the rows
   bool columns_repeat_; // periodic along them

@@ -189,7 +189,7 @@ const std::vector<BrokenBond> &Fracture::apply(State &state, Forces &forces, con
     for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
     {
       const std::size_t place = lattice_.index(row, column);
-      for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+      for (std::size_t kind = 0; kind < state.bonds.n_kinds(); ++kind)
       {
         if (!state.bonds.present(place, kind))
           continue;
@@ -259,7 +259,7 @@ void Fracture::toughen_behind_tip(State &state)
     for (std::size_t column = columns.begin; column < std::min(columns.end, lattice_.sites_in_row(row)); ++column)
     {
       const std::size_t place = lattice_.index(row, column);
-      for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+      for (std::size_t kind = 0; kind < state.bonds.n_kinds(); ++kind)
         if (state.bonds.present(place, kind) &&
             lattice_.reference(place).x() + 0.5 * lattice_.bond_vector(kind).x() < boundary)
           state.bonds.toughen(place, kind);

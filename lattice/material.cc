@@ -7,28 +7,44 @@ namespace latcon::lattice
 
 bool Material::has_memory() const
 {
-  return n_variables(nearest.memory) > 0 || (next_nearest && n_variables(next_nearest->memory) > 0);
+  for (std::size_t number = 0; number < n_shells; ++number)
+    if (const Shell *shell = in_shell(number); shell != nullptr && n_variables(shell->memory) > 0)
+      return true;
+  return false;
 }
 
-std::size_t Material::n_mechanisms() const
+std::size_t Material::first_mechanism(std::size_t shell) const
 {
-  return lattice::n_mechanisms(nearest.memory) + (next_nearest ? lattice::n_mechanisms(next_nearest->memory) : 0);
+  std::size_t before = 0;
+  for (std::size_t number = 0; number < shell; ++number)
+    if (const Shell *other = in_shell(number))
+      before += lattice::n_mechanisms(other->memory);
+  return before;
+}
+
+unsigned int Material::coordination() const
+{
+  unsigned int bonds = 0;
+  for (std::size_t number = 0; number < n_shells; ++number)
+    if (in_shell(number) != nullptr)
+      bonds += 2 * n_kinds_per_shell;
+  return bonds;
 }
 
 Material without_memory(Material material)
 {
-  material.nearest.memory = NoMemory();
-  if (material.next_nearest)
-    material.next_nearest->memory = NoMemory();
+  for (std::size_t number = 0; number < n_shells; ++number)
+    if (Shell *shell = material.in_shell(number))
+      shell->memory = NoMemory();
   return material;
 }
 
 Material without_dashpots(Material material)
 {
   material = without_memory(std::move(material));
-  material.nearest.viscosity = 0.;
-  if (material.next_nearest)
-    material.next_nearest->viscosity = 0.;
+  for (std::size_t number = 0; number < n_shells; ++number)
+    if (Shell *shell = material.in_shell(number))
+      shell->viscosity = 0.;
   return material;
 }
 

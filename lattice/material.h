@@ -1,6 +1,7 @@
 #pragma once
 
 #include <optional>
+#include <utility>
 
 #include "lattice/bonds/bond_law.h"
 #include "lattice/bonds/bond_memory.h"
@@ -10,7 +11,7 @@
 namespace latcon::lattice
 {
 
-/// One shell of bonds: nearest or next-nearest neighbours.
+/// One shell of bonds; see n_shells.
 struct Shell
 {
   BondLaw law;
@@ -28,26 +29,33 @@ struct Material
 {
   double density; ///< rho [kg/m^3], > 0
   Shell nearest;
-  std::optional<Shell> next_nearest; ///< none: a lattice of nearest neighbours alone
-  Disorder disorder = {};            ///< factors of the bonds of all shells; none by default
+  std::optional<Shell> next_nearest;       ///< none: a lattice of nearest neighbours alone
+  Disorder disorder = {};                  ///< factors of the bonds of all shells; none by default
+  std::optional<Shell> third_nearest = {}; ///< none by default
+
+  /// A shell by its number below n_shells; nullptr where the lattice has no such bonds.
+  const Shell *in_shell(std::size_t number) const
+  {
+    if (number == 0)
+      return &nearest;
+    const std::optional<Shell> &shell = number == 1 ? next_nearest : third_nearest;
+    return shell ? &*shell : nullptr;
+  }
+  Shell *in_shell(std::size_t number) { return const_cast<Shell *>(std::as_const(*this).in_shell(number)); }
 
   /// Shell of a bond kind; nullptr where the lattice has no such bonds.
-  const Shell *shell(std::size_t kind) const
-  {
-    if (TriangularLattice::is_nearest(kind))
-      return &nearest;
-    return next_nearest ? &*next_nearest : nullptr;
-  }
+  const Shell *shell(std::size_t kind) const { return in_shell(shell_of(kind)); }
 
   /// Returns whether bonds of some kind have a memory.
   bool has_memory() const;
 
-  /// Number of mechanisms by which memories store and dissipate energy: those of the nearest neighbours, then those of
-  /// the next-nearest.
-  std::size_t n_mechanisms() const;
+  /// Number of mechanisms by which memories store and dissipate energy: those of one shell after those of the other.
+  std::size_t n_mechanisms() const { return first_mechanism(n_shells); }
+  /// Number of mechanisms of the shells before one.
+  std::size_t first_mechanism(std::size_t shell) const;
 
-  /// Bonds of a site inside the sheet: 6 or 12.
-  unsigned int coordination() const { return next_nearest ? 12 : 6; }
+  /// Bonds of a site inside the sheet: 6 for each shell.
+  unsigned int coordination() const;
 };
 
 /// Returns the bonds with their dashpots, but without memories.

@@ -34,8 +34,8 @@ namespace latcon::lattice::kernels::HWY_NAMESPACE
 // else: they are begun one vector of sites ahead of their use, so that the rest goes on meanwhile.
 struct Lengths
 {
-  alignas(64) double length[n_bond_kinds][block];
-  alignas(64) double inverse[n_bond_kinds][block];
+  alignas(64) double length[n_row_kinds][block];
+  alignas(64) double inverse[n_row_kinds][block];
 };
 
 template <std::size_t n_kinds>
@@ -81,7 +81,7 @@ template <std::size_t kind, class Law>
 HWY_INLINE Lanes bonds_of_kind(const Law &law, const SheetConstants &sheet, const RowOfBonds &row, const Sites &near,
                                Lanes vx, Lanes vy, const Lengths &lengths, Lanes &power, Lanes &shortness)
 {
-  const BondConstants &bond = sheet.shells[kind < n_nearest_kinds ? 0 : 1];
+  const BondConstants &bond = sheet.shells[shell_of(kind)];
   const std::size_t far = near.first + static_cast<std::size_t>(row.shift[kind]);
   const Lanes inverse = load(lengths.inverse[kind]);
   const Lanes nx = (load(row.x + far) - near.x) * inverse, ny = (load(row.y + far) - near.y) * inverse;
@@ -134,7 +134,7 @@ RowSums bonds_of_laws(const Nearest nearest, const NextNearest next_nearest, con
   const double *const *const ahead = row.ahead;
   const std::size_t n_ahead = row.n_ahead;
   constexpr bool has_next_nearest = !std::is_same_v<NextNearest, NoBonds>;
-  constexpr std::size_t n_kinds = has_next_nearest ? n_bond_kinds : n_nearest_kinds;
+  constexpr std::size_t n_kinds = has_next_nearest ? n_row_kinds : n_nearest_kinds;
   const std::array<double, n_bond_kinds> retraction = sheet.retraction_stretch;
   const double first_limit = std::min(row.breaking_stretch, row.toughened_stretch);
   Lanes power[block];
@@ -197,13 +197,13 @@ RowSums BondsOfRow(const BondLaws &laws, const SheetConstants &sheet, const RowO
   return std::visit(of_nearest, laws[0]);
 }
 
-void GatherRow(std::size_t n, const std::array<const double *, n_bond_kinds> &start,
-               const std::array<const double *, n_bond_kinds> &end, double *total)
+void GatherRow(std::size_t n, const std::array<const double *, n_row_kinds> &start,
+               const std::array<const double *, n_row_kinds> &end, double *total)
 {
   for (std::size_t i = 0; i < n; i += width())
   {
-    Lanes s[n_bond_kinds], e[n_bond_kinds];
-    for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+    Lanes s[n_row_kinds], e[n_row_kinds];
+    for (std::size_t kind = 0; kind < n_row_kinds; ++kind)
     {
       s[kind] = load(start[kind] + i);
       e[kind] = load(end[kind] + i);
@@ -271,7 +271,7 @@ void NextStage(const ChebyshevStages::Stage &stage, double h, std::size_t n, con
 bool AnyEventAhead(const SheetConstants &sheet, const RowOfBonds &row, double ahead)
 {
   auto events = hn::FirstN(D(), 0);
-  const std::size_t n_kinds = sheet.shells[1].cross_section > 0. ? n_bond_kinds : n_nearest_kinds;
+  const std::size_t n_kinds = sheet.shells[1].cross_section > 0. ? n_row_kinds : n_nearest_kinds;
   for (std::size_t site = 0; site < row.n; site += width())
   {
     const Sites near(row, site);
@@ -334,8 +334,8 @@ RowSums bonds_of_row(const BondLaws &laws, const SheetConstants &sheet, const Ro
   return HWY_DYNAMIC_DISPATCH(BondsOfRow)(laws, sheet, row);
 }
 
-void gather_row(std::size_t n, const std::array<const double *, n_bond_kinds> &start,
-                const std::array<const double *, n_bond_kinds> &end, double *total)
+void gather_row(std::size_t n, const std::array<const double *, n_row_kinds> &start,
+                const std::array<const double *, n_row_kinds> &end, double *total)
 {
   HWY_DYNAMIC_DISPATCH(GatherRow)(n, start, end, total);
 }

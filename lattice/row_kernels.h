@@ -27,8 +27,12 @@ namespace latcon::lattice
 namespace latcon::lattice::kernels
 {
 
-/// Laws of nearest and next-nearest neighbours; the second is unused in a sheet of nearest neighbours alone.
-using BondLaws = std::array<BondLaw, 2>;
+/// Laws of the shells; those of shells that the sheet lacks are unused.
+using BondLaws = std::array<BondLaw, n_shells>;
+
+/// Kinds of bonds that bonds_of_row(), gather_row() and any_event_ahead() take: those of nearest and next-nearest
+/// neighbours, at once. Third-nearest ones, which few sheets have, are left to shell_kernels.h.
+inline constexpr std::size_t n_row_kinds = BondStates::kinds_per_word;
 
 /// Constants of the bonds of a shell besides their law.
 struct BondConstants
@@ -41,12 +45,12 @@ struct BondConstants
 /// Constants of the bonds of a sheet.
 struct SheetConstants
 {
-  std::array<BondConstants, 2> shells;                   ///< nearest and next-nearest neighbours
+  std::array<BondConstants, n_shells> shells;
   std::array<double, n_bond_kinds> retraction_stretch{}; ///< see Forces::set_retraction_threshold; 0: not watched
   /// Inverse of the stretch below which bonds are short [-]; see Forces::set_shortness_threshold.
   double shortness_limit = std::numeric_limits<double>::infinity();
 
-  const BondConstants &shell(std::size_t kind) const { return shells[TriangularLattice::is_nearest(kind) ? 0 : 1]; }
+  const BondConstants &shell(std::size_t kind) const { return shells[shell_of(kind)]; }
 };
 
 /// The bonds that start in a row, with places counted from its first site.
@@ -54,7 +58,7 @@ struct RowOfBonds
 {
   std::size_t n;                                  ///< sites
   const double *x, *y, *vx, *vy;                  ///< of sites [m, m/s]
-  const BondStates::Word *bonds;                  ///< of sites
+  const BondStates::Word *bonds;                  ///< of sites: the words of the kinds that are worked on
   std::array<std::ptrdiff_t, n_bond_kinds> shift; ///< from a site to the far end of its bond of a kind
   double breaking_stretch, toughened_stretch;     ///< as in State
   /// Forces on the near ends [N/m], x (0) and y (1) for each kind: what is computed.
@@ -75,13 +79,14 @@ struct RowSums
   bool has_short_bonds = false; ///< whether one has an inverse stretch above SheetConstants::shortness_limit
 };
 
-/// Forces of all bonds that start in a row (theory.md, eq. (L.3)). Only `row.force` of kinds with a shell is written.
+/// Forces of all bonds of n_row_kinds that start in a row (theory.md, eq. (L.3)). Only `row.force` of kinds with a
+/// shell is written.
 RowSums bonds_of_row(const BondLaws &laws, const SheetConstants &sheet, const RowOfBonds &row);
 
 /// A component of the forces on the n sites of a row: those on the near ends of the bonds that start at a site, less
 /// those of the bonds that end there, [kind][site]. Kinds without a shell must be there and hold zeros.
-void gather_row(std::size_t n, const std::array<const double *, n_bond_kinds> &start,
-                const std::array<const double *, n_bond_kinds> &end, double *total);
+void gather_row(std::size_t n, const std::array<const double *, n_row_kinds> &start,
+                const std::array<const double *, n_row_kinds> &end, double *total);
 
 /// One component of n sites: from velocity and acceleration at the start of a step h [s] to the velocity at half of it,
 /// and position and predicted velocity at its end (theory.md, eq. (L.7)).
@@ -102,8 +107,8 @@ void next_stage(const ChebyshevStages::Stage &stage, double h, std::size_t n, co
                 const double *start_velocity, const double *position, const double *velocity, double *previous_position,
                 double *previous_velocity);
 
-/// Returns whether one of the bonds that start in a row will be past its limit, or will have retracted, after its ends
-/// have moved for `ahead` [s] at their velocities. Does not use `row.force`.
+/// Returns whether one of the bonds of n_row_kinds that start in a row will be past its limit, or will have retracted,
+/// after its ends have moved for `ahead` [s] at their velocities. Does not use `row.force`.
 bool any_event_ahead(const SheetConstants &sheet, const RowOfBonds &row, double ahead);
 
 /// Names of the instruction sets that this processor has and the loops exist for, the best first. The

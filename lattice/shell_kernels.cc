@@ -52,7 +52,7 @@ void bonds_of_law(const Law law, const SheetConstants sheet, const RowOfBonds &g
     const Sites near(row, site);
     const Lanes vx = load(row.vx + site), vy = load(row.vy + site);
     double *const sum = power + site % block;
-    for (std::size_t kind = shell * n_nearest_kinds; kind < (shell + 1) * n_nearest_kinds; ++kind)
+    for (std::size_t kind = shell * n_kinds_per_shell; kind < (shell + 1) * n_kinds_per_shell; ++kind)
     {
       const std::size_t far = site + static_cast<std::size_t>(row.shift[kind]);
       const auto present = near.present(kind), toughened = near.toughened(kind);
@@ -98,7 +98,7 @@ bool AnyEventAheadInShell(const SheetConstants &sheet, const RowOfBonds &row, st
   {
     const Sites near(row, site);
     const Lanes vx = load(row.vx + site), vy = load(row.vy + site);
-    for (std::size_t kind = shell * n_nearest_kinds; kind < (shell + 1) * n_nearest_kinds; ++kind)
+    for (std::size_t kind = shell * n_kinds_per_shell; kind < (shell + 1) * n_kinds_per_shell; ++kind)
     {
       const std::size_t far = site + static_cast<std::size_t>(row.shift[kind]);
       const Lanes square = squared_length_after(ahead, load(row.x + far) - near.x, load(row.y + far) - near.y,
@@ -113,6 +113,21 @@ bool AnyEventAheadInShell(const SheetConstants &sheet, const RowOfBonds &row, st
   return !hn::AllFalse(D(), events);
 }
 
+void AddThirdShell(std::size_t n, const std::array<const double *, n_kinds_per_shell> &start,
+                   const std::array<const double *, n_kinds_per_shell> &end, double *total)
+{
+  for (std::size_t i = 0; i < n; i += width())
+  {
+    Lanes s[n_kinds_per_shell], e[n_kinds_per_shell];
+    for (std::size_t kind = 0; kind < n_kinds_per_shell; ++kind)
+    {
+      s[kind] = load(start[kind] + i);
+      e[kind] = load(end[kind] + i);
+    }
+    store(load(total + i) + sum_of_third_shell(s, e), total + i);
+  }
+}
+
 } // namespace latcon::lattice::kernels::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
 
@@ -122,6 +137,7 @@ namespace latcon::lattice::kernels
 
 HWY_EXPORT(BondsOfShell);
 HWY_EXPORT(AnyEventAheadInShell);
+HWY_EXPORT(AddThirdShell);
 
 void bonds_of_shell(const BondLaw &law, const SheetConstants &sheet, const RowOfBonds &row, std::size_t shell,
                     RowSums &sums)
@@ -132,6 +148,12 @@ void bonds_of_shell(const BondLaw &law, const SheetConstants &sheet, const RowOf
 bool any_event_ahead_in_shell(const SheetConstants &sheet, const RowOfBonds &row, std::size_t shell, double ahead)
 {
   return HWY_DYNAMIC_DISPATCH(AnyEventAheadInShell)(sheet, row, shell, ahead);
+}
+
+void add_third_shell(std::size_t n, const std::array<const double *, n_kinds_per_shell> &start,
+                     const std::array<const double *, n_kinds_per_shell> &end, double *total)
+{
+  HWY_DYNAMIC_DISPATCH(AddThirdShell)(n, start, end, total);
 }
 
 } // namespace latcon::lattice::kernels

@@ -310,7 +310,9 @@ const State &Simulation::gather(Rows rows)
 {
   for (Field *field : {&state_.x, &state_.y, &state_.vx, &state_.vy})
     band_.gather(*field, rows);
-  band_.gather(state_.bonds.storage(), rows);
+  for (BondStates::Words &words : state_.bonds.storage())
+    if (!words.empty())
+      band_.gather(words, rows);
   for (BondHistory::Kind &history : state_.history.kinds)
     if (!history.variables.empty())
     {
@@ -327,7 +329,7 @@ const State &Simulation::gather(Rows rows)
   return state_;
 }
 
-void Simulation::check_loaded(const BondStates::Words &bonds, double energy) const
+void Simulation::check_loaded(const BondStates &before, double energy) const
 {
   require_archived(state_.time >= 0., "`time` is negative");
   require_archived(parts_ >= 1 && parts_ <= most_parts && (parts_ & (parts_ - 1)) == 0,
@@ -339,16 +341,14 @@ void Simulation::check_loaded(const BondStates::Words &bonds, double energy) con
     for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
     {
       const std::size_t place = lattice_.index(row, column);
-      for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
-      {
-        const unsigned int either = BondStates::bit(kind) | BondStates::toughened_bit(kind);
-        require_archived((bonds[place] & BondStates::bit(kind)) != 0 || (state_.bonds.words()[place] & either) == 0,
+      for (std::size_t kind = 0; kind < before.n_kinds(); ++kind)
+        require_archived(before.present(place, kind) ||
+                           (!state_.bonds.present(place, kind) && !state_.bonds.toughened(place, kind)),
                          "`bonds` has some that the sheet never had");
-      }
     }
   for (std::size_t row = 0; row < lattice_.rows(); ++row)
     for (std::size_t column = 0; column < lattice_.sites_in_row(row); ++column)
-      require_archived(state_.lost_bonds[lattice_.index(row, column)] <= 2 * n_bond_kinds,
+      require_archived(state_.lost_bonds[lattice_.index(row, column)] <= material_.coordination(),
                        "`lost_bonds` are more than a site has");
 }
 

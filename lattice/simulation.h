@@ -118,9 +118,9 @@ private:
   void add_work(const Ledger &before, double duration);
   const std::vector<BrokenBond> &advance(double duration);
   int needed_parts() const;
-  /// Refuses a loaded state that cannot have followed from the one set up, of which `bonds` and `energy` were those.
+  /// Refuses a loaded state that cannot have followed from the one set up, of which these were bonds and energy.
   /// @throws std::invalid_argument
-  void check_loaded(const BondStates::Words &bonds, double energy) const;
+  void check_loaded(const BondStates &before, double energy) const;
 
   RowPartition band_;
   const TriangularLattice &lattice_;
@@ -151,16 +151,18 @@ void Simulation::archive(Archive &archive)
   const std::vector<std::size_t> known = band_.known_rows();
   std::vector<std::size_t> all(lattice_.rows());
   std::iota(all.begin(), all.end(), std::size_t{0});
-  BondStates::Words bonds_before;
+  BondStates bonds_before;
   const double energy_before = initial_energy_;
   if constexpr (Archive::loads)
-    bonds_before = state_.bonds.storage();
+    bonds_before = state_.bonds;
   archive("time", state_.time);
   for (const auto &[name, field] :
        {std::pair("x", &state_.x), std::pair("y", &state_.y), std::pair("vx", &state_.vx), std::pair("vy", &state_.vy),
         std::pair("ax", &state_.ax), std::pair("ay", &state_.ay)})
     archive_rows(archive, name, *field, band_, known);
-  archive_rows(archive, "bonds", state_.bonds.storage(), band_, known);
+  archive_rows(archive, "bonds", state_.bonds.storage()[0], band_, known);
+  if (!state_.bonds.storage()[1].empty())
+    archive_rows(archive, "bonds_of_third_shell", state_.bonds.storage()[1], band_, known);
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
   {
     BondHistory::Kind &history = state_.history.kinds[kind];

@@ -27,7 +27,9 @@ Snapshot::Snapshot(const State &state, const RowPartition &band) : time_(state.t
   copy(state.y.data(), y_);
   copy(state.vx.data(), vx_);
   copy(state.vy.data(), vy_);
-  copy(state.bonds.words(), bonds_);
+  copy(state.bonds.words(), bonds_[0]);
+  if (const BondStates::Word *third = state.bonds.words(BondStates::kinds_per_word))
+    copy(third, bonds_[1]);
   copy(state.lost_bonds.data(), lost_bonds_);
 }
 
@@ -40,7 +42,8 @@ void Snapshot::put_into(State &state, const RowPartition &band) const
   copy(y_, state.y);
   copy(vx_, state.vx);
   copy(vy_, state.vy);
-  copy(bonds_, state.bonds.storage());
+  for (std::size_t i = 0; i < bonds_.size(); ++i)
+    copy(bonds_[i], state.bonds.storage()[i]);
   copy(lost_bonds_, state.lost_bonds);
 }
 

@@ -21,8 +21,8 @@ public:
 
 private:
   double time_ = 0.;
-  std::vector<double> x_, y_, vx_, vy_; // of the places of these rows, margin of columns included
-  std::vector<BondStates::Word> bonds_;
+  std::vector<double> x_, y_, vx_, vy_;                // of the places of these rows, margin of columns included
+  std::array<std::vector<BondStates::Word>, 2> bonds_; // as BondStates stores them
   std::vector<std::uint8_t> lost_bonds_;
 };
 

@@ -48,9 +48,7 @@ unsigned int add_bonds(State &state, const TriangularLattice &lattice, const Mat
       state.bonds.add(place, kind);
       ++bonds;
     }
-    // The bond from below starts in a row of the other parity, except along the row and two rows down.
-    const std::size_t near_row = (kind == 0 || kind == n_bond_kinds - 1) ? row : row + 1;
-    if (lattice.is_occupied(place - static_cast<std::size_t>(lattice.shift(kind, near_row))))
+    if (lattice.is_occupied(place - static_cast<std::size_t>(lattice.shift_into(kind, row))))
       ++bonds;
   }
   return bonds;
@@ -81,7 +79,7 @@ State homogeneous_state(const RowPartition &band, const Material &material, cons
     *field = Field(n);
   for (SiteFlags *marks : {&state.held, &state.removed, &state.lost_bonds})
     *marks = SiteFlags(n);
-  state.bonds.clear(n);
+  state.bonds.clear(n, material.third_nearest.has_value());
 
   state.periods = F;
   const std::size_t stride = lattice.stride(), below = lattice.index(0, 0) / stride;

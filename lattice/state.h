@@ -105,15 +105,16 @@ void for_each_row(const TriangularLattice &lattice, Rows rows, const RowOperatio
 template <class Visitor>
 void for_each_bond(const State &state, const TriangularLattice &lattice, Rows rows, Visitor &&visit)
 {
+  const std::size_t n_kinds = state.bonds.n_kinds();
   for (std::size_t row = rows.begin; row < rows.end; ++row)
   {
     std::array<std::size_t, n_bond_kinds> shift{};
-    for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+    for (std::size_t kind = 0; kind < n_kinds; ++kind)
       shift[kind] = static_cast<std::size_t>(lattice.shift(kind, row));
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
     {
       const std::size_t place = lattice.index(row, column);
-      for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+      for (std::size_t kind = 0; kind < n_kinds; ++kind)
         if (state.bonds.present(place, kind))
           visit(place, kind, place + shift[kind]);
     }
@@ -127,19 +128,17 @@ void for_each_bond(const State &state, const TriangularLattice &lattice, Visitor
   for_each_bond(state, lattice, {0, lattice.rows()}, visit);
 }
 
-/// Calls visit(near_place, kind) for each of the up to twelve bonds present at a site, near_place being the end at
+/// Calls visit(near_place, kind) for each of the bonds present at a site, near_place being the end at
 /// which the bond is stored: the site itself or its neighbour, never an image.
 template <class Visitor>
 void for_each_bond_of_site(const State &state, const TriangularLattice &lattice, std::size_t place, Visitor &&visit)
 {
   const std::size_t row = lattice.row_of(place);
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  for (std::size_t kind = 0; kind < state.bonds.n_kinds(); ++kind)
   {
     if (state.bonds.present(place, kind))
       visit(place, kind);
-    // The bond from below starts in a row of the other parity, except along the row and two rows down.
-    const std::size_t near_row = (kind == 0 || kind == n_bond_kinds - 1) ? row : row + 1;
-    const std::size_t near = lattice.canonical_place(place - static_cast<std::size_t>(lattice.shift(kind, near_row)));
+    const std::size_t near = lattice.canonical_place(place - static_cast<std::size_t>(lattice.shift_into(kind, row)));
     if (state.bonds.present(near, kind))
       visit(near, kind);
   }

@@ -27,7 +27,7 @@ const StrainGradientFit::Entry &StrainGradientFit::entry(unsigned int bonds)
   for (Eigen::Index i = 0; i < n_equations; ++i)
   {
     const std::size_t n = neighbours[static_cast<std::size_t>(i)];
-    const Eigen::Vector2d R = (n < n_bond_kinds ? 1. : -1.) / d * lattice_.bond_vector(n % n_bond_kinds);
+    const Eigen::Vector2d R = (n < n_kinds ? 1. : -1.) / d * lattice_.bond_vector(n % n_kinds);
     equations.row(i) << R.x(), R.y(), 0.5 * R.x() * R.x(), R.x() * R.y(), 0.5 * R.y() * R.y();
   }
   // Neighbours stand at distances of the order of d, so that a set either fixes all five well or not at all.
@@ -50,10 +50,12 @@ std::optional<StrainGradient> StrainGradientFit::at(const State &state, std::siz
   for_each_bond_of_site(state, lattice_, place,
                         [&](std::size_t near, std::size_t kind)
                         {
+                          if (kind >= n_kinds)
+                            return;
                           const std::size_t far =
                             near + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(near)));
                           const bool forward = near == place;
-                          const auto n = forward ? kind : kind + n_bond_kinds;
+                          const auto n = forward ? kind : kind + n_kinds;
                           bonds |= 1u << n;
                           const double sign = forward ? 1. : -1.;
                           positions(static_cast<Eigen::Index>(n), 0) = sign * (state.x[far] - state.x[near]);

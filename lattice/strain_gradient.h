@@ -20,7 +20,8 @@ struct StrainGradient
 ///
 ///     x_j - x_i = F R + (1/2) G : R R,   R = X_j - X_i
 ///
-/// is fitted to the bonded neighbours j of both shells, all with one weight. Exact where the positions are a quadratic
+/// is fitted to the bonded nearest and next-nearest neighbours j, all with one weight; third-nearest ones, farther off,
+/// add nothing to what is local. Exact where the positions are a quadratic
 /// function of X. The weights depend on which bonds a site has and on nothing else; they are found once for each
 /// such set.
 class StrainGradientFit
@@ -35,7 +36,8 @@ public:
   std::optional<StrainGradient> at(const State &state, std::size_t place);
 
 private:
-  static constexpr std::size_t n_neighbours = 2 * n_bond_kinds;
+  static constexpr std::size_t n_kinds = 2 * n_kinds_per_shell; // of bonds
+  static constexpr std::size_t n_neighbours = 2 * n_kinds;
   /// Rows: G_xx, G_xy, G_yy; columns: neighbours in the order of bond kinds, forward ones first; zero for those
   /// missing.
   using Weights = Eigen::Matrix<double, 3, n_neighbours>;

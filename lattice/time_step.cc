@@ -34,7 +34,14 @@ TimeStepLimits limits(const Rates &rates)
 }
 
 // The smallest stretch of the bonds of each shell.
-using SmallestStretch = std::array<double, 2>;
+using SmallestStretch = std::array<double, n_shells>;
+
+SmallestStretch of_all(double smallest_stretch)
+{
+  SmallestStretch each{};
+  each.fill(smallest_stretch);
+  return each;
+}
 
 // Largest factor of the force of a bond: all bonds of a site may be as stiff as the stiffest.
 double stiffest(const Material &material)
@@ -59,7 +66,7 @@ Rates bound_of_bonds(const TriangularLattice &lattice, const Material &material,
       // A site has two bonds of each kind, and the bound is twice the sum over its bonds.
       const double per_length =
         stiffest(material) * (4. * cross_section(*shell, lattice) / (lattice.rest_length(kind) * mass));
-      rates.omega_square += per_length * fast_stiffness(*shell, smallest_stretch[kind / n_nearest_kinds]);
+      rates.omega_square += per_length * fast_stiffness(*shell, smallest_stretch[shell_of(kind)]);
       rates.gamma += per_length * shell->viscosity;
     }
   return rates;
@@ -71,7 +78,7 @@ double damped_step(const Material &material, const SmallestStretch &smallest_str
   double step = std::numeric_limits<double>::infinity();
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
     if (const Shell *shell = material.shell(kind))
-      step = std::min(step, shell->viscosity / fast_stiffness(*shell, smallest_stretch[kind / n_nearest_kinds]));
+      step = std::min(step, shell->viscosity / fast_stiffness(*shell, smallest_stretch[shell_of(kind)]));
   return step;
 }
 
@@ -92,20 +99,20 @@ Rates with_contacts(const Rates &bonds, const Rates &contacts)
 
 TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch)
 {
-  return limits(bound_of_bonds(lattice, material, {smallest_stretch, smallest_stretch}));
+  return limits(bound_of_bonds(lattice, material, of_all(smallest_stretch)));
 }
 
 TimeStepLimits time_step_limits(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
                                 const ContactLaw &contact)
 {
-  return limits(with_contacts(bound_of_bonds(lattice, material, {smallest_stretch, smallest_stretch}),
+  return limits(with_contacts(bound_of_bonds(lattice, material, of_all(smallest_stretch)),
                               bound_of_contacts(lattice, material, contact)));
 }
 
 double chebyshev_step(const TriangularLattice &lattice, const Material &material, double smallest_stretch)
 {
   return std::min(share_of_elastic_limit * time_step_limits(lattice, material, 1.).elastic,
-                  damped_step(material, {smallest_stretch, smallest_stretch}));
+                  damped_step(material, of_all(smallest_stretch)));
 }
 
 double chebyshev_step(const TriangularLattice &lattice, const Material &material, double smallest_stretch,
@@ -136,8 +143,8 @@ bool amplifies_contact(const TimeStepping &stepping, const TriangularLattice &la
 double recoil_step(const TimeStepping &stepping, const TriangularLattice &lattice, const Material &material,
                    std::size_t kind, double stretch, const ContactLaw *contact)
 {
-  SmallestStretch smallest{short_stretch, short_stretch};
-  smallest[kind / n_nearest_kinds] = stretch;
+  SmallestStretch smallest = of_all(short_stretch);
+  smallest[shell_of(kind)] = stretch;
   if (stepping.stages > 0)
     return damped_step(material, smallest);
   const Rates bonds = bound_of_bonds(lattice, material, smallest);

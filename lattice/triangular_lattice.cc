@@ -11,14 +11,15 @@ namespace
 
 const double half_sqrt3 = std::sqrt(3.) / 2.;
 
+// A bond vector in the row frame.
 struct RowFrameVector
 {
-  double along;  // in units of d
-  double across; // in units of the row pitch
+  int halves; // along the row, in units of d / 2
+  int rows;   // across the rows, in units of their pitch
 };
 
 constexpr std::array<RowFrameVector, n_bond_kinds> bond_directions{
-  {{1., 0.}, {0.5, 1.}, {-0.5, 1.}, {1.5, 1.}, {-1.5, 1.}, {0., 2.}}};
+  {{2, 0}, {1, 1}, {-1, 1}, {3, 1}, {-3, 1}, {0, 2}, {4, 0}, {2, 2}, {-2, 2}}};
 
 std::size_t intervals(double extent, double pitch)
 {
@@ -157,21 +158,26 @@ Eigen::Vector2d TriangularLattice::reference(std::size_t place) const
 
 std::ptrdiff_t TriangularLattice::shift(std::size_t kind, std::size_t row) const
 {
-  const auto up = static_cast<std::ptrdiff_t>(stride());
-  const auto parity = static_cast<std::ptrdiff_t>(row % 2);
-  const std::array<std::ptrdiff_t, n_bond_kinds> shifts{
-    {1, up + parity, up + parity - 1, up + parity + 1, up + parity - 2, 2 * up}};
-  return shifts[kind];
+  // A bond to a row of the other parity leads half a spacing to one side, and rows of odd numbers begin there.
+  const auto &[halves, rows] = bond_directions[kind];
+  const int columns = rows % 2 == 0 ? halves / 2 : (halves - 1) / 2 + static_cast<int>(row % 2);
+  return rows * static_cast<std::ptrdiff_t>(stride()) + columns;
+}
+
+std::ptrdiff_t TriangularLattice::shift_into(std::size_t kind, std::size_t row) const
+{
+  return shift(kind, row + static_cast<std::size_t>(bond_directions[kind].rows % 2)); // of the parity where it starts
 }
 
 Eigen::Vector2d TriangularLattice::bond_vector(std::size_t kind) const
 {
-  return from_row_frame(bond_directions[kind].along, bond_directions[kind].across);
+  return from_row_frame(0.5 * bond_directions[kind].halves, bond_directions[kind].rows);
 }
 
 double TriangularLattice::rest_length(std::size_t kind) const
 {
-  return is_nearest(kind) ? spacing_ : 2. * half_sqrt3 * spacing_;
+  const std::array<double, n_shells> in_spacings{{1., 2. * half_sqrt3, 2.}};
+  return in_spacings[shell_of(kind)] * spacing_;
 }
 
 Eigen::Vector2d TriangularLattice::from_row_frame(double along, double across) const

@@ -23,11 +23,24 @@ struct Periodic
   bool y = false;
 };
 
-/// Half of the twelve bonds of a site, each named by its direction in the row frame (along the row, across the rows).
-/// The other half are the same bonds seen from their far ends. Kinds 0 to 2 are nearest neighbours (rest length d), 3
-/// to 5 next-nearest (rest length sqrt3 d).
-inline constexpr std::size_t n_bond_kinds = 6;
-inline constexpr std::size_t n_nearest_kinds = 3; ///< of them nearest neighbours
+/// Shells of bonds, by increasing rest length: nearest neighbours (d), next-nearest (sqrt3 d) and third-nearest (2 d,
+/// in the directions of the nearest). A material need not have all of them.
+inline constexpr std::size_t n_shells = 3;
+/// What the shells are called in files and messages.
+inline constexpr std::array<const char *, n_shells> shell_names{{"nearest", "next-nearest", "third-nearest"}};
+
+/// Half of the bonds that a site has in each shell, each named by its direction in the row frame (along the row, across
+/// the rows). The other half are the same bonds seen from their far ends. Kinds 0 to 2 are nearest neighbours, 3 to 5
+/// next-nearest, 6 to 8 third-nearest.
+inline constexpr std::size_t n_kinds_per_shell = 3;
+inline constexpr std::size_t n_bond_kinds = n_shells * n_kinds_per_shell;
+inline constexpr std::size_t n_nearest_kinds = n_kinds_per_shell; ///< of them nearest neighbours
+
+/// Shell of a kind of bonds.
+constexpr std::size_t shell_of(std::size_t kind)
+{
+  return kind / n_kinds_per_shell;
+}
 
 /// A rectangular piece of the triangular lattice in its reference configuration (theory.md, section "The lattice").
 ///
@@ -108,10 +121,12 @@ public:
 
   /// Offset from a site in `row` to its neighbour through bond kind k.
   std::ptrdiff_t shift(std::size_t kind, std::size_t row) const;
+  /// Offset to a site in `row` from its neighbour at which the bond of kind k between them starts.
+  std::ptrdiff_t shift_into(std::size_t kind, std::size_t row) const;
 
   /// Reference bond vector R = X_neighbour - X_site of kind k [m].
   Eigen::Vector2d bond_vector(std::size_t kind) const;
-  /// Rest length |R|: d or sqrt3 d [m].
+  /// Rest length |R|: d, sqrt3 d or 2 d [m].
   double rest_length(std::size_t kind) const;
   static bool is_nearest(std::size_t kind) { return kind < n_nearest_kinds; }
 

@@ -30,8 +30,9 @@ struct ZeroPages
 
   T *allocate(std::size_t n)
   {
-    // calloc, as the only way to zero pages, knows no alignment: room for that, and for where its memory begins.
-    void *const memory = std::calloc(n * sizeof(T) + 2 * alignment, 1);
+    // calloc, as the only way to zero pages, knows no alignment: room for that, and for where its memory begins. Loops
+    // over rows take vectors of places, and may load some zeros beyond the last one.
+    void *const memory = std::calloc(n * sizeof(T) + 3 * alignment, 1);
     if (memory == nullptr)
       throw std::bad_alloc();
     const auto address = reinterpret_cast<std::uintptr_t>(memory);

@@ -325,7 +325,8 @@ TEST(BondMemory, ResumesBitwise)
   for (const auto &[stages, material] : {std::pair(0u, sheets::rubber_with_memory()),
                                          {8u, sheets::rubber_with_memory()},
                                          {0u, sheets::disordered_rubber()},
-                                         {8u, sheets::disordered_rubber()}})
+                                         {8u, sheets::disordered_rubber()},
+                                         {8u, sheets::disordered_rubber_of_three_shells()}})
   {
     const auto whole = crack(sheet, material, stages);
     Stored stored;

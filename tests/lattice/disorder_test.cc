@@ -111,7 +111,8 @@ Material disordered(std::uint64_t seed = 1)
   return material;
 }
 
-// theory.md, eq. (L.37): the factors of a bond depend on the seed, the property and the bond; not on other shells, the orientation or periods.
+// theory.md, eq. (L.37): the factors of a bond depend on the seed, the property and the bond; not on other shells, the
+// orientation or periods.
 TEST(BondFactors, BelongToTheirBond)
 {
   const TriangularLattice sheet = sheets::square(20);
@@ -127,7 +128,7 @@ TEST(BondFactors, BelongToTheirBond)
   { return factors.of(place, kind) - 1.; };
   for (std::size_t row = 0; row + 1 < sheet.rows(); ++row)
     for (std::size_t column = 0; column + 2 < sheet.columns(); ++column)
-      for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+      for (std::size_t kind = 0; kind < 2 * n_kinds_per_shell; ++kind)
       {
         const std::size_t place = sheet.index(row, column);
         if (TriangularLattice::is_nearest(kind))
@@ -138,7 +139,8 @@ TEST(BondFactors, BelongToTheirBond)
         with_strength += x(stiffness, place, kind) * x(strength, place, kind) / (0.2 * 0.1);
         with_next += x(stiffness, place, kind) * x(stiffness, place + 1, kind) / (0.2 * 0.2);
         with_above += x(stiffness, place, kind) * x(stiffness, place + sheet.stride(), kind) / (0.2 * 0.2);
-        with_kind += x(stiffness, place, kind) * x(stiffness, place, (kind + 1) % n_bond_kinds) / (0.2 * 0.2);
+        with_kind +=
+          x(stiffness, place, kind) * x(stiffness, place, (kind + 1) % (2 * n_kinds_per_shell)) / (0.2 * 0.2);
         with_seed += x(stiffness, place, kind) * x(reseeded, place, kind) / (0.2 * 0.2);
       }
   // Correlations of independent numbers: five standard errors.
@@ -203,7 +205,7 @@ TEST(Disorder, MultipliesTheBreakingStretchAndToughening)
   fracture.configure(state, forces);
   const BondFactors strength = bond_factors(sheet, material, BondProperty::strength);
   const std::size_t place = sheet.index(4, 4);
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  for (std::size_t kind = 0; kind < 2 * n_kinds_per_shell; ++kind)
   {
     EXPECT_EQ(breaking_stretch_of(state, place, kind), 1.5 * strength.of(place, kind));
     state.bonds.toughen(place, kind);

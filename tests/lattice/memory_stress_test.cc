@@ -27,7 +27,7 @@ TEST(BondMemoryStress, IsThatOfTheOverstress)
 
   const std::size_t middle = sheet.index(sheet.rows() / 2, sheet.columns() / 2);
   Eigen::Matrix2d overstress = Eigen::Matrix2d::Zero();
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  for (std::size_t kind = 0; kind < 2 * n_kinds_per_shell; ++kind)
   {
     const Eigen::Vector2d R = sheet.bond_vector(kind), r = F * R;
     const double modulus = TriangularLattice::is_nearest(kind) ? 3e5 : 1.5e5; // as in rubber_with_memory()

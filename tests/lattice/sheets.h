@@ -98,6 +98,14 @@ inline latcon::lattice::Material nearest_only(double viscosity = 65.625)
   return material;
 }
 
+/// Rubber with third-nearest neighbours too, of another stiffness, area factor and viscosity than the others.
+inline latcon::lattice::Material rubber_of_three_shells(double viscosity = 65.625)
+{
+  latcon::lattice::Material material = rubber(viscosity);
+  material.third_nearest = latcon::lattice::Shell{latcon::lattice::MooneyRivlinBond{6e4, 1.1e5}, 0.4, 1.5 * viscosity};
+  return material;
+}
+
 /// Rubber with custom laws.
 inline latcon::lattice::Material rubber_from_outside()
 {
@@ -124,6 +132,15 @@ inline latcon::lattice::Material disordered_rubber(double viscosity = 65.625)
   material.nearest.memory = latcon::lattice::MaxwellMemory({{2e5, 2e-5}, {1e5, 2e-4}, {3e4, 1e-3}});
   material.next_nearest->memory = latcon::lattice::MaxwellMemory({{1.5e5, 5e-5}});
   material.disorder = {{Distribution::Kind::weibull, 0.05}, {Distribution::Kind::normal, 0.2}, 7};
+  return material;
+}
+
+/// Three shells with memories and disorder of all bonds.
+inline latcon::lattice::Material disordered_rubber_of_three_shells()
+{
+  latcon::lattice::Material material = disordered_rubber();
+  material.third_nearest = rubber_of_three_shells().third_nearest;
+  material.third_nearest->memory = latcon::lattice::MaxwellMemory({{5e4, 3e-5}, {1e5, 4e-4}});
   return material;
 }
 

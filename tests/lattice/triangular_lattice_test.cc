@@ -21,11 +21,12 @@ class BothOrientations : public testing::TestWithParam<Orientation>
 INSTANTIATE_TEST_SUITE_P(TriangularLattice, BothOrientations,
                          testing::Values(Orientation::rows_along_crack, Orientation::rows_across_crack));
 
-// Six neighbours at d and six at sqrt3 d, no other: compared with all pairs of positions, which know of no index.
-TEST_P(BothOrientations, SitesHaveTwelveNeighboursAtTheRightDistances)
+// Six neighbours at d, six at sqrt3 d and six at 2 d, no other: compared with all pairs of positions, which know of no
+// index.
+TEST_P(BothOrientations, SitesHaveSixNeighboursAtEachOfTheRightDistances)
 {
   const TriangularLattice sheet = sheets::square(12, GetParam());
-  const lattice::Material material = sheets::rubber();
+  const lattice::Material material = sheets::rubber_of_three_shells();
   const lattice::State state =
     lattice::homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), lattice::Edges::free);
   std::vector<std::size_t> sites;
@@ -37,14 +38,14 @@ TEST_P(BothOrientations, SitesHaveTwelveNeighboursAtTheRightDistances)
   std::size_t interior = 0;
   for (const std::size_t site : sites)
   {
-    std::size_t nearest = 0, next = 0;
+    std::array<std::size_t, lattice::n_shells> expected{}, bonds{};
     for (const std::size_t other : sites)
     {
       const double distance = (sheet.reference(other) - sheet.reference(site)).norm() / sheets::spacing;
-      nearest += std::abs(distance - 1.) < 1e-9;
-      next += std::abs(distance - std::sqrt(3.)) < 1e-9;
+      expected[0] += std::abs(distance - 1.) < 1e-9;
+      expected[1] += std::abs(distance - std::sqrt(3.)) < 1e-9;
+      expected[2] += std::abs(distance - 2.) < 1e-9;
     }
-    std::size_t nearest_bonds = 0, next_bonds = 0;
     lattice::for_each_bond_of_site(state, sheet, site,
                                    [&](std::size_t near, std::size_t kind)
                                    {
@@ -54,20 +55,20 @@ TEST_P(BothOrientations, SitesHaveTwelveNeighboursAtTheRightDistances)
                                      const Eigen::Vector2d bond = sheet.reference(far) - sheet.reference(near);
                                      EXPECT_NEAR((bond - sheet.bond_vector(kind)).norm(), 0., 1e-15);
                                      EXPECT_NEAR(bond.norm(), sheet.rest_length(kind), 1e-15);
-                                     (TriangularLattice::is_nearest(kind) ? nearest_bonds : next_bonds) += 1;
+                                     ++bonds[lattice::shell_of(kind)];
                                    });
-    EXPECT_EQ(nearest_bonds, nearest);
-    EXPECT_EQ(next_bonds, next);
-    interior += nearest == 6 && next == 6;
+    EXPECT_EQ(bonds, expected);
+    interior += bonds[0] + bonds[1] + bonds[2] == material.coordination();
   }
-  EXPECT_GT(interior, sites.size() / 2);
+  EXPECT_GT(interior, sites.size() / 3);
+  EXPECT_EQ(material.coordination(), 18u);
 }
 
 TEST_P(BothOrientations, BondDirectionsAreTheStatedOnes)
 {
   const TriangularLattice sheet = sheets::square(12, GetParam());
-  // Angles modulo 180 degrees of kinds 0 to 5; turned by 30 degrees means x and y exchanged here.
-  const double along[] = {0., 60., 120., 30., 150., 90.};
+  // Angles modulo 180 degrees of kinds 0 to 8; turned by 30 degrees means x and y exchanged here.
+  const double along[] = {0., 60., 120., 30., 150., 90., 0., 60., 120.};
   for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
   {
     const Eigen::Vector2d R = sheet.bond_vector(kind);

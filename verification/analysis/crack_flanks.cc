@@ -11,7 +11,7 @@ namespace latcon::analysis
 namespace
 {
 
-/// Distance from the path beyond which a broken bond counts as damage of the flanks [d]. Bonds of both shells that
+/// Distance from the path beyond which a broken bond counts as damage of the flanks [d]. Bonds of all shells that
 /// cross the row of the tip, and bonds of sites that detach at a crest, are closer.
 constexpr double flank_begins = 6.;
 

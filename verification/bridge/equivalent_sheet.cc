@@ -27,8 +27,9 @@ double spring_constant(const lattice::TriangularLattice &lattice, const lattice:
 // distance of planes: the zero of the linear far-field displacement. `springs[m]` connects planes m apart.
 double chain_depth(const std::vector<double> &springs, std::size_t reach)
 {
-  // The perturbation by the held planes decays by a factor of three or more per plane.
-  constexpr std::size_t n = 60;
+  // The perturbation by the held planes decays by a factor of three or more per plane, with springs to the fourth plane
+  // more slowly.
+  const std::size_t n = reach <= 3 ? 60 : 240;
   Eigen::MatrixXd K = Eigen::MatrixXd::Zero(n, n);
   Eigen::VectorXd f = Eigen::VectorXd::Zero(n);
   for (std::size_t i = 0; i < n; ++i)
@@ -85,7 +86,7 @@ double held_depth(const lattice::TriangularLattice &lattice, const lattice::Mate
   std::array<std::vector<double>, 2> springs;
   for (const bool along : {false, true})
   {
-    springs[along].assign(4, 0.);
+    springs[along].assign(5, 0.); // bonds of 2 d span four planes half a spacing apart
     for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
     {
       const double k = spring_constant(lattice, material, kind);

@@ -16,9 +16,9 @@ struct LatticeResponse
 
 /// First Piola stress [Pa] of a sheet in homogeneous deformation, from the forces of its bonds on the sites of its
 /// edges.
-/// @param sheet as for homogeneous_response()
+/// @param sheet as for homogeneous_response() @param material of its bonds
 /// @param force on the site at a slot, per sheet thickness [N/m]
-Eigen::Matrix2d edge_stress(const lattice::TriangularLattice &sheet,
+Eigen::Matrix2d edge_stress(const lattice::TriangularLattice &sheet, const lattice::Material &material,
                             const std::function<Eigen::Vector2d(std::size_t place)> &force);
 
 /// Computes the response of a lattice with its simulator. @param sheet at least 12 by 12 spacings, so that the sites in

@@ -87,9 +87,10 @@ SmallStrain small_strain(const lattice::TriangularLattice &lattice, const lattic
 {
   // Three unit vectors 60 degrees apart have sum N N N N = (3/8) (dd + dd + dd).
   double mu = 0.;
-  for (std::size_t kind : {std::size_t{0}, lattice::n_nearest_kinds})
-    if (const lattice::Shell *shell = material.shell(kind))
-      mu += 3. / 8. * bond_weight(lattice, *shell, kind) * lattice::stiffness(shell->law, 1.);
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+    if (const lattice::Shell *shell = material.in_shell(number))
+      mu += 3. / 8. * bond_weight(lattice, *shell, number * lattice::n_kinds_per_shell) *
+            lattice::stiffness(shell->law, 1.);
   return {mu, std::sqrt(mu / material.density), std::sqrt(3. * mu / material.density)};
 }
 
@@ -97,7 +98,7 @@ std::vector<continuum::BondFamily> bond_families(const lattice::TriangularLattic
                                                  const lattice::Material &material)
 {
   std::vector<continuum::BondFamily> families;
-  continuum::CustomPotential nearest, next_nearest; // one for all bonds of a shell
+  std::array<continuum::CustomPotential, lattice::n_shells> custom; // one for all bonds of a shell
   for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
     if (const lattice::Shell *shell = material.shell(kind))
     {
@@ -111,7 +112,7 @@ std::vector<continuum::BondFamily> bond_families(const lattice::TriangularLattic
       else if (const auto *spring = std::get_if<lattice::LinearBond>(&shell->law))
         family.potential = continuum::LinearPotential{spring->modulus};
       else
-        family.potential = custom_potential(*shell, kind < lattice::n_nearest_kinds ? nearest : next_nearest);
+        family.potential = custom_potential(*shell, custom[lattice::shell_of(kind)]);
       families.push_back({family, lattice.rest_length(kind)});
     }
   return families;

@@ -27,9 +27,8 @@ std::unique_ptr<continuum::FibreMemory> homogenised_memory(const lattice::Triang
     const auto *memory = std::get_if<lattice::MaxwellMemory>(&shell->memory);
     if (memory == nullptr)
       throw std::invalid_argument("the continuum of bonds with a memory of another program is not supported");
-    const bool is_nearest = kind < lattice::n_nearest_kinds;
     continuum::MaxwellFibres fibres{
-      fibre.direction, fibre.weight, {}, is_nearest ? 0 : lattice::n_mechanisms(material.nearest.memory)};
+      fibre.direction, fibre.weight, {}, material.first_mechanism(lattice::shell_of(kind))};
     for (const auto &[modulus, relaxation_time] : memory->branches())
       fibres.branches.push_back({modulus, relaxation_time});
     families.push_back(std::move(fibres));

@@ -32,9 +32,9 @@ std::vector<BranchMatrix> branch_matrices(const lattice::TriangularLattice &latt
 {
   std::vector<BranchMatrix> branches;
   const double mass = lattice::site_mass(material, lattice);
-  for (const bool is_nearest : {true, false})
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
   {
-    const lattice::Shell *shell = is_nearest ? &material.nearest : material.shell(lattice::n_nearest_kinds);
+    const lattice::Shell *shell = material.in_shell(number);
     if (shell != nullptr && std::holds_alternative<lattice::CustomMemory>(shell->memory))
       throw std::invalid_argument("waves in bonds with a custom memory have no closed form");
     const auto *memory = shell != nullptr ? std::get_if<lattice::MaxwellMemory>(&shell->memory) : nullptr;
@@ -43,7 +43,7 @@ std::vector<BranchMatrix> branch_matrices(const lattice::TriangularLattice &latt
     // Per unit of the modulus.
     Eigen::Matrix2d stiffness = Eigen::Matrix2d::Zero();
     for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
-      if (lattice::TriangularLattice::is_nearest(kind) == is_nearest)
+      if (lattice::shell_of(kind) == number)
       {
         const Eigen::Vector2d R = lattice.bond_vector(kind), n = (F * R).normalized();
         const double phase = 4. * std::pow(std::sin(0.5 * K.dot(R)), 2);

@@ -19,17 +19,18 @@
 namespace latcon::bridge
 {
 
-/// Returns the name of the shells of a lattice in results: "NN" or "NN+NNN".
+/// Returns the name of the shells of a lattice in results: "NN", then "+NNN" with next-nearest neighbours and "+3NN"
+/// with third-nearest ones.
 inline std::string shells_name(const lattice::Material &material)
 {
-  return material.next_nearest ? "NN+NNN" : "NN";
+  return std::string("NN") + (material.next_nearest ? "+NNN" : "") + (material.third_nearest ? "+3NN" : "");
 }
 
 /// Subject of claims: a lattice and the continuum laws that should agree with it. Claims compare the two without
 /// assumptions on how they were derived, so a test can combine a wrong law with a correct lattice.
 struct Subject
 {
-  std::string name; ///< in results: "NN+NNN" or "NN"
+  std::string name; ///< in results: shells_name()
   double spacing;   ///< d [m]
   lattice::Orientation orientation;
   lattice::Material material;

@@ -17,38 +17,15 @@ namespace
 
 // Entries of which a Subject is made. Further ones are in the descriptors of claims.
 constexpr std::array entries_of_subject{
-  "Sheet/spacing",
-  "Sheet/orientation",
-  "Material/density",
-  "Nearest neighbours/law",
-  "Nearest neighbours/a",
-  "Nearest neighbours/b",
-  "Nearest neighbours/modulus",
-  "Nearest neighbours/psi",
-  "Nearest neighbours/parameters",
-  "Nearest neighbours/library",
-  "Nearest neighbours/library sha256",
-  "Nearest neighbours/area factor",
-  "Nearest neighbours/viscosity",
-  "Nearest neighbours/branch moduli",
-  "Nearest neighbours/relaxation times",
-  "Next-nearest neighbours/present",
-  "Next-nearest neighbours/law",
-  "Next-nearest neighbours/a",
-  "Next-nearest neighbours/b",
-  "Next-nearest neighbours/modulus",
-  "Next-nearest neighbours/psi",
-  "Next-nearest neighbours/parameters",
-  "Next-nearest neighbours/library",
-  "Next-nearest neighbours/library sha256",
-  "Next-nearest neighbours/area factor",
-  "Next-nearest neighbours/viscosity",
-  "Next-nearest neighbours/branch moduli",
-  "Next-nearest neighbours/relaxation times",
-  "Loading/strain x",
-  "Loading/strain y",
-  "Loading/shear",
-  "Continuum/ratio",
+  "Sheet/spacing",    "Sheet/orientation", "Material/density", "Loading/strain x",
+  "Loading/strain y", "Loading/shear",     "Continuum/ratio",
+};
+// Those of each shell, in its section.
+constexpr std::array entries_of_shell{
+  "present",          "law",         "a",          "b",
+  "modulus",          "psi",         "parameters", "library",
+  "library sha256",   "area factor", "viscosity",  "branch moduli",
+  "relaxation times",
 };
 
 // Entries of which the largest stretch of a bond follows, up to which a law of the user must have values.
@@ -56,7 +33,10 @@ constexpr std::array entries_of_user_law{"Fracture/breaking stretch", "Fracture/
 
 bool has_user_law(const input::Case &input)
 {
-  return input.nearest.has_user_law() || (input.has_next_nearest && input.next_nearest.has_user_law());
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+    if (input.has_shell(number) && input.shell(number).has_user_law())
+      return true;
+  return false;
 }
 
 // Claims choose their own sheets; a subject needs one for its bonds alone.
@@ -66,6 +46,9 @@ constexpr double sheet_size = 12.; // spacings
 std::vector<std::string> assignments(const input::Case &input, const std::vector<std::string> &further)
 {
   std::set<std::string> allowed(entries_of_subject.begin(), entries_of_subject.end());
+  for (const char *section : input::Case::shell_sections)
+    for (const char *entry : entries_of_shell)
+      allowed.insert(std::string(section) + "/" + entry);
   allowed.insert(further.begin(), further.end());
   if (has_user_law(input))
     allowed.insert(entries_of_user_law.begin(), entries_of_user_law.end());
@@ -131,9 +114,9 @@ void check_user_laws(const input::Case &input, input::Parameters &parameters)
                        {section + "/law"});
     }
   };
-  check(input.nearest, "Nearest neighbours");
-  if (input.has_next_nearest)
-    check(input.next_nearest, "Next-nearest neighbours");
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+    if (input.has_shell(number))
+      check(input.shell(number), input::Case::shell_sections[number]);
 }
 
 void check_user_laws_of(const std::vector<Claim> &claims, const input::Case &input, input::Parameters &parameters)
@@ -145,10 +128,9 @@ void check_user_laws_of(const std::vector<Claim> &claims, const input::Case &inp
     const std::string reason = "the claim " + claim.name + " evaluates laws far beyond the stretch of " +
                                support::full_precision(largest_stretch) +
                                " up to which user-defined ones are checked; allowed: mooney-rivlin, linear";
-    if (input.nearest.has_user_law())
-      parameters.error("Nearest neighbours/law", reason);
-    if (input.has_next_nearest && input.next_nearest.has_user_law())
-      parameters.error("Next-nearest neighbours/law", reason);
+    for (std::size_t number = 0; number < lattice::n_shells; ++number)
+      if (input.has_shell(number) && input.shell(number).has_user_law())
+        parameters.error(std::string(input::Case::shell_sections[number]) + "/law", reason);
   }
 }
 

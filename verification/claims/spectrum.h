@@ -14,8 +14,11 @@ namespace latcon::claims
 /// Returns whether the bonds of some shell have Maxwell branches.
 inline bool has_branches(const lattice::Material &material)
 {
-  return std::holds_alternative<lattice::MaxwellMemory>(material.nearest.memory) ||
-         (material.next_nearest && std::holds_alternative<lattice::MaxwellMemory>(material.next_nearest->memory));
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+    if (const lattice::Shell *shell = material.in_shell(number))
+      if (std::holds_alternative<lattice::MaxwellMemory>(shell->memory))
+        return true;
+  return false;
 }
 
 /// Gives all bonds branches with these moduli over the stiffness of a bond at rest [-], > 0, and these relaxation times
@@ -33,9 +36,9 @@ inline lattice::Material with_branches(lattice::Material material, const std::ve
       branches.push_back({ratios[i] * lattice::stiffness(shell.law, 1.), relaxation_times[i]});
     shell.memory = lattice::MaxwellMemory(branches);
   };
-  give(material.nearest);
-  if (material.next_nearest)
-    give(*material.next_nearest);
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+    if (lattice::Shell *shell = material.in_shell(number))
+      give(*shell);
   return material;
 }
 

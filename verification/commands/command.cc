@@ -31,14 +31,14 @@ bool first_rank()
 // Collective.
 void require_same_libraries(const input::Case &input, input::Parameters &parameters)
 {
-  for (const auto &[shell, section] :
-       {std::pair(&input.nearest, "Nearest neighbours"), std::pair(&input.next_nearest, "Next-nearest neighbours")})
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
   {
-    const std::string &own = shell->user_law.sha256;
+    const std::string &own = input.shell(number).user_law.sha256;
     const int differs = own != dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, own) ? 1 : 0;
     if (dealii::Utilities::MPI::max(differs, MPI_COMM_WORLD) > 0)
-      parameters.error(std::string(section) + "/library", "the ranks find different libraries, or some none",
-                       {std::string(section) + "/law"});
+      parameters.error(std::string(input::Case::shell_sections[number]) + "/library",
+                       "the ranks find different libraries, or some none",
+                       {std::string(input::Case::shell_sections[number]) + "/law"});
   }
 }
 

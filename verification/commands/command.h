@@ -202,7 +202,7 @@ support::ExitCode exit_code_of(const output::Results &results);
 enum class Shells
 {
   own,             ///< the lattice of the case
-  own_and_nearest, ///< also the one with nearest-neighbour bonds alone, if the case has next-nearest ones
+  own_and_nearest, ///< also the one with nearest-neighbour bonds alone, if the case has further shells
 };
 
 /// Checks claims on the subject of a case, small versions if `quick`. Collective.

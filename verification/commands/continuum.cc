@@ -390,9 +390,9 @@ void check_time_step(const input::Case &input, double step, input::Parameters &p
                        " Pa s, to the viscosity, or give a smaller Continuum/time step",
                      {section + "/branch moduli", section + "/viscosity", "Continuum/time step"});
   };
-  check_branches(input.nearest, "Nearest neighbours");
-  if (input.has_next_nearest)
-    check_branches(input.next_nearest, "Next-nearest neighbours");
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+    if (input.has_shell(number))
+      check_branches(input.shell(number), input::Case::shell_sections[number]);
 }
 
 } // namespace

@@ -17,10 +17,11 @@ claims::ClaimOutcome run_claims(const input::Case &input, const std::vector<clai
     one_thread.emplace();
   const input::Case read = claims::claim_inputs(input);
   std::vector<bridge::Subject> subjects{subject(read, read.material(), laws)};
-  if (read.has_next_nearest && shells == Shells::own_and_nearest)
+  if ((read.has_next_nearest || read.has_third_nearest) && shells == Shells::own_and_nearest)
   {
     lattice::Material nearest_only = read.material();
     nearest_only.next_nearest.reset();
+    nearest_only.third_nearest.reset();
     subjects.push_back(subject(read, nearest_only, laws));
   }
   claims::ClaimOutcome outcome;

@@ -83,7 +83,7 @@ void check_breaking_stretch(const Case &input, Parameters &p, const lattice::Tri
   std::size_t of_kind = 0;
   for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
   {
-    if (!input.has_next_nearest && !lattice::TriangularLattice::is_nearest(kind))
+    if (!input.has_shell(lattice::shell_of(kind)))
       continue;
     const Eigen::Vector2d R = sheet.bond_vector(kind);
     const double stretch = (input.deformation() * R).norm() / R.norm();
@@ -98,11 +98,22 @@ void check_breaking_stretch(const Case &input, Parameters &p, const lattice::Tri
     return;
   const Eigen::Vector2d R = sheet.bond_vector(of_kind);
   p.error("Fracture/breaking stretch",
-          std::string(lattice::TriangularLattice::is_nearest(of_kind) ? "nearest" : "next-nearest") +
-            "-neighbour bonds at " + std::to_string(std::lround(std::atan2(R.y(), R.x()) * 180. / M_PI)) +
-            " degrees to x are stretched to " + support::full_precision(longest) +
+          std::string(lattice::shell_names[lattice::shell_of(of_kind)]) + "-neighbour bonds at " +
+            std::to_string(std::lround(std::atan2(R.y(), R.x()) * 180. / M_PI)) + " degrees to x are stretched to " +
+            support::full_precision(longest) +
             " by the loading alone and would all break; give more than that, or less strain",
           {"Loading/strain x", "Loading/strain y", "Loading/shear"});
+}
+
+// Entries of the viscosities of the shells, and others.
+std::vector<std::string> viscosities_and(const Case &input, const std::vector<std::string> &others)
+{
+  std::vector<std::string> entries;
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+    if (input.has_shell(number))
+      entries.push_back(std::string(Case::shell_sections[number]) + "/viscosity");
+  entries.insert(entries.end(), others.begin(), others.end());
+  return entries;
 }
 
 // Reports a time step for which the dashpots require more stages than are allowed.
@@ -118,8 +129,7 @@ void check_stages(const Case &input, Parameters &p)
     p.error("Time/step",
             "the viscosity limits runge-kutta-chebyshev to steps of " + support::full_precision(longest) + " s with " +
               std::to_string(most_stages) + " stages; this step is " + support::full_precision(step) + " s",
-            {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity", "Contact/viscosity", "Sheet/spacing",
-             "Time/integrator"});
+            viscosities_and(input, {"Contact/viscosity", "Sheet/spacing", "Time/integrator"}));
 }
 
 // Reports a given time step with which the oscillation of two sites in contact grows.
@@ -147,21 +157,32 @@ void check_time_step(const Case &input, Parameters &p)
     p.error("Time/step",
             "the time stepping is unstable beyond " + support::full_precision(limit) +
               " s; omit `step`, or give a smaller one",
-            {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity", "Sheet/spacing", "Time/integrator",
-             "Time/stages"});
+            viscosities_and(input, {"Sheet/spacing", "Time/integrator", "Time/stages"}));
 }
 
 void check_relaxation_times(const Case &input, Parameters &p)
 {
-  const bool next_nearest = input.has_next_nearest && !input.next_nearest.relaxation_times.empty();
-  if (!p.good() || (input.nearest.relaxation_times.empty() && !next_nearest))
+  std::vector<std::size_t> with_branches;
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+    if (input.has_shell(number) && !input.shell(number).relaxation_times.empty())
+      with_branches.push_back(number);
+  if (!p.good() || with_branches.empty())
     return;
   double step = input.lattice_time_stepping().step;
   if (input.breaking_stretch) // sites that touch require shorter steps, if they are automatic
     step = std::max(step, input.fracture_time_stepping().step);
-  input.nearest.check_relaxation_times(p, "Nearest neighbours", step);
-  if (next_nearest)
-    input.next_nearest.check_relaxation_times(p, "Next-nearest neighbours", step);
+  for (const std::size_t number : with_branches)
+    input.shell(number).check_relaxation_times(p, Case::shell_sections[number], step);
+}
+
+// Returns whether all shells that the case has fulfil a condition.
+template <class Condition>
+bool all_shells(const Case &input, const Condition &condition)
+{
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+    if (input.has_shell(number) && !condition(input.shell(number)))
+      return false;
+  return true;
 }
 
 // Reports a user-defined law without values where a bond can be before it breaks: beyond the breaking stretch by what a
@@ -173,19 +194,19 @@ void check_laws_within_a_step(const Case &input, Parameters &p)
   const double longest = input.longest_stretch();
   const double gain =
     input.fracture_time_stepping().step * lattice::largest_stretch_rate(input.lattice(), input.material(), longest);
-  for (const auto &[shell, section] :
-       {std::pair(&input.nearest, "Nearest neighbours"), std::pair(&input.next_nearest, "Next-nearest neighbours")})
-    if (shell->has_user_law() && (shell == &input.nearest || input.has_next_nearest))
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+    if (input.has_shell(number) && input.shell(number).has_user_law())
       try
       {
-        (void)shell->shell(longest + gain);
+        (void)input.shell(number).shell(longest + gain);
       }
       catch (const UserLaw::Problem &problem)
       {
-        p.error(std::string(section) + "/" + problem.entry,
+        const std::string section = Case::shell_sections[number];
+        p.error(section + "/" + problem.entry,
                 "a bond can be longer by " + support::full_precision(gain) +
                   " than its breaking stretch before the time step ends in which it breaks: " + problem.what(),
-                {std::string(section) + "/law", "Fracture/breaking stretch", "Fracture/factor", "Time/step"});
+                {section + "/law", "Fracture/breaking stretch", "Fracture/factor", "Time/step"});
       }
 }
 
@@ -197,16 +218,16 @@ void check_time_stepping(const Case &input, Parameters &p)
             {"Time/integrator"});
   if (chebyshev && input.stages == 1)
     p.error("Time/stages", "a second-order method has at least two stages; give 0 for an automatic number");
-  if (chebyshev && (input.nearest.viscosity == 0. || (input.has_next_nearest && input.next_nearest.viscosity == 0.)))
+  if (chebyshev && !all_shells(input, [](const ShellCase &shell) { return shell.viscosity != 0.; }))
     p.error("Time/integrator", "runge-kutta-chebyshev requires a viscosity for all bonds; give one, or velocity-verlet",
-            {"Nearest neighbours/viscosity", "Next-nearest neighbours/viscosity"});
+            viscosities_and(input, {}));
   else if (chebyshev && input.breaking_stretch && input.has_contact && input.contact_viscosity == 0.)
     p.error("Contact/viscosity",
             "runge-kutta-chebyshev amplifies undamped oscillations, also in contacts; give more than 0, or "
             "integrator = velocity-verlet",
             {"Time/integrator"});
-  else if (input.density > 0. && input.has_sheet() && input.nearest.has_stiffness() &&
-           (!input.has_next_nearest || input.next_nearest.has_stiffness()))
+  else if (input.density > 0. && input.has_sheet() &&
+           all_shells(input, [](const ShellCase &shell) { return shell.has_stiffness(); }))
   {
     if (chebyshev)
       check_stages(input, p);
@@ -243,9 +264,12 @@ void Case::declare(Parameters &p)
 
   p.add("Material", "density", density, Magnitude{}, "kg/m^3", "mass density rho of the rubber, undeformed",
         Presence::required);
-  nearest.declare(p, "Nearest neighbours");
-  p.add("Next-nearest neighbours", "present", has_next_nearest, "include bonds between next-nearest neighbours");
-  next_nearest.declare(p, "Next-nearest neighbours");
+  nearest.declare(p, shell_sections[0]);
+  p.add(shell_sections[1], "present", has_next_nearest, "include bonds between next-nearest neighbours");
+  next_nearest.declare(p, shell_sections[1]);
+  p.add(shell_sections[2], "present", has_third_nearest,
+        "include bonds of length 2 d, in the directions of the nearest neighbours");
+  third_nearest.declare(p, shell_sections[2]);
   disorder.declare(p);
 
   p.add("Loading", "strain x", strain_x, Range({-1., false}, {1000., true}), "1",
@@ -352,9 +376,9 @@ void Case::declare(Parameters &p)
 
 void Case::check(Parameters &p)
 {
-  nearest.check(p, "Nearest neighbours", longest_stretch());
-  if (has_next_nearest)
-    next_nearest.check(p, "Next-nearest neighbours", longest_stretch());
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+    if (has_shell(number))
+      shell(number).check(p, shell_sections[number], longest_stretch());
   disorder.check(p);
 
   check_size(*this, p);
@@ -414,6 +438,8 @@ lattice::Material Case::material() const
   lattice::Material material{density, nearest.shell(longest_stretch()), std::nullopt};
   if (has_next_nearest)
     material.next_nearest = next_nearest.shell(longest_stretch());
+  if (has_third_nearest)
+    material.third_nearest = third_nearest.shell(longest_stretch());
   material.disorder = disorder.disorder();
   return material;
 }
@@ -445,47 +471,6 @@ lattice::Toughening Case::toughening_rule() const
   default:
     return lattice::NoToughening{};
   }
-}
-
-lattice::ContactLaw Case::contact_law() const
-{
-  return lattice::contact_like_nearest_bond(lattice(), material(), contact_distance * spacing, contact_stiffness,
-                                            contact_viscosity);
-}
-
-double Case::chebyshev_step(const bool breaks) const
-{
-  if (breaks && has_contact)
-    return safety_factor * lattice::chebyshev_step(lattice(), material(), smallest_chebyshev_stretch, contact_law());
-  return safety_factor * lattice::chebyshev_step(lattice(), material(), smallest_chebyshev_stretch);
-}
-
-lattice::TimeStepping Case::time_stepping(const bool breaks) const
-{
-  const lattice::TimeStepLimits limits = time_step_limits(breaks);
-  if (integrator == Integrator::velocity_verlet)
-    return time_step ? *time_step : safety_factor * limits.combined;
-  const double step = time_step ? *time_step : chebyshev_step(breaks);
-  if (time_step && stages > 0)
-    return {step, stages};
-  return lattice::chebyshev_time_stepping(step, limits, stages);
-}
-
-lattice::TimeStepLimits Case::time_step_limits(const bool breaks) const
-{
-  if (breaks && has_contact)
-    return lattice::time_step_limits(lattice(), material(), smallest_stable_stretch, contact_law());
-  return lattice::time_step_limits(lattice(), material(), smallest_stable_stretch);
-}
-
-lattice::TimeStepping Case::lattice_time_stepping() const
-{
-  return time_stepping(false);
-}
-
-lattice::TimeStepping Case::fracture_time_stepping() const
-{
-  return time_stepping(true);
 }
 
 std::string case_lines(const Parameters &parameters)

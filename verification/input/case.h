@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
@@ -82,7 +83,20 @@ struct Case
   ShellCase nearest;
   bool has_next_nearest = true;
   ShellCase next_nearest;
+  bool has_third_nearest = false;
+  ShellCase third_nearest;
   DisorderCase disorder;
+
+  /// Sections of the shells in a case, by their numbers below lattice::n_shells.
+  static constexpr std::array<const char *, lattice::n_shells> shell_sections{
+    {"Nearest neighbours", "Next-nearest neighbours", "Third-nearest neighbours"}};
+  /// Entries of a shell by its number, whether the case has it or not.
+  ShellCase &shell(std::size_t number) { return number == 0 ? nearest : number == 1 ? next_nearest : third_nearest; }
+  const ShellCase &shell(std::size_t number) const { return const_cast<Case *>(this)->shell(number); }
+  bool has_shell(std::size_t number) const
+  {
+    return number == 0 || (number == 1 ? has_next_nearest : has_third_nearest);
+  }
 
   // Loading
   double strain_x = 0.; ///< eps_x [-]

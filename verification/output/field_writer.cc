@@ -143,7 +143,7 @@ void FieldWriter::add_frame(const lattice::State &state)
                     bond_stretch->SetValue(end, bond_stretch->GetValue(end) + value);
                     ++bonds_of_point[static_cast<std::size_t>(end)];
                   }
-                  shell->InsertNextValue(lattice::TriangularLattice::is_nearest(kind) ? 1 : 2);
+                  shell->InsertNextValue(static_cast<unsigned char>(lattice::shell_of(kind) + 1));
                   toughened->InsertNextValue(state.bonds.toughened(near, kind) ? 1 : 0);
                 });
 

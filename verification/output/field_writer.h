@@ -13,10 +13,10 @@ namespace latcon::output
 /// deformation_gradient [-], first_piola_stress [Pa], cauchy_stress [Pa], strain_gradient_x and _y [1/m] (NaN where the
 /// remaining bonds do not determine it, see StrainGradientFit), strain_energy_density [J/m^3], damage [-], held, site
 /// (row-wise number), fragment (0 the sheet, 1, 2 ... detached, see Fragments). Cell data: stretch [-] (at a vertex the
-/// mean over its bonds, 1 without bonds), shell (0 vertex, 1 nearest, 2 next-nearest), toughened (0 or 1); bonds across
-/// a periodic edge are omitted. The field data arrays TimeValue and SheetBounds hold the time [s] and the bounds of the
-/// undeformed sheet (of one period if it is periodic): X from, to, Y from, to [m]. Quantities have their units (VTK's
-/// UNITS_LABEL). Every file is replaced atomically.
+/// mean over its bonds, 1 without bonds), shell (0 vertex, 1 nearest, 2 next-nearest, 3 third-nearest), toughened (0 or
+/// 1); bonds across a periodic edge are omitted. The field data arrays TimeValue and SheetBounds hold the time [s] and
+/// the bounds of the undeformed sheet (of one period if it is periodic): X from, to, Y from, to [m]. Quantities have
+/// their units (VTK's UNITS_LABEL). Every file is replaced atomically.
 class FieldWriter
 {
 public:

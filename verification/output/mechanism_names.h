@@ -21,6 +21,8 @@ inline std::vector<std::string> mechanism_names(const lattice::Material &materia
   add("nearest", material.nearest);
   if (material.next_nearest)
     add("next_nearest", *material.next_nearest);
+  if (material.third_nearest)
+    add("third_nearest", *material.third_nearest);
   return names;
 }
 

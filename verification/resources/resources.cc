@@ -105,12 +105,22 @@ OnMachine on_machine(const MemoryNeed &need)
   return {sums[0], sums[1]};
 }
 
+// Bonds per site.
+double bonds_of_site(const input::Case &input)
+{
+  double bonds = 0.;
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+    if (input.has_shell(number))
+      bonds += lattice::n_kinds_per_shell;
+  return bonds;
+}
+
 // Bytes of the factors of bonds per slot.
 double factors_per_place(const input::Case &input, bool breaks)
 {
   const lattice::Disorder disorder = input.disorder.disorder();
   const double fields = (disorder.stiffness.is_none() ? 0. : 1.) + (breaks && !disorder.strength.is_none() ? 1. : 0.);
-  return bytes_of_variable * fields * (input.has_next_nearest ? 6. : 3.);
+  return bytes_of_variable * fields * bonds_of_site(input);
 }
 
 // Bytes of the history of bonds per slot.
@@ -173,7 +183,7 @@ MemoryNeed lattice_memory(const input::Case &input, const RunKind run, const boo
   const double places = static_cast<double>(sheet.n_places()), sites = static_cast<double>(sheet.n_sites());
   const bool is_chebyshev =
     run != RunKind::equilibrium && input.integrator == input::Case::Integrator::runge_kutta_chebyshev;
-  const double bonds = input.has_next_nearest ? 6. : 3.;
+  const double bonds = bonds_of_site(input);
   const double frame = sites * (bytes_of_site_in_frame + bonds * bytes_of_bond_in_frame);
   const double history = run != RunKind::equilibrium ? history_per_place(input.material()) : 0.;
   const double checkpoint = run != RunKind::equilibrium ? sites * (bytes_of_site_in_checkpoint + history) : 0.;

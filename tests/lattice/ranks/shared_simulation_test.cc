@@ -50,6 +50,10 @@ void expect_same_state(Simulation &shared, const State &alone)
       ASSERT_EQ(state.vy[place], alone.vy[place]);
       ASSERT_EQ(state.held[place], alone.held[place]);
       ASSERT_EQ(state.bonds.words()[place], alone.bonds.words()[place]);
+      if (const BondStates::Word *third = alone.bonds.words(BondStates::kinds_per_word))
+      {
+        ASSERT_EQ(state.bonds.words(BondStates::kinds_per_word)[place], third[place]);
+      }
       if (band.owns(place))
       {
         ASSERT_EQ(state.ax[place], alone.ax[place]);
@@ -112,6 +116,8 @@ INSTANTIATE_TEST_SUITE_P(
             sheets::rubber_with_memory()},
     Variant{Orientation::rows_across_crack, 16., BehindTipToughening{behind, 3.}, 3., EndLoads::End::held,
             sheets::disordered_rubber()},
+    Variant{Orientation::rows_along_crack, 16., RetractionToughening{0.8, 2.}, 3., EndLoads::End::absorbing,
+            sheets::disordered_rubber_of_three_shells()},
     // Nine rows: bands of one or two for five ranks.
     Variant{Orientation::rows_along_crack, 7., NoToughening{}, 5., EndLoads::End::free}));
 
@@ -194,7 +200,7 @@ TEST_P(SharedMotion, HasTheBitsOfOneRank)
     {
       const TriangularLattice sheet(sheets::spacing, n * sheets::spacing, n * sheets::spacing, orientation, GetParam());
       const Material material = n == 6.   ? sheets::rubber_with_memory()
-                                : n == 4. ? sheets::disordered_rubber()
+                                : n == 4. ? sheets::disordered_rubber_of_three_shells()
                                           : sheets::rubber();
       const auto start = [&](const RowPartition &band)
       {

@@ -266,7 +266,7 @@ TEST(NearTipSampler, LeavesOutDebrisAndTipsAtRest)
 {
   SlitSheet slit;
   const std::size_t debris = slit.tip + 2;
-  for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
+  for (std::size_t kind = 0; kind < 2 * n_kinds_per_shell; ++kind)
   {
     slit.break_bond(debris, kind);
     if (kind == 0) // one bond of the other half

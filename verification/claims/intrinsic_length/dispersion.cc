@@ -18,10 +18,11 @@ struct Series
   Eigen::Matrix2d A4 = Eigen::Matrix2d::Zero(); // [m^4/s^2]
 };
 
-std::array<Series, 2> series_by_shell(const lattice::TriangularLattice &lattice, const lattice::Material &material,
-                                      const Eigen::Matrix2d &F, const Eigen::Vector2d &N)
+std::array<Series, lattice::n_shells> series_by_shell(const lattice::TriangularLattice &lattice,
+                                                      const lattice::Material &material, const Eigen::Matrix2d &F,
+                                                      const Eigen::Vector2d &N)
 {
-  std::array<Series, 2> shells; // nearest, next-nearest
+  std::array<Series, lattice::n_shells> shells;
   const double mass = lattice::site_mass(material, lattice);
   for (std::size_t kind = 0; kind < lattice::n_bond_kinds; ++kind)
     if (const lattice::Shell *shell = material.shell(kind))
@@ -33,7 +34,7 @@ std::array<Series, 2> series_by_shell(const lattice::TriangularLattice &lattice,
         lattice::cross_section(*shell, lattice) / length / mass *
         (lattice::stiffness(shell->law, stretch) * n * n.transpose() +
          lattice::force(shell->law, stretch) / stretch * (Eigen::Matrix2d::Identity() - n * n.transpose()));
-      Series &series = shells[lattice::TriangularLattice::is_nearest(kind) ? 0 : 1];
+      Series &series = shells[lattice::shell_of(kind)];
       series.A2 += std::pow(along, 2) * H;
       series.A4 += std::pow(along, 4) / 12. * H;
     }
@@ -45,18 +46,24 @@ std::array<Series, 2> series_by_shell(const lattice::TriangularLattice &lattice,
 Alpha lattice_alpha(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                     const Eigen::Matrix2d &F, const Eigen::Vector2d &N, Alpha *nearest_part)
 {
-  const auto [nearest, next] = series_by_shell(lattice, material, F, N);
+  const std::array<Series, lattice::n_shells> shells = series_by_shell(lattice, material, F, N);
+  Series all;
+  for (const Series &shell : shells)
+  {
+    all.A2 += shell.A2;
+    all.A4 += shell.A4;
+  }
   const std::array<bridge::PlaneWave, 2> long_waves =
-    bridge::plane_waves({nearest.A2 + next.A2, Eigen::Matrix2d::Zero()}, bridge::wave_normal(F, N));
+    bridge::plane_waves({all.A2, Eigen::Matrix2d::Zero()}, bridge::wave_normal(F, N));
   const double d2 = std::pow(lattice.spacing(), 2);
   Alpha alpha{};
   for (std::size_t w = 0; w < 2; ++w)
   {
     const Eigen::Vector2d &p = long_waves[w].polarisation;
     const double unit = std::pow(long_waves[w].frequency, 2) * d2;
-    alpha[w] = p.dot((nearest.A4 + next.A4) * p) / unit;
+    alpha[w] = p.dot(all.A4 * p) / unit;
     if (nearest_part != nullptr)
-      (*nearest_part)[w] = p.dot(nearest.A4 * p) / unit;
+      (*nearest_part)[w] = p.dot(shells[0].A4 * p) / unit;
   }
   return alpha;
 }

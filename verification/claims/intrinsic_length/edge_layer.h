@@ -22,7 +22,7 @@ struct EdgeLayer
 EdgeLayer relaxed_edge(double spacing, const lattice::Material &material, double stretch, std::size_t rows);
 
 /// Factor from one row spacing to the next by which a small deviation decays, from the linearised equilibrium of rows
-/// (theory-comparison.md, eq. (W.6)): negative, the spacings alternate; 0 without next-nearest neighbours.
+/// (theory-comparison.md, eq. (W.6)): negative, the spacings alternate; 0 where nearest neighbours are alone.
 /// @param stretch,stretch_across of the bulk [-]
 double edge_decay(double spacing, const lattice::Material &material, double stretch, double stretch_across);
 

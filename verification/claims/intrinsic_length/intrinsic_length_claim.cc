@@ -141,7 +141,10 @@ void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &op
              from_mean.value(), {}, from_mean.error(),
              subject.tolerance(bridge::Law::mooney_rivlin_network, equal_formulas));
     rows.add(name + "largest difference of the network from the lattice", "1", {}, {}, {}, network_loss[w].error(), {});
-    if (subject.material.next_nearest)
+    if (subject.material.third_nearest)
+      rows.add(name + "mean over directions, the part of the longer bonds", "1", mean[w] - nearest_mean[w], {}, {}, {},
+               {});
+    else if (subject.material.next_nearest)
       rows.add(name + "mean over directions, the part of the next-nearest bonds", "1", mean[w] - nearest_mean[w], {},
                {}, {}, {});
   }
@@ -160,7 +163,9 @@ void positivity(const bridge::Subject &subject, ClaimOutcome &outcome)
   const lattice::TriangularLattice sheet = any_sheet(subject);
   const double d = subject.spacing, unit = subject.theory.shear_modulus * d * d;
   Rows rows(subject, outcome);
-  const double longest = subject.material.next_nearest ? std::sqrt(3.) * d : d;
+  const double longest = subject.material.third_nearest  ? 2. * d
+                         : subject.material.next_nearest ? std::sqrt(3.) * d
+                                                         : d;
   rows.add("intrinsic length l_d, the longest bond over sqrt(12)", "m", longest / std::sqrt(12.),
            subject.lengths.lattice, longest / std::sqrt(12.),
            support::relative_error(subject.lengths.lattice, longest / std::sqrt(12.)), equal_formulas);
@@ -216,7 +221,7 @@ void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &op
 
   rows.add("edge layer: residual force of the relaxed strip over mu d", "1",
            layer.residual / (subject.theory.shear_modulus * subject.spacing), {}, {}, {}, {});
-  if (!subject.material.next_nearest)
+  if (!subject.material.next_nearest && !subject.material.third_nearest)
   {
     support::LargestError largest;
     for (const double deviation : layer.deviations)

@@ -21,7 +21,7 @@ ClaimOutcome check(const ClaimInput &input)
     options.cells_y = 16;
   }
   ClaimOutcome outcome{prestretch_claim(subject, options), {}};
-  if (!subject.material.next_nearest)
+  if (subject.material.coordination() == 6)
   {
     outcome.add(cut_claim(subject, nearest_hole_study(quick)));
     if (!quick)

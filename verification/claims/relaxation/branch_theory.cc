@@ -10,16 +10,17 @@ std::vector<BranchTheory> relaxing_branches(const lattice::TriangularLattice &sh
                                             const Eigen::Matrix2d &F)
 {
   std::vector<BranchTheory> branches;
-  for (const std::size_t first_kind : {std::size_t{0}, lattice::n_nearest_kinds})
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
   {
-    const lattice::Shell *shell = material.shell(first_kind);
+    const lattice::Shell *shell = material.in_shell(number);
+    const std::size_t first_kind = number * lattice::n_kinds_per_shell;
     const auto *memory = shell != nullptr ? std::get_if<lattice::MaxwellMemory>(&shell->memory) : nullptr;
     if (memory == nullptr)
       continue;
     for (const lattice::MaxwellMemory::Branch &branch : memory->branches())
     {
       BranchTheory sum{branch.relaxation_time, 0., Eigen::Matrix2d::Zero()};
-      for (std::size_t kind = first_kind; kind < first_kind + lattice::n_nearest_kinds; ++kind)
+      for (std::size_t kind = first_kind; kind < first_kind + lattice::n_kinds_per_shell; ++kind)
       {
         const Eigen::Vector2d R = sheet.bond_vector(kind), r = F * R;
         const double change = r.norm() / R.norm() - 1., section = lattice::cross_section(*shell, sheet);

@@ -93,7 +93,7 @@ public:
       dissipated_theory += dissipated;
     }
     const Eigen::Matrix2d P = bridge::edge_stress(
-      sheet_,
+      sheet_, simulation_.material(),
       [&](std::size_t place) {
         return simulation_.forces().on_site(simulation_.state(), simulation_.state().vx, simulation_.state().vy, place);
       });
@@ -186,16 +186,20 @@ private:
 support::Extremes relaxation_times(const lattice::Material &material) // [s]
 {
   support::Extremes times;
-  for (const lattice::Shell *shell : {material.shell(0), material.shell(lattice::n_nearest_kinds)})
-    if (const auto *memory = shell != nullptr ? std::get_if<lattice::MaxwellMemory>(&shell->memory) : nullptr)
-      for (const lattice::MaxwellMemory::Branch &branch : memory->branches())
-        times.add(branch.relaxation_time);
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+    if (const lattice::Shell *shell = material.in_shell(number))
+      if (const auto *memory = std::get_if<lattice::MaxwellMemory>(&shell->memory))
+        for (const lattice::MaxwellMemory::Branch &branch : memory->branches())
+          times.add(branch.relaxation_time);
   return times;
 }
 
 bool is_damped(const lattice::Material &material)
 {
-  return material.nearest.viscosity > 0. && (!material.next_nearest || material.next_nearest->viscosity > 0.);
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+    if (const lattice::Shell *shell = material.in_shell(number); shell != nullptr && !(shell->viscosity > 0.))
+      return false;
+  return true;
 }
 
 } // namespace

@@ -29,8 +29,8 @@ double step_of(const WaveCell &cell, const lattice::Material &material, const Ei
   const double limit = 0.9 * lattice::time_step_limits(cell.sheet, material, smallest_stretch(cell.sheet, F)).combined;
   support::Extremes times;
   times.add(1. / std::abs(wave.rate));
-  for (const std::size_t kind : {std::size_t{0}, lattice::n_nearest_kinds})
-    if (const lattice::Shell *shell = material.shell(kind))
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+    if (const lattice::Shell *shell = material.in_shell(number))
       if (const auto *memory = std::get_if<lattice::MaxwellMemory>(&shell->memory))
         for (const lattice::MaxwellMemory::Branch &branch : memory->branches())
           times.add(branch.relaxation_time);

@@ -257,7 +257,8 @@ void sweep(const bridge::Subject &subject, const Eigen::Matrix2d &F, const Visco
                  peaks.error(), 1e-3);
   if (has_elements)
     sweep_elements(subject, F, options, cell, outcome);
-  // w^2 = c^2 k^2 (1 - alpha (kd)^2 + ...) with alpha <= 1/4 for bonds up to sqrt3 d long.
+  // w^2 = c^2 k^2 (1 - alpha (kd)^2 + ...) with alpha <= 1/4 for bonds up to sqrt3 d long, 1/3 for those of 2 d.
+  const double half_alpha = subject.material.third_nearest ? 1. / 6. : 0.125;
   const WaveContinuum local{{subject.cauchy_born}, {subject.material.density}};
   const std::array<bridge::PlaneWave, 2> continuum =
     bridge::plane_waves(continuum_matrices(local, F, cell.K), bridge::wave_normal(F, cell.K));
@@ -266,7 +267,7 @@ void sweep(const bridge::Subject &subject, const Eigen::Matrix2d &F, const Visco
     rubbery.add_relative(comparison.limits(cell, elastic, w)[0], continuum[w].frequency);
   comparison.add("frequency in the rubbery limit, lattice against local continuum, worst of both waves", "rad/s",
                  rubbery.value(), rubbery.reference(), {}, rubbery.error(),
-                 0.125 * std::pow(cell.K.norm() * subject.spacing, 2));
+                 half_alpha * std::pow(cell.K.norm() * subject.spacing, 2));
 }
 
 // The branches of the material, with its dashpots.

@@ -161,8 +161,8 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
     outcome.results.add(
       {"wave-speeds", prefix + quantity, unit, lattice_value, continuum_value, theory, error, tolerance});
   };
-  // The next term of the series of v(k) has a coefficient below 1/20: at most (3^2/360)/2 + (3/12)^2/8 for bonds up to
-  // sqrt3 d long.
+  // The next term of the series of v(k) has a coefficient below 1/20: at most (4^2/360)/2 + (4/12)^2/8 for bonds up to
+  // 2 d long.
   const double remainder = std::pow(options.kd[0] * options.kd[1] * 1.02 * 1.02, 2) / 20.;
   for (std::size_t w = 0; w < 2; ++w)
     add(std::string("long-wave speed, ") + wave_names[w] + ", lattice run against closed form, worst of 4 directions",
@@ -288,9 +288,11 @@ ClaimOutcome wave_speeds_claim(const bridge::Subject &subject, const WaveSpeedsO
     attempt(F, "waves in the network", [&] { network_waves(subject, F, options.mesh, outcome); });
   }
   // Not `> 0.`, which would skip a viscosity that is NaN.
-  const auto has_dashpot = [](const lattice::Shell &shell) { return shell.viscosity != 0.; };
-  if (has_dashpot(subject.material.nearest) ||
-      (subject.material.next_nearest && has_dashpot(*subject.material.next_nearest)))
+  bool has_dashpots = false;
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
+    if (const lattice::Shell *shell = subject.material.in_shell(number))
+      has_dashpots = has_dashpots || shell->viscosity != 0.;
+  if (has_dashpots)
     for (const Eigen::Matrix2d &F : options.damped_states)
       attempt(F, "damped waves", [&] { attenuation_at(subject, F, outcome); });
   return outcome;

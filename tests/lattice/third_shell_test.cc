@@ -1,0 +1,194 @@
+// What third-nearest neighbours do; forces_test.cc, ranks/ and others run sheets that have them, too.
+#include <cmath>
+#include <map>
+
+#include <gtest/gtest.h>
+
+#include "lattice/energy.h"
+#include "lattice/simulation.h"
+#include "lattice/site_fields.h"
+#include "lattice/time_step.h"
+#include "tests/lattice/plane_modes.h"
+#include "tests/lattice/sheets.h"
+
+using namespace latcon;
+
+namespace
+{
+
+using namespace lattice;
+
+constexpr Orientation orientations[] = {Orientation::rows_along_crack, Orientation::rows_across_crack};
+
+// A periodic sheet holds per area of a site one bond of each of nine directions: lengths and directions written out.
+TEST(ThirdShell, HomogeneousSheetHasTheEnergyAndStressOfItsNineDirections)
+{
+  for (const Orientation orientation : orientations)
+  {
+    const double d = sheets::spacing, n = 8.;
+    const TriangularLattice sheet(d, n * d, n * d, orientation, {true, true});
+    const Material material = sheets::rubber_of_three_shells();
+    Eigen::Matrix2d F;
+    F << 1.4, 0.3, -0.2, 1.7;
+    const State state = homogeneous_state(sheet, material, F, Edges::held);
+    double energy = 0.;
+    Eigen::Matrix2d stress = Eigen::Matrix2d::Zero();
+    const double first = orientation == Orientation::rows_along_crack ? 0. : 30.; // degrees
+    const auto add = [&](const Shell &shell, double length, double degrees)
+    {
+      const Eigen::Vector2d N(std::cos(degrees * M_PI / 180.), std::sin(degrees * M_PI / 180.));
+      const Eigen::Vector2d now = F * N;
+      const double weight = shell.area_factor * length; // A0 l / V in units of d
+      energy += weight * lattice::energy(shell.law, now.norm());
+      stress += weight * force(shell.law, now.norm()) * now.normalized() * N.transpose();
+    };
+    for (const double turn : {0., 60., 120.})
+    {
+      add(material.nearest, 1., first + turn);
+      add(*material.next_nearest, std::sqrt(3.), first + turn + 30.);
+      add(*material.third_nearest, 2., first + turn);
+    }
+    const double area = sheet.length() * sheet.height();
+    EXPECT_NEAR(elastic_energy(state, sheet, material) / area, energy, 1e-12 * energy);
+    const SiteEvaluator evaluator(sheet, material);
+    Forces forces(sheet, material);
+    forces.evaluate(state, state.vx, state.vy);
+    for (std::size_t row = 0; row < sheet.rows(); ++row)
+      for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
+      {
+        const std::size_t place = sheet.index(row, column);
+        const SiteValues values = evaluator.at(state, place);
+        EXPECT_EQ(values.bonds, 18u);
+        EXPECT_NEAR(values.strain_energy_density, energy, 1e-12 * energy);
+        EXPECT_LT((values.first_piola_stress - stress).norm(), 1e-12 * stress.norm());
+        // Of 18 forces, each 2.5e5 Pa times a section of about d.
+        EXPECT_LT(std::hypot(forces.fx()[place], forces.fy()[place]), 18. * 1e-13 * 2.5e5 * d);
+      }
+  }
+}
+
+// Forces on a plane wave are -m D u with Bloch's matrix, whose phases are those of bonds up to 2 d long: the largest
+// frequency of all waves is that of the sheet, and below the bound of the time step.
+TEST(ThirdShell, FrequenciesStayBelowTheBoundOfTheTimeStep)
+{
+  const Material undamped = sheets::rubber_of_three_shells(0.);
+  const TriangularLattice sheet = sheets::square(8);
+  const Eigen::Matrix2d F = Eigen::Matrix2d::Identity();
+  double fastest = 0.;
+  for (const std::complex<double> &rate : plane_modes::rates(sheet, undamped, F))
+    fastest = std::max(fastest, std::abs(rate.imag()));
+  const double limit = time_step_limits(sheet, undamped, 1.).elastic;
+  EXPECT_LT(limit, 2. / fastest);
+  EXPECT_GT(limit, 0.5 * 2. / fastest); // and not far below
+  // What the shell adds to the bound: a bond per direction, of half the inverse length of a nearest one.
+  Material without = undamped;
+  without.third_nearest.reset();
+  const auto square = [&](const Material &material)
+  { return std::pow(2. / time_step_limits(sheet, material, 1.).elastic, 2); };
+  const Shell &third = *undamped.third_nearest;
+  const double added = 3. * 4. * cross_section(third, sheet) * largest_stiffness(third.law, 1.) /
+                       (2. * sheets::spacing * site_mass(undamped, sheet));
+  EXPECT_NEAR(square(undamped) - square(without), added, 1e-12 * square(undamped));
+}
+
+// Bonds of the third shell lie upon two nearest ones, and know nothing of them: each breaks alone.
+TEST(ThirdShell, BondOutlastsTheNearestOnesBelowIt)
+{
+  const TriangularLattice sheet = sheets::square(14);
+  const Material material = sheets::rubber_of_three_shells();
+  State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
+  Forces forces(sheet, material);
+  Fracture fracture(sheet, material, 1.5, NoToughening{}, Eigen::Matrix2d::Identity());
+  fracture.configure(state, forces);
+  const std::size_t left = sheet.index(6, 5), middle = left + 1, right = left + 2;
+  // The middle site goes to the right by 0.55 d: the bond to the left comes to 1.55, the long one stays at 1.
+  state.x[middle] += 0.55 * sheets::spacing;
+  forces.evaluate(state, state.vx, state.vy);
+  const std::vector<BrokenBond> broken = fracture.apply(state, forces, state.vx, state.vy);
+  bool has_left = false;
+  for (const BrokenBond &bond : broken)
+  {
+    has_left = has_left || (bond.near == left && bond.kind == 0);
+    EXPECT_TRUE(bond.near == middle || bond.far == middle);
+  }
+  EXPECT_TRUE(has_left);
+  EXPECT_FALSE(state.bonds.present(left, 0));
+  EXPECT_TRUE(state.bonds.present(left, 6));
+  // Now the long one alone: 2 d become 3.2 d, its nearest ones are cut before.
+  fracture.remove_bonds(state, {{middle, 0}});
+  const double before = state.lost_bonds[left];
+  state.x[right] += 1.2 * sheets::spacing;
+  forces.evaluate(state, state.vx, state.vy);
+  std::size_t long_ones = 0;
+  for (const BrokenBond &bond : fracture.apply(state, forces, state.vx, state.vy))
+    if (bond.near == left && bond.kind == 6)
+    {
+      ++long_ones;
+      EXPECT_NEAR(bond.stretch, 1.6, 1e-12);
+      EXPECT_EQ(bond.far, right);
+      EXPECT_NEAR((bond.midpoint - sheet.reference(middle)).norm(), 0., 1e-12);
+    }
+  EXPECT_EQ(long_ones, 1u);
+  EXPECT_GT(state.lost_bonds[left], before);
+}
+
+// A quarter of eighteen bonds, rounded up, is five.
+TEST(ThirdShell, TipHasLostFiveOfEighteenBonds)
+{
+  const TriangularLattice sheet = sheets::square(14);
+  const Material material = sheets::rubber_of_three_shells();
+  const std::size_t place = sheet.index(6, 6);
+  for (const unsigned int lost : {4u, 5u})
+  {
+    State state = homogeneous_state(sheet, material, Eigen::Matrix2d::Identity(), Edges::held);
+    Fracture fracture(sheet, material, 1.5, NoToughening{}, Eigen::Matrix2d::Identity());
+    state.lost_bonds[place] = static_cast<std::uint8_t>(lost);
+    fracture.locate_tip(state);
+    EXPECT_EQ(fracture.tip().has_value(), lost == 5u);
+  }
+}
+
+struct Crack
+{
+  Crack(const TriangularLattice &sheet, const Material &material, double noise, double share)
+  {
+    const Eigen::Matrix2d F = sheets::stretched(2.3, 2.8);
+    State state = homogeneous_state(sheet, material, F, Edges::held);
+    add_noise(state, sheet, noise * sheets::spacing, 1);
+    simulation = std::make_unique<Simulation>(
+      sheet, material, std::move(state), share * time_step_limits(sheet, material, 0.3).combined,
+      Fracture(sheet, material, 3.05, BehindTipToughening{8. * sheets::spacing, 1000.}, F));
+    simulation->cut(sheets::middle_row(sheet, 6, 8));
+  }
+  std::unique_ptr<Simulation> simulation;
+};
+
+// Without noise a crack is its own mirror image to the last bit, with the long bonds, too, and breaks some of them; its
+// ledger closes.
+TEST(ThirdShell, CrackStaysSymmetricAndItsLedgerCloses)
+{
+  const TriangularLattice sheet(sheets::spacing, 45. * sheets::spacing, 26. * sheets::spacing,
+                                Orientation::rows_along_crack);
+  const Material material = sheets::rubber_of_three_shells();
+  Crack crack(sheet, material, 0., 0.5);
+  std::map<std::size_t, std::size_t> broken; // by shell
+  for (int step = 0; step < 4000; ++step)
+    for (const BrokenBond &bond : crack.simulation->step())
+      ++broken[shell_of(bond.kind)];
+  for (std::size_t shell = 0; shell < n_shells; ++shell)
+    EXPECT_GT(broken[shell], 10u) << shell;
+  const State &state = crack.simulation->state();
+  for (std::size_t row = 0; row < sheet.rows(); ++row)
+    for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
+    {
+      const std::size_t place = sheet.index(row, column), mirror = sheet.index(sheet.rows() - 1 - row, column);
+      ASSERT_EQ(state.x[place], state.x[mirror]);
+      ASSERT_EQ(state.y[place], -state.y[mirror]);
+    }
+  const EnergyBalance e = crack.simulation->energies();
+  EXPECT_GT(e.viscous, 1e-3 * e.initial);
+  EXPECT_GT(e.broken, 1e-3 * e.initial);
+  EXPECT_LT(std::abs(e.imbalance()), 1e-6 * e.initial);
+}
+
+} // namespace

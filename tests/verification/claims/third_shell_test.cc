@@ -1,0 +1,164 @@
+// Claims on lattices with third-nearest neighbours, and faults of these bonds that make claims fail.
+#include <gtest/gtest.h>
+
+#include "tests/verification/claims/faults.h"
+#include "verification/claims/claim_inputs.h"
+#include "verification/claims/energy/energy_claim.h"
+#include "verification/claims/intrinsic_length/dispersion.h"
+#include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
+#include "verification/claims/prestretch/prestretch_claim.h"
+
+using namespace latcon;
+
+namespace
+{
+
+using namespace bridge;
+using namespace claims;
+using namespace input;
+using namespace output;
+
+Case with_third_shell(lattice::Orientation orientation = lattice::Orientation::rows_along_crack)
+{
+  Case input = subjects::paper_case();
+  input.orientation = orientation;
+  input.has_third_nearest = true;
+  input.third_nearest = {ShellCase::Law::mooney_rivlin, 1e5, 1.5e5, 1., 2. / 3., 100.};
+  return input;
+}
+
+constexpr unsigned int samples = 50;
+
+PrestretchOptions small_sheet()
+{
+  PrestretchOptions options;
+  options.length = 24.;
+  options.height = 16.;
+  options.cells_x = 4;
+  options.cells_y = 3;
+  return options;
+}
+
+IntrinsicLengthOptions few_angles()
+{
+  IntrinsicLengthOptions options;
+  options.angle_step = 30.;
+  return options;
+}
+
+void expect_none_fails(const Results &results)
+{
+  for (const Result &row : results.rows())
+    EXPECT_TRUE(row.verdict() != Verdict::fails) << row.quantity;
+}
+
+TEST(ThirdShell, EnergyAndPrestretchHoldInBothOrientations)
+{
+  for (const auto &[orientation, has_next_nearest] :
+       {std::pair(lattice::Orientation::rows_along_crack, true), {lattice::Orientation::rows_across_crack, false}})
+  {
+    Case input = with_third_shell(orientation);
+    input.has_next_nearest = has_next_nearest;
+    const Subject three = subject(input);
+    EXPECT_EQ(three.name, has_next_nearest ? "NN+NNN+3NN" : "NN+3NN");
+    EXPECT_EQ(three.material.coordination(), has_next_nearest ? 18u : 12u);
+    expect_none_fails(energy_claim(three, samples));
+    expect_none_fails(prestretch_claim(three, small_sheet()));
+  }
+}
+
+// The table after theory-comparison.md, eq. (W.2), with two digits more, and (C.26).
+TEST(ThirdShell, HasTheKnownDispersionAndLength)
+{
+  const Case input = with_third_shell();
+  const auto check = [&](double degrees, double longitudinal, double shear)
+  {
+    const Eigen::Vector2d N(std::cos(degrees * M_PI / 180.), std::sin(degrees * M_PI / 180.));
+    const Alpha alpha = lattice_alpha(input.lattice(), input.material(), Eigen::Matrix2d::Identity(), N);
+    EXPECT_NEAR(alpha[0], longitudinal, 5e-6);
+    EXPECT_NEAR(alpha[1], shear, 5e-6);
+  };
+  check(0., 0.21392, 0.10825);
+  check(30., 0.20275, 0.14175);
+  const Subject three = subject(input);
+  EXPECT_NEAR(three.lengths.lattice, input.spacing / std::sqrt(3.), 1e-15);
+  EXPECT_NEAR(three.theory.shear_modulus, 2. / 3. * 9. / 8. * (3. + std::sqrt(3.)) * 2.5e5, 1e-3);
+}
+
+// Claims see the entries of the shell, and another lattice with other ones.
+TEST(ThirdShell, IsAmongTheInputsOfClaims)
+{
+  Case input = with_third_shell();
+  input.third_nearest.area_factor = 0.37;
+  const Case read = claim_inputs(input);
+  EXPECT_TRUE(read.has_third_nearest);
+  EXPECT_EQ(read.third_nearest.area_factor, 0.37);
+  EXPECT_EQ(read.material().third_nearest->viscosity, 100.);
+  const std::string text = claim_inputs_text(input);
+  input.third_nearest.viscosity = 101.;
+  EXPECT_NE(claim_inputs_text(input), text);
+  input.has_third_nearest = false;
+  EXPECT_FALSE(claim_inputs(input).material().third_nearest);
+}
+
+TEST(ThirdShell, IntrinsicLengthHolds)
+{
+  expect_none_fails(intrinsic_length_claim(subject(with_third_shell()), few_angles()).results);
+}
+
+using faults::Fault;
+
+// The laws of the continuum with other bonds of the third shell than the lattice has.
+template <class Change>
+void replace_third(Subject &wrong, const Change &change)
+{
+  const lattice::TriangularLattice sheet(wrong.spacing, 10. * wrong.spacing, 10. * wrong.spacing, wrong.orientation);
+  std::vector<continuum::BondFamily> bonds = bond_families(sheet, wrong.material);
+  change(bonds);
+  std::vector<continuum::FibreFamily> fibres;
+  for (const continuum::BondFamily &bond : bonds)
+    fibres.push_back(bond.fibre);
+  wrong.cauchy_born = continuum::CauchyBorn(fibres);
+  wrong.lattice_gradient = std::make_shared<continuum::LatticeGradient>(bonds, wrong.lengths.lattice);
+}
+
+class ThirdShellFault : public testing::TestWithParam<Fault>
+{
+};
+INSTANTIATE_TEST_SUITE_P(
+  Claims, ThirdShellFault,
+  testing::Values(Fault{"1 % more cross-section", [](Subject &s) { s.material.third_nearest->area_factor *= 1.01; }},
+                  Fault{"no such bonds in the lattice", [](Subject &s) { s.material.third_nearest.reset(); }},
+                  Fault{"one direction missing in the continuum",
+                        [](Subject &s) { replace_third(s, [](auto &bonds) { bonds.pop_back(); }); }},
+                  Fault{"sqrt3 d in place of 2 d in the weights", [](Subject &s)
+                        {
+                          replace_third(s,
+                                        [](auto &bonds)
+                                        {
+                                          for (std::size_t i = 6; i < bonds.size(); ++i)
+                                            bonds[i].fibre.weight *= std::sqrt(3.) / 2.;
+                                        });
+                        }}));
+
+TEST_P(ThirdShellFault, FailsTheClaims)
+{
+  Subject wrong = subject(with_third_shell());
+  GetParam().plant(wrong);
+  EXPECT_EQ(energy_claim(wrong, samples).verdict(), Verdict::fails);
+  EXPECT_EQ(prestretch_claim(wrong, small_sheet()).verdict(), Verdict::fails);
+}
+
+TEST(ThirdShell, WrongLengthInTheGradientEnergyFailsTheIntrinsicLength)
+{
+  Subject wrong = subject(with_third_shell());
+  replace_third(wrong,
+                [&](auto &bonds)
+                {
+                  for (std::size_t i = 6; i < bonds.size(); ++i)
+                    bonds[i].length *= std::sqrt(3.) / 2.;
+                });
+  EXPECT_EQ(intrinsic_length_claim(wrong, few_angles()).results.verdict(), Verdict::fails);
+}
+
+} // namespace
