@@ -5,7 +5,8 @@
 
 namespace latcon::continuum
 {
-/// Gradient energy and micro-inertia of a sheet in motion with damage (theory-damage.md, eqs. (C.75) to (C.81)).
+/// Gradient energy and micro-inertia of a sheet in motion with damage (theory-damage.md, eqs. (C.75) to (C.81)); waves
+/// on it obey (C.82).
 struct GradientSetup
 {
   /// Bonds whose gradient energy it is, with weights as in FibreForces.
