@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """latcon study --shard and --collect, and latcon batch: files, exit codes, signals, and a job array of a real Slurm.
 
-Usage: shards_test.py PATH_OF_LATCON [--full]     --full: also in a real Slurm, half a minute
+Usage: shards_test.py PATH_OF_LATCON [--full]     --full: also in a real Slurm, and with claims that are checked
 """
 import copy
 import functools
@@ -70,6 +70,7 @@ class Shards(TemporaryFolder):
         self.assertEqual(result(self.out), undisturbed())
         self.assertTrue((self.out / "study.html").exists())
 
+    @unittest.skipUnless(FULL, "in full only")
     def test_runs_side_by_side_verify_a_rubber_once(self):
         document = dict(TINY, runs={"base": {"seeds": [1, 2]}}, claims=[dict(TINY["claims"][0], rows=TINY["claims"][0]["rows"][:1])])
         study = str(self.write_study(document))
