@@ -211,7 +211,8 @@ private:
     else
       add_missing(rows, "network", network);
 
-    // The gradient energy spreads the stretch about a tip over l_d, which is no longer than half a spacing.
+    // The gradient energy spreads the stretch about a tip over l_d, which is no longer than the distance by which
+    // "local-moved" moves the tip.
     const CutResult *gradient = find("network-gradient", study_.sizes.back());
     const std::string name = "network with its gradient energy: displacement";
     const double of_tip = is_hole_ ? 0. : distance_from_local("local-moved", &CutDistance::displacement);

@@ -177,7 +177,9 @@ std::vector<CutResult> compare_sizes(const bridge::Subject &subject, const CutSt
     {
       bridge::EquivalentSheet moved = domain;
       const bool is_hole = std::holds_alternative<lattice::RoundHole>(sheet.cutout);
-      moved.cut -= is_hole ? bridge::rim_recession(lattice.lattice, subject.material) : 0.5 * d;
+      moved.cut -= is_hole                          ? bridge::rim_recession(lattice.lattice, subject.material)
+                   : subject.material.third_nearest ? subject.lengths.lattice
+                                                    : 0.5 * d;
       add("local-moved", local, moved);
       const continuum::CauchyBorn turned_law =
         turned(subject.cauchy_born, bridge::lattice_rotation(bridge::n_lattice_rotations / 2));
