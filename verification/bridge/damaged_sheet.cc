@@ -2,7 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <tuple>
+#include <sstream>
+#include <utility>
 
 #include "lattice/counter_hash.h"
 #include "verification/bridge/lattice_sheet.h"
@@ -31,21 +32,33 @@ continuum::Rectangle rectangle(const input::Case &input, const continuum::Damage
   return {sheet.length(), sheet.height(), cells_x, 2 * pairs + 1};
 }
 
-continuum::DamageMotionSetup setup(const input::Case &input, const Subject &subject, const continuum::DamageLaw &law)
+// Fibres and dashpots of the sheet: those of the lattice, or the same in all directions.
+std::vector<continuum::FibreFamily> families(const input::Case &input, const Subject &subject)
 {
-  const continuum::Rectangle sheet = rectangle(input, law);
+  const std::vector<continuum::FibreFamily> &of_lattice = subject.cauchy_born.families();
+  return input.continuum.law == input::ContinuumLaw::mooney_rivlin_network
+           ? continuum::in_all_directions(of_lattice, n_directions)
+           : of_lattice;
+}
+
+std::vector<continuum::FibreDashpot> dashpots(const input::Case &input, const Subject &subject)
+{
+  const auto viscosity = homogenised_viscosity(input.lattice(), subject.material);
+  if (!viscosity)
+    return {};
+  const std::vector<continuum::FibreDashpot> &of_lattice =
+    dynamic_cast<const continuum::FibreViscosity &>(*viscosity).dashpots();
+  return input.continuum.law == input::ContinuumLaw::mooney_rivlin_network
+           ? continuum::in_all_directions(of_lattice, n_directions)
+           : of_lattice;
+}
+
+continuum::DamageMotionSetup setup(const input::Case &input, const Subject &subject, const continuum::DamageLaw &law,
+                                   const continuum::Rectangle &sheet, const double step)
+{
   const continuum::NodeGrid grid(sheet);
-  std::vector<continuum::FibreFamily> families = subject.cauchy_born.families();
-  std::vector<continuum::FibreDashpot> dashpots;
-  if (const auto viscosity = homogenised_viscosity(input.lattice(), subject.material))
-    dashpots = dynamic_cast<const continuum::FibreViscosity &>(*viscosity).dashpots();
-  if (input.continuum.law == input::ContinuumLaw::mooney_rivlin_network)
-  {
-    families = continuum::in_all_directions(families, n_directions);
-    dashpots = continuum::in_all_directions(dashpots, n_directions);
-  }
-  continuum::DamageMotionSetup setup{
-    sheet, to_continuum(input.deformation()), families, dashpots, input.density, law, {}, {}, 0.};
+  continuum::DamageMotionSetup setup{sheet, to_continuum(input.deformation()), families(input, subject),
+                                     dashpots(input, subject), input.density, law, {}, {}, step};
   const double length = sheet.length, top = 0.5 * sheet.height;
   // Distance from the nearest edge.
   const auto inside = [length, top](const Point<2> &X)
@@ -60,14 +73,6 @@ continuum::DamageMotionSetup setup(const input::Case &input, const Subject &subj
       bonds = continuum::in_all_directions(bonds, n_directions);
     setup.gradient =
       continuum::GradientSetup{bonds, input.continuum.inertia_length.value_or(subject.lengths.lattice), true};
-  }
-  if (input.continuum.time_step)
-    setup.step = *input.continuum.time_step;
-  else
-  {
-    continuum::DamageMotionSetup probe = setup;
-    probe.step = 1e-3 / continuum::FibreForces(grid, families, dashpots, setup.loading).elastic_frequency(input.density);
-    setup.step = 0.5 * continuum::DamageMotion(probe).stable_step();
   }
   return setup;
 }
@@ -93,9 +98,45 @@ double cell_size(const input::Case &input, const continuum::DamageLaw &law)
   return law.length / input.continuum.damage_cells;
 }
 
-double damage_time_step(const input::Case &input, const Subject &subject, const continuum::DamageLaw &law)
+double stored_energy(const input::Case &input, const Subject &subject)
 {
-  return setup(input, subject, law).step;
+  return continuum::CauchyBorn(families(input, subject)).energy(to_continuum(input.deformation()));
+}
+
+double damage_time_step(const input::Case &input, const Subject &subject, const continuum::DamageLaw &law,
+                        input::Parameters &parameters)
+{
+  // The limits of a step depend on the cells, not on their number: three by three have an inner node and take no memory.
+  const continuum::Rectangle sheet = rectangle(input, law);
+  const continuum::Rectangle piece{3. * sheet.length / sheet.cells_x, 3. * sheet.height / sheet.cells_y, 3, 3};
+  continuum::DamageMotionSetup probe = setup(input, subject, law, piece, 0.);
+  probe.step =
+    1e-3 / continuum::FibreForces(continuum::NodeGrid(piece), probe.families, probe.dashpots, probe.loading)
+             .elastic_frequency(input.density);
+  double stable = 0.;
+  try
+  {
+    stable = continuum::DamageMotion(probe).stable_step();
+  }
+  catch (const continuum::InvalidInput &error)
+  {
+    // The step is short, and other entries have been checked.
+    parameters.error(probe.gradient ? "Continuum/inertia length" : "Damage/cells per length", error.what(),
+                     {"Damage/length"});
+    return input.continuum.time_step.value_or(probe.step);
+  }
+  probe.step = input.continuum.time_step.value_or(0.5 * stable);
+  try
+  {
+    (void)continuum::DamageMotion(probe);
+  }
+  catch (const continuum::InvalidInput &error)
+  {
+    std::ostringstream text;
+    text << error.what() << "; the longest explicit step of the loaded sheet without viscosity is " << stable << " s";
+    parameters.error("Continuum/time step", text.str(), {"Damage/length", "Damage/cells per length"});
+  }
+  return probe.step;
 }
 
 SeedSegment seed_segment(const input::Case &input, const continuum::NodeGrid &grid)
@@ -111,9 +152,9 @@ SeedSegment seed_segment(const input::Case &input, const continuum::NodeGrid &gr
 }
 
 continuum::DamageMotion damaged_sheet(const input::Case &input, const Subject &subject,
-                                      const continuum::DamageLaw &law)
+                                      const continuum::DamageLaw &law, const double step)
 {
-  continuum::DamageMotion motion(setup(input, subject, law));
+  continuum::DamageMotion motion(setup(input, subject, law, rectangle(input, law), step));
   const continuum::NodeGrid &grid = motion.grid();
   const SeedSegment seed = seed_segment(input, grid);
   motion.set_damage(
@@ -158,15 +199,23 @@ void require_damaged_sheet(const input::Case &input, input::Parameters &p)
             {"Continuum/law"});
   if (!c.mesh_file.empty())
     p.error("Continuum/mesh file", command + " makes its own mesh; omit the entry");
-  for (const auto &[shell, section, is_there] :
-       {std::tuple(&input.nearest, std::string("Nearest neighbours"), true),
-        std::tuple(&input.next_nearest, std::string("Next-nearest neighbours"), input.has_next_nearest)})
+  for (std::size_t number = 0; number < lattice::n_shells; ++number)
   {
-    if (is_there && shell->has_user_law())
+    if (!input.has_shell(number))
+      continue;
+    const std::string section = input::Case::shell_sections[number];
+    if (input.shell(number).has_user_law())
       p.error(section + "/law", command + " supports mooney-rivlin and linear");
-    if (is_there && !shell->branch_moduli.empty())
+    if (!input.shell(number).branch_moduli.empty())
       p.error(section + "/branch moduli", command + " does not support bonds with memory; give none");
   }
+  for (const auto &[field, name] : {std::pair(&c.body_force, std::string("Body force/force")),
+                                    std::pair(&c.initial_displacement, std::string("Initial state/displacement")),
+                                    std::pair(&c.initial_velocity, std::string("Initial state/velocity"))})
+    if (!field->is_zero())
+      p.error(name + " " + field->given(), command + " does not support it; give 0");
+  if (c.initial_base != input::ContinuumCase::Base::loading)
+    p.error("Initial state/base", command + " starts from the homogeneous loading; give loading");
   if (input.disorder.strength.kind != lattice::Distribution::Kind::none)
     p.error("Disorder/strength", command + " does not support disorder; give none");
   if (input.disorder.stiffness.kind != lattice::Distribution::Kind::none)

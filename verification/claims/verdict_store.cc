@@ -153,7 +153,8 @@ output::Result row(const Json &entry)
 
 VerdictKey::VerdictKey(std::string inputs) : text(std::move(inputs)), hash(input::sha256(text)) {}
 
-VerdictKey verdict_key(const input::Case &input, const std::vector<Claim> &claims, bool quick, unsigned int n_ranks)
+VerdictKey verdict_key(const input::Case &input, const std::vector<Claim> &claims, const bridge::Laws &laws, bool quick,
+                       unsigned int n_ranks)
 {
   std::string text = "program=" + output::program_hash() + "\nlibraries=" + hash_of_libraries() + "\n";
   std::vector<std::string> entries;
@@ -162,7 +163,10 @@ VerdictKey verdict_key(const input::Case &input, const std::vector<Claim> &claim
     text += "claim=" + claim.name + "\n";
     entries.insert(entries.end(), claim.entries.begin(), claim.entries.end());
   }
-  text += std::string("quick=") + (quick ? "true" : "false") + "\nranks=" + std::to_string(n_ranks) + "\n";
+  text += "laws="; // they decide which rows can fail
+  for (const bridge::Law law : laws)
+    text += std::to_string(static_cast<int>(law)) + ",";
+  text += std::string("\nquick=") + (quick ? "true" : "false") + "\nranks=" + std::to_string(n_ranks) + "\n";
   return VerdictKey(text + claim_inputs_text(input, entries));
 }
 

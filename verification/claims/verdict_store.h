@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "support/folder_lock.h"
+#include "verification/bridge/laws.h"
 #include "verification/claims/claim.h"
 #include "verification/claims/claim_outcome.h"
 #include "verification/input/case.h"
@@ -28,10 +29,10 @@ struct VerdictKey
 };
 
 /// Returns the key of a check: hash of the running program, shared libraries (name and build ID), claims and their
-/// size, number of MPI ranks, and the entries that the claims read.
+/// size, laws that are judged, number of MPI ranks, and the entries that the claims read.
 /// @throws std::runtime_error if the program cannot read itself
-[[nodiscard]] VerdictKey verdict_key(const input::Case &input, const std::vector<Claim> &claims, bool quick,
-                                     unsigned int n_ranks);
+[[nodiscard]] VerdictKey verdict_key(const input::Case &input, const std::vector<Claim> &claims,
+                                     const bridge::Laws &laws, bool quick, unsigned int n_ranks);
 
 /// A complete check.
 struct Verdicts

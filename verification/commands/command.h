@@ -214,9 +214,10 @@ claims::ClaimOutcome run_claims(const input::Case &input, const std::vector<clai
 /// Checks the claims, in their small versions, on the case's own material, shells and pre-stretch, or reuses the
 /// verdicts cached for exactly these inputs and this program. Reports which of the two, in words and in run.json, and
 /// writes the tables. Collective; all ranks return the same.
-/// @param claims those that the crack depends on
+/// @param claims those that the crack depends on @param laws that are judged; rows about others are reported
 /// @return the rows, at least one of them checked and none failing
 /// @throws ClaimFailed that names the rows which fail, if any; results.json and run.json are then written
-output::Results require_verified(const input::Case &input, const std::vector<claims::Claim> &claims, Run &run);
+output::Results require_verified(const input::Case &input, const std::vector<claims::Claim> &claims,
+                                 const bridge::Laws &laws, Run &run);
 
 } // namespace latcon::commands

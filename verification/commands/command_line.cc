@@ -241,7 +241,8 @@ support::ExitCode run_program(int argc, char **argv)
     subcommand->callback(
       [&command, &options, default_folder, suffix, run]
       {
-        default_folder(std::filesystem::path(options.case_file).stem().string() + suffix);
+        default_folder(std::filesystem::path(options.case_file).stem().string() + suffix +
+                       (options.on_continuum ? "-continuum-crack" : ""));
         command = [&options, run] { return run(options); };
       });
     return subcommand;

@@ -63,11 +63,11 @@ output::Results measured_results(const input::Case &input, const analysis::Crack
 }
 
 output::Results passed_or_reported(const input::Case &input, const std::vector<claims::Claim> &claims,
-                                   const input::Options &options, Run &run)
+                                   const bridge::Laws &laws, const input::Options &options, Run &run)
 {
   try
   {
-    return require_verified(input, claims, run);
+    return require_verified(input, claims, laws, run);
   }
   catch (const support::ClaimFailed &)
   {

@@ -26,7 +26,7 @@ output::Results measured_results(const input::Case &input, const analysis::Crack
 /// Checks claims on the case's own material and pre-stretch, as require_verified(). A crack that they refuse leaves its
 /// page all the same.
 output::Results passed_or_reported(const input::Case &input, const std::vector<claims::Claim> &claims,
-                                   const input::Options &options, Run &run);
+                                   const bridge::Laws &laws, const input::Options &options, Run &run);
 
 /// Ends the run of a crack: writes its results, prints its summary, draws its page. Collective. @return the exit code
 /// of the command

@@ -33,14 +33,14 @@ std::string unused(const std::string &path, const std::string &reason)
   return path + " is not used: " + reason;
 }
 
-Stored look_up(const input::Case &input, const std::vector<claims::Claim> &required,
+Stored look_up(const input::Case &input, const std::vector<claims::Claim> &required, const bridge::Laws &laws,
                const std::optional<std::string> &folder)
 {
   Stored stored;
   try
   {
-    const claims::VerdictKey key = claims::verdict_key(input, required, quick,
-                                                       dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD));
+    const claims::VerdictKey key = claims::verdict_key(
+      input, required, laws, quick, dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD));
     stored.key = key.text;
     if (!folder)
       stored.note = "neither XDG_CACHE_HOME nor HOME is set: no verdicts are kept";
@@ -68,10 +68,10 @@ Stored look_up(const input::Case &input, const std::vector<claims::Claim> &requi
 }
 
 // Returns the same on all ranks.
-Stored look_up_on_root_rank(const input::Case &input, const std::vector<claims::Claim> &required, const Run &run,
-                            const std::optional<std::string> &folder)
+Stored look_up_on_root_rank(const input::Case &input, const std::vector<claims::Claim> &required,
+                            const bridge::Laws &laws, const Run &run, const std::optional<std::string> &folder)
 {
-  Stored stored = run.is_root() ? look_up(input, required, folder) : Stored();
+  Stored stored = run.is_root() ? look_up(input, required, laws, folder) : Stored();
   const auto shared = [](const std::string &text) { return dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, text); };
   return {shared(stored.key), shared(stored.text), shared(stored.note), std::move(stored.turn)};
 }
@@ -83,11 +83,12 @@ void append(std::string &note, const std::string &more)
 
 } // namespace
 
-output::Results require_verified(const input::Case &input, const std::vector<claims::Claim> &required, Run &run)
+output::Results require_verified(const input::Case &input, const std::vector<claims::Claim> &required,
+                                 const bridge::Laws &laws, Run &run)
 {
   const auto phase = run.info().stopwatch().phase("claims");
   const std::optional<std::string> folder = claims::VerdictStore::folder_of_user();
-  Stored stored = look_up_on_root_rank(input, required, run, folder);
+  Stored stored = look_up_on_root_rank(input, required, laws, run, folder);
   const claims::VerdictKey key(stored.key);
   const std::string path = folder ? claims::VerdictStore(*folder).path(key) : "";
 
@@ -113,8 +114,7 @@ output::Results require_verified(const input::Case &input, const std::vector<cla
   bool kept = false;
   if (!reused)
   {
-    verdicts.emplace(run_claims(input, required, quick, Shells::own,
-                                bridge::laws_of_lattice())); // bonds break, no finite elements
+    verdicts.emplace(run_claims(input, required, quick, Shells::own, laws));
     if (run.is_root() && folder && !key.text.empty())
       try
       {

@@ -7,6 +7,8 @@
 #include <map>
 #include <sstream>
 
+#include <nlohmann/json.hpp>
+
 #include "support/errors.h"
 #include "verification/input/case.h"
 #include "verification/input/input_file.h"
@@ -25,6 +27,7 @@ struct CrackRun
   std::map<std::string, std::string> entries; // as a case file would hold them
   std::map<std::string, std::string> units;   // of the entries
   double spacing = 0.;                        // [m]
+  std::string side;                           // that broke
 };
 
 std::string text_of(const std::string &path)
@@ -101,6 +104,9 @@ CrackRun read_run(const std::string &directory)
     throw support::InputError(
       directory + ": its crack was not measured; crack.json or run.json is damaged, or the run " + "has not ended");
   run.path = read_path(directory + "/crack.csv");
+  // Cracks of the lattice do not name their side.
+  const auto crack = nlohmann::json::parse(text_of(directory + "/crack.json"), nullptr, false);
+  run.side = crack.is_object() ? crack.value("side", "lattice") : "lattice";
   return run;
 }
 
@@ -186,6 +192,8 @@ RunComparison compare_runs(const std::string &first, const std::string &second)
   RunComparison comparison;
   comparison.first = first;
   comparison.second = second;
+  comparison.first_side = one.side;
+  comparison.second_side = other.side;
   comparison.first_pattern = one.outcome.pattern;
   comparison.second_pattern = other.outcome.pattern;
   comparison.spacing = one.spacing;

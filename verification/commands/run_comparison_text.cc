@@ -66,6 +66,8 @@ std::string csv_of(const std::optional<double> &value)
 std::string RunComparison::text() const
 {
   std::vector<Row> rows{{"quantity", first, second, "difference", "/ uncertainty"}};
+  if (first_side != second_side)
+    rows.push_back({"side", first_side, second_side, "differs", ""});
   rows.push_back({"pattern", first_pattern, second_pattern, first_pattern == second_pattern ? "none" : "differs", ""});
   for (const QuantityPair &pair : quantities)
     rows.push_back({pair.name, cell(pair.first, pair.first_uncertainty, pair.unit),
@@ -97,6 +99,7 @@ std::string RunComparison::json(const std::string &output_directory) const
   { return fs::canonical(run).lexically_proximate(fs::canonical(output_directory)).string(); };
   Json document{
     {"first", first}, {"second", second}, {"first_folder", folder(first)}, {"second_folder", folder(second)}};
+  document["side"] = {{"first", first_side}, {"second", second_side}};
   document["pattern"] = {{"first", first_pattern}, {"second", second_pattern}};
   document["quantities"] = Json::array();
   for (const QuantityPair &pair : quantities)

@@ -414,7 +414,7 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
   if (verification == study::Verification::base_case && !chosen.collect)
   {
     const input::Case base = study::base_case(results.study, requested.base, requested.settings);
-    (void)require_verified(base, claims_before_fracture(base.material()), run);
+    (void)require_verified(base, claims_before_fracture(base.material()), bridge::laws_of_lattice(), run);
   }
   const bool complete =
     chosen.collect || (run_children(results, selection, skip_verification, n_cores, run) &&

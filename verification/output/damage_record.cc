@@ -127,25 +127,25 @@ void DamageRecord::write_measurement(const std::filesystem::path &directory,
 {
   nlohmann::ordered_json json = crack_json(measurement);
   const analysis::CrackMeasurementOptions options;
-  if (const std::optional<analysis::ContourMeasurement> contour =
-        analysis::measure_contour(analysis::contour(image(), seed_tip_), measurement.X_begin, measurement.X_end,
-                                  input_.spacing, options.min_wavelength))
+  const std::optional<analysis::ContourMeasurement> contour =
+    analysis::measure_contour(analysis::contour(image(), seed_tip_), measurement.X_begin, measurement.X_end,
+                              input_.spacing, options.min_wavelength);
+  using Json = nlohmann::ordered_json;
+  json["width"] = contour ? Json(contour->mean_width) : Json(nullptr);
+  json["width_rms"] = contour ? Json(contour->rms_width) : Json(nullptr);
+  json["centre_rms"] = contour ? Json(contour->rms_centre) : Json(nullptr);
+  json["several_strands"] = contour ? Json(contour->several_strands) : Json(nullptr);
+  const auto put = [&](const std::string &line, std::optional<analysis::SinusoidFit> analysis::ContourMeasurement::*fit)
   {
-    json["width"] = contour->mean_width;
-    json["width_rms"] = contour->rms_width;
-    json["centre_rms"] = contour->rms_centre;
-    json["several_strands"] = contour->several_strands;
-    const auto put = [&json](const std::string &line, const std::optional<analysis::SinusoidFit> &fit)
-    {
-      json[line + "_wavelength"] = fit ? nlohmann::ordered_json(fit->wavelength.value) : nullptr;
-      json[line + "_amplitude"] = fit ? nlohmann::ordered_json(fit->amplitude.value) : nullptr;
-      json[line + "_log_evidence"] = fit ? nlohmann::ordered_json(fit->log_evidence) : nullptr;
-    };
-    put("centre", contour->centre);
-    put("lower_edge", contour->lower);
-    put("upper_edge", contour->upper);
-    put("width", contour->width);
-  }
+    const std::optional<analysis::SinusoidFit> found = contour ? (*contour).*fit : std::nullopt;
+    json[line + "_wavelength"] = found ? Json(found->wavelength.value) : Json(nullptr);
+    json[line + "_amplitude"] = found ? Json(found->amplitude.value) : Json(nullptr);
+    json[line + "_log_evidence"] = found ? Json(found->log_evidence) : Json(nullptr);
+  };
+  put("centre", &analysis::ContourMeasurement::centre);
+  put("lower_edge", &analysis::ContourMeasurement::lower);
+  put("upper_edge", &analysis::ContourMeasurement::upper);
+  put("width", &analysis::ContourMeasurement::width);
   json["side"] = "continuum";
   json["end_time"] = motion_.time();
   json["energy_imbalance"] = largest_imbalance();

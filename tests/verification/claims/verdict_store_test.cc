@@ -67,23 +67,25 @@ TEST(Sha256, HasTheKnownValues)
 TEST(VerdictKey, IsThatOfProgramClaimsSizeRanksAndInputs)
 {
   const Case input = some_case();
-  const std::string hash = claims::verdict_key(input, {named("energy")}, true, 1).hash;
+  const bridge::Laws lattice_laws = bridge::laws_of_lattice();
+  const std::string hash = claims::verdict_key(input, {named("energy")}, lattice_laws, true, 1).hash;
   EXPECT_EQ(hash.size(), 64u);
-  EXPECT_EQ(claims::verdict_key(input, {named("energy")}, true, 1).hash, hash);
-  EXPECT_NE(claims::verdict_key(input, {named("energy"), named("prestretch")}, true, 1).hash, hash);
-  EXPECT_NE(claims::verdict_key(input, {named("energy")}, false, 1).hash, hash);
-  EXPECT_NE(claims::verdict_key(input, {named("energy")}, true, 2).hash, hash);
+  EXPECT_EQ(claims::verdict_key(input, {named("energy")}, lattice_laws, true, 1).hash, hash);
+  EXPECT_NE(claims::verdict_key(input, {named("energy"), named("prestretch")}, lattice_laws, true, 1).hash, hash);
+  EXPECT_NE(claims::verdict_key(input, {named("energy")}, lattice_laws, false, 1).hash, hash);
+  EXPECT_NE(claims::verdict_key(input, {named("energy")}, lattice_laws, true, 2).hash, hash);
+  EXPECT_NE(claims::verdict_key(input, {named("energy")}, bridge::all_laws(), true, 1).hash, hash);
   Case other = input;
   other.nearest.viscosity = 1e-300;
-  EXPECT_NE(claims::verdict_key(other, {named("energy")}, true, 1).hash, hash);
+  EXPECT_NE(claims::verdict_key(other, {named("energy")}, lattice_laws, true, 1).hash, hash);
   // Entries that a claim declares are inputs as well.
   claims::Claim reads_seed = named("energy");
   reads_seed.entries = {"Lattice/noise seed"};
   const std::string seed = "Lattice/noise seed=";
-  EXPECT_NE(claims::verdict_key(input, {reads_seed}, true, 1).text.find(seed), std::string::npos);
-  EXPECT_EQ(claims::verdict_key(input, {named("energy")}, true, 1).text.find(seed), std::string::npos);
+  EXPECT_NE(claims::verdict_key(input, {reads_seed}, lattice_laws, true, 1).text.find(seed), std::string::npos);
+  EXPECT_EQ(claims::verdict_key(input, {named("energy")}, lattice_laws, true, 1).text.find(seed), std::string::npos);
   // The program is the one that runs.
-  EXPECT_NE(claims::verdict_key(input, {}, true, 1).text.find("program=" + sha256(content_of("/proc/self/exe"))),
+  EXPECT_NE(claims::verdict_key(input, {}, lattice_laws, true, 1).text.find("program=" + sha256(content_of("/proc/self/exe"))),
             std::string::npos);
 }
 
@@ -214,7 +216,7 @@ TEST_F(Environment, SaysWhereTheStoreIs)
 
 TEST(VerdictStore, TakesNoTableThatLeavesItsFolder)
 {
-  const VerdictKey key = claims::verdict_key(some_case(), {named("energy")}, true, 1);
+  const VerdictKey key = claims::verdict_key(some_case(), {named("energy")}, bridge::laws_of_lattice(), true, 1);
   for (const char *name : {"../../planted", "/tmp/planted", ""})
   {
     Verdicts verdicts = some_verdicts();
