@@ -23,7 +23,7 @@ from program import CASES, LATCON, TemporaryFolder, frames, latcon, latcon_on_ra
 SHEET = {"Sheet/spacing": "1 mm", "Sheet/length": "30 mm", "Sheet/height": "16 mm", "Damage/length": "0.5 mm",
          "Damage/cells per length": 1, "Damage/threshold energy": "3.2 MPa", "Nearest neighbours/viscosity": "10 Pa s",
          "Next-nearest neighbours/viscosity": "30 Pa s", "Fracture/seed sites": 8, "Time/end": "3 ms", "Fracture/stop position": 0.8,
-         "Output/frame interval": "0.3 ms", "Checkpoints/steps": 5}
+         "Output/frame interval": "0.3 ms", "Output/energy interval": 10, "Checkpoints/steps": 5}
 BAD_INPUT, OUTPUT_FAILED, INTERRUPTED = 2, 5, 130
 
 
@@ -101,6 +101,13 @@ class ContinuumFracture(TemporaryFolder):
         self.assertEqual(run.returncode, BAD_INPUT)
         self.assertIn("fracture --side continuum", run.stderr)
 
+    def test_resume_without_a_checkpoint_keeps_no_files_of_the_other_side(self):
+        self.run_to_end("--no-report", side="lattice", entries={"Checkpoints/steps": 0, "Checkpoints/interval": 0})
+        self.assertTrue((self.out / "lattice.pvd").exists())
+        self.run_to_end("--no-report", "--resume")
+        self.assertFalse((self.out / "lattice.pvd").exists())
+        self.assertTrue((self.out / "earlier-run" / "lattice.pvd").exists())
+
     def test_bad_input(self):
         for entries, message in (({"Continuum/law": "mooney-rivlin"}, "Continuum/law"),
                                  ({"Continuum/gradient": "network"}, "Continuum/gradient"),
@@ -108,6 +115,16 @@ class ContinuumFracture(TemporaryFolder):
                                  ({"Disorder/strength": "uniform"}, "Disorder/strength"),
                                  ({"Nearest neighbours/branch moduli": "0.1 MPa",
                                    "Nearest neighbours/relaxation times": "1 s"}, "Nearest neighbours/branch moduli"),
+                                 ({"Third-nearest neighbours/present": "true",
+                                   "Third-nearest neighbours/branch moduli": "0.1 MPa",
+                                   "Third-nearest neighbours/relaxation times": "1 s"}, "Third-nearest neighbours/branch moduli"),
+                                 ({"Third-nearest neighbours/present": "true", "Third-nearest neighbours/law": "expression",
+                                   "Third-nearest neighbours/psi": "a*(lam-1)^2"}, "Third-nearest neighbours/law"),
+                                 ({"Body force/force y": "1"}, "Body force/force y"),
+                                 ({"Initial state/velocity x": "1"}, "Initial state/velocity x"),
+                                 ({"Initial state/base": "undeformed"}, "Initial state/base"),
+                                 ({"Continuum/time step": "1 s"}, "Continuum/time step"),
+                                 ({"Continuum/gradient": "lattice", "Continuum/inertia length": "100 m"}, "Continuum/inertia length"),
                                  ({"Damage/threshold energy": "1 MPa"}, "would be damaged everywhere"),
                                  ({"Damage/length": "3 mm"}, "Damage/length"),
                                  ({"Damage/cells per length": 0}, "Damage/cells per length"),
@@ -145,6 +162,12 @@ class ContinuumFracture(TemporaryFolder):
         with open(self.folder / "both" / "compare.csv", newline="") as table:
             speeds = [row for row in csv.reader(table) if row and row[0] == "speed_lagrangian"]
         self.assertEqual(len(speeds), 1)
+        compared = json.loads((self.folder / "both" / "compare.json").read_text())
+        self.assertEqual(compared["side"], {"first": "lattice", "second": "continuum"})
+        for sheets in ((self.out / "continuum.pvd", lattice / "lattice.pvd"), (lattice / "lattice.pvd", self.out / "continuum.pvd")):
+            frame = latcon("compare", *sheets, "--output-dir", self.folder / "frames")
+            self.assertEqual(frame.returncode, BAD_INPUT)
+            self.assertIn("cannot be compared site by site", frame.stderr)
 
 
 if __name__ == "__main__":
