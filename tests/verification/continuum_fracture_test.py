@@ -137,6 +137,14 @@ class ContinuumFracture(TemporaryFolder):
                 self.assertFalse(self.out.exists())
         self.assertEqual(latcon(*command(self.out), "--side", "both").returncode, BAD_INPUT)
 
+    def test_threshold_is_compared_with_the_energy_of_the_law(self):
+        # A lattice of nearest neighbours alone stores more at these strains than its network, 0.717 MPa.
+        nearest = {"Next-nearest neighbours/present": "false", "Loading/strain x": 0.2, "Loading/strain y": 2.2,
+                   "Damage/threshold energy": "0.7205 MPa"}
+        for law, code in (("cauchy-born", BAD_INPUT), ("mooney-rivlin-network", 0)):
+            run = latcon(*command(self.out, "--dry-run", entries={**nearest, "Continuum/law": law}))
+            self.assertEqual(run.returncode, code, run.stderr)
+
     def test_ranks(self):
         run = latcon_on_ranks(2, *command(self.out))
         self.assertEqual(run.returncode, BAD_INPUT, run.stderr)
