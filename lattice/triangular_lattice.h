@@ -33,7 +33,7 @@ inline constexpr std::array<const char *, n_shells> shell_names{{"nearest", "nex
 /// the rows). The other half are the same bonds seen from their far ends. Kinds 0 to 2 are nearest neighbours, 3 to 5
 /// next-nearest, 6 to 8 third-nearest.
 inline constexpr std::size_t n_kinds_per_shell = 3;
-inline constexpr std::size_t n_bond_kinds = n_shells * n_kinds_per_shell;
+inline constexpr std::size_t n_bond_kinds = n_shells * n_kinds_per_shell; ///< of all shells
 inline constexpr std::size_t n_nearest_kinds = n_kinds_per_shell; ///< of them nearest neighbours
 
 /// Shell of a kind of bonds.

@@ -8,6 +8,7 @@
 #include "lattice/simulation.h"
 #include "lattice/site_fields.h"
 #include "lattice/time_step.h"
+#include "support/largest_error.h"
 #include "tests/lattice/plane_modes.h"
 #include "tests/lattice/sheets.h"
 
@@ -76,7 +77,7 @@ TEST(ThirdShell, FrequenciesStayBelowTheBoundOfTheTimeStep)
   const Eigen::Matrix2d F = Eigen::Matrix2d::Identity();
   double fastest = 0.;
   for (const std::complex<double> &rate : plane_modes::rates(sheet, undamped, F))
-    fastest = std::max(fastest, std::abs(rate.imag()));
+    fastest = support::largest_of({fastest, std::abs(rate.imag())});
   const double limit = time_step_limits(sheet, undamped, 1.).elastic;
   EXPECT_LT(limit, 2. / fastest);
   EXPECT_GT(limit, 0.5 * 2. / fastest); // and not far below

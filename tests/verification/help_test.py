@@ -88,7 +88,7 @@ class Help(TemporaryFolder):
         self.assertEqual(latcon("help", "toughening").stdout, text)
         self.assertIn("unit:     m;", latcon("help", "near", "tip/ahead").stdout)
         self.assertIn("Sheet/spacing\n", latcon("help", "Sheet/spacing").stdout)
-        self.assertEqual(latcon("help", "viscosity").stdout.count("default:"), 3)  # of two shells and the contact
+        self.assertEqual(latcon("help", "viscosity").stdout.count("default:"), 4)  # of three shells and the contact
         self.assertEqual(latcon("help", "Contact").stdout, latcon("entries", "Contact").stdout)
 
     def test_init_makes_a_case_that_runs(self):

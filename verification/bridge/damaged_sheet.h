@@ -20,6 +20,8 @@ struct SeedSegment
 {
   double left, right, Y;
 };
+
+/// Returns the seed crack of a case on a grid.
 [[nodiscard]] SeedSegment seed_segment(const input::Case &input, const continuum::NodeGrid &grid);
 
 /// Returns the size of a cell that the case asks for [m], xi / n. The cells are those next to it that fill the sheet.

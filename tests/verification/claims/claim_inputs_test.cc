@@ -182,7 +182,7 @@ TEST(ClaimInputs, EveryEntryChangesThemOrIsReadByNoClaim)
     EXPECT_EQ(claims::claim_inputs_text(*changed) == text, unread) << key << " = " << entries(*changed).at(key);
     n_read += unread ? 0 : 1;
   }
-  EXPECT_EQ(n_read, 32u);
+  EXPECT_EQ(n_read, 45u);
   for (const std::string &key : no_claim_reads)
     EXPECT_EQ(entries(input).count(key), 1u) << key;
 }

@@ -78,10 +78,10 @@ TEST(EffectiveMedium, IsThatOfTheTriangularNet)
   }
   const EffectiveMedium all = effective_medium(sheet, input.material(), Distribution(Kind::weibull, 0.1));
   EXPECT_NEAR(sum(all.share), both, 1e-10);
-  for (const double factor : all.factor)
+  for (std::size_t kind = 0; kind < 2 * lattice::n_kinds_per_shell; ++kind) // of both shells
   {
-    EXPECT_LT(factor, 1.);
-    EXPECT_GT(factor, 1. - 0.01);
+    EXPECT_LT(all.factor[kind], 1.);
+    EXPECT_GT(all.factor[kind], 1. - 0.01);
   }
 }
 
