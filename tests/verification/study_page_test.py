@@ -266,7 +266,10 @@ class Maps(MadeUpStudy):
         boxes = [patch.get_bbox().bounds for patch in axes.patches]
         np.testing.assert_allclose(boxes, [(x, y, 1, 100) for x in (0.5, 1.5, 2.5) for y in (50, 150)])
         self.assertEqual([patch.get_facecolor()[:3] for patch in axes.patches],
-                         [to_rgb(phase_map.COLOURS["straight"])] * 2 + [to_rgb(phase_map.COLOURS["oscillating"])] * 4)
+                         [phase_map.shaded("straight")] * 2 + [phase_map.shaded("oscillating")] * 4)
+        self.assertEqual({patch.get_alpha() for patch in axes.patches}, {None})  # opaque: cells of a refinement lie on others
+        lightest = min(to_rgb(phase_map.COLOURS["straight"])), min(phase_map.shaded("straight"))
+        self.assertAlmostEqual(1 - lightest[1], phase_map.SHADE * (1 - lightest[0]))
         self.assertEqual(legend, ["oscillating", "straight", "boundary"])
         self.assertEqual(axes.get_title(loc="left"), "contours: wavelength [cm]")
         self.assertIn("Patterns over Sheet/width and Sheet/depth", caption)

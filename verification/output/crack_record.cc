@@ -167,7 +167,7 @@ void CrackRecord::check_loaded() const
   for (const lattice::BrokenBond &bond : broken_)
   {
     require_order(bond.time, "broken_bonds");
-    require_archived(is_site(bond.near) && is_site(bond.far) && bond.kind < lattice::n_bond_kinds,
+    require_archived(is_site(bond.near) && is_site(bond.far) && bond.kind < simulation_.state().bonds.n_kinds(),
                      "`broken_bonds` contains bonds that the sheet does not have");
   }
 }
