@@ -25,7 +25,7 @@ PARAMETERS = [Parameter("dashpot", 0.1, 1.2, True, "1"),
               Parameter("fast branch", 0.03, 1.0, True, "1"), Parameter("fast time", 1e-5, 1e-4, True, "s"),
               Parameter("slow branch", 0.03, 3.0, True, "1"), Parameter("slow time", 1e-4, 2e-3, True, "s")]
 SEEDS = [1]
-POINTS = 64
+POINTS = 40
 
 
 def entries(values):
