@@ -109,6 +109,9 @@ TEST(ThirdShell, IsAmongTheInputsOfClaims)
 TEST(ThirdShell, IntrinsicLengthHolds)
 {
   expect_none_fails(intrinsic_length_claim(subject(with_third_shell()), few_angles()).results);
+  Case without_next_nearest = with_third_shell(); // whose free edges have no layer
+  without_next_nearest.has_next_nearest = false;
+  expect_none_fails(intrinsic_length_claim(subject(without_next_nearest), few_angles()).results);
 }
 
 using faults::Fault;

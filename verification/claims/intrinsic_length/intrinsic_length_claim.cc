@@ -217,16 +217,17 @@ void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &op
   output::Table &table = outcome.table("edge_layer", {"shells", "row", "deviation", "theory"});
   for (std::size_t j = 0; j < layer.deviations.size(); ++j)
     table.add({subject.name, static_cast<double>(j + 1), layer.deviations[j],
-               root == 0. ? 0. : layer.deviations[anchor] * std::pow(root, static_cast<double>(j) - anchor)});
+               !material.next_nearest ? 0. : layer.deviations[anchor] * std::pow(root, static_cast<double>(j) - anchor)});
 
   rows.add("edge layer: residual force of the relaxed strip over mu d", "1",
            layer.residual / (subject.theory.shear_modulus * subject.spacing), {}, {}, {}, {});
-  if (!subject.material.next_nearest && !subject.material.third_nearest)
+  if (!subject.material.next_nearest)
   {
     support::LargestError largest;
     for (const double deviation : layer.deviations)
       largest.add_difference(deviation, 0.);
-    // Statics of nearest neighbours have no length: every row interacts with the next one only.
+    // Statics of nearest neighbours have no length: every row interacts with the next one only. Third-nearest bonds
+    // between rows are collinear with nearest ones: both have the same stretch, 1 at a free edge, and neither pulls.
     rows.add("no edge layer: largest deviation of a row spacing at a free edge", "1", largest.error(), {}, 0.,
              largest.error(), 1e-10);
     return;

@@ -10,7 +10,7 @@ namespace latcon::claims
 ///
 /// Dynamics: waves soften as they shorten, by alpha (theory-comparison.md, eq. (W.2)), in every direction, with nearest
 /// neighbours alone as well; the gradient continuum has the same alpha and is stable for its l_d. Statics: a free edge
-/// has a layer of alternating row spacings with bonds longer than the nearest, and none without.
+/// has a layer of alternating row spacings with next-nearest neighbours, and none without.
 ///
 /// Writes the tables `dispersion`, `dispersion_runs` and `edge_layer`. Every rank computes all of it.
 struct IntrinsicLengthOptions

@@ -107,7 +107,7 @@ PLOTS = (
          "dotted: the part that nearest bonds contribute; dash-dotted: what an isotropic gradient energy can have; "
          "circles: fitted to runs of the lattice in time."),
     Plot("edge_layer", draw_edge_layer,
-         "At free edges the spacings of rows differ from the bulk if, and only if, there are bonds longer than the nearest.",
+         "At free edges the spacings of rows differ from the bulk if, and only if, there are next-nearest bonds.",
          "Distance between rows near a free edge, relative to that in the bulk, in a stretched sheet; full where "
          "it is wider, open where it is narrower. Dashed: theory; circles: relaxed lattice."),
 )
