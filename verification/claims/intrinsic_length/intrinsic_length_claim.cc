@@ -216,8 +216,9 @@ void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &op
   constexpr std::size_t anchor = 2;
   output::Table &table = outcome.table("edge_layer", {"shells", "row", "deviation", "theory"});
   for (std::size_t j = 0; j < layer.deviations.size(); ++j)
-    table.add({subject.name, static_cast<double>(j + 1), layer.deviations[j],
-               !material.next_nearest ? 0. : layer.deviations[anchor] * std::pow(root, static_cast<double>(j) - anchor)});
+    table.add(
+      {subject.name, static_cast<double>(j + 1), layer.deviations[j],
+       !material.next_nearest ? 0. : layer.deviations[anchor] * std::pow(root, static_cast<double>(j) - anchor)});
 
   rows.add("edge layer: residual force of the relaxed strip over mu d", "1",
            layer.residual / (subject.theory.shear_modulus * subject.spacing), {}, {}, {}, {});
