@@ -124,8 +124,8 @@ std::string frame_name(const std::string &name, const std::size_t frame)
   return out.str();
 }
 
-// Writes a VTU text with the time as field data; deal.II's flag for it writes single precision. The text of a large sheet
-// is not copied.
+// Writes a VTU text with the time as field data; deal.II's flag for it writes single precision. The text of a large
+// sheet is not copied.
 void write_with_time(const std::filesystem::path &path, const std::string_view vtu, const double time)
 {
   const std::string_view grid = "<UnstructuredGrid>";
@@ -134,8 +134,8 @@ void write_with_time(const std::filesystem::path &path, const std::string_view v
     throw OutputFailed("the VTU text contains no unstructured grid");
   std::ostringstream field;
   field << std::setprecision(17)
-        << "\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">" << time
-        << "</DataArray>\n</FieldData>";
+        << "\n<FieldData>\n<DataArray type=\"Float64\" Name=\"TimeValue\" NumberOfTuples=\"1\" format=\"ascii\">"
+        << time << "</DataArray>\n</FieldData>";
   as_output_failed(
     [&]
     {

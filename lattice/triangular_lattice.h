@@ -34,7 +34,7 @@ inline constexpr std::array<const char *, n_shells> shell_names{{"nearest", "nex
 /// next-nearest, 6 to 8 third-nearest.
 inline constexpr std::size_t n_kinds_per_shell = 3;
 inline constexpr std::size_t n_bond_kinds = n_shells * n_kinds_per_shell; ///< of all shells
-inline constexpr std::size_t n_nearest_kinds = n_kinds_per_shell; ///< of them nearest neighbours
+inline constexpr std::size_t n_nearest_kinds = n_kinds_per_shell;         ///< of them nearest neighbours
 
 /// Shell of a kind of bonds.
 constexpr std::size_t shell_of(std::size_t kind)

@@ -23,7 +23,7 @@ struct DamageMotionSetup
   std::function<bool(const dealii::Point<2> &, unsigned int i)> is_held;
   /// Returns true for nodes whose initial damage does not change; empty: none.
   std::function<bool(const dealii::Point<2> &)> is_intact;
-  double step; ///< [s] > 0
+  double step;                                          ///< [s] > 0
   std::optional<GradientSetup> gradient = std::nullopt; ///< none: local law
 };
 
@@ -55,8 +55,8 @@ struct DamageMotionLedger
 /// Motion of a sheet of fibres with damage on a uniform grid of bilinear elements, mass, stress and viscosity degraded
 /// alike (theory-damage.md, "Motion with damage", eqs. (C.69) to (C.74)): the waves of damaged material are as fast
 /// as those of intact material, and damage does not limit the time step. Held nodes do not move, so that edges do no
-/// work; other edges are free. Optionally there are a gradient energy and micro-inertia (theory-damage.md, "Gradient energy
-/// in motion", eqs. (C.75) to (C.81)).
+/// work; other edges are free. Optionally there are a gradient energy and micro-inertia (theory-damage.md, "Gradient
+/// energy in motion", eqs. (C.75) to (C.81)).
 ///
 /// Steps are explicit: Runge-Kutta-Chebyshev with as many stages as the viscosity requires, or velocity Verlet without
 /// viscosity. After each step the damage is minimised at fixed displacement and velocity.
@@ -66,8 +66,8 @@ class DamageMotion
 {
 public:
   /// Creates a homogeneous sheet x = F_0 X at rest. Throws InvalidInput and InvalidMaterial as NodeGrid, GridDamage,
-  /// FibreForces, GradientForces, MassOperator and ViscousStages do, for a density or step that is not positive and finite, and, without viscosity,
-  /// for a step beyond stable_step().
+  /// FibreForces, GradientForces, MassOperator and ViscousStages do, for a density or step that is not positive and
+  /// finite, and, without viscosity, for a step beyond stable_step().
   explicit DamageMotion(const DamageMotionSetup &setup);
 
   /// Sets the excess displacement u = x - F_0 X [m] and the velocity [m/s] of the nodes, except held components.
@@ -94,14 +94,14 @@ public:
   const std::vector<double> &cell_energies() const { return cell_energies_; }
   unsigned int n_stages() const { return stages_ ? static_cast<unsigned int>(stages_->stages().size()) + 1 : 1; }
 
-  /// Returns the longest stable step [s] of velocity Verlet, without viscosity: at F_0; with gradient energy, also where
-  /// fibres have shortened to FibreForces::relaxed_stretch. With gradient energy and viscosity, the constructor refuses
-  /// steps in which waves of such a sheet grow.
+  /// Returns the longest stable step [s] of velocity Verlet, without viscosity: at F_0; with gradient energy, also
+  /// where fibres have shortened to FibreForces::relaxed_stretch. With gradient energy and viscosity, the constructor
+  /// refuses steps in which waves of such a sheet grow.
   double stable_step() const;
 
   /// Saves the motion, or loads it into one of the same setup, which continues bitwise. `archive` is called with names
-  /// and values; `Archive::loads` is true if it loads. Throws InvalidInput for values of another grid and for damage out
-  /// of [0, 1].
+  /// and values; `Archive::loads` is true if it loads. Throws InvalidInput for values of another grid and for damage
+  /// out of [0, 1].
   template <class Archive>
   void archive(Archive &archive)
   {
@@ -144,7 +144,7 @@ private:
   std::array<std::vector<char>, 2> held_;
   std::optional<GradientForces> gradient_; // none without gradient energy
   MassOperator mass_;
-  std::optional<ViscousStages> stages_;              // none without viscosity
+  std::optional<ViscousStages> stages_;               // none without viscosity
   std::vector<double> cell_energies_, node_energies_; // [J/m]
   GridVector u_, v_;
   std::size_t n_steps_ = 0;

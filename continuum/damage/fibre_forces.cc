@@ -316,7 +316,8 @@ std::array<double, 3> FibreForces::elastic_conductivity(const double relaxed) co
   std::array<double, 3> D{};
   for (const DampedFibre &k : fibres_)
   {
-    const auto along = [&k](const double l) { return k.a * (1. + 2. / (l * l * l)) + 3. * k.b / (l * l * l * l) + k.e; };
+    const auto along = [&k](const double l)
+    { return k.a * (1. + 2. / (l * l * l)) + 3. * k.b / (l * l * l * l) + k.e; };
     const double l = (loading_ * Tensor<1, 2>({k.X, k.Y})).norm();
     const double across = (k.a * (l - 1. / (l * l)) + k.b * (1. - 1. / (l * l * l)) + k.e * (l - 1.)) / l;
     const double stiffness = std::max(along(std::min(l, relaxed)), across);

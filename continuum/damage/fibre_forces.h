@@ -67,8 +67,8 @@ public:
 
   static constexpr double min_stretch = 0.25;
   static constexpr double sound_factor = 0.5;
-  /// Stretch of fibres across a sheet that relaxes behind a crack while it is held along the crack: rubber fibres at the
-  /// stretches of the standard sheet reach 0.77.
+  /// Stretch of fibres across a sheet that relaxes behind a crack while it is held along the crack: rubber fibres at
+  /// the stretches of the standard sheet reach 0.77.
   static constexpr double relaxed_stretch = 0.75;
   /// Fewer cells are visited by one thread: synchronisation would cost more than other threads save.
   static constexpr std::size_t min_cells_for_threads = 5000;

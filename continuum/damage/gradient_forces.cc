@@ -29,7 +29,8 @@ struct Chunk
   alignas(64) double F[4][chunk], G[6][chunk], P[4][chunk], Q[6][chunk], energy[chunk];
 };
 
-// Stiffness h(a, a) = across |a|^2 + coupling (f.a)^2 of a bond and its derivatives by s = |f|^2/2, eqs. (C.24), (C.27).
+// Stiffness h(a, a) = across |a|^2 + coupling (f.a)^2 of a bond and its derivatives by s = |f|^2/2, eqs. (C.24),
+// (C.27).
 struct Stiffness
 {
   double across, coupling, across_s, coupling_s;
@@ -124,21 +125,20 @@ GradientForces::GradientForces(const NodeGrid &grid, const std::vector<BondFamil
   for (const BondFamily &bond : bonds)
   {
     check(bond);
-    const auto same = std::find_if(merged.begin(), merged.end(),
-                                   [&](const BondFamily &other)
-                                   {
-                                     const double cosine = other.fibre.direction * bond.fibre.direction;
-                                     return std::abs(std::abs(cosine) - 1.) < 1e-14 &&
-                                            other.fibre.potential == bond.fibre.potential;
-                                   });
+    const auto same =
+      std::find_if(merged.begin(), merged.end(),
+                   [&](const BondFamily &other)
+                   {
+                     const double cosine = other.fibre.direction * bond.fibre.direction;
+                     return std::abs(std::abs(cosine) - 1.) < 1e-14 && other.fibre.potential == bond.fibre.potential;
+                   });
     if (same == merged.end())
     {
       merged.push_back(bond);
       continue;
     }
     const double c = same->fibre.weight, own = bond.fibre.weight;
-    same->length =
-      std::sqrt((c * same->length * same->length + own * bond.length * bond.length) / (c + own));
+    same->length = std::sqrt((c * same->length * same->length + own * bond.length * bond.length) / (c + own));
     same->fibre.weight = c + own;
   }
   // Checks the length, with its tolerance for rounding.
@@ -146,7 +146,12 @@ GradientForces::GradientForces(const NodeGrid &grid, const std::vector<BondFamil
   for (const BondFamily &family : merged)
   {
     const FibreFamily &fibre = family.fibre;
-    Bond bond{fibre.direction[0], fibre.direction[1], 0., 0., 0., length * length,
+    Bond bond{fibre.direction[0],
+              fibre.direction[1],
+              0.,
+              0.,
+              0.,
+              length * length,
               std::max(0., length * length - family.length * family.length / 12.)};
     if (const auto *rod = std::get_if<RodPotential>(&fibre.potential))
     {

@@ -55,9 +55,9 @@ public:
   /// Bond family with its two squares of eq. (C.25).
   struct Bond
   {
-    double X, Y;           ///< unit vector [-]
-    double a, b, e;        ///< weight times constants of the potential [Pa]
-    double across, along;  ///< l_d^2 and l_d^2 - l^2/12 [m^2]
+    double X, Y;          ///< unit vector [-]
+    double a, b, e;       ///< weight times constants of the potential [Pa]
+    double across, along; ///< l_d^2 and l_d^2 - l^2/12 [m^2]
   };
 
 private:

@@ -56,8 +56,8 @@ public:
   double fracture_energy() const;
 
   const DamageLaw &law() const { return law_; }
-  const std::vector<double> &nodal() const { return damage_; }        ///< d_a [-]
-  const std::vector<double> &cell_factors() const { return factor_; } ///< g_c [-]
+  const std::vector<double> &nodal() const { return damage_; }              ///< d_a [-]
+  const std::vector<double> &cell_factors() const { return factor_; }       ///< g_c [-]
   const std::vector<double> &node_factors() const { return nodal_factor_; } ///< g(d_a) [-]
 
   /// Change of d in the last sweep over the nodes at which minimize() stops [-].

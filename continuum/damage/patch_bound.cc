@@ -37,8 +37,8 @@ double patch_bound(const NodeGrid &grid, const std::array<double, 3> &conductivi
                    const std::vector<GradientForces::PatchTerm> &terms, const double density, const double length)
 {
   const Eigen::Matrix4d K_cell = cell_matrix(grid, conductivity);
-  const Eigen::Matrix4d M_cell = density * (0.25 * grid.area() * Eigen::Matrix4d::Identity() +
-                                            length * length * cell_matrix(grid, {1., 0., 1.}));
+  const Eigen::Matrix4d M_cell =
+    density * (0.25 * grid.area() * Eigen::Matrix4d::Identity() + length * length * cell_matrix(grid, {1., 0., 1.}));
   // Edge nodes have the cells without gradient energy.
   double bound = largest<4>(K_cell, M_cell);
   if (!terms.empty())

@@ -83,8 +83,7 @@ bool ViscousStages::damps(const double rate, const double wave) const
       std::complex<double> before = 1., last = 1. + first_ * z;
       for (const Stage &c : stages_)
       {
-        const std::complex<double> next =
-          1. - c.mu - c.nu + c.mu * last + c.nu * before + z * (c.now * last + c.start);
+        const std::complex<double> next = 1. - c.mu - c.nu + c.mu * last + c.nu * before + z * (c.now * last + c.start);
         before = last;
         last = next;
       }

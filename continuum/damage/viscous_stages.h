@@ -33,9 +33,9 @@ public:
   static unsigned int required(double limit);
 
   /// Returns the smallest n >= required(`limit`) with which no wave grows either, whose eigenvalues z [-] satisfy
-  /// z^2 + limit q z + wave^2 q = 0 or, with a quarter of the damping, z^2 + limit q z / 4 + wave^2 q = 0, for 0 < q <= 1
-  /// (theory-damage.md, "Stable steps"). Throws InvalidInput if there is none below required(`limit`) + 10: more stages
-  /// would not help.
+  /// z^2 + limit q z + wave^2 q = 0 or, with a quarter of the damping, z^2 + limit q z / 4 + wave^2 q = 0, for 0 < q <=
+  /// 1 (theory-damage.md, "Stable steps"). Throws InvalidInput if there is none below required(`limit`) + 10: more
+  /// stages would not help.
   static unsigned int required(double limit, double wave);
 
   static constexpr unsigned int max_stages = 500;

@@ -5,7 +5,6 @@
 #include "continuum/network_gradient.h"
 
 #include <gtest/gtest.h>
-
 #include <omp.h>
 
 #include <cmath>
@@ -33,7 +32,8 @@ std::vector<BondFamily> lattice()
   for (unsigned int k = 0; k < 6; ++k)
   {
     const Tensor<1, 2> N({std::cos(pi * k / 6.), std::sin(pi * k / 6.)});
-    bonds.push_back({{N, k % 2 == 0 ? 0.7 : 1.4, RodPotential{1e5, 1.5e5}}, (k % 2 == 0 ? 1. : std::sqrt(3.)) * spacing});
+    bonds.push_back(
+      {{N, k % 2 == 0 ? 0.7 : 1.4, RodPotential{1e5, 1.5e5}}, (k % 2 == 0 ? 1. : std::sqrt(3.)) * spacing});
   }
   return bonds;
 }
@@ -150,7 +150,8 @@ TEST(GradientForces, AreTheGradientOfTheDegradedEnergy)
                         Case{matrix(1., 0., 0., 1.01), 0.02, 1e-6}})
   {
     const GradientForces forces(grid, lattice(), 0.5 * spacing, c.loading);
-    GridVector u = random_field(grid, c.amplitude), force = nodal(grid, [](const Point<2> &) { return Tensor<1, 2>(); });
+    GridVector u = random_field(grid, c.amplitude),
+               force = nodal(grid, [](const Point<2> &) { return Tensor<1, 2>(); });
     forces.add_forces(u, factors, force);
     const auto energy = [&]
     {
@@ -292,15 +293,9 @@ TEST(GradientForces, HaveTheDispersionOfTheLatticeOnAGrid)
 
 DamageMotionSetup sheet(const Tensor<2, 2> &F, const Rectangle &rectangle, const double step)
 {
-  DamageMotionSetup setup{rectangle,
-                          F,
-                          fibres(lattice()),
-                          {},
-                          950.,
-                          {1e9, spacing},
-                          [](const Point<2> &, unsigned int) { return false; },
-                          {},
-                          step};
+  DamageMotionSetup setup{
+    rectangle, F,   fibres(lattice()), {}, 950., {1e9, spacing}, [](const Point<2> &, unsigned int) { return false; },
+    {},        step};
   setup.gradient = GradientSetup{lattice(), 0.5 * spacing};
   return setup;
 }
@@ -324,14 +319,18 @@ TEST(DamageMotion, MovesWavesAsTheirDispersionSays)
   for (const bool has_micro_inertia : {true, false})
     for (const double d : {0., 0.5})
     {
-      const double omega2 = stiffness_of_waves(F, 0, 0, K, 0.5 * spacing, has_micro_inertia ? 0.5 * spacing : 0.) / 950.;
+      const double omega2 =
+        stiffness_of_waves(F, 0, 0, K, 0.5 * spacing, has_micro_inertia ? 0.5 * spacing : 0.) / 950.;
       const double step = 0.02 / std::sqrt(omega2);
       DamageMotionSetup setup = sheet(F, {n * h, n * h, n, n}, step);
       setup.gradient->has_micro_inertia = has_micro_inertia;
       DamageMotion motion(setup);
       motion.set_damage([d](const Point<2> &) { return d; });
-      motion.set_motion([&](const Point<2> &X) { return Tensor<1, 2>({amplitude * std::cos(k * (X[0] - 12.5)), 0.}); },
-                        [](const Point<2> &) { return Tensor<1, 2>(); });
+      motion.set_motion(
+        [&](const Point<2> &X) {
+          return Tensor<1, 2>({amplitude * std::cos(k * (X[0] - 12.5)), 0.});
+        },
+        [](const Point<2> &) { return Tensor<1, 2>(); });
       EXPECT_GT(motion.ledger().gradient, 0.);
       motion.advance();
       const std::size_t middle = n / 2 * motion.grid().columns() + n / 2;
@@ -386,8 +385,11 @@ DamageMotionLedger wave_ledger(const double viscosity, const double step, const 
   setup.dashpots = viscosity > 0. ? dashpots(viscosity) : std::vector<FibreDashpot>();
   DamageMotion motion(setup);
   motion.set_damage([](const Point<2> &X) { return 0.1 * X[0]; });
-  motion.set_motion([](const Point<2> &X) { return Tensor<1, 2>({0.1 * std::sin(pi * X[0] / 2.5), 0.}); },
-                    [](const Point<2> &) { return Tensor<1, 2>(); });
+  motion.set_motion(
+    [](const Point<2> &X) {
+      return Tensor<1, 2>({0.1 * std::sin(pi * X[0] / 2.5), 0.});
+    },
+    [](const Point<2> &) { return Tensor<1, 2>(); });
   while (motion.time() < time - 0.5 * step)
     motion.advance();
   return motion.ledger();
@@ -443,8 +445,11 @@ TEST(DamageMotion, IsStableUpToTheStepThatItStates)
       std::uniform_real_distribution<double> some(0., 1.);
       if (!is_stretched)
         motion.set_damage([&](const Point<2> &) { return some(random); });
-      motion.set_motion([&](const Point<2> &) { return 1e-8 * some(random) * Tensor<1, 2>({1., -0.7}); },
-                        [](const Point<2> &) { return Tensor<1, 2>(); });
+      motion.set_motion(
+        [&](const Point<2> &) {
+          return 1e-8 * some(random) * Tensor<1, 2>({1., -0.7});
+        },
+        [](const Point<2> &) { return Tensor<1, 2>(); });
       for (unsigned int step = 0; step < 150; ++step)
         motion.advance();
       double sum = 0.;

@@ -18,7 +18,7 @@ double crossing(const DamageImage &image, const std::size_t i, const std::size_t
 
 struct Strand
 {
-  double lower, upper; // [m]
+  double lower, upper;    // [m]
   std::size_t begin, end; // rows of nodes
 };
 
@@ -109,8 +109,7 @@ std::optional<ContourTip> contour_tip(const DamageImage &image, const std::size_
 }
 
 std::optional<ContourMeasurement> measure_contour(const std::vector<ContourColumn> &columns, const double X_begin,
-                                                  const double X_end, const double spacing,
-                                                  const double min_wavelength)
+                                                  const double X_end, const double spacing, const double min_wavelength)
 {
   std::vector<double> X, centre, lower, upper, width;
   ContourMeasurement measured;

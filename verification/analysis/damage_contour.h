@@ -58,9 +58,9 @@ struct ContourTip
 struct ContourMeasurement
 {
   std::optional<SinusoidFit> centre, lower, upper, width; ///< none: too short, or straight within the resolution
-  double mean_width = 0.;     ///< of all damage above the level, strands added [m]
-  double rms_width = 0.;      ///< standard deviation of the distance between the outermost edges [m]
-  double rms_centre = 0.;     ///< standard deviation of the centre line [m]
+  double mean_width = 0.;                                 ///< of all damage above the level, strands added [m]
+  double rms_width = 0.;       ///< standard deviation of the distance between the outermost edges [m]
+  double rms_centre = 0.;      ///< standard deviation of the centre line [m]
   double several_strands = 0.; ///< fraction of the columns with two strands or more [-]
 };
 

@@ -57,12 +57,20 @@ continuum::DamageMotionSetup setup(const input::Case &input, const Subject &subj
                                    const continuum::Rectangle &sheet, const double step)
 {
   const continuum::NodeGrid grid(sheet);
-  continuum::DamageMotionSetup setup{sheet, to_continuum(input.deformation()), families(input, subject),
-                                     dashpots(input, subject), input.density, law, {}, {}, step};
+  continuum::DamageMotionSetup setup{sheet,
+                                     to_continuum(input.deformation()),
+                                     families(input, subject),
+                                     dashpots(input, subject),
+                                     input.density,
+                                     law,
+                                     {},
+                                     {},
+                                     step};
   const double length = sheet.length, top = 0.5 * sheet.height;
   // Distance from the nearest edge.
-  const auto inside = [length, top](const Point<2> &X)
-  { return std::min({X[0], length - X[0], top - X[1], top + X[1]}); };
+  const auto inside = [length, top](const Point<2> &X) {
+    return std::min({X[0], length - X[0], top - X[1], top + X[1]});
+  };
   const double on_edge = 1e-3 * std::min(grid.size_x, grid.size_y), near_edge = 2. * law.length;
   setup.is_held = [inside, on_edge](const Point<2> &X, unsigned int) { return inside(X) < on_edge; };
   setup.is_intact = [inside, near_edge](const Point<2> &X) { return inside(X) < near_edge; };
@@ -106,13 +114,13 @@ double stored_energy(const input::Case &input, const Subject &subject)
 double damage_time_step(const input::Case &input, const Subject &subject, const continuum::DamageLaw &law,
                         input::Parameters &parameters)
 {
-  // The limits of a step depend on the cells, not on their number: three by three have an inner node and take no memory.
+  // The limits of a step depend on the cells, not on their number: three by three have an inner node and take no
+  // memory.
   const continuum::Rectangle sheet = rectangle(input, law);
   const continuum::Rectangle piece{3. * sheet.length / sheet.cells_x, 3. * sheet.height / sheet.cells_y, 3, 3};
   continuum::DamageMotionSetup probe = setup(input, subject, law, piece, 0.);
-  probe.step =
-    1e-3 / continuum::FibreForces(continuum::NodeGrid(piece), probe.families, probe.dashpots, probe.loading)
-             .elastic_frequency(input.density);
+  probe.step = 1e-3 / continuum::FibreForces(continuum::NodeGrid(piece), probe.families, probe.dashpots, probe.loading)
+                        .elastic_frequency(input.density);
   double stable = 0.;
   try
   {
@@ -151,8 +159,8 @@ SeedSegment seed_segment(const input::Case &input, const continuum::NodeGrid &gr
   return seed;
 }
 
-continuum::DamageMotion damaged_sheet(const input::Case &input, const Subject &subject,
-                                      const continuum::DamageLaw &law, const double step)
+continuum::DamageMotion damaged_sheet(const input::Case &input, const Subject &subject, const continuum::DamageLaw &law,
+                                      const double step)
 {
   continuum::DamageMotion motion(setup(input, subject, law, rectangle(input, law), step));
   const continuum::NodeGrid &grid = motion.grid();
@@ -195,7 +203,8 @@ void require_damaged_sheet(const input::Case &input, input::Parameters &p)
   if (c.gradient != input::ContinuumGradient::none &&
       c.gradient != (is_network ? input::ContinuumGradient::network : input::ContinuumGradient::lattice))
     p.error("Continuum/gradient",
-            command + (is_network ? " supports none and, with this law, network" : " supports none and, with this law, lattice"),
+            command + (is_network ? " supports none and, with this law, network"
+                                  : " supports none and, with this law, lattice"),
             {"Continuum/law"});
   if (!c.mesh_file.empty())
     p.error("Continuum/mesh file", command + " makes its own mesh; omit the entry");

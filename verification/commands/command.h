@@ -69,10 +69,10 @@ struct BatchOptions
 };
 
 // The commands. Each runs on every MPI rank and returns the exit code of the program, or throws.
-support::ExitCode verify(const input::Options &options);                                       ///< `latcon verify`
-support::ExitCode run_lattice(const input::Options &options);                                  ///< `latcon lattice`
-support::ExitCode run_continuum(const input::Options &options);                                ///< `latcon continuum`
-support::ExitCode run_fracture(const input::Options &options);                                 ///< `latcon fracture`
+support::ExitCode verify(const input::Options &options);                 ///< `latcon verify`
+support::ExitCode run_lattice(const input::Options &options);            ///< `latcon lattice`
+support::ExitCode run_continuum(const input::Options &options);          ///< `latcon continuum`
+support::ExitCode run_fracture(const input::Options &options);           ///< `latcon fracture`
 support::ExitCode run_continuum_fracture(const input::Options &options); ///< `latcon fracture --side continuum`
 support::ExitCode compare_frames(const input::Options &options, const CompareOptions &chosen); ///< `latcon compare`
 support::ExitCode report(const input::Options &options, const std::string &directory);         ///< `latcon report`

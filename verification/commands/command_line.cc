@@ -190,7 +190,8 @@ support::ExitCode run_program(int argc, char **argv)
   app.add_option("--set", options.overrides, "Section/Name=value, replaces an entry of the case; repeatable")
     ->allow_extra_args(false)
     ->type_name("ENTRY");
-  app.add_option("-o,--output-dir", options.output_dir, "output directory; default: output/CASE, or as the command says")
+  app
+    .add_option("-o,--output-dir", options.output_dir, "output directory; default: output/CASE, or as the command says")
     ->type_name("DIR");
   app.add_option("--threads", options.threads, "threads of the lattice on each rank; default: all cores")
     ->check(CLI::Range(1u, 4096u))
@@ -268,16 +269,16 @@ support::ExitCode run_program(int argc, char **argv)
 
   StudyOptions study;
   BatchOptions batch;
-  const auto add_study_command =
-    [&](const std::string &name, const std::string &help, const std::string &example, std::string &place,
-        SweepOptions &sweep)
+  const auto add_study_command = [&](const std::string &name, const std::string &help, const std::string &example,
+                                     std::string &place, SweepOptions &sweep)
   {
     CLI::App *subcommand = add_command(name, help, example);
     subcommand->add_option("STUDY", place, study::study_choices() + "; with --sweep a case")->required()->type_name("");
     subcommand
-      ->add_option("--sweep", sweep.sweeps,
-                   "Section/Name=START:STOP:COUNT or =VALUE,VALUE,...: run the case STUDY for these values; repeatable: "
-                   "all combinations")
+      ->add_option(
+        "--sweep", sweep.sweeps,
+        "Section/Name=START:STOP:COUNT or =VALUE,VALUE,...: run the case STUDY for these values; repeatable: "
+        "all combinations")
       ->allow_extra_args(false)
       ->type_name("ENTRY");
     subcommand->add_option("--seeds", sweep.seeds, "seeds 1 to N of each case of a sweep; default: 1")

@@ -78,8 +78,8 @@ public:
         break;
       step();
       if (progress.due())
-        progress.show(progress_text(), std::max((record_.tip_X() - seed_tip_) / (stop - seed_tip_),
-                                                motion_.time() / input_.end_time));
+        progress.show(progress_text(),
+                      std::max((record_.tip_X() - seed_tip_) / (stop - seed_tip_), motion_.time() / input_.end_time));
     }
     record_.energies();
     frames_.add_frame(motion_);
@@ -200,7 +200,8 @@ void check_threshold(const input::Case &input, const bridge::Subject &subject, c
 support::ExitCode run_continuum_fracture(const input::Options &options)
 {
   if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
-    throw support::InputError("latcon fracture --side continuum runs on one rank, with threads: start it without mpirun");
+    throw support::InputError(
+      "latcon fracture --side continuum runs on one rank, with threads: start it without mpirun");
   input::Case input;
   input::Parameters parameters;
   read_case(options, input, parameters);
@@ -238,7 +239,8 @@ support::ExitCode run_continuum_fracture(const input::Options &options)
   require_time(options, seconds);
 
   output::Checkpoints checkpoints(options, parameters, input, "fracture --side continuum");
-  // Without a checkpoint nothing of an earlier run, perhaps one of the lattice, is continued: its files are moved aside.
+  // Without a checkpoint nothing of an earlier run, perhaps one of the lattice, is continued: its files are moved
+  // aside.
   input::Options started = options;
   started.resume = checkpoints.found().has_value();
   Run run(started, parameters);
@@ -253,14 +255,14 @@ support::ExitCode run_continuum_fracture(const input::Options &options)
   run.info().add("stages", static_cast<std::uint64_t>(motion.n_stages()));
   output::Results results;
   if (!options.skip_verification)
-    results = passed_or_reported(input, claims_before_continuum_fracture(subject.material),
-                                  bridge::laws_of(input), options, run);
+    results = passed_or_reported(input, claims_before_continuum_fracture(subject.material), bridge::laws_of(input),
+                                 options, run);
   DamageRun crack(input, motion, options.skip_verification, checkpoints, run);
   crack.go();
   const CrackMeasurement measurement = crack.record().measure();
   crack.record().write_measurement(run.directory(), measurement, options.skip_verification);
-  results.add(measured_results(input, measurement, Side::continuum, crack.record().largest_imbalance(),
-                               allowed_imbalance));
+  results.add(
+    measured_results(input, measurement, Side::continuum, crack.record().largest_imbalance(), allowed_imbalance));
   return end_crack(input, options, run, results, measurement);
 }
 

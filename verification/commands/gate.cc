@@ -39,8 +39,8 @@ Stored look_up(const input::Case &input, const std::vector<claims::Claim> &requi
   Stored stored;
   try
   {
-    const claims::VerdictKey key = claims::verdict_key(
-      input, required, laws, quick, dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD));
+    const claims::VerdictKey key =
+      claims::verdict_key(input, required, laws, quick, dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD));
     stored.key = key.text;
     if (!folder)
       stored.note = "neither XDG_CACHE_HOME nor HOME is set: no verdicts are kept";
@@ -98,8 +98,8 @@ output::Results require_verified(const input::Case &input, const std::vector<cla
     {
       verdicts = claims::read_verdicts(key, stored.text);
       // Verdicts that refuse a crack need not be complete.
-      if (const std::string problem = claims::row_problem(verdicts->results, bridge::shells_name(input.material()),
-                                                          required);
+      if (const std::string problem =
+            claims::row_problem(verdicts->results, bridge::shells_name(input.material()), required);
           verdicts->results.all_hold() && !problem.empty())
       {
         verdicts.reset();

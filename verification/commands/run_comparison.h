@@ -51,7 +51,7 @@ struct PathPoint
 /// Two output directories of `latcon fracture`.
 struct RunComparison
 {
-  std::string first, second; ///< the directories
+  std::string first, second;                                   ///< the directories
   std::string first_side = "lattice", second_side = "lattice"; ///< which broke, lattice or continuum
   std::string first_pattern, second_pattern;
   std::vector<QuantityPair> quantities; ///< those that at least one run has

@@ -51,8 +51,9 @@ bool is_of_continuum_crack(const fs::path &path)
 void require_side(const fs::path &path, Side side)
 {
   if (is_of_continuum_crack(path))
-    fail(path, "a frame of a crack of the continuum, which cannot be compared site by site; give the output directories "
-               "of two cracks");
+    fail(path,
+         "a frame of a crack of the continuum, which cannot be compared site by site; give the output directories "
+         "of two cracks");
   if (is_frame_of(path, side))
     return;
   if (is_frame_of(path, other(side)))

@@ -96,7 +96,7 @@ struct ContinuumCase
   unsigned int cells_y = 8;
   unsigned int refinements = 2;  ///< of the coarse mesh, where cells_x and cells_y do not apply
   unsigned int damage_cells = 3; ///< per length of the damage, in a sheet that breaks
-  std::string mesh_file;        ///< Gmsh; empty for none
+  std::string mesh_file;         ///< Gmsh; empty for none
   unsigned int degree = 3;
   unsigned int adaptive_cycles = 0;
   double refined_fraction = 0.1;

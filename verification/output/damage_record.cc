@@ -52,8 +52,7 @@ void DamageRecord::step()
   const double along = std::min(X / grid.size_x, static_cast<double>(grid.cells_x) - 1e-9);
   const double across = std::min((Y - grid.bottom) / grid.size_y, static_cast<double>(grid.cells_y) - 1e-9);
   const double p = along - std::floor(along), q = across - std::floor(across);
-  const std::size_t a =
-    static_cast<std::size_t>(across) * grid.columns() + static_cast<std::size_t>(along);
+  const std::size_t a = static_cast<std::size_t>(across) * grid.columns() + static_cast<std::size_t>(along);
   const std::size_t up = grid.columns();
   Eigen::Vector2d x = input_.deformation() * Eigen::Vector2d(X, Y);
   for (const int axis : {0, 1})
@@ -82,8 +81,8 @@ double DamageRecord::largest_imbalance() const
 {
   support::LargestError largest;
   for (const EnergyRow &row : energies_)
-    largest.add(std::abs(row.ledger.imbalance) / (energies_.front().ledger.elastic +
-                                                  energies_.front().ledger.gradient + energies_.front().ledger.kinetic));
+    largest.add(std::abs(row.ledger.imbalance) / (energies_.front().ledger.elastic + energies_.front().ledger.gradient +
+                                                  energies_.front().ledger.kinetic));
   return largest.error();
 }
 
@@ -115,10 +114,11 @@ void DamageRecord::write_tables(const std::filesystem::path &directory) const
     edges.add({column.X, static_cast<double>(column.n_strands), column.lower, column.upper, column.damaged});
   write_file(directory / "crack_edges.csv", edges.csv());
   // Columns of the lattice's table, whose edges do no work here either, and whose cracks do not touch themselves here.
-  Table energy({"t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "shed", "imbalance",
-                "gradient"});
+  Table energy(
+    {"t", "elastic", "kinetic", "viscous", "broken", "boundary_work", "contact", "shed", "imbalance", "gradient"});
   for (const auto &[time, e] : energies_)
-    energy.add({time, e.elastic + e.gradient, e.kinetic, e.viscous, e.fracture, 0., 0., e.shed, e.imbalance, e.gradient});
+    energy.add(
+      {time, e.elastic + e.gradient, e.kinetic, e.viscous, e.fracture, 0., 0., e.shed, e.imbalance, e.gradient});
   write_file(directory / "energy.csv", energy.csv());
 }
 

@@ -26,7 +26,10 @@ public:
   void energies();
 
   double tip_X() const { return tip_.empty() ? 0. : tip_.back().X; } ///< [m]; 0 before the first step
-  double speed() const { return speeds_.empty() ? 0. : speeds_.back(); } ///< over the last few spacings [m/s]; 0: unknown
+  double speed() const
+  {
+    return speeds_.empty() ? 0. : speeds_.back();
+  } ///< over the last few spacings [m/s]; 0: unknown
 
   /// Returns the largest |imbalance| recorded over the initial energy [-]; NaN if none is recorded.
   double largest_imbalance() const;

@@ -85,8 +85,9 @@ TEST(VerdictKey, IsThatOfProgramClaimsSizeRanksAndInputs)
   EXPECT_NE(claims::verdict_key(input, {reads_seed}, lattice_laws, true, 1).text.find(seed), std::string::npos);
   EXPECT_EQ(claims::verdict_key(input, {named("energy")}, lattice_laws, true, 1).text.find(seed), std::string::npos);
   // The program is the one that runs.
-  EXPECT_NE(claims::verdict_key(input, {}, lattice_laws, true, 1).text.find("program=" + sha256(content_of("/proc/self/exe"))),
-            std::string::npos);
+  EXPECT_NE(
+    claims::verdict_key(input, {}, lattice_laws, true, 1).text.find("program=" + sha256(content_of("/proc/self/exe"))),
+    std::string::npos);
 }
 
 TEST(Verdicts, ComeBackAsTheyWere)
