@@ -10,7 +10,7 @@ namespace latcon::lattice
 namespace
 {
 
-// Sites, each with its up to twelve bonds one by one, below which one thread is faster.
+// Sites, each with its up to eighteen bonds one by one, below which one thread is faster.
 constexpr std::size_t min_sites_for_threads = 64;
 
 // Calls visit(place, acceleration) for every site force.

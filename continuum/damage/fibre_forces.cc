@@ -1,5 +1,6 @@
 #include "continuum/damage/fibre_forces.h"
 
+#include "continuum/damage/instruction_sets.h"
 #include "continuum/errors.h"
 #include "continuum/material.h"
 
@@ -11,15 +12,6 @@
 #include <sstream>
 
 using dealii::Tensor;
-
-// Compiled for several instruction sets, of which the loader picks one. Contraction is off in this file, so that all
-// give the same bits.
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__OPTIMIZE__) &&                        \
-  !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define LATCON_INSTRUCTION_SETS __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define LATCON_INSTRUCTION_SETS
-#endif
 
 namespace latcon::continuum
 {

@@ -1,5 +1,6 @@
 #include "continuum/damage/gradient_forces.h"
 
+#include "continuum/damage/instruction_sets.h"
 #include "continuum/errors.h"
 #include "continuum/material.h"
 
@@ -7,14 +8,6 @@
 #include <cmath>
 
 using dealii::Tensor;
-
-// As in fibre_forces.cc: all instruction sets give the same bits.
-#if defined(__GNUC__) && !defined(__clang__) && defined(__x86_64__) && defined(__OPTIMIZE__) &&                        \
-  !defined(__SANITIZE_ADDRESS__) && !defined(__SANITIZE_THREAD__)
-#define LATCON_INSTRUCTION_SETS __attribute__((target_clones("avx512f", "avx2", "default")))
-#else
-#define LATCON_INSTRUCTION_SETS
-#endif
 
 namespace latcon::continuum
 {
@@ -55,20 +48,35 @@ inline __attribute__((always_inline)) Stiffness stiffness(const GradientForces::
   return {across, coupling, across_l * inside, coupling_l * inside};
 }
 
+// A bond at node i of a chunk: its vector f = F N, the gradient of f along T = (-Y, X) and along N, and their products
+// with f.
+struct BondState
+{
+  double x, y, tx, ty, nx, ny, ft, fn;
+  Stiffness h;
+};
+
+inline __attribute__((always_inline)) BondState bond_state(const Chunk &c, const GradientForces::Bond &k,
+                                                           const std::size_t i)
+{
+  const double XX = k.X * k.X, YY = k.Y * k.Y, XY = k.X * k.Y;
+  const double x = c.F[0][i] * k.X + c.F[1][i] * k.Y, y = c.F[2][i] * k.X + c.F[3][i] * k.Y;
+  const Stiffness h = stiffness(k, std::sqrt(x * x + y * y));
+  const double tx = XY * (c.G[2][i] - c.G[0][i]) + (XX - YY) * c.G[1][i];
+  const double ty = XY * (c.G[5][i] - c.G[3][i]) + (XX - YY) * c.G[4][i];
+  const double nx = XX * c.G[0][i] + 2. * XY * c.G[1][i] + YY * c.G[2][i];
+  const double ny = XX * c.G[3][i] + 2. * XY * c.G[4][i] + YY * c.G[5][i];
+  const double ft = x * tx + y * ty, fn = x * nx + y * ny;
+  return {x, y, tx, ty, nx, ny, ft, fn, h};
+}
+
 LATCON_INSTRUCTION_SETS void add_stress(Chunk &c, const GradientForces::Bond &k)
 {
   const double XX = k.X * k.X, YY = k.Y * k.Y, XY = k.X * k.Y;
 #pragma omp simd
   for (std::size_t i = 0; i < chunk; ++i)
   {
-    const double x = c.F[0][i] * k.X + c.F[1][i] * k.Y, y = c.F[2][i] * k.X + c.F[3][i] * k.Y;
-    const Stiffness h = stiffness(k, std::sqrt(x * x + y * y));
-    // T = (-Y, X).
-    const double tx = XY * (c.G[2][i] - c.G[0][i]) + (XX - YY) * c.G[1][i];
-    const double ty = XY * (c.G[5][i] - c.G[3][i]) + (XX - YY) * c.G[4][i];
-    const double nx = XX * c.G[0][i] + 2. * XY * c.G[1][i] + YY * c.G[2][i];
-    const double ny = XX * c.G[3][i] + 2. * XY * c.G[4][i] + YY * c.G[5][i];
-    const double ft = x * tx + y * ty, fn = x * nx + y * ny;
+    const auto [x, y, tx, ty, nx, ny, ft, fn, h] = bond_state(c, k, i);
     const double radial = 0.5 * (k.across * (h.across_s * (tx * tx + ty * ty) + h.coupling_s * ft * ft) +
                                  k.along * (h.across_s * (nx * nx + ny * ny) + h.coupling_s * fn * fn));
     const double t = k.across * h.coupling * ft, n = k.along * h.coupling * fn;
@@ -90,17 +98,10 @@ LATCON_INSTRUCTION_SETS void add_stress(Chunk &c, const GradientForces::Bond &k)
 
 LATCON_INSTRUCTION_SETS void add_energy(Chunk &c, const GradientForces::Bond &k)
 {
-  const double XX = k.X * k.X, YY = k.Y * k.Y, XY = k.X * k.Y;
 #pragma omp simd
   for (std::size_t i = 0; i < chunk; ++i)
   {
-    const double x = c.F[0][i] * k.X + c.F[1][i] * k.Y, y = c.F[2][i] * k.X + c.F[3][i] * k.Y;
-    const Stiffness h = stiffness(k, std::sqrt(x * x + y * y));
-    const double tx = XY * (c.G[2][i] - c.G[0][i]) + (XX - YY) * c.G[1][i];
-    const double ty = XY * (c.G[5][i] - c.G[3][i]) + (XX - YY) * c.G[4][i];
-    const double nx = XX * c.G[0][i] + 2. * XY * c.G[1][i] + YY * c.G[2][i];
-    const double ny = XX * c.G[3][i] + 2. * XY * c.G[4][i] + YY * c.G[5][i];
-    const double ft = x * tx + y * ty, fn = x * nx + y * ny;
+    const auto [x, y, tx, ty, nx, ny, ft, fn, h] = bond_state(c, k, i);
     c.energy[i] += 0.5 * (k.across * (h.across * (tx * tx + ty * ty) + h.coupling * ft * ft) +
                           k.along * (h.across * (nx * nx + ny * ny) + h.coupling * fn * fn));
   }

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/verification/claims/faults.h"
+#include "tests/verification/claims/small_sheet.h"
 #include "verification/claims/energy/energy_claim.h"
 #include "verification/claims/prestretch/prestretch_claim.h"
 
@@ -15,16 +16,6 @@ using namespace input;
 using namespace output;
 
 constexpr unsigned int samples = 200;
-
-PrestretchOptions small_sheet()
-{
-  PrestretchOptions options;
-  options.length = 24.;
-  options.height = 16.;
-  options.cells_x = 4;
-  options.cells_y = 3;
-  return options;
-}
 
 TEST(Energy, HoldsForBothShellSetsOrientationsAndLaws)
 {

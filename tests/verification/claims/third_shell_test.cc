@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/verification/claims/faults.h"
+#include "tests/verification/claims/small_sheet.h"
 #include "verification/claims/claim_inputs.h"
 #include "verification/claims/energy/energy_claim.h"
 #include "verification/claims/intrinsic_length/dispersion.h"
@@ -28,16 +29,6 @@ Case with_third_shell(lattice::Orientation orientation = lattice::Orientation::r
 }
 
 constexpr unsigned int samples = 50;
-
-PrestretchOptions small_sheet()
-{
-  PrestretchOptions options;
-  options.length = 24.;
-  options.height = 16.;
-  options.cells_x = 4;
-  options.cells_y = 3;
-  return options;
-}
 
 IntrinsicLengthOptions few_angles()
 {

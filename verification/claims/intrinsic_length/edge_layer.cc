@@ -15,7 +15,7 @@ EdgeLayer relaxed_edge(double spacing, const lattice::Material &material, double
   Eigen::Matrix2d F = Eigen::Matrix2d::Identity();
   F(0, 0) = stretch;
   lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::free);
-  // Forces are sums of twelve of the order of section times modulus; 1e-13 of them is a deviation of as much.
+  // Forces are sums of up to eighteen of the order of section times modulus; 1e-13 of them is a deviation of as much.
   const double scale = lattice::cross_section(material.nearest, sheet) * lattice::stiffness(material.nearest.law, 1.);
   const lattice::Relaxation relaxation = lattice::relax(state, sheet, material, 1e-13 * scale);
 

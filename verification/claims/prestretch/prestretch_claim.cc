@@ -66,7 +66,7 @@ LatticeSide relaxed_lattice(const bridge::Subject &subject, const lattice::Trian
   LatticeSide side;
   side.state = lattice::homogeneous_state(sheet, subject.material, subject.deformation, lattice::Edges::held);
   lattice::add_noise(side.state, sheet, noise * sheet.spacing(), 1);
-  // Bond forces are of the order mu d; the sum of twelve has an error of about 1e-15 of that.
+  // Bond forces are of the order mu d; the sum of up to eighteen has an error of about 1e-15 of that.
   lattice::relax(side.state, sheet, subject.material, 1e-12 * subject.theory.shear_modulus * sheet.spacing());
 
   side.fields = lattice::site_fields(side.state, sheet, subject.material);
