@@ -177,6 +177,33 @@ class ContinuumFracture(TemporaryFolder):
             self.assertEqual(frame.returncode, BAD_INPUT)
             self.assertIn("cannot be compared site by site", frame.stderr)
 
+    def test_study_of_both_sides(self):
+        entries = {key: value for key, value in SHEET.items() if not key.startswith(("Output/frame", "Checkpoints"))}
+        document = {"title": "Both sides", "base": str(CASES / "quick.prm"), "set": entries, "side": "continuum",
+                    "runs": {"damage": {}, "bonds": {"side": "lattice"}},
+                    "claims": [{"claim": "It runs", "rows": [{"runs": ["damage", "bonds"], "quantity": "speed_lagrangian", "above": 1}]}]}
+        path = self.folder / "both.json"
+
+        def study(*more):
+            path.write_text(json.dumps(document))
+            run = latcon("study", path, "--skip-verification", "--output-dir", self.out, *more)
+            self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
+            return run.stdout
+
+        def sides():
+            cracks = [json.loads((self.out / "runs" / f"{name}-1" / "crack.json").read_text()) for name in ("damage", "bonds")]
+            return [crack.get("side", "lattice") for crack in cracks]
+        study()
+        self.assertEqual(sides(), ["continuum", "lattice"])
+        self.assertIn("0 runs, 2 are finished already", study("--resume"))
+        # A crack of the other side is not the run that is asked for.
+        document["runs"]["damage"]["side"] = "lattice"
+        self.assertIn("1 runs, 1 are finished already", study("--resume"))
+        self.assertEqual(sides(), ["lattice", "lattice"])
+        document["runs"] = {"damage": {}, "bonds": {}}
+        self.assertIn("2 runs, 0 are finished already", study("--resume"))
+        self.assertEqual(sides(), ["continuum", "continuum"])
+
 
 if __name__ == "__main__":
     unittest.main(verbosity=2)

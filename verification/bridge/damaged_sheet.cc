@@ -24,7 +24,7 @@ constexpr unsigned int n_directions = 12;
 
 continuum::Rectangle rectangle(const input::Case &input, const continuum::DamageLaw &law)
 {
-  const double h = cell_size(input, law);
+  const double h = law.length / input.continuum.damage_cells;
   const lattice::TriangularLattice sheet = input.lattice();
   const auto cells_x = static_cast<unsigned int>(std::max(1., std::round(sheet.length() / h)));
   // Odd: the sheet then has a row of cells in the middle, which a crack opens, and is its own mirror image.
@@ -99,26 +99,27 @@ Tensor<1, 2> noise_at(const double i, const double j, const std::uint64_t seed)
   return noise;
 }
 
-} // namespace
-
-double cell_size(const input::Case &input, const continuum::DamageLaw &law)
+// Reports a sheet that breaks everywhere at once: its homogeneous state is damaged.
+void require_undamaged_loading(const input::Case &input, const DamagedSheet &sheet, input::Parameters &parameters)
 {
-  return law.length / input.continuum.damage_cells;
+  const double stored = continuum::CauchyBorn(families(input, sheet.subject)).energy(to_continuum(input.deformation()));
+  if (stored < sheet.law.threshold)
+    return;
+  std::ostringstream text;
+  text << "the loaded sheet stores " << stored << " J/m^3 and would be damaged everywhere, since damage begins at "
+       << sheet.law.threshold << " J/m^3; give a larger threshold or a smaller strain";
+  parameters.error("Damage/threshold energy", text.str(),
+                   {"Loading/strain x", "Loading/strain y", "Fracture/breaking stretch"});
 }
 
-double stored_energy(const input::Case &input, const Subject &subject)
-{
-  return continuum::CauchyBorn(families(input, subject)).energy(to_continuum(input.deformation()));
-}
-
-double damage_time_step(const input::Case &input, const Subject &subject, const continuum::DamageLaw &law,
-                        input::Parameters &parameters)
+// Sets the time step and its stages, or reports why the sheet cannot move.
+void set_stepping(const input::Case &input, DamagedSheet &sheet, input::Parameters &parameters)
 {
   // The limits of a step depend on the cells, not on their number: three by three have an inner node and take no
   // memory.
-  const continuum::Rectangle sheet = rectangle(input, law);
-  const continuum::Rectangle piece{3. * sheet.length / sheet.cells_x, 3. * sheet.height / sheet.cells_y, 3, 3};
-  continuum::DamageMotionSetup probe = setup(input, subject, law, piece, 0.);
+  const continuum::Rectangle whole = rectangle(input, sheet.law);
+  const continuum::Rectangle piece{3. * whole.length / whole.cells_x, 3. * whole.height / whole.cells_y, 3, 3};
+  continuum::DamageMotionSetup probe = setup(input, sheet.subject, sheet.law, piece, 0.);
   probe.step = 1e-3 / continuum::FibreForces(continuum::NodeGrid(piece), probe.families, probe.dashpots, probe.loading)
                         .elastic_frequency(input.density);
   double stable = 0.;
@@ -131,12 +132,12 @@ double damage_time_step(const input::Case &input, const Subject &subject, const 
     // The step is short, and other entries have been checked.
     parameters.error(probe.gradient ? "Continuum/inertia length" : "Damage/cells per length", error.what(),
                      {"Damage/length"});
-    return input.continuum.time_step.value_or(probe.step);
+    return;
   }
-  probe.step = input.continuum.time_step.value_or(0.5 * stable);
+  sheet.step = probe.step = input.continuum.time_step.value_or(0.5 * stable);
   try
   {
-    (void)continuum::DamageMotion(probe);
+    sheet.stages = continuum::DamageMotion(probe).n_stages();
   }
   catch (const continuum::InvalidInput &error)
   {
@@ -144,7 +145,31 @@ double damage_time_step(const input::Case &input, const Subject &subject, const 
     text << error.what() << "; the longest explicit step of the loaded sheet without viscosity is " << stable << " s";
     parameters.error("Continuum/time step", text.str(), {"Damage/length", "Damage/cells per length"});
   }
-  return probe.step;
+}
+
+} // namespace
+
+continuum::DamageLaw damage_law(const input::Case &input, const Subject &subject)
+{
+  Tensor<2, 2> broken;
+  broken[0][0] = broken[1][1] = input.breaking_stretch.value_or(3.);
+  const input::ContinuumCase &c = input.continuum;
+  return {c.damage_threshold ? *c.damage_threshold : subject.cauchy_born.energy(broken),
+          c.damage_length.value_or(subject.spacing), c.residual_stiffness};
+}
+
+DamagedSheet damaged_sheet(const input::Case &input, input::Parameters &parameters)
+{
+  require_damaged_sheet(input, parameters);
+  parameters.finish();
+  DamagedSheet sheet{subject(input), {}, 0., 0, 0.};
+  sheet.law = damage_law(input, sheet.subject);
+  require_undamaged_loading(input, sheet, parameters);
+  set_stepping(input, sheet, parameters);
+  parameters.finish();
+  const continuum::Rectangle whole = rectangle(input, sheet.law);
+  sheet.cells = static_cast<double>(whole.cells_x) * whole.cells_y;
+  return sheet;
 }
 
 SeedSegment seed_segment(const input::Case &input, const continuum::NodeGrid &grid)
@@ -159,10 +184,9 @@ SeedSegment seed_segment(const input::Case &input, const continuum::NodeGrid &gr
   return seed;
 }
 
-continuum::DamageMotion damaged_sheet(const input::Case &input, const Subject &subject, const continuum::DamageLaw &law,
-                                      const double step)
+continuum::DamageMotion damage_motion(const input::Case &input, const DamagedSheet &sheet)
 {
-  continuum::DamageMotion motion(setup(input, subject, law, rectangle(input, law), step));
+  continuum::DamageMotion motion(setup(input, sheet.subject, sheet.law, rectangle(input, sheet.law), sheet.step));
   const continuum::NodeGrid &grid = motion.grid();
   const SeedSegment seed = seed_segment(input, grid);
   motion.set_damage(
@@ -171,7 +195,7 @@ continuum::DamageMotion damaged_sheet(const input::Case &input, const Subject &s
       // The nodes on both sides of the row of cells have the damage 1: its cells are open.
       const double x = std::max({seed.left - X[0], X[0] - seed.right, 0.});
       const double y = std::max(std::abs(X[1] - seed.Y) - 0.5 * grid.size_y, 0.);
-      const double left = std::min(1. - std::hypot(x, y) / (2. * law.length), 1.);
+      const double left = std::min(1. - std::hypot(x, y) / (2. * sheet.law.length), 1.);
       return left > 0. ? left * left : 0.;
     });
   const double spacing = input.spacing, amplitude = input.noise_amplitude * spacing;

@@ -8,7 +8,6 @@
 #include "lattice/archive_rows.h"
 #include "verification/bridge/damaged_sheet.h"
 #include "verification/bridge/lattice_sheet.h"
-#include "verification/claims/damage/damage_claim.h"
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/commands/cost.h"
@@ -31,9 +30,6 @@ constexpr double allowed_imbalance = 1e-2;
 
 // Energy of the sheet, over the one supplied, at which a run has blown up, as on the lattice.
 constexpr double blown_up = 2.;
-
-// Measured on one core: time of a cell in one stage of a step [s], and memory of a cell [bytes].
-constexpr double seconds_per_cell = 1.2e-7, bytes_per_cell = 600.;
 
 using analysis::CrackMeasurement;
 
@@ -181,20 +177,6 @@ private:
   double next_frame_; // [s]
 };
 
-// Reports a sheet that breaks everywhere at once: its homogeneous state is damaged.
-void check_threshold(const input::Case &input, const bridge::Subject &subject, const continuum::DamageLaw &law,
-                     input::Parameters &parameters)
-{
-  const double stored = bridge::stored_energy(input, subject);
-  if (stored < law.threshold)
-    return;
-  std::ostringstream text;
-  text << "the loaded sheet stores " << stored << " J/m^3 and would be damaged everywhere, since damage begins at "
-       << law.threshold << " J/m^3; give a larger threshold or a smaller strain";
-  parameters.error("Damage/threshold energy", text.str(),
-                   {"Loading/strain x", "Loading/strain y", "Fracture/breaking stretch"});
-}
-
 } // namespace
 
 support::ExitCode run_continuum_fracture(const input::Options &options)
@@ -206,32 +188,27 @@ support::ExitCode run_continuum_fracture(const input::Options &options)
   input::Parameters parameters;
   read_case(options, input, parameters);
   bridge::require_fracture_case(input, parameters);
-  bridge::require_damaged_sheet(input, parameters);
-  parameters.finish();
-  const bridge::Subject subject = bridge::subject(input);
-  const continuum::DamageLaw law = claims::damage_law(input, subject);
-  check_threshold(input, subject, law, parameters);
-  const double step = bridge::damage_time_step(input, subject, law, parameters), h = bridge::cell_size(input, law);
-  parameters.finish();
-  resources::check_steps(input, step, parameters);
+  const bridge::DamagedSheet sheet = bridge::damaged_sheet(input, parameters);
+  resources::check_steps(input, sheet.step, parameters);
   parameters.finish();
 
-  const double cells = input.length / h * (input.height / h), steps = std::ceil(input.end_time / step);
-  const resources::MemoryNeed memory{bytes_per_cell * cells, 0.};
+  const double steps = std::ceil(input.end_time / sheet.step);
+  const resources::MemoryNeed memory = resources::damage_memory(sheet.cells);
   if (options.dry_run)
     print_dry_run(options, parameters.resolved_text() + resources::memory_text(memory));
   require_memory(options, memory);
-  continuum::DamageMotion motion = bridge::damaged_sheet(input, subject, law, step);
-  const double seconds = cells * steps * motion.n_stages() * seconds_per_cell / omp_get_max_threads();
+  continuum::DamageMotion motion = bridge::damage_motion(input, sheet);
+  const double seconds = resources::damage_seconds(sheet.cells, steps * sheet.stages) / omp_get_max_threads();
   if (options.dry_run)
   {
     const continuum::NodeGrid &grid = motion.grid();
     std::ostringstream text;
     text << "# continuum: " << grid.cells_x << " x " << grid.cells_y << " cells of " << grid.size_x << " m x "
-         << grid.size_y << " m\n# damage: length " << law.length << " m, threshold " << law.threshold
-         << " J/m^3, energy of a crack " << law.fracture_energy() << " J/m^2\n# time step: " << step << " s, " << steps
-         << " steps at most of " << motion.n_stages() << " stages each\n# time: about " << std::ceil(seconds)
-         << " s at most on " << omp_get_max_threads() << " threads, without claims, pictures and page\n";
+         << grid.size_y << " m\n# damage: length " << sheet.law.length << " m, threshold " << sheet.law.threshold
+         << " J/m^3, energy of a crack " << sheet.law.fracture_energy() << " J/m^2\n# time step: " << sheet.step
+         << " s, " << steps << " steps at most of " << sheet.stages << " stages each\n# time: about "
+         << std::ceil(seconds) << " s at most on " << omp_get_max_threads()
+         << " threads, without claims, pictures and page\n";
     print_dry_run(options, text.str());
     require_time(options, seconds);
     return support::ExitCode::done;
@@ -247,16 +224,16 @@ support::ExitCode run_continuum_fracture(const input::Options &options)
   run.record_checkpoint(checkpoints);
   run.info().add("side", std::string("continuum"));
   run.info().add("skip_verification", options.skip_verification);
-  run.info().add("damage_length_m", law.length);
-  run.info().add("damage_threshold_J_m3", law.threshold);
-  run.info().add("fracture_energy_J_m2", law.fracture_energy());
+  run.info().add("damage_length_m", sheet.law.length);
+  run.info().add("damage_threshold_J_m3", sheet.law.threshold);
+  run.info().add("fracture_energy_J_m2", sheet.law.fracture_energy());
   run.info().add("cell_size_m", motion.grid().size_x);
-  run.info().add("time_step_s", step);
-  run.info().add("stages", static_cast<std::uint64_t>(motion.n_stages()));
+  run.info().add("time_step_s", sheet.step);
+  run.info().add("stages", static_cast<std::uint64_t>(sheet.stages));
   output::Results results;
   if (!options.skip_verification)
-    results = passed_or_reported(input, claims_before_continuum_fracture(subject.material), bridge::laws_of(input),
-                                 options, run);
+    results = passed_or_reported(input, claims_before_continuum_fracture(sheet.subject.material),
+                                 bridge::laws_of(input), options, run);
   DamageRun crack(input, motion, options.skip_verification, checkpoints, run);
   crack.go();
   const CrackMeasurement measurement = crack.record().measure();

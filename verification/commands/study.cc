@@ -62,12 +62,14 @@ std::string case_file_of(const std::string &directory, const study::PlannedRun &
   return directory + "/cases/" + planned.folder() + ".prm";
 }
 
-std::vector<std::string> command_of(const std::string &case_file, const std::string &folder, bool skip_verification,
-                                    bool resume, bool is_confirmed)
+std::vector<std::string> command_of(const study::PlannedRun &planned, const std::string &directory,
+                                    const std::string &folder, bool skip_verification, bool resume, bool is_confirmed)
 {
   // This program, even if its file has been replaced since it was started.
-  std::vector<std::string> command{"/proc/self/exe", "fracture",  case_file, "--output-dir",
-                                   folder,           "--threads", "1",       "--no-report"};
+  std::vector<std::string> command{"/proc/self/exe", "fracture",     case_file_of(directory, planned),
+                                   "--side",         planned.side(), "--output-dir",
+                                   folder,           "--threads",    "1",
+                                   "--no-report"};
   if (skip_verification)
     command.emplace_back("--skip-verification");
   if (resume)
@@ -92,13 +94,13 @@ public:
     : plan_(plan), jobs_(jobs), line_(wanted), is_verbose_(wanted), start_(std::chrono::steady_clock::now())
   {
     for (const std::size_t run : jobs)
-      total_ += plan[run].cost();
+      total_ += plan[run].seconds;
   }
 
   void ended(std::size_t run, const study::RunOutcome &outcome)
   {
     ++n_ended_;
-    done_ += plan_[run].cost();
+    done_ += plan_[run].seconds;
     if (is_verbose_)
       std::cout << "[" << n_ended_ << "/" << jobs_.size() << "] " << plan_[run].folder() << ": " << result_line(outcome)
                 << ", " << std::lround(outcome.wall_time) << " s" << std::endl;
@@ -178,7 +180,7 @@ bool run_children(study::StudyResults &results, const Selection &selection, bool
     if (!goes_on)
       fs::remove_all(folder);
     fs::create_directory(folder);
-    return {command_of(case_file_of(directory, planned), folder, skip_verification, goes_on, selection.is_confirmed),
+    return {command_of(planned, directory, folder, skip_verification, goes_on, selection.is_confirmed),
             folder + "/log.txt"};
   };
   pool.ended = [&](std::size_t job, int status)
@@ -414,7 +416,11 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
   if (verification == study::Verification::base_case && !chosen.collect)
   {
     const input::Case base = study::base_case(results.study, requested.base, requested.settings);
-    (void)require_verified(base, claims_before_fracture(base.material()), bridge::laws_of_lattice(), run);
+    const bool on_continuum = std::any_of(results.study.runs.begin(), results.study.runs.end(),
+                                          [](const study::StudyRun &one) { return one.on_continuum; });
+    (void)require_verified(
+      base, on_continuum ? claims_before_continuum_fracture(base.material()) : claims_before_fracture(base.material()),
+      on_continuum ? bridge::laws_of(base) : bridge::laws_of_lattice(), run);
   }
   const bool complete =
     chosen.collect || (run_children(results, selection, skip_verification, n_cores, run) &&

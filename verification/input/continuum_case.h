@@ -134,7 +134,7 @@ struct ContinuumCase
   FieldCase initial_velocity;     ///< [m/s]
 
   std::optional<double> damage_length;    ///< xi [m]; none: the spacing of the lattice
-  std::optional<double> damage_threshold; ///< W_c [J/m^3]; none: from the breaking stretch, see claims::damage_law
+  std::optional<double> damage_threshold; ///< W_c [J/m^3]; none: from the breaking stretch, see bridge::damage_law
   double residual_stiffness = 1e-6;       ///< k [-]
 
   ContinuumCase();

@@ -382,6 +382,18 @@ double continuum_seconds(const input::Case &input, const ContinuumSize &size, co
                               ranks;
 }
 
+MemoryNeed damage_memory(const double cells)
+{
+  constexpr double bytes_per_cell = 600.; // measured
+  return {bytes_per_cell * cells, 0.};
+}
+
+double damage_seconds(const double cells, const double evaluations)
+{
+  constexpr double seconds_per_cell = 1.2e-7; // measured
+  return seconds_per_cell * cells * evaluations;
+}
+
 double core_seconds(const double site_evaluations)
 {
   return site_evaluations * nanoseconds_per_site_evaluation * 1e-9;

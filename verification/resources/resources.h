@@ -84,6 +84,13 @@ inline constexpr double seconds_of_claims = 8., seconds_of_report = 9.; ///< for
 /// Estimates the time [s] on one core of a number of force evaluations on a site, time stepping included.
 [[nodiscard]] double core_seconds(double site_evaluations);
 
+/// Estimates the memory of a crack of the finite elements with damage. @param cells number of cells
+[[nodiscard]] MemoryNeed damage_memory(double cells);
+
+/// Estimates the time of a crack of the finite elements with damage on one core [s].
+/// @param evaluations number of steps times the stages of a step
+[[nodiscard]] double damage_seconds(double cells, double evaluations);
+
 /// Reports `Time/end` to `parameters` if the number of steps exceeds the range of the counter. @param step [s], > 0
 void check_steps(const input::Case &input, double step, input::Parameters &parameters);
 

@@ -115,6 +115,11 @@ RunOutcome read_outcome(const PlannedRun &run, const std::string &folder, const 
 bool is_begun(const PlannedRun &run, const std::string &folder, const bool skip_verification)
 {
   const Json info = object_in(folder + "/run.json");
+  // Cracks of the lattice do not name their side. A run that has not ended has no crack.json; its checkpoint names the
+  // command.
+  const Json crack = object_in(folder + "/crack.json");
+  if (!crack.empty() && value_or(crack, "side", std::string("lattice")) != run.side())
+    return false;
   // A killed run has not recorded whether it was verified; it verifies its case when it continues. The case comes last,
   // because it takes milliseconds to resolve.
   return value_or(info, "program_hash", std::string()) == output::program_hash() &&

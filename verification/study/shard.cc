@@ -55,7 +55,7 @@ std::string plan_text(const std::string &title, const std::vector<PlannedRun> &p
 {
   Json runs = Json::array();
   for (const PlannedRun &run : plan)
-    runs.push_back({{"run", run.folder()}, {"case_sha256", run.case_sha256}});
+    runs.push_back({{"run", run.folder()}, {"side", run.side()}, {"case_sha256", run.case_sha256}});
   Json document{{"study", title}, {"skip_verification", skip_verification}};
   if (n_shards > 0)
     document["shards"] = n_shards;

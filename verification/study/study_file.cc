@@ -62,11 +62,12 @@ public:
     const nlohmann::ordered_json document = parse_json(text, study_.file);
     const JsonPlace top(document, study_.file, "", problems_);
     top.is_object(
-      {"title", "base", "set", "seeds", "quick", "sweep", "refine", "runs", "claims", "checks", "pictures"});
+      {"title", "base", "side", "set", "seeds", "quick", "sweep", "refine", "runs", "claims", "checks", "pictures"});
     if (const auto title = top.required("title"))
       study_.title = title->text();
     if (const auto base = top.required("base"))
       study_.base = (std::filesystem::path(study_.file).parent_path() / base->text()).lexically_normal();
+    on_continuum_ = is_on_continuum(top, false);
     whole_ = change(top);
     if (top.has("quick"))
     {
@@ -143,6 +144,12 @@ private:
     return found;
   }
 
+  // Whether runs break the finite elements. @param otherwise without the key
+  static bool is_on_continuum(const JsonPlace &place, const bool otherwise)
+  {
+    return place.has("side") ? place.at("side").word({"lattice", "continuum"}, "side") == "continuum" : otherwise;
+  }
+
   void run(const std::string &name, const JsonPlace &place)
   {
     const auto allowed = [](const unsigned char c) { return std::isalnum(c) != 0 || c == '.' || c == '_' || c == '-'; };
@@ -152,9 +159,9 @@ private:
     if (std::find(names_.begin(), swept, name) != swept)
       place.problem("a run of the sweep has this name");
     names_.push_back(name);
-    if (!place.is_object({"about", "set", "seeds", "quick"}))
+    if (!place.is_object({"about", "side", "set", "seeds", "quick"}))
       return;
-    StudyRun run{name, place.optional_text("about"), {}, {}, {}};
+    StudyRun run{name, place.optional_text("about"), {}, {}, {}, is_on_continuum(place, on_continuum_)};
     const Change own = change(place);
     Change small;
     bool left_out = false;
@@ -214,6 +221,7 @@ private:
       run.all = study_.settings;
       override_settings(run.all, run.own);
       run.seeds = quick_ ? quick_seeds : seeds;
+      run.on_continuum = on_continuum_;
       run.is_swept = true;
       names.insert(run.name);
       names_.push_back(run.name);
@@ -431,6 +439,7 @@ private:
   bool is_continuous_ = true;                               // the values of the sweeps
   std::vector<std::string> problems_;
   Change whole_, quick_change_;
+  bool on_continuum_ = false; // of runs that do not name their side
   Study study_;
 };
 

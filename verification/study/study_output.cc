@@ -44,7 +44,8 @@ Json json_of(const PlannedRun &planned, const RunOutcome &outcome)
   run["problem"] = outcome.problem;
   run["pattern"] = outcome.pattern.empty() ? Json(nullptr) : Json(outcome.pattern);
   run["reason"] = outcome.reason;
-  run["sites"] = planned.sites;
+  run["side"] = planned.side();
+  run[planned.side() == "lattice" ? "sites" : "cells"] = static_cast<std::uint64_t>(planned.size);
   run["values"] = Json::object();
   for (const StudyQuantity &quantity : quantities())
   {
@@ -330,15 +331,15 @@ void print_plan(std::ostream &out, const Study &study, const std::vector<Planned
   std::size_t widest = 4;
   for (const PlannedRun &run : plan)
     widest = std::max(widest, run.folder().size());
-  out << std::left << std::setw(static_cast<int>(widest)) << "run" << std::right << std::setw(10) << "sites"
-      << std::setw(10) << "steps" << std::setw(12) << "core time" << '\n';
+  out << std::left << std::setw(static_cast<int>(widest)) << "run" << std::right << std::setw(10) << "size"
+      << std::setw(12) << "evaluations" << std::setw(12) << "core time" << '\n';
   double total = 0.;
   for (const PlannedRun &run : plan)
   {
-    const double seconds = resources::core_seconds(run.cost());
-    total += seconds;
-    out << std::left << std::setw(static_cast<int>(widest)) << run.folder() << std::right << std::setw(10) << run.sites
-        << std::setw(10) << std::llround(run.steps) << std::setw(10) << std::llround(std::ceil(seconds)) << " s\n";
+    total += run.seconds;
+    out << std::left << std::setw(static_cast<int>(widest)) << run.folder() << std::right << std::setw(10)
+        << std::llround(run.size) << std::setw(12) << std::llround(run.evaluations) << std::setw(10)
+        << std::llround(std::ceil(run.seconds)) << " s\n";
   }
   out << plan.size() << " runs, about " << std::llround(std::ceil(total / 60.)) << " core minutes, "
       << std::llround(std::ceil(total / 60. / static_cast<double>(n_cores))) << " minutes on " << n_cores << " cores\n";

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "support/errors.h"
+#include "verification/bridge/damaged_sheet.h"
 #include "verification/bridge/homogenisation.h"
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/claims/claim_inputs.h"
@@ -63,6 +64,29 @@ void resolve(const PlannedCase &planned, const std::uint64_t seed, const Verific
   parameters.finish();
 }
 
+// Sets the size and the cost of a run. Adds problems of a case that the finite elements do not support.
+void estimate(const input::Case &input, input::Parameters &parameters, PlannedRun &run)
+{
+  resources::MemoryNeed memory;
+  if (run.planned_case->on_continuum)
+  {
+    const bridge::DamagedSheet sheet = bridge::damaged_sheet(input, parameters);
+    run.size = sheet.cells;
+    run.evaluations = std::ceil(input.end_time / sheet.step) * sheet.stages;
+    run.seconds = resources::damage_seconds(run.size, run.evaluations);
+    memory = resources::damage_memory(run.size);
+  }
+  else
+  {
+    const lattice::TimeStepping stepping = input.fracture_time_stepping();
+    run.size = static_cast<double>(input.lattice().n_sites());
+    run.evaluations = resources::expected_steps(input, stepping) * stepping.evaluations();
+    run.seconds = resources::core_seconds(run.size * run.evaluations);
+    memory = resources::lattice_memory(input, resources::RunKind::fracture, true);
+  }
+  run.memory = memory.shared + memory.first_rank;
+}
+
 // Adds the seeds of a run, whose case is resolved once.
 // @param changed entries that a run of the study changes
 // @param shared base case, its name, and `keys` once the first case has been resolved
@@ -74,6 +98,7 @@ void plan_seeds(const StudyRun &run, const Settings &settings, const std::set<st
   override_settings(all, {{"Output/frame interval", "0"}, {"Output/motion frames", "0"}});
   const auto planned = std::make_shared<PlannedCase>(shared);
   planned->changes = assignments(all);
+  planned->on_continuum = run.on_continuum;
 
   input::Case input;
   input::Parameters parameters;
@@ -98,11 +123,7 @@ void plan_seeds(const StudyRun &run, const Settings &settings, const std::set<st
   of_seed.planned_case = planned;
   of_seed.spacing = input.spacing;
   of_seed.zeta = zeta(input);
-  of_seed.sites = input.lattice().n_sites();
-  const resources::MemoryNeed memory = resources::lattice_memory(input, resources::RunKind::fracture, true);
-  of_seed.memory = memory.shared + memory.first_rank;
-  const lattice::TimeStepping stepping = input.fracture_time_stepping();
-  of_seed.steps = resources::expected_steps(input, stepping) * stepping.evaluations();
+  estimate(input, parameters, of_seed);
   for (const std::uint64_t seed : run.seeds)
   {
     of_seed.seed = input.noise_seed = seed; // any number is allowed
@@ -250,7 +271,7 @@ std::vector<std::size_t> longest_first(const std::vector<PlannedRun> &runs)
   std::vector<std::size_t> order(runs.size());
   std::iota(order.begin(), order.end(), 0);
   std::stable_sort(order.begin(), order.end(),
-                   [&runs](std::size_t a, std::size_t b) { return runs[a].cost() > runs[b].cost(); });
+                   [&runs](std::size_t a, std::size_t b) { return runs[a].seconds > runs[b].seconds; });
   return order;
 }
 

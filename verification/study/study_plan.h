@@ -24,12 +24,13 @@ namespace latcon::study
 /// Case of a run, shared by its seeds. It is resolved once, whatever their number.
 struct PlannedCase
 {
-  std::shared_ptr<const input::InputFile> base; ///< shared by all cases of a study
-  std::string base_name;                        ///< path of the base case
-  std::vector<std::string> changes;             ///< `Section/Name=value` without the seed
+  std::shared_ptr<const input::InputFile> base;         ///< shared by all cases of a study
+  std::string base_name;                                ///< path of the base case
+  std::vector<std::string> changes;                     ///< `Section/Name=value` without the seed
   std::shared_ptr<const std::vector<std::string>> keys; ///< all entries `Section/Name`, sorted; shared by all cases
-  std::vector<double> numbers; ///< values of `keys` in SI units; NaN for entries that are not numbers
+  std::vector<double> numbers;              ///< values of `keys` in SI units; NaN for entries that are not numbers
   std::map<std::string, std::string> texts; ///< other values, of the entries that a run of the study changes
+  bool on_continuum = false;                ///< true: the finite elements break, not the lattice
 };
 
 /// Fracture run: a case with one seed. It keeps no text of its case, so that thousands of runs take little memory.
@@ -38,17 +39,21 @@ struct PlannedRun
   std::string run;
   std::uint64_t seed = 0;
   std::shared_ptr<const PlannedCase> planned_case; ///< shared by the seeds of the run
-  std::string case_sha256; ///< of all entries and their values, as in Parameters::lines(); hexadecimal
-  double spacing = 0.;     ///< d [m]
+  std::string case_sha256;    ///< of all entries and their values, as in Parameters::lines(); hexadecimal
+  double spacing = 0.;        ///< d [m]
   std::optional<double> zeta; ///< see zeta()
-  std::size_t sites = 0;
-  double steps = 0.; ///< expected number, for a crack at the shear wave speed of the unloaded sheet
+  double size = 0.;           ///< number of sites, or of cells
+  /// Number of evaluations of the forces: for a crack of the lattice at the shear wave speed of the unloaded sheet, for
+  /// one of the finite elements until the end time.
+  double evaluations = 0.;
+  double seconds = 0.; ///< estimated time on one core [s]
 
   /// Resolves the case with all entries, as in the case.prm of the run.
   [[nodiscard]] std::string case_text() const;
   std::string folder() const { return run + "-" + std::to_string(seed); }
   double memory = 0.; ///< estimated, in addition to that of the program itself [bytes]
-  double cost() const { return static_cast<double>(sites) * steps; } ///< site-steps [-]
+  /// Side that breaks, as in crack.json.
+  std::string side() const { return planned_case != nullptr && planned_case->on_continuum ? "continuum" : "lattice"; }
   /// Returns the value of "zeta" or of an entry `Section/Name`; none if it is not a number.
   std::optional<double> value(const std::string &against) const;
   /// Returns the value of an entry that a run of the study changes, if it is not a number; empty if it is one.
@@ -89,7 +94,7 @@ enum class Verification
 [[nodiscard]] input::Case base_case(const Study &study, const input::InputFile &base,
                                     const std::vector<std::string> &settings);
 
-/// Returns the indices of the runs in the order of decreasing cost; stable for equal cost.
+/// Returns the indices of the runs in the order of decreasing time; stable for equal times.
 [[nodiscard]] std::vector<std::size_t> longest_first(const std::vector<PlannedRun> &runs);
 
 } // namespace latcon::study

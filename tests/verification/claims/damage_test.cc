@@ -1,4 +1,5 @@
 // Bars of the continuum with damage, and faults that make their claim fail.
+#include "verification/bridge/damaged_sheet.h"
 #include "verification/claims/damage/damage_claim.h"
 
 #include <gtest/gtest.h>

@@ -165,8 +165,51 @@ TEST(StudyFile, PlanResolvesEveryCase)
   EXPECT_FALSE(plan[0].value("Sheet/orientation").has_value());
   // theory.md, eq. (L.5): (eta / a) / (d / sqrt(a / rho)) = 65.625 / 1e5 / (0.625e-3 / sqrt(1e5 / 944))
   EXPECT_NEAR(plan[0].zeta.value(), 10.80695, 1e-5);
-  EXPECT_GT(plan[0].sites, 1000u);
+  EXPECT_GT(plan[0].size, 1000.);
+  EXPECT_GT(plan[0].seconds, 0.);
   EXPECT_NE(plan[0].case_text().find("set noise seed"), std::string::npos);
+}
+
+TEST(StudyFile, RunsHaveTheSideOfTheStudyUnlessTheyNameTheirOwn)
+{
+  nlohmann::ordered_json document = example();
+  document["set"]["Damage/threshold energy"] = "9 MPa";
+  document["set"]["Damage/cells per length"] = 2;
+  document["runs"]["one"]["side"] = "continuum";
+  const std::vector<PlannedRun> plan = plan_of(read(document));
+  EXPECT_EQ(plan[0].side(), "continuum");
+  EXPECT_EQ(plan[2].side(), "lattice");
+  // Two cells per spacing of 0.625 mm: 128 in 4 cm; up to 2 cm an odd number of rows, 63 at most.
+  const double rows = plan[0].size / 128.;
+  EXPECT_TRUE(rows == 63. || rows == 61.) << rows;
+  EXPECT_GT(plan[0].seconds, 0.);
+  document["side"] = "continuum";
+  document["runs"]["one"]["side"] = "lattice";
+  const std::vector<PlannedRun> other = plan_of(read(document));
+  EXPECT_EQ(other[0].side(), "lattice");
+  EXPECT_EQ(other[2].side(), "continuum");
+}
+
+TEST(StudyFile, ProblemsOfTheContinuumAreFoundBeforeTheFirstRun)
+{
+  using Json = nlohmann::ordered_json;
+  EXPECT_HAS(problem_after([](Json &d) { d["side"] = "contnuum"; }),
+             "side: 'contnuum' is not a known side; nearest: continuum");
+  EXPECT_HAS(problem_after(
+               [](Json &d)
+               {
+                 d["runs"]["one"]["side"] = "continuum";
+                 d["runs"]["one"]["set"]["Nearest neighbours/branch moduli"] = "0.1 MPa";
+                 d["runs"]["one"]["set"]["Nearest neighbours/relaxation times"] = "1 ms";
+               }),
+             "does not support bonds with memory");
+  EXPECT_HAS(problem_after(
+               [](Json &d)
+               {
+                 d["runs"]["one"]["side"] = "continuum";
+                 d["runs"]["one"]["set"]["Damage/threshold energy"] = "1 kPa";
+               }),
+             "would be damaged everywhere");
 }
 
 TEST(StudyFile, LinearBondsHaveNoZeta)
@@ -181,8 +224,7 @@ TEST(StudyFile, TheMostExpensiveRunComesFirst)
   std::vector<PlannedRun> plan(3);
   for (std::size_t i = 0; i < plan.size(); ++i)
   {
-    plan[i].sites = 100;
-    plan[i].steps = i == 1 ? 20. : 10.;
+    plan[i].seconds = i == 1 ? 20. : 10.;
   }
   EXPECT_EQ(longest_first(plan), (std::vector<std::size_t>{1, 0, 2}));
 }
@@ -247,8 +289,10 @@ TEST(StudyFile, RowsKnowTheUnitOfWhatTheyAreAgainst)
 
 TEST(StudyFile, ShippedStudiesAreThoseInTheFolder)
 {
-  EXPECT_EQ(shipped_studies(), (std::vector<std::string>{"map", "onset", "paper", "patterns", "time-stepping"}));
-  EXPECT_EQ(study_choices(), "study file (.json), or a shipped one: map, onset, paper, patterns, time-stepping");
+  EXPECT_EQ(shipped_studies(),
+            (std::vector<std::string>{"continuum-paper", "map", "onset", "paper", "patterns", "time-stepping"}));
+  EXPECT_EQ(study_choices(),
+            "study file (.json), or a shipped one: continuum-paper, map, onset, paper, patterns, time-stepping");
   try
   {
     (void)read_study_file(study_path("nosuch"), false);

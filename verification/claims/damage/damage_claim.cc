@@ -249,15 +249,6 @@ void degraded_energy(const Problem &problem, bool leaves_gradient, Rows &rows)
 
 } // namespace
 
-DamageLaw damage_law(const input::Case &input, const bridge::Subject &subject)
-{
-  dealii::Tensor<2, 2> broken;
-  broken[0][0] = broken[1][1] = input.breaking_stretch.value_or(3.);
-  const input::ContinuumCase &c = input.continuum;
-  return {c.damage_threshold ? *c.damage_threshold : subject.cauchy_born.energy(broken),
-          c.damage_length.value_or(subject.spacing), c.residual_stiffness};
-}
-
 ClaimOutcome damage_claim(const bridge::Subject &subject, const DamageLaw &law, const DamageOptions &options)
 {
   ClaimOutcome outcome;

@@ -7,11 +7,6 @@
 namespace latcon::claims
 {
 
-/// Returns the constants of the damage of a case: those of section `Damage`. By default the length is the spacing, and
-/// the threshold the energy density of the subject's Cauchy-Born law stretched along both axes to the breaking stretch,
-/// or to 3 if the case has none (theory-damage.md, eq. (C.61)).
-continuum::DamageLaw damage_law(const input::Case &input, const bridge::Subject &subject);
-
 /// Sizes of the claim `damage`.
 struct DamageOptions
 {

@@ -1,5 +1,6 @@
 #include "verification/claims/damage/descriptor.h"
 
+#include "verification/bridge/damaged_sheet.h"
 #include "verification/claims/damage/damage_claim.h"
 
 namespace latcon::claims
@@ -11,7 +12,7 @@ ClaimOutcome check(const ClaimInput &input)
 {
   DamageOptions options;
   options.finest = input.quick ? 4 : 8;
-  return damage_claim(input.subject, damage_law(input.entries, input.subject), options);
+  return damage_claim(input.subject, bridge::damage_law(input.entries, input.subject), options);
 }
 
 } // namespace
