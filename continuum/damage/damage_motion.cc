@@ -52,9 +52,11 @@ struct PhasePoint
 } // namespace
 
 DamageMotion::DamageMotion(const DamageMotionSetup &setup)
-  : setup_(setup), forces_(NodeGrid(setup.rectangle), setup.families, setup.dashpots, setup.loading),
+  : setup_(setup),
+    forces_(NodeGrid(setup.rectangle), setup.families, setup.dashpots, setup.loading, setup.communicator),
     damage_(forces_.grid(), setup.damage, intact_nodes(forces_.grid(), setup)), held_(held_nodes(grid(), setup)),
-    mass_(grid(), setup.density, inertia_length(setup), held_), u_(zero_vector(grid())), v_(zero_vector(grid()))
+    mass_(grid(), setup.density, inertia_length(setup), held_, setup.communicator), u_(zero_vector(grid())),
+    v_(zero_vector(grid()))
 {
   const auto require = [](const bool holds, const char *rule)
   {
@@ -67,7 +69,7 @@ DamageMotion::DamageMotion(const DamageMotionSetup &setup)
   {
     require(setup.gradient->length > 0. && std::isfinite(setup.gradient->length),
             "the intrinsic length must be positive and finite");
-    gradient_.emplace(grid(), setup.gradient->bonds, setup.gradient->length, setup.loading);
+    gradient_.emplace(grid(), setup.gradient->bonds, setup.gradient->length, setup.loading, setup.communicator);
   }
   if (const double rate = viscous_rate(); rate > 0.)
     stages_.emplace(gradient_ ? ViscousStages::required(setup.step * rate, 2. * setup.step / stable_step())

@@ -25,6 +25,7 @@ struct DamageMotionSetup
   std::function<bool(const dealii::Point<2> &)> is_intact;
   double step;                                          ///< [s] > 0
   std::optional<GradientSetup> gradient = std::nullopt; ///< none: local law
+  MPI_Comm communicator = MPI_COMM_SELF;                ///< ranks that share the sheet
 };
 
 /// Energies of a sheet in motion with damage [J/m], per unit reference thickness, eq. (C.74).
@@ -61,7 +62,9 @@ struct DamageMotionLedger
 /// Steps are explicit: Runge-Kutta-Chebyshev with as many stages as the viscosity requires, or velocity Verlet without
 /// viscosity. After each step the damage is minimised at fixed displacement and velocity.
 ///
-/// Serial (threads only); bits do not depend on the number of threads.
+/// Ranks share the forces, the energies and the division by the mass, in bands of rows; each rank has the whole sheet,
+/// combines the stages and minimises the damage. Bits do not depend on the numbers of ranks and threads. All functions
+/// that compute are collective, and all ranks throw, or none.
 class DamageMotion
 {
 public:

@@ -96,8 +96,8 @@ std::vector<FibreDashpot> in_all_directions(const std::vector<FibreDashpot> &das
 }
 
 FibreForces::FibreForces(const NodeGrid &grid, const std::vector<FibreFamily> &families,
-                         const std::vector<FibreDashpot> &dashpots, const Tensor<2, 2> &loading)
-  : grid_(grid), loading_(loading)
+                         const std::vector<FibreDashpot> &dashpots, const Tensor<2, 2> &loading, MPI_Comm communicator)
+  : grid_(grid), bands_(grid, communicator), loading_(loading)
 {
   if (families.empty())
     throw InvalidMaterial("a fibre network needs at least one family");
@@ -139,8 +139,8 @@ struct FibreForces::Row
   const std::vector<double> &factors;
   GridVector *force;
   std::vector<double> *energies;
-  double *power;        // of the row
-  std::size_t *unsound; // first unsound cell of the row
+  double *power;   // of the row
+  double *unsound; // first unsound cell of the row, a number for gathering
 };
 
 template <bool is_force>
@@ -231,7 +231,7 @@ void FibreForces::visit(const Row<is_force> &row) const
       {
         (*row.energies)[cell + i] = weight * energy[i];
         if (g > sound_factor && !(smallest[i] > 0.))
-          *row.unsound = std::min(*row.unsound, cell + i);
+          *row.unsound = std::min(*row.unsound, static_cast<double>(cell + i));
       }
     }
   }
@@ -243,13 +243,18 @@ double FibreForces::forces(const GridVector &u, const GridVector &v, const std::
   for (std::vector<double> &component : force)
     component.assign(grid_.n_nodes(), 0.);
   std::vector<double> powers(grid_.cells_y, 0.);
-  // Rows of one parity share no nodes. Each node adds up its even row first, whatever the number of threads.
+  // The rows of cells at the own nodes. Those of one parity share no nodes, and each node adds up its even row first,
+  // whatever the number of threads.
+  const std::size_t begin = bands_.begin() > 0 ? bands_.begin() - 1 : 0, end = bands_.cells_end();
   for (const std::size_t parity : {0u, 1u})
   {
 #pragma omp parallel for schedule(static) if (grid_.n_cells() >= min_cells_for_threads)
-    for (std::size_t j = parity; j < grid_.cells_y; j += 2)
+    for (std::size_t j = begin + (begin + parity) % 2; j < end; j += 2)
       visit(Row<true>{j, u, v, factors, &force, nullptr, &powers[j], nullptr});
   }
+  for (std::vector<double> &component : force)
+    bands_.gather_nodes(component);
+  bands_.gather_cells(powers);
   double power = 0.;
   for (const double of_row : powers)
     power += of_row;
@@ -260,14 +265,17 @@ void FibreForces::energies(const GridVector &u, const std::vector<double> &facto
                            std::vector<double> &cell_energies) const
 {
   cell_energies.resize(grid_.n_cells());
-  const std::size_t none = grid_.n_cells();
-  std::vector<std::size_t> unsound(grid_.cells_y, none);
+  const auto none = static_cast<double>(grid_.n_cells());
+  std::vector<double> unsound(grid_.cells_y, none);
 #pragma omp parallel for schedule(static) if (grid_.n_cells() >= min_cells_for_threads)
-  for (std::size_t j = 0; j < grid_.cells_y; ++j)
+  for (std::size_t j = bands_.begin(); j < bands_.cells_end(); ++j)
     visit(Row<false>{j, u, u, factors, nullptr, &cell_energies, nullptr, &unsound[j]});
-  for (const std::size_t cell : unsound)
-    if (cell < none)
+  bands_.gather_cells(cell_energies);
+  bands_.gather_cells(unsound);
+  for (const double number : unsound)
+    if (number < none)
     {
+      const auto cell = static_cast<std::size_t>(number);
       std::ostringstream message;
       message << "a cell that is not broken is inverted, or shorter than " << min_stretch
               << " of its length along a fibre, near X = " << static_cast<double>(cell % grid_.cells_x) * grid_.size_x

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "continuum/damage/grid_damage.h"
+#include "continuum/damage/row_bands.h"
 #include "continuum/fibres.h"
 #include "continuum/viscosity.h"
 
@@ -33,21 +33,22 @@ std::vector<FibreDashpot> in_all_directions(const std::vector<FibreDashpot> &das
 /// Unlike CauchyBorn, a fibre shorter than min_stretch keeps the force it has there, and a cell may be inverted: both
 /// happen in cells that are broken. In cells with a factor above sound_factor they are errors.
 ///
-/// Threads share the rows of cells; results do not depend on their number.
+/// Ranks and their threads share the rows of cells; results do not depend on the numbers of either. All ranks have all
+/// arguments and all results.
 class FibreForces
 {
 public:
   /// Creates the forces of fibres and dashpots; `dashpots` may be empty. Throws InvalidMaterial as CauchyBorn and
   /// FibreViscosity do, and InvalidInput for custom potentials, which are not supported.
   FibreForces(const NodeGrid &grid, const std::vector<FibreFamily> &families, const std::vector<FibreDashpot> &dashpots,
-              const dealii::Tensor<2, 2> &loading);
+              const dealii::Tensor<2, 2> &loading, MPI_Comm communicator = MPI_COMM_SELF);
 
   /// Computes the forces -sum over cells of g_c d(E_c)/du - viscous ones [N/m] for displacement u [m], velocity v [m/s]
-  /// and factors g_c. Returns the dissipated power [W/m].
+  /// and factors g_c. Returns the dissipated power [W/m]. Collective.
   double forces(const GridVector &u, const GridVector &v, const std::vector<double> &factors, GridVector &force) const;
 
   /// Computes the energies E_c [J/m] of the undegraded cells. Throws NonPhysicalState, with the position, if a cell
-  /// with g_c > sound_factor is inverted or has a fibre shorter than min_stretch.
+  /// with g_c > sound_factor is inverted or has a fibre shorter than min_stretch. Collective; all ranks throw, or none.
   void energies(const GridVector &u, const std::vector<double> &factors, std::vector<double> &cell_energies) const;
 
   /// Returns an upper bound [1/s] of the eigenvalues of the viscous forces over the mass, for cells of `density`
@@ -82,6 +83,7 @@ private:
   DampedFibre &fibre_along(const dealii::Tensor<1, 2> &direction);
 
   NodeGrid grid_;
+  RowBands bands_;
   dealii::Tensor<2, 2> loading_;
   std::vector<DampedFibre> fibres_;
 };

@@ -118,8 +118,8 @@ std::vector<BondFamily> in_all_directions(const std::vector<BondFamily> &bonds, 
 }
 
 GradientForces::GradientForces(const NodeGrid &grid, const std::vector<BondFamily> &bonds, const double length,
-                               const Tensor<2, 2> &loading)
-  : grid_(grid), loading_(loading)
+                               const Tensor<2, 2> &loading, MPI_Comm communicator)
+  : grid_(grid), bands_(grid, communicator), loading_(loading)
 {
   checked_determinant(loading);
   std::vector<BondFamily> merged;
@@ -248,21 +248,27 @@ void GradientForces::visit(const Row<is_force> &row) const
 
 void GradientForces::add_forces(const GridVector &u, const std::vector<double> &factors, GridVector &force) const
 {
-  // Every third row: these share no nodes. Each node adds up its rows in this order, whatever the number of threads.
-  for (const std::size_t start : {1u, 2u, 3u})
+  // The inner rows that reach the own nodes. Every third row: these share no nodes. Each node adds up its rows in the
+  // order of their remainders 1, 2, 0, whatever the number of threads.
+  const std::size_t begin = std::max<std::size_t>(bands_.begin(), 2) - 1,
+                    end = std::min(bands_.end() + 1, grid_.cells_y);
+  for (const std::size_t remainder : {1u, 2u, 0u})
   {
 #pragma omp parallel for schedule(static) if (grid_.n_cells() >= FibreForces::min_cells_for_threads)
-    for (std::size_t j = start; j < grid_.cells_y; j += 3)
+    for (std::size_t j = begin + (remainder + 3 - begin % 3) % 3; j < end; j += 3)
       visit(Row<true>{j, u, &factors, &force, nullptr});
   }
+  for (std::vector<double> &component : force)
+    bands_.gather_nodes(component);
 }
 
 void GradientForces::energies(const GridVector &u, std::vector<double> &node_energies) const
 {
   node_energies.assign(grid_.n_nodes(), 0.);
 #pragma omp parallel for schedule(static) if (grid_.n_cells() >= FibreForces::min_cells_for_threads)
-  for (std::size_t j = 1; j < grid_.cells_y; ++j)
+  for (std::size_t j = std::max<std::size_t>(bands_.begin(), 1); j < bands_.cells_end(); ++j)
     visit(Row<false>{j, u, nullptr, nullptr, &node_energies});
+  bands_.gather_nodes(node_energies);
 }
 
 std::vector<GradientForces::PatchTerm> GradientForces::patch_terms(const double relaxed) const

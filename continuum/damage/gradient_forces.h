@@ -27,19 +27,21 @@ std::vector<BondFamily> in_all_directions(const std::vector<BondFamily> &bonds, 
 /// Bonds of one direction and one potential are merged, as in NetworkGradient. A bond shorter than
 /// FibreForces::relaxed_stretch has the axial stiffness it has there: broken cells would limit the time step otherwise.
 ///
-/// Threads share the rows of nodes; results do not depend on their number.
+/// Ranks and their threads share the rows of nodes; results do not depend on the numbers of either. All ranks have all
+/// arguments and all results.
 class GradientForces
 {
 public:
   /// Throws InvalidMaterial as LatticeGradient does, where families of one direction and potential have their mean
   /// squared length, and InvalidInput for custom potentials.
   GradientForces(const NodeGrid &grid, const std::vector<BondFamily> &bonds, double length,
-                 const dealii::Tensor<2, 2> &loading);
+                 const dealii::Tensor<2, 2> &loading, MPI_Comm communicator = MPI_COMM_SELF);
 
   /// Adds the forces -sum over nodes of g_a d(E^g_a)/du [N/m] for displacement u [m] and nodal factors g_a [-].
+  /// Collective.
   void add_forces(const GridVector &u, const std::vector<double> &factors, GridVector &force) const;
 
-  /// Computes the energies E^g_a [J/m] of the undegraded nodes, eq. (C.75).
+  /// Computes the energies E^g_a [J/m] of the undegraded nodes, eq. (C.75). Collective.
   void energies(const GridVector &u, std::vector<double> &node_energies) const;
 
   /// Term stiffness (1/2) (sum over nodes of S_b u_b)^2 of the energy of a patch of 3 x 3 nodes, row by row.
@@ -67,6 +69,7 @@ private:
   void visit(const Row<is_force> &row) const;
 
   NodeGrid grid_;
+  RowBands bands_;
   dealii::Tensor<2, 2> loading_;
   std::vector<Bond> bonds_;
 };

@@ -24,8 +24,8 @@ Laplacian laplacian(const NodeGrid &grid)
 } // namespace
 
 MassOperator::MassOperator(const NodeGrid &grid, const double density, const double length,
-                           const std::array<std::vector<char>, 2> &held)
-  : grid_(grid), density_(density), length_(length), held_(held)
+                           const std::array<std::vector<char>, 2> &held, MPI_Comm communicator)
+  : grid_(grid), bands_(grid, communicator), density_(density), length_(length), held_(held)
 {
   if (!(length >= 0. && std::isfinite(length)))
     throw InvalidInput("the micro-inertia length must be finite and not negative");
@@ -86,7 +86,6 @@ void MassOperator::update(const std::vector<double> &factors)
 
 void MassOperator::multiply(const std::vector<double> &v, std::vector<double> &result) const
 {
-  const auto columns = static_cast<std::ptrdiff_t>(grid_.columns()), rows = static_cast<std::ptrdiff_t>(grid_.rows());
   result.resize(v.size());
   if (length_ == 0.)
   {
@@ -94,8 +93,16 @@ void MassOperator::multiply(const std::vector<double> &v, std::vector<double> &r
       result[a] = lumped_[a] * v[a];
     return;
   }
+  multiply_rows(0, grid_.rows(), v, result);
+}
+
+// Computes the rows [begin, end) of nodes.
+void MassOperator::multiply_rows(const std::size_t begin, const std::size_t end, const std::vector<double> &v,
+                                 std::vector<double> &result) const
+{
+  const auto columns = static_cast<std::ptrdiff_t>(grid_.columns()), rows = static_cast<std::ptrdiff_t>(grid_.rows());
 #pragma omp parallel for schedule(static) if (grid_.n_cells() >= FibreForces::min_cells_for_threads)
-  for (std::ptrdiff_t j = 0; j < rows; ++j)
+  for (std::ptrdiff_t j = static_cast<std::ptrdiff_t>(begin); j < static_cast<std::ptrdiff_t>(end); ++j)
   {
     const std::ptrdiff_t first = j * columns, last = first + columns;
     double *to = result.data();
@@ -141,8 +148,8 @@ void MassOperator::solve(GridVector &forces) const
     }
     return;
   }
-  // Chebyshev iteration for D^-1 M x = D^-1 f, D the lumped masses.
-  const std::size_t n = lumped_.size();
+  // Chebyshev iteration for D^-1 M x = D^-1 f, D the lumped masses, on the own rows.
+  const std::size_t n = lumped_.size(), first = bands_.begin() * grid_.columns(), last = bands_.end() * grid_.columns();
   const double middle = 0.5 * (largest_ + 1.), half = 0.5 * (largest_ - 1.);
   std::vector<double> x(n), change(n), product(n);
   for (const unsigned int d : {0u, 1u})
@@ -150,7 +157,7 @@ void MassOperator::solve(GridVector &forces) const
     std::vector<double> &residual = forces[d];
     const std::vector<double> &inverse = inverse_[d];
 #pragma omp parallel for simd schedule(static) if (parallel : is_parallel)
-    for (std::size_t a = 0; a < n; ++a)
+    for (std::size_t a = first; a < last; ++a)
     {
       residual[a] *= inverse[a];
       x[a] = change[a] = residual[a] / middle;
@@ -158,11 +165,12 @@ void MassOperator::solve(GridVector &forces) const
     double rho = half / middle;
     for (unsigned int k = 1; k < n_iterations_; ++k)
     {
-      multiply(change, product);
+      bands_.exchange(change);
+      multiply_rows(bands_.begin(), bands_.end(), change, product);
       const double next = 1. / (2. * middle / half - rho);
       const double keep = next * rho, add = 2. * next / half;
 #pragma omp parallel for simd schedule(static) if (parallel : is_parallel)
-      for (std::size_t a = 0; a < n; ++a)
+      for (std::size_t a = first; a < last; ++a)
       {
         residual[a] -= inverse[a] * product[a];
         change[a] = keep * change[a] + add * residual[a];
@@ -170,6 +178,7 @@ void MassOperator::solve(GridVector &forces) const
       }
       rho = next;
     }
+    bands_.gather_nodes(x);
     residual = x;
   }
 }

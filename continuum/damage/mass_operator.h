@@ -9,13 +9,15 @@ namespace latcon::continuum
 /// with lumped masses m_a (C.69) and bilinear v. Held components are at rest.
 ///
 /// The inverse is a fixed number of Chebyshev iterations with known bounds of the spectrum, which hold for every
-/// damage: one fixed symmetric matrix, without scalar products, so that bits do not depend on the number of threads.
+/// damage: one fixed symmetric matrix, without scalar products, so that bits do not depend on the numbers of ranks,
+/// which share the rows of nodes, and of threads.
 class MassOperator
 {
 public:
   /// Creates the operator of an undamaged sheet. `held` marks components at rest; `length` l_d [m] >= 0; 0: lumped
   /// masses alone, divided by directly.
-  MassOperator(const NodeGrid &grid, double density, double length, const std::array<std::vector<char>, 2> &held);
+  MassOperator(const NodeGrid &grid, double density, double length, const std::array<std::vector<char>, 2> &held,
+               MPI_Comm communicator = MPI_COMM_SELF);
 
   /// Sets the factors g_c of the cells [-].
   void update(const std::vector<double> &factors);
@@ -23,7 +25,7 @@ public:
   /// Computes M v [kg/(m s)], also at held components, where v is to be zero.
   void multiply(const std::vector<double> &v, std::vector<double> &result) const;
 
-  /// Replaces forces by accelerations, zero where held.
+  /// Replaces forces by accelerations, zero where held. Collective.
   void solve(GridVector &forces) const;
 
   /// Returns v.M v / 2 [J/m].
@@ -36,7 +38,11 @@ public:
   static constexpr double tolerance = 1e-7;
 
 private:
+  void multiply_rows(std::size_t begin, std::size_t end, const std::vector<double> &v,
+                     std::vector<double> &result) const;
+
   NodeGrid grid_;
+  RowBands bands_;
   double density_, length_;
   std::array<std::vector<char>, 2> held_;
   std::vector<double> lumped_;
