@@ -222,6 +222,27 @@ void DamageMotion::advance_elastic()
 
 void DamageMotion::advance()
 {
+  const GridVector u = u_, v = v_;
+  const std::vector<double> damage = damage_.nodal();
+  const DamageMotionLedger ledger = ledger_;
+  const std::size_t n_steps = n_steps_;
+  try
+  {
+    step();
+  }
+  catch (...)
+  {
+    u_ = u;
+    v_ = v;
+    ledger_ = ledger;
+    n_steps_ = n_steps;
+    resume(damage);
+    throw;
+  }
+}
+
+void DamageMotion::step()
+{
   if (stages_)
     advance_viscous();
   else

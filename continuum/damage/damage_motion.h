@@ -82,8 +82,8 @@ public:
   /// of [0, 1].
   void set_damage(const std::function<double(const dealii::Point<2> &)> &damage);
 
-  /// Advances by one step. Throws NonPhysicalState as FibreForces::energies and GridDamage::minimize do; the motion
-  /// cannot be continued then.
+  /// Advances by one step. Throws NonPhysicalState as FibreForces::energies and GridDamage::minimize do; the state is
+  /// then that before the step.
   void advance();
 
   double time() const { return static_cast<double>(n_steps_) * setup_.step; } ///< [s]
@@ -134,6 +134,7 @@ private:
   }
   double viscous_rate() const;
   void restart_ledger();
+  void step();
   void update_masses() { mass_.update(damage_.cell_factors()); }
   void compute_energies();
   void update_energies();

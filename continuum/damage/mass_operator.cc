@@ -148,8 +148,11 @@ void MassOperator::solve(GridVector &forces) const
     }
     return;
   }
-  // Chebyshev iteration for D^-1 M x = D^-1 f, D the lumped masses, on the own rows.
-  const std::size_t n = lumped_.size(), first = bands_.begin() * grid_.columns(), last = bands_.end() * grid_.columns();
+  // Chebyshev iteration for D^-1 M x = D^-1 f, D the lumped masses, on the own rows and as many beside them as there
+  // are iterations, each of which spoils the outermost rows: no messages within the iteration.
+  const std::size_t n = lumped_.size(), reach = n_iterations_, own = bands_.begin();
+  const std::size_t begin = own > reach ? own - reach : 0, end = std::min(bands_.end() + reach, grid_.rows());
+  const std::size_t first = begin * grid_.columns(), last = end * grid_.columns();
   const double middle = 0.5 * (largest_ + 1.), half = 0.5 * (largest_ - 1.);
   std::vector<double> x(n), change(n), product(n);
   for (const unsigned int d : {0u, 1u})
@@ -165,8 +168,7 @@ void MassOperator::solve(GridVector &forces) const
     double rho = half / middle;
     for (unsigned int k = 1; k < n_iterations_; ++k)
     {
-      bands_.exchange(change);
-      multiply_rows(bands_.begin(), bands_.end(), change, product);
+      multiply_rows(begin, end, change, product);
       const double next = 1. / (2. * middle / half - rho);
       const double keep = next * rho, add = 2. * next / half;
 #pragma omp parallel for simd schedule(static) if (parallel : is_parallel)

@@ -44,18 +44,4 @@ void RowBands::gather(std::vector<double> &values, const std::size_t n_rows) con
   MPI_Allgatherv(MPI_IN_PLACE, 0, MPI_DATATYPE_NULL, values.data(), counts.data(), offsets.data(), MPI_DOUBLE,
                  communicator_);
 }
-
-void RowBands::exchange(std::vector<double> &nodal) const
-{
-  if (n_ranks_ == 1)
-    return;
-  const std::size_t columns = nodal.size() / rows_;
-  const int n = static_cast<int>(columns);
-  const int below = rank_ > 0 ? rank_ - 1 : MPI_PROC_NULL, above = rank_ + 1 < n_ranks_ ? rank_ + 1 : MPI_PROC_NULL;
-  const auto row = [&](const std::size_t j) { return nodal.data() + std::min(j, rows_ - 1) * columns; };
-  MPI_Sendrecv(row(begin_), n, MPI_DOUBLE, below, 0, row(end_), n, MPI_DOUBLE, above, 0, communicator_,
-               MPI_STATUS_IGNORE);
-  MPI_Sendrecv(row(end_ - 1), n, MPI_DOUBLE, above, 1, row(begin_ > 0 ? begin_ - 1 : 0), n, MPI_DOUBLE, below, 1,
-               communicator_, MPI_STATUS_IGNORE);
-}
 } // namespace latcon::continuum

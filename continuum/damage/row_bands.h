@@ -29,9 +29,6 @@ public:
   void gather_nodes(std::vector<double> &values) const { gather(values, rows_); }
   void gather_cells(std::vector<double> &values) const { gather(values, rows_ - 1); }
 
-  /// Does the same for the two rows of nodes next to the own band alone. Collective.
-  void exchange(std::vector<double> &nodal) const;
-
 private:
   void gather(std::vector<double> &values, std::size_t n_rows) const;
 

@@ -368,6 +368,43 @@ TEST(DamageMotion, DoesNotBreakWithoutASeed)
     EXPECT_EQ(d, 0.);
 }
 
+TEST(DamageMotion, HasTheStateBeforeAStepThatFails)
+{
+  DamageMotion motion = strip();
+  motion.set_motion([](const Point<2> &) { return Tensor<1, 2>(); },
+                    [](const Point<2> &X) {
+                      return Tensor<1, 2>({0., 3e3 * std::sin(2e3 * X[0])}); // inverts cells
+                    });
+  GridVector u, v;
+  std::vector<double> damage, energies;
+  double imbalance = 0.;
+  bool has_failed = false;
+  for (unsigned int step = 0; step < 100 && !has_failed; ++step)
+  {
+    u = motion.displacement();
+    v = motion.velocity();
+    damage = motion.damage().nodal();
+    energies = motion.cell_energies();
+    imbalance = motion.ledger().imbalance;
+    const std::size_t n = motion.n_steps();
+    try
+    {
+      motion.advance();
+    }
+    catch (const NonPhysicalState &)
+    {
+      has_failed = true;
+      EXPECT_EQ(motion.n_steps(), n);
+    }
+  }
+  ASSERT_TRUE(has_failed);
+  EXPECT_EQ(motion.displacement(), u);
+  EXPECT_EQ(motion.velocity(), v);
+  EXPECT_EQ(motion.damage().nodal(), damage);
+  EXPECT_EQ(motion.cell_energies(), energies);
+  EXPECT_EQ(motion.ledger().imbalance, imbalance);
+}
+
 TEST(DamageMotion, RefusesInvalidInput)
 {
   DamageMotionSetup setup{Rectangle{1., 1., 4, 4},

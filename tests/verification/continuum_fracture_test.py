@@ -24,7 +24,7 @@ SHEET = {"Sheet/spacing": "1 mm", "Sheet/length": "30 mm", "Sheet/height": "16 m
          "Damage/cells per length": 1, "Damage/threshold energy": "3.2 MPa", "Nearest neighbours/viscosity": "10 Pa s",
          "Next-nearest neighbours/viscosity": "30 Pa s", "Fracture/seed sites": 8, "Time/end": "3 ms", "Fracture/stop position": 0.8,
          "Output/frame interval": "0.3 ms", "Output/energy interval": 10, "Checkpoints/steps": 5}
-BAD_INPUT, OUTPUT_FAILED, INTERRUPTED = 2, 5, 130
+BAD_INPUT, SOLVER_FAILED, OUTPUT_FAILED, INTERRUPTED = 2, 4, 5, 130
 
 
 def command(folder, *more, entries=None, side="continuum"):
@@ -145,11 +145,36 @@ class ContinuumFracture(TemporaryFolder):
             run = latcon(*command(self.out, "--dry-run", entries={**nearest, "Continuum/law": law}))
             self.assertEqual(run.returncode, code, run.stderr)
 
-    def test_ranks(self):
-        run = latcon_on_ranks(2, *command(self.out))
-        self.assertEqual(run.returncode, BAD_INPUT, run.stderr)
-        self.assertIn("one rank", run.stderr)
-        self.assertFalse(self.out.exists())
+    def test_three_ranks_leave_the_files_of_one(self):
+        entries = {"Continuum/gradient": "lattice", "Fracture/stop position": 0.5}
+        self.run_to_end("--no-report", entries=entries)
+        expected = files(self.out)
+        self.out = self.folder / "ranks"
+        run = latcon_on_ranks(3, *command(self.out, "--no-report", "--threads", "1", entries=entries))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(files(self.out), expected)
+        # From the older of the two checkpoints, on another number of ranks.
+        max((self.out / "checkpoints").iterdir()).unlink()
+        run = latcon_on_ranks(2, *command(self.out, "--no-report", "--threads", "1", "--resume", entries=entries))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("checkpoint", run.stdout)
+        self.assertEqual(files(self.out), expected)
+
+    def test_crack_that_fails_leaves_its_last_valid_state(self):
+        entries = {"Nearest neighbours/viscosity": "1 Pa s", "Next-nearest neighbours/viscosity": "1 Pa s"}
+        run = latcon(*command(self.out, "--no-report", entries=entries))
+        self.assertEqual(run.returncode, SOLVER_FAILED, run.stderr)
+        self.assertIn("a cell that is not broken is inverted", run.stderr)
+        shown = frames(self.out / "continuum.pvd")
+        self.assertGreater(shown[-1][0], 0.0)
+        self.assertEqual(shown[-1][0], json.loads((self.out / "crack.json").read_text())["end_time"])
+        self.assertEqual(json.loads((self.out / "run.json").read_text())["exit_code"], SOLVER_FAILED)
+        expected, message = files(self.out), run.stderr.split("latcon: ")[-1]
+        self.out = self.folder / "ranks"
+        run = latcon_on_ranks(2, *command(self.out, "--no-report", "--threads", "1", entries=entries))
+        self.assertEqual(run.returncode, SOLVER_FAILED, run.stderr)
+        self.assertIn(message.strip(), run.stderr)
+        self.assertEqual(files(self.out), expected)
 
     def test_table_that_cannot_be_written(self):
         (self.out / "crack_edges.csv").mkdir(parents=True)

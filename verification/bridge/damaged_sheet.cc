@@ -186,7 +186,9 @@ SeedSegment seed_segment(const input::Case &input, const continuum::NodeGrid &gr
 
 continuum::DamageMotion damage_motion(const input::Case &input, const DamagedSheet &sheet)
 {
-  continuum::DamageMotion motion(setup(input, sheet.subject, sheet.law, rectangle(input, sheet.law), sheet.step));
+  continuum::DamageMotionSetup whole = setup(input, sheet.subject, sheet.law, rectangle(input, sheet.law), sheet.step);
+  whole.communicator = MPI_COMM_WORLD;
+  continuum::DamageMotion motion(whole);
   const continuum::NodeGrid &grid = motion.grid();
   const SeedSegment seed = seed_segment(input, grid);
   motion.set_damage(

@@ -51,7 +51,7 @@ struct SeedSegment
 /// them, with the damage of a straight crack about the seed (theory-damage.md, eq. (C.67)), and displaced by the
 /// noise of the case: random numbers in [-1, 1] times the amplitude at the points of a square lattice with the spacing
 /// of the case, linear in between, so that it does not depend on the mesh.
-/// @throws InvalidInput, InvalidMaterial as DamageMotion does
+/// All ranks share it. Collective. @throws InvalidInput, InvalidMaterial as DamageMotion does
 [[nodiscard]] continuum::DamageMotion damage_motion(const input::Case &input, const DamagedSheet &sheet);
 
 } // namespace latcon::bridge

@@ -53,14 +53,15 @@ public:
     if (resumed)
     {
       // Removes what was written after the checkpoint.
-      record_.write_tables(run_.directory());
-      frames_.series().write_collection();
+      write_tables();
+      if (run_.is_root())
+        frames_.series().write_collection();
     }
     else
     {
       record_.step();
       record_.energies();
-      frames_.add_frame(motion_);
+      add_frame();
     }
     output::Progress progress(run_.is_verbose());
     const auto phase = run_.info().stopwatch().phase("fracture");
@@ -78,13 +79,25 @@ public:
                       std::max((record_.tip_X() - seed_tip_) / (stop - seed_tip_), motion_.time() / input_.end_time));
     }
     record_.energies();
-    frames_.add_frame(motion_);
-    record_.write_tables(run_.directory());
+    add_frame();
+    write_tables();
   }
 
   const output::DamageRecord &record() const { return record_; }
 
 private:
+  // All ranks have the whole sheet and the same records; the root rank writes.
+  void add_frame()
+  {
+    if (run_.is_root())
+      frames_.add_frame(motion_);
+  }
+  void write_tables() const
+  {
+    if (run_.is_root())
+      record_.write_tables(run_.directory());
+  }
+
   void step()
   {
     const std::size_t number = motion_.n_steps() + 1;
@@ -112,25 +125,28 @@ private:
     if (input_.frame_interval > 0. && motion_.time() >= next_frame_)
     {
       // All results so far are on disk from here on.
-      frames_.add_frame(motion_);
-      record_.write_tables(run_.directory());
+      add_frame();
+      write_tables();
       next_frame_ += input_.frame_interval;
     }
   }
 
-  // The input has been checked, so the computed state is wrong. It cannot be shown; the records until then can.
-  [[noreturn]] void fail(const std::string &cause, const std::size_t number) const
+  // The input has been checked, so the computed state is wrong. The last valid one is shown, and the records until then.
+  [[noreturn]] void fail(const std::string &cause, const std::size_t number)
   {
     std::string records = "crack.json is of what the crack did until then";
     try
     {
-      record_.write_tables(run_.directory());
-      record_.write_measurement(run_.directory(), record_.measure(), skip_verification_);
+      add_frame();
+      write_tables();
+      if (run_.is_root())
+        record_.write_measurement(run_.directory(), record_.measure(), skip_verification_);
     }
     catch (const std::exception &error) // the cause is the message that matters
     {
       records = std::string("what the crack did until then is not on disk: ") + error.what();
     }
+    MPI_Barrier(MPI_COMM_WORLD); // the exception of another rank would end the one that writes
     throw support::SolverError(cause + ", in step " + std::to_string(number) + "; " + records +
                                "; try a smaller Continuum/time step, or more viscosity if the flanks of the crack "
                                "collapse against the held edges");
@@ -181,9 +197,6 @@ private:
 
 support::ExitCode run_continuum_fracture(const input::Options &options)
 {
-  if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
-    throw support::InputError(
-      "latcon fracture --side continuum runs on one rank, with threads: start it without mpirun");
   input::Case input;
   input::Parameters parameters;
   read_case(options, input, parameters);
@@ -193,12 +206,15 @@ support::ExitCode run_continuum_fracture(const input::Options &options)
   parameters.finish();
 
   const double steps = std::ceil(input.end_time / sheet.step);
-  const resources::MemoryNeed memory = resources::damage_memory(sheet.cells);
+  // Every rank has the whole sheet.
+  const double ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+  resources::MemoryNeed memory = resources::damage_memory(sheet.cells);
+  memory.shared *= ranks;
   if (options.dry_run)
     print_dry_run(options, parameters.resolved_text() + resources::memory_text(memory));
   require_memory(options, memory);
   continuum::DamageMotion motion = bridge::damage_motion(input, sheet);
-  const double seconds = resources::damage_seconds(sheet.cells, steps * sheet.stages) / omp_get_max_threads();
+  const double seconds = resources::damage_seconds(sheet.cells, steps * sheet.stages) / (ranks * omp_get_max_threads());
   if (options.dry_run)
   {
     const continuum::NodeGrid &grid = motion.grid();
@@ -207,8 +223,8 @@ support::ExitCode run_continuum_fracture(const input::Options &options)
          << grid.size_y << " m\n# damage: length " << sheet.law.length << " m, threshold " << sheet.law.threshold
          << " J/m^3, energy of a crack " << sheet.law.fracture_energy() << " J/m^2\n# time step: " << sheet.step
          << " s, " << steps << " steps at most of " << sheet.stages << " stages each\n# time: about "
-         << std::ceil(seconds) << " s at most on " << omp_get_max_threads()
-         << " threads, without claims, pictures and page\n";
+         << std::ceil(seconds) << " s at most on " << ranks * omp_get_max_threads()
+         << " cores, without claims, pictures and page\n";
     print_dry_run(options, text.str());
     require_time(options, seconds);
     return support::ExitCode::done;
@@ -237,7 +253,8 @@ support::ExitCode run_continuum_fracture(const input::Options &options)
   DamageRun crack(input, motion, options.skip_verification, checkpoints, run);
   crack.go();
   const CrackMeasurement measurement = crack.record().measure();
-  crack.record().write_measurement(run.directory(), measurement, options.skip_verification);
+  if (run.is_root())
+    crack.record().write_measurement(run.directory(), measurement, options.skip_verification);
   results.add(
     measured_results(input, measurement, Side::continuum, crack.record().largest_imbalance(), allowed_imbalance));
   return end_crack(input, options, run, results, measurement);
