@@ -46,6 +46,15 @@ SHEET = {
     "frames/frames/pieces": [hostile.value(0)], "next_frame": [hostile.value(1e-300)], "step": [hostile.LARGE],
 }
 
+DAMAGE = {
+    "run/time": [hostile.value(1e308)], "motion/n_steps": [hostile.LARGE], "motion/displacement_x": [hostile.longer],
+    "motion/velocity_y": [hostile.no_number], "motion/damage": [hostile.value(1.5), hostile.shorter],
+    "record/passed": [hostile.value(1e308), hostile.value(-0.5), hostile.shorter], "record/column": [hostile.LARGE],
+    "record/tip/n": [hostile.LARGE], "record/tip/t": [hostile.shorter], "record/speeds": [hostile.longer],
+    "record/energies/n": [hostile.value(0)], "record/energies/time": [hostile.value(1e308)],
+    "frames/times": [hostile.value(-1.)], "next_frame": [hostile.value(1e308)], "step": [hostile.LARGE],
+}
+
 
 class Checkpoints(unittest.TestCase):
     def setUp(self):
@@ -63,6 +72,9 @@ class Checkpoints(unittest.TestCase):
 
     def test_contents_of_a_motion_in_finite_elements_that_nobody_left(self):
         self.check_refused("sheet in motion", SHEET)
+
+    def test_contents_of_a_crack_of_the_continuum_that_nobody_left(self):
+        self.check_refused("crack of the continuum", DAMAGE)
 
     def test_damage_is_refused_or_fallen_back_from(self):
         told = damage.damage_at_random(PROGRAM, "lattice in motion", self.folder, random.Random(1), 8)

@@ -162,6 +162,9 @@ void DamageRecord::check_loaded() const
   require_archived(column_ < motion_.grid().columns(), "`column` is outside the sheet");
   require_archived(speeds_.size() == tip_.size(), "the numbers of `speeds` and records of the tip do not match");
   require_archived(!energies_.empty(), "`energies` is empty");
+  for (const double time : passed_)
+    require_archived(time == not_passed || time == in_seed || (time >= 0. && time <= now),
+                     "`passed` has times after the present");
   double before = 0.;
   for (const analysis::TipRecord &tip : tip_)
   {
