@@ -6,6 +6,7 @@
 #include "continuum/damage/damage_motion.h"
 #include "support/largest_error.h"
 #include "verification/claims/damage/damaged_bar.h"
+#include "verification/claims/damage/smooth_motion_rows.h"
 
 namespace latcon::claims
 {
@@ -227,6 +228,13 @@ void add_damage_motion_rows(const bridge::Subject &subject, const DamageLaw &law
   Rows rows(subject, outcome);
   const Problem problem{subject, law, options.planted_toughness};
   rows.attempt("waves", [&] { waves(problem, rows); });
+  rows.attempt("smooth deformations",
+               [&]
+               {
+                 add_smooth_motion_rows(
+                   subject, [&](const std::string &quantity, double value, double theory, double tolerance)
+                   { rows.add(quantity, "1", value, theory, std::abs(value - theory), tolerance); });
+               });
   rows.attempt("strip without a seed",
                [&]
                {
@@ -248,10 +256,10 @@ void add_damage_motion_rows(const bridge::Subject &subject, const DamageLaw &law
   rows.attempt("steady crack",
                [&]
                {
-                 const Toughness coarse = steady_crack(problem, 2, rows);
+                 (void)steady_crack(problem, 2, rows);
                  if (options.finest > 4)
                  {
-                   const Toughness fine = steady_crack(problem, 4, rows);
+                   const Toughness coarse = steady_crack(problem, 4, rows), fine = steady_crack(problem, 8, rows);
                    const double ratio = 2. * fine.ratio - coarse.ratio;
                    rows.add("energy of a steady crack over G_c, extrapolated in h", "1", ratio, 1.,
                             std::abs(ratio - 1.), 2. * fine.tolerance + coarse.tolerance);
