@@ -19,6 +19,8 @@ std::size_t first_row(const std::size_t rows, const int rank, const int n_ranks)
 RowBands::RowBands(const NodeGrid &grid, MPI_Comm communicator)
   : communicator_(communicator), rows_(grid.rows()), end_(grid.rows())
 {
+  if (communicator == MPI_COMM_SELF)
+    return; // also in programs without MPI
   MPI_Comm_rank(communicator, &rank_);
   MPI_Comm_size(communicator, &n_ranks_);
   if (static_cast<std::size_t>(n_ranks_) > rows_)

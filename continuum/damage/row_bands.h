@@ -15,7 +15,8 @@ class RowBands
 {
 public:
   /// Divides the rows of nodes of a grid as evenly as possible. Row j of cells belongs to the owner of row j of nodes.
-  /// Collective. Throws InvalidInput, on all ranks, if there are more ranks than rows of nodes.
+  /// Collective; MPI_COMM_SELF needs no MPI. Throws InvalidInput, on all ranks, if there are more ranks than rows of
+  /// nodes.
   RowBands(const NodeGrid &grid, MPI_Comm communicator);
 
   /// Own rows of nodes, [begin, end).

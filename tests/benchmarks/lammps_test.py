@@ -41,7 +41,7 @@ class Lammps(unittest.TestCase):
     def test_trajectories_are_the_same_to_round_off(self):
         with tempfile.TemporaryDirectory() as name:
             folder = pathlib.Path(name)
-            motion = json.loads(run([PROGRAM, "linear", SITES, STEPS, REPETITIONS, 1, folder / "sheet.data", folder / "ours"]))
+            motion = json.loads(run([PROGRAM, "linear", SITES, STEPS, REPETITIONS, 1, 0, folder / "sheet.data", folder / "ours"]))
             (folder / "in.sheet").write_text(
                 lammps.input_text("sheet.data", motion["time_step"], STEPS, REPETITIONS, "theirs"), encoding="utf-8")
             lammps.move(folder, "none")

@@ -1,9 +1,10 @@
 // Moves a sheet by a number of steps and prints what that took, as JSON: what whole programs are compared by.
 //
-// lattice_motion WORK SITES STEPS REPETITIONS THREADS [LAMMPS_DATA [POSITIONS]]
+// lattice_motion WORK SITES STEPS REPETITIONS THREADS STAGES [LAMMPS_DATA [POSITIONS]]
 //   WORK         everything, nearest or linear
 //   SITES        number of sites, about
 //   STEPS        steps of a repetition; as many come before the first and are not timed
+//   STAGES       of a step of Runge-Kutta-Chebyshev; 0: velocity Verlet
 //   LAMMPS_DATA  file that gets the sheet as LAMMPS reads it, before it moves; linear bonds alone
 //   POSITIONS    file that gets x and y of all sites [m] after each of these times, a site a line in the order of
 //   LAMMPS
@@ -76,23 +77,23 @@ nlohmann::ordered_json moved(benchmarks::Motion &motion, std::size_t steps, std:
 
 int run(const std::vector<std::string> &arguments)
 {
-  if (arguments.size() < 5)
-    throw std::invalid_argument("lattice_motion WORK SITES STEPS REPETITIONS THREADS [LAMMPS_DATA [POSITIONS]]");
+  if (arguments.size() < 6)
+    throw std::invalid_argument("lattice_motion WORK SITES STEPS REPETITIONS THREADS STAGES [LAMMPS_DATA [POSITIONS]]");
   omp_set_num_threads(std::stoi(arguments[4]));
   const benchmarks::Work work = benchmarks::work_of(arguments[0]);
-  benchmarks::Motion motion(work, std::stod(arguments[1]));
-  if (arguments.size() > 5)
+  benchmarks::Motion motion(work, std::stod(arguments[1]), static_cast<unsigned int>(std::stoul(arguments[5])));
+  if (arguments.size() > 6)
   {
     if (work != benchmarks::Work::linear)
       throw std::invalid_argument("LAMMPS' bonds are the linear ones");
-    benchmarks::write_lammps_data(motion.simulation, arguments[5]);
+    benchmarks::write_lammps_data(motion.simulation, arguments[6]);
   }
   std::ofstream positions;
-  if (arguments.size() > 6)
-    positions.open(arguments[6]);
+  if (arguments.size() > 7)
+    positions.open(arguments[7]);
   std::cout << moved(motion, std::stoul(arguments[2]), std::stoul(arguments[3]), positions).dump() << "\n";
   if (positions.is_open() && !positions.flush())
-    throw std::runtime_error("cannot write " + arguments[6]);
+    throw std::runtime_error("cannot write " + arguments[7]);
   return 0;
 }
 

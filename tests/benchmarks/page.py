@@ -51,7 +51,8 @@ def kernel_table(part):
              per_cent(spread(row["seconds_per_site"]))] for row in part["rows"]]
     note = ("`everything`: Mooney-Rivlin bonds to twelve neighbours, dashpots, breaking and toughening; `nearest`: the same "
             "with six neighbours; `one_branch`, `three_branches`: `everything` with Maxwell branches in all bonds; "
-            "`linear`: only linear bonds to twelve neighbours; `reference`: only forces, bond by bond.")
+            "`linear`: only linear bonds to twelve neighbours; `reference`: only forces, bond by bond; `formulas`: root, quotient "
+            "and force law of six bonds per site alone, in the first-level cache.")
     return [Table("Kernel, one core", ["bonds", "instruction set", "sites", "ns per site and step", "spread"], rows, note)]
 
 
@@ -73,14 +74,16 @@ def lammps_table(part):
 
 def sizes_table(part):
     rows = []
-    for sites, threads in summary.by_size(part).items():
-        one, two = threads[1], threads[2]
-        rows.append([number(sites), ns(summary.per_site(one)), ns(summary.per_site(two)),
-                     f"{summary.per_site(one) / summary.per_site(two):.2f}", per_cent(spread(one["seconds"])),
-                     per_cent(spread(two["seconds"])), f"{one['peak_memory_bytes'] / 2**20:.0f}"])
-    header = ["sites", "1 thread [ns]", "2 threads [ns]", "speed-up", "spread, 1", "spread, 2", "peak memory [MiB]"]
-    note = (f"All features on. {summary.bytes_per_site(part):.0f} bytes per site, from the growth of the peak memory between "
-            "the two largest sheets.")
+    for stages, name in summary.integrators(part):
+        for sites, threads in summary.by_size(part, stages).items():
+            one, two = threads[1], threads[2]
+            rows.append([name, number(sites), ns(summary.per_site(one)), ns(summary.per_site(two)),
+                         f"{summary.per_site(one) / summary.per_site(two):.2f}", per_cent(spread(one["seconds"])),
+                         per_cent(spread(two["seconds"])), f"{one['peak_memory_bytes'] / 2**20:.0f}"])
+    header = ["integrator", "sites", "1 thread [ns]", "2 threads [ns]", "speed-up", "spread, 1", "spread, 2", "peak memory [MiB]"]
+    memory = " and ".join(f"{summary.bytes_per_site(part, stages):.0f} ({name})" for stages, name in summary.integrators(part))
+    note = (f"All features on; times per site and evaluation of the forces. Bytes per site: {memory}, from the growth of the peak "
+            "memory between the two largest sheets.")
     return [Table("Sizes and threads", header, rows, note)]
 
 
@@ -145,7 +148,7 @@ def model_tables(parts):
     exchanges = [(entry["bytes"], best(entry["seconds"])) for entry in parts["messages"]["exchanges"]]
     latency, bandwidth = message_times(exchanges)
     # Both cores at work, as on a node of a cluster: they share the memory.
-    largest = max(summary.by_size(parts["sizes"]).items())[1][2]
+    largest = max(summary.by_size(parts["sizes"], 0).items())[1][2]
     site_seconds = 2. * summary.per_site(largest)
     here = Machine(site_seconds, latency, bandwidth, best(parts["messages"]["allreduce_seconds"]))
     network = Machine(site_seconds, 2e-6, 5e9, 4e-6)

@@ -41,15 +41,15 @@ class Plan:
         return max(5, round((1e6 if self.quick else 2e7) / sites))
 
 
-def motion(plan, work, sites, steps, threads, *data):
+def motion(plan, work, sites, steps, threads, *data, stages=0):
     """One repetition of a motion of the sheet by lattice_motion."""
-    return run_json([plan.program("lattice_motion"), work, sites, steps, 1, threads, *data])
+    return run_json([plan.program("lattice_motion"), work, sites, steps, 1, threads, stages, *data])
 
 
 def kernel(plan):
     """Steps on one thread for each kind of bonds and instruction set, and a force evaluation bond by bond."""
     program = plan.program("lattice_kernel")
-    filters = {"": "^(reference/.*|step/.*/(10000|25000))$" if plan.quick else "."}
+    filters = {"": "^(formulas|reference/.*|step/.*/(10000|25000))$" if plan.quick else "."}
     for target in run([program, "--targets"]).split():
         filters[target] = "^step/everything/25000$" if plan.quick else "^step/.*/(25000|1000000)$"
     rows = []
@@ -60,7 +60,7 @@ def kernel(plan):
              f"--benchmark_min_time={0.02 if plan.quick else 0.3}", f"--benchmark_out={path}",
              "--benchmark_out_format=json"])
         rows += kernel_rows(json.loads(path.read_text(encoding="utf-8")), target)
-    order = ("everything", "nearest", "one_branch", "three_branches", "linear", "reference")
+    order = ("formulas", "everything", "nearest", "one_branch", "three_branches", "linear", "reference")
     return {"rows": sorted(rows, key=lambda row: (order.index(row["work"]), row["target"], row["sites"]))}
 
 
@@ -113,15 +113,21 @@ def against_lammps(plan):
     return {"version": lammps.version(help_text), "suffixes": lammps.suffixes(help_text), "rows": rows}
 
 
+STAGES = (0, 7)  # velocity Verlet, and Runge-Kutta-Chebyshev as in Fig. 1
+
+
 def sizes(plan):
-    """Steps with all features on, on one and two threads, for sheets of all sizes; memory."""
+    """Steps with all features on, by velocity Verlet and by Runge-Kutta-Chebyshev, on one and two threads, for sheets of
+    all sizes; memory."""
     rows = []
     for sites in (1e4, 1e5, 2e5) if plan.quick else (2.5e4, 1e5, 1e6, 1e7):
-        steps = plan.steps(sites)
-        variants = {threads: lambda threads=threads: motion(plan, "everything", sites, steps, threads)
-                    for threads in (1, 2)}
-        for threads, results in interleaved(variants, plan.rounds).items():
-            rows.append({"sites": results[0]["sites"], "steps": steps, "threads": threads,
+        steps = {stages: max(2, plan.steps(sites) // max(1, stages)) for stages in STAGES}
+        variants = {(stages, threads): lambda stages=stages, threads=threads:
+                    motion(plan, "everything", sites, steps[stages], threads, stages=stages)
+                    for stages in STAGES for threads in (1, 2)}
+        for (stages, threads), results in interleaved(variants, plan.rounds).items():
+            rows.append({"sites": results[0]["sites"], "stages": stages, "threads": threads,
+                         "evaluations": steps[stages] * max(1, stages),
                          "seconds": [result["seconds"][0] for result in results],
                          "peak_memory_bytes": max(result["peak_memory_bytes"] for result in results)})
     return {"rows": rows}
@@ -136,9 +142,9 @@ def latcon(plan, command, case, folder, *arguments, ranks=1):
 
 def moving_sheet(plan):
     """Arguments of `latcon lattice` for a moving sheet, and its description."""
-    side, steps = (100, 40) if plan.quick else (600, 400)
+    side, steps = (100, 4) if plan.quick else (1000, 20)
     entries = {"Sheet/length": f"{0.625 * side} mm", "Sheet/height": f"{0.625 * 0.866 * side} mm",
-               "Lattice/solution": "motion", "Time/step": "5e-8 s", "Time/end": f"{5e-8 * steps} s",
+               "Lattice/solution": "motion", "Time/integrator": "runge-kutta-chebyshev", "Time/step": "3e-6 s", "Time/end": f"{3e-6 * steps} s",
                "Output/frame interval": "0 s", "Output/energy interval": "1000000"}
     return [word for entry in entries.items() for word in ("--set", "=".join(entry))], f"{steps} steps of {side**2:,} sites"
 
@@ -178,7 +184,8 @@ def fig1(plan):
     """The crack of Fig. 1 from the command line: alone, with the preceding claims, and with its report."""
     folder = plan.folder("fig1")
     case = CASES / ("quick.prm" if plan.quick else "fig1.prm")
-    words = {"crack alone": "--skip-verification --no-report"}
+    words = {"crack alone": "--skip-verification --no-report",
+             "crack alone, Runge-Kutta-Chebyshev": "--skip-verification --no-report --set Time/integrator=runge-kutta-chebyshev"}
     if not plan.quick:
         words.update({"with the claims": "--no-report", "with the claims and the report": ""})
     outputs = {name: folder / str(i) for i, name in enumerate(words)}
@@ -221,11 +228,13 @@ def choice(name):
 
 
 def time_stepping(text):
-    """Numbers printed by --dry-run: {"time_step": [s], "stages": force evaluations per step}."""
+    """Numbers printed by --dry-run: {"sites", "time_step": [s], "stages": force evaluations per step}."""
     match = re.search(r"^# time step: (\S+) s, \S+ steps at most(?: of (\d+) stages each)?$", text, re.MULTILINE)
     if not match:
         raise Failed("--dry-run states no time step")
-    return {"time_step": float(match.group(1)), "stages": int(match.group(2) or 1)}
+    sites = re.search(r"^# lattice: (\d+) sites", text, re.MULTILINE)
+    return {"sites": int(sites.group(1)) if sites else None, "time_step": float(match.group(1)),
+            "stages": int(match.group(2) or 1)}
 
 
 def fem(plan):

@@ -59,10 +59,14 @@ inline latcon::lattice::Material material(Work work)
 struct Motion
 {
   /// @param n_sites about [-]; rounded to whole rows and columns
-  Motion(Work work, double n_sites)
+  /// @param stages of Runge-Kutta-Chebyshev, in steps about as long as those of a crack; 0: velocity Verlet
+  Motion(Work work, double n_sites, unsigned int stages = 0)
     : sheet(sheets::square(std::sqrt(n_sites * std::sqrt(0.75)))), bonds(material(work)),
       // Stable while no bond contracts to half of its length, and none does.
-      simulation(sheet, bonds, loaded(work), 0.5 * time_step_limits(sheet, bonds, 0.5).combined, rules(work))
+      simulation(sheet, bonds, loaded(work),
+                 stages > 0 ? latcon::lattice::TimeStepping(3e-6, stages)
+                            : latcon::lattice::TimeStepping(0.5 * time_step_limits(sheet, bonds, 0.5).combined),
+                 rules(work))
   {
   }
 

@@ -161,7 +161,8 @@ private:
     names_.push_back(name);
     if (!place.is_object({"about", "side", "set", "seeds", "quick"}))
       return;
-    StudyRun run{name, place.optional_text("about"), {}, {}, {}, is_on_continuum(place, on_continuum_)};
+    StudyRun run{name, place.optional_text("about"), {}, {}, {}};
+    run.on_continuum = is_on_continuum(place, on_continuum_);
     const Change own = change(place);
     Change small;
     bool left_out = false;

@@ -26,9 +26,9 @@ struct StudyRun
   Settings own;                     ///< changes of this run to the base case
   Settings all;                     ///< settings of the study, overridden by `own`
   std::vector<std::uint64_t> seeds; ///< seeds of the noise: distinct, at least one
-  bool on_continuum = false;        ///< true: the finite elements break, not the lattice
   bool is_swept = false;            ///< true for a combination of the values of sweeps, and between those
   std::size_t level = 0;            ///< of refinement; 0: in the file
+  bool on_continuum = false;        ///< true: the finite elements break, not the lattice
 };
 
 /// Rule of a row. Each rule except `reported` is the key of that name in the file, with blanks for underscores.
