@@ -204,6 +204,20 @@ class Numbers(unittest.TestCase):
         for name in ("fig1.prm, crack alone [s]", "dolfinx over latcon, 100,000 unknowns"):
             self.assertEqual((rows[name][0], rows[name][2]), ("nan", "missed"))
 
+    def test_growth_misses_its_target_without_a_number_for_each_size(self):
+        name = "growth of the time per site from 10^5 sites on, Runge-Kutta-Chebyshev of 7 stages"
+        for change in (lambda rows: rows[-2].update(seconds=[0.1, math.nan]), lambda rows: rows[-2].update(seconds=[]),
+                       lambda rows: rows.__delitem__(slice(-2, None))):
+            document = copy.deepcopy(DOCUMENT)
+            change(document["parts"]["sizes"]["rows"])
+            self.assertEqual([row[1:] for row in summary.rows(document["parts"]) if row[0] == name], [["nan", "<= 0.15", "missed"]])
+
+    def test_steps_are_compared_with_formulas_of_the_same_instruction_set(self):
+        document = copy.deepcopy(DOCUMENT)
+        document["parts"]["kernel"]["rows"].insert(0, {"work": "formulas", "sites": 64, "target": "SCALAR", "used": "SCALAR",
+                                                       "seconds_per_site": [3e-8]})
+        self.assertAlmostEqual(summary.kernel_rows(document["parts"])[0][1], 8. / 3., delta=1e-14)
+
     def test_target_of_two_parts_needs_both(self):
         document = copy.deepcopy(DOCUMENT)
         del document["parts"]["lammps"]

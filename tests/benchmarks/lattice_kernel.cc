@@ -2,11 +2,13 @@
 // cache to what fits into none.
 #include <cmath>
 #include <iostream>
+#include <limits>
 #include <vector>
 
 #include <benchmark/benchmark.h>
 #include <omp.h>
 
+#include "tests/benchmarks/bond_formulas.h"
 #include "tests/benchmarks/sheets.h"
 #include "tests/lattice/reference_forces.h"
 
@@ -43,47 +45,40 @@ void step(benchmark::State &run, Work work)
   measure(run, work, [](Motion &m) { m.simulation.step(); });
 }
 
-// Root, quotient and force law of six bonds per site alone, spring and dashpot, from and to arrays that fit into the
-// first-level cache: a lower bound of a step, which also gathers, moves and monitors. Vectorised by the compiler, for
-// the processor's own vectors.
-__attribute__((target_clones("arch=x86-64-v4", "arch=x86-64-v3", "default"),
-               optimize("O3", "no-math-errno", "no-trapping-math"))) void
-bond_forces(std::size_t n, const double *__restrict dx, const double *__restrict dy, const double *__restrict vx,
-            const double *__restrict vy, double *__restrict fx, double *__restrict fy)
-{
-  const double a = 1e5, b = 1.5e5, area = 4e-7, inverse_spacing = 1600., damping = 0.04;
-  for (std::size_t i = 0; i < n; ++i)
-  {
-    const double squared = dx[i] * dx[i] + dy[i] * dy[i];
-    const double inverse = 1. / std::sqrt(squared);
-    const double stretch = squared * inverse * inverse_spacing, shortness = inverse / inverse_spacing;
-    const double square = shortness * shortness;
-    const double rate = (dx[i] * vx[i] + dy[i] * vy[i]) * inverse;
-    const double force = (area * (a * (stretch - square) + b * (1. - square * shortness)) + damping * rate) * inverse;
-    fx[i] = force * dx[i];
-    fy[i] = force * dy[i];
-  }
-}
-
+// Root, quotient and law of six bonds per site alone, from and to arrays that fit into the first-level cache, by the
+// instruction set of the steps: a lower bound of a step, which also gathers, moves and monitors.
 void formulas(benchmark::State &run)
 {
-  constexpr std::size_t sites = 128, n = 6 * sites;
-  std::vector<double> dx(n), dy(n), vx(n), vy(n), fx(n), fy(n);
+  constexpr std::size_t sites = 64, n = 6 * sites;
+  const lattice::MooneyRivlinBond law(1e5, 1.5e5);
+  const lattice::kernels::BondConstants bond{sheets::spacing, 4e-4, 0.07};
+  std::vector<double> dx(n), dy(n), dvx(n), dvy(n), fx(n), fy(n);
+  double power = 0.;
   for (std::size_t i = 0; i < n; ++i)
   {
     const double angle = 0.1 * static_cast<double>(i);
     dx[i] = 1.5e-3 * std::cos(angle);
-    dy[i] = 1.5e-3 * std::sin(angle);
-    vx[i] = std::sin(3. * angle);
-    vy[i] = std::cos(5. * angle);
+    dy[i] = 1.2e-3 * std::sin(angle);
+    dvx[i] = std::sin(3. * angle);
+    dvy[i] = std::cos(5. * angle);
+    power += lattice::kernels::bond_force(law, bond, 1., dx[i], dy[i], dvx[i], dvy[i]).viscous_power;
   }
+  double total = 0.;
   for ([[maybe_unused]] auto _ : run)
   {
-    bond_forces(n, dx.data(), dy.data(), vx.data(), vy.data(), fx.data(), fy.data());
-    benchmark::DoNotOptimize(fx.data());
-    benchmark::DoNotOptimize(fy.data());
+    total =
+      lattice::kernels::bond_formulas(law, bond, n, dx.data(), dy.data(), dvx.data(), dvy.data(), fx.data(), fy.data());
+    benchmark::DoNotOptimize(total);
     benchmark::ClobberMemory();
   }
+  bool agrees = std::abs(total - power) <= n * std::numeric_limits<double>::epsilon() * power; // positive terms
+  for (std::size_t i = 0; i < n; ++i)
+  {
+    const auto one = lattice::kernels::bond_force(law, bond, 1., dx[i], dy[i], dvx[i], dvy[i]);
+    agrees = agrees && fx[i] == one.x && fy[i] == one.y;
+  }
+  if (!agrees)
+    run.SkipWithError("forces differ from those of single bonds");
   run.counters["sites"] = sites;
   run.counters["s/site"] =
     benchmark::Counter(sites, benchmark::Counter::kIsIterationInvariantRate | benchmark::Counter::kInvert);

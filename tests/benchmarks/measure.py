@@ -1,5 +1,6 @@
 """Runs programs and measures their times."""
 import json
+import math
 import os
 import pathlib
 import statistics
@@ -54,8 +55,8 @@ def interleaved(variants, rounds):
 
 
 def best(seconds):
-    """The shortest of several times, since other load only lengthens them."""
-    return min(seconds)
+    """The shortest of several times, since other load only lengthens them; NaN if one is NaN or there is none."""
+    return min(seconds) if seconds and not any(map(math.isnan, seconds)) else math.nan
 
 
 def spread(seconds):

@@ -51,7 +51,7 @@ def kernel(plan):
     program = plan.program("lattice_kernel")
     filters = {"": "^(formulas|reference/.*|step/.*/(10000|25000))$" if plan.quick else "."}
     for target in run([program, "--targets"]).split():
-        filters[target] = "^step/everything/25000$" if plan.quick else "^step/.*/(25000|1000000)$"
+        filters[target] = "^(formulas|step/everything/25000)$" if plan.quick else "^(formulas|step/.*/(25000|1000000))$"
     rows = []
     for target, expression in filters.items():
         path = plan.folder("kernel") / "kernel.json"

@@ -1,4 +1,6 @@
 """Quantities derived from the raw numbers (times per site, ratios, growth), and their targets."""
+import math
+
 from measure import best
 
 
@@ -29,9 +31,10 @@ def bytes_per_site(part, stages):
 
 
 def growth(part, stages, at_least=9e4):
-    """Largest time per site over that of the smallest sheet of 10^5 sites or more, on one thread, minus one [-]."""
+    """Largest time per site over that of the smallest sheet of 10^5 sites or more, on one thread, minus one [-].
+    @return NaN with fewer than two sizes, or where a time is NaN"""
     times = [per_site(threads[1]) for sites, threads in by_size(part, stages).items() if sites >= at_least]
-    return max(times) / times[0] - 1.
+    return max(times) / times[0] - 1. if len(times) > 1 and not any(map(math.isnan, times)) else math.nan
 
 
 def lammps_row(row):
@@ -60,7 +63,7 @@ def measured_text(crack, name):
 
 def kernel_rows(parts):
     rows = parts["kernel"]["rows"]
-    alone = [best(row["seconds_per_site"]) for row in rows if row["work"] == "formulas"]
+    alone = [best(row["seconds_per_site"]) for row in rows if row["work"] == "formulas" and not row["target"]]
     if not alone:
         return []
     return [(f"step with everything over root, quotient and force law alone, {row['sites']:,} sites",
