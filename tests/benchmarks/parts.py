@@ -229,7 +229,7 @@ def choice(name):
 
 def time_stepping(text):
     """Numbers printed by --dry-run: {"sites", "time_step": [s], "stages": force evaluations per step}."""
-    match = re.search(r"^# time step: (\S+) s, \S+ steps at most(?: of (\d+) stages each)?$", text, re.MULTILINE)
+    match = re.search(r"^# time step: (\S+) s, \S+ steps at most(?: of (\d+) stages each)?(?:,.*)?$", text, re.MULTILINE)
     if not match:
         raise Failed("--dry-run states no time step")
     sites = re.search(r"^# lattice: (\d+) sites", text, re.MULTILINE)
