@@ -268,7 +268,6 @@ class DryRun(TemporaryFolder):
         run = latcon("continuum", CASES / "quick.prm", "--dry-run", *settings("Continuum/solution=motion"))
         for wanted in [r"^# continuum: 96 cells, 1850 unknowns", r"^# motion: time step .* s, \d+ steps", r"^# time: about"]:
             self.assertRegex(run.stdout, re.compile(wanted, re.M))
-        self.assertIn("check steady-crack", latcon("study", "paper", "--quick", "--dry-run").stdout)
 
 
 class Reproducible(TemporaryFolder):

@@ -37,9 +37,11 @@ class WithStore(TemporaryFolder):
         if MADE:
             before.out, before.cache = MADE / "runs" / cls.MADE_RUN, pathlib.Path(cls.shared.name) / "cache"
             cls.first_text, cls.first = (before.out / "log.txt").read_text(), json.loads((before.out / "run.json").read_text())
-            name = f"{cls.first['verification']['hash']}.json"
             (before.cache / "latcon" / "verdicts").mkdir(parents=True, mode=0o700)
-            shutil.copy2(MADE / "latcon" / "verdicts" / name, before.cache / "latcon" / "verdicts" / name)
+            for key in ("verification", "verification_of_program"):
+                if key in cls.first:  # a case that is refused does not reach the program's
+                    name = f"{cls.first[key]['hash']}.json"
+                    shutil.copy2(MADE / "latcon" / "verdicts" / name, before.cache / "latcon" / "verdicts" / name)
             cls.first_rows, cls.first_cache = before.claims(), before.cache
             return
         before.folder = pathlib.Path(cls.shared.name)
@@ -63,8 +65,9 @@ class WithStore(TemporaryFolder):
         return run.stdout + run.stderr, json.loads((self.out / "run.json").read_text())
 
     def stored(self):
-        """The files of the cache."""
-        return sorted((self.cache / "latcon" / "verdicts").glob("*"))
+        """Files of the cache with verdicts on a case."""
+        of_program = self.first.get("verification_of_program", {}).get("hash")
+        return sorted(path for path in (self.cache / "latcon" / "verdicts").glob("*") if path.stem != of_program)
 
     def claims(self):
         """Rows of results.json that are not about the crack."""
@@ -78,12 +81,14 @@ class Gate(WithStore):
         self.assertIn("claims: checked now", self.first_text)
         self.assertEqual(list(first["verification"]), ["hash", "reused", "checked_at"])
         self.assertFalse(first["verification"]["reused"])
+        self.assertEqual(list(first["verification_of_program"]), ["hash", "reused", "checked_at"])
         self.assertEqual({row["claim"] for row in rows}, claims_where("before_fracture"))
 
         text, second = self.fracture()
         when, key = first["verification"]["checked_at"], first["verification"]["hash"]
         self.assertIn(f"claims: verdicts of {when}, hash {key}, reused", text)
         self.assertEqual(second["verification"], {"hash": key, "reused": True, "checked_at": when})
+        self.assertTrue(second["verification_of_program"]["reused"])
         self.assertEqual(self.claims(), rows)
         self.assertEqual([path.name for path in self.stored()], [f"{key}.json"])
 
@@ -104,6 +109,13 @@ class Gate(WithStore):
         self.assertIn("claims: checked now", text)
         self.assertNotEqual(run["verification"]["hash"], self.first["verification"]["hash"])
         self.assertEqual(len(self.stored()), 2)
+
+    @in_full
+    def test_verdict_on_the_program_serves_all_cases(self):
+        _, run = self.fracture("--set", "Material/density=947")
+        self.assertFalse(run["verification"]["reused"])
+        self.assertEqual(run["verification_of_program"]["hash"], self.first["verification_of_program"]["hash"])
+        self.assertTrue(run["verification_of_program"]["reused"])
 
     def test_what_no_claim_reads_may_change(self):
         text, _ = self.fracture("--set", "Lattice/noise seed=7", "--set", "Fracture/breaking stretch=3.1")

@@ -72,14 +72,6 @@ class WithoutSteps(Interrupted):
         self.is_ended("fracture", QUICK)
         self.assertFalse((self.out / "crack.json").exists())
 
-    def test_checks_of_a_study(self):
-        study = self.folder / "study.json"
-        study.write_text(json.dumps({"title": "t", "base": QUICK, "checks": ["steady-crack"], "runs": {"a": {
-            "set": {"Sheet/length": "10 mm", "Sheet/height": "6 mm", "Time/end": "0.01 ms"}}}, "claims": [
-            {"claim": "c", "paper": "s", "rows": [{"run": "a", "quantity": "pattern"}]}]}))
-        self.is_ended("study", study, "--skip-verification", begun=(self.out / "study.json").exists)
-        self.assertTrue((self.out / "runs" / "a-1" / "crack.json").exists())
-
     def test_dry_run(self):
         study = self.folder / "study.json"
         seeds = list(range(20000))

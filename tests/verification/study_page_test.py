@@ -22,7 +22,6 @@ import gallery
 import phase_map
 import study
 import study_plots
-from check_plots import draw_steady_crack
 from near_tip_plots_test import write_field
 from pictures import shrink
 from report_test import MOTION_FRAMES, Page, write_fracture
@@ -67,22 +66,7 @@ def made_up_study():
         "claims": [{"claim": "It winds", "paper": "It does.", "note": "", "verdict": "holds", "rows": [
             made_up_row(["wavy"], "pattern", "holds"),
             made_up_row(["calm", "wavy"], "wavelength", "holds", "zeta", measured="exponent 0.77")]}],
-        "checks": [{"name": "steady-crack", "about": "simulator and solution", "rows": [
-            {"quantity": "crack speed, beta 0.25, Delta/Delta_G 1.57", "unit": "1", "lattice": 0.4321, "theory": 0.4567,
-             "error": 0.054, "tolerance": 0.01, "verdict": "does not hold"},
-            {"quantity": "at rest", "unit": "1", "lattice": None, "theory": 1.0, "error": 1e-9, "tolerance": 1e-8,
-             "verdict": "holds"}]}],
     }
-
-
-def write_steady_crack(folder, curve=True):
-    """Tables of the check."""
-    (folder / "steady_crack.csv").write_text("beta,driving,breaking elongation,lattice speed,exact speed\n"
-                                             "0.5,1.6,1.01,0.43,0.43\n0.5,1.9,1.01,0.67,0.66\n3,2,1,0.2,0.2\n")
-    if curve:
-        (folder / "steady_crack_curve.csv").write_text(
-            "beta,speed,driving,largest before,largest elsewhere,exists\n" +
-            "".join(f"0.5,{v / 50},{1.2 + v / 50},1,1,{'yes' if v < 30 else 'no'}\n" for v in range(5, 40)))
 
 
 class MadeUpStudy(unittest.TestCase):
@@ -116,35 +100,6 @@ class MadeUpStudy(unittest.TestCase):
 
 
 class StudyPage(MadeUpStudy):
-    def test_shows_checks_with_their_rows_and_plot(self):
-        write_steady_crack(self.folder)
-        page, html = self.page()
-        self.assertIn("1 of 4 rows does not hold", page.text)
-        section = html[html.index('<section id="check-steady-crack">'):]
-        section = re.sub(r"base64,[^\"]*", "", section[:section.index("</section>")])
-        self.assertIn("simulator and solution", section)
-        self.assertIn("<img", section)
-        lines = re.findall(r"<tr class=.*?</tr>", section)
-        cells = [re.findall(r"<td[^>]*>(.*?)</td>", line) for line in lines]
-        self.assertEqual(cells, [["✗ does not hold", "crack speed, beta 0.25, Delta/Delta_G 1.57", "0.4321", "0.4567", "0.054",
-                                  "0.01"], ["✓ holds", "at rest", "–", "1", "1e-09", "1e-08"]])
-
-    def test_check_without_tables_has_no_plot(self):
-        page, _ = self.page()
-        self.assertIn("Check steady-crack", page.text)
-        self.assertFalse((self.folder / "pictures" / "steady-crack.png").exists())
-
-    def test_exact_curve_is_drawn_where_there_is_one(self):
-        png = self.folder / "check.png"
-        self.assertFalse(draw_steady_crack(self.folder, png))
-        write_steady_crack(self.folder, curve=False)
-        self.assertTrue(draw_steady_crack(self.folder, png))
-        points = self.near(png, BLUE)
-        write_steady_crack(self.folder)
-        self.assertTrue(draw_steady_crack(self.folder, png))
-        self.assertGreater(points, 100)
-        self.assertGreater(self.near(png, BLUE), points + 500)
-
     def test_pictures_of_a_run_are_of_its_first_measured_seed_and_small(self):
         page, _ = self.page(["wavy", "calm"])
         pictures = self.folder / "pictures"
@@ -172,7 +127,6 @@ class StudyPage(MadeUpStudy):
         return np.asarray(Image.open(self.folder / "sweep.png").convert("RGB"), dtype=float), labels
     def banner(self):
         """Class and head of the banner of a study whose rows were all judged."""
-        self.document["checks"] = []
         self.document["seeds"] = [seed for seed in self.document["seeds"] if seed["state"] == "measured"]
         return re.search(r'<div class="banner (\w+)"><strong>(.*?)</strong>', self.page()[1]).groups()
 

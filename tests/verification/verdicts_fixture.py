@@ -1,7 +1,7 @@
 #!/usr/bin/python3
 """Checks the claims before a crack, once for all tests of other things, and leaves a folder for them (LATCON_VERDICTS):
 
-latcon/verdicts    verdicts for quick.prm, and for its nearest neighbours alone in a compressed sheet, which are refused
+latcon/verdicts    verdicts for quick.prm, on the program, and for nearest neighbours alone in a compressed sheet, which are refused
 matplotlib         the list of fonts, which takes half a second to make
 runs/NAME          results of the runs `accepted` and `refused` that left the verdicts
 
@@ -18,13 +18,13 @@ import sys
 TINY = ["--set", "Sheet/length=2.5 cm", "--set", "Sheet/height=1.5 cm", "--set", "Time/end=0.01 ms"]
 # Nearest neighbours alone, which are faster to check, in a sheet that is compressed along x and buckles.
 REFUSED = ["--set", "Next-nearest neighbours/present=false", "--set", "Loading/strain x=-0.3"]
-RUNS = {"accepted": ([], 0), "refused": (REFUSED, 3)}  # more settings, exit code
+RUNS = {"accepted": ([], 0, 2), "refused": (REFUSED, 3, 3)}  # more settings, exit code, files of verdicts after it
 
 
 def main(program, folder):
     shutil.rmtree(folder, ignore_errors=True)
     environment = dict(os.environ, XDG_CACHE_HOME=str(folder), MPLCONFIGDIR=str(folder / "matplotlib"))
-    for number, (name, (settings, code)) in enumerate(RUNS.items(), 1):
+    for name, (settings, code, number) in RUNS.items():
         run = subprocess.run([program, "fracture", "quick", "--no-report", "--output-dir", folder / "runs" / name, *TINY, *settings],
                              text=True, stdout=subprocess.PIPE, env=environment, check=False)
         print(run.stdout)

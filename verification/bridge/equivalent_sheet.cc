@@ -68,6 +68,45 @@ double rim_recession(const lattice::TriangularLattice &lattice, const lattice::M
   return 23. / (45. * M_PI) * moment / sum;
 }
 
+double stretched_rim_recession(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                               const double stretch)
+{
+  // Sum over shells and directions of f(psi and psi' of the bond, its sine to the edge, its stretch, l, A0 l).
+  constexpr int n_angles = 180;
+  const auto sum = [&](double across, const auto &term)
+  {
+    double total = 0.;
+    for (std::size_t number = 0; number < lattice::n_shells; ++number)
+      if (const lattice::Shell *shell = material.in_shell(number))
+      {
+        const double l = lattice.rest_length(number * lattice::n_kinds_per_shell);
+        for (int i = 0; i < n_angles; ++i)
+        {
+          const double angle = (i + 0.5) * M_PI / n_angles, sine = std::sin(angle);
+          const double lam = std::hypot(stretch * std::cos(angle), across * sine);
+          total += lattice::cross_section(*shell, lattice) * l * term(shell->law, lam, sine, l);
+        }
+      }
+    return total;
+  };
+  const auto traction = [&](double across)
+  {
+    return sum(across, [&](const lattice::BondLaw &law, double lam, double sine, double)
+               { return lattice::force(law, lam) * across * sine * sine / lam; });
+  };
+  // Without traction across the edge.
+  double low = 0.1, high = 1.;
+  while (high - low > 1e-12)
+  {
+    const double middle = 0.5 * (low + high);
+    (traction(middle) < 0. ? low : high) = middle;
+  }
+  const auto moment = sum(low, [](const lattice::BondLaw &law, double lam, double sine, double l)
+                          { return (lattice::energy(law, lam) - lattice::energy(law, 1.)) * 0.5 * sine * l; });
+  return moment / sum(low, [](const lattice::BondLaw &law, double lam, double, double)
+                      { return lattice::energy(law, lam) - lattice::energy(law, 1.); });
+}
+
 double held_depth(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                   const Eigen::Vector2d &normal)
 {

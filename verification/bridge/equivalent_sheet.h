@@ -14,6 +14,12 @@ namespace latcon::bridge
 /// bonds across the edge: mean over the directions of the edge, at small strain (theory-comparison.md, eq. (H.10)).
 double rim_recession(const lattice::TriangularLattice &lattice, const lattice::Material &material);
 
+/// Returns the same distance [m] for an edge that is stretched by a finite amount along itself and free to contract:
+/// mean over the directions of the edge of half the bonds' reach across it, weighted by their energies.
+/// @param stretch along the edge [-], > 1
+double stretched_rim_recession(const lattice::TriangularLattice &lattice, const lattice::Material &material,
+                               double stretch);
+
 /// Returns the depth [m] below the outermost sites of a held edge of the continuum that is equivalent to the layer of
 /// held sites of the lattice: mean over displacements across and along the edge, at small strain (theory-comparison.md,
 /// eq. (H.11)).

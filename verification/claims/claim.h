@@ -37,14 +37,19 @@ struct Claim
   /// False: the claim evaluates laws far beyond `largest_stretch` (claim_inputs.h), and refuses user-defined ones.
   bool takes_user_laws = true;
 
-  /// Quantities, without the name of the shells in front, that the quick version compares with a tolerance for every
-  /// lattice. If there are any, the claim is part of the verification before fracture, and cached verdicts that lack
-  /// one of these rows are not used. Empty: a crack does not need the claim.
-  std::vector<std::string> required_rows = {};
+  /// The claim is part of the verification before fracture: a crack is refused if one of its rows fails, or if the
+  /// quick version judges none.
+  bool gate = false;
 
   /// The claim is about memories of bonds: part of `latcon verify` without names, and of verification before fracture,
   /// for materials with a memory only.
   bool is_about_memory = false;
+
+  /// The claim is about damage of the continuum: part of verification before fracture of the continuum only.
+  bool is_about_damage = false;
+
+  /// The claim depends on nothing of a case, so that one verdict serves all cases of a program.
+  bool is_about_program = false;
 
   /// Entries `Section/Name` that the claim reads besides those of a Subject.
   std::vector<std::string> entries = {};
@@ -64,7 +69,7 @@ struct Claim
   /// Returns whether verification before fracture includes the claim. @param material of the sheet that breaks
   [[nodiscard]] bool is_before_fracture(const lattice::Material &material) const
   {
-    return !required_rows.empty() && (!is_about_memory || material.has_memory());
+    return gate && !is_about_damage && (!is_about_memory || material.has_memory());
   }
 };
 

@@ -23,8 +23,10 @@ constexpr double strain = 1e-5;
 constexpr double phase_per_step = 0.12;
 
 std::array<Oscillation, 2> measure(const WaveCell &cell, const lattice::Material &material, const Eigen::Matrix2d &F,
-                                   const std::array<bridge::PlaneWave, 2> &waves, double time_step, std::size_t stride)
+                                   const std::array<bridge::PlaneWave, 2> &waves, const lattice::TimeStepping &stepping,
+                                   std::size_t stride)
 {
+  const double time_step = stepping.step;
   const lattice::TriangularLattice &sheet = cell.sheet;
   lattice::State state = lattice::homogeneous_state(sheet, material, F, lattice::Edges::free);
   const lattice::State at_rest = state;
@@ -43,7 +45,7 @@ std::array<Oscillation, 2> measure(const WaveCell &cell, const lattice::Material
         state.y[place] += amplitude * shapes.back() * wave.polarisation.y();
       }
     }
-  lattice::Simulation simulation(sheet, material, std::move(state), time_step);
+  lattice::Simulation simulation(sheet, material, std::move(state), stepping);
 
   std::array<std::vector<double>, 2> amplitudes;
   std::array<unsigned int, 2> sign_changes{};
@@ -151,21 +153,28 @@ double smallest_stretch(const lattice::TriangularLattice &lattice, const Eigen::
 }
 
 std::array<Oscillation, 2> lattice_waves(const WaveCell &cell, const lattice::Material &material,
-                                         const Eigen::Matrix2d &F)
+                                         const Eigen::Matrix2d &F, const input::Case::Integrator integrator)
 {
+  const bool chebyshev = integrator == input::Case::Integrator::runge_kutta_chebyshev;
   const std::array<bridge::PlaneWave, 2> waves = bridge::bloch_waves(cell.sheet, material, F, cell.K);
-  const double limit = 0.9 * lattice::time_step_limits(cell.sheet, material, smallest_stretch(cell.sheet, F)).combined;
+  const double shortest = smallest_stretch(cell.sheet, F);
+  const lattice::TimeStepLimits limits = lattice::time_step_limits(cell.sheet, material, shortest);
+  const double limit = 0.9 * (chebyshev ? lattice::chebyshev_step(cell.sheet, material, shortest) : limits.combined);
   const double fastest = bridge::fastest_frequency(waves);
-  const double time_step = support::smallest_of({limit, phase_per_step / fastest});
+  const double longest = support::smallest_of({limit, phase_per_step / fastest});
+  const lattice::TimeStepping coarsest =
+    chebyshev ? lattice::chebyshev_time_stepping(longest, limits, 0) : lattice::TimeStepping(longest);
+  const double time_step = coarsest.step;
   // Dashpots can ask for steps so short that there is no error to extrapolate, and no news in every step.
   const double phase = fastest * time_step;
   const auto stride = std::max<std::size_t>(1, static_cast<std::size_t>(0.5 * phase_per_step / phase));
   constexpr double no_error = 1e-3; // its square over 24 is 4e-8
   if (phase < no_error)
-    return measure(cell, material, F, waves, time_step, stride);
+    return measure(cell, material, F, waves, coarsest, stride);
 
-  const std::array<Oscillation, 2> coarse = measure(cell, material, F, waves, time_step, stride);
-  std::array<Oscillation, 2> result = measure(cell, material, F, waves, 0.5 * time_step, 2 * stride);
+  const std::array<Oscillation, 2> coarse = measure(cell, material, F, waves, coarsest, stride);
+  // With as many stages, on which the constants of the error depend.
+  std::array<Oscillation, 2> result = measure(cell, material, F, waves, {0.5 * time_step, coarsest.stages}, 2 * stride);
   for (std::size_t w = 0; w < 2; ++w)
   {
     result[w].frequency += (result[w].frequency - coarse[w].frequency) / 3.;

@@ -4,6 +4,7 @@
 
 #include "lattice/material.h"
 #include "verification/claims/oscillation.h"
+#include "verification/input/case.h"
 
 namespace latcon::claims
 {
@@ -42,9 +43,13 @@ double smallest_stretch(const lattice::TriangularLattice &lattice, const Eigen::
 ///
 /// Both are standing waves in one sheet, with strains of 1e-5, polarised as the lattice's own (see bloch_waves),
 /// released from rest at the homogeneous state F; each is followed through three quarters of a period at least, and
-/// fitted. The error of the time stepping is extrapolated from two time steps, of second order, to fourth.
+/// fitted. The error of the time stepping is extrapolated from two time steps, of second order, to fourth (to third by
+/// Runge-Kutta-Chebyshev, whose error has a term of that order in damped waves). The longer step is at most the one
+/// that the integrator takes in the sheet of a case.
+/// @param integrator Runge-Kutta-Chebyshev is for materials with dashpots in all bonds
 /// @throws std::runtime_error if a wave does not oscillate
 std::array<Oscillation, 2> lattice_waves(const WaveCell &cell, const lattice::Material &material,
-                                         const Eigen::Matrix2d &F);
+                                         const Eigen::Matrix2d &F,
+                                         input::Case::Integrator integrator = input::Case::Integrator::velocity_verlet);
 
 } // namespace latcon::claims

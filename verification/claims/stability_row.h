@@ -25,7 +25,7 @@ inline output::Result stability_row(const bridge::Subject &subject, const std::s
   const double smallest = subject.slowest_wave.squared_speed / std::pow(subject.theory.shear_speed, 2);
   // At zero the lattice is about to buckle, and counts as unstable.
   const double error = subject.is_stable() ? 0. : support::largest_of({-smallest, 1e-15});
-  return {claim, quantity.str(), "1", smallest, {}, {}, error, 0.};
+  return {claim, quantity.str(), "1", smallest, {}, {}, error, {0., "a sign"}};
 }
 
 } // namespace latcon::claims

@@ -9,6 +9,7 @@
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <set>
 #include <system_error>
 #include <thread>
 #include <utility>
@@ -34,7 +35,7 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
-constexpr int format = 1;                              // of the file
+constexpr int format = 2;                              // of the file
 constexpr std::uintmax_t largest_file = 256UL << 20UL; // [byte]; no check leaves as much
 
 constexpr mode_t writable_by_others = S_IWGRP | S_IWOTH;
@@ -141,9 +142,15 @@ std::optional<double> number(const Json &value)
 
 output::Result row(const Json &entry)
 {
-  output::Result result{entry.at("claim"),           entry.at("quantity"),          entry.at("unit"),
-                        number(entry.at("lattice")), number(entry.at("continuum")), number(entry.at("theory")),
-                        number(entry.at("error")),   number(entry.at("tolerance"))};
+  output::Result result{entry.at("claim"),
+                        entry.at("quantity"),
+                        entry.at("unit"),
+                        number(entry.at("lattice")),
+                        number(entry.at("continuum")),
+                        number(entry.at("theory")),
+                        number(entry.at("error")),
+                        {number(entry.at("tolerance")), entry.at("reason")},
+                        entry.at("gate")};
   if (entry.at("verdict") != to_string(result.verdict()))
     throw UnusableVerdicts("a verdict in it is not that of its numbers");
   return result;
@@ -156,6 +163,9 @@ VerdictKey::VerdictKey(std::string inputs) : text(std::move(inputs)), hash(input
 VerdictKey verdict_key(const input::Case &input, const std::vector<Claim> &claims, const bridge::Laws &laws, bool quick,
                        unsigned int n_ranks)
 {
+  const bool is_about_program =
+    !claims.empty() &&
+    std::all_of(claims.begin(), claims.end(), [](const Claim &claim) { return claim.is_about_program; });
   std::string text = "program=" + output::program_hash() + "\nlibraries=" + hash_of_libraries() + "\n";
   std::vector<std::string> entries;
   for (const Claim &claim : claims)
@@ -163,10 +173,13 @@ VerdictKey verdict_key(const input::Case &input, const std::vector<Claim> &claim
     text += "claim=" + claim.name + "\n";
     entries.insert(entries.end(), claim.entries.begin(), claim.entries.end());
   }
+  text += std::string("quick=") + (quick ? "true" : "false") + "\n";
+  if (is_about_program)
+    return VerdictKey(text);
   text += "laws="; // they decide which rows can fail
   for (const bridge::Law law : laws)
     text += std::to_string(static_cast<int>(law)) + ",";
-  text += std::string("\nquick=") + (quick ? "true" : "false") + "\nranks=" + std::to_string(n_ranks) + "\n";
+  text += "\nranks=" + std::to_string(n_ranks) + "\n";
   return VerdictKey(text + claim_inputs_text(input, entries));
 }
 
@@ -180,6 +193,24 @@ void Verdicts::write_tables(const std::string &folder) const
 {
   for (const auto &[name, csv] : tables)
     output::write_file((std::filesystem::path(folder) / (name + ".csv")).string(), csv);
+}
+
+std::string acceptance_problem(const output::Results &results, const std::vector<Claim> &required)
+{
+  const auto is_required = [&](const std::string &name)
+  { return std::any_of(required.begin(), required.end(), [&](const Claim &claim) { return claim.name == name; }); };
+  std::set<std::string> judged;
+  for (const output::Result &row : results.rows())
+  {
+    if (!is_required(row.claim))
+      return "a row belongs to the claim " + row.claim + ", which was not asked for";
+    if (row.gate && row.verdict() != output::Verdict::reported)
+      judged.insert(row.claim);
+  }
+  for (const Claim &claim : required)
+    if (judged.count(claim.name) == 0)
+      return "the claim " + claim.name + " judged nothing";
+  return "";
 }
 
 std::string verdicts_text(const VerdictKey &key, const Verdicts &verdicts)

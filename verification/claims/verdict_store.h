@@ -29,7 +29,8 @@ struct VerdictKey
 };
 
 /// Returns the key of a check: hash of the running program, shared libraries (name and build ID), claims and their
-/// size, laws that are judged, number of MPI ranks, and the entries that the claims read.
+/// size, laws that are judged, number of MPI ranks, and the entries that the claims read; of claims that are about the
+/// program alone the first three.
 /// @throws std::runtime_error if the program cannot read itself
 [[nodiscard]] VerdictKey verdict_key(const input::Case &input, const std::vector<Claim> &claims,
                                      const bridge::Laws &laws, bool quick, unsigned int n_ranks);
@@ -48,6 +49,11 @@ struct Verdicts
   /// Writes NAME.csv for each table into `folder`, which must exist. @throws OutputError
   void write_tables(const std::string &folder) const;
 };
+
+/// Returns why verdicts do not let a crack run, apart from rows that fail: a row of another claim, or a claim that
+/// judged nothing that a crack waits for. The same for verdicts that were just computed and for cached ones.
+/// @param required claims that the crack waits for @return a message; empty: none
+[[nodiscard]] std::string acceptance_problem(const output::Results &results, const std::vector<Claim> &required);
 
 /// A stored file that cannot be used; what() says why.
 class UnusableVerdicts : public std::runtime_error

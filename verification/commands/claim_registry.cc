@@ -13,6 +13,7 @@
 #include "verification/claims/prestretch/descriptor.h"
 #include "verification/claims/relaxation/descriptor.h"
 #include "verification/claims/running_crack/descriptor.h"
+#include "verification/claims/steady_crack/descriptor.h"
 #include "verification/claims/viscoelastic_waves/descriptor.h"
 #include "verification/claims/wave_speeds/descriptor.h"
 #include "verification/input/case_text.h"
@@ -38,6 +39,7 @@ std::vector<Claim> all_claims()
   list.push_back(claims::intrinsic_length_descriptor());
   list.push_back(claims::disorder_descriptor());
   list.push_back(claims::prestretch_descriptor());
+  list.push_back(claims::steady_crack_descriptor());
   list.push_back(claims::running_crack_descriptor());
   list.push_back(claims::damage_descriptor());
   return list;
@@ -84,8 +86,8 @@ std::vector<Claim> claims_before_fracture(const lattice::Material &material)
 
 std::vector<Claim> claims_before_continuum_fracture(const lattice::Material &material)
 {
-  const std::string damage = claims::damage_descriptor().name;
-  return claims_where([&](const Claim &claim) { return claim.is_before_fracture(material) || claim.name == damage; });
+  return claims_where([&](const Claim &claim)
+                      { return claim.is_before_fracture(material) || (claim.gate && claim.is_about_damage); });
 }
 
 std::string unknown_claim(const std::string &name)

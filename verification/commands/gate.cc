@@ -1,13 +1,14 @@
+#include <algorithm>
 #include <iostream>
+#include <iterator>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include <deal.II/base/mpi.h>
 
-#include "verification/bridge/subject.h"
-#include "verification/claims/gate_rows.h"
 #include "verification/claims/verdict_store.h"
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
@@ -81,29 +82,35 @@ void append(std::string &note, const std::string &more)
   note += (note.empty() ? "" : "; ") + more;
 }
 
-} // namespace
-
-output::Results require_verified(const input::Case &input, const std::vector<claims::Claim> &required,
-                                 const bridge::Laws &laws, Run &run)
+// Verdicts of some claims, checked now or reused.
+struct Group
 {
-  const auto phase = run.info().stopwatch().phase("claims");
+  claims::Verdicts verdicts;
+  output::RunInfo::Object record; // of run.json
+  std::string note, origin;       // messages; the first may be empty
+  std::string refusal;            // addition to the message that the claims do not hold; empty: none
+};
+
+Group verified(const input::Case &input, const std::vector<claims::Claim> &required, const bridge::Laws &laws,
+               const Run &run)
+{
   const std::optional<std::string> folder = claims::VerdictStore::folder_of_user();
   Stored stored = look_up_on_root_rank(input, required, laws, run, folder);
   const claims::VerdictKey key(stored.key);
   const std::string path = folder ? claims::VerdictStore(*folder).path(key) : "";
+  // Of verdicts that refuse a crack, rows may be missing.
+  const auto problem = [&](const output::Results &results)
+  { return results.verdict() == output::Verdict::fails ? "" : claims::acceptance_problem(results, required); };
 
   std::optional<claims::Verdicts> verdicts;
   if (!stored.text.empty())
     try
     {
       verdicts = claims::read_verdicts(key, stored.text);
-      // Verdicts that refuse a crack need not be complete.
-      if (const std::string problem =
-            claims::row_problem(verdicts->results, bridge::shells_name(input.material()), required);
-          verdicts->results.all_hold() && !problem.empty())
+      if (const std::string found = problem(verdicts->results); !found.empty())
       {
         verdicts.reset();
-        throw claims::UnusableVerdicts("its rows are not those of the claims: " + problem);
+        throw claims::UnusableVerdicts(found);
       }
     }
     catch (const claims::UnusableVerdicts &error)
@@ -115,6 +122,8 @@ output::Results require_verified(const input::Case &input, const std::vector<cla
   if (!reused)
   {
     verdicts.emplace(run_claims(input, required, quick, Shells::own, laws));
+    if (const std::string found = problem(verdicts->results); !found.empty())
+      verdicts->results.add(output::not_computed(required.front().name, "rows that a crack waits for", found));
     if (run.is_root() && folder && !key.text.empty())
       try
       {
@@ -127,37 +136,58 @@ output::Results require_verified(const input::Case &input, const std::vector<cla
       }
   }
 
-  stored.turn.reset();
-
-  output::RunInfo::Object record{
-    {"hash", key.text.empty() ? "" : key.hash}, {"reused", reused}, {"checked_at", verdicts->checked_at}};
+  Group group{std::move(*verdicts), {}, stored.note, {}, {}};
+  group.record = {
+    {"hash", key.text.empty() ? "" : key.hash}, {"reused", reused}, {"checked_at", group.verdicts.checked_at}};
   if (!stored.note.empty())
-    record.emplace_back("note", stored.note);
-  run.info().add("verification", record);
-  const std::string origin = reused ? "verdicts of " + verdicts->checked_at + ", hash " + key.hash + ", reused"
-                                    : "checked now" + (kept ? ", hash " + key.hash + ", kept" : std::string());
-  if (run.is_verbose())
-  {
-    if (!stored.note.empty())
-      std::cout << "claims: " << stored.note << "\n";
-    std::cout << "claims: " << origin << std::endl;
-  }
+    group.record.emplace_back("note", stored.note);
+  group.origin = reused ? "verdicts of " + group.verdicts.checked_at + ", hash " + key.hash + ", reused"
+                        : "checked now" + (kept ? ", hash " + key.hash + ", kept" : std::string());
+  if (reused)
+    group.refusal = " (" + group.origin + "; to have them checked again, delete " + path + ")";
+  return group;
+}
+
+} // namespace
+
+output::Results require_verified(const input::Case &input, const std::vector<claims::Claim> &required,
+                                 const bridge::Laws &laws, Run &run)
+{
+  const auto phase = run.info().stopwatch().phase("claims");
   if (run.is_root())
-  {
     write_claims(required, run.directory());
-    verdicts->write_tables(run.directory());
-  }
-  if (!verdicts->results.all_hold())
+  output::Results results;
+  for (const bool about_program : {false, true})
   {
-    run.end(verdicts->results, support::ExitCode::claim_failed);
+    std::vector<claims::Claim> part;
+    std::copy_if(required.begin(), required.end(), std::back_inserter(part),
+                 [&](const claims::Claim &claim) { return claim.is_about_program == about_program; });
+    if (part.empty())
+      continue;
+    const Group group = verified(input, part, laws, run);
+    run.info().add(about_program ? "verification_of_program" : "verification", group.record);
+    if (run.is_verbose())
+    {
+      const std::string whose = about_program ? "claims about the program: " : "claims: ";
+      if (!group.note.empty())
+        std::cout << whose << group.note << "\n";
+      std::cout << whose << group.origin << std::endl;
+    }
+    if (run.is_root())
+      group.verdicts.write_tables(run.directory());
+    results.add(group.verdicts.results);
+    if (group.verdicts.results.all_hold())
+      continue;
+    run.end(results, support::ExitCode::claim_failed);
     constexpr std::size_t most_failing_rows = 8;
-    std::string rows = verdicts->results.verdict_text(most_failing_rows);
+    std::string rows = results.verdict_text(most_failing_rows);
     rows.pop_back(); // the end of its last line
-    throw support::ClaimFailed("no crack was run: the material and pre-stretch of this case fail their verification" +
-                               (reused ? " (" + origin + "; to have them checked again, delete " + path + ")" : "") +
-                               "\n" + rows);
+    throw support::ClaimFailed(std::string("no crack was run: ") +
+                               (about_program ? "this program fails its verification"
+                                              : "the material and pre-stretch of this case fail their verification") +
+                               group.refusal + "\n" + rows);
   }
-  return verdicts->results;
+  return results;
 }
 
 } // namespace latcon::commands

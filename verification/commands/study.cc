@@ -198,17 +198,6 @@ bool run_children(study::StudyResults &results, const Selection &selection, bool
   return study::run_processes(pool);
 }
 
-void run_checks(study::StudyResults &results, bool quick, Run &run)
-{
-  const auto phase = run.info().stopwatch().phase("checks");
-  for (const std::string &name : results.study.checks)
-  {
-    if (run.is_verbose())
-      std::cout << "check " << name << std::endl;
-    results.checks.push_back(study::run_check(name, quick, run.directory()));
-  }
-}
-
 // Memory of the largest runs that can run concurrently, each in its own process.
 resources::MemoryNeed memory_of(const std::vector<study::PlannedRun> &plan, std::size_t n_cores)
 {
@@ -315,20 +304,11 @@ void collect_outcomes(study::StudyResults &results, const std::string &directory
 }
 
 // Judges the runs, writes the tables and the page, and ends the run.
-support::ExitCode judge_runs(study::StudyResults &results, const input::Options &options, bool complete, Run &run)
+support::ExitCode judge_runs(study::StudyResults &results, bool complete, Run &run)
 {
-  const auto write_tables = [&]
-  {
-    output::write_file(run.directory() + "/study.json", study::study_json(results));
-    output::write_file(run.directory() + "/study.csv", study::study_csv(results));
-  };
   results.claims = study::judge(results.study, results.plan, results.outcomes);
-  write_tables();
-  if (complete && !results.study.checks.empty())
-  {
-    run_checks(results, options.quick, run);
-    write_tables();
-  }
+  output::write_file(run.directory() + "/study.json", study::study_json(results));
+  output::write_file(run.directory() + "/study.csv", study::study_csv(results));
   const output::Results rows = study::study_rows(results);
   if (run.is_verbose())
     study::print_table(std::cout, results);
@@ -427,7 +407,7 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
                        refine_sweep(results, requested, selection, verification, skip_verification, n_cores, run));
   if (!chosen.shard.empty())
     return run.end({}, complete ? exit_code_of(results, {}) : support::ExitCode::interrupted);
-  return judge_runs(results, options, complete, run);
+  return judge_runs(results, complete, run);
 }
 
 } // namespace latcon::commands

@@ -28,9 +28,13 @@ claims::ClaimOutcome run_claims(const input::Case &input, const std::vector<clai
   for (const claims::Claim &claim : claims)
   {
     const input::Case entries = claims::claim_inputs(input, claim.entries);
+    claims::ClaimOutcome found;
     for (const bridge::Subject &one : subjects)
-      if (&one == &subjects.front() || !quick || !claim.quick_on_own_shells_only)
-        outcome.results.attempt(claim.name, one.name, [&] { outcome.add(claim.check({one, entries, quick, frames})); });
+      if (&one == &subjects.front() || (!claim.is_about_program && (!quick || !claim.quick_on_own_shells_only)))
+        found.results.attempt(claim.name, one.name, [&] { found.add(claim.check({one, entries, quick, frames})); });
+    if (claim.gate)
+      found.results.mark_gate();
+    outcome.add(found);
   }
   return outcome;
 }

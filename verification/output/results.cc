@@ -70,15 +70,28 @@ Verdict Result::verdict() const
 {
   if (!tolerance)
     return Verdict::reported;
-  for (const Value &value : {lattice, continuum, theory, error, tolerance})
-    if (value && !std::isfinite(*value))
+  for (const Value *number : {&lattice, &continuum, &theory, &error, static_cast<const Value *>(&tolerance)})
+    if (const Value &value = *number; value && !std::isfinite(*value))
       return Verdict::fails;
   return error && *error <= *tolerance ? Verdict::holds : Verdict::fails;
 }
 
+Tolerance limited(const double estimate, const double floor, const double ceiling, const std::string &reason)
+{
+  const double value = estimate < floor ? floor : estimate > ceiling ? ceiling : estimate; // NaN stays
+  return {value, reason + " (at least " + table_number(floor, 3) + ", at most " + table_number(ceiling, 3) + ")"};
+}
+
 Result not_computed(const std::string &claim, const std::string &quantity, const std::string &reason)
 {
-  return {claim, quantity + ": not computed: " + reason, "1", {}, {}, {}, std::numeric_limits<double>::quiet_NaN(), 0.};
+  return {claim,
+          quantity + ": not computed: " + reason,
+          "1",
+          {},
+          {},
+          {},
+          std::numeric_limits<double>::quiet_NaN(),
+          {0., "it must be computed"}};
 }
 
 void Results::add(Result result)
@@ -90,6 +103,12 @@ void Results::add(const Results &others)
 {
   const std::vector<Result> copy = others.rows_; // `others` may be this object
   rows_.insert(rows_.end(), copy.begin(), copy.end());
+}
+
+void Results::mark_gate()
+{
+  for (Result &row : rows_)
+    row.gate = row.tolerance.has_value();
 }
 
 bool Results::attempt(const std::string &claim, const std::string &quantity, const std::function<void()> &compute)
@@ -169,6 +188,8 @@ std::string Results::json() const
     claim["error"] = json_of(row.error);
     claim["tolerance"] = json_of(row.tolerance);
     claim["verdict"] = to_string(row.verdict());
+    claim["reason"] = row.tolerance.reason;
+    claim["gate"] = row.gate;
     claims.push_back(std::move(claim));
   }
   nlohmann::ordered_json document;
@@ -179,11 +200,12 @@ std::string Results::json() const
 
 std::string Results::csv() const
 {
-  std::string text = "claim,quantity,unit,lattice,continuum,theory,error,tolerance,verdict\n";
+  std::string text = "claim,quantity,unit,lattice,continuum,theory,error,tolerance,verdict,reason,gate\n";
   for (const Result &row : rows_)
     text += csv_field(row.claim) + ',' + csv_field(row.quantity) + ',' + csv_field(row.unit) + ',' +
             csv_of(row.lattice) + ',' + csv_of(row.continuum) + ',' + csv_of(row.theory) + ',' + csv_of(row.error) +
-            ',' + csv_of(row.tolerance) + ',' + to_string(row.verdict()) + '\n';
+            ',' + csv_of(row.tolerance) + ',' + to_string(row.verdict()) + ',' + csv_field(row.tolerance.reason) + ',' +
+            (row.gate ? "true" : "false") + '\n';
   return text;
 }
 

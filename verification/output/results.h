@@ -5,6 +5,7 @@
 #include <iosfwd>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace latcon::output
@@ -21,6 +22,23 @@ enum class Verdict
 /// Returns the name of a verdict: "holds", "fails", "reported".
 [[nodiscard]] std::string to_string(Verdict verdict);
 
+/// Largest error with which a row holds, and how it was derived; empty: the row is informational.
+struct Tolerance : std::optional<double>
+{
+  Tolerance() = default;
+  Tolerance(std::optional<double> value, std::string why = {}) : std::optional<double>(value), reason(std::move(why)) {}
+  Tolerance(double value, std::string why = {}) : Tolerance(std::optional<double>(value), std::move(why)) {}
+  Tolerance(std::nullopt_t) {}
+
+  std::string reason; ///< in a few words: the terms that the tolerance covers, and how large they are
+};
+
+/// Returns a tolerance that was estimated from computations, limited by bounds that do not depend on them, so that
+/// neither scatter nor an error of the solver loosens it. The reason states the bounds.
+/// @param floor,ceiling 0 <= floor <= ceiling
+/// @return not-a-number, with which every row fails, if the estimate is not-a-number
+[[nodiscard]] Tolerance limited(double estimate, double floor, double ceiling, const std::string &reason);
+
 /// Result for one checked quantity. Values that do not apply are empty.
 struct Result
 {
@@ -31,7 +49,8 @@ struct Result
   std::optional<double> continuum; ///< measured on the continuum
   std::optional<double> theory;    ///< from a closed formula or the literature
   std::optional<double> error;     ///< as defined by the claim, usually relative; smaller is better
-  std::optional<double> tolerance; ///< largest error with which the claim holds; empty: informational
+  Tolerance tolerance = {};        ///< largest error with which the claim holds; empty: informational
+  bool gate = false;               ///< whether a crack is refused if the row does not hold
 
   /// Returns `reported` if there is no tolerance. Otherwise `holds` if there is an error, error <= tolerance, and all
   /// given numbers (lattice, continuum, theory, error, tolerance) are finite; otherwise `fails`.
@@ -52,6 +71,9 @@ public:
   /// Appends the rows of another collection, in their order.
   void add(const Results &others);
 
+  /// Marks all rows that are judged as rows that a crack waits for.
+  void mark_gate();
+
   /// Returns all rows, in the order in which they were added.
   [[nodiscard]] const std::vector<Result> &rows() const { return rows_; }
 
@@ -69,8 +91,9 @@ public:
   [[nodiscard]] std::string verdict_text(std::size_t most) const;
 
   /// Returns the rows as JSON: {"claims": [{"claim": ..., "quantity": ..., "unit": ..., "lattice": ..., "continuum":
-  /// ..., "theory": ..., "error": ..., "tolerance": ..., "verdict": ...}, ...], "verdict": ...}. Doubles in full
-  /// precision, empty values null, numbers that are not finite as the strings "nan", "inf", "-inf".
+  /// ..., "theory": ..., "error": ..., "tolerance": ..., "verdict": ..., "reason": ..., "gate": ...}, ...], "verdict":
+  /// ...}. Doubles in full precision, empty values null, numbers that are not finite as the strings "nan", "inf",
+  /// "-inf".
   [[nodiscard]] std::string json() const;
 
   /// Returns the rows as CSV (RFC 4180, one header line, columns as in json()). Empty values are empty fields.

@@ -11,7 +11,6 @@ sys.dont_write_bytecode = True  # no files are added to this folder
 
 import own_settings  # before matplotlib
 
-from check_plots import PLOTS
 from files import DONE, UnwritableFile, exit_code_of, write_file
 from frame import read_last_frame
 from near_tip_plots import opening_stress_picture, velocity_picture
@@ -32,7 +31,7 @@ def draw_pictures(study):
         folder.mkdir(exist_ok=True)
     except OSError as error:
         raise UnwritableFile(folder, error.strerror) from error
-    drawn = {"paths": {}, "sweeps": {}, "speeds": None, "checks": {}, "runs": []}
+    drawn = {"paths": {}, "sweeps": {}, "speeds": None, "runs": []}
     for number, claim in enumerate(study.claims):
         names = list(dict.fromkeys(name for row in claim["rows"] for name in row["runs"] if name in study.runs))
         png = folder / f"paths-{number + 1}.png"
@@ -43,11 +42,6 @@ def draw_pictures(study):
     shown = [name for name in study.document["pictures"] if name in study.runs]
     if draw_speeds(study, folder / "speeds.png"):
         drawn["speeds"] = folder / "speeds.png"
-    for check in study.checks:
-        draw, caption = PLOTS.get(check["name"], (None, ""))
-        png = folder / f"{check['name']}.png"
-        if draw and draw(study.folder, png):
-            drawn["checks"][check["name"]] = (caption, png)
     for name in shown:
         seed = first_measured(study, name)
         if seed is not None:

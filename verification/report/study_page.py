@@ -2,7 +2,7 @@
 import re
 from html import escape
 
-from markup import figure, first_sentence, number, plain_row, plural, row, table, whole_page
+from markup import figure, first_sentence, plain_row, plural, row, table, whole_page
 from study_plots import pattern_text
 from study_quantities import MEASURED, NEAR_TIP
 from study_runs import mean_of, value_text
@@ -23,7 +23,7 @@ def page(study, pictures):
 
     pictures: {"overview": [(caption, PNG), ...], "paths": {claim number: PNG},
     "sweeps": {claim number: [(caption, PNG), ...]}, "speeds": PNG or None,
-    "checks": {name: (caption, PNG)}, "runs": [(run, seed, {kind of RUN_PICTURES: PNG}), ...]}
+    "runs": [(run, seed, {kind of RUN_PICTURES: PNG}), ...]}
     """
     title = study.document["title"]
     sections = [claim_section(number, claim, pictures) for number, claim in enumerate(study.claims)]
@@ -33,7 +33,6 @@ def page(study, pictures):
 {"".join(figure(png, first_sentence(caption), escape(caption)) for caption, png in pictures["overview"])}
 {overview(study)}
 {"".join(sections)}
-{"".join(check_section(check, pictures) for check in study.checks)}
 {common_pictures(pictures)}
 <h2 id="runs">Runs</h2>
 {runs_table(study)}
@@ -60,15 +59,9 @@ def counts(rows):
     return {verdict: sum(r["verdict"] == verdict for r in rows) for verdict in KINDS}
 
 
-def verdict_of(check):
-    """The verdict over all rows of a check."""
-    count = counts(check["rows"])
-    return next((verdict for verdict in ("does not hold", "holds") if count[verdict]), "reported")
-
-
 def banner(study):
     """The overall verdict, with the most important notes."""
-    count = counts([r for judged in (*study.claims, *study.checks) for r in judged["rows"]])
+    count = counts([r for claim in study.claims for r in claim["rows"]])
     judged = count["holds"] + count["does not hold"]
     verified = study.document.get("verified") is True
     broken = [seed for seed in study.seeds if seed.state != "measured"]
@@ -96,11 +89,9 @@ def banner(study):
 
 
 def overview(study):
-    """One line per claim and check; empty if the study has neither."""
+    """One line per claim; empty if the study has none."""
     judged = [(f"claim-{number}", claim["claim"], claim["verdict"], claim["rows"])
               for number, claim in enumerate(study.claims)]
-    judged += [(f"check-{check['name']}", f"Check {check['name']}", verdict_of(check), check["rows"])
-               for check in study.checks]
     if not judged:
         return ""
     lines = [row(CLAIM_KINDS[verdict], [("words", f'<a href="#{escape(place)}">{escape(heading)}</a>'),
@@ -126,21 +117,6 @@ def claim_section(number, claim, pictures):
         parts.append(figure(pictures["paths"][number], f"Paths of the crack tip: {claim['claim']}",
                             "Paths of the crack tip in the undeformed sheet, with the seeds of a run superimposed. "
                             "Y is exaggerated."))
-    return "".join(parts) + "</section>"
-
-
-def check_section(check, pictures):
-    """Section of a check: description, plot, rows."""
-    lines = [row(KINDS[r["verdict"]], [
-        ("words", escape(r["quantity"])),
-        *(("number", number(r[key], ".4g")) for key in ("lattice", "theory")),
-        *(("number", number(r[key], ".2g")) for key in ("error", "tolerance"))], r["verdict"]) for r in check["rows"]]
-    parts = [f'<section id="check-{escape(check["name"])}"><h2>Check {escape(check["name"])}</h2>',
-             f'<p>{escape(check["about"])}</p>']
-    if check["name"] in pictures["checks"]:
-        caption, png = pictures["checks"][check["name"]]
-        parts.append(figure(png, f"Check {check['name']}. {first_sentence(caption)}", escape(caption)))
-    parts.append(table(["verdict", "quantity", "#simulator", "#exact", "#error", "#tolerance"], lines))
     return "".join(parts) + "</section>"
 
 

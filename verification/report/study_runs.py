@@ -55,10 +55,6 @@ class Study:
         return self.varied if is_plotted else []
 
     @property
-    def checks(self):
-        return self.document["checks"]
-
-    @property
     def seeds(self):
         return [seed for _, _, seeds in self.runs.values() for seed in seeds]
 

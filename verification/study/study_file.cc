@@ -11,7 +11,6 @@
 #include "verification/input/case_text.h"
 #include "verification/input/input_file.h"
 #include "verification/study/quantities.h"
-#include "verification/study/study_check.h"
 #include "verification/study/study_json.h"
 #include "verification/study/sweep.h"
 
@@ -62,7 +61,7 @@ public:
     const nlohmann::ordered_json document = parse_json(text, study_.file);
     const JsonPlace top(document, study_.file, "", problems_);
     top.is_object(
-      {"title", "base", "side", "set", "seeds", "quick", "sweep", "refine", "runs", "claims", "checks", "pictures"});
+      {"title", "base", "side", "set", "seeds", "quick", "sweep", "refine", "runs", "claims", "pictures"});
     if (const auto title = top.required("title"))
       study_.title = title->text();
     if (const auto base = top.required("base"))
@@ -91,8 +90,6 @@ public:
     if (top.has("claims"))
       for (const JsonPlace &place : top.at("claims").list())
         claim(place);
-    if (top.has("checks"))
-      checks(top.at("checks"));
     if (top.has("pictures"))
       for (const JsonPlace &place : top.at("pictures").list())
         study_.pictures.push_back(known_run(place));
@@ -276,20 +273,6 @@ private:
       place.problem("needs sweeps of numbers that are not whole");
     else if (owner.empty() || quick_)
       study_.refine = place.value().get<std::size_t>();
-  }
-
-  void checks(const JsonPlace &place)
-  {
-    std::vector<std::string> known;
-    for (const StudyCheck &check : study_checks())
-      known.push_back(check.name);
-    for (const JsonPlace &name : place.list())
-    {
-      const std::string check = name.word(known, "check");
-      if (std::find(study_.checks.begin(), study_.checks.end(), check) != study_.checks.end())
-        name.problem("this check is given twice");
-      study_.checks.push_back(check);
-    }
   }
 
   std::string known_run(const JsonPlace &place) const { return place.word(names_, "run"); }

@@ -90,7 +90,6 @@ struct Study
   std::size_t refine = 0;            ///< number of refinements of the sweep, see refined_runs()
   std::vector<std::string> left_out; ///< runs of the file that the quick version omits
   std::vector<StudyClaim> claims;
-  std::vector<std::string> checks;   ///< see study_checks()
   std::vector<std::string> pictures; ///< runs whose sheet and near-tip fields are shown
 
   /// Returns the run with this name. @throws std::logic_error if there is none

@@ -105,45 +105,6 @@ Json json_of(const RowOutcome &outcome)
   return row;
 }
 
-// Returns the verdict of the table for a row of a check.
-RowVerdict row_verdict(const output::Verdict verdict)
-{
-  return verdict == output::Verdict::holds   ? RowVerdict::holds
-         : verdict == output::Verdict::fails ? RowVerdict::does_not_hold
-                                             : RowVerdict::reported;
-}
-
-// "0.5321, exact 0.533, error 0.0017 [at most 0.01]"
-std::string values_text(const output::Result &row)
-{
-  std::string text;
-  const auto append = [&text](const std::string &name, const std::optional<double> &value, const std::string &unit)
-  {
-    if (value)
-      text += (text.empty() ? "" : ", ") + name + quantity_text(*value, {}, unit);
-  };
-  append("", row.lattice, row.unit);
-  append("exact ", row.theory, row.unit);
-  append("error ", row.error, "1");
-  if (row.tolerance)
-    text += " [at most " + quantity_text(*row.tolerance, {}, "1") + "]";
-  return text;
-}
-
-Json json_of(const CheckResult &check)
-{
-  Json rows = Json::array();
-  for (const output::Result &row : check.rows.rows())
-    rows.push_back({{"quantity", row.quantity},
-                    {"unit", row.unit},
-                    {"lattice", json_of(row.lattice)},
-                    {"theory", json_of(row.theory)},
-                    {"error", json_of(row.error)},
-                    {"tolerance", json_of(row.tolerance)},
-                    {"verdict", to_string(row_verdict(row.verdict()))}});
-  return {{"name", check.name}, {"about", check.about}, {"rows", rows}};
-}
-
 // Entries in which the runs of a study differ, with their value in each run: a number, or a text.
 Json varied_entries(const StudyResults &results)
 {
@@ -238,9 +199,6 @@ std::string study_json(const StudyResults &results)
                                   {"verdict", to_string(claim.verdict())},
                                   {"rows", rows}});
   }
-  document["checks"] = Json::array();
-  for (const CheckResult &check : results.checks)
-    document["checks"].push_back(json_of(check));
   return document.dump(2, ' ', false, Json::error_handler_t::replace) + "\n";
 }
 
@@ -275,8 +233,6 @@ output::Results study_rows(const StudyResults &results)
     for (const RowOutcome &row : claim.rows)
       if (const auto result = row.result(claim.claim.claim))
         rows.add(*result);
-  for (const CheckResult &check : results.checks)
-    rows.add(check.rows);
   return rows;
 }
 
@@ -313,12 +269,6 @@ void print_table(std::ostream &out, const StudyResults &results)
       judged(row.verdict, text);
     }
   }
-  for (const CheckResult &check : results.checks)
-  {
-    paragraph("Check " + check.name + ": " + to_string(row_verdict(check.rows.verdict())), "", "");
-    for (const output::Result &row : check.rows.rows())
-      judged(row_verdict(row.verdict()), row.quantity + ": " + values_text(row));
-  }
   for (const RunOutcome &outcome : results.outcomes)
     if (outcome.state != RunState::measured)
       paragraph(outcome.run + ", seed " + std::to_string(outcome.seed) + ": " + to_string(outcome.state) +
@@ -346,8 +296,6 @@ void print_plan(std::ostream &out, const Study &study, const std::vector<Planned
   if (study.refine > 0)
     out << "refined " << study.refine << (study.refine == 1 ? " time" : " times")
         << " where neighbours differ, at a cost that depends on the patterns\n";
-  for (const std::string &check : study.checks)
-    out << "check " << check << ", after the runs\n";
 }
 
 } // namespace latcon::study

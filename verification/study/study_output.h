@@ -5,7 +5,6 @@
 #include <string>
 #include <vector>
 
-#include "verification/study/study_check.h"
 #include "verification/study/study_table.h"
 
 namespace latcon::study
@@ -18,7 +17,6 @@ struct StudyResults
   std::vector<PlannedRun> plan;
   std::vector<RunOutcome> outcomes; ///< outcomes in the order of the plan
   std::vector<ClaimResult> claims;
-  std::vector<CheckResult> checks; ///< checks of the study; empty if it was interrupted before them
   bool quick = false;
   std::string verification; ///< description of the verification
   bool is_verified = false; ///< material and pre-stretch of every run were verified
@@ -31,14 +29,14 @@ struct StudyResults
 /// were not measured.
 [[nodiscard]] std::string study_csv(const StudyResults &results);
 
-/// Returns the rows that have a number or a rule in the common form of all commands, followed by those of the checks. A
-/// row with a rule that was not measured fails.
+/// Returns the rows that have a number or a rule in the common form of all commands. A row with a rule that was not
+/// measured fails.
 [[nodiscard]] output::Results study_rows(const StudyResults &results);
 
 /// Prints the table, at most 120 columns wide.
 void print_table(std::ostream &out, const StudyResults &results);
 
-/// Prints the runs with their sizes, the estimated time on `n_cores` cores, and the checks.
+/// Prints the runs with their sizes and estimated time on `n_cores` cores.
 void print_plan(std::ostream &out, const Study &study, const std::vector<PlannedRun> &plan, std::size_t n_cores);
 
 } // namespace latcon::study

@@ -89,9 +89,10 @@ TEST_P(OnePercent, FailsThePrestretchClaim)
   GetParam().plant(wrong);
   const Results results = prestretch_claim(wrong, small_sheet());
   EXPECT_EQ(results.verdict(), Verdict::fails);
-  // Energy density, two tractions, stress; displacements are those of the edges all the same.
-  for (const char *law : {", Cauchy-Born", ", network"})
-    EXPECT_EQ(faults::failing(results, law), 4u) << law;
+  // Energy density, two tractions, stress; displacements are those of the edges all the same. The network's stress is
+  // judged by its tractions alone.
+  EXPECT_EQ(faults::failing(results, ", Cauchy-Born"), 4u);
+  EXPECT_EQ(faults::failing(results, ", network"), 3u);
 }
 
 TEST(Prestretch, FailsForAWrongNetwork)
@@ -99,8 +100,8 @@ TEST(Prestretch, FailsForAWrongNetwork)
   Subject wrong = subject(subjects::paper_case());
   faults::heavier_network(wrong);
   const Results results = prestretch_claim(wrong, small_sheet());
-  EXPECT_EQ(faults::failing(results, ", network"), 4u);
-  EXPECT_EQ(faults::failing(results), 4u);
+  EXPECT_EQ(faults::failing(results, ", network"), 3u);
+  EXPECT_EQ(faults::failing(results), 3u);
 }
 
 // The network law is judged by itself: every one of its rows, for weights that are wrong by 1 %.
@@ -115,7 +116,10 @@ TEST(Energy, FailsForAWrongNetwork)
     wrong.network = continuum::IsotropicNetwork(families);
     const Results results = energy_claim(wrong, samples);
     for (const Result &row : results.rows())
-      EXPECT_EQ(row.verdict() == Verdict::fails, row.quantity.find("network") != std::string::npos) << row.quantity;
+      if (row.verdict() != Verdict::reported)
+      {
+        EXPECT_EQ(row.verdict() == Verdict::fails, row.quantity.find("network") != std::string::npos) << row.quantity;
+      }
   }
 }
 

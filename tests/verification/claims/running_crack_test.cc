@@ -47,18 +47,23 @@ Results with(const Plant &plant)
 
 } // namespace
 
-// The gradient continuum need not hold, and does not where its mesh is fine; see docs/running-crack.md.
+// The gradient continuum and the opening of the flanks are reported; see docs/running-crack.md.
 TEST(RunningCrack, HoldsInTheFarFieldOfTheLocalContinuum)
 {
   const Results results = with([](CrackSides &) {});
   EXPECT_EQ(faults::failing(results, "local"), 0u) << results.verdict_text(10);
-  EXPECT_GE(results.count(Verdict::holds), 4u);
+  EXPECT_EQ(results.count(Verdict::holds), 3u);
+  for (const Result &row : results.rows())
+    if (row.tolerance)
+    {
+      EXPECT_LE(*row.tolerance, row.quantity.find("effective tip") != std::string::npos ? 0.75 : 0.06) << row.quantity;
+    }
 }
 
 TEST(RunningCrack, FailsForATipThatIsOffByASpacing)
 {
   const Results results = with([](CrackSides &sides) { sides.half.tip = rubber().spacing; });
-  EXPECT_GE(faults::failing(results, "effective tip"), 2u) << results.verdict_text(10);
+  EXPECT_EQ(faults::failing(results, "effective tip"), 1u) << results.verdict_text(10);
   EXPECT_GE(faults::failing(results, "velocity"), 1u);
 }
 
@@ -74,7 +79,7 @@ TEST(RunningCrack, FailsForWrongModuli)
       sides.local.constitution.local = &stiffer;
       sides.gradient.constitution.local = &stiffer;
     });
-  EXPECT_GE(faults::failing(results, "opening stress"), 2u) << results.verdict_text(10);
+  EXPECT_EQ(faults::failing(results, "opening stress"), 1u) << results.verdict_text(10);
 }
 
 TEST(RunningCrack, FailsForWrongViscosity)
@@ -90,15 +95,16 @@ TEST(RunningCrack, FailsForWrongViscosity)
       sides.local.viscosity = viscosity.get();
       sides.gradient.viscosity = viscosity.get();
     });
-  EXPECT_GE(faults::failing(results, "continuum against lattice"), 2u) << results.verdict_text(10);
+  EXPECT_GE(faults::failing(results, "continuum against lattice"), 1u) << results.verdict_text(10);
 }
 
-TEST(RunningCrack, FailsForAGradientEnergyOfTheWrongSign)
+TEST(RunningCrack, ReportsAGradientContinuumThatCannotBeComputed)
 {
   const faults::Combination wrong(-1., rubber().network_gradient, 0., rubber().network_gradient);
   const Results results = with([&](CrackSides &sides) { sides.gradient.constitution.gradient = &wrong; });
-  EXPECT_GE(faults::failing(results, "gradient"), 1u);
-  EXPECT_EQ(faults::failing(results, "gradient continuum: not computed"), 1u) << results.verdict_text(10);
+  EXPECT_TRUE(results.all_hold()) << results.verdict_text(10);
+  EXPECT_NE(results.rows().back().quantity.find("gradient continuum: not computed"), std::string::npos);
+  EXPECT_EQ(results.rows().back().verdict(), Verdict::reported);
 }
 
 // A side that is no number fails, whatever it is compared with.

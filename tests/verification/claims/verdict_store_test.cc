@@ -44,7 +44,7 @@ claims::Claim named(const std::string &name)
 Verdicts some_verdicts()
 {
   claims::ClaimOutcome outcome;
-  outcome.results.add({"energy", "W, \"loaded\"", "J/m^3", 1. / 3., -0.0, {}, 1e-12, 1e-10});
+  outcome.results.add({"energy", "W, \"loaded\"", "J/m^3", 1. / 3., -0.0, {}, 1e-12, {1e-10, "round-off"}, true});
   outcome.results.add({"energy", "reported", "1", {}, std::numeric_limits<double>::infinity(), {}, 0.5, {}});
   outcome.table("speeds", {"wave", "k d"}).add({std::string("L"), 0.1});
   return Verdicts(outcome);
@@ -84,6 +84,12 @@ TEST(VerdictKey, IsThatOfProgramClaimsSizeRanksAndInputs)
   const std::string seed = "Lattice/noise seed=";
   EXPECT_NE(claims::verdict_key(input, {reads_seed}, lattice_laws, true, 1).text.find(seed), std::string::npos);
   EXPECT_EQ(claims::verdict_key(input, {named("energy")}, lattice_laws, true, 1).text.find(seed), std::string::npos);
+  // What depends on nothing of a case has one key for all.
+  claims::Claim of_program = named("steady-crack");
+  of_program.is_about_program = true;
+  EXPECT_EQ(claims::verdict_key(other, {of_program}, bridge::all_laws(), true, 2).hash,
+            claims::verdict_key(input, {of_program}, lattice_laws, true, 1).hash);
+  EXPECT_NE(claims::verdict_key(input, {of_program}, lattice_laws, true, 1).hash, hash);
   // The program is the one that runs.
   EXPECT_NE(
     claims::verdict_key(input, {}, lattice_laws, true, 1).text.find("program=" + sha256(content_of("/proc/self/exe"))),
@@ -110,11 +116,12 @@ TEST(Verdicts, OfOtherInputsOrDamagedAreNotUsed)
   EXPECT_THROW((void)read_verdicts(VerdictKey("inputs=2\n"), text), UnusableVerdicts);
   // The name is right and what is inside is not.
   EXPECT_THROW((void)read_verdicts(key, replaced(text, "inputs=1", "inputs=2")), UnusableVerdicts);
-  EXPECT_THROW((void)read_verdicts(key, replaced(text, "\"format\": 1", "\"format\": 2")), UnusableVerdicts);
+  EXPECT_THROW((void)read_verdicts(key, replaced(text, "\"format\": 2", "\"format\": 3")), UnusableVerdicts);
   // A number or a verdict that was changed.
   EXPECT_THROW((void)read_verdicts(key, replaced(text, "0.333", "0.334")), UnusableVerdicts);
   EXPECT_THROW((void)read_verdicts(key, replaced(text, "L,0.1", "L,0.2")), UnusableVerdicts);
-  EXPECT_THROW((void)read_verdicts(key, replaced(text, "\"reported\"\n", "\"holds\"\n")), UnusableVerdicts);
+  EXPECT_THROW((void)read_verdicts(key, replaced(text, "\"verdict\": \"reported\"", "\"verdict\": \"holds\"")),
+               UnusableVerdicts);
   for (std::size_t length = 0; length + 2 < text.size(); length += 7)
     EXPECT_THROW((void)read_verdicts(key, text.substr(0, length)), UnusableVerdicts) << length;
   for (const char *other : {"[]", "null", "{}", "{\"format\": 1}"})
@@ -213,6 +220,31 @@ TEST_F(Environment, SaysWhereTheStoreIs)
   }
   set("HOME", {});
   EXPECT_FALSE(VerdictStore::folder_of_user());
+}
+
+// What a crack waits for must have been judged; the same rule for verdicts of this run and for cached ones.
+TEST(Verdicts, AreAcceptedOnlyIfEveryClaimJudgedSomething)
+{
+  const std::vector<claims::Claim> required{named("energy"), named("prestretch")};
+  const auto row = [](const std::string &claim, bool gate)
+  {
+    latcon::output::Result result{claim, "NN: quantity", "1", 1., 1., {}, 1e-12, {1e-10, "round-off"}};
+    result.gate = gate;
+    return result;
+  };
+  latcon::output::Results results;
+  results.add(row("energy", true));
+  EXPECT_EQ(acceptance_problem(results, required), "the claim prestretch judged nothing");
+  results.add(row("prestretch", false));
+  EXPECT_EQ(acceptance_problem(results, required), "the claim prestretch judged nothing");
+  latcon::output::Result reported = row("prestretch", true);
+  reported.tolerance.reset();
+  results.add(reported);
+  EXPECT_EQ(acceptance_problem(results, required), "the claim prestretch judged nothing");
+  results.add(row("prestretch", true));
+  EXPECT_EQ(acceptance_problem(results, required), "");
+  results.add(row("planted", true));
+  EXPECT_NE(acceptance_problem(results, required).find("planted"), std::string::npos);
 }
 
 TEST(VerdictStore, TakesNoTableThatLeavesItsFolder)

@@ -65,8 +65,11 @@ Results sample()
   Result row = checked(1. / 3., 0.5);
   row.lattice = 0.1;
   row.theory = -1e-300;
+  row.tolerance.reason = "half, for a test";
+  row.gate = true;
   results.add(row);
   row = checked(not_a_number, 1e-10);
+  EXPECT_EQ(row.tolerance.reason, "");
   row.claim = "a \"quoted\", odd claim";
   row.unit = "\"";
   row.quantity = "two\nlines";
@@ -162,6 +165,19 @@ TEST(Results, AllHoldNeedsAtLeastOneCheck)
   EXPECT_EQ(results.rows().size(), 8u);
 }
 
+// Whatever a computation estimates, the bounds stay.
+TEST(Tolerance, IsLimitedFromBothSides)
+{
+  const auto of = [](double estimate) { return latcon::output::limited(estimate, 1e-3, 5e-3, "scatter"); };
+  EXPECT_EQ(*of(2e-3), 2e-3);
+  EXPECT_EQ(*of(0.), 1e-3);
+  EXPECT_EQ(*of(infinity), 5e-3);
+  EXPECT_EQ(of(2e-3).reason, "scatter (at least 0.001, at most 0.005)");
+  Result row = checked(0., {});
+  row.tolerance = of(not_a_number);
+  EXPECT_EQ(row.verdict(), Verdict::fails);
+}
+
 TEST(Results, JsonHasARowPerResultInFullPrecision)
 {
   const nlohmann::ordered_json document = nlohmann::ordered_json::parse(sample().json());
@@ -172,7 +188,10 @@ TEST(Results, JsonHasARowPerResultInFullPrecision)
   for (const auto &item : first.items())
     keys.push_back(item.key());
   EXPECT_EQ(keys, (std::vector<std::string>{"claim", "quantity", "unit", "lattice", "continuum", "theory", "error",
-                                            "tolerance", "verdict"}));
+                                            "tolerance", "verdict", "reason", "gate"}));
+  EXPECT_EQ(first["reason"], "half, for a test");
+  EXPECT_EQ(first["gate"], true);
+  EXPECT_EQ(document["claims"][1]["gate"], false);
   EXPECT_EQ(first["claim"], "energy");
   EXPECT_EQ(first["unit"], "J/m^3");
   EXPECT_EQ(first["lattice"].get<double>(), 0.1);
@@ -192,9 +211,13 @@ TEST(Results, CsvHasTheSameRows)
   const auto rows = fields_of(sample().csv());
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(rows[0], (std::vector<std::string>{"claim", "quantity", "unit", "lattice", "continuum", "theory", "error",
-                                               "tolerance", "verdict"}));
+                                               "tolerance", "verdict", "reason", "gate"}));
   for (const auto &row : rows)
-    EXPECT_EQ(row.size(), 9u);
+    EXPECT_EQ(row.size(), 11u);
+  EXPECT_EQ(rows[1][9], "half, for a test");
+  EXPECT_EQ(rows[1][10], "true");
+  EXPECT_EQ(rows[3][9], "");
+  EXPECT_EQ(rows[3][10], "false");
   EXPECT_EQ(rows[1][3], "0.1");
   EXPECT_EQ(rows[1][4], "");
   EXPECT_EQ(std::stod(rows[1][6]), 1. / 3.);

@@ -16,14 +16,15 @@ namespace
 using continuum::Constitution;
 using continuum::DamageLaw;
 
-// Residual of the equilibrium, 1e-10 of the forces, and of the damage, 1e-13 of its terms: each multiplied by ten or
-// more.
-constexpr double solver_tolerance = 1e-9;
+const output::Tolerance solver_tolerance{
+  1e-9, "ten times the residuals of the equilibrium, 1e-10 of the forces, and of the damage, 1e-13 of its terms"};
+const output::Tolerance exact{0., "exactly"};
 // Initial damage of the weak spot, small enough that it is exceeded by the damage of the crack everywhere.
 constexpr double weakness = 0.02;
 // Ten times the change of d in the last iteration of the alternating minimisation. It is chosen, not derived: if the
 // changes fall by a factor q per iteration, q/(1 - q) of the last one remains, which is less for q up to 0.9.
-constexpr double iteration_tolerance = 1e-5;
+const output::Tolerance iteration_tolerance{
+  1e-5, "ten times the change of d in the last iteration of the alternating minimisation: chosen"};
 
 struct Problem
 {
@@ -47,12 +48,13 @@ public:
   Rows(const bridge::Subject &subject, ClaimOutcome &outcome) : name_(subject.name), outcome_(outcome) {}
 
   // A value against theory, with a relative error.
-  void compare(const std::string &quantity, const std::string &unit, double value, double theory, double tolerance)
+  void compare(const std::string &quantity, const std::string &unit, double value, double theory,
+               const output::Tolerance &tolerance)
   {
     add(quantity, unit, value, theory, support::relative_error(value, theory), tolerance);
   }
   void add(const std::string &quantity, const std::string &unit, double value, std::optional<double> theory,
-           std::optional<double> error, std::optional<double> tolerance)
+           std::optional<double> error, const output::Tolerance &tolerance)
   {
     outcome_.results.add({"damage", name_ + ": " + quantity, unit, {}, value, theory, error, tolerance});
   }
@@ -86,12 +88,13 @@ void homogeneous_bar(const Problem &problem, bool heals, Rows &rows)
   constexpr double below = 1e-6;
   const double first = problem.stretch(1. - below);
   load(first);
-  rows.add("damage below the threshold", "1", largest(), 0., std::abs(largest()), 0.);
+  rows.add("damage below the threshold", "1", largest(), 0., std::abs(largest()), exact);
   // The stress at the threshold is the peak; the bar is a millionth of the strain below it.
   const double modulus = problem.material().tangent(uniaxial(first))[0][0][0][0];
   const double peak = problem.stress(problem.critical);
   rows.compare("peak stress", "Pa", bar->stress(), peak,
-               2. * below * modulus * (problem.critical - 1.) / peak + solver_tolerance);
+               {2. * below * modulus * (problem.critical - 1.) / peak + *solver_tolerance,
+                "twice what a millionth of the strain changes"});
 
   const double high = problem.stretch(1.5), higher = problem.stretch(1.6);
   load(high);
@@ -140,9 +143,8 @@ void ledger(const Problem &problem, Rows &rows)
     }
   }
   const double order = std::log2(std::abs(remainder[0] / remainder[1]));
-  // The next order of the trapezoidal rule is the fourth. 0.2 is chosen, not derived: it is met if with eight steps the
-  // term of fourth order is below a sixth of that of second order.
-  rows.add("remainder of the ledger: order in the load step", "1", order, 2., std::abs(order - 2.), 0.2);
+  rows.add("remainder of the ledger: order in the load step", "1", order, 2., std::abs(order - 2.),
+           {0.2, "chosen: with eight steps the term of fourth order is below a sixth of that of second order"});
   rows.add("remainder of the ledger over the work, 16 load steps", "1", remainder[1], {}, {}, {});
 }
 
@@ -180,7 +182,9 @@ BrokenEnergy broken_bar_rows(const Problem &problem, const Constitution &laws, u
   const double modulus = problem.material().tangent(uniaxial(1.))[0][0][0][0];
   const double driven = std::pow(k * problem.stress(open), 2) / (2. * modulus * problem.law.threshold) *
                         (1. + std::log(s * s / k)) / std::pow(s, 3) * slope * slope / 2.;
-  rows.compare("energy of a crack over G_c, " + at, "1", ratio, 1. + 0.375 * slope + slope * slope / 32., tolerance);
+  rows.compare("energy of a crack over G_c, " + at, "1", ratio, 1. + 0.375 * slope + slope * slope / 32.,
+               output::limited(tolerance, 1e-6, 5e-3,
+                               "twice what is missing of d = 1 beside the open column, (W_c/W) (2 + 4 xi/h)"));
 
   const std::vector<double> damage = bar.profile();
   support::LargestError off, asymmetry;
@@ -195,8 +199,11 @@ BrokenEnergy broken_bar_rows(const Problem &problem, const Constitution &laws, u
     table.add({problem.subject.name, name, slope, X / xi, damage[i], theory});
   }
   // A change of d at the crack changes the others by less.
-  rows.add("damage at the nodes, largest error, " + at, "1", off.error(), {}, off.error(),
-           2. * missing + driven + iteration_tolerance);
+  rows.add(
+    "damage at the nodes, largest error, " + at, "1", off.error(), {}, off.error(),
+    output::limited(2. * missing + driven + *iteration_tolerance, 1e-5, 5e-3,
+                    "what is missing of d = 1 beside the open column, twice; what the residual stiffness drives; "
+                    "last change of the iteration"));
   rows.add("mirror symmetry of the damage, " + at, "1", asymmetry.error(), {}, asymmetry.error(), iteration_tolerance);
   return {ratio, tolerance};
 }
@@ -210,7 +217,8 @@ void broken_bars(const Problem &problem, const DamageOptions &options, Rows &row
   const BrokenEnergy &fine = energies.back(), &coarse = energies[energies.size() - 2];
   const double remainder = std::pow(1. / options.finest, 2) / 16.;
   rows.compare("energy of a crack over G_c, extrapolated in h", "1", 2. * fine.ratio - coarse.ratio, 1. - remainder,
-               (2. * fine.tolerance + coarse.tolerance) / (1. - remainder));
+               output::limited((2. * fine.tolerance + coarse.tolerance) / (1. - remainder), 1e-6, 5e-3,
+                               "twice the tolerance of the finer mesh and that of the coarser one"));
   // Gradient energies that depend on F may lose convexity where a crack opens (docs/limits.md).
   const Constitution gradient(problem.material(), *problem.subject.isotropic_gradient);
   broken_bar_rows(problem, gradient, 4, "gradient", rows, outcome);
@@ -244,7 +252,8 @@ void degraded_energy(const Problem &problem, bool leaves_gradient, Rows &rows)
   const double own = energy(whole) - energy(local);
   const double remaining = leaves_gradient ? own : energy(damaged) - energy(damaged_local);
   rows.compare("gradient energy with damage 0.5 over that without", "1", remaining / own, problem.law.degradation(d),
-               1e-12 * energy(whole) / std::abs(own));
+               output::limited(1e-12 * energy(whole) / std::abs(own), 1e-12, 1e-6,
+                               "round-off of the difference from which it follows"));
 }
 
 } // namespace

@@ -28,6 +28,8 @@ Claim damage_descriptor()
                     "the crack. This claim is about the continuum alone.";
   claim.check = check;
   claim.is_default = false;
+  claim.gate = true;
+  claim.is_about_damage = true;
   claim.entries = {"Damage/length", "Damage/threshold energy", "Damage/residual stiffness",
                    "Fracture/breaking stretch"};
   claim.quick_on_own_shells_only = true;

@@ -191,13 +191,13 @@ void add_smooth_motion_rows(const bridge::Subject &subject, const AddRow &add)
   const Sheet sheet{subject, bridge::to_continuum(subject.deformation), bridge::bond_families(cell, subject.material)};
   const Deformation deformation{periods_height * subject.spacing};
   const double coarse = error_of_forces(sheet, deformation, 16), fine = error_of_forces(sheet, deformation, 32);
-  // The next term of the error is (q h)^2 = 0.15 of the first times numbers of order one on the coarser mesh, a quarter
-  // of that on the finer one: log2(1 + 0.15) - log2(1 + 0.04) = 0.15.
-  constexpr double of_order = 0.15;
+  const output::Tolerance of_order{0.15,
+                                   "the next term is (q h)^2 = 0.15 of the first on the coarser mesh, a quarter of "
+                                   "that on the finer one: log2(1.15) - log2(1.04)"};
   add("forces of a smooth deformation: order in h", std::log2(coarse / fine), 2., of_order);
-  // Errors of second differences and of means over cells, (q h)^2 / 12 each along either axis, in products of three.
   add("forces of a smooth deformation over the divergence of the stress, error at h = 1/32 of the wavelength", fine, 0.,
-      6. * std::pow(2. * pi / 32., 2) / 12.);
+      {6. * std::pow(2. * pi / 32., 2) / 12.,
+       "second differences and means over cells, (q h)^2 / 12 each along either axis, in products of three"});
   const std::vector<double> f_1 = gradient_forces(sheet, deformation, 1), f_2 = gradient_forces(sheet, deformation, 2),
                             f_4 = gradient_forces(sheet, deformation, 4);
   add("forces of the gradient energy: order in h",
@@ -205,7 +205,7 @@ void add_smooth_motion_rows(const bridge::Subject &subject, const AddRow &add)
   // Ten times the tolerance of the mass operator. The first step from rest is exact, and the quadratic terms of the law
   // vanish in the middle by symmetry; the cubic ones are the square of a strain of 6e-5.
   add("wave with gradient energy and micro-inertia, squared frequency over (C.82)", wave(sheet), 1.,
-      10. * continuum::MassOperator::tolerance);
+      {10. * continuum::MassOperator::tolerance, "ten times the tolerance of the mass operator"});
 }
 
 } // namespace latcon::claims

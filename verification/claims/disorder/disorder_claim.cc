@@ -4,6 +4,8 @@
 #include <utility>
 #include <vector>
 
+#include <boost/math/distributions/students_t.hpp>
+
 #include "lattice/energy.h"
 #include "lattice/relaxation.h"
 #include "support/largest_error.h"
@@ -17,11 +19,17 @@ namespace
 // So small that the laws are linear, so large that energies have nine digits: means over both signs are taken, hence
 // ratios of energies are off by the order of its square, and of that the share that is not homogeneous.
 constexpr double strain = 1e-3;
-constexpr double of_nonlinearity = 100. * strain * strain; // psi'''' / psi'' is below this number times 12 for rubber
+constexpr double nonlinearity_tolerance =
+  100. * strain * strain; // psi'''' / psi'' is below this number times 12 for rubber
 
-// Standard errors of a mean that is normally distributed; beyond with a probability of 6e-7. For those estimated from
-// as few sheets as are made, Student's distribution with 23 degrees of freedom asks for 6.8 of them.
-constexpr double of_normal = 5., of_student = 6.8;
+// Standard errors of a mean that is normally distributed, exceeded with a probability of 6e-7.
+constexpr double normal_quantile = 5., exceeded = 6e-7;
+
+// The same for a standard error that is estimated from n values.
+double student_quantile(double n)
+{
+  return boost::math::quantile(boost::math::complement(boost::math::students_t(n - 1.), 0.5 * exceeded));
+}
 
 // One sheet at one load.
 struct Measured
@@ -132,7 +140,7 @@ private:
                          {},
                          1.,
                          std::abs(mean - 1.),
-                         of_normal * width / root});
+                         {normal_quantile * width / root, "five standard errors of a mean over all bonds"}});
     outcome.results.add({"disorder",
                          subject_.name + ": standard deviation of the factor",
                          "1",
@@ -140,7 +148,8 @@ private:
                          {},
                          width,
                          support::relative_error(found, width),
-                         0.5 * of_normal * std::sqrt(fourth / std::pow(width, 4) - 1.) / root});
+                         {0.5 * normal_quantile * std::sqrt(fourth / std::pow(width, 4) - 1.) / root,
+                          "five standard errors, from the fourth moment of the distribution"}});
   }
 
   void add_modulus_rows(const std::string &modulus, const Eigen::Matrix2d &load, const std::vector<Measured> &measured,
@@ -175,21 +184,26 @@ private:
       squares += (ratio - mean) * (ratio - mean);
       table.add({subject_.name, modulus, static_cast<double>(i), ratio, measured[i].reuss, theory, width});
     }
-    const double sampling = of_student * std::sqrt(squares / (n * (n - 1.)));
+    // The ratio is of second order in the factors, whose squares scatter by less than twice their mean: more scatter
+    // of the sheets does not loosen the tolerance.
+    const double quantile = student_quantile(n);
+    const double sampling = quantile * support::smallest_of({std::sqrt(squares / (n * (n - 1.))),
+                                                             2. * width * width / std::sqrt(n_factors_)});
     // Pairs of bonds are what the effective medium leaves out, in the fourth order; the next orders are below the fifth
     // power of the width (theory-comparison.md, eq. (H.24)).
     const double of_pairs = 0.5 * share * (1. - share) * std::pow(width, 4);
     const double order = of_pairs + std::pow(width, 5);
-    const double nonlinear = of_nonlinearity * (1. - theory);
-    outcome.results.add({"disorder",
-                         subject_.name + ": " + modulus +
-                           " over that of homogeneous deformation, beyond the bounds of Voigt and Reuss, worst sheet",
-                         "1",
-                         excess.value(),
-                         {},
-                         {},
-                         excess.error(),
-                         nonlinear});
+    const double nonlinear = nonlinearity_tolerance * (1. - theory);
+    outcome.results.add(
+      {"disorder",
+       subject_.name + ": " + modulus +
+         " over that of homogeneous deformation, beyond the bounds of Voigt and Reuss, worst sheet",
+       "1",
+       excess.value(),
+       {},
+       {},
+       excess.error(),
+       {nonlinear, "laws that are not linear: 100 times the square of the strain, times the reduction"}});
     outcome.results.add({"disorder",
                          subject_.name + ": reduction of the " + modulus +
                            " by disorder, mean over sheets against effective medium, error over the modulus",
@@ -198,7 +212,10 @@ private:
                          {},
                          1. - theory,
                          std::abs(mean - theory),
-                         sampling + order + nonlinear});
+                         {sampling + order + nonlinear,
+                          "standard errors of the mean over sheets (Student, 6e-7), at most those of squares of "
+                          "factors; "
+                          "pairs of bonds (H.24) and the fifth power of the width; laws that are not linear"}});
   }
 
   const bridge::Subject &subject_;

@@ -13,12 +13,20 @@ namespace latcon::claims
 namespace
 {
 
-// Error of the extrapolation of Bloch's frequencies (dispersion.h).
-constexpr double bloch_tolerance = 1e-7;
-// Error of the fit to four waves, 3e-6, and their own errors of 2e-7, multiplied by about twenty.
-constexpr double run_tolerance = 1e-5;
-// Two closed forms of the same number.
-constexpr double equal_formulas = 1e-10;
+const output::Tolerance bloch_tolerance{
+  1e-7,
+  "extrapolation of Bloch's frequencies to kd = 0 (dispersion.h): 84 (kd)^2 (l/d)^6 / 20160 at kd = 0.01 and below"};
+const output::Tolerance equal_formulas{1e-10, "two closed forms of the same number"};
+const output::Tolerance sign{0., "a sign"};
+const output::Tolerance positive{1e-12, "round-off of an eigenvalue that may be zero"};
+
+// Of alpha fitted to runs of four waves.
+output::Tolerance run_tolerance(const bridge::Subject &subject)
+{
+  return {subject.material.third_nearest ? 1.6e-5 : 1e-5,
+          "fourth term of the series of w(k), left out of the fit to four waves: 2.4e-6, with third-nearest neighbours "
+          "7.6e-6; errors of the waves, 2e-7, times twenty; half of both for a margin"};
+}
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr const char *wave_names[] = {"L", "S"};
@@ -30,7 +38,7 @@ public:
 
   void add(const std::string &quantity, const std::string &unit, std::optional<double> lattice_value,
            std::optional<double> continuum_value, std::optional<double> theory, std::optional<double> error,
-           std::optional<double> tolerance)
+           const output::Tolerance &tolerance)
   {
     outcome_.results.add({"intrinsic-length", subject_.name + ": " + quantity, unit, lattice_value, continuum_value,
                           theory, error, tolerance});
@@ -114,7 +122,7 @@ void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &op
     const Alpha closed = lattice_alpha(sheet, material, I, N), continuum = continuum_alpha(gradient, I, N, d);
     for (std::size_t w = 0; w < 2; ++w)
       rows.add("alpha of " + std::string(wave_names[w]) + " waves" + at + ", lattice run against closed form", "1",
-               run[w], continuum[w], closed[w], std::abs(run[w] - closed[w]), run_tolerance);
+               run[w], continuum[w], closed[w], std::abs(run[w] - closed[w]), run_tolerance(subject));
   }
 
   rows.add("alpha in all directions, Bloch against closed form", "1", {}, {}, {}, bloch_error.error(), bloch_tolerance);
@@ -122,14 +130,14 @@ void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &op
            equal_formulas);
   // A positive alpha softens; the claim is the sign.
   rows.add("softening: smallest alpha of any wave", "1", alphas.smallest(), {}, {},
-           support::one_sided(-alphas.smallest()), 0.);
+           support::one_sided(-alphas.smallest()), sign);
   rows.add("largest alpha of any wave", "1", alphas.largest(), {}, {}, {}, {});
   for (std::size_t w = 0; w < 2; ++w)
   {
     const std::string name = std::string("alpha of ") + wave_names[w] + " waves, ";
     rows.add(name + "mean over directions, isotropic gradient continuum against lattice", "1", mean[w],
              isotropic_alpha[w], {}, std::abs(isotropic_alpha[w] - mean[w]),
-             subject.tolerance(bridge::Law::isotropic_gradient, equal_formulas));
+             {subject.tolerance(bridge::Law::isotropic_gradient, *equal_formulas), equal_formulas.reason});
     rows.add(name + "largest difference of the isotropic continuum from the lattice", "1", {}, {}, {},
              isotropic_loss[w].error(), {});
     // At F = I its moduli are the lattice's, so the mean of its gradient energy gives the mean of alpha, in all
@@ -139,7 +147,7 @@ void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &op
       from_mean.add_difference(alpha[w], mean[w]);
     rows.add(name + "network in all directions against the lattice's mean over directions", "1", mean[w],
              from_mean.value(), {}, from_mean.error(),
-             subject.tolerance(bridge::Law::mooney_rivlin_network, equal_formulas));
+             {subject.tolerance(bridge::Law::mooney_rivlin_network, *equal_formulas), equal_formulas.reason});
     rows.add(name + "largest difference of the network from the lattice", "1", {}, {}, {}, network_loss[w].error(), {});
     if (subject.material.third_nearest)
       rows.add(name + "mean over directions, the part of the longer bonds", "1", mean[w] - nearest_mean[w], {}, {}, {},
@@ -153,7 +161,8 @@ void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &op
   // Not a fault of the code: a positive gradient energy alone cannot soften.
   const double least_hardening = support::largest_of({hardening[0], hardening[1]});
   rows.add("hardening: alpha of a positive gradient energy without micro-inertia is negative", "1", {}, least_hardening,
-           {}, support::one_sided(least_hardening), subject.tolerance(bridge::Law::isotropic_gradient, 0.));
+           {}, support::one_sided(least_hardening),
+           {subject.tolerance(bridge::Law::isotropic_gradient, *sign), sign.reason});
 }
 
 // The length that keeps the gradient energy positive.
@@ -184,21 +193,22 @@ void positivity(const bridge::Subject &subject, ClaimOutcome &outcome)
     if (critical)
       rows.add(shortest, "m", critical, subject.lengths.lattice, {},
                support::one_sided(*critical / subject.lengths.lattice - 1.),
-               subject.gradient_tolerance(F, equal_formulas));
+               {subject.gradient_tolerance(F, *equal_formulas), equal_formulas.reason});
     else
       // See gradient_tolerance(): the law neglects the terms that make it negative.
       rows.add(shortest + ": there is none, bonds are compressed", "m", {}, subject.lengths.lattice, {}, {}, {});
     const double at_length = smallest_eigenvalue(*subject.lattice_gradient, F) / unit;
     rows.add("smallest eigenvalue of the gradient energy over mu d^2 at l_d" + where, "1", {}, at_length, {},
-             support::one_sided(-at_length), 1e-12);
+             support::one_sided(-at_length), positive);
     const double of_network = smallest_eigenvalue(*subject.network_gradient, F) / unit;
     rows.add("smallest eigenvalue of the network's gradient energy over mu d^2 at l_d" + where, "1", {}, of_network, {},
-             support::one_sided(-of_network), subject.tolerance(bridge::Law::mooney_rivlin_network, 1e-12));
+             support::one_sided(-of_network),
+             {subject.tolerance(bridge::Law::mooney_rivlin_network, *positive), positive.reason});
     if (!critical)
       continue;
     const double below = smallest_lattice_eigenvalue(sheet, subject.material, F, 0.99 * *critical) / unit;
     rows.add("the same 1 % below the shortest length: negative" + where, "1", below, {}, {}, support::one_sided(below),
-             0.);
+             sign);
   }
 }
 
@@ -230,7 +240,7 @@ void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &op
     // Statics of nearest neighbours have no length: every row interacts with the next one only. Third-nearest bonds
     // between rows are collinear with nearest ones: both have the same stretch, 1 at a free edge, and neither pulls.
     rows.add("no edge layer: largest deviation of a row spacing at a free edge", "1", largest.error(), {}, 0.,
-             largest.error(), 1e-10);
+             largest.error(), {1e-10, "residual of the relaxed strip"});
     return;
   }
   rows.add("edge layer: deviation of the first row spacing, stretch " +
@@ -240,16 +250,19 @@ void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &op
   constexpr std::size_t first = 3, last = 6;
   const double decay = -std::pow(std::abs(layer.deviations[last] / layer.deviations[first]), 1. / (last - first));
   const bool alternates = layer.deviations[first] * layer.deviations[first + 1] < 0.;
-  rows.add("edge layer: decay from row to row, against its characteristic equation", "1", alternates ? decay : -decay,
-           {}, root, support::relative_error(alternates ? decay : -decay, root), 0.01);
+  rows.add(
+    "edge layer: decay from row to row, against its characteristic equation", "1", alternates ? decay : -decay, {},
+    root, support::relative_error(alternates ? decay : -decay, root),
+    output::limited(10. * std::abs(layer.deviations[first]), 1e-5, 1e-3,
+                    "terms of second order: deviation of the fourth row times third over second moduli, up to 10"));
   // Layer of a continuum with that gradient energy: exp(-Y / l), of one sign.
   const WaveContinuum gradient{{subject.cauchy_born, *subject.lattice_gradient}, {subject.material.density, 0.}};
   Eigen::Matrix2d F = Eigen::Matrix2d::Identity();
   F(0, 0) = options.edge_stretch;
   F(1, 1) = layer.stretch_across;
   const Alpha alpha = continuum_alpha(gradient, F, Eigen::Vector2d(0., 1.), subject.spacing);
-  rows.add("edge layer: what the gradient continuum has from row to row; it cannot alternate", "1",
-           alternates ? decay : -decay, std::exp(-std::sqrt(3.) / 2. / std::sqrt(-alpha[0])), {}, {}, {});
+  rows.add("edge layer: decay per row, gradient continuum (it cannot alternate)", "1", alternates ? decay : -decay,
+           std::exp(-std::sqrt(3.) / 2. / std::sqrt(-alpha[0])), {}, {}, {});
 }
 
 } // namespace

@@ -30,28 +30,21 @@ continuum::CauchyBorn turned(const continuum::CauchyBorn &law, const Eigen::Matr
   return continuum::CauchyBorn(std::move(families));
 }
 
-// Bound (H.18) of the difference between the energies of the two equilibria over the energy, both sums over the sites.
-double network_bound(const bridge::Subject &subject, const CutSolution &network, const CutSolution &local)
+// Means of the fields and of the signed errors of two solutions beside the same lattice.
+CutSolution middle(const CutSolution &a, const CutSolution &b)
 {
-  std::vector<continuum::CauchyBorn> rotated;
-  for (int k = 0; k < bridge::n_lattice_rotations; ++k)
-    rotated.push_back(turned(subject.cauchy_born, bridge::lattice_rotation(k)));
-  support::Extremes bounds;
-  for (const CutSolution *solution : {&network, &local})
+  CutSolution mean = a;
+  for (std::size_t i = 0; i < mean.u.size(); ++i)
   {
-    double difference = 0., energy = 0.;
-    Eigen::MatrixXd energies(1, bridge::n_lattice_rotations);
-    for (const Eigen::Matrix2d &F : solution->F)
-    {
-      for (int k = 0; k < bridge::n_lattice_rotations; ++k)
-        energies(0, k) = rotated[k].energy(bridge::to_continuum(F));
-      const double mean = bridge::rotation_mean(energies).mean(0);
-      difference += energies(0, 0) - mean;
-      energy += mean;
-    }
-    bounds.add(std::abs(difference / energy));
+    mean.u[i] = 0.5 * (a.u[i] + b.u[i]);
+    mean.F[i] = 0.5 * (a.F[i] + b.F[i]);
+    mean.P[i] = 0.5 * (a.P[i] + b.P[i]);
   }
-  return bounds.largest();
+  mean.opening = 0.5 * (a.opening + b.opening);
+  mean.errors.stress_scale = 0.5 * (a.errors.stress_scale + b.errors.stress_scale);
+  mean.errors.energy = 0.5 * (a.errors.energy + b.errors.energy);
+  mean.errors.reaction = 0.5 * (a.errors.reaction + b.errors.reaction);
+  return mean;
 }
 
 CutMesh hole_mesh(bool quick)
@@ -153,7 +146,7 @@ std::vector<CutResult> compare_sizes(const bridge::Subject &subject, const CutSt
       study.spoil(lattice);
     const bridge::EquivalentSheet domain =
       bridge::equivalent_sheet(lattice.lattice, subject.material, lattice.state, sheet.held, sheet.cutout);
-    std::optional<CutSolution> of_local;
+    std::optional<CutSolution> of_local, of_turned;
     const auto add =
       [&](const std::string &law, const continuum::Constitution &constitution, const bridge::EquivalentSheet &at)
     {
@@ -163,8 +156,8 @@ std::vector<CutResult> compare_sizes(const bridge::Subject &subject, const CutSt
         result.errors = found->errors;
       if (found && of_local)
         result.from_local = distance(lattice, sheet, *found, *of_local);
-      if (found && law == "network" && !study.is_reported)
-        result.network_bound = network_bound(subject, *found, *of_local);
+      if (found && law == "network" && of_local && of_turned)
+        result.from_middle = distance(lattice, sheet, *found, middle(*of_local, *of_turned));
       results.push_back(result);
       return found;
     };
@@ -183,7 +176,7 @@ std::vector<CutResult> compare_sizes(const bridge::Subject &subject, const CutSt
       add("local-moved", local, moved);
       const continuum::CauchyBorn turned_law =
         turned(subject.cauchy_born, bridge::lattice_rotation(bridge::n_lattice_rotations / 2));
-      add("local-turned", {turned_law}, domain);
+      of_turned = add("local-turned", {turned_law}, domain);
     }
     if (is_largest || has_others)
     {

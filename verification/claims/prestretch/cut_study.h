@@ -47,11 +47,11 @@ struct CutResult
 {
   double size; ///< over d [-]
   std::string law;
-  std::optional<CutErrors> errors;       ///< none: no equilibrium was found
-  std::string failure;                   ///< why
-  double residual;                       ///< of the lattice, over mu d [-]
-  std::optional<CutDistance> from_local; ///< from the local law at the same size
-  double network_bound;                  ///< relative, that (H.18) sets to the energy of the network [-]
+  std::optional<CutErrors> errors;        ///< none: no equilibrium was found
+  std::string failure;                    ///< why
+  double residual;                        ///< of the lattice, over mu d [-]
+  std::optional<CutDistance> from_local;  ///< from the local law at the same size
+  std::optional<CutDistance> from_middle; ///< of "network": from the mean of "local" and "local-turned"
 };
 
 /// All comparisons in one state, laws in the order in which tables have them: "local", "local-nominal" (the

@@ -45,13 +45,7 @@ Claim prestretch_descriptor()
   claim.statement = "Stretched between held edges, the relaxed lattice and the finite elements have the same energy, "
                     "tractions and fields.";
   claim.check = check;
-  claim.required_rows = {": stability of the loaded lattice, smallest w^2/k^2 of all waves over c_S^2 at F = I",
-                         ": mean energy density, Cauchy-Born",
-                         ": traction on the right edge, Cauchy-Born",
-                         ": traction on the top edge, Cauchy-Born",
-                         ": displacement, largest difference / length, Cauchy-Born",
-                         ": deformation gradient, largest relative difference, Cauchy-Born",
-                         ": first Piola stress, largest difference / largest, Cauchy-Born"};
+  claim.gate = true;
   return claim;
 }
 

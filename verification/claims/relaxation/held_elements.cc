@@ -118,7 +118,8 @@ void add_held_elements(const bridge::Subject &subject, const lattice::Triangular
                          continuum_value,
                          theory_value,
                          error,
-                         tolerance});
+                         {tolerance, "round-off: 4 roundings in each step and 1000 for sums over quadrature points, "
+                                     "times the quantity over that to which the error is relative"}});
   };
   // An update rounds four times, and adds a change of stretch that is round-off: of the displacement at free nodes,
   // which Newton's method leaves undetermined to its tolerance. Sums over 36 quadrature points with gradients of shape

@@ -18,13 +18,14 @@ namespace
 constexpr double far_from = 5.;                 // inner radius of the far field [d]
 constexpr double near_from = 1.5, near_to = 4.; // annulus of the reported fields near the tip [d]
 constexpr double tip_resolution = 0.5;          // of a lattice: half a spacing [d]
+constexpr double largest_tolerance = 0.06;      // of the far field, whatever the parts of its tolerance
 
 // A compared field at a point.
 struct Quantity
 {
   std::string name;
   std::function<Eigen::Vector2d(const TipValues &)> of;
-  bool on_flank = false; // in the row of sites next to the crack, behind the tip, alone
+  bool on_flank = false; // in the row of sites next to the crack, behind the tip, alone; reported
 };
 
 const std::vector<Quantity> &quantities()
@@ -144,7 +145,7 @@ public:
 
 private:
   void add(const std::string &quantity, const std::string &unit, std::optional<double> lattice,
-           std::optional<double> continuum, std::optional<double> error, std::optional<double> tolerance)
+           std::optional<double> continuum, std::optional<double> error, const output::Tolerance &tolerance)
   {
     outcome.results.add({"running-crack",
                          subject_.name + ", " + state_name(subject_.deformation) + ": " + quantity,
@@ -167,6 +168,9 @@ private:
 
   void judge(const std::string &name, const TipField &coarse, const TipField &fine)
   {
+    // The local continuum is judged. At the flanks, and with its gradient energy, it lacks what missing bonds take from
+    // a lattice (docs/running-crack.md).
+    const bool is_judged = name == "local";
     const double d = subject_.spacing, leaves_out = anisotropy(fine);
     std::ostringstream annulus;
     annulus << far_from << " d <= r <= " << options_.far << " d";
@@ -175,16 +179,26 @@ private:
       const double discretisation = far_.distance(fine, coarse, quantity);
       const double tip = far_.distance(fine, fine, quantity, tip_resolution * d);
       const double error = far_.distance(lattice_.field, fine, quantity);
+      const output::Tolerance allowed =
+        output::limited(discretisation + tip + leaves_out, 0.01, largest_tolerance,
+                        "change of the mesh, which bounds an error of first order; change by a tip that is d/2 ahead; "
+                        "anisotropy of the bonds at the strains of the far field");
       add(quantity.name + ", " + annulus.str() + ", " + name + " continuum against lattice", "1", {}, {}, error,
-          subject_.tolerance(bridge::Law::mooney_rivlin_network, discretisation + tip + leaves_out));
+          is_judged && !quantity.on_flank
+            ? output::Tolerance(subject_.tolerance(bridge::Law::mooney_rivlin_network, *allowed), allowed.reason)
+            : output::Tolerance());
       outcome.table("running_crack_far", {"shells", "law", "quantity", "error", "discretisation", "tip", "anisotropy"})
         .add({subject_.name, name, quantity.name, error, discretisation, tip, leaves_out});
     }
     const double tip = effective_tip(lattice_.field, fine, far_, d);
     const double tip_of_coarse = effective_tip(lattice_.field, coarse, far_, d);
+    const output::Tolerance of_tip =
+      output::limited(tip_resolution + std::abs(tip - tip_of_coarse), tip_resolution, 0.75,
+                      "half a spacing, to which a lattice has a tip; change of the mesh");
     add("effective tip of the lattice ahead of the cut, in d, from the far velocity of the " + name + " continuum", "1",
         tip, 0., std::abs(tip),
-        subject_.tolerance(bridge::Law::mooney_rivlin_network, tip_resolution + std::abs(tip - tip_of_coarse)));
+        is_judged ? output::Tolerance(subject_.tolerance(bridge::Law::mooney_rivlin_network, *of_tip), of_tip.reason)
+                  : output::Tolerance());
   }
 
   void report(const std::string &name, const TipRun &coarse, const TipRun &fine)
@@ -330,7 +344,11 @@ ClaimOutcome running_crack_claim(const bridge::Subject &subject, const CrackSide
                                        [&] { comparison.compare(name, medium); });
   };
   compare("local", sides.local);
-  compare("gradient", sides.gradient);
+  // Reported: so is a computation that does not succeed.
+  output::Results failure;
+  if (!failure.attempt("running-crack", prefix + "gradient continuum",
+                       [&] { comparison.compare("gradient", sides.gradient); }))
+    comparison.outcome.results.add({"running-crack", failure.rows().front().quantity, "1", {}, {}, {}, {}});
   return comparison.outcome;
 }
 

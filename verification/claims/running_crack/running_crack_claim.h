@@ -43,7 +43,8 @@ struct CrackSides
 CrackSides crack_sides(const bridge::Subject &subject, const RunningCrackOptions &options);
 
 /// Compares a straight crack that is driven at the same speed through the lattice and through the network continuum,
-/// without and with its gradient energy and micro-inertia (theory-comparison.md, section "A running crack"). The sheet
+/// without and with its gradient energy and micro-inertia (theory-comparison.md, section "A running crack"). The far
+/// field of the former is judged, the latter reported. The sheet
 /// must be loaded without shear, and open the crack. Frames of the sides are NAME-lattice.pvd, NAME-local.pvd and
 /// NAME-gradient.pvd, NAME being that of the subject in lower case ("crack-nn-nnn"); the table `running_crack_frames`
 /// has the position of the tip in them. For other sheets the claim reports that there is no such crack.

@@ -37,23 +37,7 @@ Claim viscoelastic_waves_descriptor()
     "and the decay of the complex modulus: "
     "their speed lies between the rubbery and the glassy limit, and they decay fastest at w tau near 1.";
   claim.check = check;
-  claim.required_rows = {
-    ", F = I: one branch, frequency, lattice run against complex modulus, worst of all waves",
-    ", F = I: one branch, decay, lattice run against complex modulus, worst of all waves, error over the frequency",
-    ", F = I: one branch, frequency below the rubbery or above the glassy limit, worst of all waves",
-    ", F = I: one branch, w tau at the largest decay, worst of both waves",
-    ", F = I: frequency in the rubbery limit, lattice against local continuum, worst of both waves",
-    ", F = I: own branches, frequency, lattice run against complex modulus, worst of all waves",
-    ", F = I: own branches, decay, lattice run against complex modulus, worst of all waves, error over the frequency",
-    ", F = I: one branch, frequency, finite elements against complex modulus, worst of all waves",
-    ", F = I: one branch, decay, finite elements against complex modulus, worst of all waves, error over the frequency",
-    ", F = I: one branch, energy imbalance of finite elements over its bound, worst of all waves",
-    ", F = I: one branch, frequency of finite elements below the rubbery or above the glassy limit, worst of all waves",
-    ", F = I: one branch, w tau at the largest decay of finite elements, worst of both waves",
-    ", F = I: own branches, frequency, finite elements against complex modulus, worst of all waves",
-    ", F = I: own branches, decay, finite elements against complex modulus, worst of all waves, error over the "
-    "frequency",
-    ", F = I: own branches, energy imbalance of finite elements over its bound, worst of all waves"};
+  claim.gate = true;
   claim.is_about_memory = true;
   return claim;
 }

@@ -23,16 +23,15 @@ namespace
 constexpr const char *wave_names[] = {"L", "S"};
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
-// Errors: extrapolated time stepping, three terms of 1.2e-7 (mode_run.cc), nonlinear terms 1e-10. Decays are down to a
-// twentieth of the frequency to which their error is relative.
-constexpr double frequency_tolerance = 1e-6, decay_tolerance = 2e-5;
+const output::Tolerance frequency_tolerance{1e-6, "extrapolated time stepping, three terms of 1.2e-7 (mode_run.cc)"};
+const output::Tolerance decay_tolerance{
+  2e-5, "that of frequencies, of decays down to a twentieth of the frequency to which their error is relative"};
 // Modulus of the swept branch over the stiffness of a bond.
 constexpr double swept_ratio = 0.5;
 constexpr double swept_kd = 0.25;
-// Errors of finite elements: extrapolated time stepping, (w h)^4 / 320 <= 5e-6 of the frequency and as much from the
-// update of branches (theory-viscoelastic.md, eq. (V.7)), and 7e-7 in space (Ainsworth's dispersion error of elements
-// of degree 4, four in a wave).
-constexpr double element_tolerance = 2e-5;
+const output::Tolerance element_tolerance{
+  2e-5, "extrapolated time stepping, (w h)^4 / 320 <= 5e-6, as much from the update of branches (V.7), 7e-7 in space "
+        "(Ainsworth), times two"};
 constexpr WaveMesh element_mesh{4, 4};
 
 // Local continuum of a lattice with branches.
@@ -144,7 +143,8 @@ public:
   }
 
   void add(const std::string &quantity, const std::string &unit, std::optional<double> lattice_value,
-           std::optional<double> continuum_value, std::optional<double> theory, double error, double tolerance)
+           std::optional<double> continuum_value, std::optional<double> theory, double error,
+           const output::Tolerance &tolerance)
   {
     outcome_.results.add({"viscoelastic-waves", subject_.name + ", " + state_name(F_) + ": " + quantity, unit,
                           lattice_value, continuum_value, theory, error, tolerance});
@@ -169,7 +169,7 @@ public:
     add(part + ", decay, finite elements against complex modulus, worst of all waves, error over the frequency", "1/s",
         {}, decay_.value(), decay_.reference(), decay_.error(), element_tolerance);
     add(part + ", energy imbalance of finite elements over its bound, worst of all waves", "1", {}, {}, {},
-        imbalance_.error(), 1.);
+        imbalance_.error(), {1., "the bound (V.8)"});
     frequency_ = decay_ = imbalance_ = support::LargestError();
   }
 
@@ -224,7 +224,9 @@ void sweep_elements(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
   // Decays a factor of three beside the peak are smaller by 0.05 of the frequency, which makes the error of the vertex
   // 45 times that of the decays.
   comparison.add(part + ", w tau at the largest decay of finite elements, worst of both waves", "1", {}, peaks.value(),
-                 peaks.reference(), peaks.error(), 1e-3);
+                 peaks.reference(), peaks.error(),
+                 {1e-3, "vertex of a parabola through decays that differ by 0.05 of the frequency, known to 2e-5: 45 "
+                        "times their error"});
 }
 
 // One branch per bond whose relaxation time is swept at a fixed wavelength.
@@ -254,7 +256,9 @@ void sweep(const bridge::Subject &subject, const Eigen::Matrix2d &F, const Visco
                  comparison.outside(), frequency_tolerance);
   // Decays near the peak, which differ by a few percent, are known to 1e-6.
   comparison.add(part + ", w tau at the largest decay, worst of both waves", "1", peaks.value(), {}, peaks.reference(),
-                 peaks.error(), 1e-3);
+                 peaks.error(),
+                 {1e-3, "vertex of a parabola through decays that differ by a few percent, known to "
+                        "1e-6"});
   if (has_elements)
     sweep_elements(subject, F, options, cell, outcome);
   // w^2 = c^2 k^2 (1 - alpha (kd)^2 + ...) with alpha <= 1/4 for bonds up to sqrt3 d long, 1/3 for those of 2 d.
@@ -267,7 +271,8 @@ void sweep(const bridge::Subject &subject, const Eigen::Matrix2d &F, const Visco
     rubbery.add_relative(comparison.limits(cell, elastic, w)[0], continuum[w].frequency);
   comparison.add("frequency in the rubbery limit, lattice against local continuum, worst of both waves", "rad/s",
                  rubbery.value(), rubbery.reference(), {}, rubbery.error(),
-                 half_alpha * std::pow(cell.K.norm() * subject.spacing, 2));
+                 {half_alpha * std::pow(cell.K.norm() * subject.spacing, 2),
+                  "alpha (kd)^2 / 2 with alpha <= 1/4, with third-nearest neighbours 1/3"});
 }
 
 // The branches of the material, with its dashpots.

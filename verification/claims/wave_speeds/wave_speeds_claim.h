@@ -5,6 +5,7 @@
 #include "verification/bridge/subject.h"
 #include "verification/claims/claim_outcome.h"
 #include "verification/claims/continuum_waves.h"
+#include "verification/input/case.h"
 
 namespace latcon::claims
 {
@@ -21,6 +22,9 @@ struct WaveSpeedsOptions
   std::vector<Eigen::Matrix2d> damped_states;       ///< states in which attenuation is measured, if there are dashpots
   std::vector<double> kd{0.05, 0.1, 0.25, 0.5, 1.}; ///< of the waves that are run, ascending, two or more [-]
   WaveMesh mesh;                                    ///< of the finite elements
+  input::Case::Integrator integrator = input::Case::Integrator::velocity_verlet; ///< of damped waves on the lattice
+  /// Error that a test introduces into the lattice of the runs; none otherwise.
+  std::function<lattice::Material(lattice::Material)> planted = {};
 };
 
 /// Checks the claim. Collective.
