@@ -70,6 +70,7 @@ def write_claims(folder):
     write_branches(folder)
     write_disorder(folder)
     write_damaged_bar(folder)
+    write_steady_crack(folder)
     for name, size in (("hole", "R/d"), ("notch", "length/d")):
         write_cut(folder, name, size)
 
@@ -93,6 +94,15 @@ def write_branches(folder):
     write(folder, "relaxation", ["shells", "integrator", "t [s]", *(
         f"{side}_{what}" for what in ("overstress [Pa]", "stored [J/m]", "dissipated [J/m]")
         for side in ("lattice", "theory"))], rows)
+
+
+def write_steady_crack(folder):
+    """Speeds 1e-4 off the exact solution, and the curve of one viscosity."""
+    write(folder, "steady_crack", ["beta", "driving", "breaking elongation", "lattice speed", "exact speed"],
+          [[beta, driving, 1.01, 0.1 * driving / beta * (1 + 1e-4), 0.1 * driving / beta]
+           for beta in (0.5, 3.0) for driving in (1.6, 1.9)])
+    write(folder, "steady_crack_curve", ["beta", "speed", "driving", "exists"],
+          [[0.5, v / 50, 1.2 + v / 50, "yes" if v < 30 else "no"] for v in range(5, 40)])
 
 
 def write_disorder(folder):

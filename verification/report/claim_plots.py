@@ -37,7 +37,7 @@ def read_claim_tables(folder):
     for name, (texts, numbers) in TABLES.items():
         path = folder / f"{name}.csv"
         table = read_table(path, numbers, texts=tuple(texts), finite=False)
-        if table is None or not len(table["shells"]):
+        if table is None or not len(table[numbers[0]]):
             continue
         for column, allowed in texts.items():
             strange = [word for word in table[column] if allowed is not None and word not in allowed]

