@@ -168,7 +168,7 @@ output::Results require_verified(const input::Case &input, const std::vector<cla
     run.info().add(about_program ? "verification_of_program" : "verification", group.record);
     if (run.is_verbose())
     {
-      const std::string whose = about_program ? "claims about the program: " : "claims: ";
+      const std::string whose = about_program ? "program: " : "claims: ";
       if (!group.note.empty())
         std::cout << whose << group.note << "\n";
       std::cout << whose << group.origin << std::endl;
