@@ -14,7 +14,7 @@ namespace
 {
 
 // Each side sums about ten bonds in another order: a few hundred round-offs.
-constexpr double round_off = 1e-10;
+const output::Tolerance round_off{1e-10, "a few hundred round-offs of sums over about ten bonds"};
 
 using Response = bridge::LatticeResponse; // energy density [J/m^3] and first Piola stress [Pa]
 using ResponseOf = std::function<Response(const Eigen::Matrix2d &F)>;
