@@ -121,6 +121,13 @@ void DamageMotion::set_damage(const std::function<double(const Point<2> &)> &dam
   restart_ledger();
 }
 
+void DamageMotion::settle_damage()
+{
+  if (damage_.minimize(cell_energies_, node_energies_))
+    update_masses();
+  restart_ledger();
+}
+
 void DamageMotion::restart_ledger()
 {
   compute_energies();

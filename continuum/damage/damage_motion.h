@@ -82,6 +82,11 @@ public:
   /// of [0, 1].
   void set_damage(const std::function<double(const dealii::Point<2> &)> &damage);
 
+  /// Minimises the damage at the present displacement, which is that of a seed crack under the loading, and restarts
+  /// the ledger. Without it the first step does so, and the energy that a jump of the damage loses is a remainder of
+  /// the ledger that no shorter step reduces. Throws NonPhysicalState as GridDamage::minimize does.
+  void settle_damage();
+
   /// Advances by one step. Throws NonPhysicalState as FibreForces::energies and GridDamage::minimize do; the state is
   /// then that before the step.
   void advance();

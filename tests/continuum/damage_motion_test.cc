@@ -358,6 +358,36 @@ TEST(DamageMotion, RunsACrackWithTheSameBitsOnAnyNumberOfThreads)
   EXPECT_EQ(damage[0], damage[1]);
 }
 
+// The loading drives the damage of a seed further, which loses energy in a jump.
+TEST(DamageMotion, SettlesTheDamageOfASeedBeforeItsLedger)
+{
+  const auto remainder = [](const bool settles)
+  {
+    DamageMotion motion = strip();
+    motion.set_damage(
+      [](const Point<2> &X)
+      {
+        const double depth = 1. - std::hypot(std::max(0., X[0] - 0.006), std::max(0., std::abs(X[1]) - 3e-4)) / 2e-3;
+        return depth > 0. ? depth * depth : 0.;
+      });
+    if (settles)
+    {
+      const std::vector<double> initial = motion.damage().nodal();
+      motion.settle_damage();
+      const std::vector<double> settled = motion.damage().nodal();
+      EXPECT_NE(settled, initial);
+      EXPECT_EQ(motion.ledger().fracture, 0.);
+      EXPECT_EQ(motion.ledger().imbalance, 0.);
+      motion.settle_damage();
+      EXPECT_EQ(motion.damage().nodal(), settled);
+    }
+    for (unsigned int step = 0; step < 10; ++step)
+      motion.advance();
+    return std::abs(motion.ledger().imbalance);
+  };
+  EXPECT_LT(remainder(true), 0.2 * remainder(false));
+}
+
 TEST(DamageMotion, DoesNotBreakWithoutASeed)
 {
   DamageMotion motion = strip();

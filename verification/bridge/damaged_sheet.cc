@@ -134,7 +134,8 @@ void set_stepping(const input::Case &input, DamagedSheet &sheet, input::Paramete
                      {"Damage/length"});
     return;
   }
-  sheet.step = probe.step = input.continuum.time_step.value_or(0.5 * stable);
+  sheet.automatic_step = 0.5 * stable;
+  sheet.step = probe.step = input.continuum.time_step.value_or(sheet.automatic_step);
   try
   {
     sheet.stages = continuum::DamageMotion(probe).n_stages();
@@ -162,7 +163,7 @@ DamagedSheet damaged_sheet(const input::Case &input, input::Parameters &paramete
 {
   require_damaged_sheet(input, parameters);
   parameters.finish();
-  DamagedSheet sheet{subject(input), {}, 0., 0, 0.};
+  DamagedSheet sheet{subject(input), {}, 0., 0., 0, 0.};
   sheet.law = damage_law(input, sheet.subject);
   require_undamaged_loading(input, sheet, parameters);
   set_stepping(input, sheet, parameters);
@@ -212,6 +213,7 @@ continuum::DamageMotion damage_motion(const input::Case &input, const DamagedShe
                             q * ((1. - p) * at(i, j + 1.) + p * at(i + 1., j + 1.)));
       },
       [](const Point<2> &) { return Tensor<1, 2>(); });
+  motion.settle_damage();
   return motion;
 }
 

@@ -24,9 +24,10 @@ struct DamagedSheet
 {
   Subject subject;
   continuum::DamageLaw law;
-  /// Time step [s]: that of the case, or half the longest with which an explicit step without viscosity is stable in
-  /// the loaded sheet.
-  double step;
+  /// Automatic time step [s]: half the longest with which an explicit step without viscosity is stable in the loaded
+  /// sheet.
+  double automatic_step;
+  double step;         ///< that of the case, or the automatic one [s]
   unsigned int stages; ///< evaluations of the forces in a step
   double cells;        ///< number of cells
 };
@@ -48,9 +49,9 @@ struct SeedSegment
 [[nodiscard]] SeedSegment seed_segment(const input::Case &input, const continuum::NodeGrid &grid);
 
 /// Returns the sheet at rest at the homogeneous loading of the case, all edges held, without damage within 2 xi of
-/// them, with the damage of a straight crack about the seed (theory-damage.md, eq. (C.67)), and displaced by the
-/// noise of the case: random numbers in [-1, 1] times the amplitude at the points of a square lattice with the spacing
-/// of the case, linear in between, so that it does not depend on the mesh.
+/// them, displaced by the noise of the case: random numbers in [-1, 1] times the amplitude at the points of a square
+/// lattice with the spacing of the case, linear in between, so that it does not depend on the mesh. The damage is that
+/// of a straight crack about the seed (theory-damage.md, eq. (C.67)), or more where the loading drives it further.
 /// All ranks share it. Collective. @throws InvalidInput, InvalidMaterial as DamageMotion does
 [[nodiscard]] continuum::DamageMotion damage_motion(const input::Case &input, const DamagedSheet &sheet);
 
