@@ -34,6 +34,26 @@ double widest_gap(std::vector<double> &Y, double gap, double min_bonds)
 
 } // namespace
 
+double share_of_branches(const std::vector<double> &gaps, double column_width, double spacing, const BranchRule &rule)
+{
+  // A run of columns as long as the persistence may be shorter by rounding.
+  const double persistence = rule.persistence * spacing * (1. - 1e-12);
+  std::size_t n_branched = 0;
+  for (std::size_t begin = 0, end; begin < gaps.size(); begin = end)
+  {
+    end = begin + 1;
+    if (gaps[begin] == 0.)
+      continue;
+    while (end < gaps.size() && gaps[end] > 0.)
+      ++end;
+    const double widest = *std::max_element(gaps.begin() + static_cast<std::ptrdiff_t>(begin),
+                                            gaps.begin() + static_cast<std::ptrdiff_t>(end));
+    if (static_cast<double>(end - begin) * column_width >= persistence && widest >= rule.grown_gap * spacing)
+      n_branched += end - begin;
+  }
+  return gaps.empty() ? 0. : static_cast<double>(n_branched) / static_cast<double>(gaps.size());
+}
+
 double branched_fraction(const std::vector<BreakRecord> &breaks, double X_begin, double X_end, double lattice_spacing,
                          const BranchRule &rule)
 {
@@ -55,22 +75,7 @@ double branched_fraction(const std::vector<BreakRecord> &breaks, double X_begin,
   gaps.reserve(n_columns);
   for (std::vector<double> &column : columns)
     gaps.push_back(widest_gap(column, rule.gap * lattice_spacing, rule.bonds_per_spacing * rule.column_width));
-
-  std::size_t n_branched = 0;
-  for (std::size_t begin = 0, end; begin < n_columns; begin = end)
-  {
-    end = begin + 1;
-    if (gaps[begin] == 0.)
-      continue;
-    while (end < n_columns && gaps[end] > 0.)
-      ++end;
-    const double widest = *std::max_element(gaps.begin() + static_cast<std::ptrdiff_t>(begin),
-                                            gaps.begin() + static_cast<std::ptrdiff_t>(end));
-    if (static_cast<double>(end - begin) * rule.column_width >= rule.persistence &&
-        widest >= rule.grown_gap * lattice_spacing)
-      n_branched += end - begin;
-  }
-  return static_cast<double>(n_branched) / static_cast<double>(n_columns);
+  return share_of_branches(gaps, width, lattice_spacing, rule);
 }
 
 } // namespace latcon::analysis

@@ -12,10 +12,6 @@ namespace latcon::analysis
 namespace
 {
 
-/// Error of an amplitude due to the discrete sites, in d: root mean square over exact sinusoids of amplitude d to 5 d
-/// and wavelength 20 d to 50 d, rounded to the nearest sites.
-constexpr double site_error = 0.09;
-
 void require(bool condition, const std::string &message)
 {
   if (!condition)
@@ -45,6 +41,8 @@ void check(const CrackMeasurementOptions &o)
           "crack measurement: the thresholds on share, steady amplitude, arrest and branching must be between 0 and 1");
   require(o.min_log_evidence >= 0. && o.clear_log_evidence >= o.min_log_evidence,
           "crack measurement: needs clear_log_evidence >= min_log_evidence >= 0");
+  require(o.position_error >= 0. && std::isfinite(o.position_error),
+          "crack measurement: the error of a position must be finite and >= 0");
   require(o.branch_rule.column_width > 0. && o.branch_rule.gap > 0. && o.branch_rule.bonds_per_spacing > 0.,
           "crack measurement: the branch rule needs positive lengths and bond counts");
 }
@@ -196,9 +194,23 @@ const char *to_string(CrackPattern pattern)
 CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vector<BreakRecord> &breaks,
                                const CrackMeasurementOptions &options)
 {
+  check(breaks);
+  CrackMeasurement m = measure_path(
+    tip,
+    [&](double X_begin, double X_end)
+    { return branched_fraction(breaks, X_begin, X_end, options.lattice_spacing, options.branch_rule); },
+    options);
+  if (m.is_measured())
+    m.flanks = flank_damage(tip, breaks, m.X_begin, m.X_end, options.lattice_spacing);
+  return m;
+}
+
+CrackMeasurement measure_path(const std::vector<TipRecord> &tip,
+                              const std::function<double(double X_begin, double X_end)> &branched_fraction,
+                              const CrackMeasurementOptions &options)
+{
   check(options);
   check(tip, options.end_time);
-  check(breaks);
 
   CrackMeasurement m;
   m.X_begin = m.X_end = options.seed_tip_X;
@@ -233,19 +245,17 @@ CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vec
   {
     m.periods = (m.X_end - m.X_begin) / m.sinusoid->curve.wavelength;
     Measured &amplitude = m.sinusoid->amplitude;
-    amplitude.uncertainty = std::hypot(amplitude.uncertainty, site_error * options.lattice_spacing);
+    amplitude.uncertainty = std::hypot(amplitude.uncertainty, options.position_error * options.lattice_spacing);
   }
   const std::vector<TipRecord> steady = part_between(tip, m.X_begin, m.X_end);
   m.speed_lagrangian = steady_speed(steady, options.lattice_spacing, &TipRecord::X);
   m.speed_laboratory = steady_speed(steady, options.lattice_spacing, &TipRecord::x);
-  m.branched_fraction =
-    branched_fraction(breaks, options.seed_tip_X, m.X_end, options.lattice_spacing, options.branch_rule);
-  m.flanks = flank_damage(tip, breaks, m.X_begin, m.X_end, options.lattice_spacing);
+  m.branched_fraction = branched_fraction(options.seed_tip_X, m.X_end);
 
   if (m.branched_fraction >= options.min_branched_fraction)
   {
     m.pattern = CrackPattern::branching;
-    m.reason = text("broken bonds form two or more strands over %.0f %% of the crack", 100. * m.branched_fraction);
+    m.reason = text("the crack has two or more strands over %.0f %% of the crack", 100. * m.branched_fraction);
   }
   else if (stands_still(tip, options))
   {
@@ -259,7 +269,8 @@ CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vec
   {
     m.crest_amplitude = crest_amplitude(steady, options.lattice_spacing, m.sinusoid->curve);
     if (m.crest_amplitude)
-      m.crest_amplitude->uncertainty = std::hypot(m.crest_amplitude->uncertainty, site_error * options.lattice_spacing);
+      m.crest_amplitude->uncertainty =
+        std::hypot(m.crest_amplitude->uncertainty, options.position_error * options.lattice_spacing);
   }
   return m;
 }

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <functional>
 #include <limits>
 #include <optional>
 #include <string>
@@ -74,6 +75,10 @@ struct CrackMeasurementOptions
   /// Fraction of the length of the crack with several strands from which on the pattern is branching [-].
   double min_branched_fraction = 0.25;
   BranchRule branch_rule{};
+
+  /// Error of an amplitude due to the discrete positions of the tip, in d: of lattice sites, the root mean square over
+  /// exact sinusoids of amplitude d to 5 d and wavelength 20 d to 50 d, rounded to the nearest sites.
+  double position_error = 0.09;
 };
 
 /// Result of measure_crack().
@@ -86,6 +91,7 @@ struct CrackMeasurement
 
   /// Window of the measurements below, reference [m]. Both ends are equal if there is nothing to measure.
   double X_begin = 0., X_end = 0.;
+  bool is_measured() const { return X_begin < X_end; } ///< false for a crack that has not left its seed
 
   std::optional<Measured> speed_lagrangian; ///< dX/dt [m/s]; none if the tip moved fewer than 10 times in the window
   std::optional<Measured> speed_laboratory; ///< dx/dt [m/s]; none as for speed_lagrangian
@@ -126,5 +132,11 @@ struct CrackMeasurement
 /// run, or options out of range
 CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vector<BreakRecord> &breaks,
                                const CrackMeasurementOptions &options);
+
+/// Measures as measure_crack(), except for the flanks, a crack whose branches are not known by broken bonds.
+/// @param branched_fraction of the crack between X_begin and X_end [m]
+CrackMeasurement measure_path(const std::vector<TipRecord> &tip,
+                              const std::function<double(double X_begin, double X_end)> &branched_fraction,
+                              const CrackMeasurementOptions &options);
 
 } // namespace latcon::analysis

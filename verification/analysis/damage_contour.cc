@@ -57,10 +57,14 @@ std::optional<ContourColumn> contour_column(const DamageImage &image, const std:
   const std::vector<Strand> found = strands(image, i);
   if (found.empty())
     return {};
-  ContourColumn column{static_cast<double>(i) * image.size_x, found.size(), found.front().lower, found.back().upper,
-                       0.};
-  for (const Strand &strand : found)
-    column.damaged += strand.upper - strand.lower;
+  ContourColumn column{
+    static_cast<double>(i) * image.size_x, found.size(), found.front().lower, found.back().upper, 0., 0.};
+  for (std::size_t n = 0; n < found.size(); ++n)
+  {
+    column.damaged += found[n].upper - found[n].lower;
+    if (n > 0)
+      column.gap = std::max(column.gap, found[n].lower - found[n - 1].upper);
+  }
   return column;
 }
 
@@ -75,6 +79,16 @@ std::vector<ContourColumn> contour(const DamageImage &image, const double from)
     columns.push_back(*column);
   }
   return columns;
+}
+
+double branched_fraction(const std::vector<ContourColumn> &columns, const double X_begin, const double X_end,
+                         const double spacing, const BranchRule &rule)
+{
+  std::vector<double> gaps;
+  for (const ContourColumn &column : columns)
+    if (column.X >= X_begin && column.X <= X_end)
+      gaps.push_back(column.gap >= rule.gap * spacing ? column.gap : 0.);
+  return gaps.size() < 2 ? 0. : share_of_branches(gaps, columns[1].X - columns[0].X, spacing, rule);
 }
 
 std::optional<ContourTip> contour_tip(const DamageImage &image, const std::size_t column)

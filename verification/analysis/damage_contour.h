@@ -31,6 +31,7 @@ struct ContourColumn
   std::size_t n_strands; ///< separate intervals of Y with damage above the level, > 0
   double lower, upper;   ///< outermost edges of all strands, reference Y [m]
   double damaged;        ///< total height of the strands [m]
+  double gap;            ///< widest between neighbouring strands [m]; 0 with one strand
 
   double centre() const { return 0.5 * (lower + upper); }
 };
@@ -40,6 +41,12 @@ struct ContourColumn
 
 /// Returns the columns of the crack from `from` [m] on, up to its tip: the first column without damage ends it.
 [[nodiscard]] std::vector<ContourColumn> contour(const DamageImage &image, double from);
+
+/// Returns the fraction of the columns between X_begin and X_end [m] in which the crack has branches: strands whose
+/// gaps are as wide and as long as a BranchRule demands, in lengths d [m] and not in cells. Columns must be those of
+/// contour(), which have the distance of the nodes.
+[[nodiscard]] double branched_fraction(const std::vector<ContourColumn> &columns, double X_begin, double X_end,
+                                       double spacing, const BranchRule &rule = {});
 
 /// Place of the tip: the last column of the crack, in which the node with the most damage decides on Y.
 struct ContourTip
