@@ -236,7 +236,8 @@ private:
 };
 
 // Results of a motion at its end, or where it was interrupted.
-output::Results motion_results(const continuum::DynamicSolver &solver, double time_step)
+output::Results motion_results(const continuum::DynamicSolver &solver, const output::LedgerCheck &check,
+                               double time_step)
 {
   output::Results results;
   const continuum::EnergyLedger &ledger = solver.ledger();
@@ -251,6 +252,14 @@ output::Results motion_results(const continuum::DynamicSolver &solver, double ti
   add("energy dissipated per thickness", "J/m", ledger.dissipated);
   add("work done on the sheet per thickness", "J/m", ledger.work);
   add("energy imbalance per thickness", "J/m", ledger.imbalance);
+  results.add({"continuum",
+               "energy imbalance over energy exchanged",
+               "1",
+               {},
+               check.imbalance(),
+               {},
+               check.imbalance(),
+               output::allowed_imbalance_of_implicit_motion(check.rate(), time_step)});
   return results;
 }
 
@@ -311,6 +320,7 @@ output::Results move(const input::Case &input, const bridge::ContinuumModel &mod
   {
     write_frame();
     record.motion(solver);
+    record.check(solver);
   }
   // Writes the present state, wherever the motion ends.
   const auto write_last_state = [&]
@@ -334,6 +344,7 @@ output::Results move(const input::Case &input, const bridge::ContinuumModel &mod
         break;
       solver.step();
       ++step;
+      record.check(solver);
       for (const continuum::NewtonIteration &iteration : solver.last_report().iterations)
       {
         n_newton += iteration.iteration > 0 ? 1 : 0;
@@ -368,7 +379,7 @@ output::Results move(const input::Case &input, const bridge::ContinuumModel &mod
   run.info().add("divided_steps", static_cast<std::uint64_t>(solver.n_divided_steps()));
   run.info().add("newton_iterations", n_newton);
   run.info().add("linear_iterations", n_linear);
-  return motion_results(solver, settings.time_step);
+  return motion_results(solver, record.ledger(), settings.time_step);
 }
 
 // Reports a step that makes too many of them, or is longer than a relaxation time.

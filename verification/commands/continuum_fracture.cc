@@ -23,11 +23,6 @@ namespace latcon::commands
 namespace
 {
 
-// Largest remainder of the ledger with which a run holds, over the initial energy. Damage follows the displacement at
-// the ends of steps, so that the remainder is of first order in the step. Chosen, not derived: the runs of
-// docs/continuum-crack.md have 6e-3 at most, at the automatic step.
-constexpr double allowed_imbalance = 1e-2;
-
 // Energy of the sheet, over the one supplied, at which a run has blown up, as on the lattice.
 constexpr double blown_up = 2.;
 
@@ -255,8 +250,10 @@ support::ExitCode run_continuum_fracture(const input::Options &options)
   const CrackMeasurement measurement = crack.record().measure();
   if (run.is_root())
     crack.record().write_measurement(run.directory(), measurement, options.skip_verification);
-  results.add(
-    measured_results(input, measurement, Side::continuum, crack.record().largest_imbalance(), allowed_imbalance));
+  results.add(measured_results(
+    input, measurement, Side::continuum, crack.record().imbalance(),
+    output::allowed_imbalance_of_damage(crack.record().mean_speed() * sheet.automatic_step / sheet.law.length,
+                                        measurement.is_measured())));
   return end_crack(input, options, run, results, measurement);
 }
 

@@ -56,7 +56,7 @@ output::Results measured_results(const input::Case &input, const analysis::Crack
   add("laboratory crack speed", "m/s", crack.speed_laboratory, {});
   add("wavelength, undeformed", "m", crack.wavelength, input.reference_wavelength);
   add("amplitude, undeformed", "m", crack.amplitude, input.reference_amplitude);
-  output::Result energies{"fracture", "energy imbalance over energy given", "1", {}, {}, {}, imbalance, allowed};
+  output::Result energies{"fracture", "energy imbalance over energy exchanged", "1", {}, {}, {}, imbalance, allowed};
   (side == Side::lattice ? energies.lattice : energies.continuum) = imbalance;
   results.add(energies);
   return results;

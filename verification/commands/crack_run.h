@@ -19,7 +19,7 @@ enum class Side
 };
 
 /// Returns the rows `fracture` of a crack: its measured quantities beside the published ones, and its energies.
-/// @param imbalance largest |imbalance| of the energies over the energy given [-] @param allowed with which it holds
+/// @param imbalance output::LedgerCheck::imbalance() [-] @param allowed with which it holds
 output::Results measured_results(const input::Case &input, const analysis::CrackMeasurement &crack, Side side,
                                  double imbalance, double allowed);
 

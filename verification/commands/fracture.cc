@@ -29,13 +29,6 @@ lattice::EndLoads::End end_load(input::Case::End end)
   }
 }
 
-// Largest imbalance of the energy ledger with which a run holds, over the energy supplied. Powers are evaluated at the
-// ends of steps: long steps miss waves emitted by breaking bonds.
-double allowed_imbalance(const input::Case &input)
-{
-  return input.integrator == input::Case::Integrator::velocity_verlet ? 1e-4 : 1e-3;
-}
-
 std::string progress_text(const lattice::Simulation &simulation, const output::CrackRecord &record)
 {
   std::ostringstream text;
@@ -101,7 +94,8 @@ Crack run_crack(const input::Case &input, const lattice::TriangularLattice &shee
   record.write_measurement(run.directory(), crack, seed_tip, *input.breaking_stretch, skip_verification);
   if (run.is_root())
     near_tip.write(run.directory(), crack);
-  return {crack, measured_results(input, crack, Side::lattice, record.largest_imbalance(), allowed_imbalance(input))};
+  return {crack, measured_results(input, crack, Side::lattice, record.imbalance(),
+                                  output::allowed_imbalance_of_crack(input.integrator, crack.is_measured()))};
 }
 
 } // namespace

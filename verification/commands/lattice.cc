@@ -66,13 +66,13 @@ output::Results moved(const input::Case &input, const lattice::RowPartition &ban
   results.add({"lattice", "elastic energy per thickness", "J/m", energies.elastic, {}, {}, {}, {}});
   results.add({"lattice", "kinetic energy per thickness", "J/m", energies.kinetic, {}, {}, {}, {}});
   results.add({"lattice",
-               "energy imbalance over initial energy",
+               "energy imbalance over energy exchanged",
                "1",
-               motion.record().largest_imbalance(),
+               motion.record().imbalance(),
                {},
                {},
-               motion.record().largest_imbalance(),
-               1e-4});
+               motion.record().imbalance(),
+               output::allowed_imbalance_of_motion});
   return results;
 }
 

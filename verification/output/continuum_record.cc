@@ -74,6 +74,12 @@ void ContinuumRecord::motion(const continuum::DynamicSolver &solver)
     branch_energies_.insert(branch_energies_.end(), {branch.stored, branch.dissipated});
 }
 
+void ContinuumRecord::check(const continuum::DynamicSolver &solver)
+{
+  const continuum::EnergyLedger &e = solver.ledger();
+  ledger_.add({solver.time(), e.stored, e.kinetic, e.dissipated, 0., 0., e.work, e.imbalance});
+}
+
 double ContinuumRecord::last_time() const
 {
   return motion_.empty() ? -std::numeric_limits<double>::infinity() : motion_.back().time;

@@ -6,6 +6,7 @@
 
 #include "continuum/dynamic_solver.h"
 #include "continuum/static_solver.h"
+#include "verification/output/energy_ledger.h"
 
 namespace latcon::output
 {
@@ -30,6 +31,10 @@ public:
   /// Records a state of a motion, unless it was recorded already.
   void motion(const continuum::DynamicSolver &solver);
 
+  /// Checks the energy ledger of a motion at its start or after a step.
+  void check(const continuum::DynamicSolver &solver);
+  const LedgerCheck &ledger() const { return ledger_; }
+
   /// Returns the largest |reaction of an edge| on the last recorded mesh [N/m]; 0 without a mesh.
   double largest_reaction() const;
   /// Returns its relative change from the previous mesh [-]; infinity without one.
@@ -46,6 +51,7 @@ public:
     archive.records("motion", motion_);
     if (!branches_.empty())
       archive("branch_energies", branch_energies_);
+    archive("ledger", ledger_);
     if constexpr (Archive::loads)
       check_loaded();
   }
@@ -88,6 +94,7 @@ private:
   std::vector<MeshRow> meshes_;
   std::vector<std::pair<std::size_t, continuum::NewtonIteration>> iterations_; // with the index of the mesh, from 0
   std::vector<MotionRow> motion_;
+  LedgerCheck ledger_;
   std::vector<std::string> branches_;
   std::vector<double> branch_energies_; // stored and dissipated, per branch and state of the motion [J/m]
 };

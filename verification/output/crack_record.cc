@@ -10,7 +10,6 @@
 #include "lattice/archive_rows.h"
 #include "support/errors.h"
 #include "support/full_precision.h"
-#include "support/largest_error.h"
 #include "verification/analysis/fragments.h"
 #include "verification/output/crack_json.h"
 #include "verification/output/mechanism_names.h"
@@ -172,16 +171,12 @@ void CrackRecord::check_loaded() const
   }
 }
 
-double CrackRecord::largest_imbalance() const
+double CrackRecord::imbalance() const
 {
-  support::LargestError largest;
-  for (const EnergyRow &row : energies_)
-  {
-    const double imbalance = std::abs(row.balance.imbalance());
-    // A sheet at rest has no energy and no imbalance: avoid 0/0.
-    largest.add(imbalance == 0. ? 0. : imbalance / (row.balance.initial + std::abs(row.balance.boundary_work)));
-  }
-  return largest.error();
+  LedgerCheck check;
+  for (const auto &[time, e] : energies_)
+    check.add({time, e.elastic, e.kinetic, e.viscous, e.broken, 0., e.boundary_work, e.imbalance()});
+  return check.imbalance();
 }
 
 analysis::CrackMeasurement CrackRecord::measure(double seed_tip_X) const
@@ -272,7 +267,7 @@ void CrackRecord::write_measurement(const std::filesystem::path &directory,
   }
   json["bridged_length"] = analysis::bridged_length(state, simulation_.lattice(), seed_tip_X, tip_X());
   json["end_time"] = state.time;
-  json["energy_imbalance"] = largest_imbalance();
+  json["energy_imbalance"] = imbalance();
   json["skip_verification"] = skip_verification;
   json["units"] = "speeds m/s, lengths m in the undeformed sheet, time s; uncertainties are one standard deviation";
   write_file(directory / "crack.json", json.dump(2) + "\n");

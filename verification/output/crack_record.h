@@ -5,6 +5,7 @@
 
 #include "lattice/simulation.h"
 #include "verification/analysis/crack_measurement.h"
+#include "verification/output/energy_ledger.h"
 
 namespace latcon::output
 {
@@ -36,9 +37,8 @@ public:
   double tip_X() const { return tip_.empty() ? 0. : tip_.back().X; }
   /// Returns the Lagrangian speed over the last few spacings [m/s]; 0 if it is not yet known.
   double speed() const { return speeds_.empty() ? 0. : speeds_.back(); }
-  /// Returns the largest |imbalance| of the recorded energies, relative to initial energy plus work of the edges [-];
-  /// NaN if an energy is not finite or none is recorded.
-  double largest_imbalance() const;
+  /// Returns the imbalance of the recorded energies, see LedgerCheck::imbalance().
+  double imbalance() const;
 
   analysis::CrackMeasurement measure(double seed_tip_X) const;
 

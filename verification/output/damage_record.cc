@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "lattice/archive_rows.h"
-#include "support/largest_error.h"
 #include "verification/output/crack_json.h"
 #include "verification/output/csv.h"
 #include "verification/output/output_file.h"
@@ -16,18 +15,13 @@ namespace
 
 // The tip advances by cells, so its speed is meaningful only over several of them.
 constexpr double speed_baseline = 6.; // in spacings
-constexpr double not_passed = -1., in_seed = -2.;
 
 } // namespace
 
 DamageRecord::DamageRecord(const input::Case &input, const continuum::DamageMotion &motion, const double seed_tip)
   : input_(input), motion_(motion), seed_tip_(seed_tip),
-    column_(static_cast<std::size_t>(std::floor(seed_tip / motion.grid().size_x))),
-    passed_(motion.grid().n_nodes(), not_passed)
+    column_(static_cast<std::size_t>(std::floor(seed_tip / motion.grid().size_x)))
 {
-  for (std::size_t a = 0; a < passed_.size(); ++a)
-    if (motion.damage().nodal()[a] >= analysis::contour_level)
-      passed_[a] = in_seed;
 }
 
 analysis::DamageImage DamageRecord::image() const
@@ -38,10 +32,6 @@ analysis::DamageImage DamageRecord::image() const
 
 void DamageRecord::step()
 {
-  const std::vector<double> &damage = motion_.damage().nodal();
-  for (std::size_t a = 0; a < passed_.size(); ++a)
-    if (passed_[a] == not_passed && damage[a] >= analysis::contour_level)
-      passed_[a] = motion_.time();
   const std::optional<analysis::ContourTip> tip = analysis::contour_tip(image(), column_);
   if (!tip || (!tip_.empty() && tip->column == column_))
     return;
@@ -77,30 +67,34 @@ void DamageRecord::energies()
     energies_.push_back({motion_.time(), motion_.ledger()});
 }
 
-double DamageRecord::largest_imbalance() const
+double DamageRecord::mean_speed() const
 {
-  support::LargestError largest;
-  for (const EnergyRow &row : energies_)
-    largest.add(std::abs(row.ledger.imbalance) / (energies_.front().ledger.elastic + energies_.front().ledger.gradient +
-                                                  energies_.front().ledger.kinetic));
-  return largest.error();
+  return motion_.time() > 0. && !tip_.empty() ? (tip_.back().X - tip_.front().X) / motion_.time() : 0.;
+}
+
+double DamageRecord::imbalance() const
+{
+  LedgerCheck check;
+  for (const auto &[time, e] : energies_)
+    check.add({time, e.elastic + e.gradient, e.kinetic, e.viscous, e.fracture, e.shed, 0., e.imbalance});
+  return check.imbalance();
 }
 
 analysis::CrackMeasurement DamageRecord::measure() const
 {
-  std::vector<analysis::BreakRecord> breaks;
-  for (std::size_t a = 0; a < passed_.size(); ++a)
-    if (passed_[a] >= 0.)
-    {
-      const dealii::Point<2> X = motion_.grid().position(a);
-      breaks.push_back({passed_[a], X[0], X[1]});
-    }
+  const std::vector<analysis::ContourColumn> columns = analysis::contour(image(), seed_tip_);
   analysis::CrackMeasurementOptions options;
   options.strip_length = input_.length;
   options.lattice_spacing = input_.spacing;
   options.end_time = motion_.time();
   options.seed_tip_X = seed_tip_;
-  return analysis::measure_crack(tip_, breaks, options);
+  // At most that of a tip on nodes; the contour is interpolated between them.
+  options.position_error *= motion_.grid().size_y / input_.spacing;
+  return analysis::measure_path(
+    tip_,
+    [&](double X_begin, double X_end)
+    { return analysis::branched_fraction(columns, X_begin, X_end, input_.spacing, options.branch_rule); },
+    options);
 }
 
 void DamageRecord::write_tables(const std::filesystem::path &directory) const
@@ -148,7 +142,7 @@ void DamageRecord::write_measurement(const std::filesystem::path &directory,
   put("width", &analysis::ContourMeasurement::width);
   json["side"] = "continuum";
   json["end_time"] = motion_.time();
-  json["energy_imbalance"] = largest_imbalance();
+  json["energy_imbalance"] = imbalance();
   json["skip_verification"] = skip_verification;
   json["units"] = "speeds m/s, lengths m in the undeformed sheet, time s; uncertainties are one standard deviation";
   write_file(directory / "crack.json", json.dump(2) + "\n");
@@ -158,13 +152,9 @@ void DamageRecord::check_loaded() const
 {
   using lattice::require_archived;
   const double now = motion_.time();
-  require_archived(passed_.size() == motion_.grid().n_nodes(), "`passed` is of a sheet of another size");
   require_archived(column_ < motion_.grid().columns(), "`column` is outside the sheet");
   require_archived(speeds_.size() == tip_.size(), "the numbers of `speeds` and records of the tip do not match");
   require_archived(!energies_.empty(), "`energies` is empty");
-  for (const double time : passed_)
-    require_archived(time == not_passed || time == in_seed || (time >= 0. && time <= now),
-                     "`passed` has times after the present");
   double before = 0.;
   for (const analysis::TipRecord &tip : tip_)
   {

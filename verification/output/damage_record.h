@@ -6,11 +6,12 @@
 #include "continuum/damage/damage_motion.h"
 #include "verification/analysis/damage_contour.h"
 #include "verification/input/case.h"
+#include "verification/output/energy_ledger.h"
 
 namespace latcon::output
 {
 
-/// Record of a crack of the continuum: positions of its tip, nodes that it passed, energies over time. Its edge is the
+/// Record of a crack of the continuum: positions of its tip, energies over time. Its edge is the
 /// contour of damage 0.5. Units and configuration as in analysis::TipRecord.
 class DamageRecord
 {
@@ -19,7 +20,7 @@ public:
   /// @param seed_tip reference X of the right end of the seed [m]
   DamageRecord(const input::Case &input, const continuum::DamageMotion &motion, double seed_tip);
 
-  /// Records the tip and the nodes that are damaged, after a step or before the first.
+  /// Records the tip, after a step or before the first.
   void step();
 
   /// Records the energies.
@@ -31,8 +32,11 @@ public:
     return speeds_.empty() ? 0. : speeds_.back();
   } ///< over the last few spacings [m/s]; 0: unknown
 
-  /// Returns the largest |imbalance| recorded over the initial energy [-]; NaN if none is recorded.
-  double largest_imbalance() const;
+  /// Returns the mean Lagrangian speed of the tip since the start [m/s]; 0 before the first step.
+  double mean_speed() const;
+
+  /// Returns the imbalance of the recorded energies, see LedgerCheck::imbalance().
+  double imbalance() const;
 
   analysis::CrackMeasurement measure() const;
 
@@ -51,7 +55,6 @@ public:
     archive("column", column_);
     archive.records("tip", tip_);
     archive("speeds", speeds_);
-    archive("passed", passed_);
     archive.records("energies", energies_);
     if constexpr (Archive::loads)
       check_loaded();
@@ -80,7 +83,6 @@ private:
   std::size_t column_; // of nodes, that the tip has reached
   std::vector<analysis::TipRecord> tip_;
   std::vector<double> speeds_; // per tip record [m/s]
-  std::vector<double> passed_; // time at which the crack passed each node [s]; negative: not yet, or part of the seed
   std::vector<EnergyRow> energies_;
 };
 

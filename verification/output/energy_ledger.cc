@@ -1,0 +1,76 @@
+#include "verification/output/energy_ledger.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "support/largest_error.h"
+
+namespace latcon::output
+{
+namespace
+{
+
+// Of the energies of the sheet: sums of some 1e6 terms, over some 1e6 steps.
+constexpr double round_off = 1e-12;
+
+} // namespace
+
+void LedgerCheck::add(const LedgerState &state)
+{
+  if (n_states_++ == 0)
+    first_ = last_ = state;
+  largest_imbalance_ = support::largest_of({largest_imbalance_, std::abs(state.imbalance)});
+  largest_energy_ = support::largest_of({largest_energy_, state.stored + state.kinetic});
+  largest_work_ = support::largest_of({largest_work_, std::abs(state.work)});
+  largest_conversion_ = support::largest_of({largest_conversion_, std::abs(state.kinetic - first_.kinetic)});
+  if (state.time > last_.time)
+  {
+    const double change = std::abs(state.kinetic - last_.kinetic) + std::abs(state.work - last_.work) + state.viscous -
+                          last_.viscous + state.broken - last_.broken + state.shed - last_.shed;
+    largest_power_ = support::largest_of({largest_power_, change / (state.time - last_.time)});
+  }
+  last_ = state;
+}
+
+double LedgerCheck::exchanged() const
+{
+  const double broken = last_.broken - first_.broken, spent = broken + last_.viscous + last_.shed;
+  return broken > 0. ? spent : spent + largest_work_ + largest_conversion_;
+}
+
+double LedgerCheck::imbalance() const
+{
+  if (n_states_ == 0)
+    return std::numeric_limits<double>::quiet_NaN();
+  if (largest_imbalance_ <= round_off * largest_energy_)
+    return 0.;
+  return largest_imbalance_ / exchanged();
+}
+
+double LedgerCheck::rate() const
+{
+  return largest_power_ > 0. ? largest_power_ / exchanged() : 0.;
+}
+
+double allowed_imbalance_of_crack(input::Case::Integrator integrator, bool is_measured)
+{
+  const bool is_verlet = integrator == input::Case::Integrator::velocity_verlet;
+  if (!is_measured)
+    return is_verlet ? allowed_imbalance_of_motion : allowed_imbalance_of_recoil;
+  return is_verlet ? 2e-4 : 5e-3;
+}
+
+double allowed_imbalance_of_damage(double advance, bool is_measured)
+{
+  if (!is_measured)
+    return allowed_imbalance_of_recoil;
+  return 3. * support::largest_of({1.7e-3, 0.04 * advance});
+}
+
+double allowed_imbalance_of_implicit_motion(double rate, double step)
+{
+  return std::clamp(std::pow(rate * step, 2) / 4., 1e-6, allowed_imbalance_of_motion);
+}
+
+} // namespace latcon::output

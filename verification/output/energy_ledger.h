@@ -1,0 +1,99 @@
+#pragma once
+
+#include <cstddef>
+
+#include "verification/input/case.h"
+
+namespace latcon::output
+{
+
+/// State of the energy ledger of a motion of either side, per unit thickness [J/m].
+struct LedgerState
+{
+  double time;      ///< [s]
+  double stored;    ///< elastic energy, that of strain gradients and of Maxwell branches included
+  double kinetic;   ///< that of micro-inertia included
+  double viscous;   ///< dissipated since the start, by Maxwell branches too
+  double broken;    ///< spent on breaking, since the start or with the seed
+  double shed;      ///< kinetic energy that broken material took with it
+  double work;      ///< done on the sheet since the start
+  double imbalance; ///< error of the sum of all energies
+
+  /// Saves or loads the state, for checkpoints.
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive("time", time);
+    archive("stored", stored);
+    archive("kinetic", kinetic);
+    archive("viscous", viscous);
+    archive("broken", broken);
+    archive("shed", shed);
+    archive("work", work);
+    archive("imbalance", imbalance);
+  }
+};
+
+/// Imbalance of the energy ledger of a motion over the energy that the motion exchanged (theory.md, eq. (L.38)).
+class LedgerCheck
+{
+public:
+  /// Adds a state; times must increase. The first state is that of the start, with the seed cut.
+  void add(const LedgerState &state);
+
+  /// Returns the energy exchanged since the start [J/m]: spent by the crack or, while nothing broke, dissipated,
+  /// supplied and converted.
+  double exchanged() const;
+
+  /// Returns the largest |imbalance| over exchanged() [-]; 0 where it is round-off of the energies of the sheet, NaN
+  /// without a state or with one that is not finite.
+  double imbalance() const;
+
+  /// Returns the largest power between two states over exchanged() [1/s], the angular frequency of an oscillation; 0
+  /// where nothing was exchanged.
+  double rate() const;
+
+  /// Saves or loads the states added so far, for checkpoints.
+  template <class Archive>
+  void archive(Archive &archive)
+  {
+    archive("n_states", n_states_);
+    archive("first", first_);
+    archive("last", last_);
+    archive("largest_imbalance", largest_imbalance_);
+    archive("largest_energy", largest_energy_);
+    archive("largest_work", largest_work_);
+    archive("largest_conversion", largest_conversion_);
+    archive("largest_power", largest_power_);
+  }
+
+private:
+  std::size_t n_states_ = 0;
+  LedgerState first_{}, last_{};
+  double largest_imbalance_ = 0., largest_energy_ = 0., largest_work_ = 0., largest_conversion_ = 0.; // [J/m]
+  double largest_power_ = 0.;                                                                         // [W/m]
+};
+
+// Largest LedgerCheck::imbalance() with which a motion holds: multiples of the imbalances that shipped cases have at
+// the automatic step (docs/verification.md, "Energy ledger"). A longer step does not raise them.
+
+/// Tolerance of a motion without a crack [-].
+inline constexpr double allowed_imbalance_of_motion = 1e-2;
+
+/// Tolerance of a crack that has not left its seed [-], in steps that do not resolve the recoil of the seed: those of
+/// Runge-Kutta-Chebyshev and of the continuum.
+inline constexpr double allowed_imbalance_of_recoil = 0.25;
+
+/// Tolerance of a crack of the lattice [-]. @param is_measured true if the crack has left its seed
+double allowed_imbalance_of_crack(input::Case::Integrator integrator, bool is_measured);
+
+/// Tolerance of a crack of the continuum [-], theory-damage.md, eq. (C.83).
+/// @param advance of the tip in an automatic step, over the length xi of the damage [-]
+/// @param is_measured true if the crack has left its seed
+double allowed_imbalance_of_damage(double advance, bool is_measured);
+
+/// Tolerance of an implicit motion without a crack [-], at most the one above (theory.md, eq. (L.39)).
+/// @param rate LedgerCheck::rate() [1/s] @param step [s]
+double allowed_imbalance_of_implicit_motion(double rate, double step);
+
+} // namespace latcon::output
