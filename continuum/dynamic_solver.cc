@@ -491,6 +491,17 @@ void DynamicSolver::run_until(const double end, const Observer &observer)
   }
 }
 
+std::vector<Tensor<2, 2>> DynamicSolver::rate_stresses() const
+{
+  std::vector<Tensor<2, 2>> stresses;
+  if (viscosity_ == nullptr && memory_ == nullptr)
+    return stresses;
+  stresses.resize(sheet_.mesh().n_locally_owned_active_cells() * QGauss<2>(sheet_.degree() + 1).size());
+  viscous_forces_.add_stresses(displacement_, velocity_, stresses);
+  memory_forces_.add_stresses(displacement_, stresses);
+  return stresses;
+}
+
 std::vector<PointState> DynamicSolver::evaluate(const std::vector<Point<2>> &points) const
 {
   return sheet_.evaluate(displacement_, points);

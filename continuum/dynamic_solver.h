@@ -175,6 +175,10 @@ public:
   /// at free ones [N/m], per unit reference thickness.
   Vector reactions() const;
 
+  /// Returns the first Piola stresses [Pa] of viscosity and Maxwell branches at the points of the elastic energy, (p +
+  /// 1)^2 Gauss points per cell, the cells on this rank in their order; empty without either.
+  std::vector<dealii::Tensor<2, 2>> rate_stresses() const;
+
   /// Returns the states at reference points [m] without the stresses of viscosity and Maxwell branches; see
   /// Sheet::evaluate.
   std::vector<PointState> evaluate(const std::vector<dealii::Point<2>> &points) const;

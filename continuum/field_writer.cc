@@ -6,6 +6,9 @@
 #include "support/pvd.h"
 
 #include <deal.II/base/mpi.h>
+#include <deal.II/base/quadrature_lib.h>
+#include <deal.II/dofs/dof_tools.h>
+#include <deal.II/fe/fe_dgq.h>
 #include <deal.II/numerics/data_out.h>
 #include <deal.II/numerics/data_postprocessor.h>
 
@@ -15,6 +18,7 @@
 #include <filesystem>
 #include <iomanip>
 #include <limits>
+#include <optional>
 #include <sstream>
 #include <string_view>
 
@@ -24,7 +28,8 @@ namespace latcon::continuum
 {
 namespace
 {
-// Computes the fields that are functions of the derivatives of displacement.
+// Computes the fields that are functions of the derivatives of displacement. Four further components, if there are,
+// are a stress P_iJ that adds to that of the laws.
 class LocalFields : public DataPostprocessor<2>
 {
 public:
@@ -43,7 +48,11 @@ public:
           F[i][J] = (i == J ? 1. : 0.) + inputs.solution_gradients[p][i][J];
         G[i] = inputs.solution_hessians[p][i];
       }
-      const Tensor<2, 2> P = laws_.first_piola_stress(F, G);
+      Tensor<2, 2> P = laws_.first_piola_stress(F, G);
+      if (inputs.solution_values[p].size() > 2)
+        for (unsigned int i = 0; i < 2; ++i)
+          for (unsigned int J = 0; J < 2; ++J)
+            P[i][J] += inputs.solution_values[p](2 + 2 * i + J);
       const Tensor<2, 2> sigma = cauchy_stress(P, F);
       for (unsigned int i = 0; i < 2; ++i)
         for (unsigned int J = 0; J < 2; ++J)
@@ -85,10 +94,53 @@ public:
     return kinds;
   }
 
-  UpdateFlags get_needed_update_flags() const override { return update_gradients | update_hessians; }
+  UpdateFlags get_needed_update_flags() const override { return update_values | update_gradients | update_hessians; }
 
 private:
   const Constitution &laws_;
+};
+
+// Displacement u of a sheet, and a stress that is the polynomial through its values at the Gauss points of a cell.
+class StressedSheet
+{
+public:
+  StressedSheet(const Sheet &sheet, const Sheet::Vector &u, const std::vector<Tensor<2, 2>> &stresses)
+    : element_(sheet.element(), 1, FE_DGQArbitraryNodes<2>(QGauss<1>(sheet.degree() + 1)), 4), dofs_(sheet.mesh())
+  {
+    dofs_.distribute_dofs(element_);
+    IndexSet relevant;
+    DoFTools::extract_locally_relevant_dofs(dofs_, relevant);
+    Sheet::Vector values(dofs_.locally_owned_dofs(), sheet.communicator());
+    const unsigned int n_points = element_.base_element(1).n_dofs_per_cell();
+    const unsigned int n_displacements = sheet.element().n_dofs_per_cell();
+    std::vector<types::global_dof_index> of_sheet(n_displacements), own(element_.n_dofs_per_cell());
+    std::size_t point = 0;
+    for (const auto &cell : dofs_.active_cell_iterators())
+      if (cell->is_locally_owned())
+      {
+        typename DoFHandler<2>::active_cell_iterator(&sheet.mesh(), cell->level(), cell->index(), &sheet.dof_handler())
+          ->get_dof_indices(of_sheet);
+        cell->get_dof_indices(own);
+        for (unsigned int a = 0; a < own.size(); ++a)
+        {
+          const auto [base, index] = element_.system_to_base_index(a);
+          const unsigned int component = base.second; // of the stress
+          values(own[a]) = base.first == 0 ? u(of_sheet[index]) : stresses[point + index][component / 2][component % 2];
+        }
+        point += n_points;
+      }
+    values.compress(VectorOperation::insert);
+    values_.reinit(dofs_.locally_owned_dofs(), relevant, sheet.communicator());
+    values_ = values;
+  }
+
+  const DoFHandler<2> &dofs() const { return dofs_; }
+  const Sheet::Vector &values() const { return values_; }
+
+private:
+  FESystem<2> element_;
+  DoFHandler<2> dofs_;
+  Sheet::Vector values_;
 };
 
 template <class Write>
@@ -161,7 +213,18 @@ FieldWriter::FieldWriter(const MPI_Comm communicator, std::filesystem::path dire
                    });
 }
 
-void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::Vector &u, const Sheet::Vector *v)
+void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::Vector &u)
+{
+  add_frame(time, sheet, u, nullptr, {});
+}
+
+void FieldWriter::add_frame(const DynamicSolver &solver)
+{
+  add_frame(solver.time(), solver.sheet(), solver.displacement(), &solver.velocity(), solver.rate_stresses());
+}
+
+void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::Vector &u, const Sheet::Vector *v,
+                            const std::vector<Tensor<2, 2>> &rate_stresses)
 {
   if (!(time > last_time()))
     throw InvalidInput("the time of a frame must be larger than that of the previous frame");
@@ -193,7 +256,14 @@ void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::
   output.add_data_vector(sheet.dof_handler(), u, names, vector); // communicates, so outside the deferred work
   if (v != nullptr)
     output.add_data_vector(sheet.dof_handler(), *v, std::vector<std::string>(2, "velocity"), vector);
-  output.add_data_vector(sheet.dof_handler(), u, local_fields);
+  std::optional<StressedSheet> stressed;
+  if (rate_stresses.empty())
+    output.add_data_vector(sheet.dof_handler(), u, local_fields);
+  else
+  {
+    stressed.emplace(sheet, u, rate_stresses);
+    output.add_data_vector(stressed->dofs(), stressed->values(), local_fields);
+  }
   run_collectively(communicator_,
                    [&]
                    {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "continuum/dynamic_solver.h"
 #include "continuum/sheet.h"
 
 #include <filesystem>
@@ -13,8 +14,8 @@ namespace latcon::continuum
 /// `deformation_gradient` [-], `first_piola_stress` [Pa], `cauchy_stress` [Pa] (per reference thickness, see
 /// continuum::cauchy_stress), `strain_energy_density` [J/m^3], `strain_gradient_x`, `strain_gradient_y` (G_iJK [1/m] as
 /// tensors in J and K for i = x and i = y), `double_stress_x`, `double_stress_y` (Q_iJK [Pa m] likewise), and in
-/// dynamics `velocity` [m/s]. Tensors have nine components in row-major order (current index first). Cells are Lagrange
-/// cells of the degree of the elements.
+/// dynamics `velocity` [m/s]. Stresses in dynamics include those of viscosity and Maxwell branches. Tensors have nine
+/// components in row-major order (current index first). Cells are Lagrange cells of the degree of the elements.
 ///
 /// Every file is replaced atomically, pieces before the files that refer to them, so that the series is readable at any
 /// moment. Times are written with 17 significant digits.
@@ -25,11 +26,13 @@ public:
   /// Throws OutputFailed on every rank.
   FieldWriter(MPI_Comm communicator, std::filesystem::path directory, std::string name = "continuum");
 
-  /// Writes a frame with the state `u` (nodal displacement [m], with ghost entries) and, if given, the velocity `v`
-  /// [m/s]. `time` is the load factor [-] in statics and the time [s] in dynamics, and must increase from frame to
-  /// frame. Collective. Throws on every rank: OutputFailed, NonPhysicalState as the law does, InvalidInput if the time
-  /// does not increase.
-  void add_frame(double time, const Sheet &sheet, const Sheet::Vector &u, const Sheet::Vector *v = nullptr);
+  /// Writes a frame with the state `u` (nodal displacement [m], with ghost entries) at the load factor `time` [-]. It
+  /// must increase from frame to frame. Collective. Throws on every rank: OutputFailed, NonPhysicalState as the law
+  /// does, InvalidInput if the time does not increase.
+  void add_frame(double time, const Sheet &sheet, const Sheet::Vector &u);
+
+  /// Writes a frame with the present state of a motion, at its time [s]. Otherwise as above.
+  void add_frame(const DynamicSolver &solver);
 
   /// Saves the list of frames to an archive, or loads it so that later frames are appended. Throws InvalidInput if the
   /// loaded times do not increase.
@@ -68,6 +71,8 @@ private:
   };
 
   void check_loaded() const;
+  void add_frame(double time, const Sheet &sheet, const Sheet::Vector &u, const Sheet::Vector *v,
+                 const std::vector<dealii::Tensor<2, 2>> &rate_stresses);
   std::string file_of(std::size_t frame) const;
 
   MPI_Comm communicator_;

@@ -151,6 +151,26 @@ void MemoryForces::add_forces(const double duration, const Vector &u, Vector &fo
   guarded.rethrow_collectively(sheet_.communicator());
 }
 
+void MemoryForces::add_stresses(const Vector &u, std::vector<Tensor<2, 2>> &stresses) const
+{
+  if (law_ == nullptr)
+    return;
+  run_collectively(sheet_.communicator(),
+                   [&]
+                   {
+                     for_each_cell(sheet_, u,
+                                   [&](const auto &points, const auto &F)
+                                   {
+                                     for (unsigned int q = 0; q < F.size(); ++q)
+                                     {
+                                       const std::size_t point = points.cell * F.size() + q;
+                                       stresses[point] +=
+                                         law_->stress(F[q], &history_.overstress[point * law_->n_variables()]);
+                                     }
+                                   });
+                   });
+}
+
 void MemoryForces::add_tangent(const double duration, const Vector &u, const AffineConstraints<double> &constraints,
                                Sheet::Matrix &matrix) const
 {

@@ -49,6 +49,10 @@ public:
   /// Adds the nodal forces [N/m] to `forces` and, if given, the absolute values of their terms to `magnitude`.
   void add_forces(double duration, const Vector &u, Vector &forces, Vector *magnitude) const;
 
+  /// Adds the first Piola stresses [Pa] of the present history, that of the last update at u, at the points of the
+  /// elastic energy, the cells on this rank in their order.
+  void add_stresses(const Vector &u, std::vector<dealii::Tensor<2, 2>> &stresses) const;
+
   /// Adds the derivative of these forces by u [N/m^2] to `matrix`, condensed by `constraints`.
   void add_tangent(double duration, const Vector &u, const dealii::AffineConstraints<double> &constraints,
                    Sheet::Matrix &matrix) const;

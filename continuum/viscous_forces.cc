@@ -79,6 +79,22 @@ void ViscousForces::add_tangent(const Vector &u, const Vector &v, const double r
   guarded.rethrow_collectively(sheet_.communicator());
 }
 
+void ViscousForces::add_stresses(const Vector &u, const Vector &v, std::vector<Tensor<2, 2>> &stresses) const
+{
+  if (viscosity_ == nullptr)
+    return;
+  run_collectively(sheet_.communicator(),
+                   [&]
+                   {
+                     for_each_cell(sheet_, u, v,
+                                   [&](const auto &points, const auto &F, const auto &Fdot)
+                                   {
+                                     for (unsigned int q = 0; q < F.size(); ++q)
+                                       stresses[points.cell * F.size() + q] += viscosity_->stress(F[q], Fdot[q]);
+                                   });
+                   });
+}
+
 double ViscousForces::dissipation(const Vector &u, const Vector &v) const
 {
   if (viscosity_ == nullptr)

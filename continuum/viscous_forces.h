@@ -3,6 +3,8 @@
 #include "continuum/sheet.h"
 #include "continuum/viscosity.h"
 
+#include <vector>
+
 namespace latcon::continuum
 {
 /// Nodal forces of a viscous law, C_a = integral of P_v(F, Fdot) : Grad phi_a dX (theory-continuum.md, eq. (C.40)). The
@@ -23,6 +25,9 @@ public:
   /// Adds dC/du [N/m^2] to `matrix`, condensed by `constraints`, with dv/du = `rate_by_displacement` [1/s].
   void add_tangent(const Vector &u, const Vector &v, double rate_by_displacement,
                    const dealii::AffineConstraints<double> &constraints, Sheet::Matrix &matrix) const;
+
+  /// Adds the first Piola stresses P_v [Pa] at the points of the elastic energy, the cells on this rank in their order.
+  void add_stresses(const Vector &u, const Vector &v, std::vector<dealii::Tensor<2, 2>> &stresses) const;
 
   /// Returns the dissipated power [W/m] per unit reference thickness, the integral of P_v : Fdot.
   double dissipation(const Vector &u, const Vector &v) const;

@@ -2,8 +2,9 @@
 """Reads a series of the continuum with VTK and compares it with a homogeneous deformation computed here.
 
 Usage: check_fields.py SERIES.pvd N_FRAMES N_CELLS
+       check_fields.py SERIES.pvd motion
 The sheet is [0, 0.15] x [-0.05, 0.05] m, x = F(t) X with F(t) = I + t (F(1) - I), of the rubber network
-(tests/continuum/sheets.h).
+(tests/continuum/sheets.h). In motion it is x = F(1) X, with viscosity, Maxwell branches and the velocity below.
 """
 import pathlib
 import sys
@@ -32,6 +33,31 @@ def network(F):
     return W, P
 
 
+VISCOSITY, MODULUS = 300.0, 2e5
+
+
+def rates(X):
+    """Velocities (C0 x, C1 x y) [m/s] and their gradients at the points X."""
+    C0, C1 = 40.0, 900.0
+    velocity = numpy.stack([C0 * X[:, 0], C1 * X[:, 0] * X[:, 1]], axis=1)
+    gradient = numpy.zeros((len(X), 2, 2))
+    gradient[:, 0, 0], gradient[:, 1, 0], gradient[:, 1, 1] = C0, C1 * X[:, 1], C1 * X[:, 0]
+    return velocity, gradient
+
+
+def rate_stress(F, rate):
+    """First Piola stress of dashpots and of branches that were relaxed at F = I, per point."""
+    P = numpy.zeros_like(rate)
+    for k in range(6):
+        N = numpy.array([numpy.cos(numpy.pi * k / 6), numpy.sin(numpy.pi * k / 6)])
+        c = S * (1.0 if k % 2 == 0 else numpy.sqrt(3.0))
+        x = F @ N
+        l = numpy.linalg.norm(x)
+        axial = VISCOSITY * numpy.einsum("i,pij,j->p", x / l, rate, N) + MODULUS * (l - 1.0)
+        P += c * axial[:, None, None] * numpy.outer(x / l, N)
+    return P
+
+
 def planar(tensor):
     """In-plane part of nine components, after a check that the rest is empty."""
     full = tensor.reshape(-1, 3, 3)
@@ -44,11 +70,15 @@ def expect(name, found, wanted, scale):
     assert error <= TOLERANCE * scale, f"{name}: off by {error}, scale {scale}"
 
 
-def check(path, time, n_cells):
+def read(path):
     reader = vtkXMLPUnstructuredGridReader() if path.suffix == ".pvtu" else vtkXMLUnstructuredGridReader()
     reader.SetFileName(str(path))
     reader.Update()
-    grid = reader.GetOutput()
+    return reader.GetOutput()
+
+
+def check(path, time, n_cells):
+    grid = read(path)
     assert grid.GetNumberOfCells() == n_cells, f"{path.name} has {grid.GetNumberOfCells()} cells"
     if path.suffix == ".vtu":
         stored = grid.GetFieldData().GetArray("TimeValue")
@@ -76,10 +106,25 @@ def check(path, time, n_cells):
     expect("strain_energy_density", field["strain_energy_density"], W, modulus)
 
 
+def check_motion(path):
+    grid = read(path)
+    field = {name: vtk_to_numpy(grid.GetPointData().GetArray(name)) for name in ("velocity", "first_piola_stress", "cauchy_stress")}
+    X = vtk_to_numpy(grid.GetPoints().GetData())[:, :2]
+    velocity, rate = rates(X)
+    expect("velocity", field["velocity"][:, :2], velocity, numpy.abs(velocity).max())
+    P = network(F_END)[1] + rate_stress(F_END, rate)
+    scale = numpy.abs(P).max()
+    assert numpy.abs(rate_stress(F_END, rate)).max() > 0.1 * scale
+    expect("first_piola_stress", planar(field["first_piola_stress"]), P, scale)
+    expect("cauchy_stress", planar(field["cauchy_stress"]), P @ F_END.T / numpy.linalg.det(F_END), scale)
+
+
 def main():
     series = pathlib.Path(sys.argv[1])
     frames = [(float(entry.get("timestep")), entry.get("file")) for entry in xml.etree.ElementTree.parse(series).iter("DataSet")]
     times = [time for time, _ in frames]
+    if sys.argv[2] == "motion":
+        return check_motion(series.parent / frames[0][1])
     assert len(frames) == int(sys.argv[2]), f"{len(frames)} frames"
     assert times == [0.0, 1.0 / 3.0, 1.0], f"times {times}"
     for time, name in frames:

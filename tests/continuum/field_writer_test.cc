@@ -1,6 +1,7 @@
 // Files of the continuum, read back by VTK in Python; check_fields.py has independent formulas.
 #include "continuum/errors.h"
 #include "continuum/field_writer.h"
+#include "moving_sheets.h"
 #include "sheets.h"
 
 #include <deal.II/base/mpi.h>
@@ -49,6 +50,30 @@ TEST_F(FieldWriter, IsReadByVtkWithNamesTimesAndValues)
   writer.add_frame(0., solver.sheet(), solver.displacement());
   solver.solve([&](const double factor) { writer.add_frame(factor, solver.sheet(), solver.displacement()); });
   const std::string command = std::string(PYTHON) + " " + CHECK_FIELDS + " " + writer.collection().string() + " 3 24";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+}
+
+// Those of the lattice do too. A rate that varies within a cell, so that the order of its points matters.
+TEST_F(FieldWriter, StressesOfAMotionIncludeThoseOfViscosityAndBranches)
+{
+  const continuum::CauchyBorn law = rubber_network();
+  const continuum::FibreViscosity viscosity = moving_sheets::network_viscosity(300.);
+  const continuum::FibreMemory memory = moving_sheets::network_memory(2e5, {1e-3});
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::make_rectangle(mesh, rectangle(3, 2));
+  continuum::DynamicSettings settings{1e-5};
+  continuum::DynamicSolver solver(mesh, continuum::Constitution(law), {}, continuum::Inertia{950.}, settings,
+                                  &viscosity, {}, &memory);
+  const Tensor<2, 2> F = matrix(2.3, 0.25, -0.1, 1.4);
+  const auto u = nodal(solver.sheet(), [F](const Point<2> &X) { return F * Tensor<1, 2>(X) - Tensor<1, 2>(X); });
+  const auto v = nodal(solver.sheet(),
+                       [](const Point<2> &X) {
+                         return Tensor<1, 2>({40. * X[0], 900. * X[0] * X[1]});
+                       });
+  solver.start(u, v, 0., {solver.sheet().make_ghosted()});
+  continuum::FieldWriter writer(MPI_COMM_SELF, directory_);
+  writer.add_frame(solver);
+  const std::string command = std::string(PYTHON) + " " + CHECK_FIELDS + " " + writer.collection().string() + " motion";
   EXPECT_EQ(std::system(command.c_str()), 0);
 }
 

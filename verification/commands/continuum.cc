@@ -299,7 +299,7 @@ output::Results move(const input::Case &input, const bridge::ContinuumModel &mod
   const auto write_frame = [&]
   {
     const auto phase = run.info().stopwatch().phase("output");
-    fields.add_frame(solver.time(), solver.sheet(), solver.displacement(), &solver.velocity());
+    fields.add_frame(solver);
   };
   const auto write_tables = [&]
   {

@@ -191,7 +191,7 @@ TipRun drive_continuum_crack(const CrackDrive &drive, const HalfSheet &half, con
   if (frame)
   {
     continuum::FieldWriter writer(MPI_COMM_SELF, frame->folder, frame->name);
-    writer.add_frame(solver.time(), solver.sheet(), solver.displacement(), &solver.velocity());
+    writer.add_frame(solver);
   }
   const continuum::EnergyLedger &end = solver.ledger();
   const double advance = 0.5 * (drive.n_strides - n_half) * drive.stride(); // of both halves
