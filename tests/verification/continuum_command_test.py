@@ -362,6 +362,21 @@ class Motion(TemporaryFolder):
         np.testing.assert_allclose(energy["micro_inertia"] / energy["kinetic"], inertia / (1. + inertia), rtol=1e-4)
         self.assertGreater(energy["elastic"][-1], 0.3 * total[0])
 
+    def test_step_too_long_for_the_motion_fails_by_its_ledger(self):
+        """A sheet released at both ends; 50 us is the time in which a wave crosses a cell."""
+        for step, code, verdict in ((50, 0, "holds"), (200, 3, "fails")):
+            run = latcon("continuum", CASES / "quick.prm", "--quiet", "--output-dir", self.folder / str(step), *settings(
+                "Continuum/solution=motion", "Left edge/condition=free", "Right edge/condition=free", "Time/end=1 ms",
+                f"Continuum/time step={step} us", "Output/energy interval=1", "Output/frame interval=0"))
+            self.assertEqual(run.returncode, code, run.stderr)
+            row = [row for row in read_csv(self.folder / str(step) / "results.csv")
+                   if row["quantity"] == "energy imbalance over energy exchanged"][0]
+            self.assertEqual(row["verdict"], verdict)
+            energy = numbers(self.folder / str(step) / "energy.csv")
+            exchanged = (energy["viscous"][-1] + abs(energy["boundary_work"]).max()
+                         + abs(energy["kinetic"] - energy["kinetic"][0]).max())
+            self.assertAlmostEqual(float(row["error"]), abs(energy["imbalance"]).max() / exchanged, delta=1e-12)
+
     def test_frequency_is_that_of_the_dispersion_relation(self):
         k = 2. * math.pi / self.LENGTH
         omega = k * math.sqrt(MODULUS / DENSITY * (1. + (self.STATIC * k) ** 2) / (1. + (self.INERTIA * k) ** 2))

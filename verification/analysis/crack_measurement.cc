@@ -200,7 +200,7 @@ CrackMeasurement measure_crack(const std::vector<TipRecord> &tip, const std::vec
     [&](double X_begin, double X_end)
     { return branched_fraction(breaks, X_begin, X_end, options.lattice_spacing, options.branch_rule); },
     options);
-  if (m.is_measured())
+  if (m.X_begin < m.X_end)
     m.flanks = flank_damage(tip, breaks, m.X_begin, m.X_end, options.lattice_spacing);
   return m;
 }

@@ -91,7 +91,6 @@ struct CrackMeasurement
 
   /// Window of the measurements below, reference [m]. Both ends are equal if there is nothing to measure.
   double X_begin = 0., X_end = 0.;
-  bool is_measured() const { return X_begin < X_end; } ///< false for a crack that has not left its seed
 
   std::optional<Measured> speed_lagrangian; ///< dX/dt [m/s]; none if the tip moved fewer than 10 times in the window
   std::optional<Measured> speed_laboratory; ///< dx/dt [m/s]; none as for speed_lagrangian

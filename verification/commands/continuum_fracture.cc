@@ -253,7 +253,7 @@ support::ExitCode run_continuum_fracture(const input::Options &options)
   results.add(measured_results(
     input, measurement, Side::continuum, crack.record().imbalance(),
     output::allowed_imbalance_of_damage(crack.record().mean_speed() * sheet.automatic_step / sheet.law.length,
-                                        measurement.is_measured())));
+                                        motion.time() / sheet.automatic_step)));
   return end_crack(input, options, run, results, measurement);
 }
 

@@ -94,8 +94,10 @@ Crack run_crack(const input::Case &input, const lattice::TriangularLattice &shee
   record.write_measurement(run.directory(), crack, seed_tip, *input.breaking_stretch, skip_verification);
   if (run.is_root())
     near_tip.write(run.directory(), crack);
-  return {crack, measured_results(input, crack, Side::lattice, record.imbalance(),
-                                  output::allowed_imbalance_of_crack(input.integrator, crack.is_measured()))};
+  return {crack, measured_results(
+                   input, crack, Side::lattice, record.imbalance(),
+                   output::allowed_imbalance(input.integrator, simulation.state().time /
+                                                                 input.automatic().fracture_time_stepping().step))};
 }
 
 } // namespace

@@ -72,7 +72,8 @@ output::Results moved(const input::Case &input, const lattice::RowPartition &ban
                {},
                {},
                motion.record().imbalance(),
-               output::allowed_imbalance_of_motion});
+               output::allowed_imbalance(input.integrator,
+                                         simulation.state().time / input.automatic().lattice_time_stepping().step)});
   return results;
 }
 

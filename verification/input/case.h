@@ -212,6 +212,15 @@ struct Case
   lattice::ContactLaw contact_law() const;
   /// Time step limits of a sheet. @param breaks whether bonds break, so that sites may touch
   lattice::TimeStepLimits time_step_limits(bool breaks) const;
+  /// Returns the case with automatic time steps of the lattice.
+  Case automatic() const
+  {
+    Case automatic = *this;
+    automatic.time_step.reset();
+    automatic.safety_factor = Case().safety_factor;
+    return automatic;
+  }
+
   /// Time stepping of the lattice: the given step, or the safety factor times the limit.
   lattice::TimeStepping lattice_time_stepping() const;
   /// Time stepping of a sheet that breaks, whose sites may touch.

@@ -53,24 +53,21 @@ double LedgerCheck::rate() const
   return largest_power_ > 0. ? largest_power_ / exchanged() : 0.;
 }
 
-double allowed_imbalance_of_crack(input::Case::Integrator integrator, bool is_measured)
+double allowed_imbalance(input::Case::Integrator integrator, double n_steps)
 {
-  const bool is_verlet = integrator == input::Case::Integrator::velocity_verlet;
-  if (!is_measured)
-    return is_verlet ? allowed_imbalance_of_motion : allowed_imbalance_of_recoil;
-  return is_verlet ? 2e-4 : 5e-3;
+  const double n = support::largest_of({n_steps, 1.});
+  return integrator == input::Case::Integrator::velocity_verlet ? support::largest_of({2e-4, 0.1 / n})
+                                                                : support::largest_of({5e-3, 2. / n});
 }
 
-double allowed_imbalance_of_damage(double advance, bool is_measured)
+double allowed_imbalance_of_damage(double advance, double n_steps)
 {
-  if (!is_measured)
-    return allowed_imbalance_of_recoil;
-  return 3. * support::largest_of({1.7e-3, 0.04 * advance});
+  return support::largest_of({5e-3, 0.12 * advance, 2. / support::largest_of({n_steps, 1.})});
 }
 
 double allowed_imbalance_of_implicit_motion(double rate, double step)
 {
-  return std::clamp(std::pow(rate * step, 2) / 4., 1e-6, allowed_imbalance_of_motion);
+  return std::clamp(std::pow(rate * step, 2) / 4., 1e-6, 1e-2);
 }
 
 } // namespace latcon::output
