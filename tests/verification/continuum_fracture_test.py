@@ -212,13 +212,13 @@ class ContinuumFracture(TemporaryFolder):
         steps = {}
         for times in (4, 1):
             folder = self.folder / str(times)
-            entries = {"Sheet/length": "3 cm", "Sheet/height": "1.5 cm", "Time/end": "2 ms", "Continuum/time step": 4.62465e-6 * times,
+            entries = {"Sheet/length": "3 cm", "Sheet/height": "1.5 cm", "Time/end": "1 ms", "Continuum/time step": 4.62465e-6 * times,
                        "Output/energy interval": 5}
             run = latcon("fracture", CASES / "quick.prm", "--side", "continuum", "--skip-verification", "--no-report", "--output-dir", folder,
                          *[word for key, value in entries.items() for word in ("--set", f"{key}={value}")])
             self.assertEqual(run.returncode, 3 if times == 4 else 0, run.stderr)
             steps[times] = [float(row["tolerance"]) for row in read_csv(folder / "results.csv") if "imbalance" in row["quantity"]]
-        self.assertAlmostEqual(steps[4][0], steps[1][0], delta=1e-6)  # is that of the automatic step
+        self.assertAlmostEqual(steps[4][0] / steps[1][0], 1.0, delta=0.05)  # is that of the automatic step
 
     def test_study_of_both_sides(self):
         entries = {key: value for key, value in SHEET.items() if not key.startswith(("Output/frame", "Checkpoints"))}
