@@ -236,14 +236,19 @@ std::vector<Dofs> list_patches(const Sheet &sheet, const AffineConstraints<doubl
         }
       }
   }
-  for (const auto &received : Utilities::MPI::some_to_some(sheet.communicator(), messages))
-    for (auto at = received.second.begin(); at != received.second.end();)
-    {
-      Dofs &patch = patch_of[vertex_of.at(*at++)];
-      const auto n = static_cast<std::ptrdiff_t>(*at++);
-      patch.insert(patch.end(), at, at + n);
-      at += n;
-    }
+  const auto all_received = Utilities::MPI::some_to_some(sheet.communicator(), messages);
+  run_collectively(sheet.communicator(),
+                   [&]
+                   {
+                     for (const auto &received : all_received)
+                       for (auto at = received.second.begin(); at != received.second.end();)
+                       {
+                         Dofs &patch = patch_of[vertex_of.at(*at++)];
+                         const auto n = static_cast<std::ptrdiff_t>(*at++);
+                         patch.insert(patch.end(), at, at + n);
+                         at += n;
+                       }
+                   });
 
   patch_of.erase(std::remove_if(patch_of.begin(), patch_of.end(), [](const Dofs &patch) { return patch.empty(); }),
                  patch_of.end());
@@ -289,8 +294,14 @@ void VertexPatches::factorise(const Sheet::Matrix &K)
 {
   const Epetra_CrsMatrix &own = K.trilinos_matrix();
   Epetra_CrsMatrix ghosts(Copy, *ghost_rows_, 0);
-  if (ghosts.Import(own, Epetra_Import(*ghost_rows_, own.RowMap()), Insert) < 0)
-    throw std::runtime_error("rows of the tangent could not be exchanged");
+  // The exchange is collective; its code is that of the rank.
+  const int code = ghosts.Import(own, Epetra_Import(*ghost_rows_, own.RowMap()), Insert);
+  run_collectively(layout_->get_mpi_communicator(),
+                   [code]
+                   {
+                     if (code < 0)
+                       throw std::runtime_error("rows of the tangent could not be exchanged");
+                   });
 
   own_replaced_ = 0;
   const unsigned int n_owned = layout_->locally_owned_size();
