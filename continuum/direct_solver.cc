@@ -2,10 +2,12 @@
 
 #include "continuum/collective.h"
 #include "continuum/errors.h"
+#include "support/machine_memory.h"
 
 #include <deal.II/base/mpi.h>
 
 #include <Amesos.h>
+#include <Amesos_Mumps.h>
 #include <Epetra_CrsMatrix.h>
 #include <Epetra_LinearProblem.h>
 #include <Epetra_Map.h>
@@ -33,6 +35,22 @@ void require_success(const int code, const char *what)
 {
   if (code != 0)
     throw LinearSolverFailed(std::string("the linear solver failed: ") + what + " with code " + std::to_string(code));
+}
+
+// Checks the estimate of the symbolic factorisation before memory is taken: otherwise the system would end the process.
+void require_memory(Amesos_BaseSolver &solver, const std::size_t n_rows, const std::optional<double> &memory)
+{
+  auto *mumps = dynamic_cast<Amesos_Mumps *>(&solver);
+  if (mumps == nullptr)
+    return;
+  constexpr unsigned int working_space = 15; // INFOG(16), in millions of bytes
+  const double needed = 1e6 * mumps->GetINFOG()[working_space];
+  const double available = memory ? *memory : support::available_memory();
+  if (needed > available)
+    throw InvalidInput("not enough memory: the direct solver would take about " + support::readable_bytes(needed) +
+                       " for " + std::to_string(n_rows) + " unknowns on one rank, and " +
+                       support::readable_bytes(available) +
+                       " are available; use fewer unknowns or, without periodic edges, a smaller direct limit");
 }
 
 MatrixRows own_rows(const Epetra_CrsMatrix &matrix)
@@ -70,18 +88,18 @@ std::vector<T> concatenate(std::vector<std::vector<T>> &&parts)
 MatrixRows gather_rows(const Epetra_CrsMatrix &matrix, const MPI_Comm communicator)
 {
   MatrixRows own = own_rows(matrix);
-  if (Utilities::MPI::n_mpi_processes(communicator) == 1)
+  if (dealii::Utilities::MPI::n_mpi_processes(communicator) == 1)
     return own;
-  return {concatenate(Utilities::MPI::gather(communicator, own.lengths)),
-          concatenate(Utilities::MPI::gather(communicator, own.columns)),
-          concatenate(Utilities::MPI::gather(communicator, own.values))};
+  return {concatenate(dealii::Utilities::MPI::gather(communicator, own.lengths)),
+          concatenate(dealii::Utilities::MPI::gather(communicator, own.columns)),
+          concatenate(dealii::Utilities::MPI::gather(communicator, own.values))};
 }
 } // namespace
 
 // Matrix on the root rank and its factors. Amesos refers to the matrix as long as the factors exist, hence a copy.
 struct DirectSolver::Factors
 {
-  Factors(MatrixRows &&rows, const Library library)
+  Factors(MatrixRows &&rows, const Library library, const std::optional<double> &memory)
     : lengths(std::move(rows.lengths)), columns(std::move(rows.columns)),
       map(static_cast<int>(lengths.size()), 0, Epetra_MpiComm(MPI_COMM_SELF)),
       matrix(Copy, map, map, lengths.data(), true), x(map), b(map)
@@ -97,6 +115,7 @@ struct DirectSolver::Factors
     const bool uses_mumps = library == Library::mumps && factory.Query("Amesos_Mumps");
     solver.reset(factory.Create(uses_mumps ? "Amesos_Mumps" : "Amesos_Klu", problem));
     require_success(solver->SymbolicFactorization(), "symbolic factorisation");
+    require_memory(*solver, lengths.size(), memory);
   }
 
   bool has_sparsity_of(const MatrixRows &rows) const { return rows.lengths == lengths && rows.columns == columns; }
@@ -118,7 +137,10 @@ struct DirectSolver::Factors
   std::unique_ptr<Amesos_BaseSolver> solver;
 };
 
-DirectSolver::DirectSolver(const Library library) : library_(library) {}
+DirectSolver::DirectSolver(const Library library, const std::optional<double> memory)
+  : library_(library), memory_(memory)
+{
+}
 
 void DirectSolver::factorise(const Sheet::Matrix &K)
 {
@@ -135,7 +157,7 @@ void DirectSolver::factorise(const Sheet::Matrix &K)
                      if (factors && factors->has_sparsity_of(rows))
                        factors->replace_values(rows);
                      else
-                       factors = std::make_unique<Factors>(std::move(rows), library_);
+                       factors = std::make_unique<Factors>(std::move(rows), library_, memory_);
                      require_success(factors->solver->NumericFactorization(), "factorisation");
                      factors_ = std::move(factors);
                    });
@@ -145,7 +167,7 @@ DirectSolver::~DirectSolver() = default;
 
 void DirectSolver::solve(double *x, const double *b)
 {
-  const auto parts = Utilities::MPI::gather(communicator_, std::vector<double>(b, b + n_own_));
+  const auto parts = dealii::Utilities::MPI::gather(communicator_, std::vector<double>(b, b + n_own_));
   run_collectively(communicator_,
                    [&]
                    {

@@ -5,17 +5,18 @@
 #include <deal.II/lac/la_parallel_vector.h>
 
 #include <memory>
+#include <optional>
 
 namespace latcon::continuum
 {
 /// LU factorisation of a matrix whose rows are distributed over ranks. The root rank gathers the matrix and factorises
 /// it alone, because the rounding of a parallel factorisation depends on the order in which messages arrive, and a
-/// restart needs the same bits for the same matrix. Sheets are two-dimensional, so their factors fit on one rank.
+/// restart needs the same bits for the same matrix.
 ///
 /// The symbolic factorisation is reused for matrices with the same sparsity; the reuse does not change the solution by
 /// a bit.
 ///
-/// All functions are collective and throw LinearSolverFailed on every rank.
+/// All functions are collective and throw on every rank, LinearSolverFailed unless stated otherwise.
 class DirectSolver
 {
 public:
@@ -26,12 +27,14 @@ public:
     klu    ///< slower for large matrices, faster solution for small ones
   };
 
-  explicit DirectSolver(Library library = Library::mumps);
+  /// @param memory that the factorisation may take [bytes]; none: what is available at the time
+  explicit DirectSolver(Library library = Library::mumps, std::optional<double> memory = std::nullopt);
   ~DirectSolver();
   DirectSolver(const DirectSolver &) = delete;
   DirectSolver &operator=(const DirectSolver &) = delete;
 
-  /// Factorises a copy of `K`. Throws if `K` is singular.
+  /// Factorises a copy of `K`. Throws LinearSolverFailed if `K` is singular, and InvalidInput, before it is factorised,
+  /// if MUMPS estimates that it needs more memory than there is.
   void factorise(const Sheet::Matrix &K);
 
   /// Solves K x = b for the last factorised matrix; the vectors have no ghost entries.
@@ -45,6 +48,7 @@ private:
   void solve(double *x, const double *b);
 
   Library library_;
+  std::optional<double> memory_; // [bytes]
   MPI_Comm communicator_ = MPI_COMM_NULL;
   std::size_t n_own_ = 0; // rows
   std::unique_ptr<Factors> factors_;

@@ -95,3 +95,24 @@ TEST(DirectSolver, RecoversFromASingularMatrix)
   EXPECT_THROW(solver.factorise(singular), continuum::LinearSolverFailed);
   EXPECT_EQ(sheet.solution(solver, K), x);
 }
+
+// The estimate of MUMPS: more than the entries of the matrix, and less than a dense matrix would take.
+TEST(DirectSolver, RefusesAMatrixWhoseFactorsDoNotFit)
+{
+  const Tangents sheet(12);
+  const Sheet::Matrix K = sheet.at(1.3);
+  const auto rows = static_cast<double>(K.m());
+  DirectSolver enough(DirectSolver::Library::mumps, 8. * rows * rows);
+  sheet.solution(enough, K);
+  DirectSolver too_little(DirectSolver::Library::mumps, 8. * static_cast<double>(K.n_nonzero_elements()));
+  try
+  {
+    too_little.factorise(K);
+    FAIL() << "the factors have more entries than the matrix";
+  }
+  catch (const continuum::InvalidInput &refusal)
+  {
+    EXPECT_NE(std::string(refusal.what()).find(std::to_string(K.m()) + " unknowns"), std::string::npos)
+      << refusal.what();
+  }
+}
