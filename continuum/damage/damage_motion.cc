@@ -72,8 +72,7 @@ DamageMotion::DamageMotion(const DamageMotionSetup &setup)
     gradient_.emplace(grid(), setup.gradient->bonds, setup.gradient->length, setup.loading, setup.communicator);
   }
   if (const double rate = viscous_rate(); rate > 0.)
-    stages_.emplace(gradient_ ? ViscousStages::required(setup.step * rate, 2. * setup.step / stable_step())
-                              : ViscousStages::required(setup.step * rate));
+    stages_.emplace(ViscousStages::required(setup.step * rate, 2. * setup.step / stable_step()));
   else
     require(setup.step < stable_step(), "the time step exceeds the stability limit of a sheet without viscosity");
   restart_ledger();
@@ -90,7 +89,7 @@ double DamageMotion::stable_step() const
 {
   if (!gradient_)
     return 2. / forces_.elastic_frequency(setup_.density);
-  return 2. / std::sqrt(patch_bound(grid(), forces_.elastic_conductivity(FibreForces::relaxed_stretch),
+  return 2. / std::sqrt(patch_bound(grid(), forces_.elastic_conductivity(),
                                     gradient_->patch_terms(FibreForces::relaxed_stretch), setup_.density,
                                     inertia_length(setup_)));
 }

@@ -102,9 +102,9 @@ public:
   const std::vector<double> &cell_energies() const { return cell_energies_; }
   unsigned int n_stages() const { return stages_ ? static_cast<unsigned int>(stages_->stages().size()) + 1 : 1; }
 
-  /// Returns the longest stable step [s] of velocity Verlet, without viscosity: at F_0; with gradient energy, also
-  /// where fibres have shortened to FibreForces::relaxed_stretch. With gradient energy and viscosity, the constructor
-  /// refuses steps in which waves of such a sheet grow.
+  /// Returns the longest stable step [s] of velocity Verlet, without viscosity, at F_0 and where fibres have shortened
+  /// to FibreForces::relaxed_stretch. With viscosity, the constructor refuses steps in which waves of such a sheet
+  /// grow.
   double stable_step() const;
 
   /// Saves the motion, or loads it into one of the same setup, which continues bitwise. `archive` is called with names

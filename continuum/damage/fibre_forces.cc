@@ -311,7 +311,7 @@ std::array<double, 3> FibreForces::viscous_conductivity() const
   return D;
 }
 
-std::array<double, 3> FibreForces::elastic_conductivity(const double relaxed) const
+std::array<double, 3> FibreForces::elastic_conductivity() const
 {
   std::array<double, 3> D{};
   for (const DampedFibre &k : fibres_)
@@ -320,7 +320,7 @@ std::array<double, 3> FibreForces::elastic_conductivity(const double relaxed) co
     { return k.a * (1. + 2. / (l * l * l)) + 3. * k.b / (l * l * l * l) + k.e; };
     const double l = (loading_ * Tensor<1, 2>({k.X, k.Y})).norm();
     const double across = (k.a * (l - 1. / (l * l)) + k.b * (1. - 1. / (l * l * l)) + k.e * (l - 1.)) / l;
-    const double stiffness = std::max(along(std::min(l, relaxed)), across);
+    const double stiffness = std::max(along(std::min(l, relaxed_stretch)), across);
     D = {D[0] + stiffness * k.X * k.X, D[1] + stiffness * k.X * k.Y, D[2] + stiffness * k.Y * k.Y};
   }
   return D;
@@ -333,6 +333,6 @@ double FibreForces::viscous_rate(const double density) const
 
 double FibreForces::elastic_frequency(const double density) const
 {
-  return std::sqrt(largest_eigenvalue(elastic_conductivity(std::numeric_limits<double>::max())) / density);
+  return std::sqrt(largest_eigenvalue(elastic_conductivity()) / density);
 }
 } // namespace latcon::continuum

@@ -55,14 +55,15 @@ public:
   /// [kg/m^3] and any deformation and damage, eq. (C.72).
   double viscous_rate(double density) const;
 
-  /// Returns an upper bound [1/s] of the angular frequencies of the elastic cells at F_0, for any damage.
+  /// Returns an upper bound [1/s] of the angular frequencies of the elastic cells with elastic_conductivity(), for any
+  /// damage.
   double elastic_frequency(double density) const;
 
   /// Returns the tensor D of eq. (C.72), entries XX, XY, YY [Pa s].
   std::array<double, 3> viscous_conductivity() const;
   /// Returns the corresponding bound of the stiffness against Grad u [Pa] at F_0, or, if that is more, of fibres that
-  /// have shortened to `relaxed` [-], as a crack lets them.
-  std::array<double, 3> elastic_conductivity(double relaxed) const;
+  /// have shortened to relaxed_stretch, as a crack lets them.
+  std::array<double, 3> elastic_conductivity() const;
 
   const NodeGrid &grid() const { return grid_; }
 
