@@ -145,14 +145,29 @@ class Branches(TemporaryFolder):
     def test_motion_of_finite_elements_refuses_branches_that_relax_within_a_step(self):
         own = ("Continuum/time step", "Continuum/cells")
         motion = [word for entry in MOTION[1::2] if not entry.startswith(own) for word in ("--set", entry)]
-        for step in ("0.03 ms", "auto"):  # automatic with 2 x 2 cells: 0.025 ms
-            run = latcon("continuum", SPECTRUM, "--dry-run", *motion, "--set", f"Continuum/time step={step}", "--set",
-                         "Continuum/cells x=2", "--set", "Continuum/cells y=2")
-            self.assertEqual(run.returncode, 2, run.stderr)
-            for section in ("Nearest neighbours", "Next-nearest neighbours"):
-                self.assertIn(f"{section}/relaxation times", run.stderr)
-            self.assertIn("smaller Continuum/time step", run.stderr)
+        cells = ["--set", "Continuum/cells x=2", "--set", "Continuum/cells y=2"]
+        run = latcon("continuum", SPECTRUM, "--dry-run", *motion, *cells, "--set", "Continuum/time step=0.03 ms")
+        self.assertEqual(run.returncode, 2, run.stderr)
+        for section in ("Nearest neighbours", "Next-nearest neighbours"):
+            self.assertIn(f"{section}/relaxation times", run.stderr)
+        self.assertIn("smaller Continuum/time step", run.stderr)
         self.assertEqual(latcon("continuum", SPECTRUM, "--dry-run").returncode, 0)
+
+    def test_automatic_step_of_finite_elements_resolves_waves_and_relaxation(self):
+        end, shortest, longitudinal_speed = 1e-2, 2e-5, 40.34778  # that of tests/verification/bridge/homogenisation_test.cc
+        own = ("Continuum/time step", "Continuum/cells", "Time/end")
+        shells = ("Nearest neighbours", "Next-nearest neighbours")
+        motion = [*(entry for entry in MOTION[1::2] if not entry.startswith(own)), f"Time/end={end}", "Continuum/cells x=24",
+                  "Continuum/cells y=12", *(f"{shell}/area factor={2 / 3}" for shell in shells)]
+        elastic = [f"{shell}/{entry}=" for shell in shells for entry in ("branch moduli", "relaxation times")]
+        for entries, expected in (([], 0.1 * shortest), (elastic, 0.5 * 0.015 / 12 / longitudinal_speed)):
+            words = [word for entry in motion + entries for word in ("--set", entry)]
+            run = latcon("continuum", SPECTRUM, "--dry-run", *words)
+            self.assertEqual(run.returncode, 0, run.stderr)
+            step = float(re.search(r"^# motion: time step (\S+) s", run.stdout, re.M).group(1))
+            self.assertLessEqual(step, expected * (1 + 1e-5))
+            self.assertGreater(1 / step, 1 / expected * (1 - 1e-5))
+            self.assertLess(1 / step, 1 / expected + 1 / end)  # the last step ends at the end
 
     def test_motion_of_finite_elements_records_and_resumes_branches(self):
         alone = latcon("continuum", SPECTRUM, *MOTION, "--output-dir", self.out)

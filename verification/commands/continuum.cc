@@ -155,6 +155,9 @@ continuum::Sheet::Vector equilibrium_displacement(const input::Case &input, cons
   return u;
 }
 
+// Returns the step that resolves the waves that the mesh resolves, and the fastest relaxation: half the time in which a
+// longitudinal wave crosses a cell, at most a tenth of the shortest relaxation time (theory-continuum.md, "Default time
+// step").
 double motion_time_step(const input::Case &input, bridge::ContinuumModel &model)
 {
   if (input.continuum.time_step)
@@ -163,7 +166,11 @@ double motion_time_step(const input::Case &input, bridge::ContinuumModel &model)
   for (const auto &cell : model.mesh().active_cell_iterators())
     smallest = std::min(smallest, cell->minimum_vertex_distance());
   smallest = dealii::Utilities::MPI::min(smallest, MPI_COMM_WORLD);
-  const double longest = 0.1 * smallest / model.subject().theory.shear_speed;
+  double longest = 0.5 * smallest / model.subject().theory.longitudinal_speed;
+  if (const auto memory = bridge::homogenised_memory(input.lattice(), model.subject().material))
+    for (const continuum::MaxwellFibres &fibres : memory->families())
+      for (const continuum::MaxwellBranch &branch : fibres.branches)
+        longest = std::min(longest, 0.1 * branch.relaxation_time);
   return input.end_time / std::ceil(input.end_time / longest); // so that the last step ends at the end
 }
 

@@ -328,8 +328,9 @@ void ContinuumCase::declare(Parameters &p)
         "what `latcon continuum` computes: static equilibrium, or the motion until the end time");
   p.add(
     "Continuum", "time step", time_step, Magnitude{}, "s",
-    "time step of the motion; auto: a tenth of the time in which a shear wave crosses a cell, and in `latcon fracture "
-    "--side continuum` half the longest with which an explicit step without viscosity is stable");
+    "time step of the motion; auto: half the time in which a longitudinal wave crosses a cell, at most a tenth of the "
+    "shortest relaxation time, and in `latcon fracture --side continuum` half the longest with which an explicit "
+    "step without viscosity is stable");
   p.add("Continuum", "rule", rule,
         {{"average-acceleration", Rule::average_acceleration}, {"generalised-alpha", Rule::generalised_alpha}},
         "time integration scheme");
