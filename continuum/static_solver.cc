@@ -183,8 +183,8 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
     Vector step = sheet_.make_owned();
     u = displacement_;
     unsigned int linear_iterations = 0;
-    // If only the stiffness factor has changed, there is no increment, and the first step may need the line search.
-    if (target != load_factor_ || !sheet_.constitution().factor)
+    // Without an increment the response is a Newton step, which needs the line search.
+    if (target != load_factor_)
     {
       linear_iterations = solve(evaluate_at(u), &lift, 0., step).linear_iterations;
       u += step;
@@ -292,14 +292,11 @@ SolverReport StaticSolver::equilibrate()
   const std::string failure = attempt(load_factor_, report);
   report.load_steps.push_back({1, load_factor_, failure.empty(), failure});
   report.load_factor = load_factor_;
-  if (failure.empty())
-    return report;
-  displacement_ = 0.;
-  load_factor_ = 0.;
-  SolverReport again = solve();
-  again.load_steps.insert(again.load_steps.begin(), report.load_steps.begin(), report.load_steps.end());
-  again.iterations.insert(again.iterations.begin(), report.iterations.begin(), report.iterations.end());
-  return again;
+  if (!failure.empty())
+    throw SolverFailed("no equilibrium was found from the state at load factor " + std::to_string(load_factor_) + ": " +
+                         failure,
+                       report);
+  return report;
 }
 
 double StaticSolver::total_energy() const

@@ -64,8 +64,8 @@ public:
   /// fraction outside (0, 1].
   void refine(Sheet::Mesh &mesh, double fraction);
 
-  /// Finds the equilibrium at the current load factor, starting from the current state or, if Newton's method fails
-  /// there, by loading from zero. Throws SolverFailed as solve() does.
+  /// Finds the equilibrium at the current load factor from the current state, such as one interpolated by refine().
+  /// Throws SolverFailed with the history; the state is then unchanged.
   SolverReport equilibrate();
 
   /// Finds the equilibrium at `load_factor` [-], which may be larger than the current one, smaller or the same, from

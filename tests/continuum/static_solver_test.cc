@@ -454,6 +454,59 @@ TEST(StaticSolver, LeavesAnUnloadedSheetAtRest)
   EXPECT_LE(solver.displacement().linfty_norm(), 1e-15 * length);
 }
 
+namespace
+{
+// A law that can be made to fail.
+class FragileLaw : public continuum::Material
+{
+public:
+  double energy(const Tensor<2, 2> &F) const override { return whole().energy(F); }
+  Tensor<2, 2> first_piola_stress(const Tensor<2, 2> &F) const override { return whole().first_piola_stress(F); }
+  dealii::Tensor<4, 2> tangent(const Tensor<2, 2> &F) const override { return whole().tangent(F); }
+  double thickness_stretch(const Tensor<2, 2> &F) const override { return law_.thickness_stretch(F); }
+  bool is_broken = false;
+
+private:
+  const continuum::Material &whole() const
+  {
+    if (is_broken)
+      throw continuum::NonPhysicalState("broken");
+    return law_;
+  }
+  continuum::MooneyRivlin law_ = rubber_sheet();
+};
+} // namespace
+
+// At an equilibrium nothing changes, and no system is solved. After a failure the state is that before it.
+TEST(StaticSolver, EquilibratesWithoutLosingTheState)
+{
+  FragileLaw law;
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::make_rectangle(mesh, rectangle(8, 6));
+  StaticSettings settings;
+  settings.degree = 2;
+  settings.linear.direct_limit = 0;
+  StaticSolver solver(mesh, law, bump_problem(1.3, 1.4, 0.01), settings);
+  solver.solve();
+  continuum::Sheet::Vector before = solver.sheet().make_ghosted();
+  before = solver.displacement();
+  const auto expect_unchanged = [&]
+  {
+    EXPECT_EQ(solver.load_factor(), 1.);
+    for (const auto i : solver.sheet().owned())
+      EXPECT_EQ(solver.displacement()(i), before(i));
+  };
+  const continuum::SolverReport report = solver.equilibrate();
+  ASSERT_EQ(report.iterations.size(), 1u);
+  EXPECT_EQ(report.iterations[0].linear_iterations, 0u);
+  expect_unchanged();
+
+  law.is_broken = true;
+  EXPECT_THROW(solver.equilibrate(), continuum::SolverFailed);
+  law.is_broken = false;
+  expect_unchanged();
+}
+
 TEST(Sheet, EvaluatesOnCellBoundariesAndCorners)
 {
   // Linear field: the gradient is equal in all adjacent cells, so their mean is exact.
