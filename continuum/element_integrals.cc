@@ -95,7 +95,7 @@ public:
             prescribed[q][i] = load_factor_ * condition.gradient->value(points[q], i);
         begin(contributions);
         add_nodes(cell, 0);
-        integrate_face(cell, face, tables, 1, sheet_.penalty(extent(cell, face)), &prescribed,
+        integrate_face(cell, face, tables, 1, extent(cell, face), &prescribed,
                        {condition.components[0], condition.components[1]}, contributions.back());
         return; // the first condition in the list applies, as for displacements
       }
@@ -110,8 +110,8 @@ public:
     begin(contributions);
     add_nodes(cell, 0);
     add_nodes(neighbor, 1);
-    const double penalty = sheet_.penalty(std::min(extent(cell, face), extent(neighbor, neighbor_face)));
-    integrate_face(cell, face, tables, 2, penalty, nullptr, {true, true}, contributions.back());
+    const double smaller = std::min(extent(cell, face), extent(neighbor, neighbor_face));
+    integrate_face(cell, face, tables, 2, smaller, nullptr, {true, true}, contributions.back());
   }
 
 private:
@@ -174,10 +174,11 @@ private:
 
   // The quadrature points are those of the whole `face` of `cell`.
   void integrate_face(const Iterator &cell, const unsigned int face, const std::array<const ShapeTable *, 2> &tables,
-                      const unsigned int n_sides, const double penalty, const std::vector<Tensor<1, 2>> *prescribed,
+                      const unsigned int n_sides, const double extent, const std::vector<Tensor<1, 2>> *prescribed,
                       const std::array<bool, 2> &held, Contribution &contribution)
   {
     start(n_sides);
+    const FacePenalty penalty{sheet_.penalty(extent), sheet_.supported_stiffness()};
     const Rows rows = {n_sides, n_derivatives};
     for (unsigned int q = 0; q < tables[0]->n_points; ++q)
     {

@@ -51,6 +51,13 @@ public:
   /// d2W_g/dF_iJ dF_kL [Pa].
   dealii::Tensor<4, 2> tangent(const dealii::Tensor<2, 2> &F, const Gradient &G) const;
 
+  /// Returns the stiffness [Pa m^2] against a second derivative along the unit vector N in both directions: the sum
+  /// over i of B(F; Z, Z) with Z = unit_jump(i, N N), an upper bound and at most twice that in any one direction.
+  double stiffness_across(const dealii::Tensor<2, 2> &F, const dealii::Tensor<1, 2> &N) const;
+
+  /// Returns e_i (x) NN, the second gradient of a unit jump of component i of the normal derivative.
+  static Gradient unit_jump(unsigned int i, const dealii::Tensor<2, 2> &NN);
+
   /// Returns the largest stiffness [Pa m^2] against a second normal derivative at F = I: the largest eigenvalue of n_J
   /// n_K (dQ_iJK/dG_lMN) n_M n_N over all unit vectors n.
   double normal_stiffness() const;

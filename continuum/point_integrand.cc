@@ -66,6 +66,23 @@ void add_G_G(PointIntegrand &d, const unsigned int s, const Tensor<6, 2> &T, con
           d.second[i][l][s][c][s][e] += factor * multiplicity[c] * multiplicity[e] *
                                         T[i][first_index[c]][second_index[c]][l][first_index[e]][second_index[e]];
 }
+// Factor of the interior penalty, with derivatives by the ratio of the stiffness to the supported one: 1 up to ratio 1,
+// at least 0.82 ratio beyond, eq. (C.84). Twice continuously differentiable, as Newton's method needs.
+struct PenaltyFactor
+{
+  double value, first, second;
+};
+
+PenaltyFactor penalty_factor(const double ratio)
+{
+  if (!(ratio > 1.))
+    return {1., 0., 0.};
+  constexpr double d = 0.25;
+  const double x = ratio - 1.;
+  const double xx = x * x;
+  const double n = xx + d;
+  return {1. + x * xx / n, xx * (xx + 3. * d) / (n * n), 2. * d * x * (3. * d - xx) / (n * n * n)};
+}
 } // namespace
 
 void clear(PointIntegrand &density, const Order order)
@@ -113,7 +130,7 @@ void cell_density(const Constitution &laws, const bool has_gradient, const Field
 
 void face_density(const GradientLaw &law, const std::array<FieldDerivatives, 2> &u, const unsigned int n_sides,
                   const Tensor<1, 2> &N, const Tensor<1, 2> &prescribed, const std::array<bool, 2> &held,
-                  const double penalty, const Order order, PointIntegrand &d)
+                  const FacePenalty &penalty, const Order order, PointIntegrand &d)
 {
   const double sign[2] = {1., -1.};
   const double share = 1. / n_sides;
@@ -128,8 +145,16 @@ void face_density(const GradientLaw &law, const std::array<FieldDerivatives, 2> 
   const Tensor<2, 2> NN = outer_product(N, N);
   const Tensor<3, 2> Z = outer_product(z, NN);
 
-  d.value = 0.5 * penalty * z.norm_square();
-  Tensor<1, 2> by_z = penalty * z;
+  double stiffness = 0.;
+  for (unsigned int s = 0; s < n_sides; ++s)
+    stiffness += share * law.stiffness_across(deformation_gradient(u[s]), N);
+  const PenaltyFactor factor = penalty_factor(stiffness / penalty.supported);
+  const double sigma = penalty.base * factor.value;
+  const double sigma_by_stiffness = penalty.base * factor.first / penalty.supported;
+  std::array<Tensor<2, 2>, 2> stiffness_by_F;
+
+  d.value = 0.5 * sigma * z.norm_square();
+  Tensor<1, 2> by_z = sigma * z;
   for (unsigned int s = 0; s < n_sides; ++s)
   {
     const Tensor<2, 2> F = deformation_gradient(u[s]);
@@ -143,10 +168,19 @@ void face_density(const GradientLaw &law, const std::array<FieldDerivatives, 2> 
       by_z[i] -= share * scalar_product(Q[i], NN);
     const Tensor<2, 2> by_F = law.form_by_F(F, G, Z);
     const Tensor<3, 2> by_G = law.double_stress(F, Z);
+    if (sigma_by_stiffness != 0.)
+      for (unsigned int i = 0; i < 2; ++i)
+      {
+        const Tensor<3, 2> unit = GradientLaw::unit_jump(i, NN);
+        stiffness_by_F[s] += share * law.form_by_F(F, unit, unit);
+        if (order == Order::second)
+          add_F_F(d, s, law.form_by_FF(F, unit, unit), 0.5 * share * sigma_by_stiffness * z.norm_square());
+      }
+    const Tensor<2, 2> by_stiffness = 0.5 * sigma_by_stiffness * z.norm_square() * stiffness_by_F[s];
     for (unsigned int i = 0; i < 2; ++i)
       for (unsigned int c = 0; c < n_derivatives; ++c)
-        d.first[i][s][c] -=
-          share * (c < n_first ? by_F[i][c] : multiplicity[c] * by_G[i][first_index[c]][second_index[c]]);
+        d.first[i][s][c] -= c < n_first ? share * by_F[i][c] - by_stiffness[i][c]
+                                        : share * multiplicity[c] * by_G[i][first_index[c]][second_index[c]];
     if (order == Order::first)
       continue;
 
@@ -159,7 +193,7 @@ void face_density(const GradientLaw &law, const std::array<FieldDerivatives, 2> 
       for (unsigned int l = 0; l < 2 && held[i]; ++l)
         for (unsigned int c = 0; c < n_derivatives; ++c)
         {
-          double value = 0.;
+          double value = c < n_first ? sigma_by_stiffness * z[i] * stiffness_by_F[s][l][c] : 0.;
           for (unsigned int J = 0; J < 2; ++J)
             for (unsigned int K = 0; K < 2; ++K)
               value -= share * NN[J][K] *
@@ -186,6 +220,17 @@ void face_density(const GradientLaw &law, const std::array<FieldDerivatives, 2> 
       for (unsigned int i = 0; i < 2; ++i)
         for (unsigned int J = 0; J < 2 && held[i]; ++J)
           for (unsigned int L = 0; L < 2; ++L)
-            d.second[i][i][s][J][t][L] += sign[s] * sign[t] * penalty * N[J] * N[L];
+            d.second[i][i][s][J][t][L] += sign[s] * sign[t] * sigma * N[J] * N[L];
+  if (factor.second == 0.)
+    return;
+  const double curvature =
+    0.5 * penalty.base * factor.second / (penalty.supported * penalty.supported) * z.norm_square();
+  for (unsigned int s = 0; s < n_sides; ++s)
+    for (unsigned int t = 0; t < n_sides; ++t)
+      for (unsigned int i = 0; i < 2; ++i)
+        for (unsigned int J = 0; J < 2; ++J)
+          for (unsigned int l = 0; l < 2; ++l)
+            for (unsigned int M = 0; M < 2; ++M)
+              d.second[i][l][s][J][t][M] += curvature * stiffness_by_F[s][i][J] * stiffness_by_F[t][l][M];
 }
 } // namespace latcon::continuum

@@ -39,11 +39,18 @@ void clear(PointIntegrand &density, Order order);
 void cell_density(const Constitution &laws, bool has_gradient, const FieldDerivatives &u, Order order,
                   PointIntegrand &density);
 
-/// Computes the mean over the sides of -B(F; G, z N N), plus (penalty/2) |z|^2, on a face with normal N, eq. (C.28). z
-/// is the jump of the normal gradient: value on the first side minus value on the second side, or minus the
+/// Interior penalty of a face between or at the edge of cells, eq. (C.28).
+struct FacePenalty
+{
+  double base;      ///< sigma [Pa m] of a state that is no stiffer than `supported`
+  double supported; ///< stiffness_across() [Pa m^2] from which the penalty grows with it
+};
+
+/// Computes the mean over the sides of -B(F; G, z N N), plus (sigma/2) |z|^2, on a face with normal N, eq. (C.28). z is
+/// the jump of the normal gradient: value on the first side minus value on the second side, or minus the
 /// `prescribed` gradient on the boundary, where `n_sides` is 1. Components of z that are not `held` are zero. `density`
 /// must have been cleared.
 void face_density(const GradientLaw &law, const std::array<FieldDerivatives, 2> &u, unsigned int n_sides,
                   const dealii::Tensor<1, 2> &N, const dealii::Tensor<1, 2> &prescribed,
-                  const std::array<bool, 2> &held, double penalty, Order order, PointIntegrand &density);
+                  const std::array<bool, 2> &held, const FacePenalty &penalty, Order order, PointIntegrand &density);
 } // namespace latcon::continuum

@@ -136,6 +136,14 @@ double Sheet::penalty(const double extent) const
   return constitution_.penalty * degree_ * (degree_ + 1) / extent * normal_stiffness_;
 }
 
+double Sheet::supported_stiffness() const
+{
+  // The face terms are coercive for gamma c_N of at least 0.3 times the stiffness; this is a margin for
+  // penalty_factor(), and for states that vary within a cell.
+  constexpr double smallest_penalty = 0.4;
+  return constitution_.penalty * normal_stiffness_ / smallest_penalty;
+}
+
 Sheet::Vector Sheet::lift() const
 {
   AffineConstraints<double> given(conformity_constraints_.get_local_lines());

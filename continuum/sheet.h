@@ -124,8 +124,10 @@ public:
   /// Returns true if there is a gradient energy, and hence face terms.
   bool has_gradient() const { return constitution_.has_gradient(); }
   /// Returns the penalty [Pa m] gamma p (p + 1) / h times the normal stiffness, on a face of a cell that extends h =
-  /// `extent` [m] normal to it.
+  /// `extent` [m] normal to it, for states that are not stiffer than supported_stiffness().
   double penalty(double extent) const;
+  /// Returns the stiffness [Pa m^2] of the gradient law above which penalties grow with it, eq. (C.84).
+  double supported_stiffness() const;
   const dealii::IndexSet &owned() const { return owned_; }
   const dealii::IndexSet &relevant() const { return relevant_; }
   unsigned int degree() const { return degree_; }

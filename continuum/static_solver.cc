@@ -120,6 +120,23 @@ double StaticSolver::round_off(const Evaluation &state, const Vector &u) const
   return 4. * std::numeric_limits<double>::epsilon() * std::sqrt(Utilities::MPI::sum(sum, sheet_.communicator()));
 }
 
+// Returns true if the tangent at u, with ghost entries, is positive along the Newton step only with a larger penalty:
+// then the discretisation has lost its coercivity, and not the sheet its stability.
+bool StaticSolver::penalty_is_too_small(const Vector &u, const Vector &step, const double load_factor) const
+{
+  if (!sheet_.has_gradient())
+    return false;
+  Constitution laws = sheet_.constitution();
+  laws.penalty *= 10.;
+  const Sheet stabilised(sheet_.mesh(), laws, sheet_.degree(), sheet_.conditions()); // with the same unknowns
+  Sheet::Matrix K;
+  stabilised.make_matrix(homogeneous_, K);
+  stabilised.tangent(u, homogeneous_, K, load_factor);
+  Vector product = sheet_.make_owned();
+  K.vmult(product, step);
+  return product * step > 0.;
+}
+
 std::string StaticSolver::attempt(const double target, SolverReport &report)
 {
   const unsigned int number = report.load_steps.size() + 1;
@@ -150,8 +167,14 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
     }
     const Clock clock(report.times.linear_solve);
     const unsigned int iterations = linear_solver_->solve(matrix_, step, rhs, forcing);
+    const double slope = -(rhs * step); // rhs is minus the residual, zero at constrained unknowns
+    if (rise == nullptr && !(slope < 0.) && penalty_is_too_small(at, step, target))
+      throw LinearSolverFailed(
+        "the face terms of the gradient energy have lost coercivity: with ten times the interior "
+        "penalty the tangent is positive along the Newton step; raise the penalty (gamma, entry "
+        "Continuum/penalty) or refine the mesh where the deformation varies within a cell");
     homogeneous_.distribute(step);
-    return NewtonStep{iterations, -(rhs * step)}; // rhs is minus the residual, zero at constrained unknowns
+    return NewtonStep{iterations, slope};
   };
   const auto evaluate_at = [&](const Vector &at)
   {

@@ -1,6 +1,7 @@
 // Equilibrium with gradient energies: Newton's method, load steps, linear iterations, limits.
 #include "continuum/errors.h"
 #include "continuum/meshes.h"
+#include "continuum/point_integrand.h"
 #include "sheets.h"
 
 #include <deal.II/base/function_parser.h>
@@ -30,8 +31,9 @@ BoundaryConditions clamped_bump(const double stretch_x, const double stretch_y, 
 } // namespace
 
 // Energy, residual and tangent of the discrete functional by Taylor's theorem at a state whose normal gradients jump
-// everywhere, on a mesh with hanging nodes and a clamped edge; the tangent is symmetric.
-// theory-continuum.md, eqs. (C.28) to (C.30).
+// everywhere, on a mesh with hanging nodes and a clamped edge; the tangent is symmetric. With a small penalty, which
+// grows with the stiffness of the state, and with one that does not. theory-continuum.md, eqs. (C.28) to (C.30),
+// (C.84).
 TEST(GradientEquilibrium, ResidualAndTangentAreDerivativesOfOneFunctional)
 {
   using Vector = continuum::Sheet::Vector;
@@ -40,13 +42,15 @@ TEST(GradientEquilibrium, ResidualAndTangentAreDerivativesOfOneFunctional)
   const continuum::IsotropicGradient isotropic(5e5, internal_length);
   for (const continuum::GradientLaw *gradient :
        {static_cast<const continuum::GradientLaw *>(&lattice), static_cast<const continuum::GradientLaw *>(&isotropic)})
-    for (const unsigned int degree : {2u, 3u})
+    for (const auto &[degree, penalty] : {std::pair(2u, 2.), std::pair(2u, 0.2), std::pair(3u, 2.)})
     {
       Mesh mesh(MPI_COMM_SELF);
       continuum::make_rectangle(mesh, rectangle(2, 2));
       mesh.begin_active()->set_refine_flag();
       mesh.execute_coarsening_and_refinement();
-      const continuum::Sheet sheet(mesh, Constitution(law, *gradient), degree, clamped_bump(1.2, 1.3, 0.));
+      Constitution laws(law, *gradient);
+      laws.penalty = penalty;
+      const continuum::Sheet sheet(mesh, laws, degree, clamped_bump(1.2, 1.3, 0.));
       std::mt19937 generator(17);
       const auto random = [&](const double amplitude)
       {
@@ -373,4 +377,80 @@ TEST(GradientEquilibrium, RefusesImpossibleInput)
   conditions.double_tractions.clear();
   conditions.body_force = continuum::BodyForce{field, -1.};
   EXPECT_THROW(StaticSolver(mesh, law, conditions), continuum::InvalidInput);
+}
+
+namespace
+{
+// psi = a ((l - 1)^2 / 2 + 10 (l - 1)^6): psi'' is 20 times that at rest at stretch 1.5.
+class StiffeningBond : public continuum::CustomPotentialLaw
+{
+public:
+  continuum::PotentialDerivatives derivatives(const double l) const override
+  {
+    constexpr double a = 1e5;
+    const double x = l - 1.;
+    return {a * (0.5 * x * x + 10. * std::pow(x, 6)), a * (x + 60. * std::pow(x, 5)), a * (1. + 300. * std::pow(x, 4)),
+            a * 1200. * std::pow(x, 3), a * 3600. * x * x};
+  }
+};
+} // namespace
+
+// A penalty that is fixed at F = I makes the tangent indefinite where a law stiffens by more than eight times, at 80 %
+// of this load. The equilibrium is that of a penalty that is large throughout; energies differ by the error of the
+// mesh.
+TEST(GradientEquilibrium, StaysCoerciveWhereTheLawStiffens)
+{
+  continuum::CauchyBorn network = rubber_network();
+  std::vector<continuum::FibreFamily> fibres = network.families();
+  std::vector<continuum::BondFamily> bonds = rubber_bonds(0.02);
+  const auto law = std::make_shared<StiffeningBond>();
+  for (std::size_t k = 0; k < fibres.size(); ++k)
+    bonds[k].fibre.potential = fibres[k].potential = continuum::CustomPotential{law};
+  network = continuum::CauchyBorn(fibres);
+  const continuum::LatticeGradient gradient(bonds, continuum::LatticeGradient::smallest_length(bonds));
+  const auto energy = [&](const double penalty)
+  {
+    Mesh mesh(MPI_COMM_SELF);
+    continuum::make_rectangle(mesh, rectangle(12, 12));
+    Constitution laws(network, gradient);
+    laws.penalty = penalty;
+    StaticSettings settings;
+    settings.degree = 2;
+    StaticSolver solver(mesh, laws, bump_problem(1.5, 1.5, 0.004), settings);
+    solver.solve();
+    return solver.total_energy();
+  };
+  const double usual = energy(Constitution(network).penalty);
+  EXPECT_NEAR(usual, energy(20.), 1e-4 * usual);
+}
+
+// Below the limit the penalty is that of the theory, bit for bit; the stiffness bounds the largest one in any
+// direction.
+TEST(GradientEquilibrium, HasThePenaltyOfSmallStrainUpToALimit)
+{
+  const continuum::LatticeGradient law = rubber_gradient(0.01);
+  const Tensor<2, 2> rest = matrix(1., 0., 0., 1.);
+  for (const double angle : {0., 0.3, 0.5 * pi})
+  {
+    const Tensor<1, 2> N({std::cos(angle), std::sin(angle)});
+    EXPECT_GE(law.stiffness_across(rest, N), law.normal_stiffness() * (1. - 1e-12));
+    EXPECT_LE(law.stiffness_across(rest, N), 2. * law.normal_stiffness());
+  }
+  const Tensor<1, 2> N({1., 0.});
+  continuum::FieldDerivatives one{}, other{};
+  one[0][0] = 0.01; // jump of du_x/dX
+  const auto sigma = [&](const double supported)
+  {
+    continuum::PointIntegrand d;
+    clear(d, continuum::Order::value);
+    face_density(law, {one, other}, 2, N, Tensor<1, 2>(), {true, true}, {1e3, supported}, continuum::Order::value, d);
+    return d.value / (0.5 * 0.01 * 0.01);
+  };
+  const double stiffness = 0.5 * (law.stiffness_across(matrix(1.01, 0., 0., 1.), N) + law.stiffness_across(rest, N));
+  EXPECT_DOUBLE_EQ(sigma(stiffness * 1.01), 1e3);
+  for (const double ratio : {1.1, 1.4, 2., 10., 1e3})
+  {
+    EXPECT_GE(sigma(stiffness / ratio), 0.82 * ratio * 1e3);
+    EXPECT_LE(sigma(stiffness / ratio), ratio * 1e3);
+  }
 }
