@@ -57,7 +57,7 @@ public:
     /// Solves for the Newton step at u to the relative residual `forcing`. @throws LinearSolverFailed
     std::function<NewtonStep(const State &state, const Vector &u, double forcing, Vector &step)> solve;
     /// Returns the round-off of the energy of a state [J/m] (optional). If given, the line search requires a decrease
-    /// of the energy, which leads to a minimum; if empty, it accepts any state that can be evaluated.
+    /// of the energy, which leads to a minimum; if empty, a decrease of the norm of the residual.
     std::function<double(const State &state)> energy_noise;
     /// Returns a description of a state that did not converge, appended to the reason of failure (optional).
     std::function<std::string(const State &state)> describe;
@@ -75,9 +75,10 @@ public:
                     std::vector<NewtonIteration> &history) const;
 
 private:
-  /// Halves the step until its end is accepted. Returns the reason of failure, empty on success.
-  std::string search(const Vector &step, double slope, Vector &u, State &state, double &length) const;
-  double next_forcing(double last, double reduction, double tolerance) const;
+  /// Halves the step until its end is accepted: always if its residual is below `tolerance` [N/m]. Returns the reason
+  /// of failure, empty on success.
+  std::string search(const Vector &step, double slope, double tolerance, Vector &u, State &state, double &length) const;
+  double next_forcing(double reduction, double tolerance) const;
 
   NewtonSettings settings_;
   Equations equations_;
@@ -89,7 +90,6 @@ std::string NewtonSolver<State>::solve(Vector &u, State state, const unsigned in
 {
   Vector step(u);
   double length = 1.;
-  double forcing = settings_.largest_forcing;
   double last_free = state.free;
   for (unsigned int iteration = 0;; ++iteration)
   {
@@ -101,24 +101,31 @@ std::string NewtonSolver<State>::solve(Vector &u, State state, const unsigned in
       return "no convergence in " + std::to_string(iteration) + " Newton iterations" +
              (equations_.describe ? equations_.describe(state) : "");
 
-    forcing = next_forcing(forcing, state.free / last_free, tolerance / state.free);
+    const double forcing = next_forcing(state.free / last_free, tolerance / state.free);
     last_free = state.free;
     const NewtonStep solved = equations_.solve(state, u, forcing, step);
     linear_iterations = solved.linear_iterations;
     if (equations_.energy_noise && !(solved.slope < 0.))
       return "the tangent is not positive definite along the Newton step";
-    if (const std::string failure = search(step, solved.slope, u, state, length); !failure.empty())
+    if (const std::string failure = search(step, solved.slope, tolerance, u, state, length); !failure.empty())
       return failure;
   }
 }
 
 template <class State>
-std::string NewtonSolver<State>::search(const Vector &step, const double slope, Vector &u, State &state,
-                                        double &length) const
+std::string NewtonSolver<State>::search(const Vector &step, const double slope, const double tolerance, Vector &u,
+                                        State &state, double &length) const
 {
   constexpr double sufficient = 1e-4; // Armijo constant
   const double start = state.energy;
   const double noise = equations_.energy_noise ? equations_.energy_noise(state) : 0.;
+  const auto is_accepted = [&](const State &candidate)
+  {
+    if (equations_.energy_noise)
+      return candidate.energy <= start + sufficient * length * slope + noise;
+    // Along an exact Newton step the residual falls as 1 - length.
+    return candidate.free <= std::max((1. - sufficient * length) * state.free, tolerance);
+  };
   length = 1.;
   std::string reason;
   for (unsigned int halvings = 0; halvings <= settings_.max_halvings; ++halvings, length *= 0.5)
@@ -127,9 +134,7 @@ std::string NewtonSolver<State>::search(const Vector &step, const double slope, 
       Vector trial = u;
       trial.add(length, step);
       State candidate = equations_.evaluate(trial);
-      const bool is_accepted =
-        !equations_.energy_noise || candidate.energy <= start + sufficient * length * slope + noise;
-      if (is_accepted)
+      if (is_accepted(candidate))
       {
         state = std::move(candidate);
         u = trial;
@@ -140,22 +145,19 @@ std::string NewtonSolver<State>::search(const Vector &step, const double slope, 
     {
       reason = failure.what();
     }
-  if (!equations_.energy_noise)
-    return reason;
-  return "the line search found no decrease of energy" + (reason.empty() ? "" : "; last refused state: " + reason);
+  return std::string("the line search found no decrease of ") + (equations_.energy_noise ? "energy" : "the residual") +
+         (reason.empty() ? "" : "; last refused state: " + reason);
 }
 
-/// Returns the forcing term of the next Newton step after Eisenstat and Walker (1996), choice 2 with its safeguard:
-/// proportional to the square of the last reduction of the residual. `tolerance` is the tolerance of the residual
+/// Returns the forcing term of the next Newton step after Eisenstat and Walker (1996), choice 2: proportional to the
+/// square of the last reduction of the residual. `tolerance` is the tolerance of the residual
 /// relative to its value. A step that would almost reach the tolerance is solved accurately enough to reach it; no step
 /// is solved much more accurately.
 template <class State>
-double NewtonSolver<State>::next_forcing(const double last, const double reduction, const double tolerance) const
+double NewtonSolver<State>::next_forcing(const double reduction, const double tolerance) const
 {
   constexpr double share = 0.9;
   double forcing = share * reduction * reduction;
-  if (const double kept = share * last * last; kept > 0.1)
-    forcing = std::max(forcing, kept);
   const double last_step = 0.1 * tolerance;
   if (forcing < 1e3 * last_step)
     forcing = last_step;

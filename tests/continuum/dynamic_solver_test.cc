@@ -1,5 +1,6 @@
 // Dynamics of sheets on one rank: orders in time, energy balance, and steps that do not converge.
 #include "continuum/errors.h"
+#include "continuum/newton_solver.h"
 #include "moving_sheets.h"
 #include "support/largest_error.h"
 
@@ -484,4 +485,33 @@ TEST(DynamicSolver, RefusesImpossibleInput)
   EXPECT_THROW(undefined.start(), continuum::InvalidInput);
   Mesh narrow(MPI_COMM_SELF);
   EXPECT_THROW(continuum::make_rectangle(narrow, {1., 1., 1, 2, true, false}), continuum::InvalidInput);
+}
+
+// Whole Newton steps for arctan u = 0 diverge from |u| > 1.39; with a line search they converge.
+TEST(NewtonSolver, ReducesTheResidualWithoutAnEnergy)
+{
+  struct State
+  {
+    double free, reference, energy;
+  };
+  dealii::IndexSet one(1);
+  one.add_index(0);
+  Vector u(one, MPI_COMM_SELF);
+  u(0) = 3.;
+  u.compress(dealii::VectorOperation::insert);
+  const auto evaluate = [](const Vector &at) { return State{std::abs(std::atan(at(0))), 1., 0.}; };
+  const continuum::NewtonSolver<State> newton({1e-12, 20, 10},
+                                              {evaluate, [](const State &, const Vector &) { return 0.; },
+                                               [](const State &, const Vector &at, double, Vector &step)
+                                               {
+                                                 step(0) = -std::atan(at(0)) * (1. + at(0) * at(0));
+                                                 step.compress(dealii::VectorOperation::insert);
+                                                 return continuum::NewtonStep{0, 0.};
+                                               },
+                                               nullptr, nullptr});
+  std::vector<continuum::NewtonIteration> history;
+  EXPECT_EQ(newton.solve(u, evaluate(u), 1, 1., 0, history), "");
+  EXPECT_LT(std::abs(u(0)), 1e-12);
+  for (std::size_t i = 1; i < history.size(); ++i)
+    EXPECT_LT(history[i].residual, history[i - 1].residual);
 }
