@@ -177,6 +177,40 @@ double DynamicSolver::load_factor_at(const double time) const
   return factor;
 }
 
+// Returns the rates of the load factor at the end `time` of a step of `duration`, by central differences over it; the
+// second one at the time at which the time integrator has its accelerations, see acceleration().
+DynamicSolver::LoadFactorRates DynamicSolver::load_factor_rates(const double time, const double duration) const
+{
+  if (!given_load_factor_)
+    return {};
+  const double of_acceleration = time + (settings_.rule.alpha_m - settings_.rule.alpha_f) * duration;
+  return {(load_factor_at(time + duration) - load_factor_at(time - duration)) / (2. * duration),
+          (load_factor_at(of_acceleration + duration) - 2. * load_factor_at(of_acceleration) +
+           load_factor_at(of_acceleration - duration)) /
+            (duration * duration)};
+}
+
+// Sets x to `factor` times the prescribed displacement where the displacement is prescribed.
+void DynamicSolver::prescribe(Vector &x, const double factor) const
+{
+  for (const types::global_dof_index i : sheet_.owned())
+    if (is_prescribed(i))
+      x(i) = factor * full_lift_(i);
+  x.compress(VectorOperation::insert);
+  sheet_.conformity_constraints().distribute(x);
+}
+
+// Computes velocity and acceleration at the end of a step that leads to the displacement u.
+void DynamicSolver::end_rates(const Step &step, const Vector &u, Vector &v, Vector &a) const
+{
+  a = step.last_acceleration(u);
+  v = step.last_velocity(a);
+  if (!given_load_factor_) // Newmark's formulas keep both at zero
+    return;
+  prescribe(v, step.last_rates.first);
+  prescribe(a, step.last_rates.second);
+}
+
 DynamicSolver::Vector DynamicSolver::with_ghosts(const Vector &owned) const
 {
   Vector x = sheet_.make_ghosted();
@@ -297,16 +331,10 @@ void DynamicSolver::begin(Vector &u, Vector &v, const double time, const std::ve
   Vector a = sheet_.make_owned();
   for (const types::global_dof_index i : sheet_.owned())
     if (is_prescribed(i))
-    {
       u(i) = factors[0] * full_lift_(i);
-      v(i) = rate * full_lift_(i);
-      a(i) = second_rate * full_lift_(i);
-    }
   u.compress(VectorOperation::insert);
-  v.compress(VectorOperation::insert);
-  a.compress(VectorOperation::insert);
-  sheet_.conformity_constraints().distribute(v);
-  sheet_.conformity_constraints().distribute(a);
+  prescribe(v, rate);
+  prescribe(a, second_rate);
 
   // Solve M a = lambda L - internal and viscous forces, with prescribed a where the displacement is prescribed.
   const Vector u_ghosted = with_ghosts(u);
@@ -436,9 +464,11 @@ std::string DynamicSolver::advance(const double duration, const double end)
   if (duration != duration_)
     linear_solver_->invalidate();
   duration_ = duration;
-  Step step{settings_.rule,      duration,     sheet_.make_owned(), sheet_.make_owned(),
-            sheet_.make_owned(), load_factor_, load_factor_at(end), release_share(time_),
-            release_share(end)};
+  Step step{settings_.rule,      duration,
+            sheet_.make_owned(), sheet_.make_owned(),
+            sheet_.make_owned(), load_factor_,
+            load_factor_at(end), release_share(time_),
+            release_share(end),  load_factor_rates(end, duration)};
   step.u = displacement_;
   step.v = velocity_;
   step.a = acceleration_;
@@ -452,8 +482,7 @@ std::string DynamicSolver::advance(const double duration, const double end)
   if (failure.empty())
     try
     {
-      a = step.last_acceleration(u);
-      v = step.last_velocity(a);
+      end_rates(step, u, v, a);
       history = memory_forces_.advanced(duration, with_ghosts(u), branch_energies);
       ledger = ledger_after(step, u, v, branch_energies);
       if (!std::isfinite(ledger.imbalance) || !std::isfinite(a.l2_norm()))

@@ -93,8 +93,10 @@ struct EnergyLedger
 /// step that leads to det F <= 0 anywhere. The residual converges to relative_tolerance times the acting forces, or to
 /// the round-off of its own evaluation where that is larger (eq. (C.45)).
 ///
-/// The velocity and acceleration of prescribed displacements follow from lambda(t) by one-sided differences at the
-/// start, and from Newmark's formulas afterwards. Periodic pairs constrain displacement increments and velocities, so
+/// The velocity and acceleration of prescribed displacements follow from lambda(t) by differences over one time step:
+/// one-sided at the start, central afterwards. Newmark's formulas hold for the other unknowns; for prescribed ones they
+/// would let the velocity alternate for ever after a kink of lambda(t). A load factor must be defined one time step
+/// beyond the last. Periodic pairs constrain displacement increments and velocities, so
 /// an affine state with periodic fluctuations remains one.
 ///
 /// All functions are collective. Every exception is thrown on every rank.
@@ -195,6 +197,12 @@ public:
   const SolverReport &last_report() const { return report_; }
 
 private:
+  /// Derivatives of the load factor by time.
+  struct LoadFactorRates
+  {
+    double first = 0.;  ///< [1/s]
+    double second = 0.; ///< [1/s^2]
+  };
   struct Residual;
   struct Step;
 
@@ -204,6 +212,9 @@ private:
   void apply_conditions();
   double release_share(double time) const;
   double load_factor_at(double time) const;
+  LoadFactorRates load_factor_rates(double time, double duration) const;
+  void prescribe(Vector &x, double factor) const;
+  void end_rates(const Step &step, const Vector &u, Vector &v, Vector &a) const;
   Vector interpolate(const VectorField &field) const;
   bool is_prescribed(dealii::types::global_dof_index i) const;
   void begin(Vector &u, Vector &v, double time, const std::vector<Vector> &relaxed);

@@ -19,10 +19,12 @@ namespace latcon::continuum
 {
 DynamicSolver::Residual DynamicSolver::evaluate(const Step &step, const Vector &u) const
 {
-  const Vector a_1 = step.last_acceleration(u);
+  Vector v_1;
+  Vector a_1;
+  end_rates(step, u, v_1, a_1);
   const double factor = step.mean_load_factor();
   Residual state{with_ghosts(Step::mean(step.rule.alpha_f, step.u, u)),
-                 with_ghosts(Step::mean(step.rule.alpha_f, step.v, step.last_velocity(a_1))),
+                 with_ghosts(Step::mean(step.rule.alpha_f, step.v, v_1)),
                  sheet_.make_owned(),
                  sheet_.make_owned(),
                  0.,

@@ -18,6 +18,7 @@ struct DynamicSolver::Step
   double last_load_factor;
   double first_release_share;
   double last_release_share;
+  LoadFactorRates last_rates; // at the end
 
   double mean_load_factor() const { return rule.alpha_f * first_load_factor + (1. - rule.alpha_f) * last_load_factor; }
   double mean_release_share() const
