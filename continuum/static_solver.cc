@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cmath>
 #include <limits>
+#include <sstream>
 
 using namespace dealii;
 
@@ -120,21 +121,30 @@ double StaticSolver::round_off(const Evaluation &state, const Vector &u) const
   return 4. * std::numeric_limits<double>::epsilon() * std::sqrt(Utilities::MPI::sum(sum, sheet_.communicator()));
 }
 
-// Returns true if the tangent at u, with ghost entries, is positive along the Newton step only with a larger penalty:
-// then the discretisation has lost its coercivity, and not the sheet its stability.
-bool StaticSolver::penalty_is_too_small(const Vector &u, const Vector &step, const double load_factor) const
+// Throws if the tangent at u, with ghost entries, is positive along the Newton step with a larger penalty: then the
+// discretisation has lost its coercivity, and not the sheet its stability.
+void StaticSolver::check_penalty(const Vector &u, const Vector &step, const double load_factor) const
 {
   if (!sheet_.has_gradient())
-    return false;
+    return;
   Constitution laws = sheet_.constitution();
-  laws.penalty *= 10.;
+  const double penalty = laws.penalty;
+  laws.penalty = 10. * std::max(penalty, Constitution(*laws.local).penalty);
   const Sheet stabilised(sheet_.mesh(), laws, sheet_.degree(), sheet_.conditions()); // with the same unknowns
   Sheet::Matrix K;
   stabilised.make_matrix(homogeneous_, K);
   stabilised.tangent(u, homogeneous_, K, load_factor);
   Vector product = sheet_.make_owned();
   K.vmult(product, step);
-  return product * step > 0.;
+  if (!(product * step > 0.))
+    return;
+  std::ostringstream message;
+  message
+    << "the face terms of the gradient energy have lost coercivity: the tangent is not positive definite along the "
+       "Newton step with an interior penalty gamma of "
+    << penalty << ", but it is with " << laws.penalty
+    << "; raise the penalty (Continuum/penalty of a case) or use cells that are less skewed";
+  throw LinearSolverFailed(message.str());
 }
 
 std::string StaticSolver::attempt(const double target, SolverReport &report)
@@ -168,11 +178,8 @@ std::string StaticSolver::attempt(const double target, SolverReport &report)
     const Clock clock(report.times.linear_solve);
     const unsigned int iterations = linear_solver_->solve(matrix_, step, rhs, forcing);
     const double slope = -(rhs * step); // rhs is minus the residual, zero at constrained unknowns
-    if (rise == nullptr && !(slope < 0.) && penalty_is_too_small(at, step, target))
-      throw LinearSolverFailed(
-        "the face terms of the gradient energy have lost coercivity: with ten times the interior "
-        "penalty the tangent is positive along the Newton step; raise the penalty (gamma, entry "
-        "Continuum/penalty) or refine the mesh where the deformation varies within a cell");
+    if (rise == nullptr && !(slope < 0.))
+      check_penalty(at, step, target);
     homogeneous_.distribute(step);
     return NewtonStep{iterations, slope};
   };
@@ -275,8 +282,9 @@ void StaticSolver::advance(const double end, SolverReport &report, const Observe
     {
       rise = 0.5 * std::min(rise, left);
       if (rise < settings_.smallest_load_step)
-        throw SolverFailed(
-          "static equilibrium was lost at load factor " + std::to_string(load_factor_) + ": " + failure, report);
+        throw SolverFailed("no static equilibrium was found beyond load factor " + std::to_string(load_factor_) + ": " +
+                             failure,
+                           report);
     }
   } while (load_factor_ != end);
 }

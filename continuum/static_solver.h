@@ -99,7 +99,7 @@ private:
   void set_up();
   Evaluation evaluate(const Vector &u, double load_factor) const;
   double round_off(const Evaluation &state, const Vector &u) const;
-  bool penalty_is_too_small(const Vector &u, const Vector &step, double load_factor) const;
+  void check_penalty(const Vector &u, const Vector &step, double load_factor) const;
   std::string attempt(double target, SolverReport &report);
   void advance(double end, SolverReport &report, const Observer &observer);
 

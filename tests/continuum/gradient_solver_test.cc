@@ -5,6 +5,7 @@
 #include "sheets.h"
 
 #include <deal.II/base/function_parser.h>
+#include <deal.II/grid/grid_tools.h>
 
 #include <gtest/gtest.h>
 
@@ -422,6 +423,40 @@ TEST(GradientEquilibrium, StaysCoerciveWhereTheLawStiffens)
   };
   const double usual = energy(Constitution(network).penalty);
   EXPECT_NEAR(usual, energy(20.), 1e-4 * usual);
+}
+
+// Cells skewed by a shear of 3 violate the inverse estimate at a quarter of the default penalty: the message says so,
+// and the default solves the sheet.
+TEST(GradientEquilibrium, NamesThePenaltyIfFaceTermsLoseCoercivity)
+{
+  const continuum::CauchyBorn law = rubber_network();
+  const continuum::LatticeGradient gradient = rubber_gradient(0.05);
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::make_rectangle(mesh, rectangle(8, 8));
+  dealii::GridTools::transform([](const Point<2> &X) { return Point<2>(X[0] + 3. * X[1], X[1]); }, mesh);
+  const auto field = std::make_shared<Field>(
+    [](const Point<2> &X) {
+      return Tensor<1, 2>({0.1 * X[0], 0.2 * X[1] + 0.01 * std::sin(30. * X[0]) * std::sin(40. * X[1])});
+    });
+  const auto solve = [&](const double penalty)
+  {
+    Constitution laws(law, gradient);
+    laws.penalty = penalty;
+    StaticSettings settings;
+    settings.degree = 2;
+    settings.smallest_load_step = 1. / 16.;
+    StaticSolver(mesh, laws, on_all_edges(field), settings).solve();
+  };
+  EXPECT_NO_THROW(solve(Constitution(law).penalty));
+  try
+  {
+    solve(0.5);
+    FAIL() << "the penalty is too small";
+  }
+  catch (const continuum::SolverFailed &failure)
+  {
+    EXPECT_NE(std::string(failure.what()).find("raise the penalty"), std::string::npos) << failure.what();
+  }
 }
 
 // Below the limit the penalty is that of the theory, bit for bit; the stiffness bounds the largest one in any
