@@ -34,7 +34,7 @@ support::ExitCode draw_page(Run &run)
 } // namespace
 
 output::Results measured_results(const input::Case &input, const analysis::CrackMeasurement &crack, const Side side,
-                                 const double imbalance, const double allowed)
+                                 const double imbalance, const output::Tolerance &allowed)
 {
   output::Results results;
   const auto add = [&](const std::string &quantity, const std::string &unit,
@@ -45,7 +45,7 @@ output::Results measured_results(const input::Case &input, const analysis::Crack
       (side == Side::lattice ? row.lattice : row.continuum) = measured->value;
     if (published)
     {
-      row.tolerance = input.reference_tolerance;
+      row.tolerance = {input.reference_tolerance, "that of the case: Reference/tolerance"};
       // A published quantity that could not be measured does not agree.
       row.error =
         measured ? support::relative_error(measured->value, *published) : std::numeric_limits<double>::quiet_NaN();

@@ -21,7 +21,7 @@ enum class Side
 /// Returns the rows `fracture` of a crack: its measured quantities beside the published ones, and its energies.
 /// @param imbalance output::LedgerCheck::imbalance() [-] @param allowed with which it holds
 output::Results measured_results(const input::Case &input, const analysis::CrackMeasurement &crack, Side side,
-                                 double imbalance, double allowed);
+                                 double imbalance, const output::Tolerance &allowed);
 
 /// Checks claims on the case's own material and pre-stretch, as require_verified(). A crack that they refuse leaves its
 /// page all the same.

@@ -53,21 +53,25 @@ double LedgerCheck::rate() const
   return largest_power_ > 0. ? largest_power_ / exchanged() : 0.;
 }
 
-double allowed_imbalance(input::Case::Integrator integrator, double n_steps)
+Tolerance allowed_imbalance(input::Case::Integrator integrator, double n_steps)
 {
   const double n = support::largest_of({n_steps, 1.});
-  return integrator == input::Case::Integrator::velocity_verlet ? support::largest_of({2e-4, 0.1 / n})
-                                                                : support::largest_of({5e-3, 2. / n});
+  if (integrator == input::Case::Integrator::velocity_verlet)
+    return {support::largest_of({2e-4, 0.1 / n}),
+            "five times the largest of shipped cases at the automatic step; a tenth of a step of the start"};
+  return {support::largest_of({5e-3, 2. / n}),
+          "three times the largest of shipped cases at the automatic step; two steps of the start"};
 }
 
-double allowed_imbalance_of_damage(double advance, double n_steps)
+Tolerance allowed_imbalance_of_damage(double advance, double n_steps)
 {
-  return support::largest_of({5e-3, 0.12 * advance, 2. / support::largest_of({n_steps, 1.})});
+  return {support::largest_of({5e-3, 0.12 * advance, 2. / support::largest_of({n_steps, 1.})}),
+          "three times the lag of the damage by an automatic step (C.83); two steps of the start"};
 }
 
-double allowed_imbalance_of_implicit_motion(double rate, double step)
+Tolerance allowed_imbalance_of_implicit_motion(double rate, double step)
 {
-  return std::clamp(std::pow(rate * step, 2) / 4., 1e-6, 1e-2);
+  return {std::clamp(std::pow(rate * step, 2) / 4., 1e-6, 1e-2), "second order in the step (L.39), at most 1e-2"};
 }
 
 } // namespace latcon::output

@@ -3,6 +3,7 @@
 #include <cstddef>
 
 #include "verification/input/case.h"
+#include "verification/output/results.h"
 
 namespace latcon::output
 {
@@ -80,14 +81,14 @@ private:
 // of its seed.
 
 /// Tolerance of a motion of the lattice, with or without a crack [-].
-double allowed_imbalance(input::Case::Integrator integrator, double n_steps);
+Tolerance allowed_imbalance(input::Case::Integrator integrator, double n_steps);
 
 /// Tolerance of a crack of the continuum [-], theory-damage.md, eq. (C.83).
 /// @param advance of the tip in an automatic step, over the length xi of the damage [-]
-double allowed_imbalance_of_damage(double advance, double n_steps);
+Tolerance allowed_imbalance_of_damage(double advance, double n_steps);
 
 /// Tolerance of an implicit motion without a crack [-], theory.md, eq. (L.39).
 /// @param rate LedgerCheck::rate() [1/s] @param step [s]
-double allowed_imbalance_of_implicit_motion(double rate, double step);
+Tolerance allowed_imbalance_of_implicit_motion(double rate, double step);
 
 } // namespace latcon::output
