@@ -426,6 +426,16 @@ class ExitCodes(TemporaryFolder):
         self.assertEqual(run.returncode, 2, run.stderr)
         self.assertIn("the time stepping is unstable beyond", run.stderr)
 
+    def test_noise_that_decays_in_steps_too_long_fails_by_its_ledger(self):
+        """Automatic steps of Runge-Kutta-Chebyshev miss the energy of about two of them (theory.md, eq. (L.40))."""
+        for step, code in (("auto", 0), (4 * 3.7e-6, 3)):
+            run = latcon("lattice", CASES / "quick.prm", "--output-dir", self.out, "--set", "Lattice/solution=motion", "--set",
+                         "Time/integrator=runge-kutta-chebyshev", "--set", "Time/end=1 ms", "--set", f"Time/step={step}")
+            self.assertEqual(run.returncode, code, run.stderr)
+            row = [row for row in read_csv(self.out / "results.csv") if row["quantity"] == "energy imbalance over energy exchanged"][0]
+            self.assertEqual(row["verdict"], "fails" if code else "holds")
+            self.assertNotEqual(row["reason"], "")
+
     def test_slit_runs_between_ends_that_absorb(self):
         run = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, *BARE, "--skip-verification", "--set",
                      "Fracture/left end=free", "--set", "Fracture/right end=absorbing", "--set",

@@ -96,8 +96,8 @@ Crack run_crack(const input::Case &input, const lattice::TriangularLattice &shee
     near_tip.write(run.directory(), crack);
   return {crack, measured_results(
                    input, crack, Side::lattice, record.imbalance(),
-                   output::allowed_imbalance(input.integrator, simulation.state().time /
-                                                                 input.automatic().fracture_time_stepping().step))};
+                   output::allowed_imbalance_of_crack(
+                     input.integrator, simulation.state().time / input.automatic().fracture_time_stepping().step))};
 }
 
 } // namespace

@@ -80,8 +80,12 @@ private:
 // duration over the automatic step: steps do not resolve the start of a motion, the decay of its noise and the recoil
 // of its seed.
 
-/// Tolerance of a motion of the lattice, with or without a crack [-].
-Tolerance allowed_imbalance(input::Case::Integrator integrator, double n_steps);
+/// Tolerance of a crack of the lattice [-].
+Tolerance allowed_imbalance_of_crack(input::Case::Integrator integrator, double n_steps);
+
+/// Tolerance of a motion of the lattice without a crack [-]. @param n_steps in which it exchanges its energy,
+/// theory.md, eq. (L.40)
+Tolerance allowed_imbalance_of_motion(input::Case::Integrator integrator, double n_steps);
 
 /// Tolerance of a crack of the continuum [-], theory-damage.md, eq. (C.83).
 /// @param advance of the tip in an automatic step, over the length xi of the damage [-]

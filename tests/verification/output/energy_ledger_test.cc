@@ -89,11 +89,13 @@ TEST(AllowedImbalance, OfACrackOfTheContinuumGrowsWithItsSpeed)
 
 TEST(AllowedImbalance, OfAMotionOfFewStepsIsThatOfItsStart)
 {
-  using latcon::output::allowed_imbalance;
   using Integrator = latcon::input::Case::Integrator;
-  for (const Integrator integrator : {Integrator::velocity_verlet, Integrator::runge_kutta_chebyshev})
-  {
-    EXPECT_DOUBLE_EQ(*allowed_imbalance(integrator, 5.), 10. * *allowed_imbalance(integrator, 50.));
-    EXPECT_EQ(*allowed_imbalance(integrator, 1e4), *allowed_imbalance(integrator, 1e5));
-  }
+  for (const auto allowed : {latcon::output::allowed_imbalance_of_crack, latcon::output::allowed_imbalance_of_motion})
+    for (const Integrator integrator : {Integrator::velocity_verlet, Integrator::runge_kutta_chebyshev})
+    {
+      EXPECT_DOUBLE_EQ(*allowed(integrator, 5.), 10. * *allowed(integrator, 50.));
+      EXPECT_EQ(*allowed(integrator, 1e4), *allowed(integrator, 1e5));
+      EXPECT_TRUE(std::isnan(*allowed(integrator, std::numeric_limits<double>::quiet_NaN())));
+      EXPECT_FALSE(allowed(integrator, 5.).reason.empty());
+    }
 }
