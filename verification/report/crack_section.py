@@ -18,7 +18,7 @@ CAPTIONS = {
                       "offset and slope from a least-squares fit. Below: positions of broken bonds, coloured by time.",
     "energy.png": "Energy balance per metre of sheet thickness, since the cut of the seed crack. The dashed line is the "
                   "energy released by the bonds; the areas are the energies that it was converted to; the small axis is "
-                  "the difference, over the energy supplied to the sheet.",
+                  "the difference, over the energy that the crack spent.",
     "near_tip_velocity.png": "Velocity of the material around the tip (cross), mean over samples. Samples where the path "
                              "descends were mirrored first, which keeps the two sides of an oscillating crack "
                              "separate. White: the opening, or points with material in fewer than half of the samples. "
@@ -38,7 +38,7 @@ CONTINUUM_CAPTIONS = {
                       "sinusoid has the measured wavelength and amplitude.",
     "energy.png": "Energy balance per metre of sheet thickness, since the seed crack. The dashed line is the elastic energy "
                   "released; the areas are the energies that it was converted to. Broken material takes its motion with it. "
-                  "The small axis is the difference, over the initial energy.",
+                  "The small axis is the difference, over the energy that the crack spent.",
 }
 
 NEAR_TIP = ("near_tip_velocity.png", "near_tip_stress.png")
