@@ -212,7 +212,7 @@ class ContinuumFracture(TemporaryFolder):
         steps = {}
         for times in (4, 1):
             folder = self.folder / str(times)
-            entries = {"Sheet/length": "3 cm", "Sheet/height": "1.5 cm", "Time/end": "1 ms", "Continuum/time step": 4.62465e-6 * times,
+            entries = {"Sheet/length": "3 cm", "Sheet/height": "1.5 cm", "Time/end": "1 ms", "Continuum/time step": 1.26936e-6 * times,
                        "Output/energy interval": 5}
             run = latcon("fracture", CASES / "quick.prm", "--side", "continuum", "--skip-verification", "--no-report", "--output-dir", folder,
                          *[word for key, value in entries.items() for word in ("--set", f"{key}={value}")])
