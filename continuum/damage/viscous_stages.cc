@@ -100,6 +100,6 @@ unsigned int ViscousStages::required(const double limit, const double wave)
   for (unsigned int n = fewest; n < fewest + 10; ++n)
     if (const ViscousStages method(n); method.damps(limit, wave) && method.damps(0.25 * limit, wave))
       return n;
-  throw InvalidInput("the time step is too long for the waves of a sheet with gradient energy");
+  throw InvalidInput("the time step is too long: waves that the viscosity hardly damps would grow");
 }
 } // namespace latcon::continuum

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <sstream>
 #include <utility>
 
@@ -112,6 +113,23 @@ void require_undamaged_loading(const input::Case &input, const DamagedSheet &she
                    {"Loading/strain x", "Loading/strain y", "Fracture/breaking stretch"});
 }
 
+// Returns the longest of `step`, half of it, a quarter of it and so on for which `stages` does not throw InvalidInput:
+// with little viscosity stages damp no waves in steps that velocity Verlet could take. Returns `step` if there is none.
+double longest_accepted(double step, const std::function<unsigned int(double)> &stages)
+{
+  constexpr unsigned int most_halvings = 10;
+  for (unsigned int n = 0; n <= most_halvings; ++n)
+    try
+    {
+      (void)stages(std::ldexp(step, -static_cast<int>(n)));
+      return std::ldexp(step, -static_cast<int>(n));
+    }
+    catch (const continuum::InvalidInput &)
+    {
+    }
+  return step;
+}
+
 // Sets the time step and its stages, or reports why the sheet cannot move.
 void set_stepping(const input::Case &input, DamagedSheet &sheet, input::Parameters &parameters)
 {
@@ -134,11 +152,16 @@ void set_stepping(const input::Case &input, DamagedSheet &sheet, input::Paramete
                      {"Damage/length"});
     return;
   }
-  sheet.automatic_step = 0.5 * stable;
-  sheet.step = probe.step = input.continuum.time_step.value_or(sheet.automatic_step);
+  const auto stages = [&](double step)
+  {
+    probe.step = step;
+    return continuum::DamageMotion(probe).n_stages();
+  };
+  sheet.automatic_step = longest_accepted(0.5 * stable, stages);
+  sheet.step = input.continuum.time_step.value_or(sheet.automatic_step);
   try
   {
-    sheet.stages = continuum::DamageMotion(probe).n_stages();
+    sheet.stages = stages(sheet.step);
   }
   catch (const continuum::InvalidInput &error)
   {

@@ -24,8 +24,8 @@ struct DamagedSheet
 {
   Subject subject;
   continuum::DamageLaw law;
-  /// Automatic time step [s]: half the longest with which an explicit step without viscosity is stable in the loaded
-  /// sheet.
+  /// Automatic time step [s]: half the longest with which an explicit step without viscosity is stable, halved until
+  /// stages with the viscosity damp all waves.
   double automatic_step;
   double step;         ///< that of the case, or the automatic one [s]
   unsigned int stages; ///< evaluations of the forces in a step
