@@ -52,8 +52,8 @@ def columns(path):
         return [re.sub(r" \[[^\]]*\]$", "", column) for column in next(csv.reader(file))]
 
 
-# Objects whose keys are names of parts of the program, libraries, runs, or entries.
-OPEN = ("wall_time_s", "libraries", "set", "settings", "units")
+# Objects whose keys are names of parts of the program, libraries, runs, entries, or rows.
+OPEN = ("wall_time_s", "failed_rows", "libraries", "set", "settings", "units")
 
 
 def keys(value):

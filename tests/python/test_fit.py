@@ -40,6 +40,7 @@ class Crack:
     def __init__(self):
         self.runs = []
         self.body = None
+        self.failed_rows = {}
 
     def __call__(self, case, directory, *, threads, resume, skip_verification, report, progress):
         assert threads == 1 and not report and callable(progress)
@@ -54,7 +55,7 @@ class Crack:
                  "wavelength": density / 1e5 if density < 1150 else None,
                  "pattern": "oscillating" if density < 1200 else "straight"}
         (directory / "crack.json").write_text(json.dumps(crack))
-        (directory / "run.json").write_text("{}")
+        (directory / "run.json").write_text(json.dumps({"failed_rows": self.failed_rows}))
         if problem:
             raise problem
         return latcon.open(directory)
@@ -163,6 +164,7 @@ def test_refused_failed_and_undetermined_points_are_recorded_and_worse(small_fit
 
 def test_a_crack_that_misses_its_reference_values_is_measured(small_fit, crack, tmp_path):
     crack.body = lambda **_: error_of(3, "the wavelength differs")
+    crack.failed_rows = {"fracture: wavelength": "reference"}
     assert set(small_fit(tmp_path / "fit", evaluations=4).points["ended"]) == {"done"}
 
     def refuse(**_):
@@ -170,6 +172,17 @@ def test_a_crack_that_misses_its_reference_values_is_measured(small_fit, crack, 
     crack.body = refuse
     with pytest.raises(latcon.LatconError, match="was refused: no rubber"):
         small_fit(tmp_path / "refused", evaluations=4)
+
+
+def test_a_crack_whose_energies_do_not_balance_is_not_measured(small_fit, crack, tmp_path):
+    crack.body = lambda stretch, **_: error_of(3, "") if stretch > 3.1 else None
+    crack.failed_rows = {"fracture: wavelength": "reference", "fracture: energy imbalance": "ledger"}
+    points = small_fit(tmp_path / "fit", evaluations=16).points
+    lost = points[STRETCH] > 3.1
+    assert lost.any() and not lost.all()
+    assert (points.loc[lost, ["ended", "message"]] ==
+            ["refused", "failed its checks: fracture: energy imbalance (ledger)"]).all(axis=None)
+    assert np.isinf(points.loc[lost, "misfit"]).all() and (points.loc[~lost, "ended"] == "done").all()
 
 
 def test_a_first_batch_without_result_is_an_error(small_fit, crack, tmp_path):

@@ -79,7 +79,7 @@ class Fracture(unittest.TestCase):
         self.assertEqual(len(rows), len(results["claims"]))
         for row, entry in zip(rows, results["claims"]):
             self.assertEqual(list(row), ["claim", "quantity", "unit", "lattice", "continuum", "theory", "error",
-                                         "tolerance", "verdict", "reason", "gate"])
+                                         "tolerance", "verdict", "reason", "gate", "kind"])
             self.assertEqual(row["verdict"], entry["verdict"])
             if entry["lattice"] is not None:
                 self.assertEqual(float(row["lattice"]), entry["lattice"])

@@ -192,6 +192,10 @@ support::ExitCode Run::end(const output::Results &results, support::ExitCode exi
     const SignalDeferral deferral;
     results.write(directory_);
     record_->verdict = to_string(results.verdict());
+    output::RunInfo::Object failed;
+    for (const auto &[row, kind] : results.failed_rows())
+      failed.emplace_back(row, to_string(kind));
+    info().add("failed_rows", failed);
     record_->write(exit_code);
     record_->exit_code = exit_code;
   }

@@ -45,6 +45,7 @@ output::Results measured_results(const input::Case &input, const analysis::Crack
       (side == Side::lattice ? row.lattice : row.continuum) = measured->value;
     if (published)
     {
+      row.kind = output::RowKind::reference;
       row.tolerance = {input.reference_tolerance, "that of the case: Reference/tolerance"};
       // A published quantity that could not be measured does not agree.
       row.error =
@@ -57,6 +58,7 @@ output::Results measured_results(const input::Case &input, const analysis::Crack
   add("wavelength, undeformed", "m", crack.wavelength, input.reference_wavelength);
   add("amplitude, undeformed", "m", crack.amplitude, input.reference_amplitude);
   output::Result energies{"fracture", "energy imbalance over energy exchanged", "1", {}, {}, {}, imbalance, allowed};
+  energies.kind = output::RowKind::ledger;
   (side == Side::lattice ? energies.lattice : energies.continuum) = imbalance;
   results.add(energies);
   return results;

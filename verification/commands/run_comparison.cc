@@ -99,7 +99,7 @@ CrackRun read_run(const std::string &directory)
   study::PlannedRun planned;
   planned.run = directory;
   planned.spacing = input.spacing;
-  run.outcome = study::read_outcome(planned, directory);
+  run.outcome = study::read_crack(planned, directory);
   if (run.outcome.state != study::RunState::measured)
     throw support::InputError(
       directory + ": its crack was not measured; crack.json or run.json is damaged, or the run " + "has not ended");
@@ -194,6 +194,8 @@ RunComparison compare_runs(const std::string &first, const std::string &second)
   comparison.second = second;
   comparison.first_side = one.side;
   comparison.second_side = other.side;
+  comparison.first_problem = one.outcome.problem;
+  comparison.second_problem = other.outcome.problem;
   comparison.first_pattern = one.outcome.pattern;
   comparison.second_pattern = other.outcome.pattern;
   comparison.spacing = one.spacing;

@@ -53,6 +53,7 @@ struct RunComparison
 {
   std::string first, second;                                   ///< the directories
   std::string first_side = "lattice", second_side = "lattice"; ///< which broke, lattice or continuum
+  std::string first_problem, second_problem; ///< rows that failed and make a run unfit as a measurement; else empty
   std::string first_pattern, second_pattern;
   std::vector<QuantityPair> quantities; ///< those that at least one run has
   std::vector<EntryPair> entries;

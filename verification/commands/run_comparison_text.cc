@@ -74,6 +74,9 @@ std::string RunComparison::text() const
                     cell(pair.second, pair.second_uncertainty, pair.unit), cell(pair.difference(), {}, pair.unit),
                     pair.normalized_difference() ? number_text(*pair.normalized_difference(), "%+.1f") : ""});
   std::string text = table(rows) + "\n";
+  for (const auto &[run, problem] : {std::pair(first, first_problem), std::pair(second, second_problem)})
+    if (!problem.empty())
+      text += run + " failed its checks, and is no measurement: " + problem + "\n";
   if (entries.empty())
     text += "The cases have the same entries.\n";
   else
@@ -100,6 +103,7 @@ std::string RunComparison::json(const std::string &output_directory) const
   Json document{
     {"first", first}, {"second", second}, {"first_folder", folder(first)}, {"second_folder", folder(second)}};
   document["side"] = {{"first", first_side}, {"second", second_side}};
+  document["failed_checks"] = {{"first", first_problem}, {"second", second_problem}};
   document["pattern"] = {{"first", first_pattern}, {"second", second_pattern}};
   document["quantities"] = Json::array();
   for (const QuantityPair &pair : quantities)

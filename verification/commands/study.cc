@@ -248,8 +248,9 @@ support::ExitCode exit_code_of(const study::StudyResults &results, const output:
   };
   if (any(study::RunState::failed))
     return support::ExitCode::solver_failed;
-  return any(study::RunState::refused) || rows.verdict() == output::Verdict::fails ? support::ExitCode::claim_failed
-                                                                                   : support::ExitCode::done;
+  return any(study::RunState::refused) || any(study::RunState::rejected) || rows.verdict() == output::Verdict::fails
+           ? support::ExitCode::claim_failed
+           : support::ExitCode::done;
 }
 
 // Checks that a plan is the recorded one of the study whose shards run in a directory.

@@ -66,6 +66,11 @@ std::string to_string(const Verdict verdict)
   return "fails";
 }
 
+std::string to_string(const RowKind kind)
+{
+  return kind == RowKind::claim ? "claim" : kind == RowKind::ledger ? "ledger" : "reference";
+}
+
 Verdict Result::verdict() const
 {
   if (!tolerance)
@@ -154,6 +159,15 @@ std::size_t Results::count(const Verdict verdict) const
     std::count_if(rows_.begin(), rows_.end(), [verdict](const Result &row) { return row.verdict() == verdict; }));
 }
 
+std::vector<std::pair<std::string, RowKind>> Results::failed_rows() const
+{
+  std::vector<std::pair<std::string, RowKind>> failed;
+  for (const Result &row : rows_)
+    if (row.verdict() == Verdict::fails)
+      failed.emplace_back(row.claim + ": " + row.quantity, row.kind);
+  return failed;
+}
+
 std::string Results::verdict_text(const std::size_t most) const
 {
   const std::size_t failing = count(Verdict::fails), judged = failing + count(Verdict::holds);
@@ -190,6 +204,7 @@ std::string Results::json() const
     claim["verdict"] = to_string(row.verdict());
     claim["reason"] = row.tolerance.reason;
     claim["gate"] = row.gate;
+    claim["kind"] = to_string(row.kind);
     claims.push_back(std::move(claim));
   }
   nlohmann::ordered_json document;
@@ -200,12 +215,12 @@ std::string Results::json() const
 
 std::string Results::csv() const
 {
-  std::string text = "claim,quantity,unit,lattice,continuum,theory,error,tolerance,verdict,reason,gate\n";
+  std::string text = "claim,quantity,unit,lattice,continuum,theory,error,tolerance,verdict,reason,gate,kind\n";
   for (const Result &row : rows_)
     text += csv_field(row.claim) + ',' + csv_field(row.quantity) + ',' + csv_field(row.unit) + ',' +
             csv_of(row.lattice) + ',' + csv_of(row.continuum) + ',' + csv_of(row.theory) + ',' + csv_of(row.error) +
             ',' + csv_of(row.tolerance) + ',' + to_string(row.verdict()) + ',' + csv_field(row.tolerance.reason) + ',' +
-            (row.gate ? "true" : "false") + '\n';
+            (row.gate ? "true," : "false,") + to_string(row.kind) + '\n';
   return text;
 }
 

@@ -22,6 +22,17 @@ enum class Verdict
 /// Returns the name of a verdict: "holds", "fails", "reported".
 [[nodiscard]] std::string to_string(Verdict verdict);
 
+/// What a row compares, and so what its failure means.
+enum class RowKind
+{
+  claim,    ///< lattice, continuum and theory: the program, or the material, is not what the claim states
+  ledger,   ///< energies of this run: its numbers are no measurement
+  reference ///< this run with published values: its numbers are a measurement that differs
+};
+
+/// Returns the name of a kind: "claim", "ledger", "reference".
+[[nodiscard]] std::string to_string(RowKind kind);
+
 /// Largest error with which a row holds, and how it was derived; empty: the row is informational.
 struct Tolerance : std::optional<double>
 {
@@ -51,6 +62,7 @@ struct Result
   std::optional<double> error;     ///< as defined by the claim, usually relative; smaller is better
   Tolerance tolerance = {};        ///< largest error with which the claim holds; empty: informational
   bool gate = false;               ///< whether a crack is refused if the row does not hold
+  RowKind kind = RowKind::claim;
 
   /// Returns `reported` if there is no tolerance. Otherwise `holds` if there is an error, error <= tolerance, and all
   /// given numbers (lattice, continuum, theory, error, tolerance) are finite; otherwise `fails`.
@@ -86,13 +98,17 @@ public:
   /// Returns the number of rows with this verdict.
   [[nodiscard]] std::size_t count(Verdict verdict) const;
 
+  /// Returns "CLAIM: QUANTITY" and kind of each row that fails, in order.
+  [[nodiscard]] std::vector<std::pair<std::string, RowKind>> failed_rows() const;
+
   /// Returns a summary: "98 checks hold", or the number of failures with a line for each: claim, quantity, error,
   /// tolerance. @param most largest number of listed rows
   [[nodiscard]] std::string verdict_text(std::size_t most) const;
 
   /// Returns the rows as JSON: {"claims": [{"claim": ..., "quantity": ..., "unit": ..., "lattice": ..., "continuum":
-  /// ..., "theory": ..., "error": ..., "tolerance": ..., "verdict": ..., "reason": ..., "gate": ...}, ...], "verdict":
-  /// ...}. Doubles in full precision, empty values null, numbers that are not finite as the strings "nan", "inf",
+  /// ..., "theory": ..., "error": ..., "tolerance": ..., "verdict": ..., "reason": ..., "gate": ..., "kind": ...},
+  /// ...], "verdict": ...}. Doubles in full precision, empty values null, numbers that are not finite as the strings
+  /// "nan", "inf",
   /// "-inf".
   [[nodiscard]] std::string json() const;
 

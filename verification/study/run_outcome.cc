@@ -8,6 +8,7 @@
 
 #include "support/errors.h"
 #include "verification/input/case_text.h"
+#include "verification/output/results.h"
 #include "verification/output/run_info.h"
 
 namespace latcon::study
@@ -64,6 +65,21 @@ std::string last_words(const std::string &text)
   return input::printable(words, 300);
 }
 
+// Rows that failed and compare nothing with published values, each with its kind. A run that does not name its failed
+// rows is no measurement either.
+std::string unfit_rows(const Json &info)
+{
+  const auto failed = info.find("failed_rows");
+  if (failed == info.end() || !failed->is_object() || failed->empty())
+    return "run.json does not say which rows failed";
+  std::string rows;
+  for (const auto &[row, kind] : failed->items())
+    if (kind != to_string(output::RowKind::reference))
+      rows +=
+        (rows.empty() ? "" : "; ") + row + " (" + (kind.is_string() ? kind.get<std::string>() : kind.dump()) + ")";
+  return rows;
+}
+
 } // namespace
 
 std::string to_string(const RunState state)
@@ -74,6 +90,8 @@ std::string to_string(const RunState state)
     return "measured";
   case RunState::refused:
     return "refused: verification";
+  case RunState::rejected:
+    return "failed its checks";
   case RunState::failed:
     return "failed";
   default:
@@ -81,7 +99,7 @@ std::string to_string(const RunState state)
   }
 }
 
-RunOutcome read_outcome(const PlannedRun &run, const std::string &folder, const std::optional<int> exit_code)
+RunOutcome read_crack(const PlannedRun &run, const std::string &folder, const std::optional<int> exit_code)
 {
   RunOutcome outcome;
   outcome.run = run.run;
@@ -95,9 +113,10 @@ RunOutcome read_outcome(const PlannedRun &run, const std::string &folder, const 
   const bool ended = outcome.exit_code == static_cast<int>(support::ExitCode::done) ||
                      outcome.exit_code == static_cast<int>(support::ExitCode::claim_failed);
   outcome.pattern = value_or(crack, "pattern", std::string());
-  // A crack that differs from its published values has the same exit code as a refused run, but it was measured.
   if (ended && !outcome.pattern.empty())
   {
+    if (outcome.exit_code == static_cast<int>(support::ExitCode::claim_failed))
+      outcome.problem = unfit_rows(info);
     outcome.state = RunState::measured;
     outcome.reason = value_or(crack, "reason", std::string());
     read_numbers(crack, StudyQuantity::Source::crack, outcome.values);
@@ -109,6 +128,20 @@ RunOutcome read_outcome(const PlannedRun &run, const std::string &folder, const 
   outcome.state =
     outcome.exit_code == static_cast<int>(support::ExitCode::claim_failed) ? RunState::refused : RunState::failed;
   outcome.problem = last_words(content(folder + "/log.txt"));
+  return outcome;
+}
+
+RunOutcome read_outcome(const PlannedRun &run, const std::string &folder, const std::optional<int> exit_code)
+{
+  RunOutcome outcome = read_crack(run, folder, exit_code);
+  if (outcome.state != RunState::measured || outcome.problem.empty())
+    return outcome;
+  outcome.state = RunState::rejected;
+  outcome.pattern.clear();
+  outcome.reason.clear();
+  outcome.values.clear();
+  if (run.zeta)
+    outcome.values["zeta"] = *run.zeta;
   return outcome;
 }
 
@@ -129,7 +162,10 @@ bool is_begun(const PlannedRun &run, const std::string &folder, const bool skip_
 
 bool is_finished(const PlannedRun &run, const std::string &folder, const bool skip_verification)
 {
-  return is_begun(run, folder, skip_verification) && read_outcome(run, folder).state == RunState::measured;
+  if (!is_begun(run, folder, skip_verification))
+    return false;
+  const RunState state = read_outcome(run, folder).state;
+  return state == RunState::measured || state == RunState::rejected;
 }
 
 } // namespace latcon::study

@@ -28,7 +28,7 @@ class Outcome:
     seed : int
         Its noise seed.
     ended : str
-        ``done``, ``refused`` (bad input, or a claim does not hold) or ``failed``.
+        ``done``, ``refused`` (bad input, or a claim or the energy ledger of the run does not hold) or ``failed``.
     message : str
         Message of the program unless done.
     measured : mapping

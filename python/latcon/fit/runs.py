@@ -108,10 +108,14 @@ def _run(problem: Problem, case: Case, folder: pathlib.Path, resume: bool, progr
     try:
         return _start(problem, case, folder, resume, progress)
     except ClaimFailed:
-        # A crack that differs from the case's own reference values was measured; one that was refused has no such file.
-        if problem.command == "fracture" and (folder / "crack.json").is_file():
-            return open_run(folder)
-        raise
+        if not (problem.command == "fracture" and (folder / "crack.json").is_file()):
+            raise
+    # A crack that differs from the case's own reference values was measured; one whose energies do not balance was not.
+    run = open_run(folder)
+    failed = run.info.get("failed_rows") or {"run.json does not say which rows failed": "unknown"}
+    if unfit := [f"{row} ({kind})" for row, kind in failed.items() if kind != "reference"]:
+        raise ClaimFailed("failed its checks: " + "; ".join(unfit), 3, folder)
+    return run
 
 
 def _start(problem: Problem, case: Case, folder: pathlib.Path, resume: bool, progress: Progress) -> Run:

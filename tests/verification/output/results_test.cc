@@ -72,6 +72,7 @@ Results sample()
   EXPECT_EQ(row.tolerance.reason, "");
   row.claim = "a \"quoted\", odd claim";
   row.unit = "\"";
+  row.kind = output::RowKind::ledger;
   row.quantity = "two\nlines";
   row.continuum = infinity;
   results.add(row);
@@ -188,10 +189,11 @@ TEST(Results, JsonHasARowPerResultInFullPrecision)
   for (const auto &item : first.items())
     keys.push_back(item.key());
   EXPECT_EQ(keys, (std::vector<std::string>{"claim", "quantity", "unit", "lattice", "continuum", "theory", "error",
-                                            "tolerance", "verdict", "reason", "gate"}));
+                                            "tolerance", "verdict", "reason", "gate", "kind"}));
   EXPECT_EQ(first["reason"], "half, for a test");
   EXPECT_EQ(first["gate"], true);
   EXPECT_EQ(document["claims"][1]["gate"], false);
+  EXPECT_EQ(document["claims"][1]["kind"], "ledger");
   EXPECT_EQ(first["claim"], "energy");
   EXPECT_EQ(first["unit"], "J/m^3");
   EXPECT_EQ(first["lattice"].get<double>(), 0.1);
@@ -211,11 +213,13 @@ TEST(Results, CsvHasTheSameRows)
   const auto rows = fields_of(sample().csv());
   ASSERT_EQ(rows.size(), 4u);
   EXPECT_EQ(rows[0], (std::vector<std::string>{"claim", "quantity", "unit", "lattice", "continuum", "theory", "error",
-                                               "tolerance", "verdict", "reason", "gate"}));
+                                               "tolerance", "verdict", "reason", "gate", "kind"}));
   for (const auto &row : rows)
-    EXPECT_EQ(row.size(), 11u);
+    EXPECT_EQ(row.size(), 12u);
   EXPECT_EQ(rows[1][9], "half, for a test");
   EXPECT_EQ(rows[1][10], "true");
+  EXPECT_EQ(rows[1][11], "claim");
+  EXPECT_EQ(rows[2][11], "ledger");
   EXPECT_EQ(rows[3][9], "");
   EXPECT_EQ(rows[3][10], "false");
   EXPECT_EQ(rows[1][3], "0.1");
@@ -227,6 +231,14 @@ TEST(Results, CsvHasTheSameRows)
   EXPECT_EQ(rows[2][2], "\"");
   EXPECT_EQ(rows[2][6], "nan");
   EXPECT_EQ(rows[3][6], "");
+}
+
+TEST(Results, FailedRowsHaveTheirKind)
+{
+  using Failed = std::vector<std::pair<std::string, output::RowKind>>;
+  EXPECT_EQ(sample().failed_rows(), (Failed{{"a \"quoted\", odd claim: two\nlines", output::RowKind::ledger}}));
+  EXPECT_EQ(Results().failed_rows(), Failed());
+  EXPECT_EQ(to_string(output::RowKind::reference), "reference");
 }
 
 TEST(Results, WritesBothFilesOrSaysWhyNot)
