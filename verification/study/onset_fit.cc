@@ -184,9 +184,10 @@ std::optional<OnsetFit> fit_onset(std::vector<OnsetPoint> points)
   const double mean_square = best.value / freedom_of_fit;
   fit.p_fit = boost::math::cdf(
     boost::math::complement(boost::math::fisher_f(freedom_of_fit, scatter.freedom), mean_square / scatter.variance));
-  const double variance = mean_square > scatter.variance ? mean_square : scatter.variance;
-  const double allowed = boost::math::quantile(boost::math::fisher_f(1., scatter.freedom), 1. - significance);
-  const double level = best.value + allowed * variance;
+  // A variance has the degrees of freedom of the data that it is estimated from.
+  const Scatter of_interval = mean_square > scatter.variance ? Scatter{mean_square, freedom_of_fit} : scatter;
+  const double allowed = boost::math::quantile(boost::math::fisher_f(1., of_interval.freedom), 1. - significance);
+  const double level = best.value + allowed * of_interval.variance;
   fit.exponent = {best.at, crossing(of_exponent, level, best.at, min_onset_exponent),
                   crossing(of_exponent, level, best.at, max_onset_exponent)};
   fit.onset = {squares.onset(u), squares.onset(crossing(of_onset, level, u, squares.most_u)),

@@ -50,9 +50,9 @@ struct OnsetFit
 /// the smallest of them up to it. The intervals are those of the profile likelihood for normal errors of common
 /// variance s^2: all values for which the least sum of squares S exceeds its minimum by at most F(1, nu; 95 %) s^2 (D.
 /// M. Bates, D. G. Watts, Nonlinear Regression Analysis and its Applications, Wiley 1988, section 6.1). s^2 is the
-/// larger of the pooled variance of the seeds (at least the squared uncertainty of single measurements), with nu
-/// degrees of freedom, and of the mean square of what the curve leaves, so that a curve that does not fit has wider
-/// intervals.
+/// larger of the pooled variance of the seeds (at least the squared uncertainty of single measurements) and of the mean
+/// square of what the curve leaves, so that a curve that does not fit has wider intervals; nu are the degrees of
+/// freedom of that one: for five means, 2 of the curve.
 /// @param points means above the onset, in any order
 /// @return none for fewer than five points, parameters that are not distinct, numbers that are not finite, means that
 /// are not positive, or seeds without scatter

@@ -75,6 +75,7 @@ SeedStatistics statistics(const std::string &run, const std::string &quantity, c
     const std::string seed = "seed " + std::to_string(outcome.seed) + " ";
     if (outcome.state != RunState::measured)
     {
+      ++seeds.n_lost;
       seeds.missing.push_back(seed + to_string(outcome.state));
       continue;
     }

@@ -8,6 +8,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "support/full_precision.h"
 #include "support/text_wrap.h"
 #include "verification/output/csv.h"
 #include "verification/output/run_info.h"
@@ -20,9 +21,12 @@ namespace
 
 using Json = nlohmann::ordered_json;
 
+// Null means that there is no value, and JSON has no number that is not finite.
 Json json_of(const std::optional<double> &value)
 {
-  return value ? Json(*value) : Json(nullptr);
+  if (!value)
+    return nullptr;
+  return std::isfinite(*value) ? Json(*value) : Json(support::full_precision(*value));
 }
 
 Json json_of(const Settings &settings)

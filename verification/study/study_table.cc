@@ -59,6 +59,18 @@ std::string expectation(const StudyRow &row, const std::optional<double> &bound)
   }
 }
 
+// What the column `error` of results.csv is, for a rule.
+std::string meaning(const RowOutcome &outcome)
+{
+  const Rule rule = outcome.row.rule;
+  return outcome.is_test()              ? "error: p of the test, 1 if means contradict the rule"
+         : rule == Rule::is             ? "error: share of seeds with another pattern"
+         : rule == Rule::is_near        ? "error: relative difference"
+         : rule == Rule::onset_exponent ? "error: distance of the interval from the expected exponent"
+         : rule == Rule::bracket        ? "error: number of contradictions to one critical value"
+                                        : "error: excess beyond the bound, in the unit of the quantity";
+}
+
 std::string p_text(double p)
 {
   return p < 1e-4 ? "p < 0.0001" : "p = " + quantity_text(std::round(1e4 * p) / 1e4, {}, "1");
@@ -203,7 +215,8 @@ void judge_trend(RowOutcome &outcome)
 }
 
 // Up to one value of `against` every run shows one pattern, and from another value on every run shows the other. Runs
-// between the two values belong to the bracket, with any pattern.
+// between the two values belong to the bracket, with mixed or other patterns, unless the first pattern comes back after
+// the second: then there is no one critical value.
 void judge_bracket(RowOutcome &outcome)
 {
   const std::vector<const SeedStatistics *> points = measurements_along(outcome);
@@ -213,12 +226,20 @@ void judge_bracket(RowOutcome &outcome)
                                     [&](const SeedStatistics *run) { return run->shows(outcome.row.from); });
   const auto high = std::find_if_not(points.rbegin(), points.rend(),
                                      [&](const SeedStatistics *run) { return run->shows(outcome.row.to); });
-  outcome.misfit = (low == points.begin() ? 1. : 0.) + (high == points.rbegin() ? 1. : 0.);
+  const auto returned = std::find_if(points.rbegin(), points.rend(),
+                                     [&](const SeedStatistics *run) { return run->shows(outcome.row.from); });
+  const auto reached = std::find_if(points.begin(), returned.base(),
+                                    [&](const SeedStatistics *run) { return run->shows(outcome.row.to); });
+  outcome.misfit =
+    (low == points.begin() ? 1. : 0.) + (high == points.rbegin() ? 1. : 0.) + (reached != returned.base() ? 1. : 0.);
   const auto number = [](const SeedStatistics *run) { return quantity_text(*run->abscissa, {}, "1"); };
   if (low == points.begin())
     append(outcome.measured, "no " + outcome.row.from + " below " + number(points.front()));
   if (high == points.rbegin())
     append(outcome.measured, "no " + outcome.row.to + " above " + number(points.back()));
+  if (reached != returned.base())
+    append(outcome.measured,
+           outcome.row.from + " at " + number(*returned) + " above " + outcome.row.to + " at " + number(*reached));
   if (*outcome.misfit > 0.)
     return;
   const SeedStatistics *last_from = *std::prev(low);
@@ -313,15 +334,18 @@ RowOutcome judge(const StudyRow &row, const std::vector<PlannedRun> &plan, const
   std::stable_sort(outcome.runs.begin(), outcome.runs.end(),
                    [](const SeedStatistics &a, const SeedStatistics &b) { return a.abscissa < b.abscissa; });
 
-  if (row.rule == Rule::bracket)
+  // Cracks without the quantity are an answer along `against`; runs that were omitted or lost are none.
+  const bool is_whole = without.empty() && std::none_of(outcome.runs.begin(), outcome.runs.end(),
+                                                        [](const SeedStatistics &run) { return run.is_lost(); });
+  if (is_whole && row.rule == Rule::bracket)
     judge_bracket(outcome);
-  else if (row.rule == Rule::onset_exponent)
+  else if (is_whole && row.rule == Rule::onset_exponent)
     judge_onset(outcome);
-  else if (is_along(row.rule))
+  else if (is_whole && is_along(row.rule))
     judge_trend(outcome);
-  else if (row.rule != Rule::reported && without.empty() && !outcome.is_test())
+  else if (is_whole && row.rule != Rule::reported && !outcome.is_test())
     judge_each(outcome);
-  else if (row.rule != Rule::reported && without.empty() && outcome.bound)
+  else if (is_whole && row.rule != Rule::reported && outcome.bound)
     judge_beside(outcome, other);
   else if (outcome.runs.size() == 1)
     outcome.number = outcome.runs.front().mean;
@@ -401,7 +425,7 @@ std::optional<output::Result> RowOutcome::result(const std::string &claim) const
   {
     // Excess beyond the bound; 0 inside.
     result.error = misfit ? support::one_sided(*misfit) : std::numeric_limits<double>::quiet_NaN();
-    result.tolerance = allowed();
+    result.tolerance = {allowed(), meaning(*this)};
   }
   return result;
 }

@@ -44,12 +44,16 @@ struct SeedStatistics
   std::optional<double> uncertainty;
   std::map<std::string, std::size_t> patterns; ///< number of seeds per pattern, without "undecided"
   std::size_t n_undecided = 0;                 ///< seeds whose pattern is undecided
+  std::size_t n_lost = 0;                      ///< seeds whose run was refused, rejected, failed, or not run
   std::vector<std::string> missing;            ///< "seed 3 failed", for each seed without the quantity
 
   /// Returns true if at least three quarters of the seeds have the quantity, as every rule requires. The mean is biased
   /// if seeds lack the quantity systematically: by 0.42 standard deviations without the lowest quarter of a normal
   /// distribution, by 0.80 without the lowest half.
   bool is_measured() const { return n > 0 && 4 * n >= 3 * n_seeds; }
+  /// Returns true if more than a quarter of the seeds ended without a measurement. A run that is not lost may still
+  /// lack the quantity, as a straight crack has no amplitude.
+  bool is_lost() const { return 4 * n_lost > n_seeds; }
   /// Returns mean and scatter over the seeds, for tests. The run must have a mean.
   SampleMean sample() const;
   /// Returns true if the pattern is measured and all seeds with a pattern have this one.

@@ -133,6 +133,22 @@ TEST(OnsetFit, CurvesThatDoNotFitHaveWiderIntervals)
   EXPECT_GT(bad.exponent.high - bad.exponent.low, 5. * (fit.exponent.high - fit.exponent.low));
 }
 
+// Runs scatter about the curve three times as far as seeds about their run.
+TEST(OnsetFit, IntervalsHaveTheirConfidenceForRunsThatScatter)
+{
+  constexpr int n_draws = 400;
+  std::mt19937_64 generator(1931);
+  int with_exponent = 0;
+  for (int draw = 0; draw < n_draws; ++draw)
+  {
+    std::vector<OnsetPoint> points = drawn(generator, 0.5, 0.01, {1.02, 1.1, 1.25, 1.5, 1.75});
+    for (OnsetPoint &point : points)
+      point.mean.mean += 0.03 * standard_normal(generator);
+    with_exponent += covers(fit_onset(points).value().exponent, 0.5);
+  }
+  EXPECT_GT(with_exponent, 0.906 * n_draws); // 95 %, less four standard deviations of 400 draws
+}
+
 TEST(OnsetFit, DataThatDetermineNothingGiveNone)
 {
   std::mt19937_64 generator(17);

@@ -389,6 +389,48 @@ TEST(StudyTable, TrendLeavesOutRunsWithoutTheNumberAndSaysSo)
   EXPECT_EQ(table.judged(row_of({"a", "b"}, Rule::rises)).verdict, RowVerdict::not_measured);
 }
 
+// Straight cracks have no wavelength; of runs that were lost nothing is known.
+TEST(StudyTable, NothingIsSaidAlongRunsThatWereLost)
+{
+  MadeUpStudy table;
+  table.add("a", {NAN, NAN, NAN, NAN});
+  for (const char *run : {"b", "c"})
+    table.add(run, {0.020 + 0.01 * (run[0] - 'b'), 0.021 + 0.01 * (run[0] - 'b'), 0.02, 0.02});
+  const auto verdict = [&](const StudyRow &row) { return table.judged(row).verdict; };
+  const std::vector<std::string> all{"a", "b", "c"};
+  EXPECT_EQ(verdict(bracket_row(all)), RowVerdict::holds);
+  for (const RunState state : {RunState::refused, RunState::rejected, RunState::failed, RunState::not_run})
+  {
+    table.outcomes[0].state = state; // one of four
+    table.outcomes[1].state = RunState::measured;
+    EXPECT_EQ(verdict(bracket_row(all)), RowVerdict::holds) << to_string(state);
+    table.outcomes[1].state = state;
+    EXPECT_EQ(verdict(bracket_row(all)), RowVerdict::not_measured) << to_string(state);
+    EXPECT_EQ(verdict(row_of(all, Rule::rises)), RowVerdict::not_measured) << to_string(state);
+    EXPECT_EQ(table.judged(bracket_row(all)).result("c").value().verdict(), Verdict::fails);
+  }
+  MadeUpStudy onset = above_onset(0.5);
+  onset.add("lost", {NAN});
+  onset.outcomes.back().state = RunState::failed;
+  StudyRow row = onset_row(0.5, 0.2);
+  EXPECT_EQ(onset.judged(row).verdict, RowVerdict::holds);
+  row.runs.emplace_back("lost");
+  EXPECT_EQ(onset.judged(row).verdict, RowVerdict::not_measured);
+}
+
+TEST(StudyTable, APatternThatComesBackHasNoCriticalValue)
+{
+  MadeUpStudy table;
+  table.add("a", {NAN, NAN});
+  table.add("b", {0.02, 0.02});
+  table.add("c", {NAN, NAN});
+  table.add("d", {0.02, 0.02});
+  const RowOutcome row = table.judged(bracket_row({"a", "b", "c", "d"}));
+  EXPECT_EQ(row.verdict, RowVerdict::does_not_hold);
+  EXPECT_HAS(row.measured, "straight at 3 above oscillating at 2");
+  EXPECT_EQ(table.judged(bracket_row({"a", "c", "d"})).verdict, RowVerdict::holds);
+}
+
 TEST(StudyTable, BracketLiesBetweenTheTwoPatterns)
 {
   MadeUpStudy table;
@@ -418,7 +460,8 @@ TEST(StudyTable, RunsThatTheQuickStudyLeavesOut)
   const RowOutcome alone = table.judged(row_of({"big"}, Rule::above, 0.), {"big"});
   EXPECT_EQ(alone.verdict, RowVerdict::not_measured);
   EXPECT_EQ(alone.note, "big is omitted in the quick study");
-  EXPECT_EQ(table.judged(row_of({"a", "b", "big"}, Rule::rises), {"big"}).verdict, RowVerdict::holds);
+  EXPECT_EQ(table.judged(row_of({"a", "b"}, Rule::rises), {"big"}).verdict, RowVerdict::holds);
+  EXPECT_EQ(table.judged(row_of({"a", "b", "big"}, Rule::rises), {"big"}).verdict, RowVerdict::not_measured);
 }
 
 TEST(StudyTable, ResultsHaveTheVerdictsOfTheTable)
@@ -440,6 +483,8 @@ TEST(StudyTable, ResultsHaveTheVerdictsOfTheTable)
       << outcome.expected; // an error does not show the distance inside a bound
     EXPECT_EQ(verdict == Verdict::holds, outcome.verdict == RowVerdict::holds) << outcome.expected;
     EXPECT_EQ(verdict == Verdict::reported, outcome.verdict == RowVerdict::reported) << outcome.expected;
+    EXPECT_EQ(verdict == Verdict::reported, result.tolerance.reason.empty()) << outcome.expected;
+    EXPECT_EQ(outcome.is_test(), result.tolerance.reason.find("error: p of the test") == 0) << outcome.expected;
   }
 }
 
@@ -468,6 +513,8 @@ TEST(StudyTable, OutputsHoldEveryRunAndRow)
   EXPECT_EQ(json["verified"], false);
   EXPECT_EQ(json["claims"][0]["verdict"], "not measured");
   EXPECT_EQ(study_rows(results).verdict(), Verdict::fails);
+  results.claims[0].rows[0].number = NAN;
+  EXPECT_EQ(nlohmann::json::parse(study_json(results))["claims"][0]["rows"][0]["number"], "nan");
   std::ostringstream out;
   print_table(out, results);
   EXPECT_HAS(out.str(), "a, seed 2: failed: the state blew up");
