@@ -19,6 +19,7 @@ from program import CASES, TemporaryFolder, frames, latcon, latcon_on_ranks, rea
 FIELDS = ["displacement", "deformation_gradient", "first_piola_stress", "cauchy_stress", "strain_energy_density"]
 SHEET = ["--set", "Sheet/length=2 cm", "--set", "Sheet/height=1.5 cm", "--set", "Loading/strain y=0.3"]
 SMALL = [*SHEET, "--set", "Loading/strain x=0.1"]
+LOAD = "load: displacement of held sites on the edges, largest difference"
 MOTION = ["--set", "Time/end=0.02 ms", "--set", "Output/frame interval=0"]
 
 
@@ -101,9 +102,19 @@ class Compare(TemporaryFolder):
         self.assertEqual(record["continuum_frame"], str(self.runs / "pieces" / "continuum_0001.pvtu"))
         self.assertFalse([path for path in self.out.iterdir() if path.suffix == ".part"])
 
+    def test_sheets_under_other_loads_are_3(self):
+        loaded = self.folder / "loaded"
+        run = latcon("continuum", CASES / "quick.prm", "--quiet", "--output-dir", loaded,
+                     *(word.replace("y=0.3", "y=0.301") for word in SMALL))
+        self.assertEqual(run.returncode, 0, run.stderr)
+        for folder, expect, verdict in [(self.continuum, 0, "holds"), (loaded, 3, "fails")]:
+            self.assertEqual(self.compare(self.lattice, folder).returncode, expect)
+            self.assertEqual(found(self.out)[LOAD]["verdict"], verdict)
+        self.assertAlmostEqual(float(found(self.out)[LOAD]["error"]), 0.001 * 0.0075 / np.hypot(0.1 * 0.02, 0.301 * 0.0075), delta=3e-5)
+
     def test_difference_is_that_of_another_interpolation(self):
         run = self.compare(self.lattice, self.runs / "free")
-        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(run.returncode, 3, run.stderr)  # free sides are another load
         self.assertEqual([(time, path.name) for time, path in frames(self.out / "difference.pvd")],
                          [(1., "difference_sites.vtp"), (1., "difference_continuum.vtu")])
         cells = read(vtk.vtkXMLUnstructuredGridReader(), frames(self.runs / "free" / "continuum.pvd")[-1][1])
@@ -141,7 +152,7 @@ class Compare(TemporaryFolder):
 
     def test_sites_in_excluded_circles_are_not_compared(self):
         run = self.compare(self.lattice, self.runs / "free", "--exclude", "1 cm,2 mm,3 mm", "--exclude", "0.002,-0.004,0.0015")
-        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertEqual(run.returncode, 3, run.stderr)
         out = sites_of(self.out)
         X = vtk_to_numpy(out.GetPoints().GetData()).astype(float)
         circles = (np.hypot(X[:, 0] - 0.01, X[:, 1] - 0.002) < 0.003) | (np.hypot(X[:, 0] - 0.002, X[:, 1] + 0.004) < 0.0015)

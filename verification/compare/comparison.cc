@@ -135,6 +135,38 @@ void require_no_missing_part(const LatticeFrame &lattice, const ContinuumFrame &
   }
 }
 
+// Row that both sheets have the same load, if a held site is on an edge of both: largest difference of displacements
+// that the edges prescribe.
+void add_load_row(const LatticeFrame &lattice, const ContinuumFrame &continuum, const Comparison &comparison,
+                  output::Results &results)
+{
+  const Bounds box = bounds(continuum.points);
+  const double near = position_tolerance(continuum);
+  std::vector<std::size_t> sites;
+  for (std::size_t i = 0; i < lattice.points.size(); ++i)
+  {
+    const Position &X = lattice.points[i];
+    const bool is_on_edge = std::abs(X[0] - box.low[0]) <= near || std::abs(X[0] - box.high[0]) <= near ||
+                            std::abs(X[1] - box.low[1]) <= near || std::abs(X[1] - box.high[1]) <= near;
+    if (is_on_edge && lattice.held[i] != 0 && comparison.continuum.outside[i] == 0 && comparison.excluded[i] == 0)
+      sites.push_back(i);
+  }
+  if (sites.empty())
+    return;
+  // The displacement is the first of the fields.
+  const auto largest = [&](const FieldValues &values)
+  { return norms_of(sites, 2, [&](std::size_t site, std::size_t c) { return values.at(site)[c]; }).largest; };
+  const double here = largest(*lattice.find("displacement")), there = largest(comparison.continuum.fields.front());
+  results.add({"compare",
+               "load: displacement of held sites on the edges, largest difference",
+               "m",
+               here,
+               there,
+               {},
+               relative(largest(comparison.differences.front()), here, there),
+               {1e-4, "positions in files: 1e-6 of the longer side, at most a hundred times the shorter"}});
+}
+
 void require_same_units(const LatticeFrame &lattice, const ContinuumFrame &continuum, const Comparison &comparison)
 {
   for (std::size_t f = 0; f < comparison.continuum.fields.size(); ++f)
@@ -284,6 +316,7 @@ output::Results norms(const LatticeFrame &lattice, const ContinuumFrame &continu
   results.add(
     {"compare", motion ? "time" : "load factor", motion ? "s" : "1", lattice.time, continuum.time, {}, {}, {}});
 
+  add_load_row(lattice, continuum, comparison, results);
   for (std::size_t f = 0; f < comparison.differences.size(); ++f)
   {
     const CommonField &field = *comparison.differences[f].field;

@@ -62,10 +62,12 @@ struct Comparison
 Comparison compare(const LatticeFrame &lattice, const ContinuumFrame &continuum, const Scope &scope,
                    MPI_Comm communicator);
 
-/// Returns rows on the compared sites, followed by a row for the largest and a row for the root-mean-square difference
-/// of each field. Both are relative to the larger of the corresponding norms of the two sides, which are in the columns
-/// `lattice` and `continuum`. The norm of tensors and vectors is the root of the sum of squares of their in-plane
-/// components, for deformation_gradient of F - 1.
+/// Returns rows on the compared sites, a row on whether the sheets have the same load, followed by a row for the
+/// largest and a row for the root-mean-square difference of each field. The loads are the same if held sites of the
+/// lattice on edges of the continuum have the same displacement on both sides to 1e-4 of the largest; sheets without
+/// such sites have no such row. Both are relative to the larger of the corresponding norms of the two sides, which are
+/// in the columns `lattice` and `continuum`. The norm of tensors and vectors is the root of the sum of squares of their
+/// in-plane components, for deformation_gradient of F - 1.
 /// @param tolerances tolerances of the root-mean-square differences by field; fields without a tolerance are only
 /// reported
 /// @throws InputError if there is a tolerance for a field that is not compared

@@ -115,6 +115,39 @@ TEST_F(Comparing, MeasuresADifferenceByItsNorms)
   EXPECT_NEAR(*row(results, "deformation_gradient less identity, rms difference").lattice, 0.1 * std::sqrt(2.), 1e-14);
 }
 
+// Without any tolerance: what is held must be held alike.
+TEST_F(Comparing, FindsOtherLoadsAtTheHeldEdges)
+{
+  const std::string load = "load: displacement of held sites on the edges, largest difference";
+  MadeUpState state;
+  write_lattice(folder_ / "a.vtp", state);
+  const auto before = state.displacement;
+  for (const double more : {0., 1e-5, 1e-3})
+  {
+    state.displacement = [&](double X, double Y)
+    {
+      auto u = before(X, Y);
+      u[1] *= 1. + more;
+      return u;
+    };
+    write_continuum(folder_ / "a.vtu", state);
+    const Result row = this->row(run(), load);
+    // The largest displacement is at the corner.
+    EXPECT_NEAR(row.error.value(), more * 0.2 * 0.04 / std::hypot(0.1 * 0.06 + 0.02 * 0.04, 0.2 * 0.04),
+                1e-3 * more + 1e-14);
+    EXPECT_EQ(row.verdict(), more > 1e-4 ? Verdict::fails : Verdict::holds);
+  }
+  // Inside, sheets of other material may differ.
+  state.displacement = [&](double X, double Y)
+  {
+    auto u = before(X, Y);
+    u[0] += 0.1 * X * (0.06 - X) * Y * (0.04 - Y) / 0.0024;
+    return u;
+  };
+  write_continuum(folder_ / "a.vtu", state, 4, 3, 2);
+  EXPECT_EQ(run().verdict(), Verdict::holds);
+}
+
 TEST_F(Comparing, LeavesSitesThatLackBondsOutOfStressAndEnergy)
 {
   // A hole in both sheets: the site in its middle is missing, as are bonds of the eight sites around it.
