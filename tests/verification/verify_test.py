@@ -89,6 +89,33 @@ class WithoutNumbers(TemporaryFolder):
             self.assertTrue(any("it buckles in waves of kd" in quantity for quantity in failing), failing)
 
 
+@unittest.skipIf("--full" in sys.argv, "the quick versions are enough")
+class Scope(TemporaryFolder):
+    def judged(self, *options, expect=0):
+        run = latcon("verify", "energy", "--quick", "--output-dir", self.out, *options)
+        self.assertEqual(run.returncode, expect, run.stdout + run.stderr)
+        document = json.loads((self.out / "run.json").read_text())
+        rows = json.loads((self.out / "results.json").read_text())["claims"]
+        return sum(row["verdict"] == "holds" for row in rows), document["laws"], "--laws all judges every law" in run.stdout
+
+    def test_only_a_case_or_an_option_chooses_the_laws_that_are_judged(self):
+        entry = ("--set", "Lattice/noise seed=1")
+        case = ("--case", CASES / "fig1.prm")
+        every, laws, _ = self.judged()
+        self.assertEqual(laws, "all")
+        for options in (entry, (*case, "--laws", "all")):
+            self.assertEqual(self.judged(*options), (every, "all", False))
+        fewer, laws, is_said = self.judged(*entry, "--laws", "case")
+        self.assertLess(fewer, every)
+        self.assertEqual((laws, is_said), ("case", True))
+        self.assertEqual(self.judged(*case), (fewer, "case", True))
+
+    def test_a_claim_that_is_named_judges_something_or_fails(self):
+        run = latcon("verify", "running-crack", "--quick", "--set", "Loading/strain y=0", "--output-dir", self.out)
+        self.assertEqual(run.returncode, 3, run.stdout + run.stderr)
+        self.assertIn("running-crack: rows that are judged: not computed: this case has none", run.stdout)
+
+
 @unittest.skipIf("--full" in sys.argv, "the quick version is enough")
 class DamagedBars(TemporaryFolder):
     def test_the_claim_takes_its_constants_from_the_case(self):

@@ -222,14 +222,21 @@ support::ExitCode run_program(int argc, char **argv)
     ->type_name("");
   verify_command
     ->add_option("--case", options.case_file,
-                 "case whose material, loading and laws to verify; default: every law on the rubber of Fig. 1")
+                 "case whose material, loading and laws to verify; default: the rubber of Fig. 1")
     ->type_name("FILE");
+  std::string laws;
+  verify_command
+    ->add_option("--laws", laws,
+                 "which laws of the continuum are judged, all or those on which the case relies; others are reported; "
+                 "default: case with --case, otherwise all")
+    ->check(CLI::IsMember({"all", "case"}))
+    ->type_name("LAWS");
   verify_command->add_flag("--quick", options.quick, "small versions");
   verify_command->footer(claim_list() + verify_command->get_footer());
   verify_command->callback(
     [&]
     {
-      options.case_is_given = verify_command->count("--case") > 0 || !options.overrides.empty();
+      options.laws_of_case = laws.empty() ? verify_command->count("--case") > 0 : laws == "case";
       default_folder("verify");
       command = [&] { return verify(options); };
     });

@@ -1,3 +1,4 @@
+#include <iostream>
 #include <optional>
 
 #include "support/one_thread.h"
@@ -54,6 +55,10 @@ support::ExitCode verify(const input::Options &options)
     return support::ExitCode::done;
   }
   Run run(options, parameters);
+  run.info().add("laws", options.laws_of_case ? "case" : "all");
+  if (run.is_verbose() && options.laws_of_case)
+    std::cout << "Judged are the laws on which the case relies; --laws all judges every law of the continuum"
+              << std::endl;
   claims::ClaimOutcome outcome;
   {
     const auto phase = run.info().stopwatch().phase("claims");
@@ -62,9 +67,13 @@ support::ExitCode verify(const input::Options &options)
       write_claims(selected, run.directory());
     for (const claims::Claim &claim : selected)
     {
-      outcome.add(run_claims(input, {claim}, options.quick, Shells::own_and_nearest,
-                             options.case_is_given ? bridge::laws_of(input) : bridge::all_laws(),
-                             run.is_root() ? run.directory() : std::string()));
+      claims::ClaimOutcome found = run_claims(input, {claim}, options.quick, Shells::own_and_nearest,
+                                              options.laws_of_case ? bridge::laws_of(input) : bridge::all_laws(),
+                                              run.is_root() ? run.directory() : std::string());
+      if (!options.claims.empty() && found.results.verdict() == output::Verdict::reported)
+        found.results.add(output::not_computed(claim.name, "rows that are judged",
+                                               "this case has none; a claim that is named must judge something"));
+      outcome.add(found);
       // Kept if a signal ends one of the following claims.
       if (run.is_root())
       {

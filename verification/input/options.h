@@ -12,7 +12,8 @@ struct Options
   std::vector<std::string> arguments; ///< argv, for the record
   std::vector<std::string> overrides; ///< `Section/Name=value`
   std::string case_file;
-  bool case_is_given = false;      ///< the user named a case or entries of one
+  bool case_is_given = false;      ///< the user named a case
+  bool laws_of_case = false;       ///< judge the laws on which the case relies, and report the others
   std::string output_dir;          ///< empty until the command has chosen its default
   std::vector<std::string> claims; ///< none: all
   unsigned int threads = 0;        ///< 0: as many cores as this process may use
