@@ -36,6 +36,11 @@ class Help(TemporaryFolder):
         self.assertRegex(self.refused("zzz"), r"unknown command 'zzz'; commands: verify, lattice, .*, schema; see")
         self.assertRegex(self.refused(), r"a command is required: verify, lattice, ")
 
+    def test_the_list_of_claims_says_which_are_checked_without_names(self):
+        lines = {line.split()[0]: line for line in latcon("verify", "--help").stdout.split("Claims:")[1].splitlines() if line.strip()}
+        for claim in json.loads(latcon("schema").stdout)["claims"]:
+            self.assertEqual("only if named" in lines[claim["name"]], not claim["default"], claim["name"])
+
     def test_a_missing_case_is_the_only_error(self):
         for command in ("fracture", "lattice", "continuum"):
             message = self.refused(command, "quik", "--set", "Loading/strain y=0.2")

@@ -14,8 +14,9 @@ struct SlowestWave
 };
 
 /// Finds the slowest of all waves about the homogeneous deformation F, without dashpots: smallest eigenvalue of the
-/// Bloch matrix (theory-comparison.md, eq. (W.1)) over k^2, on a polar grid of wave vectors that covers the Brillouin
-/// zone. A sheet in which it is not positive buckles: its homogeneous equilibrium is unstable. @param F det F > 0
+/// Bloch matrix (theory-comparison.md, eq. (W.1)) over k^2. A descent starts at each minimum of a polar grid of wave
+/// vectors, 1.5 degrees by 0.07/d, that covers the Brillouin zone. A sheet in which it is not positive buckles: its
+/// homogeneous equilibrium is unstable. @param F det F > 0
 SlowestWave slowest_wave(const lattice::TriangularLattice &lattice, const lattice::Material &material,
                          const Eigen::Matrix2d &F);
 

@@ -119,6 +119,8 @@ std::string claim_list()
     text += line + claim.title;
     if (claim.is_about_memory)
       text += " (only if named or if bonds have branches)";
+    else if (claim.is_about_disorder)
+      text += " (only if named or if bonds have disorder)";
     else if (!claim.is_default)
       text += " (only if named)";
     text += "\n";
