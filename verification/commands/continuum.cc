@@ -266,7 +266,9 @@ output::Results motion_results(const continuum::DynamicSolver &solver, const out
                check.imbalance(),
                {},
                check.imbalance(),
-               output::allowed_imbalance_of_implicit_motion(check.rate(), time_step)});
+               output::allowed_imbalance_of_implicit_motion(check.rate(), time_step),
+               false,
+               output::RowKind::ledger});
   return results;
 }
 

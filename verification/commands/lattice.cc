@@ -87,7 +87,9 @@ output::Results moved(const input::Case &input, const lattice::RowPartition &ban
                {},
                {},
                motion.record().imbalance(),
-               output::allowed_imbalance_of_motion(input.integrator, exchange_steps(input, simulation.state().time))});
+               output::allowed_imbalance_of_motion(input.integrator, exchange_steps(input, simulation.state().time)),
+               false,
+               output::RowKind::ledger});
   return results;
 }
 
