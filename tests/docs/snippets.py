@@ -17,6 +17,8 @@ statements have no exit code:
 import dataclasses
 import re
 
+from printed_numbers import agrees
+
 MARK = re.compile(r"^<!-- (not run|run weekly|exit code): (.+) -->$")
 FENCE = re.compile(r"^```(\w*)$")
 
@@ -75,11 +77,8 @@ def blocks(page, text):
     return found
 
 
-NUMBER = r"[-+]?\d+(?:\.\d+)?(?:e[-+]?\d+)?"
-
-
 def differences(expected, printed, relative=1e-3):
-    """Lines of `expected` that `printed` lacks, in order: the same words, and the same numbers to `relative`."""
+    """Lines of `expected` that `printed` lacks, in order: words and numbers agree by printed_numbers.py."""
     missing, rest = [], [line.split() for line in printed.splitlines()]
     for line in expected.splitlines():
         if not line.strip() or line.strip() == "...":
@@ -98,11 +97,4 @@ def same(expected, words, relative):
         return not words
     if expected[0] == "...":
         return any(same(expected[1:], words[i:], relative) for i in range(len(words) + 1))
-    return bool(words) and same_word(expected[0], words[0], relative) and same(expected[1:], words[1:], relative)
-
-
-def same_word(expected, word, relative):
-    if re.sub(NUMBER, "0", expected) != re.sub(NUMBER, "0", word):
-        return False
-    return all(abs(float(a) - float(b)) <= relative * max(abs(float(a)), abs(float(b)))
-               for a, b in zip(re.findall(NUMBER, expected), re.findall(NUMBER, word)))
+    return bool(words) and agrees(expected[0], words[0], relative) and same(expected[1:], words[1:], relative)

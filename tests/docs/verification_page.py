@@ -11,6 +11,8 @@ import subprocess
 import sys
 import tempfile
 
+from printed_numbers import agrees
+
 # Parts of a name that distinguish rows with the same check in other states, directions and lattices.
 STATES = (re.compile(r"^NN(?:\+NNN)?(?:, F = (?:I|\([^)]*\)))?(?:: |, )"), re.compile(r"^kd = [\d.]+: "),
           re.compile(r" about F = (?:I|\([^)]*\))"), re.compile(r", F = \([^)]*\)(?=,)"), re.compile(r", (?:F = I|loaded)$"),
@@ -66,8 +68,8 @@ def cells(text):
 
 
 def differences(text, results, relative=0.1):
-    """Rows of the page that differ from these results in name, count, tolerance or verdict, or in an error by more than
-    `relative` (two digits are shown)."""
+    """Rows of the page that differ from these results in name, count or verdict, in a tolerance by value, or in an error by more than
+    `relative` (two digits are shown) and round-off."""
     shown_claims = {place[2] for place in PLACE.finditer(text)}
     wrong = [f"{claim}: no table" for claim in sorted({row["claim"] for row in results["claims"]} - shown_claims)]
     for place in PLACE.finditer(text):
@@ -75,10 +77,10 @@ def differences(text, results, relative=0.1):
         if len(shown) != len(known):
             wrong.append(f"{place[2]}: {len(shown) - 2} rows, not {len(known) - 2}")
         for old, new in zip(shown[2:], known[2:]):
-            both = [old[2], new[2]]
-            errors = old[2] == new[2] or ("" not in both and "round-off" not in both and
-                                          math.isclose(*map(float, both), rel_tol=relative, abs_tol=10 * ROUND_OFF))
-            if old[:2] + old[3:] != new[:2] + new[3:] or not errors:
+            both = [cell.replace("round-off", "0") for cell in (old[2], new[2])]
+            errors = both[0] == both[1] or ("" not in both and
+                                            math.isclose(*map(float, both), rel_tol=relative, abs_tol=10 * ROUND_OFF))
+            if old[:2] + old[4:] != new[:2] + new[4:] or not agrees(old[3], new[3]) or not errors:
                 wrong.append(f"{place[2]}: {' | '.join(old)}: now {' | '.join(new)}")
     return wrong
 

@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Tests of the tables of docs/verification.md: rows with the same check are merged, and differences are found."""
+"""Tests of the tables of docs/verification.md, in which rows with the same check are merged, and of the comparison of pages by value."""
 import pathlib
 import sys
 import unittest
@@ -7,6 +7,7 @@ import unittest
 sys.dont_write_bytecode = True
 sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
 import verification_page
+from printed_numbers import agrees, differences
 
 PAGE = "words\n\n<!-- table: energy -->\n\n<!-- end of table -->\n\nmore words\n"
 
@@ -46,7 +47,7 @@ class VerificationPage(unittest.TestCase):
             other = results(*[(row["quantity"].replace(old, new), row["error"], row["tolerance"], row["verdict"])
                               for row in FOUND["claims"]])
             self.assertEqual(len(verification_page.differences(page, other)), count)
-        for i, change, count in ((2, {"error": 5e-13}, 0), (0, {"error": 1.04e-3}, 0), (0, {"error": 1.3e-3}, 1),
+        for i, change, count in ((2, {"error": 5e-13}, 0), (2, {"error": 2e-8}, 0), (2, {"error": 2e-7}, 1), (0, {"error": 1.04e-3}, 0), (0, {"error": 1.3e-3}, 1),
                                  (0, {"tolerance": 1.2e-2}, 1), (3, {"error": 1.0, "verdict": "fails"}, 1)):
             rows = [dict(row) for row in FOUND["claims"]]
             rows[i].update(change)
@@ -55,6 +56,35 @@ class VerificationPage(unittest.TestCase):
         self.assertEqual(len(verification_page.differences(page, {"claims": FOUND["claims"][:-1]})), 1)
         other = [dict(row, claim="objectivity") for row in FOUND["claims"]]
         self.assertEqual(verification_page.differences(page, {"claims": FOUND["claims"] + other}), ["objectivity: no table"])
+
+
+class PrintedNumbers(unittest.TestCase):
+    def test_rounding_is_no_difference(self):
+        for one, other in (("0.973", "0.974"), ("5 ± 0.95", "4.99 ± 0.95"), ("0.11", "0.12"), ("1e-09", "9.9e-10"), ("17 %", "18 %"),
+                           ("20.2 m/s", "20.200 m/s")):
+            self.assertTrue(agrees(one, other), (one, other))
+
+    def test_wrong_numbers_and_words_are_found(self):
+        for one, other in (("0.973", "0.975"), ("5 ± 0.95", "5.02 ± 0.95"), ("46", "47"), ("0.3", "0.4"), ("0.01", "0.02"),
+                           ("1e-09", "2e-09"), ("17 %", "19 %"), ("0.02", "-0.02"), ("1.0 cm", "1.0 mm"), ("yes 1.0", "no 1.0"),
+                           ("20.3 m/s", "20.200 m/s"), ("1.0", "1.0 1.0")):
+            self.assertFalse(agrees(one, other), (one, other))
+
+    def test_effects_of_round_off_are_those_that_are_given(self):
+        self.assertTrue(agrees("100.0", "101.0", relative=0.01))
+        self.assertFalse(agrees("100.0", "101.2", relative=0.01))
+        self.assertTrue(agrees("+0.02", "+0.03", absolute=0.01))
+        self.assertFalse(agrees("+0.02", "+0.04", absolute=0.01))
+
+    def test_lines_are_found_on_a_page(self):
+        page = "words\n\n| a | b |\n| --- | --- |\n| 1.72 | 0.50 |\n| 1.74 | 0.61 |\n\nwords"
+        table = ["| a | b |", "| --- | --- |", "| 1.72 | 0.51 |", "| 1.74 | 0.60 |"]
+        self.assertEqual(differences(page, table, labels=1), [])
+        self.assertEqual(differences(page, [*table[:3], "| 1.75 | 0.60 |"], labels=1),
+                         ["| 1.75 | 0.60 |: the page has | 1.74 | 0.61 |"])
+        self.assertEqual(len(differences(page, [*table[:3], "| 1.74 | 0.63 |"])), 1)
+        self.assertEqual(len(differences(page, [*table, "| 1.76 | 0.70 |"])), 1)
+        self.assertTrue(differences("words", table))
 
 
 if __name__ == "__main__":

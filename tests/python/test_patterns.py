@@ -4,6 +4,9 @@ import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
+sys.path.append(str(ROOT / "tests" / "docs"))
+from printed_numbers import differences
+
 PAGE = (ROOT / "docs" / "patterns.md").read_text(encoding="utf-8")
 
 
@@ -14,7 +17,7 @@ def test_page_has_the_tables_of_the_record():
     tables = page.tables()
     assert len(tables) == 2 and all(len(lines) > 5 for lines in tables)
     for lines in tables:
-        assert "\n".join(lines) in PAGE
+        assert differences(PAGE, lines, labels=2) == []  # means of a few numbers of the record: rounding alone
     sys.path.pop(0)
     del sys.modules["page"]
 
