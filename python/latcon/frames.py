@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import dataclasses
+import os
 import pathlib
 from collections.abc import Iterator, Sequence
 from typing import TYPE_CHECKING, Any, overload
@@ -169,7 +170,7 @@ def _read(path: pathlib.Path, reader_name: str) -> Any:
         raise UnreadableFile(path, "no such file")
     vtkObject.GlobalWarningDisplayOff()  # the callers report damaged files
     reader = getattr(vtkIOXML, reader_name)()
-    reader.SetFileName(str(path))
+    reader.SetFileName(os.fsencode(path))  # a name need not be UTF-8 text
     reader.Update()
     return reader.GetOutput()
 

@@ -38,7 +38,7 @@ class Fracture(unittest.TestCase):
         names = {path.name for path in self.out.iterdir()}
         wanted = {"case.prm", "run.json", "results.json", "results.csv", "crack.csv", "crack.json", "broken_bonds.csv",
                   "log.txt", "energy.csv", "lattice.pvd", "motion.pvd", "sheet.png", "sheet_fields.png", "crack_path.png",
-                  "energy.png", "animation.gif", "report.html"}
+                  "energy.png", "report.html"}
         self.assertLessEqual(wanted, names)
         self.assertFalse([name for name in names if name.endswith(".part")])
 

@@ -18,7 +18,7 @@ SHIPPED = pathlib.Path(__file__).resolve().parents[2] / "verification" / "studie
 
 def study(folder, *options, file="patterns"):
     """Runs the study. @return exit code, study.json"""
-    run = subprocess.run([LATCON, "study", file, "--skip-verification", "--quiet", "--output-dir", folder,
+    run = subprocess.run([LATCON, "study", file, "--skip-verification", "--no-report", "--quiet", "--output-dir", folder,
                           *options], check=False)
     return run.returncode, json.loads((pathlib.Path(folder) / "study.json").read_text(encoding="utf-8"))
 

@@ -35,7 +35,7 @@ def undisturbed():
     with tempfile.TemporaryDirectory() as folder:
         study, out = pathlib.Path(folder) / "tiny.json", pathlib.Path(folder) / "out"
         study.write_text(json.dumps(TINY))
-        run = latcon("study", study, "--output-dir", out, "--skip-verification")
+        run = latcon("study", study, "--output-dir", out, "--skip-verification", "--no-report")
         assert run.returncode == 0, run.stdout + run.stderr
         return result(out)
 

@@ -68,6 +68,13 @@ struct BatchOptions
   std::string partition;           ///< empty: the default of the cluster
 };
 
+/// Options of `latcon report`.
+struct ReportOptions
+{
+  std::string directory;  ///< of a run, or of several
+  bool animation = false; ///< draw animations of cracks as well
+};
+
 // The commands. Each runs on every MPI rank and returns the exit code of the program, or throws.
 support::ExitCode verify(const input::Options &options);                 ///< `latcon verify`
 support::ExitCode run_lattice(const input::Options &options);            ///< `latcon lattice`
@@ -75,7 +82,7 @@ support::ExitCode run_continuum(const input::Options &options);          ///< `l
 support::ExitCode run_fracture(const input::Options &options);           ///< `latcon fracture`
 support::ExitCode run_continuum_fracture(const input::Options &options); ///< `latcon fracture --side continuum`
 support::ExitCode compare_frames(const input::Options &options, const CompareOptions &chosen); ///< `latcon compare`
-support::ExitCode report(const input::Options &options, const std::string &directory);         ///< `latcon report`
+support::ExitCode report(const input::Options &options, const ReportOptions &chosen);          ///< `latcon report`
 support::ExitCode run_study(const input::Options &options, const StudyOptions &chosen);        ///< `latcon study`
 support::ExitCode write_batch(const input::Options &options, const BatchOptions &chosen);      ///< `latcon batch`
 support::ExitCode print_schema(const input::Options &options);                                 ///< `latcon schema`

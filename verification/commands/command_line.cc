@@ -301,6 +301,7 @@ support::ExitCode run_program(int argc, char **argv)
   study_command->add_option("--shard", study.shard, "run one of N shares of the runs, without verdict; then --collect")
     ->type_name("I/N");
   study_command->add_flag("--collect", study.collect, "run nothing: judge the runs of all shards");
+  study_command->add_flag("--no-report", options.no_report, "draw neither pictures nor page");
   study_command->callback(
     [&]
     {
@@ -374,14 +375,18 @@ support::ExitCode run_program(int argc, char **argv)
       command = [&] { return compare_frames(options, chosen); };
     });
 
-  std::string directory;
+  ReportOptions shown;
   CLI::App *report_command =
     add_command("report", "summary table, pictures and report.html of finished runs", "latcon report output/quick");
-  report_command->add_option("DIR", directory, "output directory of a run, or a folder of several")
+  report_command
+    ->add_option("DIR", shown.directory,
+                 "output directory of a run, or a folder of several; with --output-dir it is only read")
     ->required()
     ->type_name("");
-  report_command->callback([&] { command = [&] { return report(options, directory); }; });
+  report_command->add_flag("--animation", shown.animation, "draw animation.gif of each crack as well");
+  report_command->callback([&] { command = [&] { return report(options, shown); }; });
 
+  std::string directory;
   CLI::App *init_command = add_command("init", "a folder with a commented case to start from", "latcon init my-strip");
   init_command->add_option("DIR", directory, "folder; the case in it has its name")->required()->type_name("");
   init_command->callback([&] { command = [&] { return init(options, directory); }; });

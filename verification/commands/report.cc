@@ -2,6 +2,7 @@
 #include <filesystem>
 #include <iostream>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -63,14 +64,14 @@ int wait_with_progress(pid_t child, const std::string &what)
 constexpr int packages_missing = 69;
 
 // Runs a script of the folder report/ on an output directory. @return its exit status
-int run_script(const std::string &script, const std::string &directory, const std::string &page, bool quiet,
-               bool shows_progress = false)
+// @param options of the script @param page name for messages
+int run_script(const std::string &script, const std::string &directory, const std::vector<std::string> &options,
+               const std::string &page, bool shows_progress = false)
 {
   // Debian's interpreter, which finds the packages that the script needs, without packages of the user.
   const std::string python = "/usr/bin/python3";
   std::vector<std::string> command{python, "-s", input::data_folder() + "/report/" + script, directory};
-  if (quiet)
-    command.emplace_back("--quiet");
+  command.insert(command.end(), options.begin(), options.end());
   const pid_t child = support::start_child({command, environment_of_scripts(), ""});
   const int status = shows_progress ? wait_with_progress(child, "drawing " + page) : support::wait_for_child(child);
   if (status == support::not_started)
@@ -86,21 +87,9 @@ int run_script(const std::string &script, const std::string &directory, const st
   throw support::OutputError(directory + "/" + page, "the report script failed");
 }
 
-} // namespace
-
-support::ExitCode report(const input::Options &options, const std::string &directory)
+support::ExitCode run_report(const std::string &directory, const std::vector<std::string> &options, bool shows_progress)
 {
-  if (!std::filesystem::is_directory(directory))
-    throw support::InputError(directory + " is not a directory");
-  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) != 0)
-    return support::ExitCode::done;
-  const auto lock = lock_directory(directory);
-  return draw_report(directory, options.quiet);
-}
-
-support::ExitCode draw_report(const std::string &directory, bool quiet, bool shows_progress)
-{
-  const int status = run_script("report.py", directory, "report.html", quiet, shows_progress);
+  const int status = run_script("report.py", directory, options, "report.html", shows_progress);
   if (status == packages_missing)
   {
     std::cerr << "latcon: no report; every other file is complete. With these packages, draw it by: latcon report "
@@ -111,13 +100,44 @@ support::ExitCode draw_report(const std::string &directory, bool quiet, bool sho
   return static_cast<support::ExitCode>(status);
 }
 
+} // namespace
+
+support::ExitCode report(const input::Options &options, const ReportOptions &chosen)
+{
+  if (!std::filesystem::is_directory(chosen.directory))
+    throw support::InputError(chosen.directory + " is not a directory");
+  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) != 0)
+    return support::ExitCode::done;
+  std::vector<std::string> words;
+  if (options.quiet)
+    words.emplace_back("--quiet");
+  if (chosen.animation)
+    words.emplace_back("--animation");
+  if (!options.output_dir.empty())
+  {
+    std::error_code error;
+    std::filesystem::create_directories(options.output_dir, error);
+    if (error)
+      throw support::OutputError(options.output_dir, error.message());
+    words.insert(words.end(), {"--output-dir", options.output_dir});
+  }
+  const auto lock = lock_directory(options.output_dir.empty() ? chosen.directory : options.output_dir);
+  return run_report(chosen.directory, words, false);
+}
+
+support::ExitCode draw_report(const std::string &directory, bool quiet, bool shows_progress)
+{
+  return run_report(directory, quiet ? std::vector<std::string>{"--quiet"} : std::vector<std::string>{},
+                    shows_progress);
+}
+
 bool draw_page(const Page &page, const std::string &directory)
 {
   // Nodes of a cluster may have no Python, or no packages; all results are written.
   std::string problem;
   try
   {
-    const int status = run_script(page.script, directory, page.file, true);
+    const int status = run_script(page.script, directory, {"--quiet"}, page.file);
     if (status == packages_missing)
       problem = "cannot draw " + directory + "/" + page.file + " without these packages";
     else if (status != 0)

@@ -305,7 +305,7 @@ void collect_outcomes(study::StudyResults &results, const std::string &directory
 }
 
 // Judges the runs, writes the tables and the page, and ends the run.
-support::ExitCode judge_runs(study::StudyResults &results, bool complete, Run &run)
+support::ExitCode judge_runs(const input::Options &options, study::StudyResults &results, bool complete, Run &run)
 {
   results.claims = study::judge(results.study, results.plan, results.outcomes);
   output::write_file(run.directory() + "/study.json", study::study_json(results));
@@ -316,7 +316,7 @@ support::ExitCode judge_runs(study::StudyResults &results, bool complete, Run &r
   const support::ExitCode exit_code =
     run.end(rows, complete ? exit_code_of(results, rows) : support::ExitCode::interrupted);
   // A page of an earlier run may remain.
-  if (complete && draw_page(study_page, run.directory()) && run.is_verbose())
+  if (complete && !options.no_report && draw_page(study_page, run.directory()) && run.is_verbose())
     std::cout << run.directory() << "/study.html" << std::endl;
   return exit_code;
 }
@@ -408,7 +408,7 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
                        refine_sweep(results, requested, selection, verification, skip_verification, n_cores, run));
   if (!chosen.shard.empty())
     return run.end({}, complete ? exit_code_of(results, {}) : support::ExitCode::interrupted);
-  return judge_runs(results, complete, run);
+  return judge_runs(options, results, complete, run);
 }
 
 } // namespace latcon::commands

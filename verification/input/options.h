@@ -23,7 +23,7 @@ struct Options
   bool dry_run = false;
   bool yes = false; ///< run also what would be refused for its cost
   bool skip_verification = false;
-  bool no_report = false;    ///< run a crack without pictures and page
+  bool no_report = false;    ///< draw neither pictures nor page
   bool resume = false;       ///< continue from the last checkpoint; keep the finished runs of a study
   bool on_continuum = false; ///< run the crack of the finite elements instead of that of the lattice
 };

@@ -14,7 +14,7 @@ import own_settings  # before matplotlib
 
 import numpy as np
 
-from files import DONE, DamagedFile, exit_code_of, read_json, write_file
+from files import DONE, DamagedFile, exit_code_of, read_json, write_page
 from live import has_dygraphs, live_plot, rows_of, scripts, styles, thinned, viewer
 from markup import plain_row, table, whole_page
 from motion import read_motion
@@ -125,7 +125,7 @@ def comparison_page(folder, quiet):
     motions = [read_motion(run) for run in runs]
     sheets = [None if motion is None else sheet_data(run, motion, LARGEST_SHEETS // 2) for run, motion in zip(runs, motions)]
     html = page(comparison, runs, with_common_ranges(sheets))
-    write_file(folder / "compare.html", lambda beside: beside.write_text(html, encoding="utf-8"))
+    write_page(folder / "compare.html", html)
     if not quiet:
         print(folder / "compare.html")
     return DONE

@@ -48,11 +48,11 @@ ENERGY_CAPTION = ("Conversion of the released elastic energy, per metre of thick
                   "Dotted: time of the sheet above.")
 
 
-def crack_section(run, position, pictures, sheet):
+def crack_section(run, position, pictures, sheet, animated):
     """Pictures and numbers of a crack.
 
     pictures: {name in CAPTIONS: (picture, still picture for print or None)}; those that a viewer or a plot also shows are
-    collapsed. sheet: viewer data (sheet_data.py), or None.
+    collapsed. sheet: viewer data (sheet_data.py), or None. animated: whether an animation was asked for.
     """
     plots = {"path": path_plot(run), "energy": energy_plot(run)} if has_dygraphs() else {}
     live = {name: live_plot(position, name, plots[name], caption, sheet is not None)
@@ -73,7 +73,7 @@ def crack_section(run, position, pictures, sheet):
     collapsed = [name for name in live for name in stills[name]]
     parts += expandable(f"stills-{position}", "<b>Still pictures</b> of the same",
                         drawn(run, pictures, collapsed, still=True))
-    missing = [name for name in captions if name not in pictures]
+    missing = [name for name in captions if name not in pictures and (animated or name != "animation.gif")]
     if missing:
         parts.append(f'<p class="soft">Not drawn, because the run has no data for it: {", ".join(missing)}</p>')
     return "\n".join(parts)

@@ -1,4 +1,5 @@
 """Pictures of a continuum that broke by damage: its last frame, and the edges of its crack."""
+import os
 from dataclasses import dataclass
 
 import numpy as np
@@ -41,7 +42,7 @@ def read_damage_frame(path, time):
     """Reads a frame."""
     vtkObject.GlobalWarningDisplayOff()  # errors are reported once, below
     reader = vtkXMLPolyDataReader()
-    reader.SetFileName(str(path))
+    reader.SetFileName(os.fsencode(path))  # a name need not be UTF-8 text
     reader.Update()
     sheet = reader.GetOutput()
     if sheet.GetNumberOfPoints() == 0:

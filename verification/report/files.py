@@ -110,6 +110,12 @@ def write_file(path, write):
         raise UnwritableFile(path, error.strerror or error) from error
 
 
+def write_page(path, html):
+    """Writes an HTML page. Names of files that are no UTF-8 text, whose other bytes Python keeps as lone surrogates, are shown with
+    question marks."""
+    write_file(path, lambda beside: beside.write_text(html, encoding="utf-8", errors="replace"))
+
+
 def replace_file(path, write):
     """Replaces a file like write_file(), without listing it.
 

@@ -1,4 +1,5 @@
 """Reader of the lattice frames that latcon writes for ParaView."""
+import os
 from dataclasses import dataclass
 from xml.etree import ElementTree
 
@@ -50,7 +51,7 @@ def read_frame(path, time, with_bonds=True):
     """Reads the arrays of a vtp file that the pictures need."""
     vtkObject.GlobalWarningDisplayOff()  # errors are reported once, below
     reader = vtkXMLPolyDataReader()
-    reader.SetFileName(str(path))
+    reader.SetFileName(os.fsencode(path))  # a name need not be UTF-8 text
     reader.UpdateInformation()
     needed = [(reader.GetPointDataArraySelection(), "displacement")]
     needed += [(reader.GetCellDataArraySelection(), "stretch")] if with_bonds else []

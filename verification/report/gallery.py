@@ -156,7 +156,7 @@ def film_section(run, folder):
     return ["", "## Animation of Fig. 1", "", "![the sheet of Fig. 1, torn from left to right](pictures/fig1.gif)", "",
             "The deformed sheet, coloured by the speed of the material, in uniform slow motion: waves run ahead of the "
             "crack, and its flanks snap back behind it. Made from the frames in `motion.pvd` of `./run fracture "
-            "verification/cases/fig1.prm`; every crack produces such an animation."], [gif]
+            "verification/cases/fig1.prm`; `latcon report --animation` draws one of any crack."], [gif]
 
 
 def arrested_section(run, folder):

@@ -1,4 +1,5 @@
 """Pictures of the averaged fields around a crack tip, in the current configuration."""
+import os
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,7 +40,7 @@ def read_near_tip(path):
     """Reads near_tip.vti or near_tip_folded.vti."""
     vtkObject.GlobalWarningDisplayOff()  # errors are reported once, below
     reader = vtkXMLImageDataReader()
-    reader.SetFileName(str(path))
+    reader.SetFileName(os.fsencode(path))  # a name need not be UTF-8 text
     reader.Update()
     image = reader.GetOutput()
     columns, rows, _ = image.GetDimensions()

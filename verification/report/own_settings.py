@@ -2,6 +2,7 @@
 of the current folder, which would otherwise take precedence: the folder of a run may belong to somebody else. Import this module
 before any other that imports matplotlib."""
 import importlib
+import logging
 import os
 import sys
 from pathlib import Path
@@ -29,6 +30,8 @@ def require_packages():
         sys.exit(PACKAGES_MISSING)
 
 
+# Without a home, matplotlib keeps its list of fonts in a temporary folder that it removes; its advice would be in the log of every run.
+logging.getLogger("matplotlib").setLevel(logging.ERROR)
 _here = os.open(".", os.O_PATH)
 os.chdir(Path(__file__).resolve().parent)
 require_packages()

@@ -9,16 +9,16 @@ from markup import details, number, plural, row, superscripts, table, whole_page
 from summary import comparisons, percent, ratio_text, tallies, tally_of, unpublished, with_uncertainty
 
 
-def page(title, runs, pictures, plots, sheets, unreadable=()):
+def page(title, runs, pictures, plots, sheets, unreadable=(), animated=False):
     """The whole page.
 
-    unreadable: runs that cannot be read
+    animated: whether animations were asked for. unreadable: runs that cannot be read
     pictures: pictures of cracks, {folder of a run: {name of crack_section.CAPTIONS: (picture, still for print or None)}}
     plots: plots of claims, {folder of a run: {plot name: (PNG file, error metrics)}}
     sheets: viewer data of cracks (sheet_data.py), {folder of a run: data or None}
     """
     versions = sorted({f"latcon {run.info['version']}" for run in runs if run.info and "version" in run.info})
-    cracks = [crack_section(run, number, pictures.get(run.folder, {}), sheets.get(run.folder))
+    cracks = [crack_section(run, number, pictures.get(run.folder, {}), sheets.get(run.folder), animated)
               for number, run in enumerate(runs) if run.is_fracture]
     with_plots = has_dygraphs() and bool(cracks)
     heading = f'latcon report: {escape(title)} <small>{escape(", ".join(versions) or "latcon")}</small>'

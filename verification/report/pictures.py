@@ -57,7 +57,7 @@ def save_png(picture, path, few_colours=True):
     smooth fields then show steps."""
     if few_colours:
         picture = picture.quantize(256, method=Image.Quantize.FASTOCTREE, dither=Image.Dither.NONE)
-    write_file(path, lambda beside: picture.save(beside, format="PNG", optimize=True))
+    write_file(path, lambda beside: picture.save(beside, format="PNG"))
 
 
 def shrink(path, most):

@@ -13,12 +13,11 @@ sys.dont_write_bytecode = True  # no files are added to this folder
 
 import own_settings  # before matplotlib
 
-from animation import draw_animation
 from claim_plots import all_plots
 from crack_path import draw_crack_path
 from damage_pictures import draw_damage, draw_edges, read_edges, read_last_damage_frame
 from field_pictures import draw_fields, has_fields
-from files import BAD_INPUT, CLAIM_FAILS, DONE, DamagedFile, exit_code_of, write_file
+from files import BAD_INPUT, CLAIM_FAILS, DONE, DamagedFile, UnwritableFile, exit_code_of, write_page
 from frame import read_last_frame
 from motion import read_motion
 from near_tip_plots import opening_stress_picture, velocity_picture
@@ -29,21 +28,21 @@ from sheet_data import LARGEST_SHEETS, sheet_data
 from summary import text_summary
 
 
-def draw_pictures(run, motion):
+def draw_pictures(run, motion, folder):
     """Draws the pictures of a fracture run for which it has files: {name: (picture, still picture for print or None)}.
 
-    motion: frames of the run, or None.
+    motion: frames of the run to animate, or None. folder: where the pictures are written.
     """
     drawn = {}
 
     def place(name, still=None):
-        drawn[name] = (run.folder / name, still)
-        return run.folder / name
+        drawn[name] = (folder / name, still)
+        return folder / name
 
-    gif, still = run.folder / "animation.gif", run.folder / "animation.png"
     if motion is not None:
-        draw_animation(motion, gif, still)
-        place("animation.gif", still)
+        from animation import draw_animation
+        still = folder / "animation.png"
+        draw_animation(motion, place("animation.gif", still), still)
     frame = read_last_frame(run.folder)
     if frame is not None:
         draw_sheet(frame, run.input_number("Fracture", "breaking stretch"), place("sheet.png"))
@@ -66,39 +65,54 @@ def draw_pictures(run, motion):
     return drawn
 
 
-def draw_plots(run):
-    """Plots of the tables that claims wrote in a run: {plot name: (PNG file, error metrics)}."""
+def draw_plots(run, folder):
+    """Plots in a folder of the tables that claims wrote in a run: {plot name: (PNG file, error metrics)}."""
     made = {}
     for plot in all_plots():
         if plot.name in run.tables:
-            path = run.folder / f"{plot.name}.png"
+            path = folder / f"{plot.name}.png"
             made[plot.name] = (path, plot.draw(run.tables, path))
     return made
 
 
-def report(directory, quiet):
-    """Draws and writes the report of a folder. @return exit code"""
-    folder = Path(directory)
+def place_for(run, folder, output):
+    """Folder for the pictures of a run in `folder`: its place in `output`."""
+    place = output / run.folder.relative_to(folder)
+    try:
+        place.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        raise UnwritableFile(place, error.strerror) from error
+    return place
+
+
+def report(directory, output_dir=None, quiet=False, animated=False):
+    """Draws and writes the report of a folder.
+
+    output_dir: folder for the page and the pictures, those of each run in the same sub-folder as the run; None: the folder itself
+    @return exit code
+    """
+    folder, output = Path(directory), Path(output_dir or directory)
     found, unreadable = find_runs(folder)
     runs, pictures, plots, sheets = [], {}, {}, {}
     most = LARGEST_SHEETS // max(1, sum(run.is_fracture for run in found))
     for run in found:
         try:  # frames and fields are read here
             motion = read_motion(run) if run.is_fracture else None
-            pictures[run.folder] = draw_pictures(run, motion) if run.is_fracture else {}
+            place = place_for(run, folder, output)
+            pictures[run.folder] = draw_pictures(run, motion if animated else None, place) if run.is_fracture else {}
             sheets[run.folder] = None if motion is None else sheet_data(run, motion, most)
-            plots[run.folder] = draw_plots(run)
+            plots[run.folder] = draw_plots(run, place)
             runs.append(run)
         except DamagedFile as error:
             unreadable.append(Unreadable(run.name, run.folder, str(error)))
-    html = page(folder.resolve().name, runs, pictures, plots, sheets, unreadable)
-    write_file(folder / "report.html", lambda beside: beside.write_text(html, encoding="utf-8"))
+    html = page(folder.resolve().name, runs, pictures, plots, sheets, unreadable, animated)
+    write_page(output / "report.html", html)
     for one in unreadable:
         print(f"error: {one.problem}", file=sys.stderr)
     if not quiet:
         sys.stdout.reconfigure(errors="replace")
         print(text_summary(runs, unreadable))
-        print(f"\n{os.path.join(directory, 'report.html')}")
+        print(f"\n{os.path.join(output_dir or directory, 'report.html')}")
     if unreadable:
         return BAD_INPUT
     return CLAIM_FAILS if any(c.verdict == "fails" for run in runs for c in run.checks) else DONE
@@ -108,9 +122,11 @@ def main(words=None):
     """Runs the command line; `words` replace the arguments of the process. @return exit code"""
     parser = argparse.ArgumentParser(description="Draw the pictures of latcon's runs and write report.html.")
     parser.add_argument("directory", metavar="DIR", help="output directory of a run, or a folder of several")
+    parser.add_argument("--output-dir", metavar="OUT", help="folder for page and pictures (default: DIR)")
+    parser.add_argument("--animation", action="store_true", help="draw animation.gif of each crack as well")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
     arguments = parser.parse_args(words)
-    return exit_code_of(lambda: report(arguments.directory, arguments.quiet))
+    return exit_code_of(lambda: report(arguments.directory, arguments.output_dir, arguments.quiet, arguments.animation))
 
 
 if __name__ == "__main__":

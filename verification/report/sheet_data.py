@@ -137,5 +137,5 @@ def packed_floats(values):
 def deflated(array):
     """Shape of an array, and its bytes grouped by significance and deflated."""
     weights = np.ascontiguousarray(array).reshape(-1).view(np.uint8).reshape(-1, array.itemsize).T
-    data = base64.b64encode(zlib.compress(weights.tobytes(), 9)).decode("ascii")
+    data = base64.b64encode(zlib.compress(weights.tobytes())).decode("ascii")
     return {"shape": list(array.shape), "data": data}

@@ -11,7 +11,7 @@ sys.dont_write_bytecode = True  # no files are added to this folder
 
 import own_settings  # before matplotlib
 
-from files import DONE, UnwritableFile, exit_code_of, write_file
+from files import DONE, UnwritableFile, exit_code_of, write_page
 from frame import read_last_frame
 from near_tip_plots import opening_stress_picture, velocity_picture
 from pictures import draw_sheet, shrink
@@ -109,7 +109,7 @@ def study_page(folder, quiet):
     """Draws the pictures and writes the page."""
     study = read_study(folder)
     html = page(study, draw_pictures(study))
-    write_file(study.folder / "study.html", lambda beside: beside.write_text(html, encoding="utf-8"))
+    write_page(study.folder / "study.html", html)
     if not quiet:
         print(study.folder / "study.html")
     return DONE
