@@ -56,6 +56,10 @@ class Lock(Started):
                 self.assertIn(f"{self.out} is in use by process {owner.pid} on ", run.stderr)
                 self.assertIn("--output-dir", run.stderr)
         self.assertEqual(latcon("lattice", *TINY, "--dry-run", "--output-dir", self.out).returncode, 0)
+        elsewhere = self.folder / "elsewhere"
+        run = latcon("report", self.out, "--animation", "--output-dir", elsewhere, "--quiet")
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("has not ended", (elsewhere / "report.html").read_text())
         self.assertEqual(contents(self.out), before)
         owner.kill()
         owner.communicate()
