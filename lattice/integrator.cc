@@ -58,7 +58,13 @@ void Integrator::kick(State &state, std::size_t row, const double *fx, const dou
 
 void Integrator::accelerate(State &state)
 {
-  const auto after = [&](std::size_t row, const double *fx, const double *fy) { kick(state, row, fx, fy, 0.); };
+  // Threads may still read the velocities of rows next to theirs, so that only accelerations are written.
+  const auto after = [&](std::size_t row, const double *fx, const double *fy)
+  {
+    const std::size_t begin = lattice_.index(row, 0), n = lattice_.columns();
+    kernels::accelerate(n, fx, &state.inverse_mass[begin], &state.ax[begin]);
+    kernels::accelerate(n, fy, &state.inverse_mass[begin], &state.ay[begin]);
+  };
   forces_.evaluate(state, evaluated_vx(state), evaluated_vy(state), {{}, nullptr, std::ref(after)});
   evaluate_site_forces(state);
   accelerate_sites(state);

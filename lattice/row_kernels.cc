@@ -224,6 +224,12 @@ void Drift(double h, std::size_t n, const double *acceleration, double *velocity
   }
 }
 
+void Accelerate(std::size_t n, const double *force, const double *inverse_mass, double *acceleration)
+{
+  for (std::size_t i = 0; i < n; i += width())
+    store(load(force + i) * load(inverse_mass + i), acceleration + i);
+}
+
 void Kick(double duration, std::size_t n, const double *force, const double *inverse_mass, double *acceleration,
           double *velocity)
 {
@@ -308,6 +314,7 @@ namespace latcon::lattice::kernels
 HWY_EXPORT(BondsOfRow);
 HWY_EXPORT(GatherRow);
 HWY_EXPORT(Drift);
+HWY_EXPORT(Accelerate);
 HWY_EXPORT(Kick);
 HWY_EXPORT(FirstStage);
 HWY_EXPORT(NextStage);
@@ -343,6 +350,11 @@ void gather_row(std::size_t n, const std::array<const double *, n_row_kinds> &st
 void drift(double h, std::size_t n, const double *acceleration, double *velocity, double *position, double *predicted)
 {
   HWY_DYNAMIC_DISPATCH(Drift)(h, n, acceleration, velocity, position, predicted);
+}
+
+void accelerate(std::size_t n, const double *force, const double *inverse_mass, double *acceleration)
+{
+  HWY_DYNAMIC_DISPATCH(Accelerate)(n, force, inverse_mass, acceleration);
 }
 
 void kick(double duration, std::size_t n, const double *force, const double *inverse_mass, double *acceleration,

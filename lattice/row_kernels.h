@@ -92,7 +92,10 @@ void gather_row(std::size_t n, const std::array<const double *, n_row_kinds> &st
 /// and position and predicted velocity at its end (theory.md, eq. (L.7)).
 void drift(double h, std::size_t n, const double *acceleration, double *velocity, double *position, double *predicted);
 
-/// The acceleration of the n sites from the force, and their velocity after it has acted for `duration` [s].
+/// Computes one component of the acceleration of n sites from the force on them.
+void accelerate(std::size_t n, const double *force, const double *inverse_mass, double *acceleration);
+
+/// Computes the acceleration as accelerate() does, and the velocity after it has acted for `duration` [s].
 void kick(double duration, std::size_t n, const double *force, const double *inverse_mass, double *acceleration,
           double *velocity);
 
