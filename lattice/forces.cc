@@ -50,6 +50,7 @@ Forces::Forces(const RowPartition &band, const Material &material)
     row_mechanism_power_(material.n_mechanisms(), Field(lattice_.rows(), 0.)), row_events_(lattice_.rows(), 0),
     row_short_bonds_(lattice_.rows(), 0)
 {
+  kernels::limit_instruction_sets();
   for (std::size_t number = 0; number < n_shells; ++number)
     if (const Shell *shell = material.in_shell(number))
     {

@@ -2,7 +2,10 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
 #include <stdexcept>
+#include <string>
 #include <type_traits>
 #include <variant>
 
@@ -324,14 +327,43 @@ HWY_EXPORT(InstructionSet);
 namespace
 {
 
-// Instruction sets that this processor has and for which the loops were compiled.
-std::vector<std::int64_t> targets()
+// Each of a set of targets; better ones have lower bits.
+std::vector<std::int64_t> split(std::int64_t targets)
 {
-  static const std::int64_t all = hwy::SupportedTargets() & HWY_TARGETS;
   std::vector<std::int64_t> each;
-  for (std::int64_t rest = all; rest != 0; rest &= rest - 1)
-    each.push_back(rest & -rest);
+  for (; targets != 0; targets &= targets - 1)
+    each.push_back(targets & -targets);
   return each;
+}
+
+// Instruction sets that this processor has and for which the loops were compiled, up to the one that the environment
+// names.
+std::int64_t allowed_targets()
+{
+  const std::int64_t all = hwy::SupportedTargets() & HWY_TARGETS;
+  const char *const best = std::getenv("LATCON_INSTRUCTION_SET");
+  if (best == nullptr)
+    return all;
+  std::string names;
+  for (const std::int64_t target : split(all))
+  {
+    if (std::strcmp(hwy::TargetName(target), best) == 0)
+    {
+      const std::int64_t allowed = all & -target;
+      hwy::SetSupportedTargetsForTest(allowed);
+      hwy::GetChosenTarget().Update(allowed);
+      return allowed;
+    }
+    names += std::string(names.empty() ? "" : ", ") + hwy::TargetName(target);
+  }
+  throw std::invalid_argument("environment variable LATCON_INSTRUCTION_SET: `" + std::string(best) +
+                              "` is none of the instruction sets on this machine: " + names);
+}
+
+const std::vector<std::int64_t> &targets()
+{
+  static const std::vector<std::int64_t> allowed = split(allowed_targets());
+  return allowed;
 }
 
 } // namespace
@@ -388,10 +420,14 @@ bool any_event_ahead(const SheetConstants &sheet, const RowOfBonds &row, double 
 std::vector<std::string> instruction_sets()
 {
   std::vector<std::string> names;
-  // Better ones have lower bits.
   for (const std::int64_t target : targets())
     names.emplace_back(hwy::TargetName(target));
   return names;
+}
+
+void limit_instruction_sets()
+{
+  (void)targets();
 }
 
 void use_instruction_set(const std::string &name)

@@ -114,11 +114,17 @@ void next_stage(const ChebyshevStages::Stage &stage, double h, std::size_t n, co
 /// after its ends have moved for `ahead` [s] at their velocities. Does not use `row.force`.
 bool any_event_ahead(const SheetConstants &sheet, const RowOfBonds &row, double ahead);
 
-/// Names of the instruction sets that this processor has and the loops exist for, the best first. The
-/// last is for any processor: "SCALAR", or with some compilers "EMU128".
+/// Returns the names of the instruction sets that this processor has and the loops exist for, the best first. The
+/// last is for any processor: "SCALAR", or with some compilers "EMU128". The environment variable
+/// LATCON_INSTRUCTION_SET, which is read once, names the best one of them that may be used: for ThreadSanitizer, which
+/// does not see loads and stores of more than 16 bytes.
+/// @throws std::invalid_argument if the variable names none of them
 std::vector<std::string> instruction_sets();
+/// Leaves out the instruction sets that LATCON_INSTRUCTION_SET rules out. Forces do so before they use any loop.
+/// @throws std::invalid_argument as instruction_sets() does
+void limit_instruction_sets();
 /// Selects the instruction set of the loops; the default is the best one. Not to be called during a computation.
-/// @throws std::invalid_argument for another name
+/// @throws std::invalid_argument for a name that instruction_sets() does not have
 void use_instruction_set(const std::string &name);
 /// Name of the one in use.
 std::string instruction_set();

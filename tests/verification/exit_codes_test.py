@@ -49,6 +49,13 @@ class ExitCodes(TemporaryFolder):
         self.assertIn("the initial displacement of a boundary differs", run.stderr)
         self.assertFalse(self.out.exists())
 
+    def test_instruction_set_that_there_is_not(self):
+        for command in (TINY, ["verify", "energy", "--quick"]):
+            run = latcon(*command, "--output-dir", self.out, env=dict(os.environ, LATCON_INSTRUCTION_SET="MMX"))
+            self.assertEqual(run.returncode, BAD_INPUT, run.stderr)
+            self.assertIn("environment variable LATCON_INSTRUCTION_SET: `MMX` is none of the instruction sets", run.stderr)
+            self.assertFalse(self.out.exists())
+
     def test_report_does_not_depend_on_settings_of_python(self):
         self.assertEqual(latcon(*TINY, "--no-report", "--output-dir", self.out).returncode, 0)
         (self.folder / "modules").mkdir()

@@ -19,6 +19,7 @@
 
 #include "continuum/errors.h"
 #include "continuum/solver_report.h"
+#include "lattice/row_kernels.h"
 #include "support/atomic_file.h"
 #include "support/available_cores.h"
 #include "verification/commands/claim_registry.h"
@@ -70,6 +71,19 @@ void set_threads(unsigned int threads)
   // A threaded BLAS sums in an order that depends on the number of threads. The call exists if OpenBLAS is in use.
   if (void *const symbol = dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))
     reinterpret_cast<void (*)(int)>(symbol)(1);
+}
+
+// Throws for an environment variable that names no instruction set of the lattice.
+void check_instruction_set()
+{
+  try
+  {
+    lattice::kernels::limit_instruction_sets();
+  }
+  catch (const std::invalid_argument &error)
+  {
+    throw support::InputError(error.what());
+  }
 }
 
 // Throws if standard output could not be written. A reader that closed its end of a pipe is not an error.
@@ -433,6 +447,7 @@ support::ExitCode run_program(int argc, char **argv)
       }
       options.case_file = input::case_path(options.case_file);
       set_threads(options.threads);
+      check_instruction_set();
       return command();
     });
 }
