@@ -75,7 +75,7 @@ void Forces::update_memory(State &state)
     return;
   const std::vector<std::size_t> rows = BondHistory::rows(band_);
   const auto n = static_cast<std::ptrdiff_t>(rows.size());
-#pragma omp parallel for schedule(static) if (lattice_.n_places() >= min_places_for_threads)
+#pragma omp parallel for schedule(static) if (rows.size() * lattice_.stride() >= min_places_for_threads)
   for (std::ptrdiff_t i = 0; i < n; ++i)
   {
     const std::size_t row = rows[static_cast<std::size_t>(i)];
@@ -102,14 +102,15 @@ void Forces::add_overstress(const State &state, std::size_t from, const kernels:
 
 void Forces::evaluate(const State &state, const Field &vx, const Field &vy, const RowCallbacks &work)
 {
-  const bool threads = lattice_.n_places() >= min_places_for_threads;
+  const Rows own = band_.rows();
+  const bool threads = (own.end - own.begin) * lattice_.stride() >= min_places_for_threads;
   const std::size_t n_scratch = threads ? static_cast<std::size_t>(omp_get_max_threads()) : 1;
   while (scratch_.size() < n_scratch)
     scratch_.emplace_back(lattice_.stride(), n_kinds_);
 #pragma omp parallel if (threads)
   {
-    const auto first = static_cast<std::ptrdiff_t>(band_.rows().begin);
-    const std::ptrdiff_t rows = static_cast<std::ptrdiff_t>(band_.rows().end) - first;
+    const auto first = static_cast<std::ptrdiff_t>(own.begin);
+    const std::ptrdiff_t rows = static_cast<std::ptrdiff_t>(own.end) - first;
     const std::ptrdiff_t n = omp_get_num_threads(), i = omp_get_thread_num();
     const std::ptrdiff_t begin = first + rows * i / n, end = first + rows * (i + 1) / n;
     // The rows that the threads next to this one look at, before anyone does.
