@@ -107,15 +107,11 @@ struct Fracture::Loss
 {
   std::size_t place, kind;
   double stretch, energy;
-  std::uint8_t near_held, far_held; // which others need not know
 };
 
 Fracture::Loss Fracture::loss(const State &state, std::size_t place, std::size_t kind) const
 {
-  const std::size_t far = place + static_cast<std::size_t>(lattice_.shift(kind, lattice_.row_of(place)));
-  return {
-    place,          kind, stretch(state, lattice_, place, kind), bond_energy(state, place, kind), state.held[place],
-    state.held[far]};
+  return {place, kind, stretch(state, lattice_, place, kind), bond_energy(state, place, kind)};
 }
 
 // Takes bonds out of the sheet. @return those of all ranks in the order of storage, if `own` ones are in it
@@ -130,8 +126,6 @@ std::vector<BrokenBond> Fracture::lose_bonds(State &state, const std::vector<Los
     state.bonds.remove(bond.place, bond.kind);
     ++state.lost_bonds[bond.place];
     ++state.lost_bonds[far];
-    state.held[bond.place] = bond.near_held;
-    state.held[far] = bond.far_held;
     lost.push_back({state.time, bond.place, far, bond.kind, midpoint, bond.stretch, bond.energy});
   }
   return lost;

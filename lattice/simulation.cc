@@ -322,8 +322,6 @@ const State &Simulation::gather(Rows rows)
     }
   state_.stiffness.gather(band_, rows);
   state_.strength.gather(band_, rows);
-  for (SiteFlags *marks : {&state_.held, &state_.removed, &state_.lost_bonds})
-    band_.gather(*marks, rows);
   if (band_.is_first())
     update_images(state_, lattice_);
   return state_;

@@ -34,24 +34,21 @@ bool reaches_beyond(const TriangularLattice &lattice, const Material &material, 
   return false;
 }
 
-// Gives a site the bonds that start there. @return how many it has, those that end there included
-unsigned int add_bonds(State &state, const TriangularLattice &lattice, const Material &material, std::size_t place)
+// Adds the bonds that start at a site.
+void add_bonds(State &state, const TriangularLattice &lattice, const Material &material, std::size_t place)
 {
   const std::size_t row = lattice.row_of(place);
-  unsigned int bonds = 0;
   for (std::size_t kind = 0; kind < n_bond_kinds; ++kind)
-  {
-    if (material.shell(kind) == nullptr)
-      continue;
-    if (lattice.is_occupied(place + static_cast<std::size_t>(lattice.shift(kind, row))))
-    {
+    if (material.shell(kind) != nullptr &&
+        lattice.is_occupied(place + static_cast<std::size_t>(lattice.shift(kind, row))))
       state.bonds.add(place, kind);
-      ++bonds;
-    }
-    if (lattice.is_occupied(place - static_cast<std::size_t>(lattice.shift_into(kind, row))))
-      ++bonds;
-  }
-  return bonds;
+}
+
+// Returns whether all bonds of a site end within the sheet, whatever its edges.
+bool is_interior(const TriangularLattice &lattice, std::size_t row, std::size_t column)
+{
+  constexpr std::size_t reach = 2; // of bonds, in rows and in columns
+  return row >= reach && row + reach < lattice.rows() && column >= reach && column + reach < lattice.sites_in_row(row);
 }
 
 } // namespace
@@ -98,15 +95,22 @@ State homogeneous_state(const RowPartition &band, const Material &material, cons
 
   state.stiffness = bond_factors(band, material, BondProperty::stiffness);
   const double inverse_mass = 1. / site_mass(material, lattice);
-  for (const std::size_t row : band.known_rows())
+  for (std::size_t row = 0; row < lattice.rows(); ++row)
+  {
+    const bool is_relevant = band.is_relevant(lattice.index(row, 0));
     for (std::size_t column = 0; column < lattice.sites_in_row(row); ++column)
     {
       const std::size_t place = lattice.index(row, column);
-      const unsigned int bonds = add_bonds(state, lattice, material, place);
-      const bool held = bonds < material.coordination() && reaches_beyond(lattice, material, place, edges);
-      state.held[place] = held ? 1 : 0;
+      const bool held = !is_interior(lattice, row, column) && reaches_beyond(lattice, material, place, edges);
+      // In all rows, as a crack tip may come to any. No other values are written in rows that are not relevant.
+      if (held)
+        state.held[place] = 1;
+      if (!is_relevant)
+        continue;
+      add_bonds(state, lattice, material, place);
       state.inverse_mass[place] = held ? 0. : inverse_mass;
     }
+  }
   update_images(state, band);
   return state;
 }

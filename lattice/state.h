@@ -27,8 +27,8 @@ inline constexpr double unbreakable = std::numeric_limits<double>::infinity();
 /// Positions and velocities are current ones.
 ///
 /// On a rank that shares the sheet with others values are those of the rows it knows (see RowPartition), and of these
-/// some of its own rows alone: velocities, accelerations, which bonds are toughened. Removed sites, lost bonds and
-/// which bonds have broken are known everywhere.
+/// some of its own rows alone: velocities, accelerations, which bonds are toughened. Held and removed sites, lost bonds
+/// and which bonds have broken are known everywhere.
 struct State
 {
   double time = 0.;                       ///< [s]

@@ -30,7 +30,7 @@ void expect_same_energies(const EnergyBalance &shared, const EnergyBalance &alon
   expect_same_bits(shared.initial, alone.initial, "initial");
 }
 
-// Own rows on every rank, and the whole sheet on the first.
+// Own rows on every rank, the whole sheet on the first, and everywhere what is known everywhere.
 void expect_same_state(Simulation &shared, const State &alone)
 {
   const TriangularLattice &sheet = shared.lattice();
@@ -42,13 +42,13 @@ void expect_same_state(Simulation &shared, const State &alone)
       const std::size_t place = sheet.index(row, column);
       ASSERT_EQ(state.lost_bonds[place], alone.lost_bonds[place]);
       ASSERT_EQ(state.removed[place], alone.removed[place]);
+      ASSERT_EQ(state.held[place], alone.held[place]);
       if (!band.is_first() && !band.owns(place))
         continue;
       ASSERT_EQ(state.x[place], alone.x[place]) << "row " << row << ", column " << column;
       ASSERT_EQ(state.y[place], alone.y[place]);
       ASSERT_EQ(state.vx[place], alone.vx[place]);
       ASSERT_EQ(state.vy[place], alone.vy[place]);
-      ASSERT_EQ(state.held[place], alone.held[place]);
       ASSERT_EQ(state.bonds.words()[place], alone.bonds.words()[place]);
       if (const BondStates::Word *third = alone.bonds.words(BondStates::kinds_per_word))
       {
