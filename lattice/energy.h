@@ -45,7 +45,7 @@ struct EnergyBalance
   double elastic;       ///< of the bonds present, stored in their memory included
   double kinetic;       ///< of the free sites
   double viscous;       ///< dissipated by the dashpots, those in the memory of bonds included, since the start
-  double broken;        ///< elastic energy that bonds held when they broke or were cut
+  double broken;        ///< elastic energy of bonds when they broke or were cut, kinetic energy of sites when cut out
   double contact;       ///< that contacts took from the motion since the start: stored in them or dissipated by them
   double boundary_work; ///< done on the sheet by held sites and by loads on its ends since the start
   double initial;       ///< elastic + kinetic before the seed was cut

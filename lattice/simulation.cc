@@ -177,6 +177,7 @@ void Simulation::cut(const std::vector<std::size_t> &places)
 {
   if (!fracture_)
     throw std::logic_error("a sheet without fracture rules cannot be cut");
+  const double kinetic = kinetic_energy(state_, band_);
   broken_ += fracture_->remove_sites(state_, places);
   fracture_->locate_tip(state_);
   reinitialize_forces();

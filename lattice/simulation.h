@@ -42,7 +42,8 @@ public:
   /// loaded already, or after a bond broke or was cut
   void load_ends(const Eigen::Matrix2d &F, EndLoads::End left, EndLoads::End right);
 
-  /// Cuts sites out of the sheet before it moves. @throws std::logic_error without fracture rules
+  /// Cuts sites out of the sheet, with the energy of their bonds and of their motion. @throws std::logic_error without
+  /// fracture rules
   void cut(const std::vector<std::size_t> &places);
 
   /// Cuts bonds out of the sheet now, whatever their stretch, as a crack on a schedule does. Bonds that are absent

@@ -76,6 +76,28 @@ TEST(Simulation, LoadsTheEndsOfAnUnbrokenSheetAlone)
   EXPECT_THROW(broken.load_ends(loading, end, end), std::logic_error);
 }
 
+// Sites that are cut out of a moving sheet take their motion with them.
+TEST(EnergyBalance, ClosesWhenMovingSitesAreCut)
+{
+  const TriangularLattice sheet = sheets::square(20);
+  const Material material = sheets::rubber();
+  const Eigen::Matrix2d F = sheets::stretched(1.4, 1.6);
+  Simulation simulation(sheet, material, homogeneous_state(sheet, material, F, Edges::held), 2e-8,
+                        Fracture(sheet, material, unbreakable, NoToughening{}, F));
+  simulation.set_velocities(Field(sheet.n_places(), 3.), Field(sheet.n_places(), -2.));
+  for (int step = 0; step < 20; ++step)
+    simulation.step();
+  const EnergyBalance before = simulation.energies();
+  simulation.cut(sheets::middle_row(sheet, 8, 4));
+  const EnergyBalance cut = simulation.energies();
+  EXPECT_LT(cut.kinetic, (1. - 1e-3) * before.kinetic);
+  EXPECT_NEAR(cut.broken - before.broken, before.elastic + before.kinetic - cut.elastic - cut.kinetic,
+              1e-12 * before.initial);
+  for (int step = 0; step < 200; ++step)
+    simulation.step();
+  EXPECT_LT(std::abs(simulation.energies().imbalance()), 1e-6 * before.initial);
+}
+
 // A crack in a small sheet with nearest neighbours so stiff that their dashpots hardly damp them: bonds recoil to a
 // thirtieth of their rest length. The automatic step, which is stable down to 0.3, is divided there.
 struct Recoil
