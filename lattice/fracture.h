@@ -128,9 +128,12 @@ public:
     archive("tip_x", tip_x_);
     archive("tip_y", tip_y_);
     if constexpr (Archive::loads)
+    {
+      toughened_to_ = -std::numeric_limits<double>::infinity();
       require_archived(
         !tip_ || (*tip_ < lattice_.n_places() && lattice_.is_site(*tip_) && tip_x_ == lattice_.reference(*tip_).x()),
         "`tip` is no site of the sheet, or `tip_x` not where it is");
+    }
   }
 
 private:

@@ -179,6 +179,7 @@ void Simulation::cut(const std::vector<std::size_t> &places)
     throw std::logic_error("a sheet without fracture rules cannot be cut");
   const double kinetic = kinetic_energy(state_, band_);
   broken_ += fracture_->remove_sites(state_, places);
+  broken_ += kinetic - kinetic_energy(state_, band_);
   fracture_->locate_tip(state_);
   reinitialize_forces();
 }
@@ -292,6 +293,19 @@ const std::vector<BrokenBond> &Simulation::advance(double duration)
     update_powers();
   }
   return broken;
+}
+
+void Simulation::save(Snapshot &snapshot)
+{
+  snapshot.set_time(state_.time);
+  Snapshot::Archive<false> saving(snapshot);
+  archive(saving);
+}
+
+void Simulation::restore(const Snapshot &earlier)
+{
+  Snapshot::Archive<true> loading(earlier);
+  archive(loading);
 }
 
 std::optional<std::size_t> Simulation::tip() const

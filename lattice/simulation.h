@@ -4,6 +4,7 @@
 #include <numeric>
 #include <optional>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
@@ -76,8 +77,12 @@ public:
   template <class Archive>
   void archive(Archive &archive);
 
-  /// Shows an earlier state instead of the present one. There is no going on from it. @param earlier of this simulation
-  void show_snapshot(const Snapshot &earlier) { earlier.put_into(state_, band_); }
+  /// Saves the present values of all that archive() saves, without communication.
+  void save(Snapshot &snapshot);
+  /// Returns to an earlier instant, without communication; the steps from there have the same bits again.
+  /// @param earlier of this simulation, since which no sites were cut @throws std::invalid_argument for one of another
+  /// simulation, whose values may then be in part of the state
+  void restore(const Snapshot &earlier);
 
   const RowPartition &band() const { return band_; }
   const TriangularLattice &lattice() const { return lattice_; }
@@ -152,9 +157,11 @@ void Simulation::archive(Archive &archive)
   const std::vector<std::size_t> known = band_.known_rows();
   std::vector<std::size_t> all(lattice_.rows());
   std::iota(all.begin(), all.end(), std::size_t{0});
+  // A snapshot is of this very simulation.
+  constexpr bool is_checked = Archive::loads && !std::is_same_v<Archive, Snapshot::Archive<true>>;
   BondStates bonds_before;
   const double energy_before = initial_energy_;
-  if constexpr (Archive::loads)
+  if constexpr (is_checked)
     bonds_before = state_.bonds;
   archive("time", state_.time);
   for (const auto &[name, field] :
@@ -189,6 +196,8 @@ void Simulation::archive(Archive &archive)
   archive("broken_energy", broken_);
   if (fracture_)
     archive("fracture", *fracture_);
+  if constexpr (is_checked)
+    check_loaded(bonds_before, energy_before);
   if constexpr (Archive::loads)
   {
     check_loaded(bonds_before, energy_before);

@@ -1,29 +1,106 @@
 #pragma once
 
+#include <cstring>
+#include <stdexcept>
+#include <string>
+#include <type_traits>
 #include <vector>
 
-#include "lattice/state.h"
+#include "lattice/row_partition.h"
 
 namespace latcon::lattice
 {
 
-/// Positions, velocities and bonds of a sheet at an instant, in the rows that a rank moves.
+/// Archive in memory of all that a Simulation archives, on each rank of the rows that it knows.
 class Snapshot
 {
 public:
-  Snapshot() = default;
-  Snapshot(const State &state, const RowPartition &band);
+  bool empty() const { return chunks_.empty(); } ///< whether nothing was saved
+  double time() const { return time_; }          ///< of the state saved [s]
+  void set_time(double time) { time_ = time; }
 
-  /// Puts the rows back into a state, for who looks at it: what else is needed to go on from there is not kept.
-  void put_into(State &state, const RowPartition &band) const;
+  /// Archive that saves to a snapshot or loads from it: the same values in the same order, without communication.
+  template <bool is_loading>
+  class Archive
+  {
+  public:
+    static constexpr bool loads = is_loading;
+    using Stored = std::conditional_t<is_loading, const Snapshot, Snapshot>;
+    explicit Archive(Stored &snapshot) : snapshot_(snapshot) {}
 
-  double time() const { return time_; } ///< [s]
+    /// Archives a number, an optional number, a vector of numbers whose size does not change, or an object with
+    /// archive(). @throws std::invalid_argument to load from a snapshot of another simulation
+    template <class T>
+    void operator()(const std::string & /*name*/, T &value)
+    {
+      if constexpr (std::is_trivially_copyable_v<T>)
+        values(&value, 1);
+      else if constexpr (IsVector<T>::value)
+        values(value.data(), value.size());
+      else
+        value.archive(*this);
+    }
+
+    /// Archives n numbers. @throws std::invalid_argument as above
+    template <class T>
+    void values(T *first, std::size_t n)
+    {
+      static_assert(std::is_trivially_copyable_v<T>);
+      auto &chunks = snapshot_.chunks_;
+      if constexpr (loads)
+      {
+        if (n_chunks_ == chunks.size() || chunks[n_chunks_].size() != n * sizeof(T))
+          throw std::invalid_argument("the snapshot is of another simulation");
+        if (n > 0)
+          std::memcpy(first, chunks[n_chunks_].data(), n * sizeof(T));
+      }
+      else
+      {
+        // Memory of an earlier snapshot is used again.
+        if (n_chunks_ == chunks.size())
+          chunks.emplace_back();
+        const char *const bytes = reinterpret_cast<const char *>(first);
+        chunks[n_chunks_].assign(bytes, bytes + n * sizeof(T));
+      }
+      ++n_chunks_;
+    }
+
+  private:
+    template <class T>
+    struct IsVector : std::false_type
+    {
+    };
+    template <class T, class Allocator>
+    struct IsVector<std::vector<T, Allocator>> : std::true_type
+    {
+    };
+
+    Stored &snapshot_;
+    std::size_t n_chunks_ = 0; // saved or loaded so far
+  };
 
 private:
   double time_ = 0.;
-  std::vector<double> x_, y_, vx_, vy_;                // of the places of these rows, margin of columns included
-  std::array<std::vector<BondStates::Word>, 2> bonds_; // as BondStates stores them
-  std::vector<std::uint8_t> lost_bonds_;
+  std::vector<std::vector<char>> chunks_; // one per call of Archive::values()
 };
+
+/// Saves a field in `rows`, or loads it, with the margin of columns: loops over rows work on some places of it, which
+/// may not keep values that are not finite.
+template <bool loads, class Vector>
+void archive_rows(Snapshot::Archive<loads> &archive, const std::string & /*name*/, Vector &field,
+                  const RowPartition &band, const std::vector<std::size_t> &rows)
+{
+  const TriangularLattice &lattice = band.lattice();
+  for (const std::size_t row : rows)
+    archive.values(&field[lattice.index(row, 0) / lattice.stride() * lattice.stride()], lattice.stride());
+}
+
+/// Saves one value per row of the sheet, or loads them.
+template <bool loads>
+void archive_rows(Snapshot::Archive<loads> &archive, const std::string &name, std::vector<double> &of_rows,
+                  const RowPartition & /*band*/)
+{
+  archive(name, of_rows);
+}
 
 } // namespace latcon::lattice

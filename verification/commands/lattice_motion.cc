@@ -11,7 +11,8 @@ namespace latcon::commands
 
 LatticeMotion::LatticeMotion(const input::Case &input, lattice::Simulation &simulation,
                              output::Checkpoints &checkpoints, Run &run)
-  : input_(input), simulation_(simulation), checkpoints_(checkpoints), run_(run), record_(simulation),
+  : input_(input), simulation_(simulation), checkpoints_(checkpoints), run_(run),
+    record_(simulation, input.time_step ? "Time/step" : "Time/safety factor"),
     frames_(simulation.lattice(), simulation.material(), run.directory()), next_frame_(input.frame_interval)
 {
 }

@@ -64,8 +64,8 @@ FastestSite fastest_site(const lattice::Simulation &simulation)
 
 } // namespace
 
-CrackRecord::CrackRecord(lattice::Simulation &simulation)
-  : simulation_(simulation), mechanisms_(mechanism_names(simulation.material()))
+CrackRecord::CrackRecord(lattice::Simulation &simulation, std::string step_entry)
+  : simulation_(simulation), step_entry_(std::move(step_entry)), mechanisms_(mechanism_names(simulation.material()))
 {
 }
 
@@ -118,7 +118,7 @@ lattice::EnergyBalance CrackRecord::sound_energies()
   const double available = balance.initial + std::abs(balance.boundary_work);
   if (balance.elastic + balance.kinetic <= 2. * available)
   {
-    last_sound_ = {simulation_.state(), simulation_.band()};
+    simulation_.save(last_sound_);
     return balance;
   }
   const FastestSite fastest = fastest_site(simulation_);
@@ -127,10 +127,13 @@ lattice::EnergyBalance CrackRecord::sound_energies()
   message << "the simulation became unstable: at " << simulation_.state().time << " s the lattice has "
           << balance.elastic << " J/m elastic and " << balance.kinetic << " J/m kinetic energy, of " << available
           << " J/m supplied; the fastest site is number " << simulation_.lattice().site_number(fastest.place)
-          << " at X = " << X.x() << " m, Y = " << X.y() << " m, with " << fastest.speed
-          << " m/s; the last frame shows the last valid state, at " << last_sound_.time()
-          << " s; try a smaller Time/safety factor";
-  simulation_.show_snapshot(last_sound_);
+          << " at X = " << X.x() << " m, Y = " << X.y() << " m, with " << fastest.speed << " m/s; ";
+  if (!last_sound_.empty())
+  {
+    message << "the last frame shows the last valid state, at " << last_sound_.time() << " s; ";
+    simulation_.restore(last_sound_);
+  }
+  message << "try a smaller " << step_entry_;
   throw support::SolverError(message.str());
 }
 

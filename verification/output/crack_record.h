@@ -1,6 +1,7 @@
 #pragma once
 
 #include <filesystem>
+#include <string>
 #include <vector>
 
 #include "lattice/simulation.h"
@@ -15,7 +16,8 @@ namespace latcon::output
 class CrackRecord
 {
 public:
-  explicit CrackRecord(lattice::Simulation &simulation);
+  /// @param step_entry entry of the case that the time step depends on, which messages name
+  CrackRecord(lattice::Simulation &simulation, std::string step_entry);
 
   /// Records the state before the first step. Collective.
   void start();
@@ -28,7 +30,7 @@ public:
 
   /// Checks the energies of the sheet and stores a snapshot of the state. Collective.
   /// @throws SolverError if the energies are not finite or exceed the available energy, with time and position of the
-  /// failure; the simulation then shows the last valid state (see lattice::Simulation::show_snapshot)
+  /// failure; the simulation then is back at the last valid state (see lattice::Simulation::restore)
   void check() { (void)sound_energies(); }
 
   /// Returns the positions of the tip and their times.
@@ -68,7 +70,7 @@ public:
       archive("mechanism_energies", mechanism_energies_);
     if constexpr (Archive::loads)
       check_loaded();
-    last_sound_ = {simulation_.state(), simulation_.band()};
+    simulation_.save(last_sound_);
   }
 
 private:
@@ -90,6 +92,7 @@ private:
   };
 
   lattice::Simulation &simulation_;
+  std::string step_entry_;
   std::optional<std::size_t> last_tip_;
   std::vector<analysis::TipRecord> tip_;
   std::vector<double> speeds_;             // per tip record [m/s]

@@ -23,13 +23,14 @@ namespace latcon::resources
 namespace
 {
 
-// Bytes per slot in State, Forces and the integrator, and additional bytes of RungeKuttaChebyshev.
-constexpr double bytes_of_place = 180., bytes_of_chebyshev_place = 48.;
+// Bytes per slot in State, its snapshot, Forces and the integrator, and additional bytes of RungeKuttaChebyshev.
+constexpr double bytes_of_place = 196., bytes_of_chebyshev_place = 48.;
 // Bytes per site and per bond while a frame is gathered and written, and per site in the image of a checkpoint.
 constexpr double bytes_of_site_in_frame = 640., bytes_of_bond_in_frame = 50., bytes_of_site_in_checkpoint = 150.;
 // Bytes per site in the window around the tip, in the sums over all samples and over samples not yet folded.
 constexpr double bytes_of_site_near_tip = 2700.;
-// Bytes per variable of the memory of bonds, and of their stretch, in the history and in the image of a checkpoint.
+// Bytes per variable of the memory of bonds, and of their stretch, in the history, in its snapshot and in the image of
+// a checkpoint.
 constexpr double bytes_of_variable = 8.;
 // Memory of the small versions of the claims, for any case.
 constexpr double bytes_of_claims = 7e7;
@@ -187,7 +188,7 @@ MemoryNeed lattice_memory(const input::Case &input, const RunKind run, const boo
   const double frame = sites * (bytes_of_site_in_frame + bonds * bytes_of_bond_in_frame);
   const double history = run != RunKind::equilibrium ? history_per_place(input.material()) : 0.;
   const double checkpoint = run != RunKind::equilibrium ? sites * (bytes_of_site_in_checkpoint + history) : 0.;
-  const double fields = places * (bytes_of_place + (is_chebyshev ? bytes_of_chebyshev_place : 0.) + history +
+  const double fields = places * (bytes_of_place + (is_chebyshev ? bytes_of_chebyshev_place : 0.) + 2. * history +
                                   factors_per_place(input, run == RunKind::fracture));
   MemoryNeed need;
   // Equilibrium is computed on the root rank only.

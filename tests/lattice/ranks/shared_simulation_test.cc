@@ -163,6 +163,58 @@ TEST_P(SharedCrack, HasTheBitsOfOneRank)
   expect_same_state(ours, theirs.state());
 }
 
+// A snapshot is local to each rank.
+TEST(SharedSnapshot, HasTheBitsOfOneRank)
+{
+  const Variant variant{Orientation::rows_along_crack,
+                        16.,
+                        BehindTipToughening{behind, 3.},
+                        3.,
+                        EndLoads::End::held,
+                        sheets::disordered_rubber_of_three_shells()};
+  const TriangularLattice sheet(sheets::spacing, 40. * sheets::spacing, variant.height * sheets::spacing,
+                                variant.orientation);
+  Crack shared(variant, RowPartition(sheet, MPI_COMM_WORLD), variant.material), alone(variant, sheet, variant.material);
+  Simulation &ours = *shared.simulation, &theirs = *alone.simulation;
+  const auto steps = [](Simulation &simulation)
+  {
+    for (int step = 0; step < 500; ++step)
+      simulation.step();
+  };
+  steps(theirs);
+  steps(ours);
+  Snapshot snapshot;
+  ours.save(snapshot);
+  steps(ours);
+  ours.restore(snapshot);
+  expect_same_state(ours, theirs.state());
+  expect_same_energies(ours.energies(), theirs.energies());
+  steps(theirs);
+  steps(ours);
+  EXPECT_GT(theirs.n_broken(), 10u) << "too quiet to show anything";
+  EXPECT_EQ(ours.tip(), theirs.tip());
+  expect_same_state(ours, theirs.state());
+  expect_same_energies(ours.energies(), theirs.energies());
+}
+
+// Bonds of sites at an edge that other ranks move are cut, as after a restart: held sites are no tip there either.
+TEST(SharedHeldSites, AreNoTip)
+{
+  const TriangularLattice sheet = sheets::square(12.);
+  const Material material = sheets::rubber();
+  const Eigen::Matrix2d F = sheets::stretched(1.2, 1.2);
+  const RowPartition band(sheet, MPI_COMM_WORLD);
+  State state = homogeneous_state(band, material, F, Edges::held);
+  Fracture fracture(band, material, 3., NoToughening{}, F);
+  for (const std::size_t row : {std::size_t{0}, sheet.rows() - 1})
+    for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
+      state.lost_bonds[sheet.index(row, column)] = 5;
+  const std::size_t inside = sheet.index(sheet.rows() / 2, 4);
+  state.lost_bonds[inside] = 5;
+  fracture.locate_tip(state);
+  EXPECT_EQ(fracture.tip(), inside);
+}
+
 // Nearest neighbours so stiff that bonds recoil far below the stretch that the step is made for: which step is divided
 // into how many parts is agreed on.
 TEST(SharedDivision, HasTheBitsOfOneRank)
