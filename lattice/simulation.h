@@ -55,7 +55,8 @@ public:
   /// Prescribes the velocity v = L X of the held sites, L [1/s] in the reference configuration.
   void move_edges(const Eigen::Matrix2d &velocity_gradient);
 
-  /// Adds a velocity field to the free sites; for waves and for tests. One (vx, vy) a place [m/s].
+  /// Sets the velocities of the free sites, of which initial waves and tests consist; the change of kinetic energy
+  /// counts as initial energy. One (vx, vy) per place [m/s].
   void set_velocities(const Field &vx, const Field &vy);
 
   /// Advances by one time step, in parts if a bond is so short that the whole step would be unstable (theory.md,
@@ -200,7 +201,6 @@ void Simulation::archive(Archive &archive)
     check_loaded(bonds_before, energy_before);
   if constexpr (Archive::loads)
   {
-    check_loaded(bonds_before, energy_before);
     update_images(state_, band_);
     // The candidate pairs of contacts follow from the state.
     if (contact_)

@@ -10,7 +10,7 @@ struct ContactLaw;
 /// Time integrator of a motion, and its step.
 struct TimeStepping
 {
-  /// Velocity Verlet, unless stages are given.
+  /// Velocity Verlet, unless stages are given. A number converts to velocity Verlet with that step.
   TimeStepping(double h, unsigned int s = 0) : step(h), stages(s) {}
 
   double step;         ///< h [s], > 0

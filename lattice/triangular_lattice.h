@@ -67,7 +67,7 @@ public:
   /// @param height extent along y [m], > 0
   /// Both extents are rounded to whole rows and columns, an odd number of them across y, so that one runs along y = 0;
   /// a periodic extent to whole periods of the lattice.
-  /// @throws std::invalid_argument if an extent is not positive or holds fewer than two rows or columns, or 1e9
+  /// @throws std::invalid_argument if an extent is not positive or holds fewer than two rows or three columns, or 1e9
   TriangularLattice(double spacing, double length, double height, Orientation orientation, Periodic periodic = {});
 
   double spacing() const { return spacing_; } ///< d [m]
