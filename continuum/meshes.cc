@@ -2,21 +2,14 @@
 
 #include "continuum/collective.h"
 #include "continuum/errors.h"
+#include "continuum/gmsh_file.h"
 
-#include <deal.II/base/bounding_box.h>
-#include <deal.II/grid/grid_in.h>
 #include <deal.II/grid/grid_tools.h>
 #include <deal.II/grid/manifold_lib.h>
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <limits>
-#include <map>
-#include <set>
-#include <sstream>
 #include <string>
-#include <utility>
 #include <vector>
 
 using namespace dealii;
@@ -52,149 +45,6 @@ void append_parts(std::vector<double> &lines, const double to, const double size
 double half_box(const RectangleWithHole &shape)
 {
   return std::min(2. * shape.radius, 0.5 * (shape.radius + 0.5 * std::min(shape.length, shape.height)));
-}
-
-// Mesh exactly as in its file: deal.II drops z of nodes of a plane mesh, and sets the boundary id 0 on edges without a
-// line.
-class FileMesh : public Triangulation<2, 3>
-{
-public:
-  using Triangulation<2, 3>::create_triangulation;
-
-  void create_triangulation(const std::vector<Point<3>> &points, const std::vector<CellData<2>> &cells,
-                            const SubCellData &lines) override
-  {
-    for (const CellData<1> &line : lines.boundary_lines)
-      numbers_[std::minmax(line.vertices[0], line.vertices[1])] = line.boundary_id;
-    Triangulation<2, 3>::create_triangulation(points, cells, SubCellData());
-  }
-
-  // Returns a description of an error in nodes or edges; empty if there is none.
-  std::string defect() const
-  {
-    std::ostringstream text;
-    const BoundingBox<3> box(get_vertices());
-    constexpr double round_off = 1e-12; // of coordinates that were rotated or converted to decimals
-    if (!(box.side_length(2) <= round_off * (box.side_length(0) + box.side_length(1))))
-    {
-      text << "has nodes at z = " << box.lower_bound(2) << " and " << box.upper_bound(2)
-           << " m; it must lie in a plane z = const";
-      return text.str();
-    }
-    for (const auto &cell : active_cell_iterators())
-      for (const auto &face : cell->face_iterators())
-      {
-        if (!face->at_boundary())
-          continue;
-        const auto found = numbers_.find(std::minmax(face->vertex_index(0), face->vertex_index(1)));
-        if (found != numbers_.end() && found->second <= edge::inner)
-          continue;
-        const Point<3> from = face->vertex(0), to = face->vertex(1);
-        text << "has an edge from (" << from[0] << ", " << from[1] << ") to (" << to[0] << ", " << to[1] << ") m on "
-             << (found == numbers_.end() ? "no physical curve" : "the physical curve ");
-        if (found != numbers_.end())
-          text << static_cast<int>(found->second);
-        text << "; expected 0 (left), 1 (right), 2 (bottom), 3 (top) or 4 (inner)";
-        return text.str();
-      }
-    return "";
-  }
-
-private:
-  std::map<std::pair<unsigned int, unsigned int>, types::boundary_id> numbers_;
-};
-
-// Returns true if a line element of the file is on no physical curve, which deal.II does not distinguish from curve 0.
-// Format 2: an element is "number type tags...", the first tag is the physical number. Format 4.1: elements are grouped
-// in blocks per entity (Gmsh 4.8 manual, "MSH file format").
-bool has_line_without_number(std::istream &file)
-{
-  constexpr int line = 1; // element type, and dimension of an entity
-  const auto seek = [&file](const std::string &section)
-  {
-    for (std::string word; file >> word && word != section;)
-      ;
-    return file.good();
-  };
-  double format = 0.;
-  seek("$MeshFormat");
-  file >> format;
-  if (format < 4.)
-  {
-    std::size_t n = 0, number, n_tags;
-    int kind;
-    seek("$Elements");
-    file >> n;
-    for (std::size_t i = 0; i < n && file >> number >> kind >> n_tags; ++i)
-    {
-      if (kind == line && n_tags == 0)
-        return true;
-      file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-    }
-    return false;
-  }
-  std::set<int> numbered;
-  double skipped;
-  std::size_t n_points, n_curves, n_surfaces, n_volumes, n, first, last;
-  seek("$Entities");
-  file >> n_points >> n_curves >> n_surfaces >> n_volumes;
-  file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-  for (std::size_t i = 0; i < n_points && file; ++i)
-    file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-  for (std::size_t i = 0; i < n_curves && file; ++i)
-  {
-    int curve;
-    file >> curve;
-    for (int side = 0; side < 6; ++side)
-      file >> skipped;
-    if (file >> n && n > 0)
-      numbered.insert(curve);
-    file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-  }
-  seek("$Elements");
-  file >> n >> skipped >> first >> last;
-  int dimension, entity, kind;
-  for (std::size_t block = 0, n_elements; block < n && file >> dimension >> entity >> kind >> n_elements; ++block)
-  {
-    if (dimension == line && numbered.count(entity) == 0)
-      return true;
-    for (std::size_t i = 0; i <= n_elements && file; ++i)
-      file.ignore(std::numeric_limits<std::streamsize>::max(), '\n');
-  }
-  return false;
-}
-
-template <int dimension>
-void read_msh(Triangulation<2, dimension> &mesh, const std::filesystem::path &file)
-{
-  std::ifstream stream(file);
-  require(stream.good(), "cannot read the mesh file " + file.string());
-  try
-  {
-    GridIn<2, dimension>(mesh).read_msh(stream);
-  }
-  catch (const std::exception &failure)
-  {
-    throw InvalidInput("the mesh file " + file.string() +
-                       " is not a Gmsh mesh of quadrilaterals in the plane: " + failure.what());
-  }
-}
-
-// Reads a mesh of quadrilaterals on this process.
-void read_serial(Triangulation<2> &mesh, const std::filesystem::path &file)
-{
-  const std::string name = "the mesh file " + file.string();
-  read_msh(mesh, file);
-  require(mesh.n_active_cells() > 0, name + " contains no cells");
-  require(mesh.all_reference_cells_are_hyper_cube(),
-          name + " contains cells other than quadrilaterals; generate them with Gmsh's `Recombine Surface`");
-  FileMesh written;
-  read_msh(written, file);
-  const std::string defect = written.defect();
-  require(defect.empty(), name + " " + defect);
-  std::ifstream stream(file);
-  require(!has_line_without_number(stream),
-          name + " has lines on no physical curve; assign every boundary line to a physical curve");
 }
 
 class CoarseMesh
@@ -339,25 +189,17 @@ double n_coarse_cells(const NotchedRectangle &shape)
 
 double n_coarse_cells(const std::filesystem::path &gmsh_file)
 {
-  Triangulation<2> serial;
-  read_serial(serial, gmsh_file);
-  return serial.n_active_cells();
+  return read_gmsh_file(gmsh_file).cells.size();
 }
 
 void read_gmsh(parallel::distributed::Triangulation<2> &mesh, const std::filesystem::path &file,
                const unsigned int refinements)
 {
-  run_collectively(mesh.get_communicator(),
-                   [&]
-                   {
-                     // Read into a serial mesh first: an exception of deal.II on one rank must not leave the others
-                     // waiting.
-                     Triangulation<2> serial;
-                     read_serial(serial, file);
-                   });
-  std::ifstream stream(file);
-  GridIn<2> reader(mesh);
-  reader.read_msh(stream);
+  GmshMesh read;
+  // An exception on one rank must not leave the others waiting.
+  run_collectively(mesh.get_communicator(), [&] { read = read_gmsh_file(file); });
+  GridTools::consistently_order_cells(read.cells);
+  mesh.create_triangulation(read.points, read.cells, read.lines);
   mesh.refine_global(refinements);
 }
 } // namespace latcon::continuum

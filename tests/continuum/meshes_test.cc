@@ -179,23 +179,24 @@ TEST(Meshes, RefusesWhatCannotBeMeshed)
   EXPECT_THROW(continuum::read_gmsh(mesh, write_file("text.msh", "not a mesh")), continuum::InvalidInput);
 }
 
-// Errors that deal.II does not report: it treats such edges as curve 0 or ignores them.
+// Returns why a mesh, two_squares with a part replaced, is refused; "accepted" if it is not.
+static std::string refusal(const std::string &from, const std::string &to)
+{
+  std::string other = two_squares;
+  other.replace(other.find(from), from.size(), to);
+  try
+  {
+    (void)continuum::n_coarse_cells(write_file("other.msh", other));
+  }
+  catch (const continuum::InvalidInput &failure)
+  {
+    return failure.what();
+  }
+  return "accepted";
+}
+
 TEST(Meshes, RefusesEdgesWithoutACurveAndNodesOutOfThePlane)
 {
-  const auto refusal = [](const std::string &from, const std::string &to) -> std::string
-  {
-    std::string other = two_squares;
-    other.replace(other.find(from), from.size(), to);
-    try
-    {
-      (void)continuum::n_coarse_cells(write_file("other.msh", other));
-    }
-    catch (const continuum::InvalidInput &failure)
-    {
-      return failure.what();
-    }
-    return "accepted";
-  };
   EXPECT_EQ(refusal("$Nodes", "$Nodes"), "accepted");
   for (const std::string id : {"5", "300", "-1"})
     EXPECT_NE(refusal("3 1 2 4 2 3 6", "3 1 2 " + id + " 2 3 6").find("physical curve " + id), std::string::npos) << id;
@@ -213,6 +214,97 @@ TEST(Meshes, RefusesEdgesWithoutACurveAndNodesOutOfThePlane)
   EXPECT_EQ(continuum::n_coarse_cells(write_file("raised.msh", raised)), 2.);
   // A line without tags.
   EXPECT_NE(refusal("6 1 2 0 3 4 1", "6 1 0 4 1").find("lines on no physical curve"), std::string::npos);
+}
+
+// Gmsh gives curves with names the numbers from 1 on, in the order of the script.
+TEST(Meshes, NamesOfCurvesDecideWhereThereAreAny)
+{
+  const auto named = [](const std::string &names)
+  {
+    std::string text = two_squares;
+    return text.insert(text.find("$Nodes"), "$PhysicalNames\n" + names + "\n$EndPhysicalNames\n");
+  };
+  Mesh mesh(MPI_COMM_SELF);
+  continuum::read_gmsh(
+    mesh, write_file("named.msh", named("4\n1 0 \"left\"\n1 2 \"right\"\n1 4 \"bottom\"\n2 7 \"my rubber\"")));
+  const continuum::CauchyBorn law = rubber_network();
+  const Measures m = measures(continuum::Sheet(mesh, law, 2));
+  EXPECT_NEAR(m.edges.at(continuum::edge::left), 3., 1e-12);
+  EXPECT_NEAR(m.edges.at(continuum::edge::right), 2., 1e-12);
+  EXPECT_NEAR(m.edges.at(continuum::edge::bottom), 1., 1e-12);
+  const auto refused = [&](const std::string &names)
+  {
+    try
+    {
+      (void)continuum::n_coarse_cells(write_file("named.msh", named(names)));
+    }
+    catch (const continuum::InvalidInput &failure)
+    {
+      return std::string(failure.what());
+    }
+    return std::string("accepted");
+  };
+  EXPECT_NE(refused("3\n1 0 \"left\"\n1 2 \"clamp\"\n1 4 \"top\"").find("curve 2 named \"clamp\""), std::string::npos);
+  EXPECT_NE(refused("2\n1 0 \"left\"\n1 4 \"top\"").find("curve 2 without a name"), std::string::npos);
+  EXPECT_EQ(refused("1\n2 7 \"left\""), "accepted"); // a surface
+}
+
+// Gmsh's `Save all elements`, or a mesh without physical groups, in version 2.
+TEST(Meshes, RefusesGroupsThatGmshDropped)
+{
+  std::string text = two_squares;
+  for (const std::string old : {" 1 2 2 1 1 2", " 1 2 2 1 2 3", " 1 2 4 2 3 6"})
+    text[text.find(old) + 5] = '0';
+  EXPECT_EQ(continuum::n_coarse_cells(write_file("all.msh", text)), 2.); // all edges on curve 0, by intention
+  for (const std::string old : {" 3 2 7 1 1 2 5 4", " 3 2 7 1 2 3 6 5"})
+    text[text.find(old) + 5] = '0';
+  try
+  {
+    (void)continuum::n_coarse_cells(write_file("all.msh", text));
+    FAIL();
+  }
+  catch (const continuum::InvalidInput &failure)
+  {
+    EXPECT_NE(std::string(failure.what()).find("Save all elements"), std::string::npos);
+  }
+}
+
+TEST(Meshes, SaysInASentenceWhyAFileIsRefused)
+{
+  const std::pair<const char *, const char *> cases[][2] = {
+    {{"2.2 0 8", "4 0 8"}, {"version 4,", "version 2 or 4.1"}},
+    {{"2.2 0 8", "4.0 0 8"}, {"version 4.0,", "version 2 or 4.1"}},
+    {{"2.2 0 8", "3 0 8"}, {"version 3,", "version 2 or 4.1"}},
+    {{"2.2 0 8", "2.2 1 8"}, {"binary", "ASCII"}},
+    {{"$MeshFormat", "Point(1) = {0, 0, 0};"}, {"not a mesh of Gmsh", "$MeshFormat"}},
+    {{"8 3 2 7 1 2 3 6 5", "8 10 2 7 1 2 3 6 5"}, {"element 8 of type 10", "first order"}},
+    {{"8 3 2 7 1 2 3 6 5", "8 2 2 7 1 2 3 6"}, {"triangle", "Recombine"}},
+    {{"8 3 2 7 1 2 3 6 5", "8 3 2 7 1 2 3 6 9"}, {"element 8", "node 9"}},
+    {{"8 3 2 7 1 2 3 6 5", "8 3 2 7 1 2 3 6"}, {"'$EndElements' in $Elements", "number of a node"}},
+    {{"8 3 2 7 1 2 3 6 5", "8 3 2 7 1 1 2 5 4"}, {"overlap, at (0, 0) m", "two physical surfaces"}},
+    {{"3 2 0 0", "3 two 0 0"}, {"'two' in $Nodes", "coordinate"}},
+  };
+  for (const auto &[change, parts] : cases)
+  {
+    const std::string message = refusal(change.first, change.second);
+    EXPECT_NE(message.find(parts.first), std::string::npos) << message;
+    EXPECT_NE(message.find(parts.second), std::string::npos) << message;
+    EXPECT_EQ(std::count(message.begin(), message.end(), '\n'), 0) << message;
+  }
+  EXPECT_EQ(refusal("$MeshFormat", "$Comments\nwhat $Nodes cost\n$EndComments\n$MeshFormat"), "accepted");
+  EXPECT_EQ(refusal("8 3 2 7 1 2 3 6 5", "8 3 2 7 1 5 6 3 2"), "accepted"); // clockwise
+  EXPECT_THROW((void)continuum::n_coarse_cells("/dev/zero"), continuum::InvalidInput);
+  const std::filesystem::path large = write_file("large.msh", two_squares);
+  std::filesystem::resize_file(large, (std::size_t{256} << 20) + 1);
+  EXPECT_THROW((void)continuum::n_coarse_cells(large), continuum::InvalidInput);
+  std::filesystem::remove(large);
+}
+
+TEST(Meshes, RefusesCellsThatAreNotConvex)
+{
+  // The node between the squares on top moves below the diagonal of one of them, or onto it.
+  for (const std::string node : {"5 1.7 0.2 0", "5 1.5 0.5 0", "5 1 -1 0"})
+    EXPECT_NE(refusal("5 1 1 0", node).find("not convex, element "), std::string::npos) << node;
 }
 
 // As Gmsh writes it: a square of one cell, numbers of curves among the entities.

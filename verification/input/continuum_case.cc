@@ -306,8 +306,8 @@ void ContinuumCase::declare(Parameters &p)
   p.add("Continuum", "refinements", refinements, Between{0., 12.},
         "number of uniform refinements of the mesh of a sheet with a hole or a notch, or of a mesh from a file");
   p.add("Continuum", "mesh file", mesh_file,
-        "Gmsh mesh of quadrilaterals [m] that replaces the sheet; physical curves 0 left, 1 right, 2 bottom, 3 top, 4 "
-        "inner");
+        "Gmsh mesh of quadrilaterals [m] that replaces the sheet; physical curves named left, right, bottom, top, "
+        "inner, or without names 0 to 4");
   p.add("Continuum", "degree", degree, Between{1., 5.},
         "polynomial degree p of the elements; at least 2 with a gradient energy");
   p.add("Continuum", "adaptive cycles", adaptive_cycles, Between{0., 30.},

@@ -1,0 +1,399 @@
+// Gmsh 4.8 manual, "MSH file format". GridIn of deal.II ignores names, takes lines without a number for number 0, and
+// drops z.
+#include "continuum/gmsh_file.h"
+
+#include "continuum/errors.h"
+#include "continuum/meshes.h"
+
+#include <algorithm>
+#include <array>
+#include <fstream>
+#include <limits>
+#include <map>
+#include <set>
+#include <sstream>
+#include <string>
+#include <utility>
+
+using namespace dealii;
+
+namespace latcon::continuum
+{
+namespace
+{
+constexpr std::size_t largest_file = std::size_t{256} << 20;
+constexpr std::array edge_names{"left", "right", "bottom", "top", "inner"};
+const std::string expected_curves = "; expected 0 (left), 1 (right), 2 (bottom), 3 (top) or 4 (inner), or these names";
+
+enum Kind
+{
+  line = 1, // also the dimension of a curve
+  quadrilateral = 3,
+  point = 15
+};
+
+struct Defect
+{
+  std::string what;
+};
+
+template <class... Parts>
+[[noreturn]] void refuse(const Parts &...parts)
+{
+  std::ostringstream text;
+  (text << ... << parts);
+  throw Defect{text.str()};
+}
+
+struct Element
+{
+  int kind;
+  std::set<int> numbers; // of the physical curve or surface
+  std::array<std::size_t, 4> nodes;
+};
+
+// Reads the words of a file one after the other.
+class Reader
+{
+public:
+  explicit Reader(std::istream &stream) : stream_(stream) {}
+
+  template <class Value>
+  Value next(const char *what)
+  {
+    Value value{};
+    if (!(stream_ >> value))
+    {
+      stream_.clear();
+      std::string word;
+      stream_ >> word;
+      if (word.empty())
+        refuse("ends in ", section_, " where ", what, " is expected");
+      refuse("has '", word.substr(0, 20), "' in ", section_, " where ", what, " is expected");
+    }
+    return value;
+  }
+
+  // Goes on to the next section; returns its name, empty at the end of the file.
+  std::string section()
+  {
+    std::string word;
+    while (stream_ >> word)
+      if (word[0] == '$' && word.compare(0, 4, "$End") != 0)
+        return section_ = word;
+    return "";
+  }
+
+  // Goes on to the end of $Comments and other text, in which $ may begin a word.
+  void skip_section()
+  {
+    const std::string end = "$End" + section_.substr(1);
+    for (std::string word; stream_ >> word && word != end;)
+      ;
+  }
+
+  void skip_line() { stream_.ignore(std::numeric_limits<std::streamsize>::max(), '\n'); }
+
+  std::string quoted()
+  {
+    std::string name;
+    std::getline(stream_, name, '"');
+    std::getline(stream_, name, '"');
+    return name;
+  }
+
+private:
+  std::istream &stream_;
+  std::string section_ = "$MeshFormat";
+};
+
+class MshFile
+{
+public:
+  explicit MshFile(std::istream &stream) : read_(stream)
+  {
+    std::string first;
+    while ((first = read_.section()) == "$Comments")
+      read_.skip_section();
+    if (first != "$MeshFormat")
+      refuse("is not a mesh of Gmsh (.msh, version 2 or 4.1, ASCII): it does not begin with $MeshFormat");
+    const std::string version = read_.next<std::string>("a version");
+    if (read_.next<int>("0 or 1") != 0)
+      refuse("is binary; save it as ASCII");
+    is_2_ = version.compare(0, 2, "2.") == 0 || version == "2";
+    if (!is_2_ && version != "4.1")
+      refuse("has the format version ", version.substr(0, 20), ", which is not supported; save it as version 2 or 4.1");
+    for (std::string name; !(name = read_.section()).empty();)
+      if (name == "$PhysicalNames")
+        read_names();
+      else if (name == "$Entities" && !is_2_)
+        read_entities();
+      else if (name == "$Nodes")
+        is_2_ ? read_nodes_2() : read_nodes_4();
+      else if (name == "$Elements")
+        is_2_ ? read_elements_2() : read_elements_4();
+      else
+        read_.skip_section();
+  }
+
+  GmshMesh mesh() const
+  {
+    GmshMesh mesh;
+    std::map<std::size_t, unsigned int> index; // of nodes of cells
+    double lowest = std::numeric_limits<double>::max(), highest = -lowest, extent = 0.;
+    bool has_numbers = false;
+    for (const auto &[number, element] : elements_)
+    {
+      if (element.kind != quadrilateral)
+        continue;
+      has_numbers = has_numbers || element.numbers != std::set<int>{0};
+      CellData<2> cell(4);
+      for (unsigned int k = 0; k < 4; ++k)
+      {
+        const auto [entry, is_new] = index.emplace(element.nodes[k], mesh.points.size());
+        if (is_new)
+        {
+          const auto node = nodes_.find(element.nodes[k]);
+          if (node == nodes_.end())
+            refuse("has an element ", number, " with the node ", element.nodes[k], ", which is not in the file");
+          const Point<3> &X = node->second;
+          mesh.points.emplace_back(X[0], X[1]);
+          lowest = std::min(lowest, X[2]);
+          highest = std::max(highest, X[2]);
+          extent = std::max({extent, std::abs(X[0] - mesh.points[0][0]), std::abs(X[1] - mesh.points[0][1])});
+        }
+        cell.vertices[k] = entry->second;
+      }
+      orient(cell, number, mesh.points);
+      mesh.cells.push_back(cell);
+    }
+    if (mesh.cells.empty())
+      refuse("contains no cells (quadrilaterals)");
+    constexpr double round_off = 1e-12; // of coordinates that were rotated or converted to decimals
+    if (!(highest - lowest <= round_off * extent))
+      refuse("has nodes at z = ", lowest, " and ", highest, " m; it must lie in a plane z = const");
+    if (is_2_ && !has_numbers)
+      refuse("has no physical groups, or was saved with `Save all elements`, which drops them: assign the surface to a "
+             "physical surface, its boundary to physical curves, and save without that option");
+    add_lines(mesh, index);
+    return mesh;
+  }
+
+private:
+  void read_names()
+  {
+    const auto n = read_.next<std::size_t>("a number of names");
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      const int dimension = read_.next<int>("a dimension"), number = read_.next<int>("a physical number");
+      const std::string name = read_.quoted();
+      if (dimension == line)
+        names_[number] = name;
+    }
+  }
+
+  void read_entities()
+  {
+    std::size_t n[4];
+    for (std::size_t &count : n)
+      count = read_.next<std::size_t>("a number of entities");
+    read_.skip_line();
+    for (std::size_t i = 0; i < n[0]; ++i)
+      read_.skip_line();
+    for (int dimension = 1; dimension < 3; ++dimension)
+      for (std::size_t i = 0; i < n[dimension]; ++i)
+      {
+        const int entity = read_.next<int>("the number of an entity");
+        for (int side = 0; side < 6; ++side)
+          (void)read_.next<double>("a coordinate");
+        const auto n_numbers = read_.next<std::size_t>("a number of physical groups");
+        for (std::size_t k = 0; k < n_numbers; ++k)
+          numbers_[{dimension, entity}].insert(read_.next<int>("a physical number"));
+        read_.skip_line();
+      }
+    read_.skip_section();
+  }
+
+  void read_node(const std::size_t number)
+  {
+    Point<3> X;
+    for (unsigned int i = 0; i < 3; ++i)
+      X[i] = read_.next<double>("a coordinate");
+    nodes_[number] = X;
+  }
+
+  void read_nodes_2()
+  {
+    const auto n = read_.next<std::size_t>("a number of nodes");
+    for (std::size_t i = 0; i < n; ++i)
+      read_node(read_.next<std::size_t>("the number of a node"));
+  }
+
+  void read_nodes_4()
+  {
+    const auto n_blocks = read_.next<std::size_t>("a number of blocks");
+    read_.skip_line();
+    for (std::size_t block = 0; block < n_blocks; ++block)
+    {
+      for (int i = 0; i < 2; ++i)
+        (void)read_.next<int>("an entity");
+      if (read_.next<int>("0 or 1") != 0)
+        refuse("has parametric nodes; save it without them");
+      const auto n = read_.next<std::size_t>("a number of nodes");
+      std::vector<std::size_t> numbers;
+      for (std::size_t i = 0; i < n; ++i)
+        numbers.push_back(read_.next<std::size_t>("the number of a node"));
+      for (const std::size_t number : numbers)
+        read_node(number);
+    }
+  }
+
+  void read_element(const std::size_t number, const int kind, const std::set<int> &numbers)
+  {
+    if (kind != line && kind != quadrilateral && kind != point)
+      refuse("has an element ", number, " of type ", kind,
+             kind == 2 ? ", a triangle; generate quadrilaterals with Gmsh's `Recombine Surface`"
+                       : "; expected lines and quadrilaterals of first order (`Mesh.ElementOrder = 1`)");
+    Element element{kind, numbers, {}};
+    for (int k = 0; k < (kind == line ? 2 : kind == point ? 1 : 4); ++k)
+      element.nodes[k] = read_.next<std::size_t>("the number of a node");
+    elements_.emplace_back(number, element);
+  }
+
+  void read_elements_2()
+  {
+    const auto n = read_.next<std::size_t>("a number of elements");
+    for (std::size_t i = 0; i < n; ++i)
+    {
+      const auto number = read_.next<std::size_t>("the number of an element");
+      const int kind = read_.next<int>("the type of an element");
+      const auto n_tags = read_.next<std::size_t>("a number of tags");
+      std::set<int> numbers;
+      for (std::size_t k = 0; k < n_tags; ++k)
+        if (const int tag = read_.next<int>("a tag"); k == 0)
+          numbers.insert(tag);
+      read_element(number, kind, numbers);
+    }
+  }
+
+  void read_elements_4()
+  {
+    const auto n_blocks = read_.next<std::size_t>("a number of blocks");
+    read_.skip_line();
+    for (std::size_t block = 0; block < n_blocks; ++block)
+    {
+      const int dimension = read_.next<int>("a dimension"), entity = read_.next<int>("an entity");
+      const int kind = read_.next<int>("the type of elements");
+      const auto n = read_.next<std::size_t>("a number of elements");
+      const auto found = numbers_.find({dimension, entity});
+      for (std::size_t i = 0; i < n; ++i)
+        read_element(read_.next<std::size_t>("the number of an element"), kind,
+                     found == numbers_.end() ? std::set<int>{} : found->second);
+    }
+  }
+
+  // Turns the corners from the order of Gmsh, around the cell, into that of deal.II.
+  static void orient(CellData<2> &cell, const std::size_t number, const std::vector<Point<2>> &points)
+  {
+    auto &v = cell.vertices;
+    int left_turns = 0, right_turns = 0;
+    for (unsigned int k = 0; k < 4; ++k)
+    {
+      const Tensor<1, 2> before = points[v[k]] - points[v[(k + 3) % 4]], after = points[v[(k + 1) % 4]] - points[v[k]];
+      const double turn = before[0] * after[1] - before[1] * after[0];
+      left_turns += turn > 0.;
+      right_turns += turn < 0.;
+    }
+    if (left_turns != 4 && right_turns != 4)
+      refuse("has a cell that is not convex, element ", number, " with a corner at (", points[v[0]][0], ", ",
+             points[v[0]][1], ") m: its Jacobian vanishes or changes sign");
+    if (right_turns == 4)
+      std::swap(v[1], v[3]);
+    std::swap(v[2], v[3]);
+  }
+
+  // Returns the boundary id of a physical curve; by their names where any has one, as Gmsh chooses the numbers then.
+  types::boundary_id edge_of(const std::string &where, const std::set<int> &numbers) const
+  {
+    if (numbers.empty())
+      refuse("has ", where, " on no physical curve", expected_curves);
+    if (numbers.size() > 1)
+      refuse("has ", where, " on several physical curves", expected_curves);
+    const int number = *numbers.begin();
+    const auto name = names_.find(number);
+    if (names_.empty() && number >= 0 && number < static_cast<int>(edge_names.size()))
+      return number;
+    const auto *const found =
+      name == names_.end() ? edge_names.end() : std::find(edge_names.begin(), edge_names.end(), name->second);
+    if (found == edge_names.end())
+      refuse("has ", where, " on the physical curve ", number,
+             name != names_.end() ? " named \"" + name->second + "\""
+             : names_.empty()     ? ""
+                                  : " without a name, among others with one",
+             expected_curves);
+    return found - edge_names.begin();
+  }
+
+  void add_lines(GmshMesh &mesh, const std::map<std::size_t, unsigned int> &index) const
+  {
+    std::set<std::pair<unsigned int, unsigned int>> sides; // of cells, all of them anticlockwise
+    for (const CellData<2> &cell : mesh.cells)
+      for (const auto &[a, b] : {std::pair(0, 1), {1, 3}, {3, 2}, {2, 0}})
+        if (!sides.emplace(cell.vertices[a], cell.vertices[b]).second)
+          refuse("has cells that overlap, at (", mesh.points[cell.vertices[a]][0], ", ",
+                 mesh.points[cell.vertices[a]][1], ") m; is a surface in two physical surfaces?");
+    std::map<std::pair<unsigned int, unsigned int>, std::set<int>> numbers;
+    for (const auto &[number, element] : elements_)
+      if (element.kind == line)
+      {
+        if (element.numbers.empty())
+          refuse("has lines on no physical curve, as element ", number, expected_curves);
+        const auto a = index.find(element.nodes[0]), b = index.find(element.nodes[1]);
+        if (a != index.end() && b != index.end())
+          numbers[std::minmax(a->second, b->second)].insert(element.numbers.begin(), element.numbers.end());
+      }
+    for (const auto &[first, second] : sides)
+    {
+      if (sides.count({second, first}) > 0)
+        continue;
+      const Point<2> &from = mesh.points[std::min(first, second)], &to = mesh.points[std::max(first, second)];
+      std::ostringstream where;
+      where << "an edge from (" << from[0] << ", " << from[1] << ") to (" << to[0] << ", " << to[1] << ") m";
+      CellData<1> side(2);
+      side.vertices = {first, second};
+      side.boundary_id = edge_of(where.str(), numbers[std::minmax(first, second)]);
+      mesh.lines.boundary_lines.push_back(side);
+    }
+  }
+
+  Reader read_;
+  bool is_2_ = false;
+  std::map<int, std::string> names_;                     // of physical curves
+  std::map<std::pair<int, int>, std::set<int>> numbers_; // physical numbers of an entity; dimension and number
+  std::map<std::size_t, Point<3>> nodes_;
+  std::vector<std::pair<std::size_t, Element>> elements_;
+};
+} // namespace
+
+GmshMesh read_gmsh_file(const std::filesystem::path &file)
+{
+  const std::string name = "the mesh file " + file.string();
+  std::error_code error;
+  // Others, such as devices, may be endless.
+  const bool is_file = std::filesystem::is_regular_file(file, error);
+  if ((is_file || std::filesystem::exists(file, error)) &&
+      !(is_file && std::filesystem::file_size(file, error) <= largest_file))
+    throw InvalidInput(name + " is not a regular file of at most 256 MiB");
+  std::ifstream stream(file);
+  if (!stream)
+    throw InvalidInput("cannot read " + name + " from the folder " + std::filesystem::current_path(error).string());
+  try
+  {
+    return MshFile(stream).mesh();
+  }
+  catch (const Defect &defect)
+  {
+    throw InvalidInput(name + " " + defect.what);
+  }
+}
+} // namespace latcon::continuum
