@@ -114,6 +114,6 @@ def _run(command: str, case: CaseLike, directory: Directory, threads: int | None
 
 
 def _start(words: list[str], directory: Directory, threads: int | None, progress: Progress) -> Run:
-    path = pathlib.Path(directory)
+    path = pathlib.Path(directory).absolute()  # of use after a change of folder
     run([*words, "--output-dir", os.fspath(path), *([] if threads is None else ["--threads", str(threads)])], path, progress)
     return open_run(path)

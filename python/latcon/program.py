@@ -97,7 +97,10 @@ def run(arguments: Sequence[str], directory: pathlib.Path, progress: Progress) -
         If the exit code of the program is not 0.
     """
     # The program updates its progress line in place only if its standard error is a terminal.
-    terminal, end_of_child = os.openpty()
+    try:
+        terminal, end_of_child = os.openpty()
+    except OSError:  # no /dev/pts, as in some containers: progress lines end with line ends
+        terminal, end_of_child = os.pipe()
     try:
         with tempfile.TemporaryFile() as output:
             child = subprocess.Popen([find_program(), *arguments], stdin=subprocess.DEVNULL, stdout=output,

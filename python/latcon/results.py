@@ -43,7 +43,7 @@ class Run:
     """
 
     def __init__(self, directory: str | os.PathLike[str]) -> None:
-        self.directory = pathlib.Path(directory)
+        self.directory = pathlib.Path(directory).absolute()  # of use after a change of folder
         self.info  # raises if the directory is not that of a run
 
     def __repr__(self) -> str:

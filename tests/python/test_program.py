@@ -91,6 +91,26 @@ def test_progress_lines_are_passed_on_and_messages_are_kept(stand_in, tmp_path, 
     assert capsys.readouterr().err == "a remark\n"
 
 
+def test_without_pseudo_terminals_a_pipe_takes_messages(stand_in, tmp_path, monkeypatch, capsys):
+    def none():
+        raise OSError(19, "No such device")
+    monkeypatch.setattr(os, "openpty", none)
+    stand_in("sys.stderr.write('a remark\\n')")
+    program.run(["lattice"], tmp_path, False)
+    assert capsys.readouterr().err == "a remark\n"
+
+
+def test_results_are_found_after_a_change_of_folder(stand_in, tmp_path, monkeypatch):
+    stand_in("""folder = pathlib.Path(sys.argv[sys.argv.index("--output-dir") + 1]); folder.mkdir()
+(folder / "run.json").write_text("{}")""")
+    case = tmp_path / "a.prm"
+    case.write_text("")
+    monkeypatch.chdir(tmp_path)
+    run = latcon.commands._start(["lattice", str(case)], "out", None, False)
+    monkeypatch.chdir("/")
+    assert run.directory == latcon.results.Run(tmp_path / "out").directory == tmp_path / "out"
+
+
 def test_progress_is_shown_in_place_in_a_terminal_and_sparsely_in_a_log(stand_in, tmp_path, monkeypatch):
     stand_in(PROGRESS)
     monkeypatch.setattr(program.importlib.util, "find_spec", lambda name: None)  # as if without tqdm
