@@ -445,9 +445,9 @@ class Gmsh(TemporaryFolder):
     # Physical curve and its nodes: left, right, bottom, top.
     LINES = [(0, 1, 4), (0, 4, 7), (1, 3, 6), (1, 6, 9), (2, 1, 2), (2, 2, 3), (3, 7, 8), (3, 8, 9)]
 
-    def write_mesh(self, shift=0):
+    def write_mesh(self, shift=0, unit=0.01):
         """@param shift offset of the numbers of the curves"""
-        nodes = [f"{i} {0.01 * x!r} {0.01 * y!r} 0" for i, (x, y) in enumerate(self.NODES, 1)]
+        nodes = [f"{i} {unit * x!r} {unit * y!r} 0" for i, (x, y) in enumerate(self.NODES, 1)]
         lines = [f"1 2 {tag + shift} 1 {a} {b}" for tag, a, b in self.LINES]
         quads = ["3 2 9 1 " + " ".join(map(str, quad)) for quad in self.QUADS]
         elements = [f"{i} {element}" for i, element in enumerate(lines + quads, 1)]
@@ -480,6 +480,35 @@ class Gmsh(TemporaryFolder):
             self.assertEqual(run.returncode, 2)
             self.assertIn("four.msh", run.stderr)
             self.assertFalse(self.out.exists())
+
+    def test_extent_is_shown_and_must_be_that_of_a_sheet_in_metres(self):
+        run = latcon("continuum", HOLE, "--output-dir", self.out, "--dry-run", *self.write_mesh())
+        self.assertEqual(run.returncode, 0, run.stderr)
+        self.assertIn("# mesh: 0.03 m x 0.02 m\n", run.stdout)
+        run = latcon("continuum", HOLE, "--output-dir", self.out, *self.write_mesh(unit=10.))
+        self.assertEqual(run.returncode, 2)
+        self.assertIn("four.msh spans 30 m x 20 m", run.stderr)
+        self.assertFalse(self.out.exists())
+
+    def test_mesh_is_part_of_the_case(self):
+        def move(*more):
+            return latcon("continuum", HOLE, "--output-dir", self.out, *more, *entries,
+                          *settings("Continuum/solution=motion", "Continuum/gradient=none", "Time/end=50 us",
+                                    "Continuum/time step=10 us", "Checkpoints/steps=2"))
+        entries = self.write_mesh()
+        run = move()
+        self.assertEqual(run.returncode, 0, run.stderr)
+        case_hash = json.loads((self.out / "run.json").read_text())["case_hash"]
+        mesh = self.folder / "four.msh"
+        text = mesh.read_text()
+        mesh.write_text(text.replace("5 0.013 0.008 0", "5 0.014 0.008 0"))
+        self.assertNotEqual(mesh.read_text(), text)
+        run = move("--resume")
+        self.assertEqual(run.returncode, 2, run.stdout)
+        self.assertIn("Continuum/mesh sha256", run.stderr)
+        self.assertEqual(json.loads((self.out / "run.json").read_text())["case_hash"], case_hash)
+        self.write_mesh()
+        self.assertEqual(move("--resume").returncode, 0)
 
 
 if __name__ == "__main__":

@@ -1,6 +1,9 @@
 #include "verification/bridge/continuum_model.h"
 
 #include <algorithm>
+#include <sstream>
+
+#include <deal.II/base/bounding_box.h>
 
 #include "continuum/isotropic_gradient.h"
 #include "continuum/lattice_gradient.h"
@@ -89,13 +92,32 @@ void ContinuumModel::make_mesh(const input::Case &input)
   const auto periodic = [&c](std::size_t edge)
   { return c.edges[edge].condition == input::EdgeCase::Condition::periodic; };
   if (!c.mesh_file.empty())
+  {
     continuum::read_gmsh(mesh_, c.mesh_file, c.refinements);
+    const auto [length, height] = mesh_extent();
+    for (const double ratio : {length / sheet.length(), height / sheet.height()})
+      if (!(ratio > 0.01 && ratio < 100.))
+      {
+        std::ostringstream text;
+        text << "the mesh file " << c.mesh_file << " spans " << length << " m x " << height
+             << " m, the sheet of the case " << sheet.length() << " m x " << sheet.height()
+             << " m; a mesh must be in metres, and Sheet/length and height of its order (0.01 to 100)";
+        throw support::InputError(text.str());
+      }
+  }
   else if (input.hole_radius > 0.)
     continuum::make_rectangle_with_hole(mesh_, {sheet.length(), sheet.height(), input.hole_radius, c.refinements});
   else if (input.notch_length > 0.)
     continuum::make_notched_rectangle(mesh_, {sheet.length(), sheet.height(), input.notch_length, c.refinements});
   else
     continuum::make_rectangle(mesh_, {sheet.length(), sheet.height(), c.cells_x, c.cells_y, periodic(0), periodic(2)});
+}
+
+std::array<double, 2> ContinuumModel::mesh_extent() const
+{
+  // On this rank: of the coarse mesh, which all ranks hold.
+  const dealii::BoundingBox<2> box(mesh_.get_vertices());
+  return {box.side_length(0), box.side_length(1)};
 }
 
 void ContinuumModel::make_conditions(const input::Case &input)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <memory>
 #include <optional>
 
@@ -25,6 +26,9 @@ public:
   continuum::Constitution constitution() const;
   const continuum::BoundaryConditions &conditions() const { return conditions_; }
   const Subject &subject() const { return subject_; }
+
+  /// Length and height of the mesh [m].
+  std::array<double, 2> mesh_extent() const;
 
   double extent() const { return extent_; }                 ///< smaller of length and height [m]
   double static_length() const { return static_length_; }   ///< l_s [m] of the isotropic gradient energy; otherwise 0

@@ -460,6 +460,8 @@ support::ExitCode run_continuum(const input::Options &options)
     std::ostringstream text;
     text << "# continuum: " << model.mesh().n_global_active_cells() << " cells, " << sheet.dof_handler().n_dofs()
          << " unknowns\n";
+    if (!input.continuum.mesh_file.empty())
+      text << "# mesh: " << model.mesh_extent()[0] << " m x " << model.mesh_extent()[1] << " m\n";
     if (input.continuum.gradient != input::ContinuumGradient::none)
       text << "# lengths: static " << model.static_length() << " m, inertia " << model.inertia_length() << " m\n";
     if (moves)

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <sstream>
 #include <stdexcept>
 #include <tuple>
@@ -12,6 +13,7 @@
 #include "lattice/contact.h"
 #include "lattice/seed.h"
 #include "support/full_precision.h"
+#include "verification/input/sha256.h"
 
 namespace latcon::input
 {
@@ -475,7 +477,11 @@ lattice::Toughening Case::toughening_rule() const
 
 std::string case_lines(const Parameters &parameters)
 {
-  return parameters.lines("Checkpoints");
+  std::string lines = parameters.lines("Checkpoints");
+  const std::string mesh = parameters.value("Continuum/mesh file");
+  if (std::error_code error; std::filesystem::is_regular_file(mesh, error))
+    lines += "Continuum/mesh sha256 = " + sha256_of_file(mesh) + "\n";
+  return lines;
 }
 
 } // namespace latcon::input

@@ -239,8 +239,8 @@ inline constexpr double smallest_stable_stretch = 0.3;
 /// Stretch down to which the automatic step of Runge-Kutta-Chebyshev is stable for oscillating modes [-].
 inline constexpr double smallest_chebyshev_stretch = 0.45;
 
-/// Lines `key = value` of all entries that affect results, that is all but those of Checkpoints. Their SHA-256 is
-/// `case_hash` in run.json and in checkpoints.
+/// Lines `key = value` of all entries that affect results, that is all but those of Checkpoints, and of the SHA-256 of
+/// a mesh file. Their SHA-256 is `case_hash` in run.json and in checkpoints.
 [[nodiscard]] std::string case_lines(const Parameters &parameters);
 
 } // namespace latcon::input
