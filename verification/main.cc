@@ -4,6 +4,7 @@
 
 int main(int argc, char **argv)
 {
+  latcon::commands::occupy_closed_streams();
   latcon::commands::install_signal_handlers();
   const latcon::continuum::ParallelSession session;
   return static_cast<int>(latcon::commands::run_program(argc, argv));

@@ -7,6 +7,8 @@ import json
 import math
 import pathlib
 import re
+import shutil
+import subprocess
 import sys
 import tempfile
 import unittest
@@ -369,6 +371,25 @@ class ExitCodes(TemporaryFolder):
         for arguments in [[], ["fly"], ["verify", "everything"], ["lattice"], ["lattice", "--colour"],
                           ["verify", "--threads", "0"]]:
             self.assertEqual(latcon(*arguments).returncode, 2, arguments)
+
+    def test_folder_in_the_home_that_no_shell_expanded_is_2(self):
+        for arguments in (["lattice", CASES / "hole.prm", "--output-dir=~/run"], ["init", "~/g"], ["init", "~"]):
+            run = latcon(*arguments, cwd=self.folder)
+            self.assertEqual(run.returncode, 2, arguments)
+            self.assertIn("~", run.stderr)
+        self.assertEqual(list(self.folder.iterdir()), [])
+
+    def test_closed_streams_are_5(self):
+        for closed in (">&-", "<&- >&- 2>&-"):
+            ended = subprocess.run(["bash", "-c", f'"$0" --version {closed}', LATCON], stderr=subprocess.DEVNULL, check=False)
+            self.assertEqual(ended.returncode, 5, closed)
+
+    def test_program_copied_without_its_data_is_5(self):
+        copy = pathlib.Path(shutil.copy(LATCON, self.folder / "latcon"))
+        (self.folder / "run").mkdir()
+        run = latcon("report", self.folder / "run", program=copy)
+        self.assertEqual(run.returncode, 5)
+        self.assertIn("share/latcon", run.stderr)
 
     def test_bad_input_is_2_and_writes_nothing(self):
         run = latcon("fracture", CASES / "quick.prm", "--output-dir", self.out, "--set", "Sheet/spacin=1", "--set",

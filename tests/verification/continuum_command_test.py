@@ -501,7 +501,7 @@ class Gmsh(TemporaryFolder):
         case_hash = json.loads((self.out / "run.json").read_text())["case_hash"]
         mesh = self.folder / "four.msh"
         text = mesh.read_text()
-        mesh.write_text(text.replace("5 0.013 0.008 0", "5 0.014 0.008 0"))
+        mesh.write_text(text.replace(f"5 {0.01 * 1.3!r} 0.008 0", "5 0.014 0.008 0"))
         self.assertNotEqual(mesh.read_text(), text)
         run = move("--resume")
         self.assertEqual(run.returncode, 2, run.stdout)

@@ -117,7 +117,10 @@ int main(int argc, char **argv)
     setenv("OPENBLAS_NUM_THREADS", "1", 1);
   }
   else
+  {
+    commands::occupy_closed_streams();
     commands::install_signal_handlers();
+  }
   const continuum::ParallelSession session;
   if (!serves)
     return static_cast<int>(commands::run_program(argc, argv));

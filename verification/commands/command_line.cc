@@ -199,6 +199,15 @@ support::ExitCode run_program(int argc, char **argv)
                "latcon");
   app.set_version_flag("--version", "latcon " + output::program_version() + " (" + output::git_commit() + ")");
   app.require_subcommand(1);
+  // No shell replaces the ~ of `--output-dir=~/run`, and who deletes a folder `~` may lose the home.
+  const auto no_tilde = CLI::Validator(
+    [](const std::string &folder)
+    {
+      return folder == "~" || folder.compare(0, 2, "~/") == 0
+               ? "the folder '" + folder + "' begins with ~, which stands for the home in a shell only; give its path"
+               : std::string();
+    },
+    "");
   app.fallthrough();
   app.footer(exit_codes);
   app.add_option("--set", options.overrides, "Section/Name=value, replaces an entry of the case; repeatable")
@@ -206,6 +215,7 @@ support::ExitCode run_program(int argc, char **argv)
     ->type_name("ENTRY");
   app
     .add_option("-o,--output-dir", options.output_dir, "output directory; default: output/CASE, or as the command says")
+    ->check(no_tilde)
     ->type_name("DIR");
   app.add_option("--threads", options.threads, "threads of the lattice on each rank; default: all cores")
     ->check(CLI::Range(1u, 4096u))
@@ -402,7 +412,10 @@ support::ExitCode run_program(int argc, char **argv)
 
   std::string directory;
   CLI::App *init_command = add_command("init", "a folder with a commented case to start from", "latcon init my-strip");
-  init_command->add_option("DIR", directory, "folder; the case in it has its name")->required()->type_name("");
+  init_command->add_option("DIR", directory, "folder; the case in it has its name")
+    ->required()
+    ->check(no_tilde)
+    ->type_name("");
   init_command->callback([&] { command = [&] { return init(options, directory); }; });
 
   std::string section;

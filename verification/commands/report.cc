@@ -70,7 +70,12 @@ int run_script(const std::string &script, const std::string &directory, const st
 {
   // Debian's interpreter, which finds the packages that the script needs, without packages of the user.
   const std::string python = "/usr/bin/python3";
-  std::vector<std::string> command{python, "-s", input::data_folder() + "/report/" + script, directory};
+  const std::string file = input::data_folder() + "/report/" + script;
+  if (!std::filesystem::exists(file))
+    throw NoPython(directory + "/" + page, file +
+                                             " is missing: a copy of the program needs share/latcon beside its bin, "
+                                             "a symbolic link to the program does not");
+  std::vector<std::string> command{python, "-s", file, directory};
   command.insert(command.end(), options.begin(), options.end());
   const pid_t child = support::start_child({command, environment_of_scripts(), ""});
   const int status = shows_progress ? wait_with_progress(child, "drawing " + page) : support::wait_for_child(child);

@@ -12,6 +12,7 @@
 #include <system_error>
 #include <thread>
 
+#include <fcntl.h>
 #include <semaphore.h>
 #include <unistd.h>
 
@@ -87,6 +88,14 @@ void wait_for_signals()
 }
 
 } // namespace
+
+void occupy_closed_streams()
+{
+  // open() takes the lowest free number.
+  for (int stream = STDIN_FILENO; stream <= STDERR_FILENO; ++stream)
+    if (fcntl(stream, F_GETFD) == -1)
+      (void)open("/dev/null", O_RDONLY);
+}
 
 void install_signal_handlers()
 {

@@ -7,6 +7,10 @@
 namespace latcon::commands
 {
 
+/// Opens /dev/null, read only, for each standard stream that is closed: it cannot become a file of MPI, which would take
+/// what is printed, and printing fails. To be called first.
+void occupy_closed_streams();
+
 /// From here on SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGUSR2, SIGALRM and SIGXCPU end the process with
 /// ExitCode::interrupted, at once or after the deferral that is under way. A SIGHUP that is ignored when the program
 /// starts (`nohup`) stays ignored. SIGPIPE and SIGXFSZ are ignored, so that writing fails instead. Starts a thread that
