@@ -168,7 +168,7 @@ class Resume(TemporaryFolder):
         content[len(content) // 2] ^= 16
         last.write_bytes(content)
         run = self.run_to_end("--resume")
-        self.assertIn(f"{last}: it is corrupt", run.stderr)
+        self.assertIn(f"{last}: it was changed or damaged", run.stderr)
         self.assertIn(str(first), run.stdout)
         self.assertEqual(files(self.out) == expected, True)
 
@@ -181,7 +181,7 @@ class Resume(TemporaryFolder):
         before = {path: path.stat().st_mtime_ns for path in self.out.rglob("*")}
         run = latcon(*STRIP, "--output-dir", self.out, "--resume")
         self.assertEqual(run.returncode, 2)
-        self.assertIn(f"{first}: it is corrupt", run.stderr)
+        self.assertIn(f"{first}: it was changed or damaged", run.stderr)
         self.assertIn(f"{last}: it is not a checkpoint", run.stderr)
         self.assertIn("omit --resume", run.stderr)
         self.assertEqual({path: path.stat().st_mtime_ns for path in self.out.rglob("*")}, before)

@@ -142,7 +142,7 @@ class Shards(TemporaryFolder):
         self.assertIn("#SBATCH --array=1-2\n", (self.out / "batch/runs.sh").read_text())
 
     def test_batch_refuses_what_would_break_a_script(self):
-        for words, reason in ((["--time", "1h"], "--time"), (["--partition", "a b"], "--partition"),
+        for words, reason in ((["--time", "1h"], "--time"), (["--time", "0:01:00"], "5 minutes"), (["--time", "4:59"], "5 minutes"), (["--partition", "a b"], "--partition"),
                               (["--tasks", "0"], "--tasks")):
             run = latcon(*self.words("--slurm", *words, command="batch"))
             self.assertEqual(run.returncode, 2, words)

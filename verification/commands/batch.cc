@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -112,6 +113,21 @@ std::string submit(const std::vector<std::string> &arguments, const std::string 
   return printed.substr(printed.find_last_of('\n') + 1, std::string::npos); // warnings come first
 }
 
+// Returns a time limit of Slurm: minutes[:seconds], hours:minutes:seconds, days-hours[:minutes[:seconds]].
+double seconds_of(const std::string &limit)
+{
+  const std::size_t days_end = limit.find('-');
+  const bool has_days = days_end != std::string::npos;
+  std::istringstream text(has_days ? limit.substr(days_end + 1) : limit);
+  std::vector<double> parts;
+  for (std::string part; std::getline(text, part, ':');)
+    parts.push_back(std::strtod(part.c_str(), nullptr));
+  if (!has_days && parts.size() < 3)
+    parts.insert(parts.begin(), 0.);
+  parts.resize(3, 0.);
+  return ((has_days ? 24. * std::strtod(limit.c_str(), nullptr) : 0.) + parts[0]) * 3600. + parts[1] * 60. + parts[2];
+}
+
 } // namespace
 
 support::ExitCode write_batch(const input::Options &options, const BatchOptions &chosen)
@@ -122,6 +138,9 @@ support::ExitCode write_batch(const input::Options &options, const BatchOptions 
   if (!std::regex_match(chosen.time, time))
     throw support::InputError("--time '" + input::printable(chosen.time) +
                               "': expected [days-]hours:minutes:seconds, for example 1-00:00:00");
+  if (seconds_of(chosen.time) < 300.)
+    throw support::InputError("--time '" + chosen.time +
+                              "': a run writes its checkpoint two minutes before the limit; give at least 5 minutes");
   if (!std::regex_match(chosen.partition, name))
     throw support::InputError("--partition '" + input::printable(chosen.partition) + "': expected a name");
   const RequestedStudy requested = read_requested_study(options, chosen.study, chosen.sweep);

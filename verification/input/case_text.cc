@@ -299,11 +299,14 @@ std::string printable(const std::string &text, const std::size_t longest)
     bool good = (length == 1 && c >= 0x20 && c < 0x7f) || (length > 1 && i + length <= shown.size());
     for (std::size_t k = 1; good && k < length; ++k)
       good = (static_cast<unsigned char>(shown[i + k]) & 0xc0) == 0x80;
-    // U+0080 to U+009F steer terminals as control characters do.
-    good = good && !(c == 0xc2 && length == 2 && static_cast<unsigned char>(shown[i + 1]) < 0xa0);
+    // U+0080 to U+009F steer terminals as control characters do. A no-break space looks like a space; U+200B to U+200F
+    // and U+FEFF do not show.
+    const std::string character = shown.substr(i, length);
+    good = good && !(character >= "\xc2\x80" && character <= "\xc2\xa0") &&
+           !(character >= "\xe2\x80\x8b" && character <= "\xe2\x80\x8f") && character != "\xef\xbb\xbf";
     if (good)
     {
-      result += shown.substr(i, length);
+      result += character;
       i += length;
     }
     else

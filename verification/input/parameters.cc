@@ -9,6 +9,7 @@
 #include <deal.II/base/parameter_handler.h>
 
 #include <algorithm>
+#include <cctype>
 #include <filesystem>
 #include <sstream>
 #include <stdexcept>
@@ -52,9 +53,9 @@ void Parameters::read_file(const std::string &path)
 void Parameters::read_text(const std::string &text, const std::string &name)
 {
   file_ = printable(name, name.size());
-  const std::string json = ".json";
-  const bool is_json = name.size() >= json.size() && name.compare(name.size() - json.size(), json.size(), json) == 0;
-  for (const auto &item : is_json ? read_json(text, file_) : read_prm(text, file_))
+  std::string ending = std::filesystem::path(name).extension().string();
+  std::transform(ending.begin(), ending.end(), ending.begin(), [](const unsigned char c) { return std::tolower(c); });
+  for (const auto &item : ending == ".json" ? read_json(text, file_) : read_prm(text, file_))
     if (const auto *problem = std::get_if<SyntaxProblem>(&item))
       report(problem->place, problem->text);
     else if (const auto *start = std::get_if<SectionStart>(&item))

@@ -153,7 +153,7 @@ std::string Checkpoints::problem_of(const fs::path &path, CheckpointPlace &place
   if (hash.empty())
     return "it is not a checkpoint";
   if (input::sha256_of_file(path, Hdf5Image::user_block) != hash)
-    return "it is corrupt: its checksum does not match";
+    return "it was changed or damaged after it was written: its checksum does not match";
   try
   {
     const Hdf5File file(path);

@@ -2,14 +2,27 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 
 #include <unistd.h>
 
 namespace latcon::output
 {
+namespace
+{
+
+// Such a terminal shows the control characters that erase a line.
+bool is_dumb_terminal()
+{
+  const char *const kind = std::getenv("TERM");
+  return kind != nullptr && std::strcmp(kind, "dumb") == 0;
+}
+
+} // namespace
 
 Progress::Progress(bool wanted, std::chrono::milliseconds log_interval)
-  : shown_(wanted), on_terminal_(isatty(STDERR_FILENO) != 0),
+  : shown_(wanted), on_terminal_(isatty(STDERR_FILENO) != 0 && !is_dumb_terminal()),
     interval_(on_terminal_ ? std::chrono::milliseconds(200) : log_interval), start_(Clock::now()), last_(start_)
 {
 }

@@ -15,6 +15,8 @@ TEST(Parameters, JsonProblemsAreToldWithTheirPath)
   { return problem(R"({"Lattice": {"spacing": 1}, )" + more + "}", {}, "a.json"); };
   EXPECT_EQ(json(R"("Run": {"steps": 1.5})"),
             "a.json:/Run/steps: Run/steps = 1.5: not a whole number; allowed: a whole number");
+  EXPECT_EQ(problem(R"({"Lattice": {"spacing": 1}, "Run": {"steps": 1.5}})", {}, "A.JSON").find("A.JSON:/Run/steps: "),
+            0u);
   EXPECT_EQ(json(R"("Run": {"stesp": 1})"),
             "a.json:/Run/stesp: Run/stesp = 1: unknown key; nearest known key: Run/steps; "
             "known in Run: steps, seed, title, time step");

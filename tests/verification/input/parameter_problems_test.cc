@@ -51,6 +51,8 @@ TEST(Parameters, WrongNumbersAreToldWithWhatIsAllowed)
   EXPECT_EQ(spacing(""), start + ": empty" + allowed);
   EXPECT_EQ(spacing("3 kg"), start + "3 kg: wrong unit: 'kg' where 'm' is wanted" + allowed);
   EXPECT_EQ(spacing("1 parsec"), start + "1 parsec: a number followed by something that is no unit" + allowed);
+  EXPECT_EQ(spacing("1\u00a0m\u200b"),
+            start + "1\\xc2\\xa0m\\xe2\\x80\\x8b: a number followed by something that is no unit" + allowed);
   EXPECT_EQ(spacing("1 2"), start + "1 2: a number followed by something that is no unit" + allowed);
   EXPECT_EQ(spacing("0"), start + "0: out of range" + allowed);
   EXPECT_EQ(spacing("-1 mm"), start + "-1 mm: out of range" + allowed);
