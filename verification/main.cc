@@ -1,11 +1,23 @@
 #include "continuum/parallel_session.h"
+#include "support/errors.h"
 #include "verification/commands/command_line.h"
 #include "verification/commands/signals.h"
+
+#include <cstdio>
+#include <exception>
 
 int main(int argc, char **argv)
 {
   latcon::commands::occupy_closed_streams();
-  latcon::commands::install_signal_handlers();
-  const latcon::continuum::ParallelSession session;
-  return static_cast<int>(latcon::commands::run_program(argc, argv));
+  try
+  {
+    latcon::commands::install_signal_handlers();
+    const latcon::continuum::ParallelSession session;
+    return static_cast<int>(latcon::commands::run_program(argc, argv));
+  }
+  catch (const std::exception &error) // of the start, such as no further thread under `ulimit -u`
+  {
+    std::fprintf(stderr, "latcon: cannot start: %s\n", error.what());
+    return static_cast<int>(latcon::support::ExitCode::internal_error);
+  }
 }

@@ -262,6 +262,13 @@ class DryRun(TemporaryFolder):
         self.assertGreaterEqual(float(seconds[1]) * ratio * (1. + 1e-4), float(seconds[2]) - 1.)
         self.assertGreater(float(seconds[2]), (float(seconds[1]) - 1.) * ratio)
 
+    def test_size_of_frames(self):
+        arguments = ["fracture", CASES / "quick.prm", *TINY, "--skip-verification", "--no-report"]
+        said, = re.findall("^# disk: about (.*) bytes for frames$", latcon(*arguments, "--dry-run").stdout, re.M)
+        self.assertEqual(latcon(*arguments, "--output-dir", self.out, "--quiet").returncode, 0)
+        size = sum(path.stat().st_size for path in self.out.glob("*.vtp"))
+        self.assertLess(abs(math.log2(float(said) / size)), 1., (said, size))
+
     def test_sizes_steps_and_time_are_there(self):
         run = latcon("fracture", CASES / "quick.prm", "--dry-run", "--threads", 1)
         for wanted in [r"^# lattice: 3032 sites, 17572 bonds, 6064 unknowns", r"^# time step: .* s, \d+ steps at most",

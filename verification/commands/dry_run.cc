@@ -12,8 +12,10 @@ namespace latcon::commands
 namespace
 {
 
-// Cost of a reduced frame over that of one with all fields.
+// Cost of a reduced frame over that of one with all fields, in time and on disk.
 constexpr double cost_of_motion_frame = 0.1;
+// Of a compressed frame with all fields; 254 and 268 at the start and the end of a crack through 1175 sites.
+constexpr double bytes_of_site_on_disk = 260.;
 
 // Number of frames of a motion: the first, the last, and those in between.
 double frames_of(const input::Case &input, double duration)
@@ -73,7 +75,7 @@ std::string lattice_text(const input::Case &input, const lattice::TimeStepping &
         << " for the claims, unless their verdicts are stored";
   if (report)
     out << ", and " << seconds_text(resources::seconds_of_report) << " for pictures and page";
-  out << "\n";
+  out << "\n# disk: about " << frames * bytes_of_site_on_disk * static_cast<double>(sites) << " bytes for frames\n";
   return out.str();
 }
 
