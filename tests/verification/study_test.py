@@ -94,12 +94,14 @@ class Study(TemporaryFolder):
         def change(document):
             document["set"].update({"Time/integrator": "runge-kutta-chebyshev", "Output/energy interval": 1})
             document["runs"] = {"fine": {}, "coarse": {"set": {"Time/step": "16 us"}}}  # four times the automatic step
-            document["claims"] = [{"claim": "It runs", "rows": [{"run": run, "quantity": "bonds_broken", "above": 1}]}
-                                  for run in document["runs"]]
-        printed = self.study(change=change, expect=3)
+            document["claims"] = [{"claim": "It runs", "rows": [{"run": "fine", "quantity": "bonds_broken", "above": 1},
+                                                                {"run": "coarse", "quantity": "bonds_broken"}]}]
+        printed = self.study(change=change, expect=3, page=True)
         self.assertRegex(printed, r"coarse, seed 1: failed its checks: fracture: energy imbalance [^()]* \(ledger\)")
         self.assertEqual([line["state"] for line in read_csv(self.out / "study.csv")], ["measured", "failed its checks"])
-        self.assertEqual([claim["verdict"] for claim in json.loads(self.text("study.json"))["claims"]], ["holds", "not measured"])
+        claim, = json.loads(self.text("study.json"))["claims"]
+        self.assertEqual(claim["verdict"], "holds")  # no row needs the run that failed, but the study does
+        self.assertEqual([row["values"][0]["n"] for row in claim["rows"]], [1, 0])
         self.assertIn("coarse, seed 1: failed its checks</b> fracture: energy imbalance", self.text("study.html"))
         self.assertEqual(list(json.loads(self.text("runs/coarse-1/run.json"))["failed_rows"].values()), ["ledger"])
         times = [path.stat().st_mtime_ns for path in sorted(self.out.glob("runs/*/crack.json"))]
