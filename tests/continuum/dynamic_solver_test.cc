@@ -263,7 +263,7 @@ TEST(DynamicSolver, StandsStillAfterARamp)
           [&](const auto dof, unsigned int, const Point<2> &X)
           {
             if (std::abs(X[1]) > 0.4999 * height)
-              fastest = std::max(fastest, std::abs(rate(dof)));
+              fastest = support::largest_of({fastest, std::abs(rate(dof))});
           });
         return fastest;
       };

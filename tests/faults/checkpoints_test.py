@@ -49,7 +49,7 @@ SHEET = {
 DAMAGE = {
     "run/time": [hostile.value(1e308)], "motion/n_steps": [hostile.LARGE], "motion/displacement_x": [hostile.longer],
     "motion/velocity_y": [hostile.no_number], "motion/damage": [hostile.value(1.5), hostile.shorter],
-    "record/passed": [hostile.value(1e308), hostile.value(-0.5), hostile.shorter], "record/column": [hostile.LARGE],
+    "record/column": [hostile.LARGE],
     "record/tip/n": [hostile.LARGE], "record/tip/t": [hostile.shorter], "record/speeds": [hostile.longer],
     "record/energies/n": [hostile.value(0)], "record/energies/time": [hostile.value(1e308)],
     "frames/times": [hostile.value(-1.)], "next_frame": [hostile.value(1e308)], "step": [hostile.LARGE],

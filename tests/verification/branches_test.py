@@ -215,12 +215,13 @@ class Branches(TemporaryFolder):
             return int(re.search(r"^# lattice: (\d+) sites", text, re.M)[1]), int(peak) - int(own)
 
         (sites, none), (_, three), (_, sixteen) = map(estimate, (0, 3, 16))
-        # n + 1 numbers for each of six bonds per place of the state, of which some have no site: 192 bytes for three branches.
-        places = (three - none) / 192
+        # n + 1 numbers for each of six bonds per place of the state and of its snapshot, of which some have no site: 384 bytes for
+        # three branches.
+        places = (three - none) / 384
         self.assertGreater(places, sites)
         self.assertLess(places, 1.06 * sites)
         # With 16 branches a site takes 150 + 816 bytes in the image of a checkpoint, and thus more than the 940 of a frame.
-        self.assertAlmostEqual(sixteen - none, 816 * places + (966 - 940) * sites, delta=10)
+        self.assertAlmostEqual(sixteen - none, 1632 * places + (966 - 940) * sites, delta=10)
 
 
 if __name__ == "__main__":
