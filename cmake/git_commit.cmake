@@ -56,11 +56,15 @@ function(latcon_build_facts target)
 #define LATCON_FLAGS R\"(@flags@)\"
 #define LATCON_LATTICE_FLAGS R\"(@lattice@)\"
 #define LATCON_VTK_VERSION \"@VTK_VERSION@\"
+#define LATCON_DEALII_VERSION \"@DEAL_II_VERSION@\"
+#define LATCON_TRILINOS_VERSION \"@DEAL_II_TRILINOS_VERSION@\"
+#define LATCON_EIGEN_VERSION \"@Eigen3_VERSION@\"
+#define LATCON_P4EST_VERSION \"@DEAL_II_P4EST_VERSION@\"
 ")
   add_custom_target(latcon_git_commit
     COMMAND ${CMAKE_COMMAND} -D SOURCE=${PROJECT_SOURCE_DIR} -D HEADER=${folder}/latcon_git_commit.h -P ${latcon_git_commit_script}
     BYPRODUCTS ${folder}/latcon_git_commit.h
-    COMMENT "" VERBATIM)
+    COMMENT "Commit of the sources" VERBATIM)
   add_dependencies(${target} latcon_git_commit)
   target_include_directories(${target} PRIVATE ${folder})
 endfunction()

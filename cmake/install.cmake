@@ -4,7 +4,7 @@ include(GNUInstallDirs)
 include(CMakePackageConfigHelpers)
 
 set(CMAKE_INSTALL_DEFAULT_COMPONENT_NAME runtime)
-install(TARGETS latcon)
+install(TARGETS latcon latcon_elements LIBRARY DESTINATION lib/latcon)
 # verification/input/data_folder.h looks for it.
 foreach(folder cases studies report paraview)
   install(DIRECTORY verification/${folder} DESTINATION share/latcon PATTERN __pycache__ EXCLUDE)
@@ -35,7 +35,7 @@ set_target_properties(latcon_lattice PROPERTIES EXPORT_NAME lattice)
 set_target_properties(latcon_continuum PROPERTIES EXPORT_NAME continuum)
 install(TARGETS latcon_options latcon_support latcon_lattice latcon_continuum EXPORT latconTargets)
 install(EXPORT latconTargets NAMESPACE latcon:: DESTINATION ${latcon_cmake_folder})
-install(DIRECTORY support lattice continuum DESTINATION include/latcon FILES_MATCHING PATTERN "*.h" PATTERN "*.inc" PATTERN precompiled.h EXCLUDE)
+install(DIRECTORY support lattice continuum DESTINATION include/latcon FILES_MATCHING PATTERN "*.h" PATTERN "*.inc")
 configure_package_config_file(cmake/latconConfig.cmake.in latconConfig.cmake INSTALL_DESTINATION ${latcon_cmake_folder})
 # Before 1.0 a minor version may change the interface.
 write_basic_package_version_file(latconConfigVersion.cmake COMPATIBILITY SameMinorVersion)

@@ -1,5 +1,9 @@
 # Compile options of latcon. Those of latcon_options apply to users of the libraries as well, the warnings do not.
-set(latcon_warnings -Wall -Wextra -Wpedantic -Wshadow)
+set(latcon_warnings -Wall -Wextra -Wpedantic)
+# Names of another source that is compiled together with one are not hidden by it.
+if(NOT CMAKE_UNITY_BUILD)
+  list(APPEND latcon_warnings -Wshadow)
+endif()
 if(CMAKE_CXX_COMPILER_ID STREQUAL "GNU")
   # gcc warns about uninitialised lanes of Eigen's SSE packets.
   list(APPEND latcon_warnings -Wno-maybe-uninitialized)

@@ -66,14 +66,16 @@ if [ ! -f "$build/build.ninja" ] || [ ! "$(cached CMAKE_HOME_DIRECTORY)" -ef "$r
   # The presets are for developers.
   [ $tests = ON ] || configure+=(-D BUILD_TESTING=OFF -D LATCON_BENCHMARKS=OFF -D LATCON_DOCS=OFF -D LATCON_PACKAGE=OFF)
 elif [ $tests = ON ] && [ "$(cached BUILD_TESTING)" = OFF ]; then
-  configure=(-D BUILD_TESTING=ON)
+  configure=(-D BUILD_TESTING=ON -D LATCON_BENCHMARKS=ON -D LATCON_DOCS=ON -D LATCON_PACKAGE=ON)
 fi
 if [ ${#configure[@]} -gt 0 ]; then
   echo "Configuring ($preset)" >&2
   cmake "${configure[@]}" --preset "$preset" >"$root/configure.log" 2>&1 || { cat "$root/configure.log" >&2; exit 1; }
   rm -f "$root/configure.log"
 fi
-# Two compilers at a time: a deal.II translation unit takes up to 2 GB. The steps of every build that look for added files and
-# for the commit are not shown.
-cmake --build "$build" --parallel 2 ${1:+--target "$@"} |
-  sed -u -e '/Re-checking globbed directories/d' -e '/git_commit\.cmake/d' -e '/^ninja: no work to do/d' >&2
+# As many compilers at a time as there are cores and 2 GB of memory for each.
+jobs=$(($(sed -n 's/^MemAvailable: *\([0-9]*\) kB/\1/p' /proc/meminfo) / 2000000))
+[ "$jobs" -le "$(nproc)" ] || jobs=$(nproc)
+# Steps are shown to who looks on, and of a first build; a build in a script says only what went wrong.
+[ ${#configure[@]} -gt 0 ] || [ -t 2 ] || quiet=--quiet
+cmake --build "$build" --parallel $((jobs > 1 ? jobs : 1)) ${1:+--target "$@"} -- ${quiet-} >&2

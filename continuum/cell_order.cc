@@ -18,7 +18,7 @@ CellOrder::CellOrder(const Sheet &sheet) : communicator_(sheet.communicator())
     if (cell->is_locally_owned())
       own.push_back(cell->id().to_binary<2>());
   std::vector<CellName> all;
-  for (const std::vector<CellName> &of_rank : Utilities::MPI::all_gather(communicator_, own))
+  for (const std::vector<CellName> &of_rank : dealii::Utilities::MPI::all_gather(communicator_, own))
     all.insert(all.end(), of_rank.begin(), of_rank.end());
   std::sort(all.begin(), all.end());
   n_cells_ = all.size();
@@ -28,8 +28,8 @@ CellOrder::CellOrder(const Sheet &sheet) : communicator_(sheet.communicator())
 
 std::vector<double> CellOrder::gather(const std::vector<double> &own) const
 {
-  const auto positions = Utilities::MPI::gather(communicator_, position_);
-  const auto values = Utilities::MPI::gather(communicator_, own);
+  const auto positions = dealii::Utilities::MPI::gather(communicator_, position_);
+  const auto values = dealii::Utilities::MPI::gather(communicator_, own);
   std::vector<double> all;
   for (std::size_t rank = 0; rank < values.size(); ++rank)
   {

@@ -67,7 +67,7 @@ EnergyLedger DynamicSolver::ledger_after(const Step &step, const Vector &u, cons
       for (const types::global_dof_index i : sheet_.owned())
         if (homogeneous_.is_constrained(i) && !sheet_.conformity_constraints().is_constrained(i))
           own += (forces(i) + inertial(i) - factor * loads_(i)) * rise(i);
-      ledger.work += Utilities::MPI::sum(own, sheet_.communicator());
+      ledger.work += dealii::Utilities::MPI::sum(own, sheet_.communicator());
     }
   }
   ledger.imbalance = ledger.stored + ledger.kinetic + ledger.dissipated - ledger.work - initial_energy_;
@@ -89,6 +89,6 @@ Tensor<1, 2> DynamicSolver::momentum() const
       if (sheet_.owned().is_element(dof))
         sum[i] += momenta(dof);
   }
-  return Utilities::MPI::sum(sum, sheet_.communicator());
+  return dealii::Utilities::MPI::sum(sum, sheet_.communicator());
 }
 } // namespace latcon::continuum

@@ -79,7 +79,7 @@ void DynamicSolver::set_up()
   for (const auto &cell : sheet_.mesh().active_cell_iterators())
     if (cell->is_locally_owned())
       smallest = std::min(smallest, cell->minimum_vertex_distance());
-  smallest_cell_ = Utilities::MPI::min(smallest, sheet_.communicator());
+  smallest_cell_ = dealii::Utilities::MPI::min(smallest, sheet_.communicator());
 
   displacement_ = sheet_.make_ghosted();
   velocity_ = sheet_.make_ghosted();
@@ -156,7 +156,7 @@ void DynamicSolver::release(const double duration)
         release_forces_(i) = forces(i);
     }
   release_forces_.compress(VectorOperation::insert);
-  if (Utilities::MPI::max(holds_more ? 1 : 0, sheet_.communicator()) == 1)
+  if (dealii::Utilities::MPI::max(holds_more ? 1 : 0, sheet_.communicator()) == 1)
     throw InvalidInput("release() cannot prescribe the displacement of a free node");
   has_released_ = true;
   release_time_ = time_;
@@ -260,7 +260,7 @@ double DynamicSolver::norm_over_free(const Vector &x) const
   for (const types::global_dof_index i : sheet_.owned())
     if (!homogeneous_.is_constrained(i))
       sum += x(i) * x(i);
-  return std::sqrt(Utilities::MPI::sum(sum, sheet_.communicator()));
+  return std::sqrt(dealii::Utilities::MPI::sum(sum, sheet_.communicator()));
 }
 
 void DynamicSolver::start(const VectorField &displacement, const VectorField &velocity, const double time)
@@ -307,13 +307,13 @@ void DynamicSolver::check_start(const Vector &u, const Vector &v, const double t
     if (cell->is_locally_owned())
       for (const unsigned int vertex : cell->vertex_indices())
         extent = std::max(extent, cell->vertex(vertex).norm());
-  extent = Utilities::MPI::max(extent, sheet_.communicator());
+  extent = dealii::Utilities::MPI::max(extent, sheet_.communicator());
   const Vector prescribed = prescribed_displacement(time);
   double off = 0.;
   for (const types::global_dof_index i : sheet_.owned())
     if (is_prescribed(i))
       off = std::max(off, std::abs(u(i) - prescribed(i)));
-  if (!(Utilities::MPI::max(off, sheet_.communicator()) <= 1e-8 * extent))
+  if (!(dealii::Utilities::MPI::max(off, sheet_.communicator()) <= 1e-8 * extent))
     throw InvalidInput("the initial displacement of a boundary differs from the prescribed one");
 }
 

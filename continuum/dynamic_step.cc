@@ -64,7 +64,7 @@ std::string DynamicSolver::location_of_largest(const Vector &residual) const
       if (value > own[0])
         own = {value, X[0], X[1]};
     });
-  const std::vector<Candidate> all = Utilities::MPI::all_gather(sheet_.communicator(), own);
+  const std::vector<Candidate> all = dealii::Utilities::MPI::all_gather(sheet_.communicator(), own);
   const Candidate largest = *std::max_element(all.begin(), all.end());
   std::ostringstream place;
   place << " at X = (" << largest[1] << ", " << largest[2] << ") m";
@@ -193,7 +193,8 @@ double DynamicSolver::round_off(const Residual &state, const Vector &u) const
       sum += of_stress * of_stress + of_displacement * of_displacement + of_strain * of_strain;
     }
   // Factor 4: computing a stress adds several rounding errors to those of the displacement.
-  return 4. * std::numeric_limits<double>::epsilon() * std::sqrt(Utilities::MPI::sum(sum, sheet_.communicator()));
+  return 4. * std::numeric_limits<double>::epsilon() *
+         std::sqrt(dealii::Utilities::MPI::sum(sum, sheet_.communicator()));
 }
 
 // Solves a step for the displacement `u` at its end. Returns the reason of failure, empty on success.

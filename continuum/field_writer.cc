@@ -233,8 +233,8 @@ void FieldWriter::add_frame(const double time, const Sheet &sheet, const Sheet::
     throw InvalidInput("frames do not support a stiffness factor");
 
   const std::string frame = frame_name(name_, frames_.size());
-  const unsigned int n_ranks = Utilities::MPI::n_mpi_processes(communicator_);
-  const unsigned int rank = Utilities::MPI::this_mpi_process(communicator_);
+  const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(communicator_);
+  const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(communicator_);
   const auto piece = [&](const unsigned int r)
   { return n_ranks == 1 ? frame + ".vtu" : frame + "." + std::to_string(r) + ".vtu"; };
 
@@ -310,7 +310,7 @@ void FieldWriter::write_collection() const
   run_collectively(communicator_,
                    [&]
                    {
-                     if (Utilities::MPI::this_mpi_process(communicator_) != 0)
+                     if (dealii::Utilities::MPI::this_mpi_process(communicator_) != 0)
                        return;
                      std::vector<support::PvdFile> files;
                      for (std::size_t frame = 0; frame < frames_.size(); ++frame)

@@ -47,7 +47,7 @@ AffineConstraints<double> shared_constraints(const AffineConstraints<double> &kn
 {
   // Each owner sends its constraints to the ranks on which they are relevant.
   using Line = std::pair<types::global_dof_index, std::vector<std::pair<types::global_dof_index, double>>>;
-  const Utilities::MPI::Partitioner layout(owned, relevant, communicator);
+  const dealii::Utilities::MPI::Partitioner layout(owned, relevant, communicator);
   std::vector<Line> lines;
   for (const auto &line : known.get_lines())
     if (layout.in_local_range(line.index))
@@ -63,7 +63,7 @@ AffineConstraints<double> shared_constraints(const AffineConstraints<double> &kn
     for (const auto end = next + n_wanted; next != end; ++next)
       if (known.is_constrained(*next))
         messages[rank].emplace_back(*next, *known.get_constraint_entries(*next));
-  for (const auto &received : Utilities::MPI::some_to_some(communicator, messages))
+  for (const auto &received : dealii::Utilities::MPI::some_to_some(communicator, messages))
     lines.insert(lines.end(), received.second.begin(), received.second.end());
 
   std::vector<types::global_dof_index> masters;

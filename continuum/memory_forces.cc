@@ -233,7 +233,7 @@ MemoryForces::History MemoryForces::advanced(const double duration, const Vector
                       }
                     });
     });
-  Utilities::MPI::sum(sums, sheet_.communicator(), sums);
+  dealii::Utilities::MPI::sum(sums, sheet_.communicator(), sums);
   energies.resize(n);
   for (std::size_t i = 0; i < n; ++i)
   {

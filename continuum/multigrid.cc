@@ -27,7 +27,7 @@ struct Multigrid::Level
   std::unique_ptr<Sheet> own_sheet;
   const Sheet *sheet = nullptr;
   AffineConstraints<double> constraints;
-  std::shared_ptr<const Utilities::MPI::Partitioner> layout;
+  std::shared_ptr<const dealii::Utilities::MPI::Partitioner> layout;
   Sheet::Matrix tangent;
   SinglePrecisionMatrix matrix;             // tangent as used in the cycle; unused on the coarsest level
   MGTwoLevelTransfer<2, Vector> to_coarser; // members from here on are unused on the coarsest level
@@ -51,7 +51,7 @@ void fill_start(const Sheet &sheet, const AffineConstraints<double> &constraints
   for (const auto &cell : sheet.mesh().active_cell_iterators())
     if (cell->is_locally_owned())
       own_size = std::min(own_size, cell->diameter());
-  const double size = Utilities::MPI::min(own_size, sheet.communicator());
+  const double size = dealii::Utilities::MPI::min(own_size, sheet.communicator());
 
   sheet.for_each_owned_dof(
     [&](const auto dof, const unsigned int i, const Point<2> &position)
@@ -145,8 +145,8 @@ Multigrid::Multigrid(const Sheet &fine, const SheetFactory &make_sheet, const Ma
       make_matrix(sheet, level->constraints, level->tangent);
     const bool is_coarsest = n == 0 || sheet.dof_handler().n_dofs() <= settings.coarsest_size;
     if (is_coarsest)
-      level->layout =
-        std::make_shared<const Utilities::MPI::Partitioner>(sheet.owned(), sheet.relevant(), sheet.communicator());
+      level->layout = std::make_shared<const dealii::Utilities::MPI::Partitioner>(sheet.owned(), sheet.relevant(),
+                                                                                  sheet.communicator());
     else
     {
       level->patches = std::make_shared<VertexPatches>(sheet, level->constraints);

@@ -18,7 +18,7 @@ using CellName = CellId::binary_type;
 
 bool is_first_rank(const Sheet &sheet)
 {
-  return Utilities::MPI::this_mpi_process(sheet.communicator()) == 0;
+  return dealii::Utilities::MPI::this_mpi_process(sheet.communicator()) == 0;
 }
 
 // Returns the position of each unknown in the order, from the cells of all ranks.
@@ -67,11 +67,11 @@ NodalOrder::NodalOrder(const Sheet &sheet) : sheet_(sheet)
       unknowns.insert(unknowns.end(), of_cell.begin(), of_cell.end());
     }
   const MPI_Comm communicator = sheet.communicator();
-  const auto all_names = Utilities::MPI::gather(communicator, names);
-  const auto all_unknowns = Utilities::MPI::gather(communicator, unknowns);
+  const auto all_names = dealii::Utilities::MPI::gather(communicator, names);
+  const auto all_unknowns = dealii::Utilities::MPI::gather(communicator, unknowns);
   if (is_first_rank(sheet))
     position_ = positions(all_names, all_unknowns, per_cell, sheet.dof_handler().n_dofs());
-  std::vector<unsigned int> of_all = Utilities::MPI::broadcast(communicator, position_);
+  std::vector<unsigned int> of_all = dealii::Utilities::MPI::broadcast(communicator, position_);
   if (is_first_rank(sheet))
     return;
   for (const types::global_dof_index i : sheet.owned())
@@ -86,7 +86,7 @@ std::vector<double> NodalOrder::gather(const Sheet::Vector &x) const
   // Each rank owns a contiguous range of unknowns.
   std::vector<double> values;
   auto position = position_.begin();
-  for (const std::vector<double> &of_rank : Utilities::MPI::gather(sheet_.communicator(), own))
+  for (const std::vector<double> &of_rank : dealii::Utilities::MPI::gather(sheet_.communicator(), own))
   {
     values.resize(position_.size());
     for (const double value : of_rank)

@@ -28,6 +28,10 @@ void release_kept_vectors()
 
 ParallelSession::ParallelSession()
 {
+  int is_initialised = 0;
+  MPI_Initialized(&is_initialised);
+  if (is_initialised == 0)
+    mpi_.emplace();
   float version = 0.f;
   if (Zoltan_Initialize(0, nullptr, &version) != ZOLTAN_OK)
     throw std::runtime_error("Zoltan cannot be initialised");

@@ -1,12 +1,14 @@
 #pragma once
 
+#include <optional>
+
 #include "support/mpi_session.h"
 
 namespace latcon::continuum
 {
-/// Initialises MPI and the libraries of the finite element code on construction and finalises them on destruction:
-/// deal.II (one thread), p4est and Zoltan. To be created once, at the start of main, and destroyed after all objects of
-/// this library.
+/// Initialises MPI, unless that was done before, and the libraries of the finite element code on construction and
+/// finalises them on destruction: deal.II (one thread), p4est and Zoltan. To be created once, before other objects of
+/// this library, and destroyed after them.
 ///
 /// Replaces deal.II's MPI_InitFinalize, which also initialises PETSc and SLEPc. latcon does not use these two. They
 /// would read options from the arguments of the program, from PETSC_OPTIONS, and from `.petscrc` and `petscrc` in the
@@ -22,6 +24,6 @@ public:
   ParallelSession &operator=(const ParallelSession &) = delete;
 
 private:
-  support::MpiSession mpi_;
+  std::optional<support::MpiSession> mpi_;
 };
 } // namespace latcon::continuum

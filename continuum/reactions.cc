@@ -112,7 +112,7 @@ std::map<types::boundary_id, Tensor<1, 2>> boundary_reactions(const Sheet &sheet
 
   std::map<types::boundary_id, Tensor<1, 2>> forces;
   for (const HeldBoundary &boundary : boundaries)
-    forces[boundary.id] = Utilities::MPI::sum(boundary.force, sheet.communicator());
+    forces[boundary.id] = dealii::Utilities::MPI::sum(boundary.force, sheet.communicator());
   return forces;
 }
 } // namespace latcon::continuum

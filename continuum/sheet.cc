@@ -206,7 +206,7 @@ std::vector<PointState> Sheet::evaluate(const Vector &u, const std::vector<Point
         }
       }
     });
-  Utilities::MPI::sum(sums, communicator(), sums);
+  dealii::Utilities::MPI::sum(sums, communicator(), sums);
 
   std::vector<PointState> states(points.size());
   for (std::size_t p = 0; p < points.size(); ++p)

@@ -26,7 +26,7 @@ double Sheet::energy(const Vector &u, const double load_factor) const
                      integrate(*this, u, load_factor, Order::value,
                                [&](const Contribution &contribution) { own += contribution.energy; });
                    });
-  return Utilities::MPI::sum(own, communicator());
+  return dealii::Utilities::MPI::sum(own, communicator());
 }
 
 double Sheet::residual(const Vector &u, Vector &r, Vector &magnitude, const double load_factor) const
@@ -50,7 +50,7 @@ double Sheet::residual(const Vector &u, Vector &r, Vector &magnitude, const doub
   r.compress(VectorOperation::add);
   magnitude.compress(VectorOperation::add);
   guarded.rethrow_collectively(communicator());
-  return Utilities::MPI::sum(own, communicator());
+  return dealii::Utilities::MPI::sum(own, communicator());
 }
 
 void Sheet::tangent(const Vector &u, const AffineConstraints<double> &constraints, Matrix &K, const double load_factor,
@@ -88,7 +88,7 @@ void Sheet::tangent(const Vector &u, const AffineConstraints<double> &constraint
 void Sheet::make_matrix(const AffineConstraints<double> &constraints, Matrix &matrix) const
 {
   TrilinosWrappers::SparsityPattern pattern(owned_, owned_, constraints.get_local_lines(), communicator());
-  const types::subdomain_id own = Utilities::MPI::this_mpi_process(communicator());
+  const types::subdomain_id own = dealii::Utilities::MPI::this_mpi_process(communicator());
   if (has_gradient())
     DoFTools::make_flux_sparsity_pattern(dof_handler_, pattern, constraints, false, own);
   else
@@ -115,6 +115,6 @@ DeterminantRange Sheet::determinant_range(const Vector &u) const
         largest = std::max(largest, J);
       }
     }
-  return {Utilities::MPI::min(smallest, communicator()), Utilities::MPI::max(largest, communicator())};
+  return {dealii::Utilities::MPI::min(smallest, communicator()), dealii::Utilities::MPI::max(largest, communicator())};
 }
 } // namespace latcon::continuum

@@ -49,7 +49,8 @@ void SinglePrecisionMatrix::copy_from(const Sheet::Matrix &K)
   for (int column = 0; column < matrix.NumMyCols(); ++column)
     if (const types::global_dof_index index = matrix.GCID(column); !owned.is_element(index))
       ghosts.add_range(index / 2 * 2, index / 2 * 2 + 2);
-  const auto layout = std::make_shared<const Utilities::MPI::Partitioner>(owned, ghosts, K.get_mpi_communicator());
+  const auto layout =
+    std::make_shared<const dealii::Utilities::MPI::Partitioner>(owned, ghosts, K.get_mpi_communicator());
   x_.reinit(layout);
   std::vector<unsigned int> position(matrix.NumMyCols());
   for (int column = 0; column < matrix.NumMyCols(); ++column)

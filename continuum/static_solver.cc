@@ -101,8 +101,8 @@ StaticSolver::Evaluation StaticSolver::evaluate(const Vector &u, const double lo
     (homogeneous_.is_constrained(i) ? given : free) += state.residual(i) * state.residual(i);
     given += std::pow(load_factor * loads_(i), 2);
   }
-  state.free = std::sqrt(Utilities::MPI::sum(free, sheet_.communicator()));
-  state.reference = std::sqrt(Utilities::MPI::sum(given, sheet_.communicator()));
+  state.free = std::sqrt(dealii::Utilities::MPI::sum(free, sheet_.communicator()));
+  state.reference = std::sqrt(dealii::Utilities::MPI::sum(given, sheet_.communicator()));
   return state;
 }
 
@@ -118,7 +118,8 @@ double StaticSolver::round_off(const Evaluation &state, const Vector &u) const
       sum += of_stress * of_stress + of_displacement * of_displacement;
     }
   // Factor 4: computing a stress adds several rounding errors to those of the displacement.
-  return 4. * std::numeric_limits<double>::epsilon() * std::sqrt(Utilities::MPI::sum(sum, sheet_.communicator()));
+  return 4. * std::numeric_limits<double>::epsilon() *
+         std::sqrt(dealii::Utilities::MPI::sum(sum, sheet_.communicator()));
 }
 
 // Throws if the tangent at u, with ghost entries, is positive along the Newton step with a larger penalty: then the

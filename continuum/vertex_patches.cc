@@ -168,7 +168,7 @@ private:
 std::vector<Dofs> list_patches(const Sheet &sheet, const AffineConstraints<double> &constraints)
 {
   const auto &mesh = sheet.mesh();
-  const unsigned int own_rank = Utilities::MPI::this_mpi_process(sheet.communicator());
+  const unsigned int own_rank = dealii::Utilities::MPI::this_mpi_process(sheet.communicator());
   constexpr auto n_vertices = GeometryInfo<2>::vertices_per_cell;
   constexpr auto n_lines = GeometryInfo<2>::lines_per_cell;
 
@@ -236,7 +236,7 @@ std::vector<Dofs> list_patches(const Sheet &sheet, const AffineConstraints<doubl
         }
       }
   }
-  const auto all_received = Utilities::MPI::some_to_some(sheet.communicator(), messages);
+  const auto all_received = dealii::Utilities::MPI::some_to_some(sheet.communicator(), messages);
   run_collectively(sheet.communicator(),
                    [&]
                    {
@@ -373,6 +373,6 @@ void VertexPatches::vmult(Vector &z, const Vector &r) const
 
 unsigned int VertexPatches::n_replaced() const
 {
-  return Utilities::MPI::sum(own_replaced_, layout_->get_mpi_communicator());
+  return dealii::Utilities::MPI::sum(own_replaced_, layout_->get_mpi_communicator());
 }
 } // namespace latcon::continuum

@@ -110,6 +110,6 @@ double ViscousForces::dissipation(const Vector &u, const Vector &v) const
                                        own += viscosity_->dissipation(F[q], Fdot[q]) * points.values.JxW(q);
                                    });
                    });
-  return Utilities::MPI::sum(own, sheet_.communicator());
+  return dealii::Utilities::MPI::sum(own, sheet_.communicator());
 }
 } // namespace latcon::continuum

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 """Fails if an include goes against docs/architecture.md: if a folder includes one that ALLOWED does not give it, or a library
-that LIBRARIES keeps from it; if folders include each other in a circle; if a source opens a namespace of another folder than
+that LIBRARIES keeps from it or HEADERS from its headers; if folders include each other in a circle; if a source opens a namespace of another folder than
 its own; or if docs/pictures/includes.svg is not the graph of the sources.
 
 Usage: check_includes.py PROJECT_ROOT [--draw]     --draw: make the picture, with Graphviz
@@ -31,11 +31,12 @@ ALLOWED = {
     "verification/resources": MODELS,
     "verification/claims": MODELS,
     "verification/claims/*": (*MODELS, "verification/claims"),
-    "verification/study": (*MODELS, "verification/resources", "verification/claims", "verification/claims/*"),
+    "verification/elements": ("support", "verification/input", "verification/claims"),
+    "verification/study": (*MODELS, "verification/resources", "verification/claims", "verification/elements"),
     "verification/commands": (*MODELS, "verification/compare", "verification/resources", "verification/claims",
-                              "verification/claims/*", "verification/study"),
-    # main.cc, and the headers that are compiled once.
-    "verification": ("continuum", "support", "verification/commands"),
+                              "verification/elements", "verification/study"),
+    # The program, and the module with the finite elements.
+    "verification": ("support", "continuum", "verification/bridge", "verification/commands", "verification/elements"),
     # Tests of one side must not depend on the other either.
     "tests/support": ("support",),
     "tests/lattice": ("support", "lattice/bonds", "lattice", "tests/support"),
@@ -44,9 +45,24 @@ ALLOWED = {
 }
 # Folders that may not include a library, by the beginning of its headers' names.
 LIBRARIES = {
-    "deal.II/": ("support", "lattice/bonds", "lattice", "verification/analysis", "tests/support", "tests/lattice", "tests/verification/analysis"),
+    "deal.II/": ("support", "verification/input", "verification/study", "verification/compare", "verification/elements", "verification/resources",
+                 "lattice/bonds", "lattice", "verification/analysis", "tests/support", "tests/lattice", "tests/verification/analysis"),
     "vtk": [folder for folder in ALLOWED if folder not in ("verification/output", "verification/compare")],
 }
+# Headers below the folder of the first column that may include a library: every source that includes them pays for it.
+HEADERS = [
+    ("verification/", "deal.II/", ("verification/bridge/affine_displacement.h", "verification/bridge/field_function.h",
+                                   "verification/claims/wave_sheet.h")),
+    ("", "vtk", ("verification/compare/frame.h", "verification/compare/quiet_vtk.h", "verification/output/field_units.h")),
+    ("", "nlohmann/json.hpp", ()),
+    *[("", f"Eigen/{part}", ()) for part in ("Cholesky", "Dense", "Eigen", "LU", "QR", "SVD")],
+]
+PLANTED_IN_HEADERS = [
+    ("verification/claims/claim.h", "#include <deal.II/grid/tria.h>"),
+    ("verification/output/results.h", "#include <vtkPolyData.h>"),
+    ("verification/study/study_json.h", "#include <nlohmann/json.hpp>"),
+    ("lattice/waves.h", "#include <Eigen/Eigenvalues>"),
+]
 PLANTED = [
     ("support", '#include "lattice/bonds/bond_law.h"'),
     ("support", "#include <deal.II/base/mpi.h>"),
@@ -101,6 +117,14 @@ def violations(folder, text):
         if any(name.startswith(library) and own in folders for library, folders in LIBRARIES.items()):
             found.append(name)
     return found
+
+
+def heavy(path, text):
+    """Libraries that the header with this name, relative to the root, may not include."""
+    if not path.endswith(".h") or path.startswith("tests/"):
+        return []
+    return [name for name in included(text) for below, library, headers in HEADERS
+            if path.startswith(below) and name.startswith(library) and path not in headers]
 
 
 def namespace(folder):
@@ -182,6 +206,9 @@ def main():
     for folder, line in PLANTED:
         if len(violations(folder, line)) != 1:
             sys.exit(f"the rule for {folder}/ no longer catches: {line}")
+    for header, line in PLANTED_IN_HEADERS:
+        if not heavy(header, line):
+            sys.exit(f"the rule for headers no longer catches {line} in {header}")
     for folder, name in (("lattice", "continuum"), ("verification/claims/energy", "energy"), ("verification/input", "claims")):
         if wrong_namespaces(folder, f"namespace latcon::{name}\n{{\nstruct A\n{{\n}};\n}}\n") != [name]:
             sys.exit(f"the namespace {name} is no longer caught in {folder}/")
@@ -196,7 +223,8 @@ def main():
     if without := sorted({str(path.relative_to(root)) for top in ROOTS[:-1] for path in (root / top).rglob("*.cc")}
                          - {str(path.relative_to(root)) for _, path in checked}):
         sys.exit("sources in folders without a rule: " + ", ".join(without))
-    bad = [f"{path.relative_to(root)} includes {name}" for folder, path in checked for name in violations(folder, path.read_text())]
+    bad = [f"{path.relative_to(root)} includes {name}" for folder, path in checked
+           for name in violations(folder, path.read_text()) + heavy(str(path.relative_to(root)), path.read_text())]
     if bad:
         sys.exit("forbidden includes:\n  " + "\n  ".join(bad))
     strange = [f"{path.relative_to(root)} opens latcon::{name}" for folder, path in checked

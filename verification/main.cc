@@ -1,7 +1,8 @@
-#include "continuum/parallel_session.h"
 #include "support/errors.h"
+#include "support/mpi_session.h"
 #include "verification/commands/command_line.h"
 #include "verification/commands/signals.h"
+#include "verification/elements/elements.h"
 
 #include <cstdio>
 #include <exception>
@@ -12,7 +13,8 @@ int main(int argc, char **argv)
   try
   {
     latcon::commands::install_signal_handlers();
-    const latcon::continuum::ParallelSession session;
+    const latcon::support::MpiSession mpi;
+    const latcon::elements::Session elements;
     return static_cast<int>(latcon::commands::run_program(argc, argv));
   }
   catch (const std::exception &error) // of the start, such as no further thread under `ulimit -u`

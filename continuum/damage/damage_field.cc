@@ -83,7 +83,7 @@ DamageField::DamageField(const Sheet::Mesh &mesh, const DamageLaw &law, const st
 
   TrilinosWrappers::SparsityPattern pattern(owned_, owned_, constraints_.get_local_lines(), communicator);
   DoFTools::make_sparsity_pattern(dof_handler_, pattern, constraints_, false,
-                                  Utilities::MPI::this_mpi_process(communicator));
+                                  dealii::Utilities::MPI::this_mpi_process(communicator));
   pattern.compress();
   laplace_.reinit(pattern);
   measure_.reinit(owned_, communicator);
@@ -157,7 +157,7 @@ double DamageField::minimize(const Sheet &sheet, const Vector &u, const double l
   unsigned int n_concave = 0;
   for (const types::global_dof_index i : owned_)
     n_concave += !constraints_.is_constrained(i) && !(A.diag_element(i) > 0.) ? 1 : 0;
-  if (Utilities::MPI::sum(n_concave, communicator) > 0)
+  if (dealii::Utilities::MPI::sum(n_concave, communicator) > 0)
     throw NonPhysicalState("the stored energy about a node is so negative that no damage minimises the energy");
   TrilinosWrappers::PreconditionJacobi jacobi;
   jacobi.initialize(A);
@@ -232,7 +232,7 @@ bool DamageField::select(std::vector<char> &fixed, const Test &test) const
     n_changed += is_fixed != fixed[n] ? 1 : 0;
     fixed[n] = is_fixed;
   }
-  return Utilities::MPI::sum(n_changed, dof_handler_.get_communicator()) == 0;
+  return dealii::Utilities::MPI::sum(n_changed, dof_handler_.get_communicator()) == 0;
 }
 
 // Returns e_a [J/m], eq. (C.62).
@@ -324,7 +324,7 @@ std::vector<double> DamageField::evaluate(const std::vector<Point<2>> &points) c
                        }
                      }
                    });
-  Utilities::MPI::sum(sums, dof_handler_.get_communicator(), sums);
+  dealii::Utilities::MPI::sum(sums, dof_handler_.get_communicator(), sums);
   std::vector<double> values;
   for (std::size_t p = 0; p < points.size(); ++p)
   {

@@ -73,7 +73,7 @@ def asan():
                        "continuum/continuum_tests")]
     ranks = [Job(name, ["mpirun", "--oversubscribe", "-np", "2", program("debug", f"tests/{folder}/{name}"),
                         "--gtest_brief=1"], dict(no_leaks, LATCON_RANKS="2"))
-             for folder, name in (("lattice", "lattice_ranks_tests"), ("continuum", "continuum_ranks_tests"))]
+             for folder, name in (("lattice", "lattice_ranks_tests"), ("continuum", "continuum_tests"))]
     runs = [crack("debug", **no_leaks),
             latcon("debug", "relaxed", "lattice", CASES / "quick.prm", **no_leaks),
             latcon("debug", "hole", "continuum", CASES / "hole.prm", "--set", "Continuum/adaptive cycles=1",

@@ -9,11 +9,12 @@
 
 #include <gtest/gtest.h>
 
+namespace assembly_test
+{
+
 using namespace latcon;
 using namespace multigrid_cases;
 
-namespace
-{
 // Makes a mesh with cells of three sizes and hanging nodes.
 void make_adaptive(Mesh &mesh)
 {
@@ -31,7 +32,6 @@ Sheet::Vector wavy_state(const Sheet &sheet)
                  return Tensor<1, 2>({0.3 * X[0] + 2e-4 * std::sin(wave), 0.3 * X[1] + 2e-4 * std::sin(wave + 1.)});
                });
 }
-} // namespace
 
 // Sums in another order: each of the up to 100 terms of an entry is rounded once.
 TEST(Assembly, WritesWhatConstraintsDistribute)
@@ -163,3 +163,5 @@ TEST(Assembly, MultipliesInSinglePrecision)
     }
   }
 }
+
+} // namespace assembly_test

@@ -14,6 +14,9 @@
 #include <fstream>
 #include <iomanip>
 
+namespace convergence_test
+{
+
 using namespace latcon;
 using namespace sheets;
 using continuum::BoundaryConditions;
@@ -23,8 +26,6 @@ using continuum::StaticSolver;
 using manufactured::Forces;
 using manufactured::Solution;
 
-namespace
-{
 constexpr double gradient_length = 0.1; // of the unit square; every mesh but the coarsest resolves it
 
 struct Errors
@@ -247,7 +248,6 @@ class Convergence : public testing::TestWithParam<Series>
 class CoarseConvergence : public testing::TestWithParam<Series>
 {
 };
-} // namespace
 
 TEST_P(Convergence, HasTheOrdersOfInteriorPenaltyElements)
 {
@@ -262,8 +262,6 @@ TEST_P(CoarseConvergence, HasTheOrdersOfInteriorPenaltyElements)
   expect_orders(series, series.nonlocal == Nonlocal::isotropic && series.degree == 4 ? 3 : 2);
 }
 
-namespace
-{
 std::vector<Series> all_series()
 {
   std::vector<Series> series;
@@ -291,9 +289,10 @@ std::vector<Series> quick_series()
   series.erase(std::remove_if(series.begin(), series.end(), is_long), series.end());
   return series;
 }
-} // namespace
 
 INSTANTIATE_TEST_SUITE_P(Continuum, Convergence, testing::ValuesIn(all_series()),
                          [](const auto &series) { return series.param.name(); });
 INSTANTIATE_TEST_SUITE_P(Continuum, CoarseConvergence, testing::ValuesIn(quick_series()),
                          [](const auto &series) { return series.param.name(); });
+
+} // namespace convergence_test

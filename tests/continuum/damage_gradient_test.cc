@@ -10,12 +10,13 @@
 #include <cmath>
 #include <random>
 
+namespace damage_gradient_test
+{
+
 using namespace latcon::continuum;
 using dealii::Point;
 using dealii::Tensor;
 
-namespace
-{
 constexpr double pi = 3.14159265358979323846;
 constexpr double spacing = 1.; // of the bonds [m]
 
@@ -497,4 +498,5 @@ TEST(DamageMotion, RefusesInvalidGradients)
   wrong.gradient->bonds.clear();
   EXPECT_THROW(DamageMotion{wrong}, InvalidMaterial);
 }
-} // namespace
+
+} // namespace damage_gradient_test

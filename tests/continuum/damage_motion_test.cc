@@ -13,12 +13,13 @@
 #include <complex>
 #include <random>
 
+namespace damage_motion_test
+{
+
 using namespace latcon::continuum;
 using dealii::Point;
 using dealii::Tensor;
 
-namespace
-{
 constexpr double pi = 3.14159265358979323846;
 
 Tensor<2, 2> matrix(const double xx, const double xy, const double yx, const double yy)
@@ -497,4 +498,5 @@ TEST(DamageMotion, RefusesInvalidInput)
   wrong.is_held = nullptr;
   EXPECT_THROW(DamageMotion{wrong}, InvalidInput);
 }
-} // namespace
+
+} // namespace damage_motion_test

@@ -10,12 +10,13 @@
 #include <cmath>
 #include <string>
 
+namespace damage_ranks_test
+{
+
 using namespace latcon::continuum;
 using dealii::Point;
 using dealii::Tensor;
 
-namespace
-{
 constexpr double pi = 3.14159265358979323846, spacing = 1e-3;
 
 // Triangular lattice with both shells.
@@ -128,4 +129,5 @@ TEST(DamageOnRanks, NeedARowEach)
     EXPECT_THROW(RowBands(NodeGrid(Rectangle{1., 1., 2, n - 2}), MPI_COMM_WORLD), InvalidInput);
   }
 }
-} // namespace
+
+} // namespace damage_ranks_test

@@ -13,14 +13,15 @@
 #include <filesystem>
 #include <set>
 
+namespace continuum_damage_test
+{
+
 using namespace latcon::continuum;
 using dealii::Point;
 using dealii::Tensor;
 using sheets::matrix;
 using sheets::Mesh;
 
-namespace
-{
 constexpr double xi = 1e-3;     // regularisation length [m]
 constexpr double critical = 2.; // stretch of the bar at the threshold
 const CauchyBorn rubber = sheets::rubber_network();
@@ -108,7 +109,6 @@ struct BrokenBar : Bar
     return solver->field().evaluate(points);
   }
 };
-} // namespace
 
 TEST(Damage, ScalesEveryTermOfTheEnergy)
 {
@@ -320,8 +320,6 @@ TEST(Damage, KeepsTheLedgerOfTheLastAcceptedStepAfterAFailure)
   EXPECT_EQ(bar.solver->ledger().work, last.work);
 }
 
-namespace
-{
 // A law whose energy density is shifted below 0.
 class NegativeEnergy : public Material
 {
@@ -346,7 +344,6 @@ std::string refusal(const Function &function)
   }
   return "";
 }
-} // namespace
 
 TEST(Damage, RejectsAnEnergyThatHasNoMinimum)
 {
@@ -411,3 +408,5 @@ TEST(Damage, RejectsBadInput)
     EXPECT_THROW(solver.set_damage([](const Point<2> &) { return 0.; }), InvalidInput) << load_factor;
   }
 }
+
+} // namespace continuum_damage_test

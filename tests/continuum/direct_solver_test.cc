@@ -5,13 +5,14 @@
 
 #include <gtest/gtest.h>
 
+namespace direct_solver_test
+{
+
 using namespace latcon;
 using namespace sheets;
 using continuum::DirectSolver;
 using continuum::Sheet;
 
-namespace
-{
 // Tangents of a sheet under several stretches, made unsymmetric.
 struct Tangents
 {
@@ -59,7 +60,6 @@ struct Tangents
   dealii::AffineConstraints<double> constraints;
   Sheet::Vector b;
 };
-} // namespace
 
 // A resumed motion starts with another matrix than an uninterrupted one had before, and must give the same bits.
 TEST(DirectSolver, KeptAnalysisChangesNoBit)
@@ -116,3 +116,5 @@ TEST(DirectSolver, RefusesAMatrixWhoseFactorsDoNotFit)
       << refusal.what();
   }
 }
+
+} // namespace direct_solver_test

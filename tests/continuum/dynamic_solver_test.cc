@@ -13,6 +13,9 @@
 #include <cmath>
 #include <limits>
 
+namespace dynamic_solver_test
+{
+
 using namespace latcon;
 using namespace moving_sheets;
 using continuum::BoundaryConditions;
@@ -26,8 +29,6 @@ using continuum::StaticSolver;
 using Vector = continuum::Sheet::Vector;
 namespace edge = continuum::edge;
 
-namespace
-{
 // Problem with all features: a moving held edge, a traction, a weak normal gradient, a gradient law, viscosity.
 struct Problem
 {
@@ -61,7 +62,6 @@ std::unique_ptr<DynamicSolver> moved(const Mesh &mesh, const Problem &problem, c
   solver->run_until(final_time);
   return solver;
 }
-} // namespace
 
 // theory-continuum.md, eqs. (C.40), (C.43) and (C.44).
 TEST(DynamicSolver, IsOfSecondOrderInTime)
@@ -563,3 +563,5 @@ TEST(NewtonSolver, ReducesTheResidualWithoutAnEnergy)
   for (std::size_t i = 1; i < history.size(); ++i)
     EXPECT_LT(history[i].residual, history[i - 1].residual);
 }
+
+} // namespace dynamic_solver_test

@@ -9,6 +9,9 @@
 #include <algorithm>
 #include <cmath>
 
+namespace dynamic_waves_test
+{
+
 using namespace latcon;
 using namespace moving_sheets;
 using continuum::BoundaryConditions;
@@ -22,8 +25,6 @@ using continuum::StaticSolver;
 using Vector = continuum::Sheet::Vector;
 namespace edge = continuum::edge;
 
-namespace
-{
 // Returns x.A y over the independent unknowns.
 double form(const continuum::Sheet &sheet, const continuum::Sheet::Matrix &A, const Vector &x, const Vector &y)
 {
@@ -92,7 +93,6 @@ void expect_order_in_space(const Constitution &laws, const double inertia_length
     testing::Test::RecordProperty(name + ", order of degree " + std::to_string(degree), std::to_string(order));
   }
 }
-} // namespace
 
 // theory-continuum.md, eq. (C.47).
 TEST(DynamicSolver, WavesFollowTheDispersionOfTheIsotropicGradient)
@@ -235,3 +235,5 @@ TEST(DynamicSolver, DampsHighFrequenciesOnly)
   EXPECT_LT(energy_left(NewmarkParameters::generalised_alpha(0.5), 1000. / w, 40), 1e-14);
   EXPECT_NEAR(energy_left(NewmarkParameters::average_acceleration(), 1000. / w, 20), 1., 1e-4);
 }
+
+} // namespace dynamic_waves_test

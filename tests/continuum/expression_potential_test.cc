@@ -9,10 +9,10 @@
 
 #include "continuum/isotropic_network.h"
 
-using namespace latcon;
-
-namespace
+namespace expression_potential_test
 {
+
+using namespace latcon;
 
 using continuum::ExpressionPotential;
 using continuum::FibreFamily;
@@ -124,4 +124,4 @@ TEST(IsotropicNetwork, AveragesCustomPotentialsOverAllDirections)
   EXPECT_LT((sampled.tangent(F) - closed.tangent(F)).norm(), tolerance * closed.tangent(F).norm());
 }
 
-} // namespace
+} // namespace expression_potential_test

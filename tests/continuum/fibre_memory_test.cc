@@ -16,6 +16,9 @@
 #include <set>
 #include <vector>
 
+namespace fibre_memory_test
+{
+
 using namespace latcon;
 using namespace moving_sheets;
 using continuum::BranchEnergy;
@@ -25,8 +28,6 @@ using continuum::MaxwellFibres;
 using continuum::MemoryForces;
 namespace edge = continuum::edge;
 
-namespace
-{
 const double epsilon = std::numeric_limits<double>::epsilon();
 
 // Two families, the second of which has branches of its own.
@@ -55,7 +56,6 @@ std::vector<double> random_overstress(std::mt19937 &generator)
   std::uniform_real_distribution<double> overstress(-1e5, 1e5);
   return {overstress(generator), overstress(generator), overstress(generator)};
 }
-} // namespace
 
 // theory-viscoelastic.md, eq. (V.2), with each overstress on a ramp from its differential equation.
 TEST(FibreMemory, FollowsARampExactly)
@@ -216,8 +216,6 @@ TEST(FibreMemory, RefusesInvalidFamilies)
   EXPECT_THROW(FibreMemory({valid}).stretches(matrix(-1., 0., 0., 1.), l.data()), continuum::NonPhysicalState);
 }
 
-namespace
-{
 // Sheet held at its whole boundary, whose strain follows a load factor.
 class HeldSheet
 {
@@ -247,7 +245,6 @@ private:
   Mesh mesh_;
   std::unique_ptr<DynamicSolver> solver_;
 };
-} // namespace
 
 // A sheet that is strained suddenly and held: closed form of theory.md, eq. (L.31). The energies balance to round-off.
 TEST(MemoryForces, RelaxInAHeldSheet)
@@ -397,3 +394,5 @@ TEST(MemoryForces, StayAsTheyWereAfterAStepThatFails)
   difference -= reactions;
   EXPECT_EQ(difference.linfty_norm(), 0.);
 }
+
+} // namespace fibre_memory_test

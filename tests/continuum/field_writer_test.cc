@@ -13,12 +13,13 @@
 #include <fstream>
 #include <sstream>
 
+namespace field_writer_test
+{
+
 using namespace latcon;
 using namespace sheets;
 namespace fs = std::filesystem;
 
-namespace
-{
 // Temporary folder for each test, removed at the end.
 class FieldWriter : public testing::Test
 {
@@ -33,7 +34,6 @@ protected:
 
   fs::path directory_;
 };
-} // namespace
 
 TEST_F(FieldWriter, IsReadByVtkWithNamesTimesAndValues)
 {
@@ -121,3 +121,5 @@ TEST_F(FieldWriter, RefusesTimeThatDoesNotGrow)
   writer.add_frame(0.5, sheet, sheet.make_ghosted());
   EXPECT_THROW(writer.add_frame(0.5, sheet, sheet.make_ghosted()), continuum::InvalidInput);
 }
+
+} // namespace field_writer_test

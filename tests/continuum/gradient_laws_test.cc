@@ -3,13 +3,14 @@
 #include "gradient_checks.h"
 #include "support/largest_error.h"
 
+namespace gradient_laws_test
+{
+
 using namespace latcon;
 using namespace gradient_checks;
 using continuum::IsotropicGradient;
 using continuum::NetworkGradient;
 
-namespace
-{
 template <typename Number>
 Number isotropic_energy(const double modulus, const std::array<Number, n_variables> &v)
 {
@@ -20,7 +21,6 @@ Number isotropic_energy(const double modulus, const std::array<Number, n_variabl
         W += 0.5 * modulus * v[variable(i, J, K)] * v[variable(i, J, K)];
   return W;
 }
-} // namespace
 
 // theory-continuum.md, eqs. (C.20) and (C.22) to (C.24).
 TEST(LatticeGradient, FormsAreDerivativesOfTheEnergy)
@@ -206,3 +206,5 @@ TEST(LatticeGradient, RefusesWhatIsNotPositive)
   EXPECT_THROW(IsotropicGradient(1., -1.), continuum::InvalidMaterial);
   EXPECT_THROW(rubber_gradient(spacing).energy(matrix(1., 0., 0., -1.), Gradient()), continuum::NonPhysicalState);
 }
+
+} // namespace gradient_laws_test

@@ -9,6 +9,9 @@
 
 #include <gtest/gtest.h>
 
+namespace gradient_solver_test
+{
+
 using namespace latcon;
 using namespace sheets;
 using continuum::BoundaryConditions;
@@ -16,8 +19,6 @@ using continuum::Constitution;
 using continuum::StaticSettings;
 using continuum::StaticSolver;
 
-namespace
-{
 constexpr double internal_length = 0.005;
 
 // Conditions that hold displacement and normal gradient on all edges: normal gradient of the homogeneous stretch on
@@ -29,7 +30,6 @@ BoundaryConditions clamped_bump(const double stretch_x, const double stretch_y, 
     {continuum::edge::top, std::make_shared<Field>([](const Point<2> &) { return Tensor<1, 2>(); })});
   return conditions;
 }
-} // namespace
 
 // Energy, residual and tangent of the discrete functional by Taylor's theorem at a state whose normal gradients jump
 // everywhere, on a mesh with hanging nodes and a clamped edge; the tangent is symmetric. With a small penalty, which
@@ -380,8 +380,6 @@ TEST(GradientEquilibrium, RefusesImpossibleInput)
   EXPECT_THROW(StaticSolver(mesh, law, conditions), continuum::InvalidInput);
 }
 
-namespace
-{
 // psi = a ((l - 1)^2 / 2 + 10 (l - 1)^6): psi'' is 20 times that at rest at stretch 1.5.
 class StiffeningBond : public continuum::CustomPotentialLaw
 {
@@ -394,7 +392,6 @@ public:
             a * 1200. * std::pow(x, 3), a * 3600. * x * x};
   }
 };
-} // namespace
 
 // A penalty that is fixed at F = I makes the tangent indefinite where a law stiffens by more than eight times, at 80 %
 // of this load. The equilibrium is that of a penalty that is large throughout; energies differ by the error of the
@@ -489,3 +486,5 @@ TEST(GradientEquilibrium, HasThePenaltyOfSmallStrainUpToALimit)
     EXPECT_LE(sigma(stiffness / ratio), ratio * 1e3);
   }
 }
+
+} // namespace gradient_solver_test

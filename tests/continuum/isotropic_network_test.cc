@@ -5,6 +5,9 @@
 
 #include <array>
 
+namespace isotropic_network_test
+{
+
 using namespace latcon;
 using namespace material_checks;
 using continuum::CauchyBorn;
@@ -12,8 +15,6 @@ using continuum::FibreFamily;
 using continuum::FibrePotential;
 using continuum::IsotropicNetwork;
 
-namespace
-{
 // Rods with two ratios of their constants, and springs; directions are irrelevant.
 std::vector<FibreFamily> mixed_families()
 {
@@ -50,7 +51,6 @@ CauchyBorn quick_network()
                         k % 2 == 0 ? 0.72 : std::sqrt(3.) * 0.81, continuum::RodPotential{1e5, 1.5e5}});
   return CauchyBorn(families);
 }
-} // namespace
 
 // theory-continuum.md, eqs. (C.50) to (C.56): a sum over n directions differs from the mean by the n-th power of (l1 -
 // l2)/(l1 + l2), times a power of n for the derivatives.
@@ -255,3 +255,5 @@ TEST(IsotropicNetwork, RefusesWhatIsNoNetwork)
   EXPECT_THROW(IsotropicNetwork({{x, -1., continuum::LinearPotential{1.}}}), continuum::InvalidMaterial);
   EXPECT_THROW(IsotropicNetwork({{x, 1., continuum::RodPotential{1., -1.}}}), continuum::InvalidMaterial);
 }
+
+} // namespace isotropic_network_test

@@ -5,14 +5,15 @@
 
 #include <gtest/gtest.h>
 
+namespace linear_solver_test
+{
+
 using namespace latcon;
 using namespace multigrid_cases;
 using continuum::LinearSettings;
 using continuum::LinearSolver;
 using continuum::Symmetry;
 
-namespace
-{
 // Matrices of a sheet for several internal lengths, with one solver.
 struct Problem
 {
@@ -80,7 +81,6 @@ struct Problem
   Sheet::Matrix K;
   Sheet::Vector b;
 };
-} // namespace
 
 TEST(LinearSolver, KeepsAMultigridThatServes)
 {
@@ -159,3 +159,5 @@ TEST(LinearSolver, RefusesSettingsOutOfRange)
     EXPECT_THROW(Problem{settings}, continuum::InvalidInput);
   }
 }
+
+} // namespace linear_solver_test

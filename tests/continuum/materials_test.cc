@@ -6,14 +6,15 @@
 
 #include <array>
 
+namespace materials_test
+{
+
 using namespace latcon;
 using namespace material_checks;
 using continuum::CauchyBorn;
 using continuum::Material;
 using continuum::MooneyRivlin;
 
-namespace
-{
 using Fad = Sacado::Fad::DFad<double>;
 using FadFad = Sacado::Fad::DFad<Fad>;
 constexpr unsigned int n_variables = 5; // F_11, F_12, F_21, F_22, F_33
@@ -125,7 +126,6 @@ CauchyBorn mixed_network()
                      {Tensor<1, 2>({0.6, 0.8}), 1.1, continuum::LinearPotential{2e5}},
                      {Tensor<1, 2>({-0.28, 0.96}), 0.4, continuum::RodPotential{2e5, -0.5e5}}});
 }
-} // namespace
 
 // theory-continuum.md, eq. (C.1).
 TEST(MooneyRivlin, StressIsEnergyGradient)
@@ -376,3 +376,5 @@ TEST(CauchyBorn, RefusesUnstableFamilies)
   EXPECT_THROW(CauchyBorn({{x, 1., continuum::LinearPotential{-1.}}}), continuum::InvalidMaterial);
   EXPECT_THROW(CauchyBorn({{x, 1., continuum::RodPotential{1., -1.}}}), continuum::InvalidMaterial);
 }
+
+} // namespace materials_test

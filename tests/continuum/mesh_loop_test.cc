@@ -14,11 +14,12 @@
 #include <string>
 #include <vector>
 
+namespace mesh_loop_test
+{
+
 using namespace latcon;
 using namespace sheets;
 
-namespace
-{
 using Iterator = dealii::DoFHandler<2>::active_cell_iterator;
 
 // Call: cells, and numbers of faces and subfaces.
@@ -132,4 +133,5 @@ TEST(MeshLoop, VisitsPeriodicFacesOnce)
   // Every face has two sides.
   EXPECT_NEAR(2. * sum(lengths.faces), sum(lengths.cells), 1e-12 * sum(lengths.cells));
 }
-} // namespace
+
+} // namespace mesh_loop_test

@@ -14,13 +14,14 @@
 #include <fstream>
 #include <map>
 
+namespace meshes_test
+{
+
 using namespace latcon;
 using namespace sheets;
 using continuum::StaticSettings;
 using continuum::StaticSolver;
 
-namespace
-{
 struct Measures
 {
   double area;
@@ -83,7 +84,6 @@ $Elements
 8 3 2 7 1 2 3 6 5
 $EndElements
 )";
-} // namespace
 
 TEST(Meshes, HoleHasItsAreaAndRim)
 {
@@ -437,3 +437,5 @@ TEST(Rectangle, HasItsSizeCellsAndEdges)
   EXPECT_EQ(faces[continuum::edge::bottom], 12u);
   EXPECT_EQ(faces[continuum::edge::top], 12u);
 }
+
+} // namespace meshes_test

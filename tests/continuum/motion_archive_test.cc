@@ -14,6 +14,9 @@
 
 #include <set>
 
+namespace motion_archive_test
+{
+
 using namespace latcon;
 using namespace moving_sheets;
 using continuum::DynamicSolver;
@@ -22,8 +25,6 @@ using memory_archive::Store;
 using memory_archive::stored;
 namespace edge = continuum::edge;
 
-namespace
-{
 // Moving sheet with all laws and conditions that the linear solver supports.
 class Motion
 {
@@ -193,7 +194,6 @@ struct SheetWithHole
   Mesh mesh;
   std::unique_ptr<continuum::Sheet> sheet;
 };
-} // namespace
 
 TEST(MotionArchive, GoesOnWithTheSameBitsWithTheDirectSolver)
 {
@@ -306,3 +306,5 @@ TEST(MotionArchive, PutsNodalValuesInTheirPlacesOnAnyNumberOfRanks)
   EXPECT_EQ(order.gather(x), is_first_rank() ? values : std::vector<double>());
   EXPECT_THROW(order.scatter(std::vector<double>(values.size() - 1), x), continuum::InvalidInput);
 }
+
+} // namespace motion_archive_test

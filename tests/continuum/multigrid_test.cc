@@ -4,12 +4,13 @@
 
 #include <gtest/gtest.h>
 
+namespace multigrid_test
+{
+
 using namespace latcon;
 using namespace multigrid_cases;
 using continuum::MultigridSettings;
 
-namespace
-{
 // Settings with coarsest levels so small that every mesh here has several levels.
 MultigridSettings many_levels()
 {
@@ -68,7 +69,6 @@ struct LinearProblem
   Sheet::Matrix K;
   std::unique_ptr<Multigrid> multigrid;
 };
-} // namespace
 
 TEST(Multigrid, IsSymmetricAndPositive)
 {
@@ -222,13 +222,10 @@ TEST(Multigrid, GivesTheSameBitsAgain)
   }
 }
 
-namespace
-{
 Tensor<1, 2> quadratic(const Point<2> &X)
 {
   return Tensor<1, 2>({0.4 * X[0] - 2. * X[0] * X[1], 0.2 * X[1] + 3. * X[0] * X[0] - X[1] * X[1]});
 }
-} // namespace
 
 TEST(Multigrid, TakesTheStateToEveryLevel)
 {
@@ -345,3 +342,5 @@ TEST(Multigrid, RefusesSettingsOutOfRange)
   refused([](MultigridSettings &settings) { settings.smoothing_range = std::nan(""); });
   refused([](MultigridSettings &settings) { settings.eigenvalue_iterations = 1; });
 }
+
+} // namespace multigrid_test

@@ -4,6 +4,9 @@
 
 #include <tuple>
 
+namespace network_gradient_test
+{
+
 using namespace latcon;
 using namespace gradient_checks;
 using continuum::NetworkGradient;
@@ -107,3 +110,5 @@ TEST(NetworkGradient, HasTheMeanSquaredLengthOfLikeBonds)
   // With a third potential on additional bonds, the longest mean determines the result.
   EXPECT_NEAR(NetworkGradient::smallest_length(mixed_bonds()), 1.3 * spacing / std::sqrt(12.), 10. * epsilon * spacing);
 }
+
+} // namespace network_gradient_test

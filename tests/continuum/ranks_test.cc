@@ -15,14 +15,15 @@
 #include <cstdlib>
 #include <filesystem>
 
+namespace ranks_test
+{
+
 using namespace latcon;
 using namespace sheets;
 using continuum::StaticSettings;
 using continuum::StaticSolver;
 namespace edge = continuum::edge;
 
-namespace
-{
 struct Answer
 {
   double energy;
@@ -147,7 +148,6 @@ unsigned int n_ranks()
 {
   return dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
 }
-} // namespace
 
 TEST(Ranks, AreAsManyAsTheTestSays)
 {
@@ -258,8 +258,6 @@ TEST(Ranks, AllSeeANonPhysicalStateOnOneRank)
   EXPECT_THROW(solver.solve(), continuum::SolverFailed);
 }
 
-namespace
-{
 struct Motion
 {
   std::vector<continuum::PointState> states;
@@ -331,7 +329,6 @@ void expect_same_motion(const bool is_periodic)
   EXPECT_NEAR(all.work, one.work, tolerance * energy);
   EXPECT_NEAR((together.momentum - alone.momentum).norm(), 0., tolerance * alone.momentum.norm());
 }
-} // namespace
 
 TEST(Ranks, GiveTheSameMotionWithTheDirectSolver)
 {
@@ -390,3 +387,5 @@ TEST(Ranks, WritePiecesThatVtkJoins)
   MPI_Barrier(MPI_COMM_WORLD);
   EXPECT_THROW(writer.add_frame(2., solver.sheet(), solver.displacement()), continuum::OutputFailed);
 }
+
+} // namespace ranks_test

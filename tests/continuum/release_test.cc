@@ -9,6 +9,9 @@
 
 #include <cmath>
 
+namespace release_test
+{
+
 using namespace latcon;
 using namespace moving_sheets;
 using continuum::BoundaryConditions;
@@ -19,8 +22,6 @@ using continuum::StaticSettings;
 using continuum::StaticSolver;
 namespace edge = continuum::edge;
 
-namespace
-{
 constexpr dealii::types::boundary_id opened = 10;
 
 // Moves the faces of the lower edge left of X to the boundary `opened`.
@@ -60,7 +61,6 @@ struct Pulled
     return solver;
   }
 };
-} // namespace
 
 // The reaction at a released node acts at full strength at the release, and is zero after the given time.
 TEST(Release, LetsNodesGoSmoothly)
@@ -186,3 +186,5 @@ TEST(SymmetryPlane, HalvesASheet)
     {edge::bottom, constant(0., 0.), dealii::ComponentMask(std::vector<bool>{false, false})}};
   EXPECT_THROW(StaticSolver(half, constitution, half_conditions, settings), continuum::InvalidInput);
 }
+
+} // namespace release_test

@@ -16,14 +16,15 @@
 #include <cmath>
 #include <limits>
 
+namespace static_solver_test
+{
+
 using namespace latcon;
 using namespace sheets;
 using continuum::StaticSettings;
 using continuum::StaticSolver;
 namespace edge = continuum::edge;
 
-namespace
-{
 // Moves interior vertices by up to 0.3 of a cell; vertices on the edges do not move.
 void distort(Mesh &mesh, const unsigned int cells_x, const unsigned int cells_y)
 {
@@ -54,7 +55,6 @@ std::vector<continuum::NewtonIteration> last_step(const continuum::SolverReport 
       last.push_back(iteration);
   return last;
 }
-} // namespace
 
 TEST(StaticSolver, PassesPatchTestOnDistortedMesh)
 {
@@ -454,8 +454,6 @@ TEST(StaticSolver, LeavesAnUnloadedSheetAtRest)
   EXPECT_LE(solver.displacement().linfty_norm(), 1e-15 * length);
 }
 
-namespace
-{
 // A law that can be made to fail.
 class FragileLaw : public continuum::Material
 {
@@ -475,7 +473,6 @@ private:
   }
   continuum::MooneyRivlin law_ = rubber_sheet();
 };
-} // namespace
 
 // At an equilibrium nothing changes, and no system is solved. After a failure the state is that before it.
 TEST(StaticSolver, EquilibratesWithoutLosingTheState)
@@ -525,3 +522,5 @@ TEST(Sheet, EvaluatesOnCellBoundariesAndCorners)
   EXPECT_THROW(solver.evaluate({{1.01 * length, 0.}}), continuum::InvalidInput);
   EXPECT_THROW(solver.evaluate({{0., std::nan("")}}), continuum::InvalidInput);
 }
+
+} // namespace static_solver_test

@@ -10,14 +10,15 @@
 #include <cmath>
 #include <limits>
 
+namespace continuum_symmetry_test
+{
+
 using namespace latcon;
 using namespace moving_sheets;
 using continuum::GradientLaw;
 using continuum::Material;
 using Gradient = GradientLaw::Gradient;
 
-namespace
-{
 const double epsilon = std::numeric_limits<double>::epsilon();
 constexpr double spacing = 0.625e-3;
 
@@ -50,7 +51,6 @@ struct Laws
   std::vector<const Material *> materials() const { return {&network, &sheet}; }
   std::vector<const GradientLaw *> gradients() const { return {&lattice, &isotropic}; }
 };
-} // namespace
 
 TEST(MaterialSymmetry, LocalLawsAreThoseOfTheHexagonalNetwork)
 {
@@ -201,8 +201,6 @@ TEST(GradientLaw, DoesNotDependOnUnits)
     }
 }
 
-namespace
-{
 // Units of a sheet relative to those of another one. The equation of motion, r u / t^2 = e / l, determines the unit of
 // time; a viscosity is a stress times a time.
 struct Units
@@ -251,7 +249,6 @@ struct MovingSheet
   Mesh mesh;
   std::unique_ptr<continuum::DynamicSolver> solver;
 };
-} // namespace
 
 // All units are powers of two, so both runs have equal mantissas everywhere: in the elements, in the factors of the
 // matrix and in all compared norms.
@@ -278,3 +275,5 @@ TEST(DynamicSolver, DoesNotDependOnUnits)
     EXPECT_EQ(per_energy * other->ledger().work, one->ledger().work);
   }
 }
+
+} // namespace continuum_symmetry_test

@@ -11,13 +11,14 @@
 #include <cmath>
 #include <limits>
 
+namespace viscosity_test
+{
+
 using namespace latcon;
 using namespace sheets;
 using continuum::FibreDashpot;
 using continuum::FibreViscosity;
 
-namespace
-{
 const double epsilon = std::numeric_limits<double>::epsilon();
 
 FibreViscosity mixed_dashpots()
@@ -54,7 +55,6 @@ std::array<Fad, 4> differentiable_stress(const FibreViscosity &law, const std::a
   }
   return P;
 }
-} // namespace
 
 // theory-continuum.md, eqs. (C.41) and (C.42).
 TEST(Viscosity, AgreesWithDifferentiatedStress)
@@ -187,3 +187,5 @@ TEST(Viscosity, RefusesWhatIsNoDashpotOrNoState)
     EXPECT_THROW(law.dissipation(F, Tensor<2, 2>()), continuum::NonPhysicalState);
   }
 }
+
+} // namespace viscosity_test

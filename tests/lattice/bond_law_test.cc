@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-using namespace latcon;
-
-namespace
+namespace bond_law_test
 {
+
+using namespace latcon;
 
 using lattice::BondLaw;
 
@@ -105,4 +105,4 @@ TEST(LinearBond, HasHandComputedValues)
   EXPECT_DOUBLE_EQ(law.stiffness(1.5), 4.);
 }
 
-} // namespace
+} // namespace bond_law_test

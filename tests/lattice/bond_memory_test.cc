@@ -16,10 +16,10 @@
 #include "support/largest_error.h"
 #include "tests/lattice/sheets.h"
 
-using namespace latcon;
-
-namespace
+namespace bond_memory_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 using Branch = MaxwellMemory::Branch;
@@ -493,4 +493,4 @@ TEST(BondMemory, IsLeftOutOfEquilibrium)
   EXPECT_FALSE(without_dashpots(sheets::rubber_with_memory()).has_memory());
 }
 
-} // namespace
+} // namespace bond_memory_test

@@ -9,10 +9,10 @@
 #include "support/largest_error.h"
 #include "tests/lattice/plane_modes.h"
 
-using namespace latcon;
-
-namespace
+namespace chebyshev_stages_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 using Complex = std::complex<double>;
@@ -185,4 +185,4 @@ TEST(ChebyshevStages, WouldAmplifyStiffContactsInTheStepOfTheBonds)
   EXPECT_TRUE(amplifies_contact(1.001 * limit, sheet, material, elastic));
 }
 
-} // namespace
+} // namespace chebyshev_stages_test

@@ -11,10 +11,10 @@
 #include "lattice/time_step.h"
 #include "tests/lattice/sheets.h"
 
-using namespace latcon;
-
-namespace
+namespace contact_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 
@@ -478,4 +478,4 @@ TEST(Contact, ListsDoNotDependOnThreads)
   omp_set_num_threads(before);
 }
 
-} // namespace
+} // namespace contact_test

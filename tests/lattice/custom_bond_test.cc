@@ -13,10 +13,10 @@
 #include "lattice/time_step.h"
 #include "tests/lattice/sheets.h"
 
-using namespace latcon;
-
-namespace
+namespace custom_bond_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 
@@ -136,4 +136,4 @@ TEST(CustomBond, WithoutAValueIsSeen)
   EXPECT_THROW(relax(state, sheet, material, 1e-6), std::runtime_error);
 }
 
-} // namespace
+} // namespace custom_bond_test

@@ -7,10 +7,10 @@
 #include "lattice/site_fields.h"
 #include "tests/lattice/sheets.h"
 
-using namespace latcon;
-
-namespace
+namespace cutout_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 
@@ -136,4 +136,4 @@ TEST(Cutout, RelaxedHoleConcentratesStretchAtItsRim)
   EXPECT_LT(above, 0.5); // in the shadow of the hole
 }
 
-} // namespace
+} // namespace cutout_test

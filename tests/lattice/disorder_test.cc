@@ -9,10 +9,10 @@
 #include "lattice/site_fields.h"
 #include "tests/lattice/sheets.h"
 
-using namespace latcon::lattice;
-
-namespace
+namespace disorder_test
 {
+
+using namespace latcon::lattice;
 
 using Kind = Distribution::Kind;
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -251,4 +251,4 @@ TEST(Disorder, RefusesStatesOfOtherMaterials)
   EXPECT_THROW(start(disordered(), sheets::rubber()), std::invalid_argument);
 }
 
-} // namespace
+} // namespace disorder_test

@@ -10,10 +10,10 @@
 #include "support/largest_error.h"
 #include "tests/lattice/sheets.h"
 
-using namespace latcon;
-
-namespace
+namespace end_loads_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 using End = EndLoads::End;
@@ -194,4 +194,4 @@ TEST(EndLoads, NeedWavesToAbsorb)
   EXPECT_NO_THROW(EndLoads(sheet, material, state, F, End::held, End::free));
 }
 
-} // namespace
+} // namespace end_loads_test

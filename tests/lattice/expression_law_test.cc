@@ -13,10 +13,10 @@
 #include "lattice/bonds/bond_law.h"
 #include "lattice/bonds/law_check.h"
 
-using namespace latcon;
-
-namespace
+namespace expression_law_test
 {
+
+using namespace latcon;
 
 using lattice::ExpressionLaw;
 using support::Expression;
@@ -260,4 +260,4 @@ TEST(LawCheck, RefusesDifferencesWithoutValue)
   }
 }
 
-} // namespace
+} // namespace expression_law_test

@@ -13,10 +13,10 @@
 #include "tests/lattice/reference_forces.h"
 #include "tests/lattice/sheets.h"
 
-using namespace latcon;
-
-namespace
+namespace forces_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 
@@ -492,4 +492,4 @@ TEST(Forces, AfterRemovingBondsAreThoseWithoutThem)
   }
 }
 
-} // namespace
+} // namespace forces_test

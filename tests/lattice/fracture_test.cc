@@ -9,10 +9,10 @@
 #include "lattice/time_step.h"
 #include "tests/lattice/sheets.h"
 
-using namespace latcon;
-
-namespace
+namespace fracture_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 
@@ -479,4 +479,4 @@ TEST(EnergyBalance, ClosesWithMovingEdges)
   EXPECT_NEAR(std::log2(relative_imbalance(1e-7) / fine) / 2., 2., 0.3);
 }
 
-} // namespace
+} // namespace fracture_test

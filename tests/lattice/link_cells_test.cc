@@ -9,10 +9,10 @@
 
 #include <gtest/gtest.h>
 
-using namespace latcon;
-
-namespace
+namespace link_cells_test
 {
+
+using namespace latcon;
 
 using lattice::LinkCells;
 using Cloud = std::vector<std::pair<double, double>>;
@@ -115,4 +115,4 @@ TEST(LinkCells, LeaveOutWhatIsNowhere)
   EXPECT_THROW(LinkCells(0.), std::invalid_argument);
 }
 
-} // namespace
+} // namespace link_cells_test

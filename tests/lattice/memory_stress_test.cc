@@ -5,10 +5,10 @@
 #include "lattice/site_fields.h"
 #include "tests/lattice/sheets.h"
 
-using namespace latcon::lattice;
-
-namespace
+namespace memory_stress_test
 {
+
+using namespace latcon::lattice;
 
 // A sheet at rest in the reference configuration that is stretched at once. theory.md, eq. (L.31), at the start:
 // P = P_law + sum A0 l / V E (lam - 1) n N.
@@ -41,4 +41,4 @@ TEST(BondMemoryStress, IsThatOfTheOverstress)
   EXPECT_LT((found - overstress).norm(), 1e-13 * overstress.norm());
 }
 
-} // namespace
+} // namespace memory_stress_test

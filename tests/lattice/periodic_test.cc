@@ -7,10 +7,10 @@
 #include "support/largest_error.h"
 #include "tests/lattice/sheets.h"
 
-using namespace latcon;
-
-namespace
+namespace periodic_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 
@@ -235,4 +235,4 @@ TEST(Edges, HoldOnlyThoseThatAreAskedFor)
   }
 }
 
-} // namespace
+} // namespace periodic_test

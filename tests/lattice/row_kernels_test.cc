@@ -11,10 +11,10 @@
 #include "lattice/forces.h"
 #include "tests/lattice/sheets.h"
 
-using namespace latcon;
-
-namespace
+namespace row_kernels_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 
@@ -77,4 +77,4 @@ TEST(InstructionSets, RefuseAnEnvironmentThatNamesNone)
   }
 }
 
-} // namespace
+} // namespace row_kernels_test

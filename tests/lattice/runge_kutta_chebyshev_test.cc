@@ -11,10 +11,10 @@
 #include "tests/lattice/plane_modes.h"
 #include "tests/lattice/smooth_motion.h"
 
-using namespace latcon;
-
-namespace
+namespace runge_kutta_chebyshev_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 using smooth_motion::distance;
@@ -281,4 +281,4 @@ TEST(RungeKuttaChebyshev, BitsDoNotDependOnThreads)
   }
 }
 
-} // namespace
+} // namespace runge_kutta_chebyshev_test

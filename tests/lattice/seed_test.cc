@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-using namespace latcon;
-
-namespace
+namespace seed_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 
@@ -87,4 +87,4 @@ TEST(Seed, RefusesWhatDoesNotFit)
   EXPECT_THROW(seed_sites(sheet, SeedSlit{30., 0., 2., 2.}), std::invalid_argument);
 }
 
-} // namespace
+} // namespace seed_test

@@ -10,10 +10,10 @@
 #include "lattice/site_fields.h"
 #include "tests/lattice/sheets.h"
 
-using namespace latcon;
-
-namespace
+namespace simulation_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 
@@ -201,4 +201,4 @@ TEST(TimeStepLimits, CountTheSpringsOfAllBranches)
   EXPECT_DOUBLE_EQ(chebyshev_step(sheet, material, 0.5), 1e-3 / 8e5);
 }
 
-} // namespace
+} // namespace simulation_test

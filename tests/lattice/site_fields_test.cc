@@ -8,10 +8,10 @@
 #include "lattice/relaxation.h"
 #include "tests/lattice/sheets.h"
 
-using namespace latcon;
-
-namespace
+namespace site_fields_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 
@@ -86,4 +86,4 @@ TEST(Relaxation, SaysWhenItDoesNotGetThere)
   EXPECT_THROW(relax(state, sheet, material, 1e-11, 10), std::runtime_error);
 }
 
-} // namespace
+} // namespace site_fields_test

@@ -11,10 +11,10 @@
 #include "lattice/site_fields.h"
 #include "tests/lattice/sheets.h"
 
-using namespace latcon;
-
-namespace
+namespace snapshot_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 
@@ -138,4 +138,4 @@ TEST(Snapshot, IsOfOneSimulation)
   EXPECT_THROW(simulation(small, remembering)->restore(of_small), std::invalid_argument);
 }
 
-} // namespace
+} // namespace snapshot_test

@@ -11,10 +11,10 @@
 #include "support/largest_error.h"
 #include "tests/lattice/smooth_motion.h"
 
-using namespace latcon;
-
-namespace
+namespace lattice_symmetry_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 
@@ -462,4 +462,4 @@ TEST(Superposition, HoldsInTheSmall)
   EXPECT_LT(remainder(0.1), 0.05);
 }
 
-} // namespace
+} // namespace lattice_symmetry_test

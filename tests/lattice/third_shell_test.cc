@@ -12,10 +12,10 @@
 #include "tests/lattice/plane_modes.h"
 #include "tests/lattice/sheets.h"
 
-using namespace latcon;
-
-namespace
+namespace lattice_third_shell_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 
@@ -192,4 +192,4 @@ TEST(ThirdShell, CrackStaysSymmetricAndItsLedgerCloses)
   EXPECT_LT(std::abs(e.imbalance()), 1e-6 * e.initial);
 }
 
-} // namespace
+} // namespace lattice_third_shell_test

@@ -5,10 +5,10 @@
 #include "lattice/simulation.h"
 #include "tests/lattice/sheets.h"
 
-using namespace latcon;
-
-namespace
+namespace toughening_strip_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 
@@ -54,4 +54,4 @@ TEST(Fracture, ToughensAllBondsBehindARunningTip)
   }
 }
 
-} // namespace
+} // namespace toughening_strip_test

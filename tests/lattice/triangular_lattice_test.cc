@@ -7,10 +7,10 @@
 
 #include "tests/lattice/sheets.h"
 
-using namespace latcon;
-
-namespace
+namespace triangular_lattice_test
 {
+
+using namespace latcon;
 
 using lattice::Orientation;
 using lattice::TriangularLattice;
@@ -154,4 +154,4 @@ TEST(TriangularLattice, RefusesWhatIsNoSheet)
   EXPECT_THROW(TriangularLattice(1., 4., HUGE_VAL, Orientation::rows_along_crack), std::invalid_argument);
 }
 
-} // namespace
+} // namespace triangular_lattice_test

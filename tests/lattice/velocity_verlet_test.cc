@@ -12,10 +12,10 @@
 #include "tests/lattice/sheets.h"
 #include "tests/lattice/smooth_motion.h"
 
-using namespace latcon;
-
-namespace
+namespace velocity_verlet_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 using smooth_motion::distance;
@@ -187,4 +187,4 @@ TEST(Noise, DependsOnSeedAloneAndKeepsItsAmplitude)
   EXPECT_NEAR(square / n / 1e-10, 1. / 3., 3. * std::sqrt(4. / 45. / n));
 }
 
-} // namespace
+} // namespace velocity_verlet_test

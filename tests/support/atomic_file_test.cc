@@ -15,11 +15,11 @@
 #include "support/atomic_file.h"
 #include "tests/support/temporary_folder.h"
 
+namespace atomic_file_test
+{
+
 using namespace latcon::support;
 namespace fs = std::filesystem;
-
-namespace
-{
 
 // Returns the message of the error when a file is written; empty if there is none.
 std::string complaint(const std::string &path, const std::string &text = "new")
@@ -68,8 +68,6 @@ public:
 private:
   rlimit before_{};
 };
-
-} // namespace
 
 TEST(AtomicFile, WritesAndReplaces)
 {
@@ -264,3 +262,5 @@ TEST(StaleParts, OfKilledRunsAreRemoved)
   EXPECT_EQ(entries(folder).size(), 5U);
   EXPECT_EQ(remove_stale_parts(folder / "missing", fs::file_time_type::max()), 0U);
 }
+
+} // namespace atomic_file_test

@@ -4,6 +4,9 @@
 
 #include "support/available_cores.h"
 
+namespace available_cores_test
+{
+
 using latcon::support::available_cores;
 
 TEST(AvailableCores, AreThoseThatTheSchedulerMayUse)
@@ -21,3 +24,5 @@ TEST(AvailableCores, AreThoseThatTheSchedulerMayUse)
   EXPECT_EQ(available_cores(), 1U);
   ASSERT_EQ(sched_setaffinity(0, sizeof(before), &before), 0);
 }
+
+} // namespace available_cores_test

@@ -15,12 +15,12 @@
 #include "support/folder_lock.h"
 #include "tests/support/temporary_folder.h"
 
+namespace folder_lock_test
+{
+
 using namespace latcon::support;
 using namespace std::chrono_literals;
 namespace fs = std::filesystem;
-
-namespace
-{
 
 // Returns the message with which a lock is refused; empty if it is granted.
 std::string refusal(const std::string &folder)
@@ -73,8 +73,6 @@ public:
 private:
   pid_t process_ = 0;
 };
-
-} // namespace
 
 TEST(FolderLock, IsRefusedWithTheProcessThatHasIt)
 {
@@ -189,3 +187,5 @@ TEST(FolderLock, FollowsNoLinksAndWaitsForNoPipes)
   EXPECT_THROW(FolderLock(folder.path()), OutputError);
   EXPECT_THROW(FolderLock(folder / "missing"), OutputError);
 }
+
+} // namespace folder_lock_test

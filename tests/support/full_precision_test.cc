@@ -9,10 +9,10 @@
 
 #include "support/full_precision.h"
 
-using latcon::support::full_precision;
-
-namespace
+namespace full_precision_test
 {
+
+using latcon::support::full_precision;
 
 std::uint64_t bits(const double value)
 {
@@ -20,8 +20,6 @@ std::uint64_t bits(const double value)
   std::memcpy(&result, &value, sizeof(value));
   return result;
 }
-
-} // namespace
 
 TEST(FullPrecision, IsShortAndReadsBackBitForBit)
 {
@@ -42,3 +40,5 @@ TEST(FullPrecision, IsShortAndReadsBackBitForBit)
     }
   }
 }
+
+} // namespace full_precision_test

@@ -7,16 +7,14 @@
 #include <cmath>
 #include <limits>
 
-using namespace latcon::support;
-
-namespace
+namespace largest_error_test
 {
+
+using namespace latcon::support;
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
 constexpr std::array not_finite{not_a_number, infinity, -infinity};
-
-} // namespace
 
 TEST(LargestError, IsTheLargestWithItsValueAndReference)
 {
@@ -104,3 +102,5 @@ TEST(Extremes, StickAtTheFirstThatIsNotFinite)
       EXPECT_TRUE(std::isnan(smallest_of({values[0], values[1], values[2]}))) << bad << " at " << place;
     }
 }
+
+} // namespace largest_error_test

@@ -7,11 +7,11 @@
 
 #include <cmath>
 
+namespace machine_memory_test
+{
+
 using latcon::support::available_memory;
 using latcon::support::readable_bytes;
-
-namespace
-{
 
 class MachineMemory : public testing::Test
 {
@@ -90,4 +90,4 @@ TEST(ReadableBytes, HaveThreeDigitsAndAUnit)
   EXPECT_EQ(readable_bytes(1e21), "1e+03 EB");
 }
 
-} // namespace
+} // namespace machine_memory_test

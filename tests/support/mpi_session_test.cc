@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-namespace
+namespace mpi_session_test
 {
 
 using latcon::support::is_launcher_variable;
@@ -18,4 +18,4 @@ TEST(MpiSession, KnowsTheVariablesOfLaunchers)
     EXPECT_FALSE(is_launcher_variable(variable)) << variable;
 }
 
-} // namespace
+} // namespace mpi_session_test

@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+namespace pvd_test
+{
+
 using namespace latcon::support;
 
 TEST(Pvd, NamesFilesWithTimesInFullPrecision)
@@ -15,3 +18,5 @@ TEST(Pvd, NamesFilesWithTimesInFullPrecision)
             "  </Collection>\n"
             "</VTKFile>\n");
 }
+
+} // namespace pvd_test

@@ -1,6 +1,7 @@
 #include "verification/bridge/continuum_model.h"
 
 #include <algorithm>
+#include <memory>
 #include <sstream>
 
 #include <deal.II/base/bounding_box.h>
@@ -11,6 +12,7 @@
 #include "continuum/network_gradient.h"
 #include "support/errors.h"
 #include "verification/bridge/affine_displacement.h"
+#include "verification/bridge/field_function.h"
 
 namespace latcon::bridge
 {
@@ -29,7 +31,7 @@ public:
     input::FieldCase given;
     given.x = expression(edge.displacement_x);
     given.y = expression(edge.displacement_y);
-    given_ = given.field(extent);
+    given_ = std::make_unique<FieldFunction>(given, extent);
   }
 
   double value(const dealii::Point<2> &X, unsigned int i) const override
@@ -40,7 +42,7 @@ public:
 private:
   AffineDisplacement loading_;
   bool is_loading_[2];
-  std::shared_ptr<dealii::FunctionParser<2>> given_;
+  std::unique_ptr<const FieldFunction> given_;
 };
 
 } // namespace
@@ -152,16 +154,16 @@ void ContinuumModel::make_conditions(const input::Case &input)
         {id, std::make_shared<dealii::Functions::ConstantFunction<2>>(std::vector<double>{slope.x(), slope.y()})});
     }
     if (!edge.traction.is_zero())
-      conditions_.tractions.push_back({id, edge.traction.field(extent_)});
+      conditions_.tractions.push_back({id, std::make_shared<FieldFunction>(edge.traction, extent_)});
     if (!edge.double_traction.is_zero())
-      conditions_.double_tractions.push_back({id, edge.double_traction.field(extent_)});
+      conditions_.double_tractions.push_back({id, std::make_shared<FieldFunction>(edge.double_traction, extent_)});
   }
   if (c.solution == input::ContinuumCase::Solution::equilibrium && conditions_.displacements.empty())
     throw support::InputError("the mesh file " + c.mesh_file +
                               " has none of the edges that the case holds; equilibrium needs a held edge");
   if (!c.body_force.is_zero())
     conditions_.body_force =
-      continuum::BodyForce{c.body_force.field(extent_), c.body_force_corrected ? inertia_length_ : 0.};
+      continuum::BodyForce{std::make_shared<FieldFunction>(c.body_force, extent_), c.body_force_corrected ? inertia_length_ : 0.};
 }
 
 continuum::Constitution ContinuumModel::constitution() const

@@ -17,13 +17,6 @@ namespace latcon::bridge
 namespace
 {
 
-// Returns c = A0 l / V of one kind of bond, with the reference volume V of a site: there is one bond of each kind per
-// site.
-double bond_weight(const lattice::TriangularLattice &lattice, const lattice::Shell &shell, std::size_t kind)
-{
-  return lattice::cross_section(shell, lattice) * lattice.rest_length(kind) / lattice.site_area();
-}
-
 class LibraryPotential : public continuum::CustomPotentialLaw
 {
 public:
@@ -81,17 +74,6 @@ Eigen::Matrix2d to_lattice(const dealii::Tensor<2, 2> &F)
     for (unsigned int J = 0; J < 2; ++J)
       result(i, J) = F[i][J];
   return result;
-}
-
-SmallStrain small_strain(const lattice::TriangularLattice &lattice, const lattice::Material &material)
-{
-  // Three unit vectors 60 degrees apart have sum N N N N = (3/8) (dd + dd + dd).
-  double mu = 0.;
-  for (std::size_t number = 0; number < lattice::n_shells; ++number)
-    if (const lattice::Shell *shell = material.in_shell(number))
-      mu += 3. / 8. * bond_weight(lattice, *shell, number * lattice::n_kinds_per_shell) *
-            lattice::stiffness(shell->law, 1.);
-  return {mu, std::sqrt(mu / material.density), std::sqrt(3. * mu / material.density)};
 }
 
 std::vector<continuum::BondFamily> bond_families(const lattice::TriangularLattice &lattice,

@@ -9,21 +9,10 @@
 #include "continuum/mooney_rivlin.h"
 #include "continuum/viscosity.h"
 #include "lattice/material.h"
+#include "verification/bridge/small_strain.h"
 
 namespace latcon::bridge
 {
-
-/// Small-strain constants of the continuum of a lattice (theory-comparison.md, eqs. (H.2) and (H.3)): isotropic, lambda
-/// = mu.
-struct SmallStrain
-{
-  double shear_modulus;      ///< mu = (3/8) sum over shells of c psi''(1) [Pa], per reference thickness
-  double shear_speed;        ///< c_S = sqrt(mu / rho) [m/s]
-  double longitudinal_speed; ///< c_L = sqrt(3 mu / rho) [m/s]
-};
-
-/// Returns the small-strain constants of a lattice at F = I.
-SmallStrain small_strain(const lattice::TriangularLattice &lattice, const lattice::Material &material);
 
 /// Returns the Cauchy-Born law of a lattice: a fibre family for each bond direction, with weights c = A0 l / V
 /// (theory-comparison.md, eq. (H.1)). Passes constants only; the continuum evaluates the law with its own code.

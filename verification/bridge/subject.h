@@ -1,16 +1,10 @@
 #pragma once
 
-#include <cmath>
 #include <memory>
 #include <optional>
 #include <string>
 
-#include <Eigen/SVD>
-
-#include "continuum/errors.h"
-#include "continuum/isotropic_gradient.h"
-#include "continuum/lattice_gradient.h"
-#include "continuum/network_gradient.h"
+#include "continuum/gradient_law.h"
 #include "verification/bridge/homogenisation.h"
 #include "verification/bridge/laws.h"
 #include "verification/bridge/slowest_wave.h"
@@ -18,13 +12,6 @@
 
 namespace latcon::bridge
 {
-
-/// Returns the name of the shells of a lattice in results: "NN", then "+NNN" with next-nearest neighbours and "+3NN"
-/// with third-nearest ones.
-inline std::string shells_name(const lattice::Material &material)
-{
-  return std::string("NN") + (material.next_nearest ? "+NNN" : "") + (material.third_nearest ? "+3NN" : "");
-}
 
 /// Subject of claims: a lattice and the continuum laws that should agree with it. Claims compare the two without
 /// assumptions on how they were derived, so a test can combine a wrong law with a correct lattice.
@@ -60,65 +47,17 @@ struct Subject
   /// Returns the tolerance of a row that compares the next order in kd of the gradient continuum and the lattice at F.
   /// None, which makes the row informational, where bonds are below full_stretch: there the gradient energy omits the
   /// negative contribution of bonds in compression, to remain positive (theory-continuum.md, eq. (C.27)).
-  std::optional<double> gradient_tolerance(const Eigen::Matrix2d &F, double value) const
-  {
-    for (const continuum::FibreFamily &family : cauchy_born.families())
-    {
-      const double stretch = (to_continuum(F) * family.direction).norm();
-      if (stretch < continuum::LatticeGradient::full_stretch && std::abs(stretch - 1.) > 1e-12) // no force at 1
-        return {};
-    }
-    return tolerance(Law::lattice_gradient, value);
-  }
+  std::optional<double> gradient_tolerance(const Eigen::Matrix2d &F, double value) const;
 
   /// Returns the tolerance as gradient_tolerance() for the network, which has fibres in every direction.
-  std::optional<double> network_gradient_tolerance(const Eigen::Matrix2d &F, double value) const
-  {
-    if (!F.isIdentity(1e-12) && F.jacobiSvd().singularValues()(1) < continuum::LatticeGradient::full_stretch)
-      return {};
-    return tolerance(Law::mooney_rivlin_network, value);
-  }
+  std::optional<double> network_gradient_tolerance(const Eigen::Matrix2d &F, double value) const;
 };
 
 /// Creates the subject of a case with another `material`.
-inline Subject subject(const input::Case &input, const lattice::Material &material, const Laws &laws = all_laws())
-{
-  const lattice::TriangularLattice sheet = input.lattice();
-  const std::optional<double> given = input.continuum.mooney_rivlin_ratio;
-  std::optional<Calibration> calibration;
-  try
-  {
-    calibration = given ? with_ratio(sheet, material, input.deformation(), *given)
-                        : calibrate_mooney_rivlin(sheet, material, input.deformation());
-  }
-  catch (const continuum::NonPhysicalState &)
-  {
-    // Claims report that there is no such law.
-  }
-  const SmallStrain theory = small_strain(sheet, material);
-  const GradientLengths lengths = gradient_lengths(sheet, material);
-  return {shells_name(material),
-          input.spacing,
-          input.orientation,
-          material,
-          input.deformation(),
-          theory,
-          slowest_wave(sheet, material, input.deformation()),
-          cauchy_born(sheet, material),
-          isotropic_network(sheet, material),
-          calibration,
-          !given,
-          lengths,
-          std::make_shared<continuum::LatticeGradient>(bond_families(sheet, material), lengths.lattice),
-          std::make_shared<continuum::IsotropicGradient>(theory.shear_modulus, lengths.isotropic_static),
-          std::make_shared<continuum::NetworkGradient>(bond_families(sheet, material), lengths.lattice),
-          laws};
-}
+[[nodiscard]] Subject subject(const input::Case &input, const lattice::Material &material,
+                              const Laws &laws = all_laws());
 
 /// Creates the subject of a case with its own material; all laws are judged.
-inline Subject subject(const input::Case &input)
-{
-  return subject(input, input.material());
-}
+[[nodiscard]] Subject subject(const input::Case &input);
 
 } // namespace latcon::bridge

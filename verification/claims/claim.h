@@ -1,25 +1,14 @@
 /// Descriptor of a claim.
 #pragma once
 
-#include <functional>
 #include <string>
 #include <vector>
 
-#include "verification/bridge/subject.h"
+#include "lattice/material.h"
 #include "verification/claims/claim_outcome.h"
-#include "verification/input/case.h"
 
 namespace latcon::claims
 {
-
-/// Input of the function that checks a claim.
-struct ClaimInput
-{
-  const bridge::Subject &subject; ///< a lattice, and the laws that should agree with it
-  const input::Case &entries;     ///< has the values of Claim::entries; every other entry has its default
-  bool quick;                     ///< small version, a few seconds
-  std::string frames;             ///< folder for frames of sheets in motion, on one rank; empty: none are written
-};
 
 /// Everything that the program and the report know of a claim. The folder of a claim has its name, with `_` for `-`,
 /// and may hold a `plots.py` with the plots of its tables in the report.
@@ -28,9 +17,6 @@ struct Claim
   std::string name;      ///< on the command line and in results: "wave-speeds"
   std::string title;     ///< one line for the help and the report
   std::string statement; ///< what the claim asserts, for the report
-
-  /// Computes the rows and tables. Collective.
-  std::function<ClaimOutcome(const ClaimInput &)> check;
 
   bool is_default = true; ///< part of `latcon verify` without names
 

@@ -4,11 +4,11 @@
 #include <array>
 #include <chrono>
 #include <cstdlib>
-#include <cstring>
 #include <ctime>
 #include <filesystem>
 #include <fstream>
 #include <limits>
+#include <map>
 #include <set>
 #include <system_error>
 #include <thread>
@@ -64,52 +64,30 @@ bool is_table_name(const std::string &name)
   return !name.empty() && name.find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_-") == std::string::npos;
 }
 
-// Build ID of a loaded library (a note that the linker writes), as bytes; empty if it has none.
-std::string build_id(const dl_phdr_info &library)
+// Size and time of the last change of a file, which packages set: the same on all nodes of a cluster. Empty if there is
+// no such file.
+std::string stamp(const std::filesystem::path &file)
 {
-  const auto aligned = [](std::size_t n) { return (n + 3) / 4 * 4; };
-  for (int i = 0; i < library.dlpi_phnum; ++i)
-  {
-    const ElfW(Phdr) &segment = library.dlpi_phdr[i];
-    if (segment.p_type != PT_NOTE)
-      continue;
-    // Address at which the loader mapped the note.
-    const auto *bytes = reinterpret_cast<const char *>(library.dlpi_addr + segment.p_vaddr); // NOLINT
-    for (std::size_t at = 0; at + sizeof(ElfW(Nhdr)) <= segment.p_memsz;)
-    {
-      ElfW(Nhdr) note{};
-      std::memcpy(&note, bytes + at, sizeof(note));
-      const std::size_t name = at + sizeof(note), content = name + aligned(note.n_namesz);
-      if (note.n_type == NT_GNU_BUILD_ID && note.n_namesz == 4 && std::memcmp(bytes + name, "GNU", 4) == 0)
-        return {bytes + content, note.n_descsz};
-      at = content + aligned(note.n_descsz);
-    }
-  }
-  return {};
+  std::error_code error;
+  const auto size = std::filesystem::file_size(file, error);
+  const auto time = std::filesystem::last_write_time(file, error);
+  return error ? "" : std::to_string(size) + " bytes, " + std::to_string(time.time_since_epoch().count());
 }
 
-// Hash of the system's shared libraries, identified by their build IDs, which are the same on all nodes of a cluster.
-// The rest of the program is linked statically.
-std::string hash_of_libraries()
+// The shared libraries of this process and their stamps. The rest of the program is linked statically.
+std::map<std::string, std::string> libraries()
 {
-  std::vector<std::string> libraries;
+  std::map<std::string, std::string> list;
   dl_iterate_phdr(
-    [](dl_phdr_info *library, std::size_t, void *list)
+    [](dl_phdr_info *library, std::size_t, void *stamps)
     {
       const std::filesystem::path file = library->dlpi_name;
-      if (!file.has_parent_path())
-        return 0; // the program itself, and the vdso
-      const std::string id = build_id(*library);
-      static_cast<std::vector<std::string> *>(list)->push_back(file.filename().string() + ' ' +
-                                                               (id.empty() ? input::sha256_of_file(file) : id) + '\n');
+      if (file.has_parent_path()) // neither the program itself nor the vdso
+        (*static_cast<std::map<std::string, std::string> *>(stamps))[file] = stamp(file);
       return 0;
     },
-    &libraries);
-  std::sort(libraries.begin(), libraries.end()); // independent of the order of loading
-  std::string text;
-  for (const std::string &library : libraries)
-    text += library;
-  return input::sha256(text);
+    &list);
+  return list;
 }
 
 std::string now()
@@ -166,7 +144,7 @@ VerdictKey verdict_key(const input::Case &input, const std::vector<Claim> &claim
   const bool is_about_program =
     !claims.empty() &&
     std::all_of(claims.begin(), claims.end(), [](const Claim &claim) { return claim.is_about_program; });
-  std::string text = "program=" + output::program_hash() + "\nlibraries=" + hash_of_libraries() + "\n";
+  std::string text = "program=" + output::program_hash() + "\n";
   std::vector<std::string> entries;
   for (const Claim &claim : claims)
   {
@@ -223,6 +201,7 @@ std::string verdicts_text(const VerdictKey &key, const Verdicts &verdicts)
   document["version"] = output::program_version();
   document["git_commit"] = output::git_commit();
   document["hardware_threads"] = std::thread::hardware_concurrency();
+  document["libraries"] = libraries();
   document["results"] = Json::parse(verdicts.results.json());
   document["tables"] = verdicts.tables;
   document["checksum"] = checksum(document);
@@ -241,6 +220,9 @@ Verdicts read_verdicts(const VerdictKey &key, const std::string &text)
       throw UnusableVerdicts("it belongs to other inputs");
     if (document.at("checksum") != checksum(document))
       throw UnusableVerdicts("its checksum is wrong");
+    for (const auto &[file, present] : document.at("libraries").get<std::map<std::string, std::string>>())
+      if (stamp(file) != present)
+        throw UnusableVerdicts("the library " + file + " has changed");
     for (const Json &entry : document.at("results").at("claims"))
       verdicts.results.add(row(entry));
     verdicts.tables = document.at("tables").get<std::map<std::string, std::string>>();

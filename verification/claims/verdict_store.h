@@ -28,9 +28,9 @@ struct VerdictKey
   std::string hash; ///< SHA-256 of the text, 64 hexadecimal digits
 };
 
-/// Returns the key of a check: hash of the running program, shared libraries (name and build ID), claims and their
-/// size, laws that are judged, number of MPI ranks, and the entries that the claims read; of claims that are about the
-/// program alone the first three.
+/// Returns the key of a check: hash of the program, claims and their size, laws that are judged, number of MPI ranks,
+/// and the entries that the claims read; of claims that are about the program alone the first two. The shared libraries
+/// of the check are kept with its verdicts.
 /// @throws std::runtime_error if the program cannot read itself
 [[nodiscard]] VerdictKey verdict_key(const input::Case &input, const std::vector<Claim> &claims,
                                      const bridge::Laws &laws, bool quick, unsigned int n_ranks);

@@ -9,9 +9,8 @@
 
 #include <unistd.h>
 
-#include <deal.II/base/mpi.h>
-
 #include "support/child_process.h"
+#include "support/ranks.h"
 #include "verification/commands/command.h"
 #include "verification/commands/requested_study.h"
 #include "verification/input/case_text.h"
@@ -132,7 +131,7 @@ double seconds_of(const std::string &limit)
 
 support::ExitCode write_batch(const input::Options &options, const BatchOptions &chosen)
 {
-  if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+  if (support::n_ranks() > 1)
     throw support::InputError("`latcon batch` writes scripts for one cluster; run it without mpirun");
   static const std::regex time("([0-9]+-)?[0-9]+(:[0-9]{2}){0,2}"), name("[A-Za-z0-9_.,-]*");
   if (!std::regex_match(chosen.time, time))

@@ -6,16 +6,7 @@
 
 #include <nlohmann/json.hpp>
 
-#include "verification/claims/damage/descriptor.h"
-#include "verification/claims/disorder/descriptor.h"
-#include "verification/claims/energy/descriptor.h"
-#include "verification/claims/intrinsic_length/descriptor.h"
-#include "verification/claims/prestretch/descriptor.h"
-#include "verification/claims/relaxation/descriptor.h"
-#include "verification/claims/running_crack/descriptor.h"
-#include "verification/claims/steady_crack/descriptor.h"
-#include "verification/claims/viscoelastic_waves/descriptor.h"
-#include "verification/claims/wave_speeds/descriptor.h"
+#include "verification/claims/claim_list.h"
 #include "verification/input/case_text.h"
 #include "verification/input/spelling.h"
 #include "verification/output/output_file.h"
@@ -27,23 +18,6 @@ using claims::Claim;
 
 namespace
 {
-
-// In the order in which they are checked and shown.
-std::vector<Claim> all_claims()
-{
-  std::vector<Claim> list;
-  list.push_back(claims::energy_descriptor());
-  list.push_back(claims::wave_speeds_descriptor());
-  list.push_back(claims::viscoelastic_waves_descriptor());
-  list.push_back(claims::relaxation_descriptor());
-  list.push_back(claims::intrinsic_length_descriptor());
-  list.push_back(claims::disorder_descriptor());
-  list.push_back(claims::prestretch_descriptor());
-  list.push_back(claims::steady_crack_descriptor());
-  list.push_back(claims::running_crack_descriptor());
-  list.push_back(claims::damage_descriptor());
-  return list;
-}
 
 template <typename Condition>
 std::vector<Claim> claims_where(const Condition &condition)
@@ -65,7 +39,9 @@ std::vector<std::string> names()
 
 const std::vector<Claim> &claim_registry()
 {
-  static const std::vector<Claim> claims = all_claims();
+#define LATCON_DESCRIPTOR(name) claims::name##_descriptor(),
+  static const std::vector<Claim> claims{LATCON_CLAIMS(LATCON_DESCRIPTOR)};
+#undef LATCON_DESCRIPTOR
   return claims;
 }
 

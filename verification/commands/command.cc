@@ -5,9 +5,8 @@
 #include <system_error>
 #include <utility>
 
-#include <deal.II/base/mpi.h>
-
 #include "support/atomic_file.h"
+#include "support/ranks.h"
 #include "verification/commands/crack_summary.h"
 #include "verification/commands/recorded_output.h"
 #include "verification/commands/signals.h"
@@ -24,7 +23,7 @@ namespace
 
 bool first_rank()
 {
-  return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+  return support::is_root_rank();
 }
 
 // Reports libraries of bond laws that are not the same on all ranks: other machines may have others below one path.
@@ -34,8 +33,8 @@ void require_same_libraries(const input::Case &input, input::Parameters &paramet
   for (std::size_t number = 0; number < lattice::n_shells; ++number)
   {
     const std::string &own = input.shell(number).user_law.sha256;
-    const int differs = own != dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, own) ? 1 : 0;
-    if (dealii::Utilities::MPI::max(differs, MPI_COMM_WORLD) > 0)
+    const int differs = own != support::broadcast(own) ? 1 : 0;
+    if (support::largest_on_ranks(differs) > 0)
       parameters.error(std::string(input::Case::shell_sections[number]) + "/library",
                        "the ranks find different libraries, or some none",
                        {std::string(input::Case::shell_sections[number]) + "/law"});

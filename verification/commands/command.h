@@ -78,9 +78,7 @@ struct ReportOptions
 // The commands. Each runs on every MPI rank and returns the exit code of the program, or throws.
 support::ExitCode verify(const input::Options &options);                 ///< `latcon verify`
 support::ExitCode run_lattice(const input::Options &options);            ///< `latcon lattice`
-support::ExitCode run_continuum(const input::Options &options);          ///< `latcon continuum`
 support::ExitCode run_fracture(const input::Options &options);           ///< `latcon fracture`
-support::ExitCode run_continuum_fracture(const input::Options &options); ///< `latcon fracture --side continuum`
 support::ExitCode compare_frames(const input::Options &options, const CompareOptions &chosen); ///< `latcon compare`
 support::ExitCode report(const input::Options &options, const ReportOptions &chosen);          ///< `latcon report`
 support::ExitCode run_study(const input::Options &options, const StudyOptions &chosen);        ///< `latcon study`
@@ -204,19 +202,6 @@ void record_exit_code(support::ExitCode exit_code, const std::string &message = 
 
 /// Exit code of a program whose results alone decide.
 support::ExitCode exit_code_of(const output::Results &results);
-
-/// Lattices on which claims are checked.
-enum class Shells
-{
-  own,             ///< the lattice of the case
-  own_and_nearest, ///< also the one with nearest-neighbour bonds alone, if the case has further shells
-};
-
-/// Checks claims on the subject of a case, small versions if `quick`. Collective.
-/// @param laws laws that are judged; results for others are reported
-/// @param frames folder for frames of sheets in motion, on one rank; empty: none are written
-claims::ClaimOutcome run_claims(const input::Case &input, const std::vector<claims::Claim> &claims, bool quick,
-                                Shells shells, const bridge::Laws &laws, const std::string &frames = {});
 
 /// Checks the claims, in their small versions, on the case's own material, shells and pre-stretch, or reuses the
 /// verdicts cached for exactly these inputs and this program. Reports which of the two, in words and in run.json, and

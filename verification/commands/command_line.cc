@@ -8,25 +8,24 @@
 #include <iostream>
 #include <thread>
 
-#include <dlfcn.h>
 #include <omp.h>
 #include <poll.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
-#include <deal.II/base/mpi.h>
-#include <deal.II/base/multithread_info.h>
 
 #include "continuum/errors.h"
 #include "continuum/solver_report.h"
 #include "lattice/row_kernels.h"
 #include "support/atomic_file.h"
 #include "support/available_cores.h"
+#include "support/ranks.h"
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/commands/recorded_output.h"
 #include "verification/commands/signals.h"
 #include "verification/commands/usage_error.h"
+#include "verification/elements/elements.h"
 #include "verification/input/case_text.h"
 #include "verification/input/shipped_cases.h"
 #include "verification/study/sweep.h"
@@ -67,10 +66,6 @@ void set_threads(unsigned int threads)
 {
   const unsigned int wanted = threads > 0 ? threads : support::available_cores_per_rank();
   omp_set_num_threads(static_cast<int>(wanted));
-  dealii::MultithreadInfo::set_thread_limit(1);
-  // A threaded BLAS sums in an order that depends on the number of threads. The call exists if OpenBLAS is in use.
-  if (void *const symbol = dlsym(RTLD_DEFAULT, "openblas_set_num_threads"))
-    reinterpret_cast<void (*)(int)>(symbol)(1);
 }
 
 // Throws for an environment variable that names no instruction set of the lattice.
@@ -112,8 +107,8 @@ support::ExitCode run_command(const std::function<support::ExitCode()> &command)
   {
     disregard_signals();
     const Failure failure = describe(error);
-    const unsigned int rank = dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD);
-    const unsigned int n_ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+    const unsigned int rank = support::rank();
+    const unsigned int n_ranks = support::n_ranks();
     try
     {
       record_exit_code(failure.exit_code, "latcon: " + failure.message + "\n");
@@ -179,7 +174,7 @@ support::ExitCode print_help(const CLI::App &app, const std::string &topic)
   const bool is_command = std::find(names.begin(), names.end(), topic) != names.end();
   if (!topic.empty() && !is_command)
     return print_topic(topic, names);
-  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+  if (support::is_root_rank())
     // App::help() of a program whose command line named a command describes that command.
     std::cout << (is_command ? app.get_subcommand(topic)->help(app.get_name())
                              : app.get_formatter()->make_help(&app, app.get_name(), CLI::AppFormatMode::Normal));
@@ -282,12 +277,16 @@ support::ExitCode run_program(int argc, char **argv)
   add_case_command("lattice", "equilibrium or motion of the unbroken lattice sheet", "latcon lattice hole", "-lattice",
                    run_lattice);
   add_case_command("continuum", "equilibrium or motion of the finite element sheet", "latcon continuum hole",
-                   "-continuum", run_continuum);
+                   "-continuum",
+                   [](const input::Options &chosen) { return elements::elements().run_continuum(chosen); });
   CLI::App *fracture_command =
     add_case_command("fracture", "verify the case's material and pre-stretch, then run its crack",
                      "latcon fracture quick --set \"Loading/strain y=1.7\"", "",
                      [](const input::Options &chosen)
-                     { return chosen.on_continuum ? run_continuum_fracture(chosen) : run_fracture(chosen); });
+                     {
+                       return chosen.on_continuum ? elements::elements().run_continuum_fracture(chosen)
+                                                   : run_fracture(chosen);
+                     });
   fracture_command->add_flag("--skip-verification", options.skip_verification,
                              "run the crack unverified; noted in every output");
   fracture_command->add_flag("--no-report", options.no_report, "draw neither pictures nor page");
@@ -454,7 +453,7 @@ support::ExitCode run_program(int argc, char **argv)
         // Help and version are exceptions of CLI11 as well, with exit code 0.
         if (error.get_exit_code() != 0)
           throw support::InputError(usage_error(app, error));
-        if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+        if (support::is_root_rank())
           app.exit(error);
         return support::ExitCode::done;
       }

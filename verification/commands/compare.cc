@@ -4,8 +4,6 @@
 #include <map>
 #include <sstream>
 
-#include <deal.II/base/mpi.h>
-
 #include "verification/commands/command.h"
 #include "verification/commands/run_comparison.h"
 #include "verification/compare/difference_writer.h"

@@ -13,14 +13,17 @@
 #include "support/full_precision.h"
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/continuum_model.h"
+#include "verification/bridge/field_function.h"
 #include "verification/bridge/homogenised_memory.h"
 #include "verification/commands/command.h"
+#include "verification/commands/continuum_commands.h"
 #include "verification/commands/cost.h"
 #include "verification/commands/signals.h"
 #include "verification/output/checkpoints.h"
 #include "verification/output/continuum_record.h"
 #include "verification/output/mechanism_names.h"
 #include "verification/output/progress.h"
+#include "verification/resources/continuum_resources.h"
 #include "verification/resources/resources.h"
 
 namespace latcon::commands
@@ -203,8 +206,8 @@ struct Motion
       memory(bridge::homogenised_memory(input.lattice(), model.subject().material)),
       solver(model.mesh(), model.constitution(), model.conditions(), {input.density, model.inertia_length()}, settings,
              viscosity.get(), {}, memory.get()),
-      added(interpolated(*input.continuum.initial_displacement.field(model.extent()))),
-      velocity(interpolated(*input.continuum.initial_velocity.field(model.extent())))
+      added(interpolated(bridge::FieldFunction(input.continuum.initial_displacement, model.extent()))),
+      velocity(interpolated(bridge::FieldFunction(input.continuum.initial_velocity, model.extent())))
   {
     continuum::Sheet::Vector u = solver.sheet().make_owned();
     if (input.continuum.initial_base == input::ContinuumCase::Base::equilibrium)

@@ -3,13 +3,13 @@
 
 #include <omp.h>
 
-#include <deal.II/base/mpi.h>
-
 #include "lattice/archive_rows.h"
+#include "support/ranks.h"
 #include "verification/bridge/damaged_sheet.h"
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
+#include "verification/commands/continuum_commands.h"
 #include "verification/commands/cost.h"
 #include "verification/commands/crack_run.h"
 #include "verification/commands/signals.h"
@@ -202,7 +202,7 @@ support::ExitCode run_continuum_fracture(const input::Options &options)
 
   const double steps = std::ceil(input.end_time / sheet.step);
   // Every rank has the whole sheet.
-  const double ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+  const double ranks = support::n_ranks();
   resources::MemoryNeed memory = resources::damage_memory(sheet.cells);
   memory.shared *= ranks;
   if (options.dry_run)

@@ -6,9 +6,8 @@
 
 #include <omp.h>
 
-#include <deal.II/base/mpi.h>
-
 #include "support/errors.h"
+#include "support/ranks.h"
 
 namespace latcon::commands
 {
@@ -46,7 +45,7 @@ void require_time(const input::Options &options, const double seconds)
 
 double rough_seconds(const input::Case &input, const lattice::TimeStepping &stepping, const double steps)
 {
-  const double ranks = dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD);
+  const double ranks = support::n_ranks();
   const double sites = static_cast<double>(input.lattice().n_sites());
   return resources::core_seconds(sites * steps * std::max(1u, stepping.stages)) / (ranks * omp_get_max_threads());
 }

@@ -2,9 +2,8 @@
 #include <filesystem>
 #include <iostream>
 
-#include <deal.II/base/mpi.h>
-
 #include "support/atomic_file.h"
+#include "support/ranks.h"
 #include "support/text_wrap.h"
 #include "verification/commands/command.h"
 #include "verification/input/case_text.h"
@@ -24,7 +23,7 @@ constexpr std::size_t columns = 120;
 
 bool is_root()
 {
-  return dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0;
+  return support::is_root_rank();
 }
 
 Entries all_entries()

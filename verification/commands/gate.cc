@@ -7,11 +7,12 @@
 #include <utility>
 #include <vector>
 
-#include <deal.II/base/mpi.h>
-
+#include "support/ranks.h"
+#include "verification/bridge/small_strain.h"
 #include "verification/claims/verdict_store.h"
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
+#include "verification/elements/elements.h"
 
 namespace latcon::commands
 {
@@ -41,7 +42,7 @@ Stored look_up(const input::Case &input, const std::vector<claims::Claim> &requi
   try
   {
     const claims::VerdictKey key =
-      claims::verdict_key(input, required, laws, quick, dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD));
+      claims::verdict_key(input, required, laws, quick, support::n_ranks());
     stored.key = key.text;
     if (!folder)
       stored.note = "neither XDG_CACHE_HOME nor HOME is set: no verdicts are kept";
@@ -73,7 +74,7 @@ Stored look_up_on_root_rank(const input::Case &input, const std::vector<claims::
                             const bridge::Laws &laws, const Run &run, const std::optional<std::string> &folder)
 {
   Stored stored = run.is_root() ? look_up(input, required, laws, folder) : Stored();
-  const auto shared = [](const std::string &text) { return dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, text); };
+  const auto shared = [](const std::string &text) { return support::broadcast(text); };
   return {shared(stored.key), shared(stored.text), shared(stored.note), std::move(stored.turn)};
 }
 
@@ -121,7 +122,7 @@ Group verified(const input::Case &input, const std::vector<claims::Claim> &requi
   bool kept = false;
   if (!reused)
   {
-    verdicts.emplace(run_claims(input, required, quick, Shells::own, laws));
+    verdicts.emplace(elements::elements().run_claims(input, required, quick, claims::Shells::own, laws, {}));
     if (const std::string found = problem(verdicts->results); !found.empty())
       verdicts->results.add(output::not_computed(required.front().name, "rows that a crack waits for", found));
     if (run.is_root() && folder && !key.text.empty())

@@ -3,7 +3,7 @@
 
 #include "lattice/relaxation.h"
 #include "verification/bridge/bloch.h"
-#include "verification/bridge/homogenisation.h"
+#include "verification/bridge/small_strain.h"
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/commands/command.h"
 #include "verification/commands/cost.h"

@@ -8,9 +8,8 @@
 
 #include <unistd.h>
 
-#include <deal.II/base/mpi.h>
-
 #include "support/child_process.h"
+#include "support/ranks.h"
 #include "verification/commands/command.h"
 #include "verification/input/data_folder.h"
 #include "verification/output/progress.h"
@@ -111,7 +110,7 @@ support::ExitCode report(const input::Options &options, const ReportOptions &cho
 {
   if (!std::filesystem::is_directory(chosen.directory))
     throw support::InputError(chosen.directory + " is not a directory");
-  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) != 0)
+  if (!support::is_root_rank())
     return support::ExitCode::done;
   std::vector<std::string> words;
   if (options.quiet)

@@ -2,9 +2,9 @@
 #include <cmath>
 #include <iostream>
 
-#include <deal.II/base/mpi.h>
 #include <nlohmann/json.hpp>
 
+#include "support/ranks.h"
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/input/case_text.h"
@@ -170,7 +170,7 @@ support::ExitCode print_schema(const input::Options &options)
     document["case"] = {
       {"file", options.case_file}, {"values", std::move(values)}, {"resolved", parameters.resolved_text()}};
   }
-  if (dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+  if (support::is_root_rank())
     std::cout << document.dump(2, ' ', false, Json::error_handler_t::replace) << "\n";
   return support::ExitCode::done;
 }

@@ -14,11 +14,11 @@
 
 #include <fcntl.h>
 #include <semaphore.h>
+#include <mpi.h>
 #include <unistd.h>
 
-#include <deal.II/base/mpi.h>
-
 #include "support/errors.h"
+#include "support/ranks.h"
 
 namespace latcon::commands
 {
@@ -69,7 +69,7 @@ void say(const std::string &text)
   int initialized = 0, finalized = 0;
   MPI_Initialized(&initialized);
   MPI_Finalized(&finalized);
-  if (initialized != 0 && finalized == 0 && dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+  if (initialized != 0 && finalized == 0 && support::n_ranks() > 1)
     MPI_Abort(MPI_COMM_WORLD, status); // the other ranks would wait for this one
   std::_Exit(status);
 }
@@ -133,7 +133,7 @@ SignalDeferral::~SignalDeferral()
 bool any_rank_interrupted()
 {
   const int signal = pending; // one that comes from here on is found by the next call
-  const bool any = dealii::Utilities::MPI::max(signal != 0 ? 1 : 0, MPI_COMM_WORLD) != 0;
+  const bool any = support::largest_on_ranks(signal != 0 ? 1 : 0) != 0;
   if (any)
     disregard_signals();
   return any;

@@ -7,11 +7,10 @@
 #include <numeric>
 #include <system_error>
 
-#include <deal.II/base/mpi.h>
-
 #include "support/available_cores.h"
 #include "support/folder_lock.h"
 #include "support/machine_memory.h"
+#include "support/ranks.h"
 #include "verification/commands/claim_registry.h"
 #include "verification/commands/command.h"
 #include "verification/commands/cost.h"
@@ -325,7 +324,7 @@ support::ExitCode judge_runs(const input::Options &options, study::StudyResults 
 
 support::ExitCode run_study(const input::Options &options, const StudyOptions &chosen)
 {
-  if (dealii::Utilities::MPI::n_mpi_processes(MPI_COMM_WORLD) > 1)
+  if (support::n_ranks() > 1)
     throw support::InputError("`latcon study` starts its own processes, one a core; run it without mpirun");
   if (chosen.collect && !chosen.shard.empty())
     throw support::InputError("--collect judges the runs of all shards; give it without --shard");

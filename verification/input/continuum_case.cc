@@ -3,8 +3,10 @@
 #include <algorithm>
 #include <cctype>
 #include <cmath>
-#include <iostream>
-#include <sstream>
+#include <memory>
+#include <optional>
+
+#include <muParser.h>
 
 #include "support/errors.h"
 #include "support/full_precision.h"
@@ -14,19 +16,6 @@ namespace latcon::input
 {
 namespace
 {
-
-// Silences std::cerr: deal.II prints the errors of muparser that it throws, and they are reported with the entry.
-class SilentErrors
-{
-public:
-  SilentErrors() : buffer_(std::cerr.rdbuf(nullptr)) {}
-  ~SilentErrors() { std::cerr.rdbuf(buffer_); }
-  SilentErrors(const SilentErrors &) = delete;
-  SilentErrors &operator=(const SilentErrors &) = delete;
-
-private:
-  std::streambuf *buffer_;
-};
 
 // Returns whether an expression uses random numbers: a sheet must be the same in every run and on every rank.
 bool draws_numbers(const std::string &expression)
@@ -51,30 +40,80 @@ bool assigns(const std::string &expression)
   return false;
 }
 
-// Function that throws for values that are not finite.
-class Expressions : public dealii::FunctionParser<2>
+// Returns the expression without blanks between a function and its arguments, which muparser does not accept.
+std::string joined_calls(const std::string &text)
+{
+  std::string joined;
+  for (const char c : text)
+  {
+    if (c == '(')
+      while (joined.size() > 1 && joined.back() == ' ' && joined.find_last_not_of(' ') != std::string::npos &&
+             std::isalnum(static_cast<unsigned char>(joined[joined.find_last_not_of(' ')])) != 0)
+        joined.pop_back();
+    joined += c;
+  }
+  return joined;
+}
+
+// Value of an expression in x, y and pi. Functions that muparser does not have are those of dealii::FunctionParser.
+class FieldExpression
 {
 public:
-  using dealii::FunctionParser<2>::FunctionParser;
-
-  double value(const dealii::Point<2> &X, const unsigned int component) const override
+  explicit FieldExpression(const std::string &text) : text_(text)
   {
-    const double value = dealii::FunctionParser<2>::value(X, component);
+    try
+    {
+      parser_.DefineConst("pi", std::acos(-1.));
+      parser_.DefineVar("x", &x_);
+      parser_.DefineVar("y", &y_);
+      parser_.DefineFun("if", +[](double condition, double yes, double no) { return std::lround(condition) != 0 ? yes : no; });
+      parser_.DefineOprt("|", +[](double a, double b) { return std::lround(a) != 0 || std::lround(b) != 0 ? 1. : 0.; }, 1);
+      parser_.DefineOprt("&", +[](double a, double b) { return std::lround(a) != 0 && std::lround(b) != 0 ? 1. : 0.; }, 2);
+      parser_.DefineFun("int", +[](double a) { return std::round(a); });
+      parser_.DefineFun("ceil", +[](double a) { return std::ceil(a); });
+      parser_.DefineFun("floor", +[](double a) { return std::floor(a); });
+      parser_.DefineFun("cot", +[](double a) { return 1. / std::tan(a); });
+      parser_.DefineFun("csc", +[](double a) { return 1. / std::sin(a); });
+      parser_.DefineFun("sec", +[](double a) { return 1. / std::cos(a); });
+      parser_.DefineFun("log", +[](double a) { return std::log(a); });
+      parser_.DefineFun("pow", +[](double a, double b) { return std::pow(a, b); });
+      parser_.DefineFun("erf", +[](double a) { return std::erf(a); });
+      parser_.DefineFun("erfc", +[](double a) { return std::erfc(a); });
+      parser_.SetExpr(joined_calls(text));
+      (void)parser_.Eval();
+    }
+    catch (const mu::ParserError &error)
+    {
+      throw support::InputError(error.GetMsg());
+    }
+  }
+
+  double operator()(const double x, const double y)
+  {
+    x_ = x;
+    y_ = y;
+    const double value = parser_.Eval();
     if (!std::isfinite(value))
-      throw support::InputError("the expression '" + printable(get_expressions()[component]) +
-                                "' is no finite number at x = " + support::full_precision(X[0]) +
-                                " m, y = " + support::full_precision(X[1]) + " m");
+      throw support::InputError("the expression '" + printable(text_) +
+                                "' is no finite number at x = " + support::full_precision(x) +
+                                " m, y = " + support::full_precision(y) + " m");
     return value;
   }
 
-  void vector_value(const dealii::Point<2> &X, dealii::Vector<double> &values) const override
-  {
-    for (unsigned int component = 0; component < 2; ++component)
-      values[component] = value(X, component);
-  }
+  FieldExpression(const FieldExpression &) = delete; // the parser refers to x_ and y_
+  FieldExpression &operator=(const FieldExpression &) = delete;
+
+private:
+  std::string text_;
+  double x_ = 0., y_ = 0.;
+  mu::Parser parser_;
 };
 
-using Points = std::vector<dealii::Point<2>>;
+struct Position
+{
+  double x, y; // [m]
+};
+using Points = std::vector<Position>;
 
 // Points on an edge of the sheet, its ends among them, and those where cells of most numbers meet.
 Points points_on(const std::size_t edge, const Outline &outline)
@@ -86,14 +125,14 @@ Points points_on(const std::size_t edge, const Outline &outline)
     const double part = static_cast<double>(i) / n;
     const double X = part * outline.length, Y = (part - 0.5) * outline.height, angle = 2. * M_PI * part;
     if (edge < 2)
-      points.emplace_back(edge == 0 ? 0. : outline.length, Y);
+      points.push_back({edge == 0 ? 0. : outline.length, Y});
     else if (edge < 4)
-      points.emplace_back(X, (edge == 2 ? -0.5 : 0.5) * outline.height);
+      points.push_back({X, (edge == 2 ? -0.5 : 0.5) * outline.height});
     else if (outline.hole_radius > 0.)
-      points.emplace_back(0.5 * outline.length + outline.hole_radius * std::cos(angle),
-                          outline.hole_radius * std::sin(angle));
+      points.push_back({0.5 * outline.length + outline.hole_radius * std::cos(angle),
+                        outline.hole_radius * std::sin(angle)});
     else if (outline.notch_length > 0.)
-      points.emplace_back(part * outline.notch_length, 0.);
+      points.push_back({part * outline.notch_length, 0.});
   }
   return points;
 }
@@ -106,36 +145,36 @@ Points points_in(const Outline &outline)
   for (unsigned int i = 0; i <= n; ++i)
     for (unsigned int j = 0; j <= n; ++j)
     {
-      const dealii::Point<2> X(outline.length * i / n, outline.height * (static_cast<double>(j) / n - 0.5));
-      if (X.distance(dealii::Point<2>(0.5 * outline.length, 0.)) >= outline.hole_radius)
+      const Position X{outline.length * i / n, outline.height * (static_cast<double>(j) / n - 0.5)};
+      if (std::hypot(X.x - 0.5 * outline.length, X.y) >= outline.hole_radius)
         points.push_back(X);
     }
   return points;
 }
 
-void check_values_at(Parameters &parameters, const std::string &key, const std::string &text, const Points &points,
-                     const Outline &outline)
+void check_values_at(Parameters &parameters, const std::string &key, const std::string &text, const Points &points)
 {
-  const SilentErrors silent;
-  FieldCase field;
-  field.x = text;
+  std::optional<FieldExpression> field;
   try
   {
-    const auto function = field.field(std::min(outline.length, outline.height));
-    for (const dealii::Point<2> &X : points)
-      (void)function->value(X, 0);
+    field.emplace(text);
+  }
+  catch (const support::InputError &)
+  {
+    return; // parse errors are reported elsewhere
+  }
+  try
+  {
+    for (const Position &X : points)
+      (void)(*field)(X.x, X.y);
   }
   catch (const support::InputError &problem)
   {
     parameters.error(key, problem.what());
   }
-  catch (const std::exception &)
-  {
-    // It cannot be parsed, and that has been told.
-  }
 }
 
-// Empty if there is none. Evaluated once, since parsing happens with the first value.
+// Returns an empty text if there is none.
 std::string problem_with(const std::string &expression)
 {
   // muparser takes the last entry of a list, but the user may have meant a decimal comma or both components.
@@ -150,31 +189,14 @@ std::string problem_with(const std::string &expression)
     return "an assignment; to compare, write ==";
   if (draws_numbers(expression))
     return "random numbers, which differ from run to run";
-  const SilentErrors silent;
   try
   {
-    FieldCase field;
-    field.x = expression;
-    field.field(1.)->value(dealii::Point<2>(0.0123, 0.0045), 0);
+    (void)FieldExpression(expression);
     return "";
   }
-  catch (const support::InputError &)
+  catch (const support::InputError &error)
   {
-    return ""; // it can be parsed; its values are looked at where the sheet is
-  }
-  catch (const std::exception &error)
-  {
-    const std::string text = error.what();
-    const std::string before = "The parser said: ";
-    const std::size_t begin = text.find(before);
-    if (begin == std::string::npos)
-      return "it cannot be parsed";
-    // deal.II breaks long lines, and ends with an empty one or a rule.
-    std::istringstream lines(text.substr(begin + before.size()));
-    std::string said, line;
-    while (std::getline(lines, line) && line.find_first_not_of(" -") != std::string::npos)
-      said += (said.empty() ? "" : " ") + line.substr(line.find_first_not_of(' '));
-    return said;
+    return error.what();
   }
 }
 
@@ -209,13 +231,10 @@ void FieldCase::check(Parameters &p, const std::string &section, const std::stri
   check_expression(p, section + "/" + name + " y", y);
 }
 
-std::shared_ptr<dealii::FunctionParser<2>> FieldCase::field(const double extent) const
+std::function<double(unsigned int, double, double)> FieldCase::field() const
 {
-  // Gradients by differences of fourth order: the step balances their error against round-off.
-  auto function = std::make_shared<Expressions>(2, 0., 1e-3 * extent);
-  function->set_formula(dealii::AutoDerivativeFunction<2>::FourthOrder);
-  function->initialize("x,y", std::vector<std::string>{x, y}, {{"pi", std::acos(-1.)}});
-  return function;
+  const std::array components{std::make_shared<FieldExpression>(x), std::make_shared<FieldExpression>(y)};
+  return [components](unsigned int component, double X, double Y) { return (*components[component])(X, Y); };
 }
 
 void EdgeCase::declare(Parameters &p, const bool can_be_periodic)
@@ -411,7 +430,7 @@ void ContinuumCase::check_values(Parameters &p, const Outline &outline) const
   const auto check = [&](const std::string &key, const std::string &text, const Points &points)
   {
     if (!is_word(text) && text != "0")
-      check_values_at(p, key, text, points, outline);
+      check_values_at(p, key, text, points);
   };
   const auto check_field = [&](const std::string &key, const FieldCase &field, const Points &points)
   {

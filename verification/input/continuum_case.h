@@ -1,11 +1,9 @@
 #pragma once
 
 #include <array>
-#include <memory>
+#include <functional>
 #include <optional>
 #include <string>
-
-#include <deal.II/base/function_parser.h>
 
 #include "verification/input/parameters.h"
 
@@ -41,9 +39,9 @@ struct FieldCase
   bool is_zero() const { return x == "0" && y == "0"; }
   /// "x" or "y": the first component that is not zero.
   const char *given() const { return x != "0" ? "x" : "y"; }
-  /// Returns the field, which throws InputError with the position where a value is not finite.
-  /// @param extent a length of the sheet [m], the scale on which the field varies
-  std::shared_ptr<dealii::FunctionParser<2>> field(double extent) const;
+  /// Returns the field as a function of the component (0 or 1) and of the reference position x, y [m]. It throws
+  /// InputError with the position where a value is not finite. @throws InputError if it cannot be parsed
+  std::function<double(unsigned int component, double x, double y)> field() const;
 };
 
 /// Shape of a sheet: X from 0 to length, Y from -height / 2 to height / 2.

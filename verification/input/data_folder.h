@@ -10,4 +10,11 @@ namespace latcon::input
 /// have it.
 std::string data_folder();
 
+/// Name of the module with the finite elements, which the program loads on demand.
+inline constexpr const char *module_name = "latcon_elements.so";
+
+/// Returns the path of the module beside the program, or in lib/latcon beside its folder, where it is installed; empty:
+/// there is none.
+[[nodiscard]] std::string module_file();
+
 } // namespace latcon::input

@@ -1,18 +1,18 @@
 #include "verification/input/parameters.h"
 
 #include "support/errors.h"
+#include "support/text_wrap.h"
 #include "verification/input/case_text.h"
 #include "verification/input/input_file.h"
 #include "verification/input/shipped_cases.h"
 #include "verification/input/spelling.h"
-
-#include <deal.II/base/parameter_handler.h>
 
 #include <algorithm>
 #include <cctype>
 #include <filesystem>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace latcon::input
 {
@@ -22,6 +22,19 @@ namespace
 
 // Problems beyond these are counted, not shown: a wrong file would fill the screen and the memory.
 constexpr std::size_t most_problems = 50;
+
+// Width of a comment on an entry in a resolved case, which has lines of at most 78 columns.
+constexpr std::size_t comment_width = 74;
+
+// Comment on an entry in a resolved case: what it means, its unit, what is allowed.
+std::string comment_on(const Declaration &entry)
+{
+  const bool required = entry.presence == Presence::required;
+  return entry.documentation + (entry.unit.empty() ? "" : " [" + entry.unit + "]") +
+         (required || !entry.rule.empty()
+            ? " (" + entry.rule + (required && !entry.rule.empty() ? "; " : "") + (required ? "required" : "") + ")"
+            : "");
+}
 
 } // namespace
 
@@ -275,34 +288,40 @@ std::string Parameters::nearest_key(const std::string &section, const std::strin
   return nearest == nullptr ? "" : "; nearest known key: " + nearest->key();
 }
 
-void Parameters::declare_in(dealii::ParameterHandler &handler) const
-{
-  for (const Entry &entry : entries_)
-  {
-    const bool required = entry.presence == Presence::required;
-    std::string documentation = entry.documentation;
-    if (!entry.unit.empty())
-      documentation += " [" + entry.unit + "]";
-    if (required || !entry.rule.empty())
-      documentation +=
-        " (" + entry.rule + (required && !entry.rule.empty() ? "; " : "") + (required ? "required" : "") + ")";
-    handler.enter_subsection(entry.section);
-    // Values are checked here, before deal.II sees them, so that all problems can be told at once. A required entry has
-    // no default; its value replaces the default, which deal.II would print as an empty text.
-    handler.declare_entry(entry.name, required ? entry.write() : entry.default_text, dealii::Patterns::Anything(),
-                          documentation, required);
-    handler.set(entry.name, entry.write());
-    handler.leave_subsection();
-  }
-}
-
 std::string Parameters::resolved_text() const
 {
-  dealii::ParameterHandler handler;
-  declare_in(handler);
-  std::ostringstream text;
-  handler.print_parameters(text, dealii::ParameterHandler::PRM | dealii::ParameterHandler::KeepDeclarationOrder);
-  return text.str();
+  // The layout is that of dealii::ParameterHandler::print_parameters().
+  std::vector<std::string> sections; // in the order of their first entries
+  for (const Entry &entry : entries_)
+    if (std::find(sections.begin(), sections.end(), entry.section) == sections.end())
+      sections.push_back(entry.section);
+  std::string text = "# Listing of Parameters\n# ---------------------\n";
+  for (const std::string &section : sections)
+  {
+    std::size_t longest_name = 0, longest_value = 0;
+    for (const Entry &entry : entries_)
+      if (entry.section == section)
+      {
+        longest_name = std::max(longest_name, entry.name.size());
+        longest_value = std::max(longest_value, entry.write().size());
+      }
+    text += "subsection " + section + "\n";
+    bool is_first = true;
+    for (const Entry &entry : entries_)
+      if (entry.section == section)
+      {
+        text += std::exchange(is_first, false) ? "" : "\n";
+        for (const std::string &line : support::wrap_text(comment_on(entry), comment_width))
+          text += "  # " + line + "\n";
+        const std::string value = entry.write();
+        text += "  set " + entry.name + std::string(longest_name - entry.name.size(), ' ') + " = " + value;
+        if (entry.presence != Presence::required && value != entry.default_text)
+          text += std::string(longest_value - value.size() + 1, ' ') + "# default: " + entry.default_text;
+        text += "\n";
+      }
+    text += "end\n\n\n";
+  }
+  return text;
 }
 
 std::vector<std::pair<std::string, std::string>> Parameters::values() const

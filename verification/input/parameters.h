@@ -12,11 +12,6 @@
 #include <utility>
 #include <vector>
 
-namespace dealii
-{
-class ParameterHandler;
-}
-
 namespace latcon::input
 {
 
@@ -236,9 +231,6 @@ public:
   /// The case as it now stands in the members: deal.II's format, every entry with its documentation, in SI, full
   /// precision. Reading it back gives the members bit for bit.
   [[nodiscard]] std::string resolved_text() const;
-
-  /// Declares every entry in deal.II's own class, with its present value, its default and its documentation.
-  void declare_in(dealii::ParameterHandler &handler) const;
 
   /// All keys and the values of the members as they now stand, as text that reads back to them bit for bit; by key.
   [[nodiscard]] std::vector<std::pair<std::string, std::string>> values() const;

@@ -8,10 +8,9 @@
 #include <sstream>
 #include <system_error>
 
-#include <deal.II/base/mpi.h>
-
 #include "support/errors.h"
 #include "support/folder_lock.h"
+#include "support/ranks.h"
 #include "verification/input/case.h"
 #include "verification/input/options.h"
 #include "verification/input/parameters.h"
@@ -93,7 +92,7 @@ Checkpoints::Checkpoints(const input::Options &options, const input::Parameters 
   : folder_(fs::path(options.output_dir) / "checkpoints"), command_(std::move(command)),
     case_text_(input::case_lines(parameters)), case_hash_(input::sha256(case_text_)),
     step_interval_(input.checkpoint_steps), wall_interval_(input.checkpoint_interval),
-    first_rank_(dealii::Utilities::MPI::this_mpi_process(MPI_COMM_WORLD) == 0)
+    first_rank_(support::is_root_rank())
 {
   if (!options.resume)
     return;
@@ -117,7 +116,7 @@ Checkpoints::Checkpoints(const input::Options &options, const input::Parameters 
     if (last != good.end())
       best = *last;
   }
-  const auto told = [](const auto &value) { return dealii::Utilities::MPI::broadcast(MPI_COMM_WORLD, value); };
+  const auto told = [](const auto &value) { return support::broadcast(value); };
   best.file = told(best.file.string());
   best.step = told(best.step);
   best.time = told(best.time);
@@ -204,8 +203,7 @@ bool Checkpoints::due(std::size_t step)
   last_step_asked_ = step;
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - last_written_;
   // Clocks differ between ranks; the root rank decides.
-  const bool by_time = wall_interval_ > 0. && dealii::Utilities::MPI::broadcast(
-                                                MPI_COMM_WORLD, elapsed.count() >= wall_interval_ ? 1 : 0) != 0;
+  const bool by_time = wall_interval_ > 0. && support::broadcast(elapsed.count() >= wall_interval_ ? 1 : 0) != 0;
   return by_steps || by_time;
 }
 

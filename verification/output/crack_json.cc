@@ -1,5 +1,7 @@
 #include "verification/output/crack_json.h"
 
+#include <nlohmann/json.hpp>
+
 namespace latcon::output
 {
 

@@ -7,6 +7,8 @@
 #include <ostream>
 #include <sstream>
 
+#include <nlohmann/json.hpp>
+
 #include "lattice/archive_rows.h"
 #include "support/errors.h"
 #include "support/full_precision.h"

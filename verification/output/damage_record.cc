@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include <nlohmann/json.hpp>
+
 #include "lattice/archive_rows.h"
 #include "verification/output/crack_json.h"
 #include "verification/output/csv.h"

@@ -7,7 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include "verification/bridge/bloch.h"
-#include "verification/bridge/homogenisation.h"
+#include "verification/bridge/small_strain.h"
 #include "verification/output/near_tip_writer.h"
 #include "verification/output/output_file.h"
 

@@ -1,15 +1,13 @@
 #include "verification/output/run_info.h"
 
 #include "support/full_precision.h"
+#include "verification/input/data_folder.h"
 #include "verification/input/sha256.h"
 #include "verification/output/output_file.h"
 
 #include <latcon_build_facts.h>
 #include <latcon_git_commit.h>
 
-#include <Eigen/src/Core/util/Macros.h>
-#include <Trilinos_version.h>
-#include <deal.II/base/config.h>
 #include <mpi.h>
 #include <nlohmann/json.hpp>
 #ifdef _OPENMP
@@ -63,11 +61,6 @@ int n_threads()
 #endif
 }
 
-std::string version_text(const int major, const int minor, const int third)
-{
-  return std::to_string(major) + "." + std::to_string(minor) + "." + std::to_string(third);
-}
-
 // JSON has no numbers that are not finite.
 Json number(const double value)
 {
@@ -95,11 +88,11 @@ Json common_facts(const std::vector<std::string> &command_line, const int n_thre
   document["flags"] = LATCON_FLAGS;
   document["lattice_flags"] = LATCON_LATTICE_FLAGS;
   document["libraries"] = {
-    {"deal.II", DEAL_II_PACKAGE_VERSION},
-    {"Trilinos", TRILINOS_VERSION_STRING},
-    {"p4est", version_text(DEAL_II_P4EST_VERSION_MAJOR, DEAL_II_P4EST_VERSION_MINOR, DEAL_II_P4EST_VERSION_SUBMINOR)},
+    {"deal.II", LATCON_DEALII_VERSION},
+    {"Trilinos", LATCON_TRILINOS_VERSION},
+    {"p4est", LATCON_P4EST_VERSION},
     {"VTK", LATCON_VTK_VERSION},
-    {"Eigen", version_text(EIGEN_WORLD_VERSION, EIGEN_MAJOR_VERSION, EIGEN_MINOR_VERSION)},
+    {"Eigen", LATCON_EIGEN_VERSION},
     {"MPI", mpi_version()}};
   document["hardware_threads"] = std::thread::hardware_concurrency();
   document["threads"] = n_threads;
@@ -169,9 +162,10 @@ const std::string &program_hash()
   static const std::string hash = []
   {
     std::string digits = input::sha256_of_file("/proc/self/exe");
-    if (digits.empty())
+    const std::string module = input::module_file();
+    if (digits.empty() || (!module.empty() && input::sha256_of_file(module).empty()))
       throw std::runtime_error("cannot read the executable of this program");
-    return digits;
+    return module.empty() ? digits : input::sha256(digits + " " + input::sha256_of_file(module));
   }();
   return hash;
 }

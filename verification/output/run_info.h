@@ -58,7 +58,8 @@ private:
 /// modified; "unknown" if it was not built in a checkout.
 [[nodiscard]] std::string git_commit();
 
-/// Returns the SHA-256 of the executable of this program, 64 hexadecimal digits. Reads the file at the first call.
+/// Returns the SHA-256 of this program, 64 hexadecimal digits: of its executable, or, if it has a module with the finite
+/// elements, of the text of both their SHA-256. Reads the files at the first call.
 /// @throws std::runtime_error if it cannot be read
 [[nodiscard]] const std::string &program_hash();
 

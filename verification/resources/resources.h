@@ -30,23 +30,11 @@ struct MemoryNeed
 /// @param claims true if the claims are checked before the crack
 [[nodiscard]] MemoryNeed lattice_memory(const input::Case &input, RunKind run, bool claims = false);
 
-/// Size of a finite element problem.
-struct ContinuumSize
-{
-  double cells = 0.;           ///< at the start
-  double coarse_unknowns = 0.; ///< of the coarsest mesh, which is solved directly; all unknowns without multigrid
-  double unknowns = 0.;        ///< at the start
-  double final_unknowns = 0.;  ///< after the adaptive cycles
-};
+/// Returns the bytes of the history of bonds per slot.
+[[nodiscard]] double bytes_of_history(const lattice::Material &material);
 
-/// Computes the size of the finite element problem of a case without generating its mesh, which may not fit into
-/// memory.
-/// @throws InputError if the number of unknowns exceeds the range of their indices; continuum::InvalidInput if a mesh
-/// file cannot be read
-[[nodiscard]] ContinuumSize continuum_size(const input::Case &input);
-
-/// Estimates the memory of a finite element run of that size.
-[[nodiscard]] MemoryNeed continuum_memory(const input::Case &input, const ContinuumSize &size);
+/// Wall time of the start of the program [s].
+inline constexpr double seconds_of_start = 0.5;
 
 /// Checks that the machine has enough memory for a run, summed over the ranks on the machine. Collective: all ranks
 /// throw, or none.
@@ -74,12 +62,6 @@ inline constexpr double seconds_of_claims = 8., seconds_of_report = 9.; ///< for
 /// Returns the number of substeps of the first step that short bonds of the loaded sheet require (theory.md, eq.
 /// (L.24)); 1 if it is not divided.
 [[nodiscard]] double parts_of_first_step(const input::Case &input, const lattice::TimeStepping &stepping, RunKind run);
-
-/// Estimates the wall time of a finite element run [s] from measured costs per unknown and iteration on one core.
-/// @param steps number of time steps; 0 for an equilibrium
-/// @param frames number of frames written
-[[nodiscard]] double continuum_seconds(const input::Case &input, const ContinuumSize &size, double steps,
-                                       double frames);
 
 /// Estimates the time [s] on one core of a number of force evaluations on a site, time stepping included.
 [[nodiscard]] double core_seconds(double site_evaluations);

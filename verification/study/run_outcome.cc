@@ -16,8 +16,6 @@ namespace latcon::study
 namespace
 {
 
-using Json = nlohmann::json;
-
 std::string content(const std::string &path)
 {
   std::ifstream file(path, std::ios::binary);
@@ -25,26 +23,26 @@ std::string content(const std::string &path)
 }
 
 // Reads the JSON object in a file; returns an empty object if the file is missing or corrupt.
-Json object_in(const std::string &path)
+nlohmann::json object_in(const std::string &path)
 {
-  Json document = Json::parse(content(path), nullptr, false);
-  return document.is_object() ? document : Json::object();
+  nlohmann::json document = nlohmann::json::parse(content(path), nullptr, false);
+  return document.is_object() ? document : nlohmann::json::object();
 }
 
 template <typename Value>
-Value value_or(const Json &object, const std::string &key, const Value &otherwise)
+Value value_or(const nlohmann::json &object, const std::string &key, const Value &otherwise)
 {
   try
   {
     return object.value(key, otherwise);
   }
-  catch (const Json::exception &) // of another type, or null
+  catch (const nlohmann::json::exception &) // of another type, or null
   {
     return otherwise;
   }
 }
 
-void read_numbers(const Json &object, const StudyQuantity::Source source, Values &values)
+void read_numbers(const nlohmann::json &object, const StudyQuantity::Source source, Values &values)
 {
   for (const StudyQuantity &quantity : quantities())
     if (quantity.source == source && object.contains(quantity.name) && object[quantity.name].is_number())
@@ -67,7 +65,7 @@ std::string last_words(const std::string &text)
 
 // Rows that failed and compare nothing with published values, each with its kind. A run that does not name its failed
 // rows is no measurement either.
-std::string unfit_rows(const Json &info)
+std::string unfit_rows(const nlohmann::json &info)
 {
   const auto failed = info.find("failed_rows");
   if (failed == info.end() || !failed->is_object() || failed->empty())
@@ -106,10 +104,10 @@ RunOutcome read_crack(const PlannedRun &run, const std::string &folder, const st
   outcome.seed = run.seed;
   if (run.zeta)
     outcome.values["zeta"] = *run.zeta;
-  const Json info = object_in(folder + "/run.json");
+  const nlohmann::json info = object_in(folder + "/run.json");
   outcome.exit_code = exit_code.value_or(value_or(info, "exit_code", -1));
   outcome.wall_time = value_or(info, "wall_time_total_s", 0.);
-  const Json crack = object_in(folder + "/crack.json");
+  const nlohmann::json crack = object_in(folder + "/crack.json");
   const bool ended = outcome.exit_code == static_cast<int>(support::ExitCode::done) ||
                      outcome.exit_code == static_cast<int>(support::ExitCode::claim_failed);
   outcome.pattern = value_or(crack, "pattern", std::string());
@@ -147,10 +145,10 @@ RunOutcome read_outcome(const PlannedRun &run, const std::string &folder, const 
 
 bool is_begun(const PlannedRun &run, const std::string &folder, const bool skip_verification)
 {
-  const Json info = object_in(folder + "/run.json");
+  const nlohmann::json info = object_in(folder + "/run.json");
   // Cracks of the lattice do not name their side. A run that has not ended has no crack.json; its checkpoint names the
   // command.
-  const Json crack = object_in(folder + "/crack.json");
+  const nlohmann::json crack = object_in(folder + "/crack.json");
   if (!crack.empty() && value_or(crack, "side", std::string("lattice")) != run.side())
     return false;
   // A killed run has not recorded whether it was verified; it verifies its case when it continues. The case comes last,

@@ -14,7 +14,6 @@ namespace latcon::study
 namespace
 {
 
-using Json = nlohmann::ordered_json;
 
 constexpr std::size_t max_shards = 100000;
 
@@ -53,10 +52,10 @@ std::vector<std::size_t> runs_of_shard(const std::vector<PlannedRun> &plan, cons
 std::string plan_text(const std::string &title, const std::vector<PlannedRun> &plan, const bool skip_verification,
                       const std::size_t n_shards)
 {
-  Json runs = Json::array();
+  nlohmann::ordered_json runs = nlohmann::ordered_json::array();
   for (const PlannedRun &run : plan)
     runs.push_back({{"run", run.folder()}, {"side", run.side()}, {"case_sha256", run.case_sha256}});
-  Json document{{"study", title}, {"skip_verification", skip_verification}};
+  nlohmann::ordered_json document{{"study", title}, {"skip_verification", skip_verification}};
   if (n_shards > 0)
     document["shards"] = n_shards;
   document["runs"] = std::move(runs);
@@ -67,7 +66,7 @@ std::string plan_difference(const std::string &stored, const std::string &wanted
 {
   try
   {
-    const Json there = Json::parse(stored), here = Json::parse(wanted);
+    const nlohmann::ordered_json there = nlohmann::ordered_json::parse(stored), here = nlohmann::ordered_json::parse(wanted);
     const auto differs = [&](const char *key) { return there.at(key) != here.at(key); };
     if (differs("study"))
       return "it is of another study, '" + input::printable(there.at("study").get<std::string>()) + "'";
@@ -75,7 +74,7 @@ std::string plan_difference(const std::string &stored, const std::string &wanted
       return "it was begun with another choice of --skip-verification";
     if (here.contains("shards") && differs("shards"))
       return "it was begun with " + there.at("shards").dump() + " shards";
-    const Json &old_runs = there.at("runs"), &new_runs = here.at("runs");
+    const nlohmann::ordered_json &old_runs = there.at("runs"), &new_runs = here.at("runs");
     for (std::size_t i = 0; i < std::min(old_runs.size(), new_runs.size()); ++i)
       if (old_runs.at(i) != new_runs.at(i))
         return "the case of run " + new_runs.at(i).at("run").get<std::string>() + " differs";
@@ -83,7 +82,7 @@ std::string plan_difference(const std::string &stored, const std::string &wanted
       return "it has " + std::to_string(old_runs.size()) + " runs, now there are " + std::to_string(new_runs.size());
     return "";
   }
-  catch (const Json::exception &)
+  catch (const nlohmann::ordered_json::exception &)
   {
     return std::string(plan_file_name) + " is damaged";
   }

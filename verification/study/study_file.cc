@@ -6,6 +6,8 @@
 #include <map>
 #include <set>
 
+#include <nlohmann/json.hpp>
+
 #include "support/errors.h"
 #include "verification/input/case.h"
 #include "verification/input/case_text.h"

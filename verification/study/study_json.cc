@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <set>
 
+#include <nlohmann/json.hpp>
+
 #include "support/errors.h"
 #include "verification/input/case_text.h"
 #include "verification/input/spelling.h"
@@ -27,6 +29,16 @@ std::string abbreviated_list(const std::vector<std::string> &names)
 }
 
 } // namespace
+
+bool JsonPlace::has(const std::string &key) const
+{
+  return value_->is_object() && value_->contains(key);
+}
+
+JsonPlace JsonPlace::at(const std::string &key) const
+{
+  return child(value_->at(key), key);
+}
 
 nlohmann::ordered_json parse_json(const std::string &text, const std::string &file)
 {

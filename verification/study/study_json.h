@@ -5,7 +5,7 @@
 #include <string>
 #include <vector>
 
-#include <nlohmann/json.hpp>
+#include <nlohmann/json_fwd.hpp>
 
 namespace latcon::study
 {
@@ -29,9 +29,9 @@ public:
 
   /// Returns true if this is an object; adds a problem if it is not, and for each unknown key.
   bool is_object(const std::vector<std::string> &known) const;
-  bool has(const std::string &key) const { return value_->is_object() && value_->contains(key); }
+  bool has(const std::string &key) const;
   /// Returns a member, which must exist.
-  JsonPlace at(const std::string &key) const { return child(value_->at(key), key); }
+  JsonPlace at(const std::string &key) const;
   /// Returns a member; adds a problem and returns none if it is missing.
   std::optional<JsonPlace> required(const std::string &key) const;
 

@@ -9,10 +9,9 @@
 #include <utility>
 
 #include "support/errors.h"
-#include "verification/bridge/damaged_sheet.h"
-#include "verification/bridge/homogenisation.h"
 #include "verification/bridge/lattice_sheet.h"
 #include "verification/claims/claim_inputs.h"
+#include "verification/elements/elements.h"
 #include "verification/input/case.h"
 #include "verification/input/case_text.h"
 #include "verification/input/sha256.h"
@@ -70,9 +69,9 @@ void estimate(const input::Case &input, input::Parameters &parameters, PlannedRu
   resources::MemoryNeed memory;
   if (run.planned_case->on_continuum)
   {
-    const bridge::DamagedSheet sheet = bridge::damaged_sheet(input, parameters);
-    run.size = sheet.cells;
-    run.evaluations = std::ceil(input.end_time / sheet.step) * sheet.stages;
+    const elements::CrackCost cost = elements::elements().crack_cost(input, parameters);
+    run.size = cost.cells;
+    run.evaluations = cost.evaluations;
     run.seconds = resources::damage_seconds(run.size, run.evaluations);
     memory = resources::damage_memory(run.size);
   }

@@ -7,10 +7,10 @@
 
 #include "lattice/row_partition.h"
 
-using namespace latcon;
-
-namespace
+namespace row_partition_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 
@@ -173,4 +173,4 @@ TEST(RowPartition, SharesSitesAndGathersRows)
   }
 }
 
-} // namespace
+} // namespace row_partition_test

@@ -7,10 +7,10 @@
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
 
-using namespace latcon;
-
-namespace
+namespace shared_simulation_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 
@@ -285,4 +285,4 @@ TEST_P(SharedMotion, HasTheBitsOfOneRank)
     }
 }
 
-} // namespace
+} // namespace shared_simulation_test

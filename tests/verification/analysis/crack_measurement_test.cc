@@ -14,10 +14,10 @@
 
 #include "tests/verification/analysis/synthetic_crack.h"
 
-using namespace latcon;
-
-namespace
+namespace crack_measurement_test
 {
+
+using namespace latcon;
 
 using namespace synthetic_crack;
 
@@ -458,4 +458,4 @@ TEST(CrackMeasurement, RunInAndClampZoneDoNotEnterTheSpeed)
   EXPECT_NEAR(m.speed_lagrangian->value, speed, 3. * d / (0.7 * length) * speed);
 }
 
-} // namespace
+} // namespace crack_measurement_test

@@ -12,10 +12,10 @@
 
 #include "tests/verification/analysis/synthetic_crack.h"
 
-using namespace latcon;
-
-namespace
+namespace crack_pattern_test
 {
+
+using namespace latcon;
 
 using namespace synthetic_crack;
 
@@ -441,4 +441,4 @@ TEST(CrackMeasurement, PatternsHaveTheNamesOfTheOutputs)
   EXPECT_STREQ(to_string(CrackPattern::undecided), "undecided");
 }
 
-} // namespace
+} // namespace crack_pattern_test

@@ -6,10 +6,10 @@
 
 #include <gtest/gtest.h>
 
-using namespace latcon::analysis;
-
-namespace
+namespace damage_contour_test
 {
+
+using namespace latcon::analysis;
 
 constexpr double d = 0.625e-3, length = 0.08, height = 0.06, seed = 0.01, X_end = 0.07;
 
@@ -68,8 +68,6 @@ double debris(double X, double Y)
   return along < 0.3 ? 0.75 * profile(0.5 * (Y - 16. * d)) * (std::abs(Y - 16. * d) < 0.2 * d ? 1. : 0.6) : 0.;
 }
 
-} // namespace
-
 TEST(DamageContour, ColumnsHaveEdgesAndGapsBetweenStrands)
 {
   const Crack crack(branches, 4.);
@@ -109,3 +107,5 @@ TEST(DamageContour, DebrisIsNoBranchOnAnyMesh)
     EXPECT_EQ(measured.branched_fraction, 0.) << cells;
   }
 }
+
+} // namespace damage_contour_test

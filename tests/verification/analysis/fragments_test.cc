@@ -7,10 +7,10 @@
 #include "lattice/simulation.h"
 #include "tests/lattice/sheets.h"
 
-using namespace latcon;
-
-namespace
+namespace fragments_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 using namespace analysis;
@@ -165,4 +165,4 @@ TEST_F(Cut, FibrilsBridgeTheStripsTheyAreIn)
   FAIL() << "no such bond";
 }
 
-} // namespace
+} // namespace fragments_test

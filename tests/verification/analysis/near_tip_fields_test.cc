@@ -8,10 +8,10 @@
 #include "tests/lattice/sheets.h"
 #include "verification/analysis/near_tip_measurement.h"
 
-using namespace latcon;
-
-namespace
+namespace near_tip_fields_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 using namespace analysis;
@@ -291,4 +291,4 @@ TEST(NearTipSampler, LeavesOutDebrisAndTipsAtRest)
   EXPECT_THROW(NearTipSampler(slit.sheet, slit.material, elsewhere), std::invalid_argument);
 }
 
-} // namespace
+} // namespace near_tip_fields_test

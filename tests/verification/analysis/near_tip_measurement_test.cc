@@ -10,10 +10,10 @@
 
 #include <gtest/gtest.h>
 
-using namespace latcon;
-
-namespace
+namespace near_tip_measurement_test
 {
+
+using namespace latcon;
 
 using namespace lattice;
 using namespace analysis;
@@ -379,4 +379,4 @@ TEST(WedgeAngle, RefusesDistancesAndPitchesOutOfRange)
   EXPECT_THROW(wedge_angle(sites, {-d, d}, 5. * d, 25. * d), std::invalid_argument);
 }
 
-} // namespace
+} // namespace near_tip_measurement_test

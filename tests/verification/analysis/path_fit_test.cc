@@ -11,10 +11,10 @@
 #include <Eigen/LU>
 #include <gtest/gtest.h>
 
-using namespace latcon;
-
-namespace
+namespace path_fit_test
 {
+
+using namespace latcon;
 
 constexpr double pi = 3.14159265358979323846;
 
@@ -108,4 +108,4 @@ TEST(FitSlope, IsTheLeastSquaresSlope)
                std::invalid_argument);
 }
 
-} // namespace
+} // namespace path_fit_test

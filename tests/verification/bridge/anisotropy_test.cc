@@ -11,10 +11,10 @@
 #include "tests/verification/claims/subjects.h"
 #include "verification/bridge/homogenisation.h"
 
-using namespace latcon;
-
-namespace
+namespace anisotropy_test
 {
+
+using namespace latcon;
 
 using namespace bridge;
 using namespace input;
@@ -124,4 +124,4 @@ TEST(RotationMean, LeavesOutTheThirdPowerOfTheDifferenceOfStretches)
     }
 }
 
-} // namespace
+} // namespace anisotropy_test

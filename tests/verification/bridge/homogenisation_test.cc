@@ -8,10 +8,10 @@
 #include "verification/bridge/homogenised_memory.h"
 #include "verification/claims/intrinsic_length/dispersion.h"
 
-using namespace latcon;
-
-namespace
+namespace homogenisation_test
 {
+
+using namespace latcon;
 
 using namespace bridge;
 using namespace claims;
@@ -143,4 +143,4 @@ TEST(Homogenisation, GivesFibresTheBranchesOfTheirBonds)
   EXPECT_EQ(next_nearest->families()[0].weight, law.families()[lattice::n_nearest_kinds].weight);
 }
 
-} // namespace
+} // namespace homogenisation_test

@@ -8,12 +8,12 @@
 
 #include "support/errors.h"
 
+namespace lattice_sheet_test
+{
+
 using namespace latcon;
 using namespace bridge;
 using namespace input;
-
-namespace
-{
 
 using Lines = std::vector<std::string>;
 using Check = void (*)(const Case &, Parameters &, const std::string &);
@@ -132,4 +132,4 @@ TEST(LatticeSheet, ThatBreaksIsWholeAndHeld)
             1u);
 }
 
-} // namespace
+} // namespace lattice_sheet_test

@@ -9,10 +9,10 @@
 #include "verification/bridge/bloch.h"
 #include "verification/claims/stability_row.h"
 
-using namespace latcon;
-
-namespace
+namespace slowest_wave_test
 {
+
+using namespace latcon;
 
 using namespace bridge;
 using namespace claims;
@@ -100,4 +100,4 @@ TEST(StabilityRow, HoldsOrSaysInWhichWavesTheSheetBuckles)
   EXPECT_EQ(stability_row(neutral, "prestretch").verdict(), Verdict::fails);
 }
 
-} // namespace
+} // namespace slowest_wave_test

@@ -17,12 +17,12 @@
 #include <variant>
 #include <vector>
 
+namespace claim_inputs_test
+{
+
 using namespace latcon;
 using input::Case;
 using input::Parameters;
-
-namespace
-{
 
 // Entries that no claim reads: they may change without a new check. A new entry of a case must be put either here or
 // into the list of claim_inputs.cc, or into the descriptor of the claim that reads it.
@@ -234,4 +234,4 @@ TEST(ClaimInputs, HideWhatIsNotListed)
   EXPECT_NE(read.length, input.length);
 }
 
-} // namespace
+} // namespace claim_inputs_test

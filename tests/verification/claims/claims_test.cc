@@ -5,10 +5,10 @@
 #include "verification/claims/energy/energy_claim.h"
 #include "verification/claims/prestretch/prestretch_claim.h"
 
-using namespace latcon;
-
-namespace
+namespace claims_test
 {
+
+using namespace latcon;
 
 using namespace bridge;
 using namespace claims;
@@ -206,4 +206,4 @@ TEST(Prestretch, SheetThatBucklesFailsAndIsNotCompared)
   EXPECT_EQ(results.rows()[0].verdict(), Verdict::fails);
 }
 
-} // namespace
+} // namespace claims_test

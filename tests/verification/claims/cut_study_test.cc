@@ -8,10 +8,10 @@
 
 #include "tests/verification/claims/faults.h"
 
-using namespace latcon;
-
-namespace
+namespace cut_study_test
 {
+
+using namespace latcon;
 
 using namespace bridge;
 using namespace claims;
@@ -254,4 +254,4 @@ TEST_P(PlantedFault, FailsTheClaim)
     EXPECT_TRUE(any_has(names, part)) << part;
 }
 
-} // namespace
+} // namespace cut_study_test

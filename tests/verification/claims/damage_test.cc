@@ -8,10 +8,10 @@
 
 #include "tests/verification/claims/faults.h"
 
-using namespace latcon;
-
-namespace
+namespace claims_damage_test
 {
+
+using namespace latcon;
 
 using namespace bridge;
 using namespace claims;
@@ -113,4 +113,4 @@ TEST(DamageClaim, TakesTheConstantsFromTheBonds)
   EXPECT_EQ(damage_law(input, one).threshold, one.cauchy_born.energy(F));
 }
 
-} // namespace
+} // namespace claims_damage_test

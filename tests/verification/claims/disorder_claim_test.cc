@@ -9,14 +9,14 @@
 
 #include "lattice/bond_factors.h"
 #include "tests/verification/claims/subjects.h"
-#include "verification/claims/disorder/descriptor.h"
+#include "verification/claims/claim_list.h"
 #include "verification/claims/disorder/disorder_claim.h"
 #include "verification/claims/disorder/effective_medium.h"
 
-using namespace latcon;
-
-namespace
+namespace disorder_claim_test
 {
+
+using namespace latcon;
 
 using namespace claims;
 using bridge::subject;
@@ -166,4 +166,4 @@ TEST(DisorderClaim, IsForMaterialsWithDisorder)
   EXPECT_TRUE(disorder_descriptor().is_default_for(input.material()));
 }
 
-} // namespace
+} // namespace disorder_claim_test

@@ -15,10 +15,10 @@
 #include "verification/claims/wave_speeds/absorbing_end.h"
 #include "verification/claims/wave_speeds/wave_speeds_claim.h"
 
-using namespace latcon;
-
-namespace
+namespace fault_matrix_test
 {
+
+using namespace latcon;
 
 using namespace bridge;
 using namespace claims;
@@ -218,4 +218,4 @@ TEST(FaultMatrix, HoldsWithoutFault)
     EXPECT_EQ(faults::failing(check(claim, subject, {})), 0u) << claim;
 }
 
-} // namespace
+} // namespace fault_matrix_test

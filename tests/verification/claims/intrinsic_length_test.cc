@@ -8,10 +8,10 @@
 #include "verification/claims/intrinsic_length/edge_layer.h"
 #include "verification/claims/intrinsic_length/gradient_positivity.h"
 
-using namespace latcon;
-
-namespace
+namespace intrinsic_length_test
 {
+
+using namespace latcon;
 
 using namespace bridge;
 using namespace claims;
@@ -168,4 +168,4 @@ TEST_P(IntrinsicLengthFault, FailsTheClaim)
   EXPECT_EQ(faults::failing(outcome.results, "lattice run against closed form"), 0u);
 }
 
-} // namespace
+} // namespace intrinsic_length_test

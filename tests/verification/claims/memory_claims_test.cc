@@ -13,15 +13,14 @@
 #include "tests/verification/claims/subjects.h"
 #include "verification/bridge/bloch.h"
 #include "verification/bridge/memory_waves.h"
-#include "verification/claims/relaxation/descriptor.h"
+#include "verification/claims/claim_list.h"
 #include "verification/claims/relaxation/relaxation_claim.h"
-#include "verification/claims/viscoelastic_waves/descriptor.h"
 #include "verification/claims/viscoelastic_waves/viscoelastic_waves_claim.h"
 
-using namespace latcon;
-
-namespace
+namespace memory_claims_test
 {
+
+using namespace latcon;
 
 using namespace bridge;
 using namespace claims;
@@ -311,4 +310,4 @@ TEST(MemoryClaims, AreForMaterialsWithAMemory)
   }
 }
 
-} // namespace
+} // namespace memory_claims_test

@@ -12,20 +12,22 @@
 #include <vector>
 
 #include "tests/verification/claims/faults.h"
+#include "verification/claims/claim_input.h"
 #include "verification/claims/claim_inputs.h"
 #include "verification/claims/energy/energy_claim.h"
 #include "verification/claims/energy/wave_energy.h"
 #include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
 #include "verification/claims/prestretch/cut_study.h"
 #include "verification/claims/prestretch/prestretch_claim.h"
+#include "verification/claims/run_claims.h"
 #include "verification/claims/steady_crack/steady_crack_claim.h"
 #include "verification/claims/wave_speeds/wave_speeds_claim.h"
 #include "verification/commands/claim_registry.h"
 
-using namespace latcon;
-
-namespace
+namespace no_number_test
 {
+
+using namespace latcon;
 
 using namespace bridge;
 using namespace claims;
@@ -247,7 +249,7 @@ std::vector<ClaimPart> claims_without_parts()
       list.push_back({claim.name, [claim](const Subject &s)
                       {
                         const latcon::input::Case entries = claim_inputs(subjects::paper_case(), claim.entries);
-                        return claim.check({s, entries, true, {}}).results;
+                        return check_claim(claim.name, {s, entries, true, {}}).results;
                       }});
   }
   return list;
@@ -438,4 +440,4 @@ TEST(NoNumberInSteadyCracks, FailsTheirCheck)
   }
 }
 
-} // namespace
+} // namespace no_number_test

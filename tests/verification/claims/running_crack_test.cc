@@ -7,14 +7,14 @@
 
 #include "tests/verification/claims/faults.h"
 
+namespace running_crack_test
+{
+
 using namespace latcon;
 using namespace bridge;
 using namespace claims;
 using namespace input;
 using namespace output;
-
-namespace
-{
 
 // The rubber of Fig. 1 in a sheet just large enough for a far field.
 RunningCrackOptions small()
@@ -44,8 +44,6 @@ Results with(const Plant &plant)
   plant(sides);
   return running_crack_claim(rubber(), sides, small()).results;
 }
-
-} // namespace
 
 // The gradient continuum and the opening of the flanks are reported; see docs/running-crack.md.
 TEST(RunningCrack, HoldsInTheFarFieldOfTheLocalContinuum)
@@ -158,3 +156,5 @@ TEST(TipField, AveragesAndInterpolates)
   const BackwardZone zone = backward_zone(field, 1., 5.);
   EXPECT_EQ(zone.area, 0.);
 }
+
+} // namespace running_crack_test

@@ -15,10 +15,10 @@
 #include "verification/claims/steady_crack/steady_crack_claim.h"
 #include "verification/claims/steady_crack/steady_fields.h"
 
-using namespace latcon;
-
-namespace
+namespace steady_crack_test
 {
+
+using namespace latcon;
 
 using namespace claims;
 using namespace output;
@@ -175,4 +175,4 @@ TEST(SteadyCrackClaim, HoldsInItsQuickVersion)
   EXPECT_EQ(outcome.tables.at("steady_crack").rows().size(), 6u);
 }
 
-} // namespace
+} // namespace steady_crack_test

@@ -9,10 +9,10 @@
 #include "verification/claims/intrinsic_length/intrinsic_length_claim.h"
 #include "verification/claims/prestretch/prestretch_claim.h"
 
-using namespace latcon;
-
-namespace
+namespace claims_third_shell_test
 {
+
+using namespace latcon;
 
 using namespace bridge;
 using namespace claims;
@@ -160,4 +160,4 @@ TEST(ThirdShell, WrongLengthInTheGradientEnergyFailsTheIntrinsicLength)
   EXPECT_EQ(intrinsic_length_claim(wrong, few_angles()).results.verdict(), Verdict::fails);
 }
 
-} // namespace
+} // namespace claims_third_shell_test

@@ -13,6 +13,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+namespace verdict_store_test
+{
+
 using namespace latcon;
 using claims::UnusableVerdicts;
 using claims::VerdictKey;
@@ -20,9 +23,6 @@ using claims::Verdicts;
 using claims::VerdictStore;
 using input::Case;
 using input::sha256;
-
-namespace
-{
 
 Case some_case()
 {
@@ -259,4 +259,4 @@ TEST(VerdictStore, TakesNoTableThatLeavesItsFolder)
   }
 }
 
-} // namespace
+} // namespace verdict_store_test

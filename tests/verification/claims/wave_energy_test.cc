@@ -6,10 +6,10 @@
 #include "tests/verification/claims/faults.h"
 #include "verification/claims/energy/energy_claim.h"
 
-using namespace latcon;
-
-namespace
+namespace wave_energy_test
 {
+
+using namespace latcon;
 
 using namespace bridge;
 using namespace claims;
@@ -98,4 +98,4 @@ TEST(Energy, FailsForTheRatioOfTheBondConstants)
   EXPECT_EQ(faults::failing(energy_claim(wrong, 10), "ratio r"), 0u);
 }
 
-} // namespace
+} // namespace wave_energy_test

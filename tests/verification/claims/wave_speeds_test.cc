@@ -8,10 +8,10 @@
 #include "verification/bridge/bloch.h"
 #include "verification/claims/lattice_waves.h"
 
-using namespace latcon;
-
-namespace
+namespace wave_speeds_test
 {
+
+using namespace latcon;
 
 using namespace bridge;
 using namespace claims;
@@ -256,4 +256,4 @@ TEST_P(WaveSpeedsFault, FailsTheClaim)
     }
 }
 
-} // namespace
+} // namespace wave_speeds_test

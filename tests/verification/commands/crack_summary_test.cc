@@ -5,10 +5,10 @@
 
 #include <gtest/gtest.h>
 
-using namespace latcon;
-
-namespace
+namespace crack_summary_test
 {
+
+using namespace latcon;
 
 using namespace commands;
 using namespace input;
@@ -110,4 +110,4 @@ TEST(CrackSummary, NamesRowsThatFailAndStaysShort)
   EXPECT_LE(std::count(text.begin(), text.end(), '\n'), 15);
 }
 
-} // namespace
+} // namespace crack_summary_test

@@ -9,10 +9,10 @@
 #include "support/errors.h"
 #include "tests/support/temporary_folder.h"
 
-using namespace latcon;
-
-namespace
+namespace comparison_test
 {
+
+using namespace latcon;
 
 using namespace compare;
 using namespace output;
@@ -351,4 +351,4 @@ TEST(ListOfTimes, LeavesOutTheMiddle)
   EXPECT_EQ(list_of_times({0, 1, 2, 3, 4, 5, 6, 7, 8, 9}), "0, 1, 2, 3, ..., 6, 7, 8, 9");
 }
 
-} // namespace
+} // namespace comparison_test

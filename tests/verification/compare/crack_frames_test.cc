@@ -7,6 +7,9 @@
 #include "tests/verification/claims/faults.h"
 #include "verification/compare/comparison.h"
 
+namespace crack_frames_test
+{
+
 using namespace latcon;
 using namespace bridge;
 using namespace claims;
@@ -52,3 +55,5 @@ TEST(RunningCrack, LeavesFramesThatCanBeCompared)
     EXPECT_LT(difference(tip), 0.5 * difference({{tip[0] - 8. * rubber.spacing, tip[1]}}));
   }
 }
+
+} // namespace crack_frames_test

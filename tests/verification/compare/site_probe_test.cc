@@ -8,10 +8,10 @@
 #include "support/largest_error.h"
 #include "tests/support/temporary_folder.h"
 
-using namespace latcon;
-
-namespace
+namespace site_probe_test
 {
+
+using namespace latcon;
 
 using namespace compare;
 
@@ -128,4 +128,4 @@ TEST(SiteProbe, IsQuickOnManySites)
   EXPECT_NEAR(largest(found.fields[0]), 0.2 * 0.04, 1e-12);
 }
 
-} // namespace
+} // namespace site_probe_test

@@ -7,6 +7,9 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
+namespace parameter_files_test
+{
+
 using namespace sample_case;
 
 TEST(Parameters, JsonProblemsAreToldWithTheirPath)
@@ -133,3 +136,5 @@ TEST(Parameters, HostileTextGivesShortPrintableProblems)
           ASSERT_TRUE(static_cast<unsigned char>(c) >= 0x20 && c != 0x7f);
       }
 }
+
+} // namespace parameter_files_test

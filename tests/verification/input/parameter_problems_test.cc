@@ -3,6 +3,9 @@
 
 #include <limits>
 
+namespace parameter_problems_test
+{
+
 using namespace sample_case;
 
 TEST(Parameters, UnknownKeyNamesTheNearestAndAllOfItsSection)
@@ -303,3 +306,5 @@ TEST(Parameters, ChecksOfWrongEntriesAreDropped)
   EXPECT_EQ(problems_of(p).size(), 2u);
   EXPECT_EQ(sample.rows, 3u);
 }
+
+} // namespace parameter_problems_test

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+namespace spelling_test
+{
+
 using namespace latcon;
 using input::could_mean;
 using input::nearest_word;
@@ -45,3 +48,5 @@ TEST(Spelling, FindsTheNearestWord)
   EXPECT_EQ(nearest_word("aa", {"ab", "ac"}), "ab");
   EXPECT_EQ(nearest_word("x", {}), "");
 }
+
+} // namespace spelling_test

@@ -8,11 +8,11 @@
 #include "support/errors.h"
 #include "verification/input/case.h"
 
+namespace time_stepping_test
+{
+
 using namespace latcon;
 using namespace input;
-
-namespace
-{
 
 using Lines = std::vector<std::string>;
 
@@ -162,4 +162,4 @@ TEST(TimeStepping, RefusesWhatCannotBe)
   expect_refused("Time/step = 1e-5", {"Time/step=1e-5"});
 }
 
-} // namespace
+} // namespace time_stepping_test

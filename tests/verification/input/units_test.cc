@@ -5,13 +5,13 @@
 
 #include <string>
 
+namespace units_test
+{
+
 using namespace latcon;
 using input::parse_unit;
 using input::ParsedNumber;
 using input::read_quantity;
-
-namespace
-{
 
 double read(const std::string &text, const std::string &unit)
 {
@@ -24,8 +24,6 @@ std::string wrong(const std::string &text, const std::string &unit)
 {
   return read_quantity(text, unit).wrong;
 }
-
-} // namespace
 
 TEST(Units, PlainNumberIsInTheUnitWanted)
 {
@@ -107,3 +105,5 @@ TEST(Units, KnowsWhetherAUnitWasWritten)
   EXPECT_TRUE(read_quantity("1 mm", "m").has_unit);
   EXPECT_FALSE(read_quantity("1 ", "m").has_unit);
 }
+
+} // namespace units_test

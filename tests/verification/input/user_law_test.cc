@@ -14,10 +14,10 @@
 #include "verification/input/case.h"
 #include "verification/input/expression_parser.h"
 
-using namespace latcon;
-
-namespace
+namespace user_law_test
 {
+
+using namespace latcon;
 
 double value(const support::Expression &e, double x)
 {
@@ -231,4 +231,4 @@ TEST(UserLaw, SaysWhichEntryIsWrong)
   }
 }
 
-} // namespace
+} // namespace user_law_test

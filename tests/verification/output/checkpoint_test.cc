@@ -10,10 +10,10 @@
 #include "tests/support/temporary_folder.h"
 #include "verification/output/archive.h"
 
-using namespace latcon;
-
-namespace
+namespace checkpoint_test
 {
+
+using namespace latcon;
 
 using namespace output;
 
@@ -281,4 +281,4 @@ TEST_F(Archive, RefusesAFileThatIsNotHdf5)
   EXPECT_THROW(Hdf5File{path + ".none"}, Hdf5Error);
 }
 
-} // namespace
+} // namespace checkpoint_test

@@ -5,12 +5,12 @@
 
 #include <gtest/gtest.h>
 
+namespace csv_test
+{
+
 using namespace latcon;
 using claims::ClaimOutcome;
 using output::Table;
-
-namespace
-{
 
 TEST(Table, WritesNumbersInFullPrecisionAndQuotesWords)
 {
@@ -40,4 +40,4 @@ TEST(ClaimOutcome, JoinsTablesOfTheSameName)
   EXPECT_EQ(first.results.rows().size(), 1u);
 }
 
-} // namespace
+} // namespace csv_test

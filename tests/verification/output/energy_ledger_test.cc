@@ -5,18 +5,16 @@
 
 #include <gtest/gtest.h>
 
+namespace energy_ledger_test
+{
+
 using latcon::output::LedgerCheck;
 using latcon::output::LedgerState;
-
-namespace
-{
 
 LedgerState state(double time, double kinetic, double imbalance)
 {
   return {time, 1000. - kinetic, kinetic, 0., 0., 0., 0., imbalance};
 }
-
-} // namespace
 
 // theory.md, eq. (L.38): an oscillation between elastic and kinetic energy with the angular frequency omega.
 TEST(LedgerCheck, OscillationIsMeasuredByTheEnergyThatItConverts)
@@ -102,3 +100,5 @@ TEST(AllowedImbalance, OfAMotionOfFewStepsIsThatOfItsStart)
       EXPECT_FALSE(allowed(integrator, 5.).reason.empty());
     }
 }
+
+} // namespace energy_ledger_test

@@ -8,13 +8,13 @@
 
 #include <ostream>
 
+namespace output_file_test
+{
+
 using namespace latcon;
 using latcon::support::ExitCode;
 using latcon::support::OutputError;
 using output::write_file;
-
-namespace
-{
 
 // Returns the error message of write_file; empty on success.
 std::string complaint(const std::string &path, const std::string &text = "new")
@@ -30,8 +30,6 @@ std::string complaint(const std::string &path, const std::string &text = "new")
   }
   return "";
 }
-
-} // namespace
 
 TEST(WriteFile, WritesAndReplaces)
 {
@@ -71,3 +69,5 @@ TEST(WriteFile, WriterThatFailsOrThrowsLeavesTheOldFile)
                std::runtime_error);
   EXPECT_EQ(content_of(path), "old");
 }
+
+} // namespace output_file_test

@@ -7,10 +7,10 @@
 #include "tests/support/temporary_folder.h"
 #include "verification/output/output_file.h"
 
-using namespace latcon;
-
-namespace
+namespace output_list_test
 {
+
+using namespace latcon;
 
 using namespace output;
 namespace fs = std::filesystem;
@@ -113,4 +113,4 @@ TEST_F(OutputList, WithoutAListNothingIsTouched)
   EXPECT_FALSE(has(output_list_name));
 }
 
-} // namespace
+} // namespace output_list_test

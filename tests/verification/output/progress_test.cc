@@ -8,10 +8,10 @@
 
 #include <gtest/gtest.h>
 
-using namespace latcon;
-
-namespace
+namespace progress_test
 {
+
+using namespace latcon;
 
 using output::Progress;
 using namespace std::chrono_literals;
@@ -60,4 +60,4 @@ TEST(Progress, IsSilentWhereItIsNotWanted)
   EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
 }
 
-} // namespace
+} // namespace progress_test

@@ -13,14 +13,14 @@
 #include <sstream>
 #include <stdexcept>
 
+namespace results_test
+{
+
 using namespace latcon;
 using output::Result;
 using output::Results;
 using output::to_string;
 using output::Verdict;
-
-namespace
-{
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 constexpr double infinity = std::numeric_limits<double>::infinity();
@@ -79,8 +79,6 @@ Results sample()
   results.add(checked({}, {}));
   return results;
 }
-
-} // namespace
 
 TEST(Results, VerdictIsErrorWithinTolerance)
 {
@@ -329,3 +327,5 @@ TEST(Results, SayHowTheChecksCameOutAndWhichFail)
                                      "  and 1 more, see results.csv\n");
   EXPECT_EQ(results.count(Verdict::reported), 1u);
 }
+
+} // namespace results_test

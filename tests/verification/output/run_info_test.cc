@@ -13,13 +13,13 @@
 #include <thread>
 #include <unistd.h>
 
+namespace run_info_test
+{
+
 using namespace latcon;
 using latcon::support::ExitCode;
 using output::RunInfo;
 using output::Stopwatch;
-
-namespace
-{
 
 // Returns true if the text contains a number, a point, and a number.
 bool is_version(const std::string &text)
@@ -28,8 +28,6 @@ bool is_version(const std::string &text)
   return point != std::string::npos && point > 0 && point + 1 < text.size() && std::isdigit(text[point - 1]) != 0 &&
          std::isdigit(text[point + 1]) != 0;
 }
-
-} // namespace
 
 TEST(Stopwatch, AddsUpThePhases)
 {
@@ -139,3 +137,5 @@ TEST(RunInfo, WritesTheFile)
   EXPECT_EQ(nlohmann::json::parse(content_of(folder / "run.json"))["program"], "latcon");
   EXPECT_THROW(RunInfo({"latcon"}).write(folder / "missing/run.json", ExitCode::done), latcon::support::OutputError);
 }
+
+} // namespace run_info_test

@@ -1,5 +1,5 @@
 // Estimates of what a run takes: sizes are those of the sheets, and no size is too large for an estimate.
-#include "verification/resources/resources.h"
+#include "verification/resources/continuum_resources.h"
 
 #include <cmath>
 
@@ -7,12 +7,12 @@
 
 #include "support/errors.h"
 
+namespace resources_test
+{
+
 using namespace latcon;
 using namespace input;
 using namespace resources;
-
-namespace
-{
 
 Case square(double length, double spacing)
 {
@@ -97,4 +97,4 @@ TEST(Resources, StepsThatCannotBeCountedAreTold)
   }
 }
 
-} // namespace
+} // namespace resources_test

@@ -10,11 +10,11 @@
 
 #include "tests/verification/study/normal_numbers.h"
 
+namespace onset_fit_test
+{
+
 using namespace latcon;
 using namespace study;
-
-namespace
-{
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
@@ -43,8 +43,6 @@ bool covers(const Interval &interval, double value)
 {
   return interval.low <= value && value <= interval.high;
 }
-
-} // namespace
 
 TEST(OnsetFit, RecoversAnExactPowerLaw)
 {
@@ -180,3 +178,5 @@ TEST(OnsetFit, DataThatDetermineNothingGiveNone)
         point.mean.n = 1;
     }));
 }
+
+} // namespace onset_fit_test

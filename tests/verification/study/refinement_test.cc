@@ -8,11 +8,11 @@
 #include <stdexcept>
 #include <string>
 
+namespace refinement_test
+{
+
 using namespace latcon;
 using namespace study;
-
-namespace
-{
 
 // Sweep of both strains over 3 x 2 points with two seeds, whose outcomes are made up.
 class MadeUpSweep
@@ -84,8 +84,6 @@ public:
 };
 
 using Names = std::vector<std::string>;
-
-} // namespace
 
 TEST(Refinement, NothingBetweenEqualPatterns)
 {
@@ -167,3 +165,5 @@ TEST(Refinement, NeedsASweepOfNumbers)
   sweep.study.swept.clear();
   EXPECT_THROW((void)sweep.refined(1), std::logic_error);
 }
+
+} // namespace refinement_test

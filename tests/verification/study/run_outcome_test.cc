@@ -7,11 +7,11 @@
 
 #include "tests/support/temporary_folder.h"
 
+namespace run_outcome_test
+{
+
 using namespace latcon;
 using namespace study;
-
-namespace
-{
 
 class EndedRun : public testing::Test
 {
@@ -34,8 +34,6 @@ protected:
 
   TemporaryFolder folder_;
 };
-
-} // namespace
 
 TEST_F(EndedRun, IsMeasuredIfAtMostPublishedValuesDiffer)
 {
@@ -86,3 +84,5 @@ TEST_F(EndedRun, IsRefusedOrFailedWithoutACrack)
   ended("4", "");
   EXPECT_EQ(outcome().state, RunState::failed);
 }
+
+} // namespace run_outcome_test

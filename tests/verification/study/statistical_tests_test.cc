@@ -11,11 +11,11 @@
 #include "tests/verification/study/normal_numbers.h"
 #include "verification/study/study_table.h"
 
+namespace statistical_tests_test
+{
+
 using namespace latcon;
 using namespace study;
-
-namespace
-{
 
 constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 
@@ -91,8 +91,6 @@ Shares shares_of(const std::vector<double> &means, const std::vector<std::size_t
 
 // As in the studies: two seeds, and five for the case of Fig. 1.
 const std::vector<std::size_t> six_runs{2, 2, 2, 2, 5, 2}, four_runs{2, 2, 2, 5}, three_seeds_each{3, 3, 3, 3, 3, 3};
-
-} // namespace
 
 TEST(Welch, HasTheKnownProbability)
 {
@@ -274,3 +272,5 @@ TEST(StudyRules, DecideWronglyAsOftenAsTheySay)
   EXPECT_LE(static_cast<double>(rises) / n, above_nominal(n));
   EXPECT_LE(static_cast<double>(above) / n, above_nominal(n));
 }
+
+} // namespace statistical_tests_test

@@ -10,12 +10,12 @@
 #include "verification/study/study_file.h"
 #include "verification/study/study_plan.h"
 
+namespace study_file_test
+{
+
 using namespace latcon;
 using namespace input;
 using namespace study;
-
-namespace
-{
 
 const std::string cases = std::filesystem::path(study_path("paper")).parent_path().parent_path() / "cases";
 
@@ -89,8 +89,6 @@ std::string problem_after(const Change &change)
 }
 
 #define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
-
-} // namespace
 
 TEST(StudyFile, RunsKeepTheirOrderAndTheNearestSettingWins)
 {
@@ -429,3 +427,5 @@ TEST(StudyFile, RefusesNumbersAndDepthBeyondAllSense)
       EXPECT_HAS(std::string(error.what()), "folder/x.json: not");
     }
 }
+
+} // namespace study_file_test

@@ -11,11 +11,11 @@
 #include "tests/support/temporary_folder.h"
 #include "verification/study/process_pool.h"
 
+namespace study_pool_test
+{
+
 using namespace latcon;
 using namespace study;
-
-namespace
-{
 
 // Pool of shell scripts.
 struct Scripts
@@ -43,8 +43,6 @@ struct Scripts
   std::map<std::size_t, int> statuses;
   std::size_t most_at_once = 0;
 };
-
-} // namespace
 
 TEST(StudyPool, AllJobsEndWithTheirStatusAndAFailureStopsNone)
 {
@@ -108,3 +106,5 @@ TEST(StudyPool, ExceptionsEndTheChildrenFirst)
   EXPECT_THROW(run_processes(scripts.pool), latcon::support::OutputError);
   EXPECT_EQ(scripts.log(0), "ready\ntold\n");
 }
+
+} // namespace study_pool_test

@@ -8,12 +8,12 @@
 
 #include "verification/study/study_output.h"
 
+namespace study_table_test
+{
+
 using namespace latcon;
 using namespace output;
 using namespace study;
-
-namespace
-{
 
 // Runs with values along zeta = 1, 2, 3 ... in the order in which they were added.
 class MadeUpStudy
@@ -88,8 +88,6 @@ StudyRow bracket_row(const std::vector<std::string> &runs)
 }
 
 #define EXPECT_HAS(text, part) EXPECT_NE((text).find(part), std::string::npos) << (text)
-
-} // namespace
 
 TEST(StudyTable, MeanAndStandardDeviationOverSeeds)
 {
@@ -519,3 +517,5 @@ TEST(StudyTable, OutputsHoldEveryRunAndRow)
   print_table(out, results);
   EXPECT_HAS(out.str(), "a, seed 2: failed: the state blew up");
 }
+
+} // namespace study_table_test

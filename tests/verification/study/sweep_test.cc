@@ -13,11 +13,11 @@
 #include "verification/study/study_plan.h"
 #include "verification/study/sweep.h"
 
+namespace sweep_test
+{
+
 using namespace latcon;
 using namespace study;
-
-namespace
-{
 
 using Texts = std::vector<std::string>;
 
@@ -40,8 +40,6 @@ Study read(const std::string &text)
 {
   return read_study(text, "folder/sweep.json", false);
 }
-
-} // namespace
 
 TEST(Sweep, GridsHaveBothEndsAndShortNumbers)
 {
@@ -249,3 +247,5 @@ TEST(Sweep, ACaseIsResolvedOnceForAllItsSeeds)
   EXPECT_HAS(same.case_text(), "set noise seed      = 70");
   EXPECT_DOUBLE_EQ(same.value(seed_entry).value(), 70.);
 }
+
+} // namespace sweep_test

@@ -32,7 +32,7 @@ Tensor<2, 2> stretched(double y)
   return F;
 }
 
-struct Problem
+struct Strip
 {
   const bridge::Subject &subject;
   DamageLaw law;
@@ -82,7 +82,7 @@ double asymmetry(const DamageMotion &motion)
   return error.error();
 }
 
-DamageMotion strip(const Problem &problem, double drive, unsigned int per_length, double courant)
+DamageMotion strip(const Strip &problem, double drive, unsigned int per_length, double courant)
 {
   const double xi = problem.xi(), h = xi / per_length, top = 0.5 * height * xi;
   DamageMotionSetup setup{
@@ -106,7 +106,7 @@ DamageMotion strip(const Problem &problem, double drive, unsigned int per_length
 }
 
 // Growth of a crack from t_1 to t_2, in units of the time of a wave across the strip.
-Crack growth(const Problem &problem, double drive, unsigned int per_length, double courant, double t_1, double t_2)
+Crack growth(const Strip &problem, double drive, unsigned int per_length, double courant, double t_1, double t_2)
 {
   DamageMotion motion = strip(problem, drive, per_length, courant);
   const double xi = problem.xi(), seed = 0.5 * height * xi;
@@ -131,10 +131,10 @@ Crack growth(const Problem &problem, double drive, unsigned int per_length, doub
           now.asymmetry};
 }
 
-class Rows
+class MotionRows
 {
 public:
-  Rows(const bridge::Subject &subject, ClaimOutcome &outcome) : name_(subject.name), results_(outcome.results) {}
+  MotionRows(const bridge::Subject &subject, ClaimOutcome &outcome) : name_(subject.name), results_(outcome.results) {}
 
   void add(const std::string &quantity, const std::string &unit, double value, std::optional<double> theory,
            std::optional<double> error, const output::Tolerance &tolerance)
@@ -152,7 +152,7 @@ private:
 };
 
 // Fundamental mode of a bar in uniaxial strain with uniform damage, without viscosity.
-void waves(const Problem &problem, Rows &rows)
+void waves(const Strip &problem, MotionRows &rows)
 {
   constexpr unsigned int n = 16;
   constexpr double pi = 3.14159265358979323846, amplitude = 1e-7;
@@ -184,7 +184,7 @@ struct Toughness
 };
 
 // Energy of a steady crack, its symmetry and its ledger.
-Toughness steady_crack(const Problem &problem, unsigned int n, Rows &rows)
+Toughness steady_crack(const Strip &problem, unsigned int n, MotionRows &rows)
 {
   constexpr double drive = 1.3, courant = 0.3;
   const std::string at = ", h = xi/" + std::to_string(n);
@@ -228,8 +228,8 @@ Toughness steady_crack(const Problem &problem, unsigned int n, Rows &rows)
 void add_damage_motion_rows(const bridge::Subject &subject, const DamageLaw &law, const DamageOptions &options,
                             ClaimOutcome &outcome)
 {
-  Rows rows(subject, outcome);
-  const Problem problem{subject, law, options.planted_toughness};
+  MotionRows rows(subject, outcome);
+  const Strip problem{subject, law, options.planted_toughness};
   rows.attempt("waves", [&] { waves(problem, rows); });
   rows.attempt("smooth deformations",
                [&]

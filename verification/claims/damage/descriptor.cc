@@ -1,21 +1,7 @@
-#include "verification/claims/damage/descriptor.h"
-
-#include "verification/bridge/damaged_sheet.h"
-#include "verification/claims/damage/damage_claim.h"
+#include "verification/claims/claim_list.h"
 
 namespace latcon::claims
 {
-namespace
-{
-
-ClaimOutcome check(const ClaimInput &input)
-{
-  DamageOptions options;
-  options.finest = input.quick ? 4 : 8;
-  return damage_claim(input.subject, bridge::damage_law(input.entries, input.subject), options);
-}
-
-} // namespace
 
 Claim damage_descriptor()
 {
@@ -26,7 +12,6 @@ Claim damage_descriptor()
                     "energies. A bar breaks for the energy of a crack, with the damage of the closed form, with and "
                     "without gradient energy; in motion its crack runs if the energy that it releases exceeds that of "
                     "the crack. This claim is about the continuum alone.";
-  claim.check = check;
   claim.is_default = false;
   claim.gate = true;
   claim.is_about_damage = true;

@@ -18,9 +18,9 @@ using dealii::Point;
 using dealii::Tensor;
 
 constexpr double pi = 3.14159265358979323846;
-constexpr double density = 1e3;       // sets the unit of time alone
+constexpr double smooth_density = 1e3;       // sets the unit of time alone
 constexpr double periods_height = 8.; // wavelength of the deformation, over the spacing
-constexpr double strain = 0.05;       // of the deformation, in addition to that of the case
+constexpr double added_strain = 0.05;       // of the deformation, in addition to that of the case
 
 // A square sheet with one wavelength of a deformation along either axis.
 struct Deformation
@@ -30,23 +30,23 @@ struct Deformation
   double q() const { return 2. * pi / length; }
   Tensor<1, 2> displacement(const Point<2> &X) const
   {
-    const double x = q() * X[0] + 0.3, y = q() * X[1] - 0.2, e = strain / q();
+    const double x = q() * X[0] + 0.3, y = q() * X[1] - 0.2, e = added_strain / q();
     return Tensor<1, 2>({e * std::sin(x) * std::cos(y), 0.7 * e * std::cos(x) * std::sin(y)});
   }
   Tensor<2, 2> gradient(const Point<2> &X) const
   {
     const double x = q() * X[0] + 0.3, y = q() * X[1] - 0.2;
     Tensor<2, 2> G;
-    G[0][0] = strain * std::cos(x) * std::cos(y);
-    G[0][1] = -strain * std::sin(x) * std::sin(y);
-    G[1][0] = -0.7 * strain * std::sin(x) * std::sin(y);
-    G[1][1] = 0.7 * strain * std::cos(x) * std::cos(y);
+    G[0][0] = added_strain * std::cos(x) * std::cos(y);
+    G[0][1] = -added_strain * std::sin(x) * std::sin(y);
+    G[1][0] = -0.7 * added_strain * std::sin(x) * std::sin(y);
+    G[1][1] = 0.7 * added_strain * std::cos(x) * std::cos(y);
     return G;
   }
   // Second derivatives u_k,LJ.
   Tensor<3, 2> second_gradient(const Point<2> &X) const
   {
-    const double x = q() * X[0] + 0.3, y = q() * X[1] - 0.2, e = strain * q();
+    const double x = q() * X[0] + 0.3, y = q() * X[1] - 0.2, e = added_strain * q();
     Tensor<3, 2> H;
     H[0][0][0] = H[0][1][1] = -e * std::sin(x) * std::cos(y);
     H[0][0][1] = H[0][1][0] = -e * std::cos(x) * std::sin(y);
@@ -146,7 +146,7 @@ double squared_frequency(const Sheet &sheet, const double K)
     A_4 += h * std::pow(bond.length, 2) * std::pow(N[0], 4) / 12.;
   }
   const double l_d = sheet.subject.lengths.lattice;
-  return (A_2 * K + (l_d * l_d * A_2 - A_4) * K * K) / (1. + l_d * l_d * K) / density;
+  return (A_2 * K + (l_d * l_d * A_2 - A_4) * K * K) / (1. + l_d * l_d * K) / smooth_density;
 }
 
 // Squared frequency that a sheet has in its middle, in one step of velocity Verlet from rest, over the theory.
@@ -163,7 +163,7 @@ double wave(const Sheet &sheet)
                                      sheet.F,
                                      sheet.subject.cauchy_born.families(),
                                      {},
-                                     density,
+                                     smooth_density,
                                      {threshold, sheet.subject.spacing},
                                      [](const Point<2> &, unsigned int) { return false; },
                                      {},

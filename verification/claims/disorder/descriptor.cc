@@ -1,25 +1,7 @@
-#include "verification/claims/disorder/descriptor.h"
-
-#include "verification/claims/disorder/disorder_claim.h"
+#include "verification/claims/claim_list.h"
 
 namespace latcon::claims
 {
-namespace
-{
-
-ClaimOutcome check(const ClaimInput &input)
-{
-  DisorderOptions options;
-  options.disorder = input.entries.disorder.disorder();
-  if (!input.quick)
-  {
-    options.n_sheets = 64;
-    options.columns = 48;
-  }
-  return disorder_claim(input.subject, options);
-}
-
-} // namespace
 
 Claim disorder_descriptor()
 {
@@ -31,7 +13,6 @@ Claim disorder_descriptor()
     "Voigt "
     "and Reuss, and their means over sheets are those of the effective medium. A case without such disorder is given "
     "some.";
-  claim.check = check;
   claim.is_about_disorder = true;
   claim.entries = {"Disorder/stiffness", "Disorder/stiffness width", "Disorder/seed"};
   return claim;

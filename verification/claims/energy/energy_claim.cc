@@ -6,6 +6,7 @@
 #include <Eigen/Geometry>
 #include <Eigen/LU>
 
+#include "continuum/errors.h"
 #include "support/largest_error.h"
 #include "verification/bridge/homogeneous_response.h"
 #include "verification/bridge/network_comparison.h"

@@ -22,13 +22,8 @@ constexpr double strain = 1e-3;
 const output::Tolerance lattice_tolerance{
   1e-6, "second differences of energies with a strain of 1e-3: its fourth power times higher moduli, round-off of the "
         "energy of the stretched sheet over its square"};
-constexpr double order_tolerance = 0.05;
-const char *const of_order = "kd from 0.05 to 0.4: the next order is (kd)^2 / 12 of the error at most, which bends the "
-                             "line by less";
 // Travelling waves that are judged.
 constexpr double judged_kd = 0.25;
-// As for the wave speeds.
-const std::vector<double> order_kd{0.05, 0.1, 0.2, 0.4};
 
 constexpr const char *wave_names[] = {"L", "S"};
 
@@ -161,7 +156,7 @@ void sinusoidal(const bridge::Subject &subject, const Eigen::Matrix2d &F, const 
     [&](const std::string &quantity, const CommonOrder &found, double claimed, std::optional<double> tolerance)
   {
     const double order = found.order();
-    add("order in kd to which " + quantity, order, claimed, std::abs(order - claimed), {tolerance, of_order});
+    add("order in kd to which " + quantity, order, claimed, std::abs(order - claimed), {tolerance, reason_of_order});
   };
   add_order("local continuum and lattice agree", local_order, 2., order_tolerance);
   add_order("the gradient continuum's energy as it stands and the lattice's agree: no better", gradient_order, 2.,

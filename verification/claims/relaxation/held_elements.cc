@@ -20,7 +20,6 @@ namespace latcon::claims
 namespace
 {
 
-constexpr double epsilon = std::numeric_limits<double>::epsilon();
 
 // Mean of P over a sheet in equilibrium: sum of reactions times positions, over the area.
 Eigen::Matrix2d mean_stress(const continuum::DynamicSolver &solver, double area)
@@ -124,7 +123,7 @@ void add_held_elements(const bridge::Subject &subject, const lattice::Triangular
   // An update rounds four times, and adds a change of stretch that is round-off: of the displacement at free nodes,
   // which Newton's method leaves undetermined to its tolerance. Sums over 36 quadrature points with gradients of shape
   // functions round less than 1000 times.
-  const double round_off = (4. * static_cast<double>(n_steps) + 1000.) * epsilon;
+  const double round_off = (4. * static_cast<double>(n_steps) + 1000.) * std::numeric_limits<double>::epsilon();
   const double elastic_over_stored = of_law / stored_at_start,
                relaxed_over_stress = relaxed.norm() / overstress_at_start.norm();
   add("first Piola stress, worst of all times, error over the overstress at the start", "Pa", stress_error.value(),

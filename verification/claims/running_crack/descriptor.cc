@@ -1,20 +1,7 @@
-#include "verification/claims/running_crack/descriptor.h"
-
-#include "verification/claims/running_crack/running_crack_claim.h"
+#include "verification/claims/claim_list.h"
 
 namespace latcon::claims
 {
-namespace
-{
-
-ClaimOutcome check(const ClaimInput &input)
-{
-  RunningCrackOptions options = input.quick ? RunningCrackOptions() : full_running_crack();
-  options.frames = input.frames;
-  return running_crack_claim(input.subject, options);
-}
-
-} // namespace
 
 Claim running_crack_descriptor()
 {
@@ -28,7 +15,6 @@ Claim running_crack_descriptor()
     "uncertainty that this leaves, at most 7 %. The opening of the flanks, the gradient continuum, and differences "
     "nearer "
     "to the tip are reported.";
-  claim.check = check;
   claim.is_default = false;
   claim.quick_on_own_shells_only = true;
   return claim;

@@ -16,7 +16,7 @@ namespace
 using Complex = HalfStrip::Complex;
 using Spectrum = std::vector<Complex>;
 
-const double pi = std::acos(-1.);
+const double two_pi = 2. * std::acos(-1.);
 
 // Even samples of a time record and of its transform, f(omega) = integral f(s) exp(-i omega s) ds; the first half of
 // either is s or omega >= 0.
@@ -27,7 +27,7 @@ public:
 
   std::size_t samples() const { return samples_; }
   double step() const { return duration_ / static_cast<double>(samples_); }
-  double omega(std::size_t i) const { return 2. * pi / duration_ * signed_index(i); }
+  double omega(std::size_t i) const { return two_pi / duration_ * signed_index(i); }
   double time(std::size_t i) const { return step() * signed_index(i); }
 
   /// Values in time of a transform that is given for omega >= 0.
@@ -94,7 +94,7 @@ Spectrum factor_before(const HalfStrip &half, Record &record)
   {
     const double omega = std::abs(record.omega(i));
     const Complex phi = 1. + half.stiffness(omega) * half.compliance(omega);
-    argument += std::remainder(std::arg(phi) - argument, 2. * pi);
+    argument += std::remainder(std::arg(phi) - argument, two_pi);
     logarithm[i] = {std::log(std::abs(phi)), argument};
   }
   std::vector<double> before = record.in_time(logarithm);

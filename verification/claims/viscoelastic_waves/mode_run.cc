@@ -17,7 +17,7 @@ namespace
 using Complex = std::complex<double>;
 
 // Nonlinear terms change frequencies by the square of this.
-constexpr double strain = 1e-5;
+constexpr double mode_strain = 1e-5;
 // Largest w h and h / tau. Velocity Verlet has sin(w' h / 2) = w h / 2, so extrapolation leaves (3 / 2560) of the
 // fourth power: 1.2e-7. The update of a branch leaves (h / tau)^4 / 2880 of its share, dashpots a term of the same
 // order.
@@ -42,7 +42,7 @@ lattice::State excited(const WaveCell &cell, const lattice::Material &material, 
                        const bridge::MemoryWave &wave)
 {
   const lattice::TriangularLattice &sheet = cell.sheet;
-  const double amplitude = strain / cell.K.norm();
+  const double amplitude = mode_strain / cell.K.norm();
   lattice::State state = at_rest;
   for (std::size_t row = 0; row < sheet.rows(); ++row)
     for (std::size_t column = 0; column < sheet.sites_in_row(row); ++column)
@@ -98,7 +98,7 @@ Oscillation measure(const WaveCell &cell, const lattice::Material &material, con
                Eigen::Vector2d(simulation.state().x[place] - at_rest.x[place],
                                simulation.state().y[place] - at_rest.y[place]);
       }
-    const double value = direction.dot(sum) * cell.K.norm() / strain;
+    const double value = direction.dot(sum) * cell.K.norm() / mode_strain;
     if (!std::isfinite(value))
       throw std::runtime_error("a wave has an amplitude that is not finite");
     amplitudes.push_back(value);

@@ -25,11 +25,6 @@ const output::Tolerance lattice_tolerance{
 // to 1.8e-4).
 constexpr double compared_kd = 0.25;
 constexpr double gradient_tolerance = 1e-4;
-constexpr double order_tolerance = 0.05;
-const char *const of_order = "kd from 0.05 to 0.4: the next order is (kd)^2 / 12 of the error at most, which bends the "
-                             "line by less";
-// Wave numbers over which orders are fitted; the smallest error is well above round-off.
-const std::vector<double> order_kd{0.05, 0.1, 0.2, 0.4};
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 constexpr const char *wave_names[] = {"L", "S"};
@@ -193,7 +188,7 @@ void speeds_at(const bridge::Subject &subject, const Eigen::Matrix2d &F, const W
   const auto add_order = [&](const std::string &name, double order, double claimed, std::optional<double> tolerance)
   {
     add("order in kd of the " + name + " continuum's error, all waves together", "1", {}, order, claimed,
-        std::abs(order - claimed), {tolerance, of_order});
+        std::abs(order - claimed), {tolerance, reason_of_order});
   };
   add_order("local", local_order.order(), 2., order_tolerance);
   add_order("gradient", gradient_order.order(), 4., subject.gradient_tolerance(F, order_tolerance));

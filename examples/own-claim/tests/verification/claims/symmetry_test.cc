@@ -1,9 +1,9 @@
-#include "verification/claims/symmetry/descriptor.h"
-
 #include <gtest/gtest.h>
 
 #include "tests/verification/claims/faults.h"
 #include "tests/verification/claims/subjects.h"
+#include "verification/claims/claim_input.h"
+#include "verification/claims/claim_list.h"
 
 using namespace latcon;
 
@@ -12,7 +12,7 @@ namespace
 
 output::Results symmetry(const bridge::Subject &subject)
 {
-  return claims::symmetry_descriptor().check({subject, subjects::paper_case(), true, {}}).results;
+  return claims::check_symmetry({subject, subjects::paper_case(), true, {}}).results;
 }
 
 TEST(Symmetry, HoldsForBothShellSetsAndOrientations)

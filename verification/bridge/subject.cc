@@ -1,0 +1,71 @@
+#include "verification/bridge/subject.h"
+
+#include <cmath>
+
+#include <Eigen/SVD>
+
+#include "continuum/errors.h"
+#include "continuum/isotropic_gradient.h"
+#include "continuum/network_gradient.h"
+
+namespace latcon::bridge
+{
+
+std::optional<double> Subject::gradient_tolerance(const Eigen::Matrix2d &F, double value) const
+{
+  for (const continuum::FibreFamily &family : cauchy_born.families())
+  {
+    const double stretch = (to_continuum(F) * family.direction).norm();
+    if (stretch < continuum::LatticeGradient::full_stretch && std::abs(stretch - 1.) > 1e-12) // no force at 1
+      return {};
+  }
+  return tolerance(Law::lattice_gradient, value);
+}
+
+std::optional<double> Subject::network_gradient_tolerance(const Eigen::Matrix2d &F, double value) const
+{
+  if (!F.isIdentity(1e-12) && F.jacobiSvd().singularValues()(1) < continuum::LatticeGradient::full_stretch)
+    return {};
+  return tolerance(Law::mooney_rivlin_network, value);
+}
+
+Subject subject(const input::Case &input, const lattice::Material &material, const Laws &laws)
+{
+  const lattice::TriangularLattice sheet = input.lattice();
+  const std::optional<double> given = input.continuum.mooney_rivlin_ratio;
+  std::optional<Calibration> calibration;
+  try
+  {
+    calibration = given ? with_ratio(sheet, material, input.deformation(), *given)
+                        : calibrate_mooney_rivlin(sheet, material, input.deformation());
+  }
+  catch (const continuum::NonPhysicalState &)
+  {
+    // Claims report that there is no such law.
+  }
+  const SmallStrain theory = small_strain(sheet, material);
+  const GradientLengths lengths = gradient_lengths(sheet, material);
+  return {shells_name(material),
+          input.spacing,
+          input.orientation,
+          material,
+          input.deformation(),
+          theory,
+          slowest_wave(sheet, material, input.deformation()),
+          cauchy_born(sheet, material),
+          isotropic_network(sheet, material),
+          calibration,
+          !given,
+          lengths,
+          std::make_shared<continuum::LatticeGradient>(bond_families(sheet, material), lengths.lattice),
+          std::make_shared<continuum::IsotropicGradient>(theory.shear_modulus, lengths.isotropic_static),
+          std::make_shared<continuum::NetworkGradient>(bond_families(sheet, material), lengths.lattice),
+          laws};
+}
+
+Subject subject(const input::Case &input)
+{
+  return subject(input, input.material());
+}
+
+} // namespace latcon::bridge

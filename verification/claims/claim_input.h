@@ -1,0 +1,21 @@
+/// Input of the functions that check claims.
+#pragma once
+
+#include <string>
+
+#include "verification/bridge/subject.h"
+#include "verification/input/case.h"
+
+namespace latcon::claims
+{
+
+/// What the check of a claim is given.
+struct ClaimInput
+{
+  const bridge::Subject &subject; ///< a lattice, and the laws that should agree with it
+  const input::Case &entries;     ///< has the values of Claim::entries; every other entry has its default
+  bool quick;                     ///< small version, a few seconds
+  std::string frames;             ///< folder for frames of sheets in motion, on one rank; empty: none are written
+};
+
+} // namespace latcon::claims

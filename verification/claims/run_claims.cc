@@ -1,0 +1,65 @@
+#include "verification/claims/run_claims.h"
+
+#include <functional>
+#include <map>
+#include <optional>
+
+#include "support/one_thread.h"
+#include "verification/bridge/subject.h"
+#include "verification/claims/claim_input.h"
+#include "verification/claims/claim_inputs.h"
+#include "verification/claims/claim_list.h"
+
+namespace latcon::claims
+{
+namespace
+{
+
+// Functions that check the claims, by name.
+const std::map<std::string, std::function<ClaimOutcome(const ClaimInput &)>> &checks()
+{
+#define LATCON_CHECK(claim_) {claim_##_descriptor().name, check_##claim_},
+  static const std::map<std::string, std::function<ClaimOutcome(const ClaimInput &)>> map{LATCON_CLAIMS(LATCON_CHECK)};
+#undef LATCON_CHECK
+  return map;
+}
+
+} // namespace
+
+ClaimOutcome check_claim(const std::string &name, const ClaimInput &input)
+{
+  return checks().at(name)(input);
+}
+
+ClaimOutcome run_claims(const input::Case &input, const std::vector<Claim> &claims, bool quick, Shells shells,
+                        const bridge::Laws &laws, const std::string &frames)
+{
+  std::optional<support::OneThread> one_thread;
+  if (quick)
+    one_thread.emplace();
+  const input::Case read = claim_inputs(input);
+  std::vector<bridge::Subject> subjects{bridge::subject(read, read.material(), laws)};
+  if ((read.has_next_nearest || read.has_third_nearest) && shells == Shells::own_and_nearest)
+  {
+    lattice::Material nearest_only = read.material();
+    nearest_only.next_nearest.reset();
+    nearest_only.third_nearest.reset();
+    subjects.push_back(bridge::subject(read, nearest_only, laws));
+  }
+  ClaimOutcome outcome;
+  for (const Claim &claim : claims)
+  {
+    const input::Case entries = claim_inputs(input, claim.entries);
+    ClaimOutcome found;
+    for (const bridge::Subject &one : subjects)
+      if (&one == &subjects.front() || (!claim.is_about_program && (!quick || !claim.quick_on_own_shells_only)))
+        found.results.attempt(claim.name, one.name,
+                              [&] { found.add(check_claim(claim.name, {one, entries, quick, frames})); });
+    if (claim.gate)
+      found.results.mark_gate();
+    outcome.add(found);
+  }
+  return outcome;
+}
+
+} // namespace latcon::claims

@@ -1,0 +1,13 @@
+/// Commands that compute with finite elements.
+#pragma once
+
+#include "support/errors.h"
+#include "verification/input/options.h"
+
+namespace latcon::commands
+{
+
+support::ExitCode run_continuum(const input::Options &options);          ///< `latcon continuum`
+support::ExitCode run_continuum_fracture(const input::Options &options); ///< `latcon fracture --side continuum`
+
+} // namespace latcon::commands

@@ -1,0 +1,61 @@
+/// The part of the program that computes with finite elements.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "support/errors.h"
+#include "verification/claims/run_claims.h"
+#include "verification/input/options.h"
+
+namespace latcon::input
+{
+struct Case;
+class Parameters;
+} // namespace latcon::input
+
+namespace latcon::elements
+{
+
+/// Size and cost of a crack of the continuum.
+struct CrackCost
+{
+  double cells;       ///< number of cells
+  double evaluations; ///< of the forces in the whole run, at most
+};
+
+/// Functions that need finite elements. They are reached through this table because they live in a module,
+/// latcon_elements.so, which the program loads when it calls elements() first: its 150 libraries (deal.II, Trilinos and
+/// what these need) take 0.4 s of processor time, more than most commands.
+struct Elements
+{
+  decltype(claims::run_claims) *run_claims;
+  support::ExitCode (*run_continuum)(const input::Options &options);          ///< `latcon continuum`
+  support::ExitCode (*run_continuum_fracture)(const input::Options &options); ///< `latcon fracture --side continuum`
+  /// Returns the cost of the crack of a case. Calls Parameters::finish().
+  /// @throws InputError as bridge::damaged_sheet() does
+  CrackCost (*crack_cost)(const input::Case &input, input::Parameters &parameters);
+  /// Initialises the libraries of the finite elements; the object finalises them on destruction.
+  std::shared_ptr<void> (*start)();
+};
+
+/// Returns the functions of the module, which is loaded and started with the first call, on every rank that calls.
+/// @throws support::OutputError if it cannot be loaded
+[[nodiscard]] const Elements &elements();
+
+/// Finalises the libraries of the finite elements, if they were started, on destruction: to be created after MpiSession
+/// and before any call of elements().
+class Session
+{
+public:
+  Session() = default;
+  ~Session();
+  Session(const Session &) = delete;
+  Session &operator=(const Session &) = delete;
+};
+
+} // namespace latcon::elements
+
+/// Entry point of the module.
+extern "C" const latcon::elements::Elements &latcon_elements();

@@ -1,0 +1,49 @@
+#include "verification/elements/elements.h"
+
+#include <cstdlib>
+
+#include <dlfcn.h>
+
+#include "verification/input/data_folder.h"
+
+namespace latcon::elements
+{
+namespace
+{
+
+std::shared_ptr<void> started; // libraries of the finite elements
+
+const Elements &load()
+{
+  const std::string file = input::module_file();
+  if (file.empty())
+    throw support::OutputError(input::module_name, "the module with the finite elements is neither beside the program nor in "
+                                          "../lib/latcon; install latcon as a whole, or link to the program");
+  // The sums of a threaded BLAS depend on the number of threads, and its threads would be idle. OpenBLAS starts them
+  // while it is loaded.
+  setenv("OPENBLAS_NUM_THREADS", "1", 1);
+  void *const module = dlopen(file.c_str(), RTLD_NOW | RTLD_GLOBAL);
+  if (module == nullptr)
+    throw support::OutputError(file, std::string("the module with the finite elements cannot be loaded: ") + dlerror());
+  using Entry = const Elements &(*)();
+  const auto entry = reinterpret_cast<Entry>(dlsym(module, "latcon_elements"));
+  if (entry == nullptr)
+    throw support::OutputError(file, "it is not the module of this program");
+  started = entry().start();
+  return entry();
+}
+
+} // namespace
+
+const Elements &elements()
+{
+  static const Elements &table = load();
+  return table;
+}
+
+Session::~Session()
+{
+  started.reset();
+}
+
+} // namespace latcon::elements
