@@ -57,7 +57,7 @@ def blocks(page, text):
             if not fence[1]:
                 raise BadPage(f"{page}:{begin + 1}: a block needs a language, `text` if it is none")
             block = Block(page, begin + 1, fence[1], "\n".join(lines[begin + 1:i]) + "\n", *(mark or ("", "")))
-            if mark and block.language != "sh" and (block.language, mark[0]) != ("python", "not run"):
+            if mark and block.language != "sh" and (block.language != "python" or mark[0] == "exit code"):
                 raise BadPage(f"{block.place()}: '{mark[0]}' is for commands (sh)")
             if block.language == "text" and after:
                 after.output = block.text

@@ -141,7 +141,9 @@ class Snippets(unittest.TestCase):
         self.assertEqual((weekly.mark, weekly.says), ("run weekly", "long"))
         self.assertEqual((two.mark, two.says, two.output), ("exit code", "3", ""))
         self.assertEqual(three.language, "text")
-        for text in ("```sh\na\n", "```\na\n```\n", "<!-- not run: so -->\nwords\n", "<!-- not run: so -->\n```text\na\n```\n",
+        (weekly,) = blocks("page.md", "<!-- run weekly: long -->\n```python\na\n```\n")
+        self.assertEqual(weekly.mark, "run weekly")
+        for text in ("<!-- exit code: 3 -->\n```python\na\n```\n", "```sh\na\n", "```\na\n```\n", "<!-- not run: so -->\nwords\n", "<!-- not run: so -->\n```text\na\n```\n",
                      "words\n\n    ./run verify\n"):
             with self.assertRaises(BadPage):
                 blocks("page.md", text)
