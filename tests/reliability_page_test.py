@@ -36,8 +36,8 @@ class ReliabilityPage(unittest.TestCase):
     def test_every_answer_names_tests_that_there_are(self):
         known = known_tests()
         self.assertGreater(len(known), 500)
-        rows = answers("Findings of a review") + answers("What others met")
-        self.assertGreater(len(rows), 30)
+        rows = answers("Problems of related programs")
+        self.assertGreater(len(rows), 10)
         for row in rows:
             *answer, tests = row
             with self.subTest(row):

@@ -1,10 +1,11 @@
 #!/usr/bin/python3
-"""Draws the cracks of a study and writes the page gallery.md, with pictures in pictures/.
+"""Draws the cracks of a study and writes the page gallery.md, with pictures in pictures/ and all rows in gallery-paper.csv.
 
 With --latcon it first performs missing runs: the study, and the cracks of EXTRA_RUNS.
 Exit codes, as of latcon: 0 success; 2 no study, or a damaged file; 4 a run failed; 5 a file cannot be written.
 """
 import argparse
+import csv
 import re
 import subprocess
 import sys
@@ -29,6 +30,7 @@ from study_quantities import asked_quantities, sweeps_of
 from study_runs import mean_of, read_study, value_text
 
 LARGEST_PICTURE, LARGEST_ANIMATION = 250_000, 1_000_000  # [bytes]
+TABLE = "gallery-paper.csv"  # all rows of the study
 SWEEPS = ("zeta", "Sheet/height")  # abscissas of the plots
 SHELLS = "Next-nearest neighbours/present"
 ALL_KINDS = ("sheet", "path", "velocity", "stress")
@@ -51,8 +53,8 @@ CAPTIONS = {
                                       ("bridged_length", "bridged length", 100, " cm"),
                                       ("detached_sites", "detached sites", 1, ""))),
     "path": ("Above: path of the tip in the undeformed sheet. Below: where bonds broke, coloured by time.",
-             (("wavelength", "wavelength", 100, " cm"), ("amplitude", "amplitude of the best-fitting sinusoid", 100, " cm"),
-              ("crest_amplitude", "half the height from trough to crest", 100, " cm"))),
+             (("wavelength", "wavelength", 100, " cm"), ("amplitude", "amplitude", 100, " cm"),
+              ("crest_amplitude", "crest amplitude", 100, " cm"))),
     "velocity": (RUN_PICTURES["velocity"], (("negative_zone_area", "area of the negative-velocity zone", 1e6, " mm²"),
                                             ("negative_zone_depth", "most negative velocity ahead of the tip", 1, " m/s"),
                                             ("velocity_asymmetry", "asymmetry", 1, ""),
@@ -127,23 +129,47 @@ def sweep_sections(study, folder):
             if key in known or not draw_sweep(study, rows[0], asked_quantities(rows), png):
                 continue
             known.add(key)
-            words = [f"- {r['quantity']}, {r['expected'] or 'for information'}: **{r['verdict']}**. {r['measured']}"
+            words = [f"- {r['quantity']}, {r['expected'] or 'for information'}: **{r['verdict']}**. {brief(r['measured'])}"
                      for r in rows]
             sections.append(([f"## {claim['claim']}", "", f"![sweep](pictures/{png.name})", "", "Means and standard "
                               "deviations over the seeds; open symbols at 0: not defined for this crack.", "", *words], png))
     return sections
 
 
-def claims_section(study):
-    """Statement of the source, measured values and verdict, one line per row."""
-    lines = ["## What the paper says, and what latcon measures", ""]
+def brief(measured):
+    """What was measured, without the list of runs or abscissas that follows a summary or is all there is."""
+    return re.split(r"; (?=[\w.+-]+: )", measured)[0]
+
+
+def deciding(rows):
+    """The row that decides a claim: the first that fails, or is judged, or is reported; a number rather than a pattern."""
+    judged = [row for row in rows if row["verdict"] != "reported"]
+    chosen = [row for row in judged if row["verdict"] != "holds"] or judged or rows
+    return next((row for row in chosen if row["quantity"] != "pattern"), chosen[0])
+
+
+def claims_section(study, table):
+    """Table of the statements of the source, each with the row that decides; `table` is the name of the file with all rows."""
+    lines = ["## What the paper says, and what latcon measures", "",
+             f"One row that decides for each statement; all rows are in [{table}]({table}), the words of the paper and notes in "
+             "`verification/studies/paper.json`.", "", "| statement | verdict | decided by |", "| --- | --- | --- |"]
     for claim in study.claims:
-        lines += [f"**{claim['claim']}** ({claim['verdict']}).{' The paper: ' + claim['paper'] if claim['paper'] else ''}"
-                  f"{' Note: ' + claim['note'] if claim['note'] else ''}", ""]
-        lines += [f"- {row['verdict']}: {', '.join(row['runs'])}; {row['quantity']}: {row['measured']}"
-                  f"{' [' + row['expected'] + ']' if row['expected'] else ''}" for row in claim["rows"]]
-        lines.append("")
+        row = deciding(claim["rows"])
+        runs = row["runs"][0] + (" …" if len(row["runs"]) > 1 else "")
+        lines.append(f"| {claim['claim']} | {claim['verdict']} | {runs}, `{row['quantity']}`: {brief(row['measured'])}"
+                     f"{' [' + row['expected'] + ']' if row['expected'] else ''} |")
     return lines
+
+
+def write_rows(study, file):
+    """Writes all rows of the study to `file`."""
+    with open(file, "w", encoding="utf-8", newline="") as out:
+        table = csv.writer(out, lineterminator="\n")
+        table.writerow(["statement", "verdict", "runs", "quantity", "measured", "expected"])
+        for claim in study.claims:
+            for row in claim["rows"]:
+                table.writerow([claim["claim"], row["verdict"], ", ".join(row["runs"]), row["quantity"], row["measured"],
+                                row["expected"] or ""])
 
 
 def film_section(run, folder):
@@ -229,7 +255,8 @@ def gallery(study, docs):
     for section, png in sweep_sections(study, folder):
         pictures.add(png)
         lines += ["", *section]
-    lines += ["", *claims_section(study)[:-1]]
+    lines += ["", *claims_section(study, TABLE)]
+    write_file(docs / TABLE, lambda beside: write_rows(study, beside))
     before = set(re.findall(r"\]\(pictures/([^)]*)\)", read_text(docs / "gallery.md") or ""))
     write_file(docs / "gallery.md", lambda beside: beside.write_text(wrapped(lines), encoding="utf-8"))
     for name in before - {picture.name for picture in pictures}:
@@ -240,7 +267,7 @@ def gallery(study, docs):
 
 def wrapped(lines):
     """Text of the lines, wrapped to 120 columns."""
-    return "".join(line + "\n" if line.startswith(("!", "#")) else textwrap.fill(
+    return "".join(line + "\n" if line.startswith(("!", "#", "|")) else textwrap.fill(
         line, 120, subsequent_indent="  " if line.startswith("- ") else "", break_long_words=False,
         break_on_hyphens=False) + "\n" for line in lines)
 
