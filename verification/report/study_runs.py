@@ -121,6 +121,6 @@ def value_text(mean, scale=1.0):
     if mean is None:
         return "–"
     value, deviation = scale * mean.mean, scale * mean.deviation
-    digits = max(0, 1 - math.floor(math.log10(deviation))) if deviation > 0 else None
+    digits = max(0, 1 - math.floor(math.log10(deviation))) if deviation > 1e-12 * abs(value) else None  # or round-off
     text = f"{value:.4g}" if digits is None else f"{value:.{digits}f} ± {deviation:.{digits}f}"
     return f"{text} ({mean.n}{f' of {mean.n_seeds}' if mean.n < mean.n_seeds else ''})"

@@ -135,7 +135,8 @@ std::string SeedStatistics::text(const std::string &unit) const
 std::string quantity_text(const double value, const std::optional<double> deviation, const std::string &unit)
 {
   const Display shown = display(unit);
-  if (!deviation || !(*deviation > 0.))
+  // Equal values have a deviation of round-off.
+  if (!deviation || !(*deviation > 1e-12 * std::abs(value)))
     return format_number("%.*g", 4, shown.scale * value) + shown.unit;
   // Two digits of the deviation, and the value to the same decimal place.
   const double spread = shown.scale * *deviation;

@@ -100,6 +100,13 @@ TEST(StudyTable, MeanAndStandardDeviationOverSeeds)
   EXPECT_EQ(seeds.text("m"), "2.20 ± 0.20 cm (3)");
 }
 
+TEST(StudyTable, EqualValuesHaveNoDeviation)
+{
+  MadeUpStudy table;
+  table.add("a", std::vector<double>(10, 0.02));
+  EXPECT_EQ(statistics("a", "wavelength", table.outcomes).text("m"), "2 cm (10)");
+}
+
 // Over seeds with an uncertainty only.
 TEST(StudyTable, UncertaintyIsTheRootMeanSquareOverTheSeedsThatGiveOne)
 {
