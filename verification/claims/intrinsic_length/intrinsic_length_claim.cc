@@ -261,7 +261,7 @@ void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &op
   F(0, 0) = options.edge_stretch;
   F(1, 1) = layer.stretch_across;
   const Alpha alpha = continuum_alpha(gradient, F, Eigen::Vector2d(0., 1.), subject.spacing);
-  rows.add("edge layer: decay per row, gradient continuum (it cannot alternate)", "1", alternates ? decay : -decay,
+  rows.add("edge layer: decay factor per row, gradient continuum (always positive)", "1", alternates ? decay : -decay,
            std::exp(-std::sqrt(3.) / 2. / std::sqrt(-alpha[0])), {}, {}, {});
 }
 
