@@ -20,7 +20,7 @@ import latcon
 import fit_fig1
 
 # Quantity of an observation, its name, its unit on the page and the number of these in an SI unit.
-QUANTITIES = {"crack.wavelength": ("wavelength", "cm", 100), "crack.crest_amplitude": ("amplitude", "cm", 100),
+QUANTITIES = {"crack.wavelength": ("wavelength", "cm", 100), "crack.crest_amplitude": ("crest amplitude", "cm", 100),
               "crack.speed_lagrangian": ("speed", "m/s", 1)}
 SCALES = {"m": ("cm", 100), "1": ("1", 1)}
 LISTED = 8  # sets in the table of the best
@@ -89,7 +89,7 @@ def sets(result, others):
     rows = [[str(number), *scaled(result, row), *(f"{scale * row[key]:.3g}" for key, (_, _, scale) in QUANTITIES.items()),
              f"{row['crack.crest_amplitude'] / row['crack.wavelength']:.3f}", f"{row['misfit']:.1f}",
              f"{100 * others[str(number)]['bridged_length']:.2f}"] for number, row in shown.iterrows()]
-    head = ["point", *head_of(result), *(f"{name} [{unit}]" for name, unit, _ in QUANTITIES.values()), "amplitude/wavelength", "misfit",
+    head = ["point", *head_of(result), *(f"{name} [{unit}]" for name, unit, _ in QUANTITIES.values()), "crest amplitude/wavelength", "misfit",
             "bridged length [cm]"]
     return table(head, rows)
 
@@ -126,7 +126,7 @@ def bridges(result, others):
     ratio = (points["crack.crest_amplitude"] / points["crack.wavelength"]).to_numpy()
     near, short = points.index.isin(result.near_equal.index), length == length.min()
     return [f"The {near.sum()} near-equal cracks have bridged lengths from {length[near].min():.2f} to {length[near].max():.2f} cm and "
-            f"amplitudes over wavelengths from {ratio[near].min():.3f} to {ratio[near].max():.3f}. The {short.sum()} oscillating cracks with "
+            f"crest amplitudes over wavelengths from {ratio[near].min():.3f} to {ratio[near].max():.3f}. The {short.sum()} oscillating cracks with "
             f"the shortest bridges, {length.min():.2f} cm, have {ratio[short].min():.3f} to {ratio[short].max():.3f}, and misfits from "
             f"{points['misfit'][short].min():.0f}."]
 
@@ -134,12 +134,12 @@ def bridges(result, others):
 def best_runs(best):
     rows = [(str(run["seed"]), run["pattern"], *(f"{100 * run[name]:.3g}" for name in ("wavelength", "crest_amplitude", "amplitude")),
              f"{run['speed_lagrangian']:.3g}", f"{100 * run['bridged_length']:.2f}", f"{run['detached_sites']:.0f}") for run in best]
-    return table(("seed", "pattern", "wavelength [cm]", "amplitude [cm]", "of the sinusoid [cm]", "speed [m/s]", "bridged length [cm]",
+    return table(("seed", "pattern", "wavelength [cm]", "crest amplitude [cm]", "amplitude [cm]", "speed [m/s]", "bridged length [cm]",
                   "detached sites"), rows)
 
 
 def draw(result, others, folder):
-    """Pictures: each quantity over each parameter; amplitude over wavelength, coloured by the bridged length."""
+    """Pictures: each quantity over each parameter; crest amplitude over wavelength, coloured by the bridged length."""
     from matplotlib.figure import Figure
     points = oscillating(result)
     near = points[points.index.isin(result.near_equal.index)]
@@ -174,7 +174,7 @@ def draw(result, others, folder):
     for ratio in (0.05, 0.074):
         axes.plot(reach, ratio * reach, ":", color="0.4", linewidth=1)
         axes.annotate(f"{ratio:g}", (reach[1], ratio * reach[1]), fontsize=8, color="0.3")
-    axes.set(xlabel="wavelength [cm]", ylabel="amplitude [cm]", xlim=(1, None), ylim=(0, None))
+    axes.set(xlabel="wavelength [cm]", ylabel="crest amplitude [cm]", xlim=(1, None), ylim=(0, None))
     axes.legend(loc="upper left")
     figure.colorbar(shown, label="bridged length behind the tip [cm]")
     figure.savefig(folder / "fit-fig1-ratio.png", dpi=90)
