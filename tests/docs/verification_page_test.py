@@ -30,7 +30,8 @@ class VerificationPage(unittest.TestCase):
                                ("NN, sinusoidal field about F = (2.3, 2.8): energy", "sinusoidal field: energy"),
                                ("NN: hole, F = (1.3, 1.1), energy", "hole, energy"),
                                ("NN: smallest eigenvalue at l_d, loaded", "smallest eigenvalue at l_d"),
-                               ("NN: alpha of L waves at 49 degrees, run", "alpha of L waves, run")):
+                               ("NN: alpha of L waves at 49 degrees, run", "alpha of L waves, run"),
+                               ("crack speed over c_S, beta 0.5, Delta/Delta_G 1.57", "crack speed over c_S")):
             self.assertEqual(verification_page.shared_name(quantity), name)
 
     def test_table_shows_the_row_that_takes_most_of_its_tolerance(self):
