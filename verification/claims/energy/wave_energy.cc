@@ -159,8 +159,8 @@ void sinusoidal(const bridge::Subject &subject, const Eigen::Matrix2d &F, const 
     add("order in kd to which " + quantity, order, claimed, std::abs(order - claimed), {tolerance, reason_of_order});
   };
   add_order("local continuum and lattice agree", local_order, 2., order_tolerance);
-  add_order("the gradient continuum's unfiltered energy and the lattice's agree: 2 as without gradient", gradient_order, 2.,
-            subject.gradient_tolerance(F, order_tolerance));
+  add_order("the gradient continuum's unfiltered energy and the lattice's agree: 2 as without gradient", gradient_order,
+            2., subject.gradient_tolerance(F, order_tolerance));
   add("excess of the gradient continuum's energy over l_d^2 k^2 at kd = 0.05",
       excess_error.value() / excess_error.reference(), 1., excess_error.error(),
       {subject.gradient_tolerance(F, std::pow(order_kd[0], 2)), "the next term, (kd)^2 of this one"});
