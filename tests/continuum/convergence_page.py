@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""docs/convergence.md and its pictures, from the manufactured solutions of convergence_test.cc.
+"""docs/convergence.md, its pictures and convergence.csv, from the manufactured solutions of convergence_test.cc.
 
 Usage: convergence_page.py FROM DOCS
 
@@ -101,18 +101,17 @@ def summary_table(series):
     return table_of(header, rows)
 
 
-def series_table(series):
+def write_errors(series, path):
     """Errors on every mesh and the orders between them."""
-    rows = []
-    shown = None
-    for s in series:
-        for i, row in enumerate(s.rows):
-            cells = [MESH[s.mesh] if s.mesh != shown else "", str(s.degree) if i == 0 else "", f"1/{1. / row[0]:.4g}"]
-            for norm, error in zip(NORMS, row[1:]):
-                cells += [f"{error:.2e}", f"{s.orders(norm)[i - 1]:.2f}" if i > 0 else ""]
-            rows.append(cells)
-            shown = s.mesh
-    return table_of(["mesh, edges", "p", "h [m]"] + [text for norm in NORMS for text in (norm, "order")], rows)
+    with path.open("w", encoding="utf-8", newline="") as file:
+        table = csv.writer(file, lineterminator="\n")
+        table.writerow(["gradient law", "law", "mesh and edges", "p", "h [m]"] + [text for norm in NORMS for text in (norm, f"order of {norm}")])
+        for s in series:
+            for i, row in enumerate(s.rows):
+                cells = [GRADIENT[s.gradient], LOCAL[s.local], MESH[s.mesh], s.degree, f"1/{1. / row[0]:.4g}"]
+                for norm, error in zip(NORMS, row[1:]):
+                    cells += [f"{error:.2e}", f"{s.orders(norm)[i - 1]:.2f}" if i > 0 else ""]
+                table.writerow(cells)
 
 
 def draw(series, path):
@@ -176,17 +175,12 @@ cell) have the orders 2/2/1, 4/3/2 and 5/4/3 for p = 2, 3, 4 with a gradient law
 coarser ones.
 
 {summary_table(series)}
-Observed: smallest and largest order over local laws, meshes and edges, between the two finest meshes.
+Observed: smallest and largest order over local laws, meshes and edges, between the two finest meshes. Errors on every mesh, and
+the orders between them: [convergence.csv](convergence.csv).
 """]
     for gradient, title in GRADIENT.items():
-        of_gradient = [s for s in series if s.gradient == gradient]
-        if not of_gradient:
-            continue
-        parts.append(f"## {title[0].upper()}{title[1:]}\n\n![Errors over h, {title}](images/convergence-{gradient}.png)\n")
-        for local, name in LOCAL.items():
-            of_both = [s for s in of_gradient if s.local == local]
-            if of_both:
-                parts.append(f"### {name[0].upper()}{name[1:]}\n\n{series_table(of_both)}")
+        if any(s.gradient == gradient for s in series):
+            parts.append(f"![Errors over h, {title}](images/convergence-{gradient}.png)\n\n*{title[0].upper()}{title[1:]}.*\n")
     return "\n".join(parts)
 
 
@@ -199,6 +193,7 @@ def write_page(folder, docs):
         if of_gradient:
             draw(of_gradient, docs / "images" / f"convergence-{gradient}.png")
     (docs / "convergence.md").write_text(page_text(series), encoding="utf-8")
+    write_errors(series, docs / "convergence.csv")
 
 
 def main(source, docs):

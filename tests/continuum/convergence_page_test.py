@@ -46,8 +46,9 @@ class ConvergencePage(unittest.TestCase):
         self.assertEqual(convergence_page.main(self.tables, self.docs), 0)
         page = (self.docs / "convergence.md").read_text(encoding="utf-8")
         self.assertIn("| without gradient law | 2 | 2 | 3 | 2.97 … 3.01 | 2 | 1.96 … 2.02 | 1 | 0.95 … 1.03 |", page)
-        self.assertIn("| uniform, clamped | 2 | 1/4 | 4.62e-02 |  |", page)
-        self.assertIn("|  |  | 1/16 | 7.12e-04 | 3.01 |", page)
+        errors = (self.docs / "convergence.csv").read_text(encoding="utf-8")
+        self.assertIn("without gradient law,network of fibres (C.11),\"uniform, clamped\",2,1/4,4.62e-02,,", errors)
+        self.assertIn("\"uniform, clamped\",2,1/16,7.12e-04,3.01,", errors)
         self.assertNotIn("isotropic.png", page)
         for name in ("local", "lattice"):
             self.assertIn(f"images/convergence-{name}.png", page)
