@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 """Tests of the page and the gallery of a synthetic study: checks, pictures of runs, numbers, choice of the cracks."""
 import contextlib
+import csv
 import io
 import json
 import re
@@ -372,10 +373,19 @@ class Gallery(MadeUpStudy):
                       "area of the negative-velocity zone 13 mm² (over 2 seeds 14.0 ± 1.4 mm²)",
                       "peak at 4 d over the value straight ahead 1.07", "wedge angle 33°", "exponent 0.77"):
             self.assertIn(words, text)
-        for claim in self.document["claims"]:
-            self.assertIn(f"**{claim['claim']}** ({claim['verdict']}). The paper: {claim['paper']}", text)
-            for row in claim["rows"]:
-                self.assertIn(f"- {row['verdict']}: {', '.join(row['runs'])}; {row['quantity']}: {row['measured']}", text)
+        self.assertIn("| It winds | holds | calm …, `wavelength`: exponent 0.77", text)
+        with (self.folder / "docs" / "gallery-paper.csv").open(encoding="utf-8", newline="") as file:
+            rows = [[row["statement"], row["verdict"], row["runs"], row["quantity"], row["measured"]] for row in csv.DictReader(file)]
+        self.assertEqual(rows, [[claim["claim"], row["verdict"], ", ".join(row["runs"]), row["quantity"], row["measured"]]
+                                for claim in self.document["claims"] for row in claim["rows"]])
+
+    def test_statements_are_decided_by_the_row_that_fails_or_by_a_number(self):
+        row = {"runs": ["a"], "quantity": "pattern", "verdict": "holds", "measured": "straight 2/2"}
+        speed = dict(row, quantity="speed", measured="19 m/s (2)")
+        self.assertEqual(gallery.deciding([row, speed]), speed)
+        self.assertEqual(gallery.deciding([speed, dict(row, verdict="not measured")])["verdict"], "not measured")
+        self.assertEqual(gallery.deciding([dict(speed, verdict="reported"), row]), row)
+        self.assertEqual(gallery.brief("rise: p < 0.0001; exponent 0.2; 1.621: not measured; 2.1: 3"), "rise: p < 0.0001; exponent 0.2")
 
     def test_pictures_are_those_of_the_page_and_small(self):
         self.read()
