@@ -143,7 +143,7 @@ double DamageField::minimize(const Sheet &sheet, const Vector &u, const double l
   if (&sheet.mesh() != &dof_handler_.get_triangulation())
     throw InvalidInput("the damage field and the sheet have different meshes");
   const MPI_Comm communicator = sheet.communicator();
-  // Gradient of E by d over 2 (1 - k): A d - b, eq. (C.63).
+  // Gradient of E by phi over 2 (1 - k): A phi - b, eq. (C.63).
   const Vector energies = nodal_energies(sheet, u, load_factor);
   Vector b = energies;
   b.add(-law_.threshold, measure_);

@@ -17,10 +17,11 @@
 namespace latcon::continuum
 {
 /// Damage field d(X) of a sheet: bilinear (Q1) on the mesh of the sheet, with the energy
-///   E(u, d) = sum over nodes a of g(d_a) e_a(u) + S(d),    S(d) = 2 (1 - k) W_c integral of d + xi^2 |Grad d|^2 dX
-/// (theory-damage.md, eqs. (C.59) to (C.63)). As a StiffnessFactor it interpolates g(d_a) bilinearly, so that the
+///   E(u, phi) = sum over nodes a of g(phi_a) e_a(u) + S(phi),
+///   S(phi) = 2 (1 - k) W_c integral of phi + xi^2 |Grad phi|^2 dX
+/// (theory-damage.md, eqs. (C.59) to (C.63)). As a StiffnessFactor it interpolates g(phi_a) bilinearly, so that the
 /// nodal energies e_a, the integrals of the stored energy density times shape function, are exactly conjugate to
-/// g(d_a).
+/// g(phi_a).
 ///
 /// Damage is irreversible: minimize() does not let it fall below the state of the last accept() or set(). All functions
 /// but at() are collective.
@@ -38,16 +39,16 @@ public:
   /// Throws InvalidInput for a value out of range.
   void set(const std::function<double(const dealii::Point<2> &)> &damage);
 
-  /// Minimises E(u, d) over d not below the accepted damage, at fixed u [m] (with ghost entries) of a `sheet` on the
-  /// same mesh, by a primal-dual active set method, eq. (C.64). Returns the largest change of d at any node [-]. Throws
-  /// NonPhysicalState as Sheet::energy does and if the energy is not convex in the damage of a node, because its e_a is
-  /// too negative, and LinearSolverFailed if the active sets do not converge.
+  /// Minimises E(u, phi) over phi not below the accepted damage, at fixed u [m] (with ghost entries) of a `sheet` on
+  /// the same mesh, by a primal-dual active set method, eq. (C.64). Returns the largest change of phi at any node [-].
+  /// Throws NonPhysicalState as Sheet::energy does and if the energy is not convex in the damage of a node, because its
+  /// e_a is too negative, and LinearSolverFailed if the active sets do not converge.
   double minimize(const Sheet &sheet, const Vector &u, double load_factor);
 
   /// Makes the current damage the lower bound of later ones.
   void accept() { lower_bound_ = damage_; }
 
-  /// Returns S(d) [J/m], per unit reference thickness.
+  /// Returns S(phi) [J/m], per unit reference thickness.
   double fracture_energy() const;
 
   /// Returns the largest damage of any node [-].
@@ -57,7 +58,7 @@ public:
   /// InvalidInput if a point is outside the mesh by more than 1e-8 of a cell, or not finite.
   std::vector<double> evaluate(const std::vector<dealii::Point<2>> &points) const;
 
-  /// Returns the interpolated g(d_a) [-].
+  /// Returns the interpolated g(phi_a) [-].
   double at(const dealii::Triangulation<2>::cell_iterator &cell, const dealii::Point<2> &unit_point) const override;
 
   const DamageLaw &law() const { return law_; }
@@ -82,6 +83,6 @@ private:
   Vector measure_;                                // integrals of phi_a [m^2]
   Vector damage_;                                 // with ghost entries, as lower_bound_ and factor_
   Vector lower_bound_;
-  Vector factor_; // g(d_a)
+  Vector factor_; // g(phi_a)
 };
 } // namespace latcon::continuum

@@ -34,10 +34,10 @@ struct DamageMotionLedger
   double elastic = 0.;   ///< sum of g_c E_c
   double kinetic = 0.;   ///< sum of m_a |v_a|^2 / 2, and that of the micro-inertia
   double viscous = 0.;   ///< dissipated since the start
-  double fracture = 0.;  ///< S(d), without that of the initial damage
+  double fracture = 0.;  ///< S(phi), without that of the initial damage
   double shed = 0.;      ///< kinetic energy of the mass that was removed with damage
   double imbalance = 0.; ///< initial energy - all of the others
-  double gradient = 0.;  ///< sum of g(d_a) E^g_a
+  double gradient = 0.;  ///< sum of g(phi_a) E^g_a
 
   /// Saves or loads the energies, for checkpoints.
   template <class Archive>

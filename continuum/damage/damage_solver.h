@@ -21,13 +21,13 @@ struct DamageLedger
 {
   double elastic = 0.;   ///< integral of g W
   double gradient = 0.;  ///< integral of g W_g, and the terms on faces
-  double fracture = 0.;  ///< S(d), without that of the initial damage
+  double fracture = 0.;  ///< S(phi), without that of the initial damage
   double work = 0.;      ///< done on the sheet by prescribed displacements and dead loads
   double imbalance = 0.; ///< work - elastic - gradient - fracture, eq. (C.65)
 };
 
 /// Quasi-static loading of a sheet with damage: in every load step displacement and damage are minimised in turn until
-/// neither changes, from the state of the previous step (theory-damage.md, "Damage"). The energy E(u, d) falls in
+/// neither changes, from the state of the previous step (theory-damage.md, "Damage"). The energy E(u, phi) falls in
 /// every iteration. The result is a state in which neither field alone can lower the energy, not necessarily the lowest
 /// minimum. Where the sheet softens faster than it unloads, a crack runs within one load step; energy that a dynamic
 /// crack would carry away is then missing from the ledger: `imbalance` is positive.

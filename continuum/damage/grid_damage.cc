@@ -133,7 +133,7 @@ bool GridDamage::minimize(const std::vector<double> &cell_energies, const std::v
   bool has_changed = false;
   for (unsigned int n = 0; n < max_sweeps;)
   {
-    // Window of the nodes at which the energy still falls with d, and their neighbours.
+    // Window of the nodes at which the energy still falls with phi, and their neighbours.
     Window window{columns, 0, grid_.rows(), 0};
     for (std::size_t j = 0; j < grid_.rows(); ++j)
       for (std::size_t i = 0; i < columns; ++i)

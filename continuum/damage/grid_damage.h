@@ -31,36 +31,36 @@ struct NodeGrid
   }
 };
 
-/// Damage d at the nodes of a grid for a sheet in motion: minimises
-///   sum over cells c of g_c E_c + S(d),   g_c = mean of g(d_a) over the nodes a of c,
-/// over d not below its last values (theory-damage.md, eqs. (C.69), (C.70)). The factor g_c of a cell multiplies its
+/// Damage phi at the nodes of a grid for a sheet in motion: minimises
+///   sum over cells c of g_c E_c + S(phi),   g_c = mean of g(phi_a) over the nodes a of c,
+/// over phi not below its last values (theory-damage.md, eqs. (C.69), (C.70)). The factor g_c of a cell multiplies its
 /// energy, its stress and its mass alike. Serial and deterministic.
 class GridDamage
 {
 public:
   /// Creates a field without damage. `intact` marks nodes whose damage minimize() does not change; empty: none. Throws
-  /// InvalidInput for constants out of range and for cells with sides in a ratio above sqrt(2), on which d could exceed
-  /// 1.
+  /// InvalidInput for constants out of range and for cells with sides in a ratio above sqrt(2), on which phi could
+  /// exceed 1.
   GridDamage(const NodeGrid &grid, const DamageLaw &law, std::vector<char> intact = {});
 
   /// Sets the nodal damage [-]. Throws InvalidInput for values out of [0, 1].
   void set(const std::vector<double> &damage);
 
-  /// Minimises over d, at given energies [J/m] >= 0 of the undegraded cells, E_c, and nodes, which have the factor
-  /// g(d_a); empty: no energy of nodes. Returns true if any node changed. Only the neighbourhood of nodes that are
+  /// Minimises over phi, at given energies [J/m] >= 0 of the undegraded cells, E_c, and nodes, which have the factor
+  /// g(phi_a); empty: no energy of nodes. Returns true if any node changed. Only the neighbourhood of nodes that are
   /// driven is visited. Throws NonPhysicalState if an energy is not finite and LinearSolverFailed if the iteration does
   /// not converge.
   bool minimize(const std::vector<double> &cell_energies, const std::vector<double> &node_energies = {});
 
-  /// Returns S(d) [J/m], eq. (C.61).
+  /// Returns S(phi) [J/m], eq. (C.61).
   double fracture_energy() const;
 
   const DamageLaw &law() const { return law_; }
-  const std::vector<double> &nodal() const { return damage_; }              ///< d_a [-]
+  const std::vector<double> &nodal() const { return damage_; }              ///< phi_a [-]
   const std::vector<double> &cell_factors() const { return factor_; }       ///< g_c [-]
-  const std::vector<double> &node_factors() const { return nodal_factor_; } ///< g(d_a) [-]
+  const std::vector<double> &node_factors() const { return nodal_factor_; } ///< g(phi_a) [-]
 
-  /// Change of d in the last sweep over the nodes at which minimize() stops [-].
+  /// Change of phi in the last sweep over the nodes at which minimize() stops [-].
   static constexpr double tolerance = 1e-7;
 
 private:

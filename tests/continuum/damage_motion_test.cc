@@ -232,7 +232,7 @@ TEST(GridDamage, MinimisesTheEnergyAndNeverHeals)
 
 TEST(GridDamage, OfAHomogeneousSheetIsInClosedForm)
 {
-  // eq. (C.66): 1 - d = W_c/W.
+  // eq. (C.66): 1 - phi = W_c/W.
   const NodeGrid grid(Rectangle{6., 5., 6, 5});
   GridDamage field(grid, {1., 2., 1e-6});
   EXPECT_FALSE(field.minimize(std::vector<double>(grid.n_cells(), 1. - 1e-6)));

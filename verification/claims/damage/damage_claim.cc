@@ -176,7 +176,7 @@ BrokenEnergy broken_bar_rows(const Problem &problem, const Constitution &laws, u
   const double tolerance = 2. * missing * (1.5 + 0.375 / per_length) + 1e-6;
   const double ratio = bar.solver().field().fracture_energy() / (problem.law.fracture_energy() * bar.height());
   const double slope = h / xi;
-  // The stress left by the residual stiffness drives damage beside the crack. To first order, with 1 - d = s at the
+  // The stress left by the residual stiffness drives damage beside the crack. To first order, with 1 - phi = s at the
   // next node, g rising linearly to s^2 towards it, and the Laplacian of (C.63) on a free half line, it adds at most
   const double s = slope * (1. - 0.25 * slope), k = problem.law.residual_stiffness;
   const double modulus = problem.material().tangent(uniaxial(1.))[0][0][0][0];
