@@ -8,6 +8,10 @@
 namespace latcon::claims
 {
 
+/// Names of the waves of a direction, as Bloch matrices and Christoffel tensors order them: quasi-longitudinal,
+/// quasi-shear.
+inline constexpr const char *wave_names[] = {"L", "S"};
+
 /// Name of a homogeneous state in rows and plots: "F = I", "F = (2.3, 2.8)", "F = (1, 1, shear 0.5)".
 inline std::string state_name(const Eigen::Matrix2d &F)
 {

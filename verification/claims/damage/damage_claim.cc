@@ -16,7 +16,7 @@ namespace
 using continuum::Constitution;
 using continuum::DamageLaw;
 
-const output::Tolerance solver_tolerance{
+const output::Tolerance bar_solver_tolerance{
   1e-9, "ten times the residuals of the equilibrium, 1e-10 of the forces, and of the damage, 1e-13 of its terms"};
 const output::Tolerance exact{0., "exactly"};
 // Initial damage of the weak spot, small enough that it is exceeded by the damage of the crack everywhere.
@@ -42,10 +42,10 @@ struct Problem
   double damage(double stretch) const { return 1. - law.threshold / energy(stretch); }
 };
 
-class Rows
+class BarRows
 {
 public:
-  Rows(const bridge::Subject &subject, ClaimOutcome &outcome) : name_(subject.name), outcome_(outcome) {}
+  BarRows(const bridge::Subject &subject, ClaimOutcome &outcome) : name_(subject.name), outcome_(outcome) {}
 
   // A value against theory, with a relative error.
   void compare(const std::string &quantity, const std::string &unit, double value, double theory,
@@ -74,7 +74,7 @@ DamagedBar &emplace_short_bar(const Problem &problem, std::optional<DamagedBar> 
   return bar.emplace(problem.material(), problem.planted, 0.25 * problem.law.length, 2u, problem.stretch(2.));
 }
 
-void homogeneous_bar(const Problem &problem, bool heals, Rows &rows)
+void homogeneous_bar(const Problem &problem, bool heals, BarRows &rows)
 {
   std::optional<DamagedBar> bar;
   const auto load = [&](double stretch)
@@ -93,30 +93,31 @@ void homogeneous_bar(const Problem &problem, bool heals, Rows &rows)
   const double modulus = problem.material().tangent(uniaxial(first))[0][0][0][0];
   const double peak = problem.stress(problem.critical);
   rows.compare("peak stress", "Pa", bar->stress(), peak,
-               {2. * below * modulus * (problem.critical - 1.) / peak + *solver_tolerance,
+               {2. * below * modulus * (problem.critical - 1.) / peak + *bar_solver_tolerance,
                 "twice what a millionth of the strain changes"});
 
   const double high = problem.stretch(1.5), higher = problem.stretch(1.6);
   load(high);
   const double reached = problem.damage(high);
-  rows.compare("damage of a homogeneous bar at 1.5 of the critical strain", "1", largest(), reached, solver_tolerance);
+  rows.compare("damage of a homogeneous bar at 1.5 of the critical strain", "1", largest(), reached,
+               bar_solver_tolerance);
   rows.compare("stress of this bar", "Pa", bar->stress(), problem.law.degradation(reached) * problem.stress(high),
-               solver_tolerance);
+               bar_solver_tolerance);
   // Irreversible: damage stays while the load falls to half of the critical strain and returns.
   for (const double strains : {0.5, 1.4})
   {
     const double stretch = problem.stretch(strains);
     load(stretch);
     rows.compare("stress after unloading to " + std::string(strains < 1. ? "0.5" : "1.4") + " of the critical strain",
-                 "Pa", bar->stress(), problem.law.degradation(reached) * problem.stress(stretch), solver_tolerance);
+                 "Pa", bar->stress(), problem.law.degradation(reached) * problem.stress(stretch), bar_solver_tolerance);
   }
   load(higher);
-  rows.compare("damage after loading again, to 1.6", "1", largest(), problem.damage(higher), solver_tolerance);
+  rows.compare("damage after loading again, to 1.6", "1", largest(), problem.damage(higher), bar_solver_tolerance);
 }
 
 // Order in the load step of the remainder of the ledger, eq. (C.65), while the bar softens. Over both stages their
 // leading terms, of opposite signs, may cancel.
-void ledger(const Problem &problem, Rows &rows)
+void ledger(const Problem &problem, BarRows &rows)
 {
   constexpr unsigned int coarse = 8;
   double remainder[2] = {};
@@ -139,7 +140,7 @@ void ledger(const Problem &problem, Rows &rows)
       const double d = problem.damage(problem.stretch(2.));
       rows.compare("energy dissipated in a homogeneous bar", "J/m", ledger.fracture,
                    2. * (1. - problem.law.residual_stiffness) * problem.law.threshold * d * bar.length() * bar.height(),
-                   solver_tolerance);
+                   bar_solver_tolerance);
     }
   }
   const double order = std::log2(std::abs(remainder[0] / remainder[1]));
@@ -156,7 +157,7 @@ struct BrokenEnergy
 
 // Energy of the crack, profile and symmetry of a bar of 8 xi that breaks, eqs. (C.67), (C.68).
 BrokenEnergy broken_bar_rows(const Problem &problem, const Constitution &laws, unsigned int per_length,
-                             const std::string &name, Rows &rows, ClaimOutcome &outcome)
+                             const std::string &name, BarRows &rows, ClaimOutcome &outcome)
 {
   const double xi = problem.law.length, h = xi / per_length;
   const std::string at = name + ", h = xi/" + std::to_string(per_length);
@@ -208,7 +209,7 @@ BrokenEnergy broken_bar_rows(const Problem &problem, const Constitution &laws, u
   return {ratio, tolerance};
 }
 
-void broken_bars(const Problem &problem, const DamageOptions &options, Rows &rows, ClaimOutcome &outcome)
+void broken_bars(const Problem &problem, const DamageOptions &options, BarRows &rows, ClaimOutcome &outcome)
 {
   std::vector<BrokenEnergy> energies;
   for (unsigned int n = 2; n <= options.finest; n *= 2)
@@ -225,7 +226,7 @@ void broken_bars(const Problem &problem, const DamageOptions &options, Rows &row
 }
 
 // A sheet with uniform damage has g times the energy, that of the gradient included.
-void degraded_energy(const Problem &problem, bool leaves_gradient, Rows &rows)
+void degraded_energy(const Problem &problem, bool leaves_gradient, BarRows &rows)
 {
   dealii::parallel::distributed::Triangulation<2> mesh(MPI_COMM_WORLD);
   const double size = 4. * problem.subject.spacing;
@@ -261,7 +262,7 @@ void degraded_energy(const Problem &problem, bool leaves_gradient, Rows &rows)
 ClaimOutcome damage_claim(const bridge::Subject &subject, const DamageLaw &law, const DamageOptions &options)
 {
   ClaimOutcome outcome;
-  Rows rows(subject, outcome);
+  BarRows rows(subject, outcome);
   DamageLaw planted = law;
   planted.threshold *= options.planted_toughness;
   rows.attempt("bars in tension",

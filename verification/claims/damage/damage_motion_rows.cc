@@ -19,10 +19,10 @@ using continuum::DamageMotionSetup;
 using dealii::Point;
 using dealii::Tensor;
 
-constexpr double density = 1e3; // sets the unit of time alone
-constexpr double strain = 1e-2; // of the strip, small enough that its law is linear outside of the crack
-constexpr double height = 12.;  // of the strip, over xi
-constexpr double length = 40.;  // of the strip, over xi
+constexpr double density = 1e3;       // sets the unit of time alone
+constexpr double strip_strain = 1e-2; // of the strip, small enough that its law is linear outside of the crack
+constexpr double height = 12.;        // of the strip, over xi
+constexpr double length = 40.;        // of the strip, over xi
 
 Tensor<2, 2> stretched(double y)
 {
@@ -46,7 +46,7 @@ struct Strip
   DamageLaw law_for(double drive) const
   {
     DamageLaw own = law;
-    own.threshold = 3. / 16. * energy(strain) * height / (drive * (1. - law.residual_stiffness));
+    own.threshold = 3. / 16. * energy(strip_strain) * height / (drive * (1. - law.residual_stiffness));
     return own;
   }
 };
@@ -88,7 +88,7 @@ DamageMotion strip(const Strip &problem, double drive, unsigned int per_length, 
   DamageMotionSetup setup{
     {length * xi, 2. * top, static_cast<unsigned int>(length) * per_length,
      static_cast<unsigned int>(height) * per_length + 1}, // odd: the crack opens the row of cells in the middle
-    stretched(strain),
+    stretched(strip_strain),
     problem.subject.cauchy_born.families(),
     {},
     density,
@@ -197,7 +197,7 @@ Toughness steady_crack(const Strip &problem, unsigned int n, MotionRows &rows)
   const double theory = 1. + 0.375 * slope + slope * slope / 32.;
   // The open row of cells has all of the elongation, so that d misses 1 as in the bars of this claim. The tip is
   // known to 0.3 of a cell at both times: its position between nodes is interpolated.
-  const double open = strain * height * n;
+  const double open = strip_strain * height * n;
   const double missing = law.threshold / problem.energy(open) * (2. + 4. * n);
   const double tolerance = 2. * missing * (1.5 + 0.375 * slope) + 0.6 * slope * problem.xi() / advance * theory;
   rows.add("energy of a steady crack over G_c" + at, "1", ratio, theory, std::abs(ratio - theory),

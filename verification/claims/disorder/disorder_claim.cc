@@ -18,9 +18,9 @@ namespace
 
 // So small that the laws are linear, so large that energies have nine digits: means over both signs are taken, hence
 // ratios of energies are off by the order of its square, and of that the share that is not homogeneous.
-constexpr double strain = 1e-3;
+constexpr double load_strain = 1e-3;
 constexpr double nonlinearity_tolerance =
-  100. * strain * strain; // psi'''' / psi'' is below this number times 12 for rubber
+  100. * load_strain * load_strain; // psi'''' / psi'' is below this number times 12 for rubber
 
 // Standard errors of a mean that is normally distributed, exceeded with a probability of 6e-7.
 constexpr double normal_quantile = 5., exceeded = 6e-7;
@@ -95,7 +95,7 @@ private:
     for (const double sign : {1., -1.})
     {
       lattice::State state = lattice::homogeneous_state(
-        sheet_, material_, Eigen::Matrix2d::Identity() + sign * strain * load, lattice::Edges::free);
+        sheet_, material_, Eigen::Matrix2d::Identity() + sign * load_strain * load, lattice::Edges::free);
       if (options_.planted)
         options_.planted(state);
       if (sign > 0.)
@@ -111,7 +111,7 @@ private:
                                });
       result.homogeneous += lattice::elastic_energy(state, sheet_, material_);
       const double force =
-        lattice::cross_section(material_.nearest, sheet_) * lattice::stiffness(material_.nearest.law, 1.) * strain;
+        lattice::cross_section(material_.nearest, sheet_) * lattice::stiffness(material_.nearest.law, 1.) * load_strain;
       // Energy is off by the square of the forces that are left, over the stiffness of the longest wave.
       lattice::relax(state, sheet_, material_, 1e-8 * force);
       result.relaxed += lattice::elastic_energy(state, sheet_, material_);

@@ -18,14 +18,12 @@ namespace latcon::claims
 namespace
 {
 
-constexpr double strain = 1e-3;
-const output::Tolerance lattice_tolerance{
+constexpr double wave_strain = 1e-3;
+const output::Tolerance lattice_energy_tolerance{
   1e-6, "second differences of energies with a strain of 1e-3: its fourth power times higher moduli, round-off of the "
         "energy of the stretched sheet over its square"};
 // Travelling waves that are judged.
 constexpr double judged_kd = 0.25;
-
-constexpr const char *wave_names[] = {"L", "S"};
 
 // (1/2) d2E/de2 at e = 0 of an energy without odd terms.
 template <class Energy>
@@ -57,7 +55,7 @@ double lattice_stiffness(const WaveCell &cell, const lattice::Material &material
     return lattice::elastic_energy(state, sheet, material);
   };
   const double area = static_cast<double>(sheet.n_sites()) * sheet.site_area();
-  return half_second_derivative(energy, strain / cell.K.norm()) / area;
+  return half_second_derivative(energy, wave_strain / cell.K.norm()) / area;
 }
 
 struct Media
@@ -112,7 +110,8 @@ void sinusoidal(const bridge::Subject &subject, const Eigen::Matrix2d &F, const 
                      gradient = closed_stiffness(media.gradient, F, cell.K, p),
                      bloch = bloch_stiffness(cell.sheet, material, F, cell.K, p),
                      measured = lattice_stiffness(cell, material, F, p),
-                     elements = sinusoidal_energy(media.gradient, F, cell.K, p, strain / cell.K.norm(), options.mesh);
+                     elements =
+                       sinusoidal_energy(media.gradient, F, cell.K, p, wave_strain / cell.K.norm(), options.mesh);
         lattice_error.add_relative(measured, bloch);
         element_error.add_relative(elements, gradient);
         table.add({subject.name, F(0, 0), F(1, 1), angle(direction, subject.orientation), std::string(wave_names[w]),
@@ -147,7 +146,8 @@ void sinusoidal(const bridge::Subject &subject, const Eigen::Matrix2d &F, const 
                        double error, const output::Tolerance &tolerance) {
     outcome.results.add({"energy", prefix + quantity, "1", {}, continuum_value, theory, error, tolerance});
   };
-  add("energy of the lattice against Bloch, worst of all fields", {}, {}, lattice_error.error(), lattice_tolerance);
+  add("energy of the lattice against Bloch, worst of all fields", {}, {}, lattice_error.error(),
+      lattice_energy_tolerance);
   add("energy of the finite elements against their continuum, worst of all fields", {}, {}, element_error.error(),
       {4. * discretisation_bound(options.mesh),
        "bound of the best approximation (Ainsworth), times q(q+1)/(4q-2) < 2 for values at Gauss-Lobatto nodes, and as "

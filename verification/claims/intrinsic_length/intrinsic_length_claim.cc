@@ -7,6 +7,7 @@
 #include "verification/claims/intrinsic_length/dispersion.h"
 #include "verification/claims/intrinsic_length/edge_layer.h"
 #include "verification/claims/intrinsic_length/gradient_positivity.h"
+#include "verification/claims/state_name.h"
 
 namespace latcon::claims
 {
@@ -16,7 +17,7 @@ namespace
 const output::Tolerance bloch_tolerance{
   1e-7,
   "extrapolation of Bloch's frequencies to kd = 0 (dispersion.h): 84 (kd)^2 (l/d)^6 / 20160 at kd = 0.01 and below"};
-const output::Tolerance equal_formulas{1e-10, "two closed forms of the same number"};
+const output::Tolerance equal_closed_forms{1e-10, "two closed forms of the same number"};
 const output::Tolerance sign{0., "a sign"};
 const output::Tolerance positive{1e-12, "round-off of an eigenvalue that may be zero"};
 
@@ -29,12 +30,11 @@ output::Tolerance run_tolerance(const bridge::Subject &subject)
 }
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-constexpr const char *wave_names[] = {"L", "S"};
 
-class Rows
+class LengthRows
 {
 public:
-  Rows(const bridge::Subject &subject, ClaimOutcome &outcome) : subject_(subject), outcome_(outcome) {}
+  LengthRows(const bridge::Subject &subject, ClaimOutcome &outcome) : subject_(subject), outcome_(outcome) {}
 
   void add(const std::string &quantity, const std::string &unit, std::optional<double> lattice_value,
            std::optional<double> continuum_value, std::optional<double> theory, std::optional<double> error,
@@ -70,7 +70,7 @@ void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &op
   const WaveContinuum isotropic{{subject.cauchy_born, *subject.isotropic_gradient},
                                 {rho, subject.lengths.isotropic_inertia}};
   const WaveContinuum network{{subject.network, *subject.network_gradient}, {rho, subject.lengths.lattice}};
-  Rows rows(subject, outcome);
+  LengthRows rows(subject, outcome);
 
   // All directions.
   output::Table &table = outcome.table("dispersion", {"shells", "angle [deg]", "alpha_L", "alpha_S", "nearest_L",
@@ -127,7 +127,7 @@ void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &op
 
   rows.add("alpha in all directions, Bloch against closed form", "1", {}, {}, {}, bloch_error.error(), bloch_tolerance);
   rows.add("alpha in all directions, gradient continuum against closed form", "1", {}, {}, {}, continuum_error.error(),
-           equal_formulas);
+           equal_closed_forms);
   // A positive alpha softens; the claim is the sign.
   rows.add("softening: smallest alpha of any wave", "1", alphas.smallest(), {}, {},
            support::one_sided(-alphas.smallest()), sign);
@@ -137,7 +137,7 @@ void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &op
     const std::string name = std::string("alpha of ") + wave_names[w] + " waves, ";
     rows.add(name + "mean over directions, isotropic gradient continuum against lattice", "1", mean[w],
              isotropic_alpha[w], {}, std::abs(isotropic_alpha[w] - mean[w]),
-             {subject.tolerance(bridge::Law::isotropic_gradient, *equal_formulas), equal_formulas.reason});
+             {subject.tolerance(bridge::Law::isotropic_gradient, *equal_closed_forms), equal_closed_forms.reason});
     rows.add(name + "largest difference of the isotropic continuum from the lattice", "1", {}, {}, {},
              isotropic_loss[w].error(), {});
     // At F = I its moduli are the lattice's, so the mean of its gradient energy gives the mean of alpha, in all
@@ -147,7 +147,7 @@ void dispersion(const bridge::Subject &subject, const IntrinsicLengthOptions &op
       from_mean.add_difference(alpha[w], mean[w]);
     rows.add(name + "network in all directions against the lattice's mean over directions", "1", mean[w],
              from_mean.value(), {}, from_mean.error(),
-             {subject.tolerance(bridge::Law::mooney_rivlin_network, *equal_formulas), equal_formulas.reason});
+             {subject.tolerance(bridge::Law::mooney_rivlin_network, *equal_closed_forms), equal_closed_forms.reason});
     rows.add(name + "largest difference of the network from the lattice", "1", {}, {}, {}, network_loss[w].error(), {});
     if (subject.material.third_nearest)
       rows.add(name + "mean over directions, the part of the longer bonds", "1", mean[w] - nearest_mean[w], {}, {}, {},
@@ -171,13 +171,13 @@ void positivity(const bridge::Subject &subject, ClaimOutcome &outcome)
   const Eigen::Matrix2d I = Eigen::Matrix2d::Identity();
   const lattice::TriangularLattice sheet = any_sheet(subject);
   const double d = subject.spacing, unit = subject.theory.shear_modulus * d * d;
-  Rows rows(subject, outcome);
+  LengthRows rows(subject, outcome);
   const double longest = subject.material.third_nearest  ? 2. * d
                          : subject.material.next_nearest ? std::sqrt(3.) * d
                                                          : d;
   rows.add("intrinsic length l_d, the longest bond over sqrt(12)", "m", longest / std::sqrt(12.),
            subject.lengths.lattice, longest / std::sqrt(12.),
-           support::relative_error(subject.lengths.lattice, longest / std::sqrt(12.)), equal_formulas);
+           support::relative_error(subject.lengths.lattice, longest / std::sqrt(12.)), equal_closed_forms);
 
   struct State
   {
@@ -193,7 +193,7 @@ void positivity(const bridge::Subject &subject, ClaimOutcome &outcome)
     if (critical)
       rows.add(shortest, "m", critical, subject.lengths.lattice, {},
                support::one_sided(*critical / subject.lengths.lattice - 1.),
-               {subject.gradient_tolerance(F, *equal_formulas), equal_formulas.reason});
+               {subject.gradient_tolerance(F, *equal_closed_forms), equal_closed_forms.reason});
     else
       // See gradient_tolerance(): the law neglects the terms that make it negative.
       rows.add(shortest + ": there is none, bonds are compressed", "m", {}, subject.lengths.lattice, {}, {}, {});
@@ -215,7 +215,7 @@ void positivity(const bridge::Subject &subject, ClaimOutcome &outcome)
 // A free edge, its rows along x.
 void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &options, ClaimOutcome &outcome)
 {
-  Rows rows(subject, outcome);
+  LengthRows rows(subject, outcome);
   const lattice::Material material = lattice::without_dashpots(subject.material);
   // Without an equilibrium the rows fail.
   EdgeLayer layer{nothing, std::vector<double>(options.edge_rows, nothing), nothing};
@@ -246,7 +246,7 @@ void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &op
   rows.add("edge layer: deviation of the first row spacing, stretch " +
              std::to_string(options.edge_stretch).substr(0, 4),
            "1", layer.deviations[0], {}, {}, {}, {});
-  // Rows four to seven: the second power of the deviation is gone, round-off not yet met.
+  // LengthRows four to seven: the second power of the deviation is gone, round-off not yet met.
   constexpr std::size_t first = 3, last = 6;
   const double decay = -std::pow(std::abs(layer.deviations[last] / layer.deviations[first]), 1. / (last - first));
   const bool alternates = layer.deviations[first] * layer.deviations[first + 1] < 0.;
@@ -270,7 +270,7 @@ void edge_layer(const bridge::Subject &subject, const IntrinsicLengthOptions &op
 ClaimOutcome intrinsic_length_claim(const bridge::Subject &subject, const IntrinsicLengthOptions &options)
 {
   ClaimOutcome outcome;
-  Rows rows(subject, outcome);
+  LengthRows rows(subject, outcome);
   rows.attempt("alpha", [&] { dispersion(subject, options, outcome); });
   rows.attempt("positive gradient energy", [&] { positivity(subject, outcome); });
   rows.attempt("edge layer", [&] { edge_layer(subject, options, outcome); });

@@ -18,7 +18,7 @@ namespace
 constexpr double far_from = 5.;                 // inner radius of the far field [d]
 constexpr double near_from = 1.5, near_to = 4.; // annulus of the reported fields near the tip [d]
 constexpr double tip_resolution = 0.5;          // of a lattice: half a spacing [d]
-constexpr double largest_tolerance = 0.07;      // of the far field, whatever the parts of its tolerance
+constexpr double largest_far_tolerance = 0.07;  // of the far field, whatever the parts of its tolerance
 
 // A compared field at a point.
 struct Quantity
@@ -114,10 +114,10 @@ CrackMesh mesh_of(const CrackDrive &drive, double size, unsigned int degree)
 }
 
 // Rows and tables of one lattice.
-class Comparison
+class CrackComparison
 {
 public:
-  Comparison(const bridge::Subject &subject, const CrackSides &sides, const RunningCrackOptions &options)
+  CrackComparison(const bridge::Subject &subject, const CrackSides &sides, const RunningCrackOptions &options)
     : subject_(subject), sides_(sides), options_(options), far_(sides.drive, far_from, options.far),
       near_(sides.drive, near_from, near_to), reach_((options.far + 3.) * subject.spacing),
       lattice_(drive_lattice_crack(sides.drive, lattice::without_memory(subject.material), subject.deformation, reach_,
@@ -180,7 +180,7 @@ private:
       const double tip = far_.distance(fine, fine, quantity, tip_resolution * d);
       const double error = far_.distance(lattice_.field, fine, quantity);
       const output::Tolerance allowed =
-        output::limited(discretisation + tip + leaves_out, 0.01, largest_tolerance,
+        output::limited(discretisation + tip + leaves_out, 0.01, largest_far_tolerance,
                         "change of the mesh, which bounds an error of first order; change by a tip that is d/2 ahead; "
                         "anisotropy of the bonds at the strains of the far field");
       add(quantity.name + ", " + annulus.str() + ", " + name + " continuum against lattice", "1", {}, {}, error,
@@ -336,7 +336,7 @@ ClaimOutcome running_crack_claim(const bridge::Subject &subject, const RunningCr
 ClaimOutcome running_crack_claim(const bridge::Subject &subject, const CrackSides &sides,
                                  const RunningCrackOptions &options)
 {
-  Comparison comparison(subject, sides, options);
+  CrackComparison comparison(subject, sides, options);
   const std::string prefix = subject.name + ", " + state_name(subject.deformation) + ": ";
   const auto compare = [&](const std::string &name, const CrackContinuum &medium)
   {

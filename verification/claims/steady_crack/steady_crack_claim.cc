@@ -25,9 +25,9 @@ constexpr std::size_t record_samples = std::size_t(1) << 15;
 
 // A run and the exact solution for the elongation at which its bonds broke: up to a time step after they reached the
 // breaking elongation, on average half a step, so that the lattice is slightly tougher than specified.
-struct Comparison
+struct TheoryComparison
 {
-  Comparison(const CrackRunOptions &options, const std::function<void(CrackRunOptions &)> &planted)
+  TheoryComparison(const CrackRunOptions &options, const std::function<void(CrackRunOptions &)> &planted)
     : run(run_crack(spoiled(options, planted))), driving(options.driving / run.breaking_elongation()),
       speed(steady_speed(options.strip, driving, fastest))
   {
@@ -58,14 +58,14 @@ const char *const reason = "twice the changes by half the time step, half the st
 // Errors of the finite time step, breaking strain, and length of strip and run. They are of
 // first order or better in the first two, so that halving these takes away half of the error at least; the strip is
 // longer by six heights. A linear theory cannot be better than the strains that it neglects against 1.
-std::array<double, 3> tolerances(const CrackRunOptions &options, const Comparison &reference,
+std::array<double, 3> tolerances(const CrackRunOptions &options, const TheoryComparison &reference,
                                  const std::function<void(CrackRunOptions &)> &planted)
 {
   std::array<double, 3> sum;
   sum.fill(options.breaking_strain);
   const auto add = [&](const CrackRunOptions &refined)
   {
-    const Comparison comparison(refined, planted);
+    const TheoryComparison comparison(refined, planted);
     for (std::size_t i = 0; i < sum.size(); ++i)
       sum[i] += 2. * std::abs(comparison.errors[i] - reference.errors[i]);
   };
@@ -97,7 +97,7 @@ std::string place(double viscosity, double driving)
   return text.str();
 }
 
-void add_run(ClaimOutcome &outcome, const CrackRunOptions &options, const Comparison &comparison,
+void add_run(ClaimOutcome &outcome, const CrackRunOptions &options, const TheoryComparison &comparison,
              const std::array<double, 3> &tolerance)
 {
   const CrackRun &run = comparison.run;
@@ -233,13 +233,13 @@ ClaimOutcome steady_cracks(const SteadyCrackSeries &series)
   const auto attempt = [&](const std::string &part, double driving, const std::function<void()> &compute)
   { outcome.results.attempt(claim, part + place(series.viscosity, driving), compute); };
   const CrackStrip strip{free_rows, series.viscosity};
-  std::vector<std::pair<CrackRunOptions, Comparison>> cracks;
+  std::vector<std::pair<CrackRunOptions, TheoryComparison>> cracks;
   for (const double driving : series.drivings)
     attempt("crack", driving,
             [&]
             {
               const CrackRunOptions options{strip, driving};
-              cracks.emplace_back(options, Comparison(options, series.planted));
+              cracks.emplace_back(options, TheoryComparison(options, series.planted));
             });
   // Without the refined runs there are no tolerances, and the rows of the series fail.
   std::array<double, 3> tolerance;

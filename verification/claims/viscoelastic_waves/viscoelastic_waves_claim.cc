@@ -20,7 +20,6 @@ namespace latcon::claims
 namespace
 {
 
-constexpr const char *wave_names[] = {"L", "S"};
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
 
 const output::Tolerance frequency_tolerance{1e-6, "extrapolated time stepping, three terms of 1.2e-7 (mode_run.cc)"};
@@ -52,11 +51,11 @@ struct Medium
 };
 
 // Comparison of runs with the closed form, and the table of the waves.
-class Comparison
+class WaveComparison
 {
 public:
-  Comparison(const bridge::Subject &subject, const Eigen::Matrix2d &F, const ViscoelasticWavesOptions &options,
-             ClaimOutcome &outcome)
+  WaveComparison(const bridge::Subject &subject, const Eigen::Matrix2d &F, const ViscoelasticWavesOptions &options,
+                 ClaimOutcome &outcome)
     : subject_(subject), F_(F), options_(options), outcome_(outcome),
       table_(outcome.table("viscoelastic_waves",
                            {"shells", "F_xx", "F_yy", "part", "wave", "k d", "w tau", "rubbery [rad/s]",
@@ -199,7 +198,7 @@ void sweep_elements(const bridge::Subject &subject, const Eigen::Matrix2d &F, co
                     const WaveCell &cell, ClaimOutcome &outcome)
 {
   const std::string part = "one branch";
-  Comparison comparison(subject, F, options, outcome);
+  WaveComparison comparison(subject, F, options, outcome);
   const lattice::Material elastic = lattice::without_dashpots(subject.material);
   const WaveContinuum relaxed{{subject.cauchy_born}, {subject.material.density}};
   support::LargestError peaks;
@@ -234,7 +233,7 @@ void sweep(const bridge::Subject &subject, const Eigen::Matrix2d &F, const Visco
            bool has_elements, ClaimOutcome &outcome)
 {
   const std::string part = "one branch";
-  Comparison comparison(subject, F, options, outcome);
+  WaveComparison comparison(subject, F, options, outcome);
   const WaveCell cell = wave_cell(subject.spacing, subject.orientation, {1, 0}, swept_kd);
   const lattice::Material elastic = lattice::without_dashpots(subject.material);
   support::LargestError peaks;
@@ -280,7 +279,7 @@ void own_branches(const bridge::Subject &subject, const Eigen::Matrix2d &F, cons
                   bool has_elements, ClaimOutcome &outcome)
 {
   constexpr double largest_ratio = 0.5; // of decay and frequency, seen well within a period
-  Comparison comparison(subject, F, options, outcome);
+  WaveComparison comparison(subject, F, options, outcome);
   for (const double kd : {0.5, 0.2, 0.1, 0.05, 0.02, 0.01})
   {
     const auto cell_of = [&](double of) { return wave_cell(subject.spacing, subject.orientation, {1, 0}, of); };

@@ -27,7 +27,6 @@ constexpr double compared_kd = 0.25;
 constexpr double gradient_tolerance = 1e-4;
 
 constexpr double nothing = std::numeric_limits<double>::quiet_NaN();
-constexpr const char *wave_names[] = {"L", "S"};
 
 std::array<double, 2> frequencies(const std::array<bridge::PlaneWave, 2> &waves)
 {
