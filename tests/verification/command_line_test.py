@@ -353,6 +353,10 @@ class BothSides(TemporaryFolder):
                      "--set", "Time/end=0.2 ms")
         self.assertEqual(run.returncode, 0, run.stderr)
         self.assertGreater(len(read_csv(self.out / "energy.csv")), 3)
+        row, = (row for row in read_csv(self.out / "results.csv") if row["quantity"] == "energy imbalance over energy exchanged")
+        self.assertEqual(row["verdict"], "holds")
+        self.assertLess(float(row["error"]), float(row["tolerance"]))
+        self.assertGreater(float(row["error"]), 0)
 
     def test_continuum_runs_on_ranks(self):
         run = latcon_on_ranks(3, "continuum", CASES / "quick.prm", "--output-dir", self.out)

@@ -156,7 +156,7 @@ class Motions(Interrupted):
                 "--threads", "1", *more, "--output-dir", self.out]
 
     def is_saved(self, process):
-        self.ends(process, "")
+        self.ends(process, f"interrupted; --resume goes on from what is in {self.out}")
         self.assertEqual(self.info()["exit_code"], INTERRUPTED)
         self.assertTrue(list((self.out / "checkpoints").glob("*.h5")))
         self.assertTrue((self.out / "crack.csv").exists())

@@ -197,6 +197,8 @@ support::ExitCode Run::end(const output::Results &results, support::ExitCode exi
     info().add("failed_rows", failed);
     record_->write(exit_code);
     record_->exit_code = exit_code;
+    if (exit_code == support::ExitCode::interrupted)
+      std::cerr << "latcon: interrupted; --resume goes on from what is in " << directory_ << std::endl;
   }
   return exit_code;
 }

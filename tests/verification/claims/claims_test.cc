@@ -32,6 +32,7 @@ TEST(Energy, HoldsForBothShellSetsOrientationsAndLaws)
         // Strong ellipticity of the calibrated law is judged for rubber alone: springs are another material.
         for (const Result &row : results.rows())
           EXPECT_TRUE(row.verdict() != Verdict::fails) << row.quantity;
+        EXPECT_GE(faults::holding(results), 10u);
       }
     }
 }
@@ -166,7 +167,10 @@ TEST(Energy, LawsThatAreNotUsedAreReported)
       EXPECT_TRUE(energy_claim(subject(input, material, laws_of_lattice()), 10).all_hold()) << x << " " << y;
       const Results judged = energy_claim(subject(input, material), 10);
       EXPECT_EQ(faults::failing(judged), x == 2. ? 1u : 0u) << x << " " << y;
-      EXPECT_EQ(faults::failing(judged, "loses ellipticity"), x == 2. ? 1u : 0u) << x << " " << y;
+      if (x == 2.)
+      {
+        EXPECT_EQ(faults::failing(judged, "loses ellipticity"), 1u) << y;
+      }
     }
   }
 }

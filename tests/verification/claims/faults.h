@@ -4,6 +4,8 @@
 #include <memory>
 #include <ostream>
 
+#include <gtest/gtest.h>
+
 #include "continuum/lattice_gradient.h"
 #include "tests/verification/claims/subjects.h"
 #include "verification/output/results.h"
@@ -114,13 +116,32 @@ inline void turn_sign_of_network_gradient(latcon::bridge::Subject &subject)
   subject.network_gradient = std::make_shared<Combination>(-1., subject.network_gradient, 0., subject.network_gradient);
 }
 
-/// Rows of an outcome that fail and whose name contains a text; any text: "".
+/// Rows of an outcome with a verdict and whose name contains a text; any text: "". There must be judged rows with that text:
+/// the test fails where they have other names.
+inline std::size_t with_verdict(const latcon::output::Results &results, latcon::output::Verdict verdict,
+                                const std::string &text)
+{
+  std::size_t count = 0, judged = 0;
+  for (const latcon::output::Result &row : results.rows())
+    if (row.quantity.find(text) != std::string::npos)
+    {
+      count += row.verdict() == verdict;
+      judged += row.verdict() != latcon::output::Verdict::reported;
+    }
+  EXPECT_GT(judged, 0u) << "no row is judged whose name contains: " << text;
+  return count;
+}
+
+/// Rows that fail, see with_verdict.
 inline std::size_t failing(const latcon::output::Results &results, const std::string &text = "")
 {
-  std::size_t count = 0;
-  for (const latcon::output::Result &row : results.rows())
-    count += row.verdict() == latcon::output::Verdict::fails && row.quantity.find(text) != std::string::npos;
-  return count;
+  return with_verdict(results, latcon::output::Verdict::fails, text);
+}
+
+/// Rows that hold, see with_verdict.
+inline std::size_t holding(const latcon::output::Results &results, const std::string &text = "")
+{
+  return with_verdict(results, latcon::output::Verdict::holds, text);
 }
 
 } // namespace faults
