@@ -10,6 +10,8 @@
 
 #include <unistd.h>
 
+#include "support/control_groups.h"
+
 namespace latcon::support
 {
 namespace
@@ -44,33 +46,17 @@ std::optional<double> number_after(const fs::path &file, const std::string &word
   return {};
 }
 
-// Names of the files of a control group, which differ between versions 1 and 2.
-struct GroupFiles
+// Memory that a control group may still take; names of files differ between versions 1 and 2.
+double left_in(const fs::path &group, int version)
 {
-  const char *limit, *usage, *cache;
-};
-
-double left_in(const fs::path &group, const GroupFiles &files)
-{
-  const std::optional<double> limit = number_in(group / files.limit), usage = number_in(group / files.usage);
+  const bool first = version == 1;
+  const std::optional<double> limit = number_in(group / (first ? "memory.limit_in_bytes" : "memory.max")),
+                              usage = number_in(group / (first ? "memory.usage_in_bytes" : "memory.current"));
   if (!limit || !usage)
     return unlimited;
-  const double cache = number_after(group / "memory.stat", files.cache).value_or(0.);
+  const double cache =
+    number_after(group / "memory.stat", first ? "total_inactive_file" : "inactive_file").value_or(0.);
   return std::max(0., *limit - std::max(0., *usage - cache));
-}
-
-// Returns the smallest remaining memory of a group and its parents. In a container the folder of the group may not
-// exist under the name given by the system; the group is then the mounted root.
-double left_in_groups(const fs::path &mount, const std::string &name, const GroupFiles &files)
-{
-  double left = left_in(mount, files);
-  fs::path group = mount;
-  for (const fs::path &part : fs::path(name).relative_path())
-  {
-    group /= part;
-    left = std::min(left, left_in(group, files));
-  }
-  return left;
 }
 
 } // namespace
@@ -80,22 +66,9 @@ double available_memory(const fs::path &root)
   double available = unlimited;
   if (const auto kibibytes = number_after(root / "proc/meminfo", "MemAvailable:"))
     available = 1024. * *kibibytes;
-  std::ifstream groups(root / "proc/self/cgroup");
-  std::string line; // "NUMBER:CONTROLLERS:NAME"; in version 2 "0::NAME"
-  while (std::getline(groups, line))
-  {
-    const std::size_t first = line.find(':'), second = line.find(':', first + 1);
-    if (first == std::string::npos || second == std::string::npos)
-      continue;
-    const std::string controllers = line.substr(first + 1, second - first - 1), name = line.substr(second + 1);
-    if (controllers.empty())
-      available = std::min(
-        available, left_in_groups(root / "sys/fs/cgroup", name, {"memory.max", "memory.current", "inactive_file"}));
-    else if (("," + controllers + ",").find(",memory,") != std::string::npos)
-      available =
-        std::min(available, left_in_groups(root / "sys/fs/cgroup/memory", name,
-                                           {"memory.limit_in_bytes", "memory.usage_in_bytes", "total_inactive_file"}));
-  }
+  for_each_control_group(root, "memory",
+                         [&available](const fs::path &group, int version)
+                         { available = std::min(available, left_in(group, version)); });
   return available;
 }
 

@@ -1,14 +1,21 @@
 #include "support/errors.h"
 #include "support/mpi_session.h"
+#include "support/waiting_threads.h"
 #include "verification/commands/command_line.h"
 #include "verification/commands/signals.h"
 #include "verification/elements/elements.h"
 
+#include <algorithm>
 #include <cstdio>
 #include <exception>
+#include <string>
 
 int main(int argc, char **argv)
 {
+  const std::string command = argc > 1 ? argv[1] : "";
+  constexpr const char *with_threads[] = {"verify", "lattice", "continuum", "fracture"};
+  if (std::find(std::begin(with_threads), std::end(with_threads), command) != std::end(with_threads))
+    latcon::support::let_waiting_threads_sleep(argv);
   latcon::commands::occupy_closed_streams();
   try
   {

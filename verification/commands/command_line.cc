@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <chrono>
 #include <cstdio>
+#include <cstdlib>
 #include <filesystem>
 #include <functional>
 #include <iostream>
@@ -61,11 +62,14 @@ Failure describe(const std::exception &error)
   return {support::ExitCode::internal_error, std::string("internal error: ") + error.what()};
 }
 
-// Sets the threads of each rank; 0: as many as there are cores for it.
+// Sets the threads of each rank; 0: OMP_NUM_THREADS, or as many as there are cores for it.
 void set_threads(unsigned int threads)
 {
-  const unsigned int wanted = threads > 0 ? threads : support::available_cores_per_rank();
-  omp_set_num_threads(static_cast<int>(wanted));
+  const unsigned int available = support::available_cores_per_rank(); // on all ranks, whatever their variables
+  if (threads == 0 && std::getenv("OMP_NUM_THREADS") == nullptr)
+    threads = available;
+  if (threads > 0)
+    omp_set_num_threads(static_cast<int>(threads));
 }
 
 // Throws for an environment variable that names no instruction set of the lattice.
