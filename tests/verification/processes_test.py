@@ -4,6 +4,7 @@
 Usage: processes_test.py PATH_OF_LATCON [PATHS_OF_TEST_PROGRAMS...]
 """
 import os
+import shutil
 import signal
 import socket
 import subprocess
@@ -96,6 +97,31 @@ class Cores(TemporaryFolder):
         case = subprocess.run([*bound, "lattice", CASES / "quick.prm", "--dry-run", "--set", "Lattice/solution=motion"],
                               capture_output=True, text=True, timeout=600)
         self.assertIn("1 threads of each rank", case.stdout)
+
+    def test_threads_are_those_of_the_environment(self):
+        for threads in ("1", "3"):
+            case = subprocess.run([LATCON, "lattice", CASES / "quick.prm", "--dry-run", "--set", "Lattice/solution=motion"],
+                                  capture_output=True, text=True, timeout=600, env=environment(OMP_NUM_THREADS=threads))
+            self.assertIn(f"{threads} threads of each rank", case.stdout)
+
+    def test_threads_that_wait_sleep_unless_they_are_told_otherwise(self):
+        free = {name: value for name, value in environment().items() if name not in ("OMP_WAIT_POLICY", "GOMP_SPINCOUNT")}
+        for told in ({}, {"OMP_WAIT_POLICY": "active"}, {"GOMP_SPINCOUNT": "77"}):
+            with self.subTest(told):
+                run = subprocess.Popen([LATCON, "fracture", CASES / "quick.prm", "--skip-verification", "--quiet",
+                                        "--output-dir", self.folder / "out"], env=dict(free, **told))
+                while not (self.folder / "out" / "energy.csv").exists() and run.poll() is None:
+                    time.sleep(0.01)
+                with open(f"/proc/{run.pid}/environ", "rb") as file:
+                    variables = dict(item.split(b"=", 1) for item in file.read().split(b"\0") if item)
+                with open(f"/proc/{run.pid}/comm", encoding="utf-8") as file:
+                    self.assertEqual(file.read(), "latcon\n")
+                run.kill()
+                run.wait()
+                expected = told or {"GOMP_SPINCOUNT": "1000"}
+                self.assertEqual({name: variables.get(name.encode(), b"").decode() for name in ("OMP_WAIT_POLICY", "GOMP_SPINCOUNT")},
+                                 {"OMP_WAIT_POLICY": "", "GOMP_SPINCOUNT": "", **expected})
+                shutil.rmtree(self.folder / "out")
 
 
 if __name__ == "__main__":
