@@ -30,7 +30,6 @@ void write_vtk_file(vtkXMLWriter &writer, const std::filesystem::path &path)
   writer.SetFileName(file.name().c_str());
   writer.SetDataModeToAppended();
   writer.EncodeAppendedDataOff();
-  writer.SetCompressorTypeToZLib();
   if (writer.Write() != 1 || writer.GetErrorCode() != 0)
     throw support::OutputError(path, reason(writer.GetErrorCode()));
   file.commit(support::Sync::no);
