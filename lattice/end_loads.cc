@@ -3,7 +3,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <Eigen/Eigenvalues>
+#include "support/dense.h"
 
 namespace latcon::lattice
 {
@@ -81,7 +81,7 @@ Eigen::Matrix2d tangent_along_x(const TriangularLattice &lattice, const Material
 bool waves_run_along_x(const TriangularLattice &lattice, const Material &material, const Eigen::Matrix2d &F)
 {
   const Eigen::Matrix2d tangent = tangent_along_x(lattice, material, F);
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(tangent).eigenvalues().minCoeff() > 0.;
+  return support::symmetric_eigenvalues(tangent)[0] > 0.;
 }
 
 EndLoads::EndLoads(const RowPartition &band, const Material &material, const State &state, const Eigen::Matrix2d &F,
@@ -109,10 +109,11 @@ EndLoads::EndLoads(const RowPartition &band, const Material &material, const Sta
     return;
   if (!waves_run_along_x(lattice, material, F))
     throw std::invalid_argument("no waves run along x in the loaded sheet, so that an end cannot absorb them");
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> modes(material.density *
-                                                             fast_tangent_along_x(lattice, material, F));
+  const support::SymmetricModes modes =
+    support::symmetric_modes(material.density * fast_tangent_along_x(lattice, material, F));
   const bool along = lattice.orientation() == Orientation::rows_along_crack;
-  impedance_ = (along ? std::sqrt(3.) / 2. : 1.) * lattice.spacing() * modes.operatorSqrt();
+  impedance_ = (along ? std::sqrt(3.) / 2. : 1.) * lattice.spacing() *
+               (modes.vectors * modes.values.cwiseSqrt().asDiagonal() * modes.vectors.transpose());
 }
 
 const std::vector<SiteForce> &EndLoads::evaluate(const State &, const Field &vx, const Field &vy)

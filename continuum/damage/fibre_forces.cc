@@ -1,15 +1,14 @@
 #include "continuum/damage/fibre_forces.h"
 
-#include "continuum/damage/instruction_sets.h"
-#include "continuum/errors.h"
-#include "continuum/material.h"
-
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <sstream>
+
+#include "continuum/damage/instruction_sets.h"
+#include "continuum/errors.h"
+#include "continuum/material.h"
+#include "support/dense.h"
 
 using dealii::Tensor;
 
@@ -299,7 +298,7 @@ double FibreForces::largest_eigenvalue(const std::array<double, 3> &conductivity
       K += conductivity[0] * X * X.transpose() + conductivity[1] * (X * Y.transpose() + Y * X.transpose()) +
            conductivity[2] * Y * Y.transpose();
     }
-  return Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(K, Eigen::EigenvaluesOnly).eigenvalues()(3);
+  return support::symmetric_eigenvalues(K)(3);
 }
 
 std::array<double, 3> FibreForces::viscous_conductivity() const

@@ -1,8 +1,8 @@
 #include "continuum/damage/patch_bound.h"
 
-#include <Eigen/Eigenvalues>
-
 #include <algorithm>
+
+#include "support/dense.h"
 
 namespace latcon::continuum
 {
@@ -25,12 +25,6 @@ Eigen::Matrix4d cell_matrix(const NodeGrid &grid, const std::array<double, 3> &D
   return K;
 }
 
-template <int n>
-double largest(const Eigen::Matrix<double, n, n> &K, const Eigen::Matrix<double, n, n> &M)
-{
-  return Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix<double, n, n>>(K, M, Eigen::EigenvaluesOnly)
-    .eigenvalues()(n - 1);
-}
 } // namespace
 
 double patch_bound(const NodeGrid &grid, const std::array<double, 3> &conductivity,
@@ -40,7 +34,7 @@ double patch_bound(const NodeGrid &grid, const std::array<double, 3> &conductivi
   const Eigen::Matrix4d M_cell =
     density * (0.25 * grid.area() * Eigen::Matrix4d::Identity() + length * length * cell_matrix(grid, {1., 0., 1.}));
   // Edge nodes have the cells without gradient energy.
-  double bound = largest<4>(K_cell, M_cell);
+  double bound = support::largest_eigenvalue(K_cell, M_cell);
   if (!terms.empty())
   {
     // A node with its share, a quarter, of the four cells around it.
@@ -61,7 +55,7 @@ double patch_bound(const NodeGrid &grid, const std::array<double, 3> &conductivi
       const Eigen::Map<const Eigen::Matrix<double, 9, 1>> S(term.S.data());
       K += grid.area() * term.stiffness * S * S.transpose();
     }
-    bound = std::max(bound, largest<9>(K, M));
+    bound = std::max(bound, support::largest_eigenvalue(K, M));
   }
   return bound;
 }

@@ -6,7 +6,7 @@
 #include <limits>
 #include <utility>
 
-#include <Eigen/QR>
+#include "support/dense.h"
 
 namespace latcon::analysis
 {
@@ -55,7 +55,7 @@ std::optional<double> local_amplitude(const ColumnMeans &path, const Sinusoid &c
     columns.row(row) << 1., std::sin(q * s), std::cos(q * s);
     Y(row) = path.Y()(inside[static_cast<std::size_t>(row)]) - curve.slope * s;
   }
-  const Eigen::Vector3d coefficients = columns.colPivHouseholderQr().solve(Y);
+  const Eigen::Vector3d coefficients = support::least_squares(columns, Y);
   return std::hypot(coefficients(1), coefficients(2));
 }
 

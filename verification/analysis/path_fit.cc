@@ -4,7 +4,7 @@
 #include <stdexcept>
 #include <utility>
 
-#include <Eigen/QR>
+#include "support/dense.h"
 
 namespace latcon::analysis
 {
@@ -42,7 +42,7 @@ struct Projection
 Projection project(const Eigen::MatrixXd &columns, const Eigen::VectorXd &values)
 {
   Projection result;
-  result.coefficients = columns.colPivHouseholderQr().solve(values);
+  result.coefficients = support::least_squares(columns, values);
   result.residual = values - columns * result.coefficients;
   return result;
 }

@@ -7,8 +7,7 @@
 #include <variant>
 #include <vector>
 
-#include <Eigen/Eigenvalues>
-
+#include "support/dense.h"
 #include "verification/bridge/bloch.h"
 
 namespace latcon::bridge
@@ -93,20 +92,19 @@ std::array<MemoryWave, 2> memory_waves(const WaveMatrices &relaxed, const std::v
   // The solver of eigenvalues does not handle values that are not finite.
   if (!B.allFinite())
     throw std::runtime_error("the stiffness of a sheet is not finite");
-  const Eigen::EigenSolver<Eigen::MatrixXd> solver(B);
+  const support::ComplexModes modes = support::complex_modes(B);
   // Everything else relaxes.
   std::vector<Eigen::Index> order;
   for (Eigen::Index i = 0; i < size; ++i)
     order.push_back(i);
   std::stable_sort(order.begin(), order.end(),
-                   [&](Eigen::Index a, Eigen::Index b)
-                   { return solver.eigenvalues()[a].imag() > solver.eigenvalues()[b].imag(); });
+                   [&](Eigen::Index a, Eigen::Index b) { return modes.values[a].imag() > modes.values[b].imag(); });
   const auto wave = [&](Eigen::Index i)
   {
-    if (!(solver.eigenvalues()[i].imag() > 0.)) // some mode that relaxes
+    if (!(modes.values[i].imag() > 0.)) // some mode that relaxes
       return MemoryWave{{nothing, nothing}, Eigen::Vector2cd::Constant(std::complex<double>(nothing, nothing))};
-    const Eigen::Vector2cd p = solver.eigenvectors().col(i).head<2>();
-    return MemoryWave{rate * solver.eigenvalues()[i], p / (std::abs(p[0]) > std::abs(p[1]) ? p[0] : p[1])};
+    const Eigen::Vector2cd p = modes.vectors.col(i).head<2>();
+    return MemoryWave{rate * modes.values[i], p / (std::abs(p[0]) > std::abs(p[1]) ? p[0] : p[1])};
   };
   std::array<MemoryWave, 2> waves{wave(order[0]), wave(order[1])};
   const auto along = [&](const MemoryWave &w)

@@ -6,9 +6,9 @@
 #include <limits>
 #include <stdexcept>
 
-#include <Eigen/Eigenvalues>
 #include <Eigen/LU>
 
+#include "support/dense.h"
 #include "support/largest_error.h"
 
 namespace latcon::bridge
@@ -21,9 +21,9 @@ constexpr double not_a_number = std::numeric_limits<double>::quiet_NaN();
 // Waves without dashpots: the problem is symmetric, so its eigenvectors are orthogonal to round-off.
 std::array<PlaneWave, 2> undamped(const Eigen::Matrix2d &stiffness)
 {
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> solver(stiffness);
+  const support::SymmetricModes modes = support::symmetric_modes(stiffness);
   const auto wave = [&](int i) {
-    return PlaneWave{std::sqrt(support::one_sided(solver.eigenvalues()[i])), 0., solver.eigenvectors().col(i)};
+    return PlaneWave{std::sqrt(support::one_sided(modes.values[i])), 0., modes.vectors.col(i)};
   };
   return {wave(0), wave(1)};
 }
@@ -35,20 +35,20 @@ std::array<PlaneWave, 2> damped(const WaveMatrices &matrices)
   Eigen::Matrix4d B;
   B << Eigen::Matrix2d::Zero(), Eigen::Matrix2d::Identity(), -matrices.stiffness / (rate * rate),
     -matrices.damping / rate;
-  const Eigen::EigenSolver<Eigen::Matrix4d> solver(B);
+  const support::ComplexModes modes = support::complex_modes(B);
   // Select from each conjugate pair the eigenvalue with positive frequency, and from two real ones (an overdamped wave)
   // the slower.
   std::array<int, 4> order{0, 1, 2, 3};
   std::sort(order.begin(), order.end(),
             [&](int a, int b)
             {
-              const std::complex<double> va = solver.eigenvalues()[a], vb = solver.eigenvalues()[b];
+              const std::complex<double> va = modes.values[a], vb = modes.values[b];
               return va.imag() != vb.imag() ? va.imag() > vb.imag() : va.real() > vb.real();
             });
   const auto wave = [&](int i)
   {
-    const std::complex<double> value = rate * solver.eigenvalues()[i];
-    const Eigen::Vector2cd vector = solver.eigenvectors().col(i).head<2>();
+    const std::complex<double> value = rate * modes.values[i];
+    const Eigen::Vector2cd vector = modes.vectors.col(i).head<2>();
     // Real up to a phase if damping and stiffness have the same axes, nearly so otherwise.
     const std::complex<double> largest = std::abs(vector[0]) > std::abs(vector[1]) ? vector[0] : vector[1];
     return PlaneWave{support::one_sided(value.imag()), -value.real(),

@@ -4,8 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Eigenvalues>
-
+#include "support/dense.h"
 #include "verification/bridge/bloch.h"
 
 namespace latcon::bridge
@@ -32,9 +31,7 @@ public:
   {
     const double length = kd < shortest ? shortest : kd > longest ? longest : kd;
     const Eigen::Vector2d K = length / lattice_.spacing() * Eigen::Vector2d(std::cos(angle), std::sin(angle));
-    return {Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d>(bloch_matrices(lattice_, material_, F_, K).stiffness)
-                .eigenvalues()[0] /
-              K.squaredNorm(),
+    return {support::symmetric_eigenvalues(bloch_matrices(lattice_, material_, F_, K).stiffness)[0] / K.squaredNorm(),
             K};
   }
 

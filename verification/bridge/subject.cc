@@ -2,11 +2,10 @@
 
 #include <cmath>
 
-#include <Eigen/SVD>
-
 #include "continuum/errors.h"
 #include "continuum/isotropic_gradient.h"
 #include "continuum/network_gradient.h"
+#include "support/dense.h"
 
 namespace latcon::bridge
 {
@@ -24,7 +23,7 @@ std::optional<double> Subject::gradient_tolerance(const Eigen::Matrix2d &F, doub
 
 std::optional<double> Subject::network_gradient_tolerance(const Eigen::Matrix2d &F, double value) const
 {
-  if (!F.isIdentity(1e-12) && F.jacobiSvd().singularValues()(1) < continuum::LatticeGradient::full_stretch)
+  if (!F.isIdentity(1e-12) && support::singular_values(F)(1) < continuum::LatticeGradient::full_stretch)
     return {};
   return tolerance(Law::mooney_rivlin_network, value);
 }

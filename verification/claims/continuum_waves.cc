@@ -4,8 +4,7 @@
 #include <cmath>
 #include <stdexcept>
 
-#include <Eigen/Eigenvalues>
-
+#include "support/dense.h"
 #include "support/largest_error.h"
 #include "verification/bridge/affine_displacement.h"
 #include "verification/bridge/homogenisation.h"
@@ -205,10 +204,10 @@ std::array<double, 2> discrete_frequencies(const WaveContinuum &medium, const Ei
     }
   if (!K2.allFinite() || !M2.allFinite())
     throw std::runtime_error("the finite elements have no waves: their tangent is not finite");
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::Matrix2d> ritz(K2, M2);
-  const auto frequency = [&](int i) { return std::sqrt(support::one_sided(ritz.eigenvalues()[i])); };
-  const bool first_is_longitudinal = std::abs(ritz.eigenvectors()(0, 0)) * std::sqrt(M2(0, 0)) >
-                                     std::abs(ritz.eigenvectors()(1, 0)) * std::sqrt(M2(1, 1));
+  const support::SymmetricModes ritz = support::symmetric_modes(K2, M2);
+  const auto frequency = [&](int i) { return std::sqrt(support::one_sided(ritz.values[i])); };
+  const bool first_is_longitudinal =
+    std::abs(ritz.vectors(0, 0)) * std::sqrt(M2(0, 0)) > std::abs(ritz.vectors(1, 0)) * std::sqrt(M2(1, 1));
   return {frequency(first_is_longitudinal ? 0 : 1), frequency(first_is_longitudinal ? 1 : 0)};
 }
 

@@ -4,7 +4,7 @@
 #include <complex>
 #include <stdexcept>
 
-#include <Eigen/Dense>
+#include "support/dense.h"
 
 namespace latcon::claims
 {
@@ -24,7 +24,7 @@ std::size_t first_crossing(const std::vector<double> &values)
 std::complex<double> recurrence(const std::vector<double> &values, double step, std::size_t stride)
 {
   const auto n = static_cast<Eigen::Index>(values.size() - 2 * stride);
-  Eigen::MatrixX2d A(n, 2);
+  Eigen::MatrixXd A(n, 2);
   Eigen::VectorXd b(n);
   for (Eigen::Index i = 0; i < n; ++i)
   {
@@ -32,7 +32,7 @@ std::complex<double> recurrence(const std::vector<double> &values, double step, 
     A.row(i) << values[at + stride], values[at];
     b[i] = values[at + 2 * stride];
   }
-  const Eigen::Vector2d c = A.colPivHouseholderQr().solve(b);
+  const Eigen::Vector2d c = support::least_squares(A, b);
   const std::complex<double> root = 0.5 * (c[0] + std::sqrt(std::complex<double>(c[0] * c[0] + 4. * c[1])));
   return std::log(root) / (static_cast<double>(stride) * step);
 }
@@ -49,7 +49,7 @@ Oscillation fit_oscillation(const std::vector<double> &values, double step)
 
   const auto n = static_cast<Eigen::Index>(values.size());
   const Eigen::Map<const Eigen::VectorXd> a(values.data(), n);
-  Eigen::MatrixX4d J(n, 4);
+  Eigen::MatrixXd J(n, 4);
   Eigen::Vector2d amplitudes = Eigen::Vector2d::Zero();
   // Quadratic, since the values are an oscillation but for small terms; a handful of steps reach round-off.
   constexpr int max_iterations = 50;
@@ -61,7 +61,7 @@ Oscillation fit_oscillation(const std::vector<double> &values, double step)
       J(i, 0) = fade * std::cos(w * t);
       J(i, 1) = fade * std::sin(w * t);
     }
-    amplitudes = J.leftCols<2>().colPivHouseholderQr().solve(a);
+    amplitudes = support::least_squares(J.leftCols<2>(), a);
     const Eigen::VectorXd left = a - J.leftCols<2>() * amplitudes;
     const double residual = left.norm() / a.norm();
     for (Eigen::Index i = 0; i < n; ++i)
@@ -70,7 +70,7 @@ Oscillation fit_oscillation(const std::vector<double> &values, double step)
       J(i, 2) = -wt * (amplitudes[0] * J(i, 0) + amplitudes[1] * J(i, 1));
       J(i, 3) = wt * (-amplitudes[0] * J(i, 1) + amplitudes[1] * J(i, 0));
     }
-    const Eigen::Vector4d change = J.colPivHouseholderQr().solve(left);
+    const Eigen::Vector4d change = support::least_squares(J, left);
     g += w * change[2];
     w *= 1. + change[3];
     if (!(w > 0.) || !std::isfinite(g))

@@ -7,11 +7,10 @@
 #include <stdexcept>
 #include <tuple>
 
-#include <Eigen/SVD>
-
 #include "lattice/chebyshev_stages.h"
 #include "lattice/contact.h"
 #include "lattice/seed.h"
+#include "support/dense.h"
 #include "support/full_precision.h"
 #include "verification/input/sha256.h"
 
@@ -452,7 +451,7 @@ double Case::longest_stretch() const
     return *breaking_stretch * disorder.strength.distribution().largest() *
            (toughening == Toughening::none ? 1. : toughening_factor);
   constexpr double margin = 1.2;
-  return margin * std::max(1., deformation().jacobiSvd().singularValues()(0));
+  return margin * std::max(1., support::singular_values(deformation())(0));
 }
 
 Eigen::Matrix2d Case::deformation() const

@@ -3,8 +3,7 @@
 #include <cmath>
 #include <limits>
 
-#include <Eigen/Dense>
-
+#include "support/dense.h"
 #include "verification/bridge/homogenisation.h"
 
 namespace latcon::claims
@@ -78,7 +77,7 @@ double smallest(const Matrix6 &matrix)
 {
   if (!matrix.allFinite())
     return std::numeric_limits<double>::quiet_NaN();
-  return Eigen::SelfAdjointEigenSolver<Matrix6>(matrix).eigenvalues()[0];
+  return support::symmetric_eigenvalues(matrix)[0];
 }
 
 } // namespace
@@ -114,17 +113,16 @@ std::optional<double> critical_length(const lattice::TriangularLattice &lattice,
   const Parts parts = lattice_parts(lattice, material, F);
   if (!parts.positive.allFinite() || !parts.negative.allFinite())
     return std::numeric_limits<double>::quiet_NaN();
-  const Eigen::SelfAdjointEigenSolver<Matrix6> positive(parts.positive);
+  const support::SymmetricModes positive = support::symmetric_modes(parts.positive);
   // A gradient that no bond feels counts for neither part. One that makes the positive part negative leaves no length.
-  const double round_off = 1e-12 * positive.eigenvalues()[5];
-  if (positive.eigenvalues()[0] < -round_off)
+  const double round_off = 1e-12 * positive.values[5];
+  if (positive.values[0] < -round_off)
     return {};
   Matrix6 scaled = Matrix6::Zero(); // positive^(-1/2), on its range
   for (int i = 0; i < 6; ++i)
-    if (positive.eigenvalues()[i] > round_off)
-      scaled += positive.eigenvectors().col(i) * positive.eigenvectors().col(i).transpose() /
-                std::sqrt(positive.eigenvalues()[i]);
-  return std::sqrt(Eigen::SelfAdjointEigenSolver<Matrix6>(scaled * parts.negative * scaled).eigenvalues()[5]);
+    if (positive.values[i] > round_off)
+      scaled += positive.vectors.col(i) * positive.vectors.col(i).transpose() / std::sqrt(positive.values[i]);
+  return std::sqrt(support::symmetric_eigenvalues(scaled * parts.negative * scaled)[5]);
 }
 
 } // namespace latcon::claims

@@ -4,9 +4,9 @@
 #include <sstream>
 
 #include <Eigen/LU>
-#include <Eigen/QR>
 #include <boost/math/distributions/students_t.hpp>
 
+#include "support/dense.h"
 #include "support/largest_error.h"
 #include "verification/bridge/equivalent_sheet.h"
 #include "verification/claims/prestretch/cut_study.h"
@@ -25,7 +25,7 @@ struct Fit
 
   // @param terms a column for each parameter, fewer than rows
   Fit(const Eigen::MatrixXd &terms, const Eigen::VectorXd &values)
-    : parameter(terms.colPivHouseholderQr().solve(values)), covariance(((terms.transpose() * terms).inverse())),
+    : parameter(support::least_squares(terms, values)), covariance(((terms.transpose() * terms).inverse())),
       freedom(static_cast<double>(terms.rows() - terms.cols()))
   {
     scatter = std::sqrt((values - terms * parameter).squaredNorm() / freedom);

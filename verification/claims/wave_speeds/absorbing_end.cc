@@ -2,11 +2,10 @@
 
 #include <cmath>
 
-#include <Eigen/Eigenvalues>
-
 #include "lattice/end_loads.h"
 #include "lattice/simulation.h"
 #include "lattice/time_step.h"
+#include "support/dense.h"
 #include "support/largest_error.h"
 #include "verification/claims/lattice_waves.h"
 
@@ -65,11 +64,11 @@ output::Results absorbing_end_rows(const bridge::Subject &subject)
   output::Results results;
   const lattice::TriangularLattice any(subject.spacing, 10. * subject.spacing, 10. * subject.spacing,
                                        subject.orientation);
-  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix2d> waves(
-    lattice::tangent_along_x(any, subject.material, subject.deformation));
+  const support::SymmetricModes waves =
+    support::symmetric_modes(lattice::tangent_along_x(any, subject.material, subject.deformation));
   for (int i = 0; i < 2; ++i)
   {
-    const double share = reflected_share(subject, waves.eigenvectors().col(i));
+    const double share = reflected_share(subject, waves.vectors.col(i));
     results.add({"wave-speeds",
                  subject.name + ", loaded: share of a long wave that an absorbing end reflects, " +
                    (i == 0 ? "slower" : "faster") + " wave",
