@@ -13,7 +13,7 @@ namespace latcon::support
 /// group is then the mounted root.
 /// @param root folder that contains /proc and /sys
 /// @param controller name in version 1: "memory", "cpu"
-/// @param visit is told the version, 1 or 2: names of files depend on it
+/// @param visit receives the folder and the version, 1 or 2, on which names of files depend
 void for_each_control_group(const std::filesystem::path &root, const std::string &controller,
                             const std::function<void(const std::filesystem::path &group, int version)> &visit);
 

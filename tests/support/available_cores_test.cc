@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
 
 #include <sched.h>
 
@@ -36,12 +35,6 @@ TEST(AvailableCores, AreThoseThatTheSchedulerMayUse)
 class ProcessorQuota : public testing::Test
 {
 protected:
-  void put(const std::string &name, const std::string &text)
-  {
-    const std::filesystem::path path = root_ / name;
-    std::filesystem::create_directories(path.parent_path());
-    std::ofstream(path) << text;
-  }
   double quota() { return processor_quota(root_.path()); }
 
 private:
@@ -51,24 +44,24 @@ private:
 TEST_F(ProcessorQuota, IsThatOfTheNarrowestGroup)
 {
   EXPECT_TRUE(std::isinf(quota()));
-  put("proc/self/cgroup", "0::/outer/inner\n");
+  root_.write("proc/self/cgroup", "0::/outer/inner\n");
   EXPECT_TRUE(std::isinf(quota()));
-  put("sys/fs/cgroup/cpu.max", "max 100000\n");
-  put("sys/fs/cgroup/outer/cpu.max", "150000 100000\n");
-  put("sys/fs/cgroup/outer/inner/cpu.max", "max 100000\n");
+  root_.write("sys/fs/cgroup/cpu.max", "max 100000\n");
+  root_.write("sys/fs/cgroup/outer/cpu.max", "150000 100000\n");
+  root_.write("sys/fs/cgroup/outer/inner/cpu.max", "max 100000\n");
   EXPECT_EQ(quota(), 1.5);
-  put("sys/fs/cgroup/outer/inner/cpu.max", "50000 100000\n");
+  root_.write("sys/fs/cgroup/outer/inner/cpu.max", "50000 100000\n");
   EXPECT_EQ(quota(), 0.5);
 }
 
 TEST_F(ProcessorQuota, IsReadFromGroupsOfTheFirstVersion)
 {
-  put("proc/self/cgroup", "5:cpu,cpuacct:/a\n4:memory:/a\n");
-  put("sys/fs/cgroup/cpu/cpu.cfs_quota_us", "-1\n");
-  put("sys/fs/cgroup/cpu/cpu.cfs_period_us", "100000\n");
+  root_.write("proc/self/cgroup", "5:cpu,cpuacct:/a\n4:memory:/a\n");
+  root_.write("sys/fs/cgroup/cpu/cpu.cfs_quota_us", "-1\n");
+  root_.write("sys/fs/cgroup/cpu/cpu.cfs_period_us", "100000\n");
   EXPECT_TRUE(std::isinf(quota()));
-  put("sys/fs/cgroup/cpu/a/cpu.cfs_quota_us", "200000\n");
-  put("sys/fs/cgroup/cpu/a/cpu.cfs_period_us", "100000\n");
+  root_.write("sys/fs/cgroup/cpu/a/cpu.cfs_quota_us", "200000\n");
+  root_.write("sys/fs/cgroup/cpu/a/cpu.cfs_period_us", "100000\n");
   EXPECT_EQ(quota(), 2.);
 }
 

@@ -16,15 +16,9 @@ using latcon::support::readable_bytes;
 class MachineMemory : public testing::Test
 {
 protected:
-  void put(const std::string &name, const std::string &text)
-  {
-    const std::filesystem::path path = root_ / name;
-    std::filesystem::create_directories(path.parent_path());
-    std::ofstream(path) << text;
-  }
   void put_available(const std::string &kibibytes)
   {
-    put("proc/meminfo", "MemTotal:       2000 kB\nMemFree:         1 kB\nMemAvailable:   " + kibibytes + " kB\n");
+    root_.write("proc/meminfo", "MemTotal:       2000 kB\nMemFree:         1 kB\nMemAvailable:   " + kibibytes + " kB\n");
   }
   double available() { return available_memory(root_.path()); }
 
@@ -46,17 +40,17 @@ TEST_F(MachineMemory, IsInfiniteWhereNothingIsSaid)
 TEST_F(MachineMemory, IsLimitedByAControlGroupAndThoseAroundIt)
 {
   put_available("1000");
-  put("proc/self/cgroup", "0::/outer/inner\n");
-  put("sys/fs/cgroup/outer/memory.max", "500000\n");
-  put("sys/fs/cgroup/outer/memory.current", "300000\n");
-  put("sys/fs/cgroup/outer/inner/memory.max", "max\n");
-  put("sys/fs/cgroup/outer/inner/memory.current", "300000\n");
+  root_.write("proc/self/cgroup", "0::/outer/inner\n");
+  root_.write("sys/fs/cgroup/outer/memory.max", "500000\n");
+  root_.write("sys/fs/cgroup/outer/memory.current", "300000\n");
+  root_.write("sys/fs/cgroup/outer/inner/memory.max", "max\n");
+  root_.write("sys/fs/cgroup/outer/inner/memory.current", "300000\n");
   EXPECT_EQ(available(), 200000.);
-  put("sys/fs/cgroup/outer/memory.stat", "anon 1\ninactive_file 50000\n");
+  root_.write("sys/fs/cgroup/outer/memory.stat", "anon 1\ninactive_file 50000\n");
   EXPECT_EQ(available(), 250000.);
-  put("sys/fs/cgroup/outer/inner/memory.max", "310000\n");
+  root_.write("sys/fs/cgroup/outer/inner/memory.max", "310000\n");
   EXPECT_EQ(available(), 10000.);
-  put("sys/fs/cgroup/outer/inner/memory.max", "1000\n");
+  root_.write("sys/fs/cgroup/outer/inner/memory.max", "1000\n");
   EXPECT_EQ(available(), 0.);
 }
 
@@ -64,20 +58,20 @@ TEST_F(MachineMemory, IsLimitedByAControlGroupAndThoseAroundIt)
 TEST_F(MachineMemory, IsLimitedByTheGroupThatIsMounted)
 {
   put_available("1000");
-  put("proc/self/cgroup", "0::/not/seen/here\n");
-  put("sys/fs/cgroup/memory.max", "400000\n");
-  put("sys/fs/cgroup/memory.current", "100000\n");
+  root_.write("proc/self/cgroup", "0::/not/seen/here\n");
+  root_.write("sys/fs/cgroup/memory.max", "400000\n");
+  root_.write("sys/fs/cgroup/memory.current", "100000\n");
   EXPECT_EQ(available(), 300000.);
 }
 
 TEST_F(MachineMemory, IsLimitedByGroupsOfTheFirstVersion)
 {
   put_available("1000");
-  put("proc/self/cgroup", "5:cpu,cpuacct:/a\n4:memory:/a\n0::/\n");
-  put("sys/fs/cgroup/memory/a/memory.limit_in_bytes", "90000\n");
-  put("sys/fs/cgroup/memory/a/memory.usage_in_bytes", "20000\n");
-  put("sys/fs/cgroup/memory/memory.limit_in_bytes", "9223372036854771712\n");
-  put("sys/fs/cgroup/memory/memory.usage_in_bytes", "20000\n");
+  root_.write("proc/self/cgroup", "5:cpu,cpuacct:/a\n4:memory:/a\n0::/\n");
+  root_.write("sys/fs/cgroup/memory/a/memory.limit_in_bytes", "90000\n");
+  root_.write("sys/fs/cgroup/memory/a/memory.usage_in_bytes", "20000\n");
+  root_.write("sys/fs/cgroup/memory/memory.limit_in_bytes", "9223372036854771712\n");
+  root_.write("sys/fs/cgroup/memory/memory.usage_in_bytes", "20000\n");
   EXPECT_EQ(available(), 70000.);
 }
 

@@ -31,6 +31,13 @@ public:
 
   /// Returns the full path of a file in the folder.
   [[nodiscard]] std::string operator/(const std::string &name) const { return (path_ / name).string(); }
+  /// Writes a file, in a folder of its own if the name has one.
+  void write(const std::string &name, const std::string &text) const
+  {
+    const std::filesystem::path path = path_ / name;
+    std::filesystem::create_directories(path.parent_path());
+    std::ofstream(path) << text;
+  }
   [[nodiscard]] std::string path() const { return path_.string(); }
 
 private:

@@ -260,7 +260,7 @@ struct Plant
   ClaimPart claim;
   std::string side;
   std::function<void(Subject &)> plant;
-  std::string reason = ""; ///< words of a row that fails; none: a row fails for want of a number
+  std::string reason = ""; ///< words of a row that fails; none: a row fails because a value is not a number
 };
 
 std::ostream &operator<<(std::ostream &out, const Plant &plant)
