@@ -355,16 +355,30 @@ private:
         if (a != index.end() && b != index.end())
           numbers[std::minmax(a->second, b->second)].insert(element.numbers.begin(), element.numbers.end());
       }
+    const auto line_between = [&mesh](const unsigned int first, const unsigned int second)
+    {
+      const Point<2> &from = mesh.points[first], &to = mesh.points[second];
+      std::ostringstream text;
+      text << " from (" << from[0] << ", " << from[1] << ") to (" << to[0] << ", " << to[1] << ") m";
+      return text.str();
+    };
+    // A load on such a line would be left out.
+    for (const auto &[ends, curves] : numbers)
+      if (sides.count(ends) == sides.count({ends.second, ends.first}))
+        for (const int curve : curves)
+          if (const auto name = names_.find(curve);
+              name != names_.end() && std::find(edge_names.begin(), edge_names.end(), name->second) != edge_names.end())
+            refuse("has a line", line_between(ends.first, ends.second), ", not on the boundary, on the physical curve ",
+                   curve, " named \"", name->second, "\", which is the name of an edge");
     for (const auto &[first, second] : sides)
     {
       if (sides.count({second, first}) > 0)
         continue;
-      const Point<2> &from = mesh.points[std::min(first, second)], &to = mesh.points[std::max(first, second)];
-      std::ostringstream where;
-      where << "an edge from (" << from[0] << ", " << from[1] << ") to (" << to[0] << ", " << to[1] << ") m";
+      const std::pair<unsigned int, unsigned int> ends = std::minmax(first, second);
+      const std::string where = "an edge" + line_between(ends.first, ends.second);
       CellData<1> side(2);
       side.vertices = {first, second};
-      side.boundary_id = edge_of(where.str(), numbers[std::minmax(first, second)]);
+      side.boundary_id = edge_of(where, numbers[ends]);
       mesh.lines.boundary_lines.push_back(side);
     }
   }

@@ -50,9 +50,10 @@ double n_coarse_cells(const std::filesystem::path &gmsh_file);
 /// Reads quadrilaterals in a plane z = const, coordinates in metres, from a Gmsh file (.msh, version 2 or 4.1, ASCII,
 /// first order, at most 256 MiB). Every boundary edge must lie on one physical curve. If any physical curve has a name,
 /// boundary ids follow from the names left, right, bottom, top and inner, whatever the numbers; otherwise they are the
-/// numbers, from continuum::edge. In version 2 Gmsh writes 0 for elements without a group, so the physical surface must
-/// have another number. Then halves all cells `refinements` times. Not supported: curved edges, cells that are not
-/// convex. Throws InvalidInput, with the name of the file, if it cannot be read or contains another kind of mesh.
+/// numbers, from continuum::edge. A line off the boundary must not have such a name. In version 2 Gmsh writes 0 for
+/// elements without a group, so the physical surface must have another number. Then halves all cells `refinements`
+/// times. Not supported: curved edges, cells that are not convex. Throws InvalidInput, with the name of the file, if it
+/// cannot be read or contains another kind of mesh.
 void read_gmsh(dealii::parallel::distributed::Triangulation<2> &mesh, const std::filesystem::path &file,
                unsigned int refinements = 0);
 } // namespace latcon::continuum

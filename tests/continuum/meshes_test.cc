@@ -236,6 +236,11 @@ TEST(Meshes, NamesOfCurvesDecideWhereThereAreAny)
   EXPECT_NE(refused("2\n1 2 \"left\"\n1 2 \"right\"").find("curve 2 two names, \"left\" and \"right\""),
             std::string::npos);
   EXPECT_EQ(refused("1\n2 7 \"left\""), "accepted"); // a surface
+  std::string inside = two_squares; // with a line along the edge between the squares
+  inside.replace(inside.find("8\n1 1 2"), 2, "9\n9 1 2 8 4 2 5\n");
+  inside.replace(inside.find("$Nodes"), 6, named("4\n1 0 \"left\"\n1 2 \"bottom\"\n1 4 \"right\"\n1 8 \"top\""));
+  EXPECT_NE(refusal(two_squares, inside).find("not on the boundary, on the physical curve 8 named \"top\""),
+            std::string::npos);
 }
 
 // Gmsh's `Save all elements`, or a mesh without physical groups, in version 2.
