@@ -4,6 +4,7 @@
 Usage: paraview_test.py FOLDER_WITH_PARAVIEWS_PYTHON_MODULES
 Exits with 77 if the modules or Xvfb are missing; cmake/set-up.sh installs both.
 """
+import json
 import sys
 
 import numpy as np
@@ -43,7 +44,7 @@ def write_run(folder):
                   "cauchy_stress": np.outer(1e4 * speed, np.eye(9)[4]), "damage": speed / 40}
         write_frame(folder / name, reference, fields, bonds, stretch)
     write_series(folder / "lattice.pvd", {"lattice-0000.vtp": 0.0, "lattice-0001.vtp": 2e-3})
-    (folder / "case.prm").write_text(f"subsection Fracture\n  set breaking stretch = {BREAKING}\nend\n")
+    (folder / "run.json").write_text(json.dumps({"entries": {"Fracture/breaking stretch": str(BREAKING)}}))
     (folder / "crack.csv").write_text("t,X,Y,x,y\n0,0.001,0,0.002,0\n0.001,0.03,0,0.06,0\n")
     (folder / "crack.json").write_text('{"pattern": "straight", "speed_laboratory": 50.0}')
     (folder / "near_tip.json").write_text('{"samples": 7, "sampled_to": 0.031}')

@@ -58,7 +58,8 @@ def write_verification(folder, rows):
     """A run without a crack."""
     folder.mkdir(parents=True)
     (folder / "results.json").write_text(json.dumps({"claims": rows, "verdict": "holds"}))
-    (folder / "run.json").write_text(json.dumps({"version": "1.2.3", "exit_code": 0}))
+    (folder / "run.json").write_text(json.dumps({"version": "1.2.3", "exit_code": 0,
+                                                 "entries": {"Fracture/breaking stretch": "3"}}))
     (folder / "case.prm").write_text("subsection Fracture\n  set breaking stretch = 3 # default: auto\nend\n")
 
 

@@ -330,8 +330,8 @@ class ComparisonTest(unittest.TestCase):
             folder = Path(name)
             for run in ("one", "other"):
                 write_torn_sheet(folder / run)
-            case = folder / "other" / "case.prm"
-            case.write_text(case.read_text().replace("set breaking stretch = 3", "set breaking stretch = 3.5"))
+            record = folder / "other" / "run.json"
+            record.write_text(record.read_text().replace('"3"', '"3.5"'))
             listed = folder / "other" / "motion.pvd"
             frames = re.findall(r"<DataSet[^>]*>", listed.read_text())
             fewer = [frame for i, frame in enumerate(frames) if i % 3 != 1]

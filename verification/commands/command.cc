@@ -108,7 +108,13 @@ Run::Run(const input::Options &options, const input::Parameters *parameters)
     is_verbose_(is_root_ && !options.quiet), prints_all_(options.verbose), resumes_(options.resume)
 {
   if (parameters != nullptr)
+  {
     info().add("case_hash", input::sha256(input::case_lines(*parameters)));
+    output::RunInfo::Object entries;
+    for (const auto &[key, value] : parameters->values())
+      entries.emplace_back(key, value);
+    info().add("entries", entries);
+  }
   if (is_root_)
   {
     std::error_code error;

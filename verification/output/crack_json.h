@@ -7,7 +7,8 @@
 namespace latcon::output
 {
 
-/// What crack.json says of every crack, on either side: pattern, reason, and measured quantities with uncertainties.
+/// What crack.json says of every crack, on either side: pattern, reason, measured quantities with
+/// uncertainties, and the thresholds that decided.
 [[nodiscard]] nlohmann::ordered_json crack_json(const analysis::CrackMeasurement &measurement);
 
 } // namespace latcon::output

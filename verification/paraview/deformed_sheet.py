@@ -55,7 +55,7 @@ def limits(sheet, field, directory):
         return 0.0, 1.0
     low, high = np.nanpercentile(values_of(sheet, field.name, field.component, field.on), (1, 99))
     if field.name == "stretch":
-        return low, input_number(directory, "Fracture", "breaking stretch") or high
+        return low, input_number(directory, "Fracture/breaking stretch") or high
     return (0.0 if field.name == "velocity" else low), high
 
 
@@ -83,7 +83,7 @@ def draw(chosen):
     display.SetRepresentationType("Surface")
     display.LineWidth, display.PointSize = 1.0, 1.5
     set_scale(lut, limits(sheet, field, chosen.directory), field.preset, field.component)
-    if field.name == "stretch" and input_number(chosen.directory, "Fracture", "breaking stretch"):
+    if field.name == "stretch" and input_number(chosen.directory, "Fracture/breaking stretch"):
         lut.UseAboveRangeColor, lut.AboveRangeColor = 1, BEYOND
     view.show_bar(display, lut, field.label)
     clock = pv.Show(pv.AnnotateTimeFilter(Input=sheet, Scale=1e3, Format="t = {time:.3f} ms"), view.view)

@@ -1,7 +1,7 @@
 """Utilities of the scripts in this folder: command line, colour scales, white views, screenshots."""
 import argparse
+import json
 import pathlib
-import re
 import sys
 
 TEXT = [0.13, 0.13, 0.13]
@@ -31,12 +31,12 @@ def fail(problem):
     sys.exit(f"{pathlib.Path(sys.argv[0]).name}: {problem}")
 
 
-def input_number(directory, section, entry):
-    """A number in the case.prm of a run, SI unit; None if it is missing."""
-    path = directory / "case.prm"
-    found = re.search(rf"^subsection {re.escape(section)}\n(?:(?!end\b).*\n)*?\s*set\s+{re.escape(entry)}\s*=\s*([-+.\deE]+)",
-                      path.read_text() if path.is_file() else "", re.MULTILINE)
-    return float(found[1]) if found else None
+def input_number(directory, key):
+    """Value of an entry of the case of a run, SI unit, as its run.json records it; None if it is missing or no number."""
+    try:
+        return float(json.loads((directory / "run.json").read_text())["entries"][key])
+    except (OSError, ValueError, KeyError):
+        return None
 
 
 def array(source, name, on="POINTS"):

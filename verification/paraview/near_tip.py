@@ -112,7 +112,7 @@ def show_sheet(view, sheet, bounds, chosen):
     display.SetRepresentationType("Surface")
     display.LineWidth, display.PointSize = 1.6, 2.5
     low, high = np.percentile(values_of(part, "stretch", on="CELLS"), (1, 99))
-    breaking = input_number(chosen.directory, "Fracture", "breaking stretch")
+    breaking = input_number(chosen.directory, "Fracture/breaking stretch")
     set_scale(lut, (low, breaking or high), "Viridis (matplotlib)")
     if breaking:
         lut.UseAboveRangeColor, lut.AboveRangeColor = 1, BEYOND

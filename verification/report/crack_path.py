@@ -60,7 +60,7 @@ def draw_crack_path(run, path):
     """Draws the path of the tip with the measurement (above) and positions and times of broken bonds (below)."""
     X, Y = 100 * run.tip["X"], 100 * run.tip["Y"]
     broken = run.broken if has_rows(run.broken) else None
-    length = run.input_number("Sheet", "length")
+    length = run.input_number("Sheet/length")
     X_range = (0.0, 100 * length) if length else (X.min(), max(X.max(), X.min() + 0.1))
     width, upper = WIDTH - LEFT - RIGHT, 2.6
     scale = width / (X_range[1] - X_range[0])  # [in] of picture per cm of sheet

@@ -191,7 +191,7 @@ def arrested_section(run, folder):
     if run.crack is None or frame is None:
         return [], []
     png = folder / "arrested-sheet.png"
-    breaking_stretch = run.input_number("Fracture", "breaking stretch")
+    breaking_stretch = run.input_number("Fracture/breaking stretch")
     draw_sheet(frame, breaking_stretch, png)
     shrink(png, LARGEST_PICTURE)
     changes = ", ".join(entry.replace("=", " = ") for entry in EXTRA_RUNS["arrested"] if not entry.startswith("Output"))

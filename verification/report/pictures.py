@@ -134,15 +134,6 @@ def energy_shares(energy):
     return released, [(name, values) for name, values in shares if values.any()]
 
 
-def energy_exchanged(energy):
-    """Energy that a motion exchanged, theory.md, eq. (L.38) [J/m]."""
-    broken = energy["broken"][-1] - energy["broken"][0]
-    spent = broken + energy["viscous"][-1] + (energy["shed"][-1] if "shed" in energy else 0.0)
-    if broken > 0:
-        return spent
-    return spent + np.abs(energy["boundary_work"]).max() + np.abs(energy["kinetic"] - energy["kinetic"][0]).max()
-
-
 def draw_energy(energy, path):
     """Draws the conversion of the elastic energy: kinetic, viscous and broken, stacked; below, the imbalance."""
     t = 1e3 * energy["t"]
@@ -161,12 +152,11 @@ def draw_energy(energy, path):
     handles, labels = axes.get_legend_handles_labels()
     axes.legend(handles[:1] + handles[:0:-1], labels[:1] + labels[:0:-1], loc="upper left")
 
-    exchanged = energy_exchanged(energy)
-    imbalance = energy["imbalance"] / (exchanged if exchanged > 0 else 1.0)
+    imbalance = energy["imbalance"]
     exponent = math.floor(math.log10(np.abs(imbalance).max())) if imbalance.any() else 0
     below = page.axes(1.0, 3.85, WIDTH - 1.25, 0.95, sharex=axes)
     below.plot(t, imbalance / 10.0**exponent, color=BLACK, linewidth=1.2)
-    below.set(xlabel="time [ms]", ylabel=f"imbalance / energy\nexchanged [$10^{{{exponent}}}$]")
+    below.set(xlabel="time [ms]", ylabel=f"imbalance\n[$10^{{{exponent}}}$ J/m]")
     for panel in (axes, below):
         panel.yaxis.set_label_coords(-0.065, 0.5)
     save(page.figure, path)

@@ -45,7 +45,7 @@ def draw_pictures(run, motion, folder):
         draw_animation(motion, place("animation.gif", still), still)
     frame = read_last_frame(run.folder)
     if frame is not None:
-        draw_sheet(frame, run.input_number("Fracture", "breaking stretch"), place("sheet.png"))
+        draw_sheet(frame, run.input_number("Fracture/breaking stretch"), place("sheet.png"))
         if has_fields(frame):
             draw_fields(frame, place("sheet_fields.png"))
     broken = read_last_damage_frame(run.folder) if run.on_continuum else None

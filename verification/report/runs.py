@@ -1,6 +1,5 @@
 """Reader of the runs in a folder: their checks and measurements."""
 import math
-import re
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -94,18 +93,12 @@ class Run:
         """True if the crack was run without checking the claims for its material."""
         return bool((self.info or {}).get("skip_verification"))
 
-    def input_number(self, section, entry):
-        """Number in case.prm, SI unit; None if it is missing or not a number."""
-        current = None
-        for line in (self.case_text or "").splitlines():
-            if match := re.match(r"\s*subsection\s+(.*\S)", line):
-                current = match[1]
-            elif current == section and (match := re.match(rf"\s*set\s+{re.escape(entry)}\s*=\s*(\S+)", line)):
-                try:
-                    return float(match[1])
-                except ValueError:
-                    return None
-        return None
+    def input_number(self, key):
+        """Value of an entry of the case, SI unit, as run.json records it; None if it is missing or not a number."""
+        try:
+            return float((self.info or {})["entries"][key])
+        except (KeyError, ValueError):
+            return None
 
 
 @dataclass(frozen=True)

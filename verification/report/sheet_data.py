@@ -62,7 +62,7 @@ def contents(run, motion, frames):
     speed_quantum = float(speeds.max()) / SPEED_STEPS or 1.0
     steps = np.round(positions / quantum).astype(np.int64)
     stretch = [ends_distance(frame.position, mesh.bonds) / length for frame in (frames[0], frames[-1])]
-    breaking = run.input_number("Fracture", "breaking stretch")
+    breaking = run.input_number("Fracture/breaking stretch")
     low, high = np.percentile(np.concatenate(stretch), (1, 99)) if len(length) else (1.0, 2.0)
     return {
         "times": times.tolist(),

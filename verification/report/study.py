@@ -92,7 +92,7 @@ def draw_run(seed, folder, most, kinds=tuple(RUN_PICTURES)):
     frame = read_last_frame(seed.folder)
     if frame is not None:
         drawn["sheet"] = folder / f"{seed.run}-sheet.png"
-        draw_sheet(frame, read_run(seed.folder).input_number("Fracture", "breaking stretch"), drawn["sheet"])
+        draw_sheet(frame, read_run(seed.folder).input_number("Fracture/breaking stretch"), drawn["sheet"])
     means = seed.folder / "near_tip_folded.vti"
     if means.exists() and "velocity" in kinds:
         drawn["velocity"] = folder / f"{seed.run}-velocity.png"
