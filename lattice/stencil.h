@@ -36,7 +36,7 @@ struct HalfBond
   Eigen::Vector2d vector; ///< R, reference vector from the near to the far end [m]
   double rest_length;     ///< |R| [m]
   double weight;          ///< q [-], > 0: share of the bond in the energy of its shell
-  std::size_t shell;      ///< number of the ring
+  std::size_t shell;      ///< whose law it has; that of its ring
 };
 
 /// Bonds of one length that leave every point of a nonlocal continuum.

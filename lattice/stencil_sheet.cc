@@ -1,6 +1,7 @@
 #include "lattice/stencil_sheet.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 
@@ -20,28 +21,21 @@ void require(bool condition, const char *message)
     throw std::invalid_argument(message);
 }
 
-// Columns and rows of the grid that cover a rectangle.
-struct Extent
-{
-  int first_column, last_column, first_row, last_row;
-};
-
-Extent covering(const Grid &grid, const Eigen::Vector2d &origin, double length, double height)
+// First and last columns (0) and rows (1) of the grid that cover a rectangle.
+std::array<Eigen::Vector2i, 2> covering(const Grid &grid, const Eigen::Vector2d &origin, double length, double height)
 {
   Eigen::Matrix2d cell;
   cell << grid.vector(1, 0), grid.vector(0, 1);
-  const Eigen::Matrix2d inverse = cell.inverse();
-  Eigen::Vector2d low = Eigen::Vector2d::Constant(1e300), high = -low;
+  Eigen::Array2d low = Eigen::Array2d::Constant(1e300), high = -low;
   for (const double X : {0., length})
     for (const double Y : {-0.5 * height, 0.5 * height})
     {
-      const Eigen::Vector2d corner = inverse * (Eigen::Vector2d(X, Y) - origin);
-      low = low.cwiseMin(corner);
-      high = high.cwiseMax(corner);
+      const Eigen::Array2d corner = (cell.inverse() * (Eigen::Vector2d(X, Y) - origin)).array();
+      low = low.min(corner);
+      high = high.max(corner);
     }
   require(low.minCoeff() > -1e5 && high.maxCoeff() < 1e5, "a sheet has more than 1e5 points along an edge");
-  const auto floor = [](double value) { return static_cast<int>(std::floor(value)); };
-  return {floor(low.x()), floor(high.x()) + 1, floor(low.y()), floor(high.y()) + 1};
+  return {low.floor().cast<int>(), high.floor().cast<int>() + 1};
 }
 
 } // namespace
@@ -75,30 +69,29 @@ StencilSheet::StencilSheet(const Grid &grid, const Eigen::Vector2d &origin, doub
   step_ = step > 0. ? step : resolving_step();
   stages_ = ChebyshevStages(std::max(2u, ChebyshevStages::needed(step_ * damping)));
 
-  const Extent extent = covering(grid, origin, length, height);
-  first_column_ = extent.first_column - columns_reach;
-  first_row_ = extent.first_row - rows_reach;
-  const int columns = extent.last_column - first_column_ + columns_reach + 2 * int(TriangularLattice::row_alignment);
+  const auto [first, last] = covering(grid, origin, length, height);
+  first_column_ = first.x() - columns_reach;
+  first_row_ = first.y() - rows_reach;
+  const int columns = last.x() - first_column_ + columns_reach + 2 * int(TriangularLattice::row_alignment);
   stride_ = static_cast<std::size_t>(columns);
   reach_ = static_cast<std::size_t>(rows_reach);
-  n_places_ = stride_ * static_cast<std::size_t>(extent.last_row - first_row_ + rows_reach + 2);
+  n_places_ = stride_ * static_cast<std::size_t>(last.y() - first_row_ + rows_reach + 2);
   for (const HalfBond &bond : stencil_)
     shift_.push_back(bond.rows * static_cast<std::ptrdiff_t>(stride_) + bond.columns);
   for (Field *field : {&x_, &y_, &vx_, &vy_, &fx_, &fy_, &ax_, &ay_, &start_x_, &start_y_, &start_vx_, &start_vy_,
                        &previous_x_, &previous_y_, &previous_vx_, &previous_vy_, &inverse_mass_})
     *field = Field(n_places_);
-  const std::size_t words = (stencil_.size() + 63) / 64;
-  present_.resize(words * n_places_);
-  toughened_.resize(words * n_places_);
+  present_.resize((stencil_.size() + 63) / 64 * n_places_);
+  toughened_.resize(present_.size());
   lost_.resize(n_places_);
 
   const double tolerance = 1e-9 * grid.spacing;
   std::vector<char> is_site(n_places_, 0);
-  for (int row = extent.first_row; row <= extent.last_row; ++row)
+  for (int row = first.y(); row <= last.y(); ++row)
   {
     const auto begin = static_cast<std::size_t>(row - first_row_) * stride_;
     Row sites{0, 0, begin};
-    for (int column = extent.first_column; column <= extent.last_column; ++column)
+    for (int column = first.x(); column <= last.x(); ++column)
     {
       const Eigen::Vector2d X = origin + grid.vector(column, row);
       if (X.x() < -tolerance || X.x() > length + tolerance || std::abs(X.y()) > 0.5 * height + tolerance)
@@ -293,8 +286,7 @@ void StencilSheet::let_break(double breaking_stretch, BehindTipToughening toughe
 
 double StencilSheet::stretch_of(std::size_t near, std::size_t k) const
 {
-  const std::size_t far = near + static_cast<std::size_t>(shift_[k]);
-  return (position(far) - position(near)).norm() / stencil_[k].rest_length;
+  return (position(near + static_cast<std::size_t>(shift_[k])) - position(near)).norm() / stencil_[k].rest_length;
 }
 
 double StencilSheet::bond_energy(std::size_t near, std::size_t k) const
@@ -328,9 +320,8 @@ void StencilSheet::toughen_behind_tip()
     return;
   // The tip never retreats: bonds behind the last boundary are toughened already.
   const double boundary = tip_x_ - toughening_distance_;
-  double longest = 0.;
-  for (const HalfBond &bond : stencil_)
-    longest = std::max(longest, bond.rest_length);
+  const auto shorter = [](const HalfBond &a, const HalfBond &b) { return a.rest_length < b.rest_length; };
+  const double longest = std::max_element(stencil_.begin(), stencil_.end(), shorter)->rest_length;
   in_threads(
     [&](std::size_t begin, std::size_t end)
     {
