@@ -1,0 +1,127 @@
+#include "lattice/stencil.h"
+
+#include <cmath>
+#include <cstdlib>
+#include <numeric>
+#include <stdexcept>
+#include <string>
+
+#include <Eigen/QR>
+
+namespace latcon::lattice
+{
+namespace
+{
+
+constexpr double round_off = 1e-9; // of lengths over h, and of angles
+
+void require(bool condition, const std::string &message)
+{
+  if (!condition)
+    throw std::invalid_argument(message);
+}
+
+// Harmonics of the direction of a bond. Their means over all directions are 1, 0, 0, 0, 0, which is the same as the
+// fourth moments of all directions.
+using Harmonics = Eigen::Matrix<double, 5, 1>;
+Harmonics harmonics(const Eigen::Vector2d &R)
+{
+  const double angle = std::atan2(R.y(), R.x());
+  return Harmonics{{1., std::cos(2. * angle), std::sin(2. * angle), std::cos(4. * angle), std::sin(4. * angle)}};
+}
+
+// Half-bonds of a ring with weights that are not yet corrected.
+std::vector<HalfBond> half_bonds(const Grid &grid, const Ring &ring)
+{
+  std::vector<HalfBond> found;
+  const double h = grid.spacing;
+  // Rows of a triangular grid are sqrt3 / 2 apart, and columns lean by half a row.
+  const int rows = static_cast<int>(std::ceil(1.2 * (ring.radius / h + 1.))), columns = 2 * rows;
+  for (int row = 0; row <= rows; ++row)
+    for (int column = row == 0 ? 1 : -columns; column <= columns; ++column)
+    {
+      const Eigen::Vector2d R = grid.vector(column, row);
+      const double length = R.norm();
+      const double weight = 1. - std::abs(length - ring.radius) / h;
+      const double off = std::remainder(std::atan2(R.y(), R.x()) - ring.direction, M_PI / 3.);
+      if (weight > round_off && std::abs(off) <= ring.half_width + round_off)
+        found.push_back({column, row, R, length, weight, ring.shell});
+    }
+  return found;
+}
+
+// Corrects weights q to q (1 + z / sqrt q), with the smallest sum of z^2 that gives them the means of all directions.
+void correct(std::vector<HalfBond> &bonds)
+{
+  Eigen::VectorXd root(bonds.size());
+  Eigen::MatrixXd scaled(5, bonds.size());
+  double sum = 0.;
+  for (const HalfBond &bond : bonds)
+    sum += bond.weight;
+  for (std::size_t i = 0; i < bonds.size(); ++i)
+  {
+    root[i] = std::sqrt(bonds[i].weight / sum);
+    scaled.col(i) = root[i] * harmonics(bonds[i].vector);
+  }
+  const Eigen::VectorXd missing = Eigen::VectorXd::Unit(5, 0) - scaled * root;
+  const Eigen::VectorXd z = scaled.completeOrthogonalDecomposition().solve(missing);
+  require((scaled * z - missing).norm() < 1e-12 && (root + z).minCoeff() > 0.,
+          "a ring has too few bonds in its arcs for isotropic fourth moments with positive weights: a finer grid or "
+          "wider arcs are needed");
+  for (std::size_t i = 0; i < bonds.size(); ++i)
+    bonds[i].weight = root[i] * (root[i] + z[i]);
+}
+
+// Returns whether sums of the bonds' offsets reach all points of the grid: whether the largest common divisor of the
+// areas that two of them span is that of a cell.
+bool reach_all_points(const std::vector<HalfBond> &bonds)
+{
+  int divisor = 0;
+  for (std::size_t i = 0; i < bonds.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      divisor = std::gcd(divisor, bonds[i].columns * bonds[j].rows - bonds[j].columns * bonds[i].rows);
+  return divisor == 1;
+}
+
+} // namespace
+
+Eigen::Vector2d Grid::vector(int columns, int rows) const
+{
+  const bool triangular = kind == Kind::triangular;
+  const double u = spacing * (columns + (triangular ? 0.5 * rows : 0.));
+  const double v = spacing * rows * (triangular ? std::sqrt(3.) / 2. : 1.);
+  const double c = std::cos(rotation), s = std::sin(rotation);
+  return {c * u - s * v, s * u + c * v};
+}
+
+double Grid::cell_area() const
+{
+  return spacing * spacing * (kind == Kind::triangular ? std::sqrt(3.) / 2. : 1.);
+}
+
+std::vector<Ring> lattice_rings(double d, Orientation orientation, double half_width)
+{
+  const double turned = M_PI / 6., nearest = orientation == Orientation::rows_along_crack ? 0. : turned;
+  return {{d, nearest, 0, half_width}, {std::sqrt(3.) * d, turned - nearest, 1, half_width}};
+}
+
+std::vector<HalfBond> ring_stencil(const Grid &grid, const std::vector<Ring> &rings)
+{
+  require(grid.spacing > 0. && std::isfinite(grid.spacing), "the spacing of a grid must be positive");
+  std::vector<HalfBond> stencil;
+  for (const Ring &ring : rings)
+  {
+    require(ring.radius > 0. && std::isfinite(ring.radius) && ring.shell < n_shells,
+            "a ring needs a positive radius and a shell");
+    require(ring.half_width >= 0. && ring.half_width <= M_PI / 6. + round_off,
+            "the half-width of the arcs of a ring must be between 0 and 30 degrees");
+    std::vector<HalfBond> bonds = half_bonds(grid, ring);
+    require(!bonds.empty(), "a ring has no bonds in its arcs: a finer grid or wider arcs are needed");
+    correct(bonds);
+    stencil.insert(stencil.end(), bonds.begin(), bonds.end());
+  }
+  require(reach_all_points(stencil), "the bonds join not all points of the grid: wider arcs are needed");
+  return stencil;
+}
+
+} // namespace latcon::lattice
