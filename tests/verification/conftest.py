@@ -1,8 +1,14 @@
-"""Fixtures of tests of the program: processes in the background."""
+"""Fixtures of tests of the program and of its report: processes in the background, a folder of runs."""
 import os
 import subprocess
 
 import pytest
+
+
+@pytest.fixture
+def runs(tmp_path):
+    """Folder of runs of a report, which does not exist yet."""
+    return tmp_path / "runs"
 
 
 @pytest.fixture
