@@ -118,22 +118,22 @@ def test_difference_is_that_of_another_interpolation(once, out):
     inside = values(probe.GetOutput(), "vtkValidPointMask") == 1
     assert inside.sum() > 0.9 * len(inside)
     theirs = sites_of(out)
-    assert values(out, "outside").sum() == 0.
+    assert values(theirs, "outside").sum() == 0.
     u = values(sites, "displacement")
     # The file's positions and fields have 24 bits.
-    np.testing.assert_allclose(values(out, "displacement_continuum")[inside],
+    np.testing.assert_allclose(values(theirs, "displacement_continuum")[inside],
                                values(probe.GetOutput(), "displacement")[inside], rtol=0., atol=5e-7 * abs(u).max())
     for name in FIELDS:
-        np.testing.assert_array_equal(values(out, name), values(sites, name))
-        np.testing.assert_array_equal(values(out, name + "_difference"), values(out, name) - values(out, name + "_continuum"))
+        np.testing.assert_array_equal(values(theirs, name), values(sites, name))
+        np.testing.assert_array_equal(values(theirs, name + "_difference"), values(theirs, name) - values(theirs, name + "_continuum"))
     # Norms, computed independently.
-    difference = values(out, "displacement_difference")[values(out, "held") == 0]
+    difference = values(theirs, "displacement_difference")[values(theirs, "held") == 0]
     row = found(out)["displacement, rms difference"]
     scale = max(float(row["lattice"]), float(row["continuum"]))
     assert float(row["error"]) > 1e-2
     assert float(row["error"]) == pytest.approx(np.sqrt((difference**2).sum(axis=1).mean()) / scale, abs=1e-12)
-    chosen = (values(out, "held") == 0) & (values(out, "complete") == 1)
-    difference = values(out, "cauchy_stress_difference")[chosen]
+    chosen = (values(theirs, "held") == 0) & (values(theirs, "complete") == 1)
+    difference = values(theirs, "cauchy_stress_difference")[chosen]
     row = found(out)["cauchy_stress, largest difference"]
     scale = max(float(row["lattice"]), float(row["continuum"]))
     assert float(row["error"]) == pytest.approx(np.sqrt((difference**2).sum(axis=1)).max() / scale, abs=1e-12)
@@ -146,14 +146,14 @@ def test_sites_in_excluded_circles_are_not_compared(once, out):
     run = compare(out, once.lattice, once.runs / "free", "--exclude", "1 cm,2 mm,3 mm", "--exclude", "0.002,-0.004,0.0015")
     assert run.returncode == 3, run.stderr
     theirs = sites_of(out)
-    X = vtk_to_numpy(out.GetPoints().GetData()).astype(float)
+    X = vtk_to_numpy(theirs.GetPoints().GetData()).astype(float)
     circles = (np.hypot(X[:, 0] - 0.01, X[:, 1] - 0.002) < 0.003) | (np.hypot(X[:, 0] - 0.002, X[:, 1] + 0.004) < 0.0015)
-    np.testing.assert_array_equal(values(out, "excluded") == 1, circles)
+    np.testing.assert_array_equal(values(theirs, "excluded") == 1, circles)
     rows = found(out)
     assert int(rows["sites in excluded circles"]["lattice"]) == circles.sum()
-    chosen = (values(out, "held") == 0) & ~circles
+    chosen = (values(theirs, "held") == 0) & ~circles
     assert int(rows["free sites inside"]["lattice"]) == chosen.sum()
-    difference = values(out, "displacement_difference")[chosen]
+    difference = values(theirs, "displacement_difference")[chosen]
     row = rows["displacement, rms difference"]
     scale = max(float(row["lattice"]), float(row["continuum"]))
     assert float(row["error"]) == pytest.approx(np.sqrt((difference**2).sum(axis=1).mean()) / scale, abs=1e-12)
@@ -170,9 +170,9 @@ def test_a_part_of_the_sheet_is_compared_where_both_are(tmp_path, once, out):
                        "first_piola_stress=1e-6")
     assert run.returncode == 0, run.stderr + run.stdout
     theirs = sites_of(out)
-    X = vtk_to_numpy(out.GetPoints().GetData()).astype(float)
-    np.testing.assert_array_equal(values(out, "outside") == 1, X[:, 0] > 0.01 + 1e-8)
-    assert np.isnan(values(out, "displacement_difference")[X[:, 0] > 0.011, :2]).all()
+    X = vtk_to_numpy(theirs.GetPoints().GetData()).astype(float)
+    np.testing.assert_array_equal(values(theirs, "outside") == 1, X[:, 0] > 0.01 + 1e-8)
+    assert np.isnan(values(theirs, "displacement_difference")[X[:, 0] > 0.011, :2]).all()
 
 
 def test_ranks_leave_no_trace(once, tmp_path, out):
