@@ -1,7 +1,4 @@
-#!/usr/bin/python3
 """Checks that code, tests and theory refer to the same equations.
-
-Usage: equations_test.py PROJECT_ROOT
 
 The theory pages number equations by \\tag{L.2}. Code that implements an equation and tests that check it refer to it as (L.2);
 (L.17) to (L.20) denotes all four.
@@ -9,10 +6,8 @@ The theory pages number equations by \\tag{L.2}. Code that implements an equatio
 import collections
 import pathlib
 import re
-import sys
-import unittest
 
-ROOT = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else pathlib.Path(__file__).parents[1]
+ROOT = pathlib.Path(__file__).resolve().parents[1]
 CODE = ("lattice", "continuum", "verification")
 KINDS = {".h", ".cc", ".inc", ".py", ".prm", ".json"}
 
@@ -62,37 +57,35 @@ def referred_to(paths):
     return set().union(*(references(path.read_text())[1] for path in paths))
 
 
-class Equations(unittest.TestCase):
-    def test_ranges_are_expanded_and_bare_numbers_seen(self):
-        self.assertEqual(references("eqs. (L.9)\n/// to (L.11), (W.2)"),
-                         ({"L.9", "L.11", "W.2"}, {"L.9", "L.10", "L.11", "W.2"}))
-        self.assertEqual(len(bare("theory.md,\n/// eq. L.2, (theory.md, L.3), eq. (L.4)", "L")), 2)
-
-    def test_each_number_is_given_once(self):
-        given = equations()
-        self.assertGreater(len(given), 90)
-        self.assertEqual([number for number, times in given.items() if times > 1], [])
-
-    def test_code_refers_to_each_equation(self):
-        self.assertEqual(sorted(set(equations()) - referred_to(sources(*CODE)) - set(DERIVATION)), [])
-
-    def test_tests_refer_to_each_equation(self):
-        self.assertEqual(sorted(set(equations()) - referred_to(sources("tests")) - set(DERIVATION)), [])
-
-    def test_steps_of_derivation_are_equations_without_code(self):
-        self.assertEqual(set(DERIVATION) - set(equations()), set())
-        self.assertEqual(set(DERIVATION) & referred_to(sources(*CODE)), set())
-
-    def test_nobody_refers_to_an_equation_that_is_not_there(self):
-        given = equations()
-        letters = "".join(sorted({number[0] for number in given}))
-        code = sources(*CODE, "tests")
-        for path in code + sorted((ROOT / "docs").rglob("*.md")):
-            text = path.read_text()
-            with self.subTest(path.relative_to(ROOT).as_posix()):
-                self.assertEqual({n for n in references(text)[0] if n[0] in letters} - set(given), set())
-                self.assertEqual(bare(text, letters) if path in code else [], [])
+def test_ranges_are_expanded_and_bare_numbers_seen():
+    assert references("eqs. (L.9)\n/// to (L.11), (W.2)") == ({"L.9", "L.11", "W.2"}, {"L.9", "L.10", "L.11", "W.2"})
+    assert len(bare("theory.md,\n/// eq. L.2, (theory.md, L.3), eq. (L.4)", "L")) == 2
 
 
-if __name__ == "__main__":
-    unittest.main(verbosity=2)
+def test_each_number_is_given_once():
+    given = equations()
+    assert len(given) > 90
+    assert [number for number, times in given.items() if times > 1] == []
+
+
+def test_code_refers_to_each_equation():
+    assert sorted(set(equations()) - referred_to(sources(*CODE)) - set(DERIVATION)) == []
+
+
+def test_tests_refer_to_each_equation():
+    assert sorted(set(equations()) - referred_to(sources("tests")) - set(DERIVATION)) == []
+
+
+def test_steps_of_derivation_are_equations_without_code():
+    assert set(DERIVATION) - set(equations()) == set()
+    assert set(DERIVATION) & referred_to(sources(*CODE)) == set()
+
+
+def test_nobody_refers_to_an_equation_that_is_not_there():
+    given = equations()
+    letters = "".join(sorted({number[0] for number in given}))
+    code = sources(*CODE, "tests")
+    for path in code + sorted((ROOT / "docs").rglob("*.md")):
+        text = path.read_text()
+        assert {n for n in references(text)[0] if n[0] in letters} - set(given) == set()
+        assert (bare(text, letters) if path in code else []) == []

@@ -1,21 +1,14 @@
-#!/usr/bin/python3
 """Tests of the benchmark tools: what they read, derive and show, with synthetic numbers."""
 import copy
 import math
 import json
-import pathlib
-import sys
-import tempfile
-import unittest
 
-sys.dont_write_bytecode = True
-sys.path.insert(0, str(pathlib.Path(__file__).resolve().parent))
+import pytest
 
 import cost_model
 import lammps
 import machine
 import measure
-import page
 import parts
 import run
 import summary
@@ -109,206 +102,163 @@ DOCUMENT = {
                                                                  {"bytes": 65536, "seconds": [2e-5, 1e-5]}]}}}
 
 
-class Lammps(unittest.TestCase):
-    def test_a_log_gives_each_run_with_its_last_energies(self):
-        first, second = lammps.read_log(LOG)
-        self.assertEqual(first, {"steps": 10, "seconds": 0.5, "potential_energy": 35.25, "kinetic_energy": 2.5})
-        self.assertEqual(second, {"steps": 10, "seconds": 0.25, "potential_energy": 35.764000872804388,
-                                  "kinetic_energy": -2.5e-3})
-
-    def test_a_log_that_is_not_whole_or_of_several_processes_is_refused(self):
-        for text in ("", LOG.replace("Total wall time", "ERROR"), LOG.replace("1 procs", "2 procs")):
-            with self.assertRaises(measure.Failed):
-                lammps.read_log(text)
-
-    def test_versions_of_the_bond_style_are_those_of_bonds(self):
-        self.assertEqual(lammps.suffixes(HELP), ["none", "intel", "omp"])
-        self.assertEqual(lammps.version(HELP), "29 Sep 2021 - Update 2")
-        with self.assertRaises(measure.Failed):
-            lammps.suffixes("* Pair styles:\n\nharmonic\n")
-
-    def test_input_has_the_same_step_to_the_last_bit_and_one_run_more_than_is_timed(self):
-        text = lammps.input_text("sheet.data", 0.1 + 0.2, 50, 3)
-        self.assertIn("timestep 0.30000000000000004\n", text)
-        self.assertEqual(text.count("\nrun 50"), 4)
-        self.assertIn("read_data sheet.data\n", text)
-
-    def test_energies_may_differ_by_round_off(self):
-        self.assertEqual(lammps.energy_tolerance(1000, 10, 100), (6000 + 4000) * 2.**-53)
+def test_a_log_gives_each_run_with_its_last_energies():
+    first, second = lammps.read_log(LOG)
+    assert first == {"steps": 10, "seconds": 0.5, "potential_energy": 35.25, "kinetic_energy": 2.5}
+    assert second == {"steps": 10, "seconds": 0.25, "potential_energy": 35.764000872804388, "kinetic_energy": -2.5e-3}
 
 
-class Numbers(unittest.TestCase):
-    def test_google_benchmark_gives_repetitions_of_each_case(self):
-        self.assertEqual(parts.kernel_rows(KERNEL, "avx2"), [
-            {"work": "everything", "sites": 10192, "target": "avx2", "used": "AVX2", "seconds_per_site": [9e-9, 8e-9]},
-            {"work": "formulas", "sites": 128, "target": "avx2", "used": "AVX2", "seconds_per_site": [3e-9]},
-            {"work": "reference", "sites": 10192, "target": "avx2", "used": "AVX2", "seconds_per_site": [3e-7]}])
-        broken = copy.deepcopy(KERNEL)
-        broken["benchmarks"][1].update(error_occurred=True, error_message="no memory")
-        with self.assertRaisesRegex(measure.Failed, "no memory"):
-            parts.kernel_rows(broken, "")
+def test_a_log_that_is_not_whole_or_of_several_processes_is_refused():
+    for text in ("", LOG.replace("Total wall time", "ERROR"), LOG.replace("1 procs", "2 procs")):
+        with pytest.raises(measure.Failed):
+            lammps.read_log(text)
 
-    def test_time_stepping_is_read_from_the_plan_of_a_run(self):
-        text = "set x = 1\n# lattice: 3 sites\n# time step: 1.28e-07 s, 78125 steps at most{}\n# memory: about 1 MB\n"
-        self.assertEqual(parts.time_stepping(text.format("")), {"sites": 3, "time_step": 1.28e-7, "stages": 1})
-        expected = ", 30056 if the crack is as fast as shear waves of the unloaded sheet"
-        self.assertEqual(parts.time_stepping(text.format(expected)), {"sites": 3, "time_step": 1.28e-7, "stages": 1})
-        self.assertEqual(parts.time_stepping(text.format(" of 12 stages each" + expected)), {"sites": 3, "time_step": 1.28e-7, "stages": 12})
-        with self.assertRaises(measure.Failed):
-            parts.time_stepping("# memory: about 1 MB\n")
 
-    def test_variants_take_turns(self):
-        calls = []
-        results = measure.interleaved({name: lambda name=name: calls.append(name) or len(calls) for name in "ab"}, 2)
-        self.assertEqual(calls, ["a", "b", "a", "b"])
-        self.assertEqual(results, {"a": [1, 3], "b": [2, 4]})
+def test_versions_of_the_bond_style_are_those_of_bonds():
+    assert lammps.suffixes(HELP) == ["none", "intel", "omp"]
+    assert lammps.version(HELP) == "29 Sep 2021 - Update 2"
+    with pytest.raises(measure.Failed):
+        lammps.suffixes("* Pair styles:\n\nharmonic\n")
 
-    def test_spread_is_that_of_the_median(self):
-        self.assertAlmostEqual(measure.spread([2., 5., 2.5]), 0.25, delta=1e-15)
 
-    def test_programs_that_are_not_there_are_skipped_and_those_that_fail_are_not(self):
-        with self.assertRaisesRegex(measure.Skipped, "not installed"):
-            measure.run(["/no/such/program"])
-        with self.assertRaisesRegex(measure.Failed, "ended with 3: oh no"):
-            measure.run(["/bin/sh", "-c", "echo oh no >&2; exit 3"])
+def test_input_has_the_same_step_to_the_last_bit_and_one_run_more_than_is_timed():
+    text = lammps.input_text("sheet.data", 0.1 + 0.2, 50, 3)
+    assert "timestep 0.30000000000000004\n" in text
+    assert text.count("\nrun 50") == 4
+    assert "read_data sheet.data\n" in text
 
-    def test_growth_and_memory_are_those_of_one_thread(self):
-        self.assertEqual(list(summary.by_size(SIZES, 0)), [10_000, 100_000, 1_000_000])
-        self.assertEqual(list(summary.by_size(SIZES, 7)), [100_000, 1_000_000])
-        self.assertAlmostEqual(summary.per_site(SIZES["rows"][0]), 8e-9, delta=1e-23)
-        self.assertAlmostEqual(summary.growth(SIZES, 0), 8. / 7. - 1., delta=1e-14)
-        self.assertAlmostEqual(summary.growth(SIZES, 7), 0.25, delta=1e-14)
-        self.assertAlmostEqual(summary.bytes_per_site(SIZES, 0), 200., delta=1e-12)
 
-    def test_what_falls_short_is_said(self):
-        rows = {row[0]: row[1:] for row in summary.rows(DOCUMENT["parts"])}
-        self.assertEqual(rows["step with everything over root, quotient and force law alone, 10,192 sites"], ["2.67", "<= 2", "missed"])
-        self.assertEqual(rows["speed-up on 2 threads, velocity Verlet, 100,000 sites"], ["2", ">= 1.8", ""])
-        self.assertEqual(rows["speed-up on 2 threads, Runge-Kutta-Chebyshev of 7 stages, 1,000,000 sites"], ["1.67", ">= 1.8", "missed"])
-        self.assertEqual(rows["growth of the time per site from 10^5 sites on, velocity Verlet"], ["0.143", "<= 0.15", ""])
-        self.assertEqual(rows["growth of the time per site from 10^5 sites on, Runge-Kutta-Chebyshev of 7 stages"], ["0.25", "<= 0.15", "missed"])
-        self.assertEqual(rows["speed-up on 2 ranks, latcon lattice, a.prm"], ["2", ">= 1.8", ""])
-        self.assertEqual(rows["speed-up on 2 threads, latcon lattice, a.prm"], ["1.6", ">= 1.8", "missed"])
-        self.assertEqual(rows["fig1.prm, crack alone [s]"], ["15.5", "<= 10", "missed"])
-        self.assertEqual(rows["fig1.prm, crack alone, Runge-Kutta-Chebyshev [s]"], ["5", "<= 6", ""])
-        self.assertNotIn("fig1.prm, with the claims [s]", rows)
-        # 80 ns for a site and step, 1000 sites, 2 ms in steps of 0.1 us, 4 s.
-        self.assertEqual(rows["time to solution, LAMMPS-like stepping over latcon, fig1.prm"], ["0.4", ">= 12", "missed"])
-        self.assertEqual(rows["dolfinx over latcon, 100,000 unknowns"], ["4", ">= 3", ""])
-        self.assertEqual(rows["bytes per unknown, 400,000 unknowns"], ["900", "<= 1800", ""])
-        self.assertNotIn("dolfinx over latcon, 400,000 unknowns", rows)
+def test_energies_may_differ_by_round_off():
+    assert lammps.energy_tolerance(1000, 10, 100) == (6000 + 4000) * 2.**-53
 
-    def test_number_that_is_none_misses_its_target(self):
+
+def test_google_benchmark_gives_repetitions_of_each_case():
+    assert parts.kernel_rows(KERNEL, "avx2") == [
+        {"work": "everything", "sites": 10192, "target": "avx2", "used": "AVX2", "seconds_per_site": [9e-9, 8e-9]},
+        {"work": "formulas", "sites": 128, "target": "avx2", "used": "AVX2", "seconds_per_site": [3e-9]},
+        {"work": "reference", "sites": 10192, "target": "avx2", "used": "AVX2", "seconds_per_site": [3e-7]}]
+    broken = copy.deepcopy(KERNEL)
+    broken["benchmarks"][1].update(error_occurred=True, error_message="no memory")
+    with pytest.raises(measure.Failed, match="no memory"):
+        parts.kernel_rows(broken, "")
+
+
+def test_time_stepping_is_read_from_the_plan_of_a_run():
+    text = "set x = 1\n# lattice: 3 sites\n# time step: 1.28e-07 s, 78125 steps at most{}\n# memory: about 1 MB\n"
+    assert parts.time_stepping(text.format("")) == {"sites": 3, "time_step": 1.28e-7, "stages": 1}
+    expected = ", 30056 if the crack is as fast as shear waves of the unloaded sheet"
+    assert parts.time_stepping(text.format(expected)) == {"sites": 3, "time_step": 1.28e-7, "stages": 1}
+    assert parts.time_stepping(text.format(" of 12 stages each" + expected)) == ({"sites": 3, "time_step": 1.28e-7, "stages": 12})
+    with pytest.raises(measure.Failed):
+        parts.time_stepping("# memory: about 1 MB\n")
+
+
+def test_variants_take_turns():
+    calls = []
+    results = measure.interleaved({name: lambda name=name: calls.append(name) or len(calls) for name in "ab"}, 2)
+    assert calls == ["a", "b", "a", "b"]
+    assert results == {"a": [1, 3], "b": [2, 4]}
+
+
+def test_spread_is_that_of_the_median():
+    assert measure.spread([2., 5., 2.5]) == pytest.approx(0.25, abs=1e-15)
+
+
+def test_programs_that_are_not_there_are_skipped_and_those_that_fail_are_not():
+    with pytest.raises(measure.Skipped, match="not installed"):
+        measure.run(["/no/such/program"])
+    with pytest.raises(measure.Failed, match="ended with 3: oh no"):
+        measure.run(["/bin/sh", "-c", "echo oh no >&2; exit 3"])
+
+
+def test_growth_and_memory_are_those_of_one_thread():
+    assert list(summary.by_size(SIZES, 0)) == [10_000, 100_000, 1_000_000]
+    assert list(summary.by_size(SIZES, 7)) == [100_000, 1_000_000]
+    assert summary.per_site(SIZES["rows"][0]) == pytest.approx(8e-9, abs=1e-23)
+    assert summary.growth(SIZES, 0) == pytest.approx(8. / 7. - 1., abs=1e-14)
+    assert summary.growth(SIZES, 7) == pytest.approx(0.25, abs=1e-14)
+    assert summary.bytes_per_site(SIZES, 0) == pytest.approx(200., abs=1e-12)
+
+
+def test_what_falls_short_is_said():
+    rows = {row[0]: row[1:] for row in summary.rows(DOCUMENT["parts"])}
+    assert rows["step with everything over root, quotient and force law alone, 10,192 sites"] == ["2.67", "<= 2", "missed"]
+    assert rows["speed-up on 2 threads, velocity Verlet, 100,000 sites"] == ["2", ">= 1.8", ""]
+    assert rows["speed-up on 2 threads, Runge-Kutta-Chebyshev of 7 stages, 1,000,000 sites"] == ["1.67", ">= 1.8", "missed"]
+    assert rows["growth of the time per site from 10^5 sites on, velocity Verlet"] == ["0.143", "<= 0.15", ""]
+    assert rows["growth of the time per site from 10^5 sites on, Runge-Kutta-Chebyshev of 7 stages"] == (
+        ["0.25", "<= 0.15", "missed"])
+    assert rows["speed-up on 2 ranks, latcon lattice, a.prm"] == ["2", ">= 1.8", ""]
+    assert rows["speed-up on 2 threads, latcon lattice, a.prm"] == ["1.6", ">= 1.8", "missed"]
+    assert rows["fig1.prm, crack alone [s]"] == ["15.5", "<= 10", "missed"]
+    assert rows["fig1.prm, crack alone, Runge-Kutta-Chebyshev [s]"] == ["5", "<= 6", ""]
+    assert "fig1.prm, with the claims [s]" not in rows
+    # 80 ns for a site and step, 1000 sites, 2 ms in steps of 0.1 us, 4 s.
+    assert rows["time to solution, LAMMPS-like stepping over latcon, fig1.prm"] == ["0.4", ">= 12", "missed"]
+    assert rows["dolfinx over latcon, 100,000 unknowns"] == ["4", ">= 3", ""]
+    assert rows["bytes per unknown, 400,000 unknowns"] == ["900", "<= 1800", ""]
+    assert "dolfinx over latcon, 400,000 unknowns" not in rows
+
+
+def test_number_that_is_none_misses_its_target():
+    document = copy.deepcopy(DOCUMENT)
+    document["parts"]["fig1"]["rows"][0]["seconds"] = [math.nan]
+    document["parts"]["fem"]["problems"][0]["ratio"] = math.nan
+    rows = {row[0]: row[1:] for row in summary.rows(document["parts"])}
+    for name in ("fig1.prm, crack alone [s]", "dolfinx over latcon, 100,000 unknowns"):
+        assert (rows[name][0], rows[name][2]) == ("nan", "missed")
+
+
+def test_growth_misses_its_target_without_a_number_for_each_size():
+    name = "growth of the time per site from 10^5 sites on, Runge-Kutta-Chebyshev of 7 stages"
+    for change in (lambda rows: rows[-2].update(seconds=[0.1, math.nan]), lambda rows: rows[-2].update(seconds=[]),
+                   lambda rows: rows.__delitem__(slice(-2, None))):
         document = copy.deepcopy(DOCUMENT)
-        document["parts"]["fig1"]["rows"][0]["seconds"] = [math.nan]
-        document["parts"]["fem"]["problems"][0]["ratio"] = math.nan
-        rows = {row[0]: row[1:] for row in summary.rows(document["parts"])}
-        for name in ("fig1.prm, crack alone [s]", "dolfinx over latcon, 100,000 unknowns"):
-            self.assertEqual((rows[name][0], rows[name][2]), ("nan", "missed"))
-
-    def test_growth_misses_its_target_without_a_number_for_each_size(self):
-        name = "growth of the time per site from 10^5 sites on, Runge-Kutta-Chebyshev of 7 stages"
-        for change in (lambda rows: rows[-2].update(seconds=[0.1, math.nan]), lambda rows: rows[-2].update(seconds=[]),
-                       lambda rows: rows.__delitem__(slice(-2, None))):
-            document = copy.deepcopy(DOCUMENT)
-            change(document["parts"]["sizes"]["rows"])
-            self.assertEqual([row[1:] for row in summary.rows(document["parts"]) if row[0] == name], [["nan", "<= 0.15", "missed"]])
-
-    def test_steps_are_compared_with_formulas_of_the_same_instruction_set(self):
-        document = copy.deepcopy(DOCUMENT)
-        document["parts"]["kernel"]["rows"].insert(0, {"work": "formulas", "sites": 64, "target": "SCALAR", "used": "SCALAR",
-                                                       "seconds_per_site": [3e-8]})
-        self.assertAlmostEqual(summary.kernel_rows(document["parts"])[0][1], 8. / 3., delta=1e-14)
-
-    def test_target_of_two_parts_needs_both(self):
-        document = copy.deepcopy(DOCUMENT)
-        del document["parts"]["lammps"]
-        self.assertFalse(any("time to solution" in row[0] for row in summary.rows(document["parts"])))
-
-    def test_processor_is_found_at_any_depth(self):
-        self.assertEqual(machine.processor(LSCPU), {
-            "model": "Swift 9", "family": "26", "cores": 2, "threads_per_core": 1,
-            "caches": {"L2": "2 MiB (2 instances)"}, "vectors": "AVX2"})
+        change(document["parts"]["sizes"]["rows"])
+        assert [row[1:] for row in summary.rows(document["parts"]) if row[0] == name] == [["nan", "<= 0.15", "missed"]]
 
 
-class Run(unittest.TestCase):
-    def test_parts_measured_before_stay_under_the_same_conditions_alone(self):
-        conditions = {"machine": DOCUMENT["machine"], "quick": False}
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "benchmarks.json"
-            empty = dict(conditions, parts={}, skipped={}, failed={})
-            self.assertEqual(run.begun(path, conditions, ["kernel"]), empty)
-            path.write_text(json.dumps(DOCUMENT), encoding="utf-8")
-            kept = run.begun(path, conditions, ["kernel", "smoke"])
-            self.assertEqual(list(kept["parts"]), [name for name in DOCUMENT["parts"] if name != "kernel"])
-            self.assertEqual((kept["skipped"], kept["failed"]), ({}, DOCUMENT["failed"]))
-            other = dict(conditions, machine=dict(conditions["machine"], commit="def"))
-            self.assertEqual(run.begun(path, other, ["kernel"]), dict(empty, **other))
+def test_steps_are_compared_with_formulas_of_the_same_instruction_set():
+    document = copy.deepcopy(DOCUMENT)
+    document["parts"]["kernel"]["rows"].insert(0, {"work": "formulas", "sites": 64, "target": "SCALAR", "used": "SCALAR",
+                                                   "seconds_per_site": [3e-8]})
+    assert summary.kernel_rows(document["parts"])[0][1] == pytest.approx(8. / 3., abs=1e-14)
 
 
-class CostModel(unittest.TestCase):
-    def test_a_step_costs_sites_halo_and_sum(self):
-        here = cost_model.Machine(site_seconds=1e-8, latency=1e-6, bandwidth=1e9, reduction=2e-6)
-        # 64 kB to either side take 65 us with the latency, and the sum over eight ranks three rounds.
-        self.assertAlmostEqual(cost_model.step_seconds(here, 10_000, 1000, 8), 100e-6 + 2 * 65e-6 + 6e-6, delta=1e-15)
-        self.assertAlmostEqual(cost_model.efficiency(here, 10_000, 1000, 8), 100. / 236., delta=1e-12)
-        self.assertEqual(cost_model.efficiency(here, 10_000, 1000, 1), 1.)
-
-    def test_bandwidth_is_that_of_a_halo(self):
-        latency, bandwidth = cost_model.message_times([(8, 2e-7), (32768, 4e-6), (524288, 1e-4), (8388608, 1.)])
-        self.assertEqual(latency, 2e-7)
-        self.assertAlmostEqual(bandwidth, 5.24288e9, delta=1e-3)
+def test_target_of_two_parts_needs_both():
+    document = copy.deepcopy(DOCUMENT)
+    del document["parts"]["lammps"]
+    assert not any("time to solution" in row[0] for row in summary.rows(document["parts"]))
 
 
-class Page(unittest.TestCase):
-    def test_tables_show_the_shortest_times_and_their_ratios(self):
-        text = page.markdown(DOCUMENT)
-        for line in ("| everything | AVX2 | 10,192 | 8.0 | 6 % |",
-                     "| 1,000 | 100 | 80.0 | 5.0 | 10.0 | 16.0 | 8.0 | 4e-13 | 1e-12 |",
-                     "| velocity Verlet | 100,000 | 7.0 | 3.5 | 2.00 | 5 % | 5 % | 67 |", "Bytes per site: 200 (velocity Verlet)",
-                     "| `latcon lattice`, a.prm | 4.00 | 1.60 | 2.00 | 5 % |",
-                     "| crack alone | 15.50 | 2 % | fracture 10.00 |",
-                     "| runge-kutta-chebyshev | 4.00 | 2.50 | 1e-06 | 3 | 6,000 | oscillating | 20.25 ± 1 | 0.023 ± 0.0002 | - |",
-                     "| 100,000 | 2 | 5.00 | 1.00 + 1.50 + 2.00 | 2.00 | 20.00 | 4.0 | 3 4 | 900 | 2500 | 2e-09 |",
-                     "| 400,000 | 2 | 5.00 | 1.00 + 1.50 + 2.00 | - | - | - | 3 | 900 | - | - |", "| 65,536 | 10.00 | 6.55 |",
-                     "Not measured: `smoke`, no reason.", "Not measured: `mirrors`, all broken.",
-                     "its versions of harmonic bonds: plain, `-suffix omp`", "Swift 9 (family 26, AVX2), 2 cores, "
-                     "L2 2 MiB (2 instances), 16 GiB; c++ 1, Release; commit abc, 2000-01-01."):
-            self.assertIn(line, text)
-        # 10^5 sites of 10 ns beside two messages of 0.2 us + 64 kB / (6.5536 GB/s) and four rounds of 0.2 us.
-        self.assertIn(f"| 1,000 | 10,000 | {page.per_cent(100. / (100. + 2 * (0.2 + 64e3 / 6553.6) + 0.8))} |", text)
-
-    def test_the_model_needs_its_numbers(self):
-        document = copy.deepcopy(DOCUMENT)
-        del document["parts"]["messages"]
-        self.assertNotIn("Predicted", page.markdown(document))
-
-    def test_terminal_has_the_same_numbers_in_columns(self):
-        text = page.text(dict(DOCUMENT, quick=True))
-        self.assertIn("small versions, not representative", text)
-        self.assertRegex(text, r"(?m)^everything +AVX2 +10,192 +8\.0 +6 %$")
-
-    def test_the_hand_written_part_of_the_page_is_left_alone(self):
-        with tempfile.TemporaryDirectory() as folder:
-            path = pathlib.Path(folder) / "performance.md"
-            path.write_text(f"# Why\n\n{page.BEGIN}\nold\n{page.END}\n\nend\n", encoding="utf-8")
-            page.write_docs(path, DOCUMENT)
-            once = path.read_text(encoding="utf-8")
-            self.assertTrue(once.startswith(f"# Why\n\n{page.BEGIN}\n"))
-            self.assertTrue(once.endswith(f"\n{page.END}\n\nend\n"))
-            self.assertNotIn("old\n", once)
-            page.write_docs(path, DOCUMENT)
-            self.assertEqual(path.read_text(encoding="utf-8"), once)
-            for text in ("# Why\n", page.END, f"{page.END}\n{page.BEGIN}\n", f"{page.BEGIN}\n{page.BEGIN}\n{page.END}\n"):
-                path.write_text(text, encoding="utf-8")
-                with self.assertRaisesRegex(ValueError, "performance.md"):
-                    page.write_docs(path, DOCUMENT)
-
-    def test_the_page_of_this_repository_can_be_written(self):
-        path = pathlib.Path(__file__).resolve().parents[2] / "docs" / "performance.md"
-        text = path.read_text(encoding="utf-8")
-        self.assertLess(text.index(page.BEGIN), text.index(page.END))
+def test_processor_is_found_at_any_depth():
+    assert machine.processor(LSCPU) == {
+        "model": "Swift 9", "family": "26", "cores": 2, "threads_per_core": 1,
+        "caches": {"L2": "2 MiB (2 instances)"}, "vectors": "AVX2"}
 
 
-if __name__ == "__main__":
-    unittest.main(verbosity=2)
+def test_parts_measured_before_stay_under_the_same_conditions_alone(tmp_path):
+    conditions = {"machine": DOCUMENT["machine"], "quick": False}
+    path = tmp_path / "benchmarks.json"
+    empty = dict(conditions, parts={}, skipped={}, failed={})
+    assert run.begun(path, conditions, ["kernel"]) == empty
+    path.write_text(json.dumps(DOCUMENT), encoding="utf-8")
+    kept = run.begun(path, conditions, ["kernel", "smoke"])
+    assert list(kept["parts"]) == [name for name in DOCUMENT["parts"] if name != "kernel"]
+    assert (kept["skipped"], kept["failed"]) == ({}, DOCUMENT["failed"])
+    other = dict(conditions, machine=dict(conditions["machine"], commit="def"))
+    assert run.begun(path, other, ["kernel"]) == dict(empty, **other)
+
+
+def test_a_step_costs_sites_halo_and_sum():
+    here = cost_model.Machine(site_seconds=1e-8, latency=1e-6, bandwidth=1e9, reduction=2e-6)
+    # 64 kB to either side take 65 us with the latency, and the sum over eight ranks three rounds.
+    assert cost_model.step_seconds(here, 10_000, 1000, 8) == pytest.approx(100e-6 + 2 * 65e-6 + 6e-6, abs=1e-15)
+    assert cost_model.efficiency(here, 10_000, 1000, 8) == pytest.approx(100. / 236., abs=1e-12)
+    assert cost_model.efficiency(here, 10_000, 1000, 1) == 1.
+
+
+def test_bandwidth_is_that_of_a_halo():
+    latency, bandwidth = cost_model.message_times([(8, 2e-7), (32768, 4e-6), (524288, 1e-4), (8388608, 1.)])
+    assert latency == 2e-7
+    assert bandwidth == pytest.approx(5.24288e9, abs=1e-3)

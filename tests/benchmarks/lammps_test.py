@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """A sheet of linear bonds moves in LAMMPS as it does in latcon: lammps_test.py LATTICE_MOTION.
 
 The two programs share no code, and LAMMPS reads the sheet as a list of sites, bonds and constants. Both take the same
@@ -6,19 +5,15 @@ steps of velocity Verlet from the same bits, so that their positions differ by r
 """
 import json
 import math
-import pathlib
+import os
 import shutil
-import sys
-import tempfile
-import unittest
 
-sys.dont_write_bytecode = True
+import pytest
 
 import lammps
 from measure import run
 
 SITES, STEPS, REPETITIONS = 400, 200, 9
-SKIPPED = 77  # exit code that ctest treats as skipped
 
 
 def largest_distance(frame, other):
@@ -37,37 +32,27 @@ def round_off(size, sites, steps):
     return 2 * 2. * steps * 2.**-53 * size * math.sqrt(2. * sites) / math.sqrt(0.75)
 
 
-class Lammps(unittest.TestCase):
-    def test_trajectories_are_the_same_to_round_off(self):
-        with tempfile.TemporaryDirectory() as name:
-            folder = pathlib.Path(name)
-            motion = json.loads(run([PROGRAM, "linear", SITES, STEPS, REPETITIONS, 1, 0, folder / "sheet.data", folder / "ours"]))
-            (folder / "in.sheet").write_text(
-                lammps.input_text("sheet.data", motion["time_step"], STEPS, REPETITIONS, "theirs"), encoding="utf-8")
-            lammps.move(folder, "none")
-            theirs = lammps.read_positions((folder / "theirs").read_text(encoding="utf-8"))
-            lines = (folder / "ours").read_text(encoding="utf-8").splitlines()
-        sites = motion["sites"]
-        ours = [tuple(map(float, line.split())) for line in lines]
-        self.assertEqual(len(ours), (REPETITIONS + 1) * sites)
-        self.assertEqual(list(theirs), [STEPS * n for n in range(REPETITIONS + 2)])
-        start = theirs[0]
-        size = max(abs(x) for site in start for x in site)
-        spacing = min(math.dist(start[0], site) for site in start[1:])
-        for n in range(1, REPETITIONS + 2):
-            frame, steps = ours[(n - 1) * sites:n * sites], n * STEPS
-            way, difference = largest_distance(frame, start), largest_distance(frame, theirs[steps])
-            bound = round_off(size, sites, steps)
-            print(f"{steps} steps: moved {way / spacing:.3f} bonds, differ by {difference / spacing:.1e}, bound {bound / spacing:.1e}")
-            self.assertLess(difference, bound)
-            # The sheet moves far enough for a meaningful bound: an error of 1e-6 in a constant would exceed it.
-            self.assertGreater(way, 0.02 * spacing)
-            self.assertLess(bound, 1e-6 * way)
-
-
-if __name__ == "__main__":
-    PROGRAM = sys.argv.pop(1)
-    if shutil.which("lmp") is None:
-        print("lmp is not installed")
-        sys.exit(SKIPPED)
-    unittest.main()
+@pytest.mark.skipif(shutil.which("lmp") is None, reason="lmp is not installed")
+def test_trajectories_are_the_same_to_round_off(tmp_path):
+    motion = json.loads(run([os.environ["LATTICE_MOTION"], "linear", SITES, STEPS, REPETITIONS, 1, 0, tmp_path / "sheet.data",
+                             tmp_path / "ours"]))
+    (tmp_path / "in.sheet").write_text(lammps.input_text("sheet.data", motion["time_step"], STEPS, REPETITIONS, "theirs"))
+    lammps.move(tmp_path, "none")
+    theirs = lammps.read_positions((tmp_path / "theirs").read_text())
+    lines = (tmp_path / "ours").read_text().splitlines()
+    sites = motion["sites"]
+    ours = [tuple(map(float, line.split())) for line in lines]
+    assert len(ours) == (REPETITIONS + 1) * sites
+    assert list(theirs) == [STEPS * n for n in range(REPETITIONS + 2)]
+    start = theirs[0]
+    size = max(abs(x) for site in start for x in site)
+    spacing = min(math.dist(start[0], site) for site in start[1:])
+    for n in range(1, REPETITIONS + 2):
+        frame, steps = ours[(n - 1) * sites:n * sites], n * STEPS
+        way, difference = largest_distance(frame, start), largest_distance(frame, theirs[steps])
+        bound = round_off(size, sites, steps)
+        print(f"{steps} steps: moved {way / spacing:.3f} bonds, differ by {difference / spacing:.1e}, bound {bound / spacing:.1e}")
+        assert difference < bound
+        # The sheet moves far enough for a meaningful bound: an error of 1e-6 in a constant would exceed it.
+        assert way > 0.02 * spacing
+        assert bound < 1e-6 * way

@@ -1,21 +1,19 @@
-#!/usr/bin/python3
-"""Tests of damaged and forged checkpoints: a short version of tests/faults/run.
-
-Usage: checkpoints_test.py PATH_OF_THE_FORK_SERVER
-"""
+"""Tests of damaged and forged checkpoints: a short version of tests/faults/run."""
+import atexit
+import os
 import pathlib
 import random
 import sys
-import tempfile
-import unittest
 
-sys.dont_write_bytecode = True
+import pytest
+
 import damage
 import hostile
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "verification"))
 from forked import Forked
 
-PROGRAM = Forked(sys.argv.pop(1))
+PROGRAM = Forked(os.environ["LATCON"])
+atexit.register(PROGRAM.close)
 # One change for each number or list of a checkpoint with a size, an index, a time or a count.
 CRACK = {
     "run/command": [hostile.many], "run/case": [hostile.unterminated], "run/commit": [hostile.elsewhere],
@@ -56,37 +54,30 @@ DAMAGE = {
 }
 
 
-class Checkpoints(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.folder = pathlib.Path(folder.name)
-
-    def check_refused(self, name, changes):
-        left, checkpoint = hostile.prepared(PROGRAM, name, self.folder)
-        flat = [(array, change) for array, all_changes in changes.items() for change in all_changes]
-        hostile.require_refused(PROGRAM, name, left, checkpoint, flat)
-
-    def test_contents_of_a_crack_that_nobody_left(self):
-        self.check_refused("crack", CRACK)
-
-    def test_contents_of_a_motion_in_finite_elements_that_nobody_left(self):
-        self.check_refused("sheet in motion", SHEET)
-
-    def test_contents_of_a_crack_of_the_continuum_that_nobody_left(self):
-        self.check_refused("crack of the continuum", DAMAGE)
-
-    def test_damage_is_refused_or_fallen_back_from(self):
-        told = damage.damage_at_random(PROGRAM, "lattice in motion", self.folder, random.Random(1), 8)
-        self.assertGreater(told["refused"], 0)
-        self.assertGreater(told["fell back"], 0)
-
-    def test_harness_sees_what_is_accepted(self):
-        with self.assertRaises(hostile.Accepted):
-            self.check_refused("lattice in motion", {"run/program": [hostile.another_type]})  # which is not read
+def check_refused(tmp_path, name, changes):
+    left, checkpoint = hostile.prepared(PROGRAM, name, tmp_path)
+    flat = [(array, change) for array, all_changes in changes.items() for change in all_changes]
+    hostile.require_refused(PROGRAM, name, left, checkpoint, flat)
 
 
-if __name__ == "__main__":
-    result = unittest.main(verbosity=2, exit=False).result
-    PROGRAM.close()
-    sys.exit(not result.wasSuccessful())
+def test_contents_of_a_crack_that_nobody_left(tmp_path):
+    check_refused(tmp_path, "crack", CRACK)
+
+
+def test_contents_of_a_motion_in_finite_elements_that_nobody_left(tmp_path):
+    check_refused(tmp_path, "sheet in motion", SHEET)
+
+
+def test_contents_of_a_crack_of_the_continuum_that_nobody_left(tmp_path):
+    check_refused(tmp_path, "crack of the continuum", DAMAGE)
+
+
+def test_damage_is_refused_or_fallen_back_from(tmp_path):
+    told = damage.damage_at_random(PROGRAM, "lattice in motion", tmp_path, random.Random(1), 8)
+    assert told["refused"] > 0
+    assert told["fell back"] > 0
+
+
+def test_harness_sees_what_is_accepted(tmp_path):
+    with pytest.raises(hostile.Accepted):
+        check_refused(tmp_path, "lattice in motion", {"run/program": [hostile.another_type]})  # which is not read

@@ -208,6 +208,8 @@ def main():
             print("\n".join(map(str, chosen)))
             return 0
         equivalents = Equivalents.read(EQUIVALENTS)
+        if outdated := equivalents.outdated(lambda file: mutants.of_file(ROOT / file, file)):
+            raise ValueError(f"{EQUIVALENTS.name} has entries that are no faults of the sources: {outdated}")
         report = Report(options.output, equivalents, chosen, n_all)
         if report.rest:
             tested(report.rest, options, report, deadline)

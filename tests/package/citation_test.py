@@ -1,10 +1,10 @@
-#!/usr/bin/python3
-"""Checks that CITATION.cff has the version of CMakeLists.txt and conforms to the format 1.2.0.
+"""Checks that CITATION.cff has the version of CMakeLists.txt and conforms to the format 1.2.0."""
 
-Usage: citation_test.py SOURCE_FOLDER BUILD_FOLDER
-"""
+
 import re
-import unittest
+import types
+
+import pytest
 
 from folders import SOURCE
 
@@ -14,23 +14,23 @@ KNOWN = REQUIRED | {"abstract", "type", "version", "license", "date-released", "
                     "repository", "repository-artifact"}
 
 
-class Citation(unittest.TestCase):
-    def setUp(self):
-        self.text = (SOURCE / "CITATION.cff").read_text()
-        self.entries = dict(re.findall(r"^([a-z-]+):[ ]*(.*)$", self.text, re.M))
-
-    def test_has_the_version_of_the_project(self):
-        project = re.search(r"project\(latcon VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text()).group(1)
-        self.assertEqual(self.entries["version"], project)
-
-    def test_has_the_keys_of_the_format(self):
-        self.assertLessEqual(REQUIRED, set(self.entries))
-        self.assertLessEqual(set(self.entries), KNOWN)
-        self.assertEqual(self.entries["cff-version"], "1.2.0")
-        self.assertEqual(self.entries["type"], "software")
-        self.assertEqual(self.entries["license"], "LGPL-2.1-or-later")
-        self.assertRegex(self.text, r"(?m)^authors:\n  - (name|family-names): \S")
+@pytest.fixture
+def made():
+    made = types.SimpleNamespace()
+    made.text = (SOURCE / "CITATION.cff").read_text()
+    made.entries = dict(re.findall(r"^([a-z-]+):[ ]*(.*)$", made.text, re.M))
+    return made
 
 
-if __name__ == "__main__":
-    unittest.main()
+def test_has_the_version_of_the_project(made):
+    project = re.search(r"project\(latcon VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text()).group(1)
+    assert made.entries["version"] == project
+
+
+def test_has_the_keys_of_the_format(made):
+    assert REQUIRED <= set(made.entries)
+    assert set(made.entries) <= KNOWN
+    assert made.entries["cff-version"] == "1.2.0"
+    assert made.entries["type"] == "software"
+    assert made.entries["license"] == "LGPL-2.1-or-later"
+    assert re.search(r"(?m)^authors:\n  - (name|family-names): \S", made.text)

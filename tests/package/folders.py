@@ -1,12 +1,12 @@
 """Utilities of the tests of the installed project: folders of sources and build, running of programs."""
 import os
 import pathlib
+import re
 import subprocess
 import sys
 import tempfile
 
-sys.dont_write_bytecode = True
-SOURCE, BUILD = (pathlib.Path(sys.argv.pop(1)) for _ in range(2))
+SOURCE, BUILD = pathlib.Path(__file__).resolve().parents[2], pathlib.Path(os.environ["LATCON_BUILD"])
 SCRATCH = tempfile.TemporaryDirectory()
 FOLDER = pathlib.Path(SCRATCH.name)
 ENVIRONMENT = dict(os.environ, XDG_CACHE_HOME=str(FOLDER / "cache"), OMP_NUM_THREADS="1")
@@ -38,20 +38,20 @@ def mentions_of_sources(folder):
     return [path for path in files_below(folder) if any(word in path.read_bytes() for word in paths)]
 
 
-def check_program(test, prefix):
+def check_program(prefix):
     """Checks that the program below a prefix runs, reads its data files, and draws its report."""
     latcon, data = prefix / "bin" / "latcon", prefix / "share" / "latcon"
-    test.assertRegex(run(latcon, "--version"), r"^latcon \d+\.\d+\.\d+")
+    assert re.match(r"latcon \d+\.\d+\.\d+", run(latcon, "--version"))
     quick = data / "cases" / "quick.prm"
-    test.assertIn("sites", run(latcon, "fracture", quick, "--dry-run"))
-    test.assertIn("little-viscosity", run(latcon, "study", "patterns", "--quick", "--dry-run"))
+    assert "sites" in run(latcon, "fracture", quick, "--dry-run")
+    assert "little-viscosity" in run(latcon, "study", "patterns", "--quick", "--dry-run")
     style = data / "report" / "style.css"
     style.write_text(style.read_text() + "/* of this installation */\n")
     output = prefix.parent / "crack"
     run(latcon, "fracture", quick, "--skip-verification", "--output-dir", output, *TINY)
-    test.assertIn("/* of this installation */", (output / "report.html").read_text())
+    assert "/* of this installation */" in (output / "report.html").read_text()
     data.rename(data.with_name("elsewhere"))
-    test.assertIn(str(data), run(latcon, "verify", "energy", "--dry-run", fails=True))
+    assert str(data) in run(latcon, "verify", "energy", "--dry-run", fails=True)
     data.with_name("elsewhere").rename(data)
 
 

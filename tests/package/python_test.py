@@ -1,11 +1,6 @@
-#!/usr/bin/python3
-"""Checks that the Python package can be installed from its sources into a new virtual environment, and runs the program.
-
-Usage: python_test.py SOURCE_FOLDER BUILD_FOLDER
-"""
+"""Checks that the Python package can be installed from its sources into a new virtual environment, and runs the program."""
 import re
 import shutil
-import unittest
 
 from folders import BUILD, FOLDER, SOURCE, modules, run
 
@@ -14,29 +9,24 @@ CHECK = "import importlib.metadata as m, latcon, latcon.fit; print(m.version('la
         "latcon.Case('quick')['Sheet/length'], latcon.__file__)"
 
 
-class PythonPackage(unittest.TestCase):
-    def test_is_installed_without_network(self):
-        # Building creates files in the source folder.
-        shutil.copytree(SOURCE / "python", FOLDER / "python", ignore=shutil.ignore_patterns("__pycache__", "build", "*.egg-info"))
-        run("/usr/bin/python3", "-m", "venv", "--system-site-packages", FOLDER / "own")
-        run(FOLDER / "own/bin/pip", "install", "--quiet", "--no-build-isolation", "--no-index", FOLDER / "python")
-        fresh = FOLDER / "fresh"
-        fresh.mkdir()
-        printed = run("env", "-C", fresh, f"LATCON={LATCON}", FOLDER / "own/bin/python", "-c", CHECK).split()
-        project = re.search(r"project\(latcon VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text()).group(1)
-        self.assertEqual(printed[:3], [project, project, "0.04"])
-        self.assertTrue(printed[3].startswith(str(FOLDER / "own")), printed[3])
-        installed = next((FOLDER / "own").glob("lib/python3*/site-packages/latcon"))
-        self.assertEqual(modules(installed), modules(SOURCE / "python/latcon"))
-        # A run in the fresh folder, by the installed package alone.
-        printed = run("env", "-C", fresh, f"LATCON={LATCON}", FOLDER / "own/bin/python", "-c",
-                      "import latcon; case = latcon.Case('quick').set('Sheet/length', '1 cm').set('Sheet/height', '6 mm'); "
-                      "case = case.set('Time/end', '0.01 ms'); "
-                      "run = latcon.fracture(case, 'out', skip_verification=True, report=False, progress=False); "
-                      "print(run.exit_code, len(run.frames))")
-        self.assertEqual(printed.split(), ["0", "2"])
-        self.assertTrue((fresh / "out" / "crack.json").is_file())
-
-
-if __name__ == "__main__":
-    unittest.main()
+def test_is_installed_without_network():
+    # Building creates files in the source folder.
+    shutil.copytree(SOURCE / "python", FOLDER / "python", ignore=shutil.ignore_patterns("__pycache__", "build", "*.egg-info"))
+    run("/usr/bin/python3", "-m", "venv", "--system-site-packages", FOLDER / "own")
+    run(FOLDER / "own/bin/pip", "install", "--quiet", "--no-build-isolation", "--no-index", FOLDER / "python")
+    fresh = FOLDER / "fresh"
+    fresh.mkdir()
+    printed = run("env", "-C", fresh, f"LATCON={LATCON}", FOLDER / "own/bin/python", "-c", CHECK).split()
+    project = re.search(r"project\(latcon VERSION ([\d.]+)", (SOURCE / "CMakeLists.txt").read_text()).group(1)
+    assert printed[:3] == [project, project, "0.04"]
+    assert printed[3].startswith(str(FOLDER / "own")), printed[3]
+    installed = next((FOLDER / "own").glob("lib/python3*/site-packages/latcon"))
+    assert modules(installed) == modules(SOURCE / "python/latcon")
+    # A run in the fresh folder, by the installed package alone.
+    printed = run("env", "-C", fresh, f"LATCON={LATCON}", FOLDER / "own/bin/python", "-c",
+                  "import latcon; case = latcon.Case('quick').set('Sheet/length', '1 cm').set('Sheet/height', '6 mm'); "
+                  "case = case.set('Time/end', '0.01 ms'); "
+                  "run = latcon.fracture(case, 'out', skip_verification=True, report=False, progress=False); "
+                  "print(run.exit_code, len(run.frames))")
+    assert printed.split() == ["0", "2"]
+    assert (fresh / "out" / "crack.json").is_file()

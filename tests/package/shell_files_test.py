@@ -1,8 +1,4 @@
-#!/usr/bin/python3
-"""Checks that the manual page and the bash completion have all commands and options of the program.
-
-Usage: shell_files_test.py SOURCE_FOLDER BUILD_FOLDER
-"""
+"""Checks that the manual page and the bash completion have all commands and options of the program."""
 import functools
 import gzip
 import json
@@ -11,7 +7,8 @@ import pty
 import re
 import subprocess
 import threading
-import unittest
+
+import pytest
 
 from folders import BUILD, FOLDER, SOURCE, run
 
@@ -52,84 +49,84 @@ def options_of(*command):
     return set(re.findall(r"^  (?:-[a-z],)?(--[a-z-]+)", run(LATCON, *command, "--help"), re.M))
 
 
-class Shell(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.commands = re.findall(r"^  ([a-z]+) ", run(LATCON, "--help").split("Subcommands:")[1], re.M)
-
-    def test_manual_has_every_command_and_option(self):
-        page = run("groff", "-ww", "-man", "-Tascii", "-P-c", "-P-b", "-P-u",
-                   input=gzip.decompress((BUILD / "latcon.1.gz").read_bytes()).decode())
-        self.assertNotIn("warning", page)
-        self.assertGreaterEqual(len(self.commands), 7)
-        for command in self.commands:
-            part = re.search(rf"^   {command}$.*?(?=^   \S|^\S)", page, re.M | re.S).group(0)
-            for option in options_of(command) - {"--help"}:
-                self.assertIn(option, part)
-        for option in options_of():
-            self.assertIn(option, page)
-        for claim in json.loads(run(LATCON, "schema"))["claims"]:
-            self.assertIn(claim["title"], " ".join(page.split()))
-        for code in (0, 1, 2, 3, 4, 5, 130):
-            self.assertRegex(page, rf"(?m)^ +{code} +\S")
-
-    def test_completes_commands_and_options(self):
-        self.assertEqual(complete(""), self.commands)
-        self.assertEqual(complete("fra"), ["fracture"])
-        for command in self.commands:
-            self.assertEqual(set(complete(command, "--")), options_of() | options_of(command))
-        self.assertEqual(complete("--out"), ["--output-dir"])
-
-    def test_completes_claims_studies_and_files(self):
-        schema = json.loads(run(LATCON, "schema"))
-        self.assertEqual(complete("verify", ""), [claim["name"] for claim in schema["claims"]])
-        self.assertIn("energy", complete("verify", ""))
-        self.assertEqual(set(complete("study", "")) - {"cache"},
-                         {path.stem for path in (SOURCE / "verification/studies").glob("*.json")})
-        self.assertEqual(complete("batch", "--slurm", "patt"), ["patterns"])
-        # Of --sweep STUDY is a case.
-        for command in ("study", "batch"):
-            self.assertEqual(complete(command, "--sweep", "Sheet/height=1 cm,2 cm", "fig1"), ["fig1", "fig1-wide"])
-            self.assertEqual(complete(command, "--sweep", "Sheet/height", "=", "1,2", "patt"), [])
-        (FOLDER / "my case.prm").touch()
-        self.assertEqual(complete("fracture", "my"), ["my case.prm"])
-        self.assertEqual(complete("verify", "--case", "my"), ["my case.prm"])
-        (FOLDER / "results").mkdir()
-        self.assertEqual(complete("report", "re"), ["results"])
-        self.assertEqual(complete("init", "re"), ["results"])
-        self.assertEqual(complete("fracture", "fig1"), ["fig1", "fig1-wide"])
-        self.assertEqual(complete("fracture", "--output-dir", "re"), ["results"])
-        self.assertEqual(complete("fracture", "--threads", ""), [])
-
-    def test_completes_entries_of_cases(self):
-        self.assertEqual(complete("fracture", "--set", "Sheet/sp"), ["Sheet/spacing="])
-        self.assertEqual(complete("fracture", "--set", "Lattice/noise\\ s"), ["Lattice/noise\\ seed="])
-        self.assertEqual(complete("fracture", "--set", '"Lattice/noise s'), ["Lattice/noise seed="])
-        self.assertGreater(len(complete("fracture", "--set", "")), 50)
-        self.assertEqual(complete("fracture", "--set", "Sheet/spacing", "="), [])
-        self.assertEqual(complete("entries", "Fra"), ["Fracture"])
-        self.assertEqual(complete("entries", "Near\\ t"), ["Near\\ tip"])
-        self.assertEqual(complete("help", "comp"), ["compare"])
-        self.assertEqual(complete("help", "Sheet/sp"), ["Sheet/spacing"])
-
-    def test_completes_values_of_entries(self):
-        entries = {f"{entry['section']}/{entry['name']}": entry for entry in json.loads(run(LATCON, "schema"))["entries"]}
-        integrators = entries["Time/integrator"]["words"]
-        self.assertGreater(len(integrators), 1)
-        # Bash divides at "=" outside quotes, and not within.
-        self.assertEqual(complete("fracture", "--set", "Time/integrator", "="), integrators)
-        self.assertEqual(complete("fracture", "--set", "Time/integrator", "=", "run"), ["runge-kutta-chebyshev"])
-        self.assertEqual(complete("study", "--sweep", "Time/integrator", "=", "run"), ["runge-kutta-chebyshev"])
-        self.assertEqual(complete("fracture", "--set", '"Time/integrator='), [f"Time/integrator={word}" for word in integrators])
-        self.assertEqual(complete("fracture", "--set", "Next-nearest\\ neighbours/present", "=", ""), ["false", "true"])
-        self.assertEqual(complete("fracture", "--set", '"Next-nearest neighbours/present=t'),
-                         ["Next-nearest neighbours/present=true"])
-        self.assertEqual(complete("fracture", "--output-dir", "="), [])
-
-    def test_completes_at_the_prompt(self):
-        self.assertEqual(arguments_typed("latcon fracture fig1-\t --set Next-\tpres\tt\t --set 'Near\t tip/ha\t"),
-                         ["fracture", "fig1-wide", "--set", "Next-nearest neighbours/present=true", "--set", "Near tip/half height="])
+@pytest.fixture(scope="module")
+def commands():
+    commands = re.findall(r"^  ([a-z]+) ", run(LATCON, "--help").split("Subcommands:")[1], re.M)
+    return commands
 
 
-if __name__ == "__main__":
-    unittest.main()
+def test_manual_has_every_command_and_option(commands):
+    page = run("groff", "-ww", "-man", "-Tascii", "-P-c", "-P-b", "-P-u",
+               input=gzip.decompress((BUILD / "latcon.1.gz").read_bytes()).decode())
+    assert "warning" not in page
+    assert len(commands) >= 7
+    for command in commands:
+        part = re.search(rf"^   {command}$.*?(?=^   \S|^\S)", page, re.M | re.S).group(0)
+        for option in options_of(command) - {"--help"}:
+            assert option in part
+    for option in options_of():
+        assert option in page
+    for claim in json.loads(run(LATCON, "schema"))["claims"]:
+        assert claim["title"] in " ".join(page.split())
+    for code in (0, 1, 2, 3, 4, 5, 130):
+        assert re.search(rf"(?m)^ +{code} +\S", page)
+
+
+def test_completes_commands_and_options(commands):
+    assert complete("") == commands
+    assert complete("fra") == ["fracture"]
+    for command in commands:
+        assert set(complete(command, "--")) == options_of() | options_of(command)
+    assert complete("--out") == ["--output-dir"]
+
+
+def test_completes_claims_studies_and_files():
+    schema = json.loads(run(LATCON, "schema"))
+    assert complete("verify", "") == [claim["name"] for claim in schema["claims"]]
+    assert "energy" in complete("verify", "")
+    assert set(complete("study", "")) - {"cache"} == {path.stem for path in (SOURCE / "verification/studies").glob("*.json")}
+    assert complete("batch", "--slurm", "patt") == ["patterns"]
+    # Of --sweep STUDY is a case.
+    for command in ("study", "batch"):
+        assert complete(command, "--sweep", "Sheet/height=1 cm,2 cm", "fig1") == ["fig1", "fig1-wide"]
+        assert complete(command, "--sweep", "Sheet/height", "=", "1,2", "patt") == []
+    (FOLDER / "my case.prm").touch()
+    assert complete("fracture", "my") == ["my case.prm"]
+    assert complete("verify", "--case", "my") == ["my case.prm"]
+    (FOLDER / "results").mkdir()
+    assert complete("report", "re") == ["results"]
+    assert complete("init", "re") == ["results"]
+    assert complete("fracture", "fig1") == ["fig1", "fig1-wide"]
+    assert complete("fracture", "--output-dir", "re") == ["results"]
+    assert complete("fracture", "--threads", "") == []
+
+
+def test_completes_entries_of_cases():
+    assert complete("fracture", "--set", "Sheet/sp") == ["Sheet/spacing="]
+    assert complete("fracture", "--set", "Lattice/noise\\ s") == ["Lattice/noise\\ seed="]
+    assert complete("fracture", "--set", '"Lattice/noise s') == ["Lattice/noise seed="]
+    assert len(complete("fracture", "--set", "")) > 50
+    assert complete("fracture", "--set", "Sheet/spacing", "=") == []
+    assert complete("entries", "Fra") == ["Fracture"]
+    assert complete("entries", "Near\\ t") == ["Near\\ tip"]
+    assert complete("help", "comp") == ["compare"]
+    assert complete("help", "Sheet/sp") == ["Sheet/spacing"]
+
+
+def test_completes_values_of_entries():
+    entries = {f"{entry['section']}/{entry['name']}": entry for entry in json.loads(run(LATCON, "schema"))["entries"]}
+    integrators = entries["Time/integrator"]["words"]
+    assert len(integrators) > 1
+    # Bash divides at "=" outside quotes, and not within.
+    assert complete("fracture", "--set", "Time/integrator", "=") == integrators
+    assert complete("fracture", "--set", "Time/integrator", "=", "run") == ["runge-kutta-chebyshev"]
+    assert complete("study", "--sweep", "Time/integrator", "=", "run") == ["runge-kutta-chebyshev"]
+    assert complete("fracture", "--set", '"Time/integrator=') == [f"Time/integrator={word}" for word in integrators]
+    assert complete("fracture", "--set", "Next-nearest\\ neighbours/present", "=", "") == ["false", "true"]
+    assert complete("fracture", "--set", '"Next-nearest neighbours/present=t') == ["Next-nearest neighbours/present=true"]
+    assert complete("fracture", "--output-dir", "=") == []
+
+
+def test_completes_at_the_prompt():
+    assert arguments_typed("latcon fracture fig1-\t --set Next-\tpres\tt\t --set 'Near\t tip/ha\t") == (
+        ["fracture", "fig1-wide", "--set", "Next-nearest neighbours/present=true", "--set", "Near tip/half height="])

@@ -1,17 +1,13 @@
-#!/usr/bin/python3
-"""Checks that a dry run and the run refuse the same cases, with the same exit code and reason and without output files.
+"""Checks that a dry run and the run refuse the same cases, with the same exit code and reason and without output files."""
+import atexit
 
-Usage: dry_run_test.py PATH_OF_THE_FORK_SERVER
-"""
-import pathlib
-import sys
-import unittest
+import pytest
 
-sys.dont_write_bytecode = True
 from forked import Forked
-from program import CASES, LATCON, TemporaryFolder
+from program import CASES, LATCON
 
 PROGRAM = Forked(LATCON)
+atexit.register(PROGRAM.close)
 MOTION = ["Continuum/solution=motion", "Time/end=0.01 ms", "Continuum/cells x=3", "Continuum/cells y=2", "Continuum/degree=2"]
 # Command, entries, a part of the message.
 REFUSED = [
@@ -42,35 +38,27 @@ GOOD = [("continuum", [*MOTION]), ("continuum", [*MOTION, "Initial state/base=eq
                        "Left edge/condition=free", "Right edge/condition=free"])]
 
 
-class DryRun(TemporaryFolder):
-    def both(self, command, entries):
-        """@return exit code and standard error of the dry run, and of the run"""
-        self.out = self.folder / str(len(list(self.folder.iterdir())))
-        words = [command, str(CASES / "quick.prm"), "--quiet", "--threads", "1",
-                 *(["--skip-verification", "--no-report"] if command == "fracture" else []),
-                 *(word for entry in entries for word in ("--set", entry))]
-        dry = PROGRAM.run([*words, "--dry-run"], self.out, 60)
-        self.assertFalse(self.out.exists(), entries)
-        return dry, PROGRAM.run(words, self.out, 60)
-
-    def test_refuses_what_the_run_refuses(self):
-        for command, entries, reason in REFUSED:
-            with self.subTest(f"{command}: {entries}"):
-                dry, run = self.both(command, entries)
-                self.assertEqual((dry[0], run[0]), (2, 2), dry[1] + run[1])
-                self.assertEqual(dry[1], run[1])
-                self.assertIn(reason, run[1])
-                self.assertFalse(self.out.exists())
-
-    def test_refuses_nothing_else(self):
-        for command, entries in GOOD:
-            with self.subTest(f"{command}: {entries}"):
-                dry, run = self.both(command, entries)
-                self.assertEqual((dry[0], run[0]), (0, 0), dry[1] + run[1])
-                self.assertTrue((self.out / "results.json").exists())
+def both(out, command, entries):
+    """@return exit code and standard error of the dry run, and of the run"""
+    words = [command, str(CASES / "quick.prm"), "--quiet", "--threads", "1",
+             *(["--skip-verification", "--no-report"] if command == "fracture" else []),
+             *(word for entry in entries for word in ("--set", entry))]
+    dry = PROGRAM.run([*words, "--dry-run"], out, 60)
+    assert not out.exists()
+    return dry, PROGRAM.run(words, out, 60)
 
 
-if __name__ == "__main__":
-    result = unittest.main(verbosity=2, exit=False).result
-    PROGRAM.close()
-    sys.exit(not result.wasSuccessful())
+@pytest.mark.parametrize("command, entries, reason", REFUSED)
+def test_refuses_what_the_run_refuses(out, command, entries, reason):
+    dry, run = both(out, command, entries)
+    assert (dry[0], run[0]) == (2, 2), dry[1] + run[1]
+    assert dry[1] == run[1]
+    assert reason in run[1]
+    assert not out.exists()
+
+
+@pytest.mark.parametrize("command, entries", GOOD)
+def test_refuses_nothing_else(out, command, entries):
+    dry, run = both(out, command, entries)
+    assert (dry[0], run[0]) == (0, 0), dry[1] + run[1]
+    assert (out / "results.json").exists()

@@ -1,18 +1,11 @@
-#!/usr/bin/python3
-"""Tests of the frames of a crack: reduced frames of its motion, and the default view of the others in ParaView.
+"""Tests of the frames of a crack: reduced frames of its motion, and the default view of the others in ParaView."""
 
-Usage: frames_test.py PATH_OF_LATCON
-"""
-import pathlib
-import sys
-import tempfile
-import unittest
-
+import types
 import numpy as np
+import pytest
 import vtk
 from vtk.util.numpy_support import vtk_to_numpy
 
-sys.dont_write_bytecode = True
 from program import CASES, frames, latcon, read, read_csv
 
 LENGTH, STOP = 25e-3, 20e-3  # [m]
@@ -30,76 +23,72 @@ def points_of(sheet, name):
     return vtk_to_numpy(sheet.GetPointData().GetArray(name))
 
 
-class Frames(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        cls.folder = tempfile.TemporaryDirectory()
-        cls.out = pathlib.Path(cls.folder.name) / "out"
-        cls.run_ = latcon(*STRIP, "--set", f"Output/motion frames={MOTION_FRAMES}", "--output-dir", cls.out)
-
-    @classmethod
-    def tearDownClass(cls):
-        cls.folder.cleanup()
-
-    def test_motion_follows_the_tip(self):
-        self.assertEqual(self.run_.returncode, 0, self.run_.stderr)
-        motion = frames(self.out / "motion.pvd")
-        times = [time for time, _ in motion]
-        self.assertEqual(times, sorted(set(times)))
-        self.assertEqual(times[0], 0.0)
-        self.assertEqual(times[-1], frames(self.out / "lattice.pvd")[-1][0])  # to the last digit
-        tip = read_csv(self.out / "crack.csv")
-        reached = [max(float(row["X"]) for row in tip if float(row["t"]) <= time) for time in times]
-        self.assertGreater(reached[-1], STOP)  # so it passed all positions
-        # One frame each time the tip passes another tenth of its way; a jump may skip some of them.
-        pitch = (STOP - reached[0]) / MOTION_FRAMES
-        self.assertGreater(len(motion), 0.7 * MOTION_FRAMES)
-        self.assertLessEqual(len(motion), MOTION_FRAMES + 2)
-        tenths = [int((X - reached[0]) / pitch * (1 + 1e-12)) for X in reached[:-1]]
-        self.assertEqual(tenths, sorted(set(tenths)))
-
-    def test_motion_is_that_of_the_sheet_and_light(self):
-        motion, lattice = frames(self.out / "motion.pvd"), frames(self.out / "lattice.pvd")
-        for light_file, whole_file in ((motion[0][1], lattice[0][1]), (motion[-1][1], lattice[-1][1])):
-            light, whole = sheet_of(light_file), sheet_of(whole_file)
-            self.assertEqual(light.GetNumberOfPoints(), whole.GetNumberOfPoints())
-            self.assertEqual(light.GetFieldData().GetArray("TimeValue").GetValue(0),
-                             whole.GetFieldData().GetArray("TimeValue").GetValue(0))
-            places = [vtk_to_numpy(sheet.GetPoints().GetData()) for sheet in (light, whole)]
-            np.testing.assert_allclose(*places, atol=1e-7 * LENGTH)
-            for name, unit in (("displacement", "m"), ("velocity", "m/s")):
-                values = points_of(whole, name)
-                np.testing.assert_allclose(points_of(light, name), values, atol=1e-7 * max(np.abs(values).max(), 1e-9))
-                array = light.GetPointData().GetArray(name)
-                self.assertEqual(array.GetInformation().Get(vtk.vtkDataArray.UNITS_LABEL()), unit)
-            self.assertLess(light_file.stat().st_size, 0.15 * whole_file.stat().st_size)
-
-    def test_none_are_written_if_none_are_wanted(self):
-        out = self.out.parent / "none"
-        run = latcon(*STRIP, "--set", "Output/motion frames=0", "--output-dir", out)
-        self.assertEqual(run.returncode, 0, run.stderr)
-        self.assertEqual(list(out.glob("motion*")), [])
-
-    def test_paraview_shows_stretch_and_warps_by_displacement(self):
-        sheet = sheet_of(frames(self.out / "lattice.pvd")[-1][1])
-        self.assertEqual(sheet.GetCellData().GetScalars().GetName(), "stretch")
-        self.assertEqual(sheet.GetPointData().GetVectors().GetName(), "displacement")
-        motion = sheet_of(frames(self.out / "motion.pvd")[-1][1])
-        self.assertEqual(motion.GetPointData().GetScalars().GetName(), "displacement")
-        self.assertEqual(motion.GetPointData().GetVectors().GetName(), "displacement")
-
-    def test_a_site_has_the_mean_stretch_of_its_bonds(self):
-        sheet = sheet_of(frames(self.out / "lattice.pvd")[-1][1])
-        count = sheet.GetNumberOfVerts()
-        stretch = vtk_to_numpy(sheet.GetCellData().GetArray("stretch"))
-        ends = vtk_to_numpy(sheet.GetLines().GetConnectivityArray()).reshape(-1, 2)
-        total, bonds = np.zeros(count), np.zeros(count)
-        for side in (0, 1):
-            np.add.at(total, ends[:, side], stretch[count:])
-            np.add.at(bonds, ends[:, side], 1)
-        mean = np.where(bonds > 0, total / np.maximum(bonds, 1), 1.0)
-        np.testing.assert_allclose(stretch[:count], mean, rtol=1e-12)
+@pytest.fixture(scope="module")
+def once(module_path):
+    made = types.SimpleNamespace()
+    made.out = module_path / "out"
+    made.run_ = latcon(*STRIP, "--set", f"Output/motion frames={MOTION_FRAMES}", "--output-dir", made.out)
+    return made
 
 
-if __name__ == "__main__":
-    unittest.main(verbosity=2)
+def test_motion_follows_the_tip(once):
+    assert once.run_.returncode == 0, once.run_.stderr
+    motion = frames(once.out / "motion.pvd")
+    times = [time for time, _ in motion]
+    assert times == sorted(set(times))
+    assert times[0] == 0.0
+    assert times[-1] == frames(once.out / "lattice.pvd")[-1][0]  # to the last digit
+    tip = read_csv(once.out / "crack.csv")
+    reached = [max(float(row["X"]) for row in tip if float(row["t"]) <= time) for time in times]
+    assert reached[-1] > STOP  # so it passed all positions
+    # One frame each time the tip passes another tenth of its way; a jump may skip some of them.
+    pitch = (STOP - reached[0]) / MOTION_FRAMES
+    assert len(motion) > 0.7 * MOTION_FRAMES
+    assert len(motion) <= MOTION_FRAMES + 2
+    tenths = [int((X - reached[0]) / pitch * (1 + 1e-12)) for X in reached[:-1]]
+    assert tenths == sorted(set(tenths))
+
+
+def test_motion_is_that_of_the_sheet_and_light(once):
+    motion, lattice = frames(once.out / "motion.pvd"), frames(once.out / "lattice.pvd")
+    for light_file, whole_file in ((motion[0][1], lattice[0][1]), (motion[-1][1], lattice[-1][1])):
+        light, whole = sheet_of(light_file), sheet_of(whole_file)
+        assert light.GetNumberOfPoints() == whole.GetNumberOfPoints()
+        assert light.GetFieldData().GetArray("TimeValue").GetValue(0) == (whole.GetFieldData().GetArray("TimeValue").GetValue(0))
+        places = [vtk_to_numpy(sheet.GetPoints().GetData()) for sheet in (light, whole)]
+        np.testing.assert_allclose(*places, atol=1e-7 * LENGTH)
+        for name, unit in (("displacement", "m"), ("velocity", "m/s")):
+            values = points_of(whole, name)
+            np.testing.assert_allclose(points_of(light, name), values, atol=1e-7 * max(np.abs(values).max(), 1e-9))
+            array = light.GetPointData().GetArray(name)
+            assert array.GetInformation().Get(vtk.vtkDataArray.UNITS_LABEL()) == unit
+        assert light_file.stat().st_size < 0.15 * whole_file.stat().st_size
+
+
+def test_none_are_written_if_none_are_wanted(once):
+    out = once.out.parent / "none"
+    run = latcon(*STRIP, "--set", "Output/motion frames=0", "--output-dir", out)
+    assert run.returncode == 0, run.stderr
+    assert list(out.glob("motion*")) == []
+
+
+def test_paraview_shows_stretch_and_warps_by_displacement(once):
+    sheet = sheet_of(frames(once.out / "lattice.pvd")[-1][1])
+    assert sheet.GetCellData().GetScalars().GetName() == "stretch"
+    assert sheet.GetPointData().GetVectors().GetName() == "displacement"
+    motion = sheet_of(frames(once.out / "motion.pvd")[-1][1])
+    assert motion.GetPointData().GetScalars().GetName() == "displacement"
+    assert motion.GetPointData().GetVectors().GetName() == "displacement"
+
+
+def test_a_site_has_the_mean_stretch_of_its_bonds(once):
+    sheet = sheet_of(frames(once.out / "lattice.pvd")[-1][1])
+    count = sheet.GetNumberOfVerts()
+    stretch = vtk_to_numpy(sheet.GetCellData().GetArray("stretch"))
+    ends = vtk_to_numpy(sheet.GetLines().GetConnectivityArray()).reshape(-1, 2)
+    total, bonds = np.zeros(count), np.zeros(count)
+    for side in (0, 1):
+        np.add.at(total, ends[:, side], stretch[count:])
+        np.add.at(bonds, ends[:, side], 1)
+    mean = np.where(bonds > 0, total / np.maximum(bonds, 1), 1.0)
+    np.testing.assert_allclose(stretch[:count], mean, rtol=1e-12)

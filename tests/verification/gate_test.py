@@ -1,7 +1,6 @@
-#!/usr/bin/python3
 """Verification before fracture: claims are checked once for the same inputs, reuse is reported, and failing cases are refused.
 
-Usage: gate_test.py PATH_OF_LATCON [--full]     --full: each test that checks the claims once more
+With LATCON_FULL each test checks the claims once more.
 """
 import hashlib
 import json
@@ -9,15 +8,12 @@ import os
 import pathlib
 import re
 import shutil
-import sys
 import tempfile
 import unittest
 
-sys.dont_write_bytecode = True
-from program import CASES, LATCON, TemporaryFolder, claims_where, latcon, latcon_on_ranks
+from program import CASES, FULL, LATCON, TemporaryFolder, claims_where, latcon, latcon_on_ranks
 from verdicts_fixture import REFUSED, TINY
 
-FULL = "--full" in sys.argv
 # Runs of the fixture, or, where each test checks the claims, of this script: the same, with nearest neighbours alone.
 MADE = None if FULL else pathlib.Path(os.environ["LATCON_VERDICTS"])
 NEAREST = ["--set", "Next-nearest neighbours/present=false"] if FULL else []
@@ -251,7 +247,3 @@ class Refused(WithStore):
         self.assertIn(f"{self.out}/report.html\n", run.stdout)
         page = (self.out / "report.html").read_text()
         self.assertIn("it buckles", page)
-
-
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1], verbosity=2)

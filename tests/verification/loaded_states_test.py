@@ -1,17 +1,10 @@
-#!/usr/bin/python3
-"""Checks that the claims accept all stable loaded states before a crack, and no others, as in the table of docs/limits.md.
-
-Usage: loaded_states_test.py LATCON [--full]     --full: the whole map, some hours
-"""
+"""Checks that the claims accept all stable loaded states before a crack, and no others, as in the table of docs/limits.md."""
 import itertools
 import json
 import pathlib
-import sys
-import unittest
 
-sys.dont_write_bytecode = True
 from lattice_states import ACCEPTED, Lattice, rod, spring
-from program import CASES, TemporaryFolder, latcon
+from program import CASES, FULL, latcon
 
 PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "limits.md"
 STRAINS_X = (-0.3, -0.15, 0.0, 0.3, 0.8, 1.3, 2.0, 3.0)
@@ -45,44 +38,38 @@ SOME = [("a = 0", 0.0, 3.0, "energy"), ("rubber", -0.3, 0.03, "energy"), ("rubbe
 REASON = "stability of the loaded lattice"
 
 
-class LoadedStates(TemporaryFolder):
-    def check(self, material, x, y, claims=()):
-        """Checks that the verdicts for both sets of shells agree with the stability of the lattice."""
-        law, entries = MATERIALS[material]
-        settings = [f"Loading/strain x={x}", f"Loading/strain y={y}", "Fracture/breaking stretch=auto", *entries]
-        run = latcon("verify", *claims, "--quick", "--quiet", "--case", CASES / "quick.prm", "--output-dir", self.out,
-                     *(word for setting in settings for word in ("--set", setting)))
-        expected = {shells: Lattice(law, shells, 1 + x, 1 + y).outcome() for shells in ("NN+NNN", "NN")}
-        refused = any(outcome != ACCEPTED for outcome in expected.values())
-        self.assertEqual(run.returncode, 3 if refused else 0, run.stderr)
-        rows = json.loads((self.out / "results.json").read_text())["claims"]
-        for shells, outcome in expected.items():
-            failing = [row["quantity"] for row in rows
-                       if row["verdict"] == "fails" and row["quantity"].startswith((f"{shells}:", f"{shells},"))]
-            self.assertEqual(bool(failing), outcome != ACCEPTED, (shells, outcome, failing))
-            for quantity in failing:
-                self.assertIn(REASON, quantity)
-
-    def test_states_are_accepted_or_refused_for_what_they_are(self):
-        # The whole map with all claims; the sheets with a hole or a notch depend on the material alone.
-        states = itertools.product(MATERIALS, STRAINS_X, STRAINS_Y, [""]) if FULL else SOME
-        for material, x, y, claims in states:
-            with self.subTest(material=material, x=x, y=y):
-                self.check(material, x, y, claims.split())
-
-    def test_page_has_the_map(self):
-        page = PAGE.read_text(encoding="utf-8")
-        for shells in ("NN+NNN", "NN"):
-            for x in STRAINS_X:
-                outcomes = [Lattice(MATERIALS["rubber"][0], shells, 1 + x, 1 + y).outcome() for y in STRAINS_Y]
-                line = f"| {shells} | {x:g} | {' | '.join(outcomes)} |"
-                if set(outcomes) != {ACCEPTED}:
-                    self.assertIn(line, page)
-                else:
-                    self.assertNotIn(f"| {shells} | {x:g} |", page)
+def check(out, material, x, y, claims=()):
+    """Checks that the verdicts for both sets of shells agree with the stability of the lattice."""
+    law, entries = MATERIALS[material]
+    settings = [f"Loading/strain x={x}", f"Loading/strain y={y}", "Fracture/breaking stretch=auto", *entries]
+    run = latcon("verify", *claims, "--quick", "--quiet", "--case", CASES / "quick.prm", "--output-dir", out,
+                 *(word for setting in settings for word in ("--set", setting)))
+    expected = {shells: Lattice(law, shells, 1 + x, 1 + y).outcome() for shells in ("NN+NNN", "NN")}
+    refused = any(outcome != ACCEPTED for outcome in expected.values())
+    assert run.returncode == (3 if refused else 0), run.stderr
+    rows = json.loads((out / "results.json").read_text())["claims"]
+    for shells, outcome in expected.items():
+        failing = [row["quantity"] for row in rows
+                   if row["verdict"] == "fails" and row["quantity"].startswith((f"{shells}:", f"{shells},"))]
+        assert bool(failing) == (outcome != ACCEPTED), (shells, outcome, failing)
+        for quantity in failing:
+            assert REASON in quantity
 
 
-FULL = "--full" in sys.argv
+def test_states_are_accepted_or_refused_for_what_they_are(out):
+    # The whole map with all claims; the sheets with a hole or a notch depend on the material alone.
+    states = itertools.product(MATERIALS, STRAINS_X, STRAINS_Y, [""]) if FULL else SOME
+    for material, x, y, claims in states:
+        check(out, material, x, y, claims.split())
 
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+
+def test_page_has_the_map():
+    page = PAGE.read_text(encoding="utf-8")
+    for shells in ("NN+NNN", "NN"):
+        for x in STRAINS_X:
+            outcomes = [Lattice(MATERIALS["rubber"][0], shells, 1 + x, 1 + y).outcome() for y in STRAINS_Y]
+            line = f"| {shells} | {x:g} | {' | '.join(outcomes)} |"
+            if set(outcomes) != {ACCEPTED}:
+                assert line in page
+            else:
+                assert f"| {shells} | {x:g} |" not in page

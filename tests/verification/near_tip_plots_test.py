@@ -1,17 +1,15 @@
-#!/usr/bin/python3
 """Tests of pictures of synthetic fields around a tip: their contents for a known field, and rejected files."""
 import sys
-import tempfile
-import unittest
+import types
 from pathlib import Path
 
 import numpy as np
+import pytest
 from PIL import Image
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonDataModel import vtkImageData
 from vtkmodules.vtkIOXML import vtkXMLImageDataWriter
 
-sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification" / "report"))
 
 from files import DamagedFile
@@ -57,61 +55,65 @@ def write_field(path, backward=3.0, without=()):
     writer.Write()
 
 
-class NearTipPlots(unittest.TestCase):
-    def setUp(self):
-        folder = tempfile.TemporaryDirectory()
-        self.addCleanup(folder.cleanup)
-        self.vti, self.png = Path(folder.name) / "near_tip.vti", Path(folder.name) / "picture.png"
-
-    def pixels(self):
-        picture = np.asarray(Image.open(self.png).convert("RGB"), dtype=float)
-        self.assertEqual(picture.shape[1], 1600)
-        return picture
-
-    def green(self):
-        """Number of pixels in the colour of the outline."""
-        return np.count_nonzero(np.abs(self.pixels() - GREEN).max(axis=2) < 30)
-
-    def test_reads_places_and_components(self):
-        write_field(self.vti)
-        tip = read_near_tip(self.vti)
-        self.assertEqual(tip.samples, 7)
-        row, column = HALF + 4, BEHIND + 3
-        np.testing.assert_allclose(tip.position[row, column], (3e-3 * STRETCH, 4e-3 * STRETCH), rtol=1e-12)
-        np.testing.assert_allclose(tip.velocity[row, column + 4], (-3.0, 10.0))
-        np.testing.assert_allclose(tip.cauchy_stress[HALF, BEHIND], ((0, 0), (0, 2e5)))
-        self.assertFalse(tip.holds[HALF, BEHIND - 1])
-        # The opening is in no triangle: 20 columns of cells by the five rows of points in it and one more on each side.
-        cells = (BEHIND + AHEAD) * 2 * HALF - BEHIND * 6
-        self.assertEqual(len(triangulation(tip).triangles), 2 * cells)
-
-    def test_outlines_what_moves_back(self):
-        write_field(self.vti)
-        velocity_picture(self.vti, self.png, crack_speed=50.0)
-        outlined = self.green()
-        self.assertGreater(outlined, 500)  # a circle with a radius of about 300 pixels
-        write_field(self.vti, backward=0.4)  # slower than 1 % of the crack
-        velocity_picture(self.vti, self.png, crack_speed=50.0)
-        self.assertLess(self.green(), outlined / 20)
-
-    def test_shows_the_stress_where_it_is(self):
-        write_field(self.vti)
-        opening_stress_picture(self.vti, self.png)
-        picture = self.pixels()
-        # The peak is at the tip in yellow, the far field is another colour.
-        yellow = (picture[..., 0] > 200) & (picture[..., 1] > 200) & (picture[..., 2] < 120)
-        rows, columns = np.nonzero(yellow[:int(0.75 * len(picture))])
-        self.assertGreater(len(rows), 100)
-        width = (10 - 0.85 - 0.25) * 160
-        tip_column = 0.85 * 160 + width * BEHIND / (BEHIND + AHEAD)
-        self.assertAlmostEqual(np.median(columns), tip_column, delta=0.06 * width)
-
-    def test_names_what_is_wrong(self):
-        self.vti.write_bytes(b"nothing of the kind")
-        self.assertRaises(DamagedFile, read_near_tip, self.vti)
-        write_field(self.vti, without=("velocity",))
-        self.assertRaisesRegex(DamagedFile, "velocity", read_near_tip, self.vti)
+@pytest.fixture
+def made(tmp_path):
+    made = types.SimpleNamespace()
+    made.vti, made.png = tmp_path / "near_tip.vti", tmp_path / "picture.png"
+    return made
 
 
-if __name__ == "__main__":
-    unittest.main()
+def pixels(made):
+    picture = np.asarray(Image.open(made.png).convert("RGB"), dtype=float)
+    assert picture.shape[1] == 1600
+    return picture
+
+
+def green(made):
+    """Number of pixels in the colour of the outline."""
+    return np.count_nonzero(np.abs(pixels(made) - GREEN).max(axis=2) < 30)
+
+
+def test_reads_places_and_components(made):
+    write_field(made.vti)
+    tip = read_near_tip(made.vti)
+    assert tip.samples == 7
+    row, column = HALF + 4, BEHIND + 3
+    np.testing.assert_allclose(tip.position[row, column], (3e-3 * STRETCH, 4e-3 * STRETCH), rtol=1e-12)
+    np.testing.assert_allclose(tip.velocity[row, column + 4], (-3.0, 10.0))
+    np.testing.assert_allclose(tip.cauchy_stress[HALF, BEHIND], ((0, 0), (0, 2e5)))
+    assert not tip.holds[HALF, BEHIND - 1]
+    # The opening is in no triangle: 20 columns of cells by the five rows of points in it and one more on each side.
+    cells = (BEHIND + AHEAD) * 2 * HALF - BEHIND * 6
+    assert len(triangulation(tip).triangles) == 2 * cells
+
+
+def test_outlines_what_moves_back(made):
+    write_field(made.vti)
+    velocity_picture(made.vti, made.png, crack_speed=50.0)
+    outlined = green(made)
+    assert outlined > 500  # a circle with a radius of about 300 pixels
+    write_field(made.vti, backward=0.4)  # slower than 1 % of the crack
+    velocity_picture(made.vti, made.png, crack_speed=50.0)
+    assert green(made) < outlined / 20
+
+
+def test_shows_the_stress_where_it_is(made):
+    write_field(made.vti)
+    opening_stress_picture(made.vti, made.png)
+    picture = pixels(made)
+    # The peak is at the tip in yellow, the far field is another colour.
+    yellow = (picture[..., 0] > 200) & (picture[..., 1] > 200) & (picture[..., 2] < 120)
+    rows, columns = np.nonzero(yellow[:int(0.75 * len(picture))])
+    assert len(rows) > 100
+    width = (10 - 0.85 - 0.25) * 160
+    tip_column = 0.85 * 160 + width * BEHIND / (BEHIND + AHEAD)
+    assert np.median(columns) == pytest.approx(tip_column, abs=0.06 * width)
+
+
+def test_names_what_is_wrong(made):
+    made.vti.write_bytes(b"nothing of the kind")
+    with pytest.raises(DamagedFile):
+        read_near_tip(made.vti)
+    write_field(made.vti, without=("velocity",))
+    with pytest.raises(DamagedFile, match="velocity"):
+        read_near_tip(made.vti)

@@ -1,19 +1,14 @@
-#!/usr/bin/python3
-"""Tests of the fields near the tip written by `latcon fracture`, on a strip of a few thousand sites.
-
-Usage: near_tip_test.py PATH_OF_LATCON
-"""
+"""Tests of the fields near the tip written by `latcon fracture`, on a strip of a few thousand sites."""
 import json
 import math
-import pathlib
 import shutil
-import tempfile
-import unittest
+import types
 
+import pytest
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLImageDataReader
 
-from program import CASES, TemporaryFolder, latcon, read, read_csv
+from program import CASES, latcon, read, read_csv
 
 S, S_NNN = 0.72, 0.81  # area factors of the shells
 STRIP = ["--set", f"Nearest neighbours/area factor={S}", "--set", f"Next-nearest neighbours/area factor={S_NNN}",
@@ -32,124 +27,121 @@ def fracture(folder, *options):
     return json.loads((folder / "near_tip.json").read_text())
 
 
-class RunningCrack(unittest.TestCase):
-    @classmethod
-    def setUpClass(cls):
-        folder = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(folder.cleanup)
-        cls.out = pathlib.Path(folder.name) / "out"
-        cls.found = fracture(cls.out)
-
-    def test_writes_numbers_and_fields(self):
-        found = self.found
-        self.assertGreater(found["samples"], 10)
-        self.assertEqual(found["reason"], "")
-        for name, value in found.items():
-            if not name.endswith("_uncertainty") and name + "_uncertainty" in found and "vortex" not in name:
-                self.assertIsNotNone(value, name)
-        self.assertLessEqual(0, found["samples_with_vortex"])
-        self.assertLessEqual(found["samples_with_vortex"], found["vortices_of_samples"])
-        self.assertLessEqual(found["samples_with_vortex"], 1)
-        crack = json.loads((self.out / "crack.json").read_text())
-        ratio = crack["speed_lagrangian"] / found["shear_speed"]
-        self.assertAlmostEqual(found["speed_over_shear"], ratio, places=12)
-        # The speed of long shear waves along x, from the bonds by hand (theory-comparison.md, eqs. (W.1) and (W.2)).
-        stiffness = 0.
-        for s, length, angles in ((S, 1., (0, 60, 120)), (S_NNN, math.sqrt(3), (30, 90, 150))):
-            for angle in angles:
-                X, Y = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-                stretch = math.hypot(2.3 * X, 2.8 * Y)
-                force = 1e5 * (stretch - stretch**-2) + 1.5e5 * (1 - stretch**-3)
-                tangent = 1e5 * (1 + 2 * stretch**-3) + 4.5e5 * stretch**-4
-                across = (2.8 * Y / stretch)**2  # of the bond's direction, squared
-                stiffness += s * length * X**2 * (tangent * across + force / stretch * (1 - across))
-        self.assertAlmostEqual(found["shear_speed"] / math.sqrt(stiffness / 944), 1, delta=1e-6)
-
-        for name in ("near_tip.vti", "near_tip_folded.vti"):
-            image = read(vtkXMLImageDataReader(), self.out / name)
-            points = image.GetPointData()
-            arrays = {points.GetArrayName(i): vtk_to_numpy(points.GetArray(i))
-                      for i in range(points.GetNumberOfArrays())}
-            self.assertEqual({n: a.size // len(arrays["occupancy"]) for n, a in arrays.items()}, COMPONENTS)
-            self.assertEqual(image.GetFieldData().GetArray("Samples").GetValue(0), found["samples"])
-            columns, rows, _ = image.GetDimensions()
-            d = 0.625e-3
-            self.assertEqual((columns, rows), (16 + 1 + 12, 2 * 16 + 1))
-            for measured, expected in zip((*image.GetSpacing()[:2], *image.GetOrigin()[:2]),
-                                          (d, math.sqrt(0.75) * d, -16 * d, -16 * math.sqrt(0.75) * d)):
-                self.assertAlmostEqual(measured, expected, delta=1e-12)
-            # From 2 d to 7 d ahead of the tip, which the strip always reaches, the sheet is whole, and F is the
-            # gradient of the mean position: both are averages over a spacing or two.
-            whole = arrays["occupancy"].reshape(rows, columns)[:, 18:24]
-            self.assertLess(abs(whole - 1).max(), 1e-12)
-            u = arrays["displacement"].reshape(rows, columns, 3)[:, 18:24, 0]
-            F = arrays["deformation_gradient"].reshape(rows, columns, 9)[:, 19:23, 0]
-            self.assertLess(abs((u[:, 2:] - u[:, :-2]) / (2 * d) + 1 - F).max(), 0.1)
-            self.assertGreater(F.min(), 1.5)
-            # A steady crack has v_x / c = 1 - F_xX / F0_xX (theory.md, eq. (N.1)), with c = 2.3 C. This one oscillates, and
-            # its mean over samples is steady up to a fraction of the deviation from the loaded sheet.
-            steady = 1 - arrays["deformation_gradient"].reshape(rows, columns, 9)[:, 18:24, 0] / 2.3
-            speed = arrays["velocity"].reshape(rows, columns, 3)[:, 18:24, 0] / (2.3 * crack["speed_lagrangian"])
-            self.assertLess(((speed - steady)**2).mean(), 0.5**2 * (steady**2).mean())
-        self.assertTrue((self.out / "near_tip_velocity.png").exists())
-        self.assertTrue((self.out / "near_tip_stress.png").exists())
-
-    def test_measures_of_samples_and_of_their_mean_agree_in_kind(self):
-        found = self.found
-        for name in ("process_zone_share", "process_zone_share_of_samples"):
-            self.assertLessEqual(0, found[name])
-            self.assertLessEqual(found[name], 1)
-        self.assertLess(found["negative_zone_depth_of_samples"], 0)
-        self.assertGreater(found["negative_zone_area_of_samples"], 0)
-        # Cauchy sigma_yy of the loaded sheet, from the bonds by hand: P_yY F_yy / det F, V = (sqrt3 / 2) d^2.
-        stress = 0.
-        for s, length, angles in ((S, 1., (0, 60, 120)), (S_NNN, math.sqrt(3), (30, 90, 150))):
-            for angle in angles:
-                X, Y = math.cos(math.radians(angle)), math.sin(math.radians(angle))
-                stretch = math.hypot(2.3 * X, 2.8 * Y)
-                force = 1e5 * (stretch - stretch**-2) + 1.5e5 * (1 - stretch**-3)
-                stress += s * length * force * 2.8 * Y / stretch * Y / 2.3
-        self.assertAlmostEqual(found["far_opening_stress"] / stress, 1, delta=1e-12)
-        for radius in ("4d", "8d"):
-            self.assertAlmostEqual(found[f"opening_stress_concentration_{radius}"] * stress,
-                                   found[f"opening_stress_peak_{radius}"], delta=1e-9 * stress)
+@pytest.fixture(scope="module")
+def once(module_path):
+    made = types.SimpleNamespace()
+    made.out = module_path / "out"
+    made.found = fracture(made.out)
+    return made
 
 
-class NearTip(TemporaryFolder):
-    def test_samples_as_often_whatever_the_time_step(self):
-        interval = 2e-5
-        for integrator in ("velocity-verlet", "runge-kutta-chebyshev"):
-            folder = self.folder / integrator
-            found = fracture(folder, "--set", f"Near tip/interval={interval}", "--set", f"Time/integrator={integrator}",
-                             "--no-report")
-            tips = read_csv(folder / "crack.csv")
-            entry = [float(tip["t"]) for tip in tips if float(tip["X"]) >= found["sampled_from"]][0]
-            last = [float(tip["t"]) for tip in tips if float(tip["X"]) > found["sampled_to"]]
-            end = last[0] if last else json.loads((folder / "crack.json").read_text())["end_time"]
-            # One sample in each interval, of which the first and the last are incomplete.
-            self.assertAlmostEqual(found["samples"], (end - entry) / interval, delta=1.01, msg=integrator)
-            self.assertGreater(found["samples"], 10)
+def test_writes_numbers_and_fields(once):
+    found = once.found
+    assert found["samples"] > 10
+    assert found["reason"] == ""
+    for name, value in found.items():
+        if not name.endswith("_uncertainty") and name + "_uncertainty" in found and "vortex" not in name:
+            assert value is not None, name
+    assert 0 <= found["samples_with_vortex"]
+    assert found["samples_with_vortex"] <= found["vortices_of_samples"]
+    assert found["samples_with_vortex"] <= 1
+    crack = json.loads((once.out / "crack.json").read_text())
+    ratio = crack["speed_lagrangian"] / found["shear_speed"]
+    assert found["speed_over_shear"] == pytest.approx(ratio, abs=5e-13)
+    # The speed of long shear waves along x, from the bonds by hand (theory-comparison.md, eqs. (W.1) and (W.2)).
+    stiffness = 0.
+    for s, length, angles in ((S, 1., (0, 60, 120)), (S_NNN, math.sqrt(3), (30, 90, 150))):
+        for angle in angles:
+            X, Y = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+            stretch = math.hypot(2.3 * X, 2.8 * Y)
+            force = 1e5 * (stretch - stretch**-2) + 1.5e5 * (1 - stretch**-3)
+            tangent = 1e5 * (1 + 2 * stretch**-3) + 4.5e5 * stretch**-4
+            across = (2.8 * Y / stretch)**2  # of the bond's direction, squared
+            stiffness += s * length * X**2 * (tangent * across + force / stretch * (1 - across))
+    assert found["shear_speed"] / math.sqrt(stiffness / 944) == pytest.approx(1, abs=1e-6)
 
-    def test_says_when_there_was_no_running_crack(self):
-        found = fracture(self.out, "--set", "Time/end=0.05 ms", "--no-report")
-        self.assertEqual(found["samples"], 0)
-        self.assertIn("the crack did not run", found["reason"])
-        self.assertIsNone(found["negative_zone_area"])
-        self.assertIsNone(found["wedge_angle"])
-        self.assertGreater(found["shear_speed"], 0)
-        self.assertFalse((self.out / "near_tip.vti").exists())
-        shutil.rmtree(self.out)
-        run = latcon("fracture", CASES / "fig1.prm", "--output-dir", self.out, *STRIP, "--set", "Time/end=0.05 ms",
-                     "--set", "Near tip/interval=0", "--no-report")
-        self.assertIn(run.returncode, (0, 3), run.stderr)
-        self.assertEqual([path.name for path in self.out.glob("near_tip*")], [])
+    for name in ("near_tip.vti", "near_tip_folded.vti"):
+        image = read(vtkXMLImageDataReader(), once.out / name)
+        points = image.GetPointData()
+        arrays = {points.GetArrayName(i): vtk_to_numpy(points.GetArray(i)) for i in range(points.GetNumberOfArrays())}
+        assert {n: a.size // len(arrays["occupancy"]) for n, a in arrays.items()} == COMPONENTS
+        assert image.GetFieldData().GetArray("Samples").GetValue(0) == found["samples"]
+        columns, rows, _ = image.GetDimensions()
+        d = 0.625e-3
+        assert (columns, rows) == (16 + 1 + 12, 2 * 16 + 1)
+        for measured, expected in zip((*image.GetSpacing()[:2], *image.GetOrigin()[:2]),
+                                      (d, math.sqrt(0.75) * d, -16 * d, -16 * math.sqrt(0.75) * d)):
+            assert measured == pytest.approx(expected, abs=1e-12)
+        # From 2 d to 7 d ahead of the tip, which the strip always reaches, the sheet is whole, and F is the
+        # gradient of the mean position: both are averages over a spacing or two.
+        whole = arrays["occupancy"].reshape(rows, columns)[:, 18:24]
+        assert abs(whole - 1).max() < 1e-12
+        u = arrays["displacement"].reshape(rows, columns, 3)[:, 18:24, 0]
+        F = arrays["deformation_gradient"].reshape(rows, columns, 9)[:, 19:23, 0]
+        assert abs((u[:, 2:] - u[:, :-2]) / (2 * d) + 1 - F).max() < 0.1
+        assert F.min() > 1.5
+        # A steady crack has v_x / c = 1 - F_xX / F0_xX (theory.md, eq. (N.1)), with c = 2.3 C. This one oscillates, and
+        # its mean over samples is steady up to a fraction of the deviation from the loaded sheet.
+        steady = 1 - arrays["deformation_gradient"].reshape(rows, columns, 9)[:, 18:24, 0] / 2.3
+        speed = arrays["velocity"].reshape(rows, columns, 3)[:, 18:24, 0] / (2.3 * crack["speed_lagrangian"])
+        assert ((speed - steady)**2).mean() < 0.5**2 * (steady**2).mean()
+    assert (once.out / "near_tip_velocity.png").exists()
+    assert (once.out / "near_tip_stress.png").exists()
 
-    def test_refuses_a_window_that_holds_no_site(self):
-        run = latcon("fracture", CASES / "fig1.prm", "--output-dir", self.out, "--set", "Near tip/ahead=0.1 mm")
-        self.assertEqual(run.returncode, 2)
-        self.assertIn("Near tip/ahead", run.stderr)
-        self.assertFalse(self.out.exists())
+
+def test_measures_of_samples_and_of_their_mean_agree_in_kind(once):
+    found = once.found
+    for name in ("process_zone_share", "process_zone_share_of_samples"):
+        assert 0 <= found[name]
+        assert found[name] <= 1
+    assert found["negative_zone_depth_of_samples"] < 0
+    assert found["negative_zone_area_of_samples"] > 0
+    # Cauchy sigma_yy of the loaded sheet, from the bonds by hand: P_yY F_yy / det F, V = (sqrt3 / 2) d^2.
+    stress = 0.
+    for s, length, angles in ((S, 1., (0, 60, 120)), (S_NNN, math.sqrt(3), (30, 90, 150))):
+        for angle in angles:
+            X, Y = math.cos(math.radians(angle)), math.sin(math.radians(angle))
+            stretch = math.hypot(2.3 * X, 2.8 * Y)
+            force = 1e5 * (stretch - stretch**-2) + 1.5e5 * (1 - stretch**-3)
+            stress += s * length * force * 2.8 * Y / stretch * Y / 2.3
+    assert found["far_opening_stress"] / stress == pytest.approx(1, abs=1e-12)
+    for radius in ("4d", "8d"):
+        assert found[f"opening_stress_concentration_{radius}"] * stress == (
+            pytest.approx(found[f"opening_stress_peak_{radius}"], abs=1e-9 * stress))
 
 
-if __name__ == "__main__":
-    unittest.main(verbosity=2)
+def test_samples_as_often_whatever_the_time_step(tmp_path):
+    interval = 2e-5
+    for integrator in ("velocity-verlet", "runge-kutta-chebyshev"):
+        folder = tmp_path / integrator
+        found = fracture(folder, "--set", f"Near tip/interval={interval}", "--set", f"Time/integrator={integrator}",
+                         "--no-report")
+        tips = read_csv(folder / "crack.csv")
+        entry = [float(tip["t"]) for tip in tips if float(tip["X"]) >= found["sampled_from"]][0]
+        last = [float(tip["t"]) for tip in tips if float(tip["X"]) > found["sampled_to"]]
+        end = last[0] if last else json.loads((folder / "crack.json").read_text())["end_time"]
+        # One sample in each interval, of which the first and the last are incomplete.
+        assert found["samples"] == pytest.approx((end - entry) / interval, abs=1.01), integrator
+        assert found["samples"] > 10
+
+
+def test_says_when_there_was_no_running_crack(out):
+    found = fracture(out, "--set", "Time/end=0.05 ms", "--no-report")
+    assert found["samples"] == 0
+    assert "the crack did not run" in found["reason"]
+    assert found["negative_zone_area"] is None
+    assert found["wedge_angle"] is None
+    assert found["shear_speed"] > 0
+    assert not (out / "near_tip.vti").exists()
+    shutil.rmtree(out)
+    run = latcon("fracture", CASES / "fig1.prm", "--output-dir", out, *STRIP, "--set", "Time/end=0.05 ms",
+                 "--set", "Near tip/interval=0", "--no-report")
+    assert run.returncode in (0, 3), run.stderr
+    assert [path.name for path in out.glob("near_tip*")] == []
+
+
+def test_refuses_a_window_that_holds_no_site(out):
+    run = latcon("fracture", CASES / "fig1.prm", "--output-dir", out, "--set", "Near tip/ahead=0.1 mm")
+    assert run.returncode == 2
+    assert "Near tip/ahead" in run.stderr
+    assert not out.exists()

@@ -3,15 +3,14 @@ import os
 import pathlib
 import shutil
 import subprocess
-import sys
 import tempfile
 import unittest
 
 SCRIPTS = pathlib.Path(__file__).resolve().parents[2] / "verification" / "paraview"
-MODULES = pathlib.Path(sys.argv.pop(1)) if len(sys.argv) > 1 else pathlib.Path()
-SKIPPED = 77  # exit code
+MODULES = pathlib.Path(os.environ["LATCON_PARAVIEW"])
 
 
+@unittest.skipIf(not (MODULES / "paraview").is_dir() or shutil.which("Xvfb") is None, "no ParaView or no Xvfb")
 class ParaView(unittest.TestCase):
     """Test case with a folder and a display."""
 
@@ -42,11 +41,3 @@ class ParaView(unittest.TestCase):
         """Runs a script of that folder."""
         return subprocess.run(["/usr/bin/python3", str(SCRIPTS / name), *map(str, arguments)], capture_output=True,
                               text=True, timeout=300, env=self.environment, check=False)
-
-
-def run_tests():
-    """Runs the tests of the script; exit code 77 without ParaView or a display."""
-    if not (MODULES / "paraview").is_dir() or shutil.which("Xvfb") is None:
-        print(f"no ParaView in {MODULES}, or no Xvfb")
-        sys.exit(SKIPPED)
-    unittest.main(verbosity=2)

@@ -1,18 +1,11 @@
-#!/usr/bin/python3
-"""Tests of the views of a crack in ParaView, verification/paraview/, on a virtual display.
-
-Usage: paraview_test.py FOLDER_WITH_PARAVIEWS_PYTHON_MODULES
-Exits with 77 if the modules or Xvfb are missing; cmake/set-up.sh installs both.
-"""
+"""Tests of the views of a crack in ParaView, verification/paraview/, on a virtual display."""
 import json
-import sys
 
 import numpy as np
 from PIL import Image
 
-sys.dont_write_bytecode = True
 from near_tip_plots_test import write_field
-from paraview_display import ParaView, run_tests
+from paraview_display import ParaView
 from report_test import write_frame, write_series
 
 BREAKING = 3.0
@@ -108,7 +101,3 @@ class Looks(ParaView):
             run = self.script(*words)
             self.assertEqual(run.returncode, 2)
             self.assertIn(part, run.stderr)
-
-
-if __name__ == "__main__":
-    run_tests()

@@ -1,11 +1,4 @@
-#!/usr/bin/python3
 """Checks in Chromium that on a screen as narrow as a phone neither the report nor a box in it scrolls horizontally."""
-import sys
-import tempfile
-import unittest
-from pathlib import Path
-
-sys.dont_write_bytecode = True
 from browser import Browser
 from made_up_sheet import write_torn_sheet
 from report_test import FAILS, HOLDS, PUBLISHED, REPORTED, report, write_fracture, write_verification
@@ -25,24 +18,19 @@ SPOIL = """for (const sheet of document.styleSheets)
     if (/max-width/.test(sheet.cssRules[i].conditionText)) sheet.deleteRule(i);"""
 
 
-class PhoneWidth(unittest.TestCase):
-    def test_nothing_scrolls_sideways(self):
-        with tempfile.TemporaryDirectory() as folder, Browser() as browser:
-            runs = Path(folder) / "runs"
-            write_verification(runs / "a-run-with-a-rather-long-name", [HOLDS, FAILS, REPORTED])
-            write_fracture(runs / "fig1", [HOLDS, PUBLISHED])
-            write_torn_sheet(runs / "torn")
-            (runs / "torn" / "case.prm").write_text(f"subsection Sheet\n  set height = 0.1 # {'m' * WIDTH}\nend\n")
-            report.main([str(runs), "--quiet"])
-            browser.resize(WIDTH, 844, phone=True)
-            browser.open(runs / "report.html")
-            browser.value(UNFOLD)
-            self.assertEqual(browser.value("innerWidth"), WIDTH)
-            self.assertLessEqual(browser.value("document.documentElement.scrollWidth"), WIDTH)
-            self.assertEqual(browser.value(TOO_WIDE), [])
-            browser.value(SPOIL)
-            self.assertNotEqual(browser.value(TOO_WIDE), [])  # elements that do not fit are detected
-
-
-if __name__ == "__main__":
-    unittest.main()
+def test_nothing_scrolls_sideways(tmp_path):
+    with Browser() as browser:
+        runs = tmp_path / "runs"
+        write_verification(runs / "a-run-with-a-rather-long-name", [HOLDS, FAILS, REPORTED])
+        write_fracture(runs / "fig1", [HOLDS, PUBLISHED])
+        write_torn_sheet(runs / "torn")
+        (runs / "torn" / "case.prm").write_text(f"subsection Sheet\n  set height = 0.1 # {'m' * WIDTH}\nend\n")
+        report.main([str(runs), "--quiet"])
+        browser.resize(WIDTH, 844, phone=True)
+        browser.open(runs / "report.html")
+        browser.value(UNFOLD)
+        assert browser.value("innerWidth") == WIDTH
+        assert browser.value("document.documentElement.scrollWidth") <= WIDTH
+        assert browser.value(TOO_WIDE) == []
+        browser.value(SPOIL)
+        assert browser.value(TOO_WIDE) != []  # elements that do not fit are detected

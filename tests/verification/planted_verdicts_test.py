@@ -1,44 +1,34 @@
-#!/usr/bin/python3
-"""Checks that a verdict file without rows of a claim is reported and ignored, and that the claims are checked.
-
-Usage: planted_verdicts_test.py PATH_OF_LATCON
-"""
+"""Checks that a verdict file without rows of a claim is reported and ignored, and that the claims are checked."""
 import hashlib
 import json
 import os
-import sys
-import unittest
+import re
 
-sys.dont_write_bytecode = True
-from program import CASES, TemporaryFolder, latcon
+from program import CASES, latcon
 
 TINY = ["--set", "Sheet/length=2.5 cm", "--set", "Sheet/height=1.5 cm", "--set", "Time/end=0.01 ms", "--set",
         "Next-nearest neighbours/present=false"]
 
 
-class PlantedVerdicts(TemporaryFolder):
-    def fracture(self):
-        environment = dict(os.environ, XDG_CACHE_HOME=str(self.folder / "cache"))
-        run = latcon("fracture", CASES / "quick.prm", "--no-report", "--output-dir", self.out, *TINY, env=environment)
-        self.assertEqual(run.returncode, 0, run.stdout + run.stderr)
-        return run.stdout, json.loads((self.out / "run.json").read_text())["verification"]
-
-    def test_file_with_other_rows_is_not_used(self):
-        self.assertFalse(self.fracture()[1]["reused"])
-        self.assertTrue(self.fracture()[1]["reused"])
-        path = self.folder / "cache" / "latcon" / "verdicts" / f"{self.fracture()[1]['hash']}.json"
-        document = json.loads(path.read_text())
-        del document["checksum"]
-        document["results"]["claims"] = [next(row for row in document["results"]["claims"] if row["verdict"] == "holds")]
-        text = json.dumps(document, separators=(",", ":"), ensure_ascii=False)
-        document["checksum"] = hashlib.sha256(text.encode()).hexdigest()
-        path.write_text(json.dumps(document, separators=(",", ":"), ensure_ascii=False))
-        printed, told = self.fracture()
-        self.assertRegex(printed, f"{path} is not used: the claim [a-z-]+ judged nothing")
-        self.assertIn("judged nothing", told["note"])
-        self.assertFalse(told["reused"])
-        self.assertTrue(self.fracture()[1]["reused"], "not replaced")
+def fracture(out, tmp_path):
+    environment = dict(os.environ, XDG_CACHE_HOME=str(tmp_path / "cache"))
+    run = latcon("fracture", CASES / "quick.prm", "--no-report", "--output-dir", out, *TINY, env=environment)
+    assert run.returncode == 0, run.stdout + run.stderr
+    return run.stdout, json.loads((out / "run.json").read_text())["verification"]
 
 
-if __name__ == "__main__":
-    unittest.main(verbosity=2)
+def test_file_with_other_rows_is_not_used(tmp_path, out):
+    assert not fracture(out, tmp_path)[1]["reused"]
+    assert fracture(out, tmp_path)[1]["reused"]
+    path = tmp_path / "cache" / "latcon" / "verdicts" / f"{fracture(out, tmp_path)[1]['hash']}.json"
+    document = json.loads(path.read_text())
+    del document["checksum"]
+    document["results"]["claims"] = [next(row for row in document["results"]["claims"] if row["verdict"] == "holds")]
+    text = json.dumps(document, separators=(",", ":"), ensure_ascii=False)
+    document["checksum"] = hashlib.sha256(text.encode()).hexdigest()
+    path.write_text(json.dumps(document, separators=(",", ":"), ensure_ascii=False))
+    printed, told = fracture(out, tmp_path)
+    assert re.search(f"{path} is not used: the claim [a-z-]+ judged nothing", printed)
+    assert "judged nothing" in told["note"]
+    assert not told["reused"]
+    assert fracture(out, tmp_path)[1]["reused"], "not replaced"

@@ -16,7 +16,9 @@ import xml.etree.ElementTree
 from forked import ForkServer
 
 # latcon, or the fork server, which with arguments is latcon.
-LATCON = sys.argv.pop(1)
+LATCON = os.environ.get("LATCON") or sys.argv.pop(1)
+# Long versions of tests run too, and instead of short ones.
+FULL = "LATCON_FULL" in os.environ
 # Verdicts are cached for the duration of a test only, never in the user's cache. A fixture may have left verdicts to begin with.
 CACHE = tempfile.TemporaryDirectory()
 if "LATCON_VERDICTS" in os.environ:

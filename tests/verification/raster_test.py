@@ -1,12 +1,11 @@
-#!/usr/bin/python3
 """Tests of the rasterisation of a synthetic sheet: filled pixels, openings where bonds break, omitted parts."""
 import sys
-import unittest
+import types
 from pathlib import Path
 
 import numpy as np
+import pytest
 
-sys.dont_write_bytecode = True
 sys.path.insert(0, str(Path(__file__).resolve().parents[2] / "verification" / "report"))
 
 from frame import Frame
@@ -32,50 +31,54 @@ def broken_bonds(frame):
     return {"t": np.full(len(ends), BREAKS), "site": ends[:, 0].astype(float), "other_site": ends[:, 1].astype(float)}
 
 
-class Pixels(unittest.TestCase):
-    def setUp(self):
-        self.frame = made_up_frame()
-        self.mesh = Mesh(self.frame, broken_bonds(self.frame))
-        self.raster = Raster((-1.0, COLUMNS + 0.5, -1.0, ROWS * np.sqrt(0.75)), 460)
-        self.pixel_area = self.raster.pixels_per_unit**-2
-
-    def draw(self, position=None, time=-np.inf, values=None):
-        values = self.frame.reference[:, 0] if values is None else values
-        return self.raster.draw(self.mesh, self.frame.position if position is None else position, values, time)
-
-    def test_a_whole_sheet_is_filled(self):
-        picture = self.draw()
-        triangles = 2 * (COLUMNS - 1) * (ROWS - 1)
-        self.assertEqual(len(self.mesh.triangles), triangles)
-        area = np.count_nonzero(~np.isnan(picture)) * self.pixel_area
-        self.assertAlmostEqual(area / (triangles * np.sqrt(3) / 4), 1.0, delta=0.03)
-
-    def test_values_are_where_they_belong(self):
-        picture = self.draw(values=self.frame.reference[:, 0] + 100 * self.frame.reference[:, 1])
-        rows, columns = np.nonzero(~np.isnan(picture))
-        x = -1.0 + (columns + 0.5) / self.raster.pixels_per_unit
-        y = -1.0 + (self.raster.height - rows - 0.5) / self.raster.pixels_per_unit
-        np.testing.assert_allclose(picture[rows, columns], x + 100 * y, atol=101 / self.raster.pixels_per_unit)
-
-    def test_a_crack_opens_when_its_bonds_break(self):
-        opened = self.frame.position + np.where(np.arange(len(self.frame.position)) // COLUMNS > 4, 0.3, 0.0)[:, None]
-        before, after = (np.count_nonzero(~np.isnan(self.draw(opened, time))) for time in (0.9 * BREAKS, BREAKS))
-        strip = (2 * (COLUMNS - 1) * np.sqrt(3) / 4) / self.pixel_area
-        self.assertGreater(before - after, 0.9 * strip)
-
-    def test_what_flew_away_is_left_out(self):
-        away = self.frame.position.copy()
-        away[0] = (-50.0, 1e6)
-        lost = np.count_nonzero(np.isnan(self.draw(away))) - np.count_nonzero(np.isnan(self.draw()))
-        # One or two triangles of a site in a corner.
-        self.assertGreater(lost, 0.9 * np.sqrt(3) / 4 / self.pixel_area)
-        self.assertLess(lost, 1.1 * 2 * np.sqrt(3) / 4 / self.pixel_area)
-
-    def test_bonds_without_triangles_are_lines(self):
-        chain = Frame(0.0, self.frame.reference, self.frame.position, np.array([(0, 1), (1, 2)]), np.ones(2), {})
-        picture = self.raster.draw(Mesh(chain), chain.position, np.ones(len(chain.position)))
-        self.assertAlmostEqual(np.count_nonzero(~np.isnan(picture)), 2 * self.raster.pixels_per_unit, delta=2)
+@pytest.fixture
+def made():
+    made = types.SimpleNamespace()
+    made.frame = made_up_frame()
+    made.mesh = Mesh(made.frame, broken_bonds(made.frame))
+    made.raster = Raster((-1.0, COLUMNS + 0.5, -1.0, ROWS * np.sqrt(0.75)), 460)
+    made.pixel_area = made.raster.pixels_per_unit**-2
+    return made
 
 
-if __name__ == "__main__":
-    unittest.main()
+def draw(made, position=None, time=-np.inf, values=None):
+    values = made.frame.reference[:, 0] if values is None else values
+    return made.raster.draw(made.mesh, made.frame.position if position is None else position, values, time)
+
+
+def test_a_whole_sheet_is_filled(made):
+    picture = draw(made)
+    triangles = 2 * (COLUMNS - 1) * (ROWS - 1)
+    assert len(made.mesh.triangles) == triangles
+    area = np.count_nonzero(~np.isnan(picture)) * made.pixel_area
+    assert area / (triangles * np.sqrt(3) / 4) == pytest.approx(1.0, abs=0.03)
+
+
+def test_values_are_where_they_belong(made):
+    picture = draw(made, values=made.frame.reference[:, 0] + 100 * made.frame.reference[:, 1])
+    rows, columns = np.nonzero(~np.isnan(picture))
+    x = -1.0 + (columns + 0.5) / made.raster.pixels_per_unit
+    y = -1.0 + (made.raster.height - rows - 0.5) / made.raster.pixels_per_unit
+    np.testing.assert_allclose(picture[rows, columns], x + 100 * y, atol=101 / made.raster.pixels_per_unit)
+
+
+def test_a_crack_opens_when_its_bonds_break(made):
+    opened = made.frame.position + np.where(np.arange(len(made.frame.position)) // COLUMNS > 4, 0.3, 0.0)[:, None]
+    before, after = (np.count_nonzero(~np.isnan(draw(made, opened, time))) for time in (0.9 * BREAKS, BREAKS))
+    strip = (2 * (COLUMNS - 1) * np.sqrt(3) / 4) / made.pixel_area
+    assert before - after > 0.9 * strip
+
+
+def test_what_flew_away_is_left_out(made):
+    away = made.frame.position.copy()
+    away[0] = (-50.0, 1e6)
+    lost = np.count_nonzero(np.isnan(draw(made, away))) - np.count_nonzero(np.isnan(draw(made)))
+    # One or two triangles of a site in a corner.
+    assert lost > 0.9 * np.sqrt(3) / 4 / made.pixel_area
+    assert lost < 1.1 * 2 * np.sqrt(3) / 4 / made.pixel_area
+
+
+def test_bonds_without_triangles_are_lines(made):
+    chain = Frame(0.0, made.frame.reference, made.frame.position, np.array([(0, 1), (1, 2)]), np.ones(2), {})
+    picture = made.raster.draw(Mesh(chain), chain.position, np.ones(len(chain.position)))
+    assert np.count_nonzero(~np.isnan(picture)) == pytest.approx(2 * made.raster.pixels_per_unit, abs=2)

@@ -1,4 +1,3 @@
-#!/usr/bin/python3
 """Tests of the report with synthetic runs: text, pictures, rejected files and exit codes."""
 import base64
 import contextlib
@@ -8,20 +7,18 @@ import re
 import shutil
 import subprocess
 import sys
-import tempfile
-import unittest
 from html.parser import HTMLParser
 from pathlib import Path
 from unittest import mock
 
 import numpy as np
+import pytest
 from PIL import Image
 from vtkmodules.util.numpy_support import numpy_to_vtk
 from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import vtkCellArray, vtkPolyData
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter
 
-sys.dont_write_bytecode = True
 FOLDER = Path(__file__).resolve().parents[2] / "verification" / "report"
 sys.path.insert(0, str(FOLDER))
 
@@ -172,273 +169,274 @@ class Page(HTMLParser):
             self.text += data + " "
 
 
-class ReportCase(unittest.TestCase):
-    def setUp(self):
-        temporary = tempfile.TemporaryDirectory()
-        self.addCleanup(temporary.cleanup)
-        self.folder = Path(temporary.name) / "runs"
-
-    def report(self, *options, expect, folder=None):
-        """Runs the script in this process. @return (stdout, stderr)"""
-        streams = [io.TextIOWrapper(io.BytesIO(), encoding="utf-8") for _ in range(2)]
-        with contextlib.redirect_stdout(streams[0]), contextlib.redirect_stderr(streams[1]):
-            exit_code = report.main([str(folder or self.folder), *options])
-        texts = []
-        for stream in streams:
-            stream.seek(0)
-            texts.append(stream.read())
-        self.assertEqual(exit_code, expect, texts)
-        return tuple(texts)
-
-    def page(self, folder=None):
-        html = ((folder or self.folder) / "report.html").read_text(encoding="utf-8")
-        page = Page(html)
-        self.assertEqual(page.open, [])
-        return html, page
+def drawn(folder, *options, expect):
+    """Runs the script in this process. @return (stdout, stderr)"""
+    streams = [io.TextIOWrapper(io.BytesIO(), encoding="utf-8") for _ in range(2)]
+    with contextlib.redirect_stdout(streams[0]), contextlib.redirect_stderr(streams[1]):
+        exit_code = report.main([str(folder), *options])
+    texts = []
+    for stream in streams:
+        stream.seek(0)
+        texts.append(stream.read())
+    assert exit_code == expect, texts
+    return tuple(texts)
 
 
-class WholePage(ReportCase):
-    """One page with everything, for all these tests."""
-
-    @classmethod
-    def setUpClass(cls):
-        temporary = tempfile.TemporaryDirectory()
-        cls.addClassCleanup(temporary.cleanup)
-        cls.whole = Path(temporary.name) / "runs"
-        write_fracture(cls.whole, [HOLDS, PUBLISHED])
-        assert report.main([str(cls.whole), "--quiet"]) == 0
-
-    def setUp(self):
-        self.folder = self.whole
-
-    def test_needs_nothing_beside_it(self):
-        html, page = self.page()
-        own = ("data:image/png;base64,", "data:image/gif;base64,", "#")
-        self.assertEqual([r[:30] for r in page.references if not r.startswith(own)], [])
-        bare = re.sub(r"base64,[^\"]*|^/\*! @license .*?\*/", "", html, flags=re.M)
-        self.assertNotRegex(bare, r"https?://|@import|url\(|<script[^>]* src|<link|sourceMappingURL")
-        self.assertIn("@license https://github.com/danvk/dygraphs", html)  # the MIT licence requires its notice
-        self.assertEqual(len(page.images), len(PICTURES))
-
-    def test_can_be_read_without_seeing_it(self):
-        _, page = self.page()
-        for words in page.alternatives:
-            self.assertRegex(words, r"\w+ \w+ \w+")
-        self.assertEqual(len(set(page.alternatives)), len(page.images))
-        self.assertEqual(page.headings[0], 1)
-        self.assertEqual(page.headings.count(1), 1)
-        for before, after in zip(page.headings, page.headings[1:]):
-            self.assertLessEqual(after, before + 1)
-
-    def test_begins_with_what_was_found(self):
-        html, _ = self.page()
-        order = [html.index(words) for words in ("Holds: all", 'class="key"', 'data-plot="path', 'class="viewer"',
-                                                 'data-plot="energy', 'id="claims"', "(case.prm")]
-        self.assertEqual(order, sorted(order))
-
-    def test_pictures_show_something(self):
-        _, page = self.page()
-        for name in PICTURES:
-            png = (self.folder / name).read_bytes()
-            self.assertIn(png, [base64.b64decode(source.partition(",")[2]) for source in page.images])
-            pixels = np.asarray(Image.open(io.BytesIO(png)).convert("RGB"), dtype=float)
-            self.assertEqual(pixels.shape[1], 1600)
-            self.assertGreater(pixels.shape[0], 500)
-            coloured = np.ptp(pixels[:len(pixels) // 2], axis=2) > 60  # colour bars are below
-            self.assertGreater(coloured.mean(), 2e-3, f"{name} has no colours")
-            self.assertGreater(pixels.std(), 10, f"{name} is blank")
+def read_page(folder):
+    html = (folder / "report.html").read_text(encoding="utf-8")
+    page = Page(html)
+    assert page.open == []
+    return html, page
 
 
-class ReportTest(ReportCase):
-    def test_says_what_was_checked_measured_and_given(self):
-        write_verification(self.folder / "verify", [HOLDS, REPORTED])
-        write_fracture(self.folder / "fig", [HOLDS, PUBLISHED])
-        out, err = self.report(expect=0)
-        self.assertEqual(err, "")
-        _, page = self.page()
-        self.assertRegex(" ".join(page.text.split()), r"· measured Lagrangian crack speed 20.00 ± 0.20 – m/s –")
-        for words in ("c² <of> a wave", "1.25", "✓ holds", "2.00e-03", "0.01", "· reported", "0.042", "oscillating",
-                      "it winds", "2.1", "2.000 ± 0.015", "-4.8 %", "breaking stretch", "1.2.3", "verify, fig",
-                      "Holds: all 3 checks"):
-            self.assertIn(words, page.text)
-        self.assertNotIn("fails", page.text.replace("#fails", "").replace("holds fails reported", ""))
-        lines = out.splitlines()
-        self.assertLessEqual(max(map(len, lines)), 120)
-        self.assertEqual(lines[-1], f"{self.folder}/report.html")
-        self.assertRegex(out, r"verify +energy +1 +0 +1 +0\.2\n")
-        self.assertRegex(out, r"fig +wavelength, undeformed +cm +2\.1 +2\.000 \+- 0\.015 +-4\.8 % +holds")
-
-    def test_leaves_out_studies_beside_runs(self):
-        write_verification(self.folder, [FAILS])
-        (self.folder / "study.json").write_text("{}")
-        write_verification(self.folder / "verify", [HOLDS])
-        out, _ = self.report(expect=0)
-        self.assertIn("energy", out)
-        self.assertNotIn("prestretch", out)
-        (self.folder / "verify" / "results.json").unlink()
-        (self.folder / "verify" / "run.json").unlink()
-        out, _ = self.report(expect=3)  # there is nothing else
-        self.assertIn("prestretch", out)
-
-    def test_shows_what_was_measured_near_the_tip(self):
-        write_fracture(self.folder, [HOLDS])
-        self.report(expect=0)
-        text = " ".join(self.page()[1].text.split())
-        self.assertIn("Near the tip, from 84 samples", text)
-        for row in ("negative velocity, area 14.5 ± 1.9 mm²", "samples with a vortex 25 ± 13 %",
-                    "opening stress, peak 0.6609 MPa", "wedge angle – degrees"):
-            self.assertIn(row, text)
-        self.assertNotIn("asymmetry 0", text)  # not in the file
-        for samples, words in ((0, "Nothing was measured: it <rested>."),
-                               (3, "Not all quantities could be measured: it <rested>.")):
-            (self.folder / "near_tip.json").write_text(json.dumps({"samples": samples, "reason": "it <rested>"}))
-            self.report(expect=0)
-            self.assertIn(words, self.page()[1].text)
-        for damaged in ({"samples": 84}, {"samples": 84, "reason": "", "wedge_angle": "wide"}):
-            (self.folder / "near_tip.json").write_text(json.dumps(damaged))
-            self.assertRegex(self.report(expect=2)[1], r"near_tip.json: (\"reason\" is missing|wedge_angle is 'wide')")
-        (self.folder / "near_tip.json").unlink()
-        self.report(expect=0)
-        self.assertNotIn("Near the tip", self.page()[1].text)
-
-    def test_a_failing_row_is_first_and_exits_3(self):
-        write_verification(self.folder, [HOLDS, FAILS, check_row("energy", "lost", "fails", error="nan", tolerance=1)])
-        out, _ = self.report(expect=3)
-        html, page = self.page()
-        self.assertIn("Fails: 2 of 3 checks fail", page.text)
-        self.assertLess(html.rindex("lost"), html.index("c² &lt;of&gt; a wave"))
-        self.assertRegex(out, r"prestretch: traction +17\n")
-        self.assertRegex(out, r"energy: lost +inf\n")
-
-    def test_a_side_that_is_no_number_fails(self):
-        for side in ("lattice", "continuum", "theory", "error", "tolerance"):
-            for value in ("nan", "inf", "-inf"):
-                row = check_row("energy", "side", "fails", **{"error": 0.0, "tolerance": 1.0, side: value})
-                write_verification(self.folder, [row])
-                self.assertRegex(self.report(expect=3)[0], r"energy: side +inf\n")
-                (self.folder / "results.json").write_text(json.dumps({"claims": [{**row, "verdict": "holds"}]}))
-                self.assertIn("contradicts its numbers", self.report(expect=2)[1])
-                shutil.rmtree(self.folder)
-
-    def test_without_the_library_of_the_plots_pictures_take_their_place(self):
-        write_fracture(self.folder, [HOLDS])
-        with mock.patch.object(live, "DYGRAPHS", self.folder):
-            self.report("--quiet", expect=0)
-        html, _ = self.page()
-        self.assertNotIn("new Dygraph", html)
-        self.assertIn('class="viewer"', html)
-        stills = html.index('id="stills-0"')
-        for name in ("The crack in the undeformed sheet", "Energy balance per metre of sheet thickness"):
-            self.assertLess(html.index(f'alt="runs: {name}'), stills)
-
-    def test_runs_as_a_script(self):
-        write_verification(self.folder, [FAILS])
-        command = ["/usr/bin/python3", str(FOLDER / "report.py"), str(self.folder)]
-        loud = subprocess.run(command, capture_output=True, text=True, check=False)
-        quiet = subprocess.run(command + ["--quiet"], capture_output=True, text=True, check=False)
-        self.assertEqual((loud.returncode, quiet.returncode), (3, 3))
-        self.assertTrue(loud.stdout.endswith(f"\n{self.folder}/report.html\n"), loud.stdout)
-        self.assertEqual((loud.stderr, quiet.stdout, quiet.stderr), ("", "", ""))
-
-    def test_an_interrupted_run_is_shown_as_far_as_it_went(self):
-        write_fracture(self.folder / "cut", [HOLDS])
-        for name in ("results.json", "crack.json", "lattice-0000.vtp"):
-            (self.folder / "cut" / name).unlink()
-        (self.folder / "cut" / "run.json").write_text(json.dumps({"version": "1.2.3", "exit_code": None}))
-        self.assertIn("unfinished", self.report(expect=0)[0])
-        _, page = self.page()
-        self.assertIn("Not complete", page.text)
-        self.assertIn("no crack.json", page.text)
-        self.assertIn("has no data for it: sheet.png, sheet_fields.png", page.text)
-        self.assertEqual(len(page.images), 2)
-
-    def test_a_skipped_verification_is_said(self):
-        write_fracture(self.folder, [PUBLISHED])
-        (self.folder / "run.json").write_text(json.dumps({"exit_code": 0, "skip_verification": True}))
-        out, _ = self.report(expect=0)
-        html, page = self.page()
-        self.assertIn("without verification of its material and pre-stretch", page.text)
-        self.assertIn("Not verified: all checks made hold", page.text)
-        self.assertIn('class="banner warns"', html)
-        self.assertIn("holds, not verified", page.text)
-        self.assertNotRegex(html, r'class="[^"]*\bholds\b')  # nothing is green
-        self.assertIn("not verified", out)
-        # Together with a verified run as well.
-        write_verification(self.folder.parent / "both" / "verify", [HOLDS])
-        write_fracture(self.folder.parent / "both" / "fig", [PUBLISHED])
-        (self.folder.parent / "both" / "fig" / "run.json").write_text(
-            json.dumps({"exit_code": 0, "skip_verification": True}))
-        self.report("--quiet", expect=0, folder=self.folder.parent / "both")
-        self.assertNotIn('class="banner holds"', self.page(self.folder.parent / "both")[0])
-
-    def test_reused_verdicts_are_said(self):
-        write_fracture(self.folder, [HOLDS, PUBLISHED])
-        verification = {"hash": "abc", "reused": True, "checked_at": "2026-01-02T03:04:05Z"}
-        (self.folder / "run.json").write_text(json.dumps({"exit_code": 0, "verification": verification}))
-        self.report("--quiet", expect=0)
-        self.assertIn("cached verdicts of 2026-01-02T03:04:05Z", self.page()[1].text)
-
-    def test_refuses_a_folder_without_a_run(self):
-        self.folder.mkdir()
-        self.assertIn("no run found", self.report(expect=2)[1])
-        self.assertIn("missing", self.report(expect=2, folder=self.folder / "missing")[1])
-
-    def test_names_the_damaged_file(self):
-        write_fracture(self.folder, [HOLDS])
-        intact = {name: (self.folder / name).read_bytes()
-                  for name in ("results.json", "crack.json", "near_tip.json", "crack.csv", "energy.csv",
-                               "lattice.pvd", "lattice-0000.vtp", "motion.pvd", "motion-0002.vtp")}
-        for name, content in intact.items():
-            for damaged in (content[:len(content) * 2 // 3], b"\xff\xfe"):
-                with self.subTest(name=name, length=len(damaged)):
-                    (self.folder / name).write_bytes(damaged)
-                    (self.folder / "report.html").write_text("stale")
-                    out, err = self.report(expect=2)
-                    self.assertIn("cannot be read", out)
-                    self.assertRegex(err, rf"\Aerror: .*{re.escape(name)}: .+\n\Z")
-                    _, page = self.page()
-                    self.assertRegex(page.text, rf"cannot be read, not shown : .*{re.escape(name)}: ")
-                    self.assertNotIn("Holds: all", page.text)
-            (self.folder / name).write_bytes(content)
-        self.report("--quiet", expect=0)
-
-    def test_one_unreadable_run_does_not_cost_the_others(self):
-        write_verification(self.folder / "verify", [HOLDS, FAILS])
-        write_fracture(self.folder / "fig", [HOLDS, PUBLISHED])
-        write_fracture(self.folder / "damaged", [HOLDS])
-        (self.folder / "damaged" / "crack.json").write_text("{")
-        write_fracture(self.folder / "torn", [HOLDS])
-        (self.folder / "torn" / "motion-0002.vtp").write_bytes(b"\xff\xfe")
-        out, err = self.report(expect=2)
-        self.assertRegex(err, r"\Aerror: .*damaged/crack.json: .*\nerror: .*torn/motion-0002.vtp: .*\n\Z")
-        self.assertRegex(out, r"fig +wavelength, undeformed +cm +2\.1 +2\.000 \+- 0\.015 +-4\.8 % +holds")
-        self.assertRegex(out, r"damaged +cannot be read\ntorn +cannot be read\n")
-        _, page = self.page()
-        for words in ("Fails: 1 of 4 checks", "damaged: cannot be read", "torn: cannot be read", "Crack: fig"):
-            self.assertIn(words, page.text)
-
-    def test_shows_runs_of_the_continuum(self):
-        for name, energies in (("equilibrium", "load_factor,elastic\n0.5,1.25\n1,5\n"),
-                               ("motion", "t,elastic,kinetic,micro_inertia,viscous,boundary_work,imbalance\n"
-                                          "0,5,0,0,0,0,0\n0.001,4,1,0,0,0,1e-9\n")):
-            write_verification(self.folder / name, [check_row("continuum", f"energy of the {name}", "reported")])
-            (self.folder / name / "energy.csv").write_text(energies)
-        write_fracture(self.folder / "fig", [HOLDS, PUBLISHED])
-        out, err = self.report(expect=0)
-        self.assertEqual(err, "")
-        self.assertIn("fig", out)
-        for name in ("equilibrium", "motion"):
-            self.assertIn(f"energy of the {name}", self.page()[1].text)
-
-    def test_does_not_believe_a_verdict_against_its_numbers(self):
-        write_verification(self.folder, [{**FAILS, "verdict": "holds"}])
-        self.assertRegex(self.report(expect=2)[1], "results.json: row 1 .* verdict 'holds' contradicts")
-
-    def test_a_file_that_cannot_be_written_exits_5(self):
-        write_verification(self.folder, [HOLDS])
-        (self.folder / "report.html").mkdir()
-        self.assertIn("report.html", self.report(expect=5)[1])
+# One page with everything, for all these tests.
+@pytest.fixture(scope="module")
+def whole(module_path):
+    whole = module_path / "runs"
+    write_fracture(whole, [HOLDS, PUBLISHED])
+    assert report.main([str(whole), "--quiet"]) == 0
+    return whole
 
 
-if __name__ == "__main__":
-    unittest.main()
+def test_needs_nothing_beside_it(whole):
+    html, page = read_page(whole)
+    own = ("data:image/png;base64,", "data:image/gif;base64,", "#")
+    assert [r[:30] for r in page.references if not r.startswith(own)] == []
+    bare = re.sub(r"base64,[^\"]*|^/\*! @license .*?\*/", "", html, flags=re.M)
+    assert not re.search(r"https?://|@import|url\(|<script[^>]* src|<link|sourceMappingURL", bare)
+    assert "@license https://github.com/danvk/dygraphs" in html  # the MIT licence requires its notice
+    assert len(page.images) == len(PICTURES)
+
+
+def test_can_be_read_without_seeing_it(whole):
+    _, page = read_page(whole)
+    for words in page.alternatives:
+        assert re.search(r"\w+ \w+ \w+", words)
+    assert len(set(page.alternatives)) == len(page.images)
+    assert page.headings[0] == 1
+    assert page.headings.count(1) == 1
+    for before, after in zip(page.headings, page.headings[1:]):
+        assert after <= before + 1
+
+
+def test_begins_with_what_was_found(whole):
+    html, _ = read_page(whole)
+    order = [html.index(words) for words in ("Holds: all", 'class="key"', 'data-plot="path', 'class="viewer"',
+                                             'data-plot="energy', 'id="claims"', "(case.prm")]
+    assert order == sorted(order)
+
+
+def test_pictures_show_something(whole):
+    _, page = read_page(whole)
+    for name in PICTURES:
+        png = (whole / name).read_bytes()
+        assert png in [base64.b64decode(source.partition(",")[2]) for source in page.images]
+        pixels = np.asarray(Image.open(io.BytesIO(png)).convert("RGB"), dtype=float)
+        assert pixels.shape[1] == 1600
+        assert pixels.shape[0] > 500
+        coloured = np.ptp(pixels[:len(pixels) // 2], axis=2) > 60  # colour bars are below
+        assert coloured.mean() > 2e-3, f"{name} has no colours"
+        assert pixels.std() > 10, f"{name} is blank"
+
+
+def test_says_what_was_checked_measured_and_given(runs):
+    write_verification(runs / "verify", [HOLDS, REPORTED])
+    write_fracture(runs / "fig", [HOLDS, PUBLISHED])
+    out, err = drawn(runs, expect=0)
+    assert err == ""
+    _, page = read_page(runs)
+    assert re.search(r"· measured Lagrangian crack speed 20.00 ± 0.20 – m/s –", " ".join(page.text.split()))
+    for words in ("c² <of> a wave", "1.25", "✓ holds", "2.00e-03", "0.01", "· reported", "0.042", "oscillating",
+                  "it winds", "2.1", "2.000 ± 0.015", "-4.8 %", "breaking stretch", "1.2.3", "verify, fig",
+                  "Holds: all 3 checks"):
+        assert words in page.text
+    assert "fails" not in page.text.replace("#fails", "").replace("holds fails reported", "")
+    lines = out.splitlines()
+    assert max(map(len, lines)) <= 120
+    assert lines[-1] == f"{runs}/report.html"
+    assert re.search(r"verify +energy +1 +0 +1 +0\.2\n", out)
+    assert re.search(r"fig +wavelength, undeformed +cm +2\.1 +2\.000 \+- 0\.015 +-4\.8 % +holds", out)
+
+
+def test_leaves_out_studies_beside_runs(runs):
+    write_verification(runs, [FAILS])
+    (runs / "study.json").write_text("{}")
+    write_verification(runs / "verify", [HOLDS])
+    out, _ = drawn(runs, expect=0)
+    assert "energy" in out
+    assert "prestretch" not in out
+    (runs / "verify" / "results.json").unlink()
+    (runs / "verify" / "run.json").unlink()
+    out, _ = drawn(runs, expect=3)  # there is nothing else
+    assert "prestretch" in out
+
+
+def test_shows_what_was_measured_near_the_tip(runs):
+    write_fracture(runs, [HOLDS])
+    drawn(runs, expect=0)
+    text = " ".join(read_page(runs)[1].text.split())
+    assert "Near the tip, from 84 samples" in text
+    for row in ("negative velocity, area 14.5 ± 1.9 mm²", "samples with a vortex 25 ± 13 %",
+                "opening stress, peak 0.6609 MPa", "wedge angle – degrees"):
+        assert row in text
+    assert "asymmetry 0" not in text  # not in the file
+    for samples, words in ((0, "Nothing was measured: it <rested>."),
+                           (3, "Not all quantities could be measured: it <rested>.")):
+        (runs / "near_tip.json").write_text(json.dumps({"samples": samples, "reason": "it <rested>"}))
+        drawn(runs, expect=0)
+        assert words in read_page(runs)[1].text
+    for damaged in ({"samples": 84}, {"samples": 84, "reason": "", "wedge_angle": "wide"}):
+        (runs / "near_tip.json").write_text(json.dumps(damaged))
+        assert re.search(r"near_tip.json: (\"reason\" is missing|wedge_angle is 'wide')", drawn(runs, expect=2)[1])
+    (runs / "near_tip.json").unlink()
+    drawn(runs, expect=0)
+    assert "Near the tip" not in read_page(runs)[1].text
+
+
+def test_a_failing_row_is_first_and_exits_3(runs):
+    write_verification(runs, [HOLDS, FAILS, check_row("energy", "lost", "fails", error="nan", tolerance=1)])
+    out, _ = drawn(runs, expect=3)
+    html, page = read_page(runs)
+    assert "Fails: 2 of 3 checks fail" in page.text
+    assert html.rindex("lost") < html.index("c² &lt;of&gt; a wave")
+    assert re.search(r"prestretch: traction +17\n", out)
+    assert re.search(r"energy: lost +inf\n", out)
+
+
+def test_a_side_that_is_no_number_fails(runs):
+    for side in ("lattice", "continuum", "theory", "error", "tolerance"):
+        for value in ("nan", "inf", "-inf"):
+            row = check_row("energy", "side", "fails", **{"error": 0.0, "tolerance": 1.0, side: value})
+            write_verification(runs, [row])
+            assert re.search(r"energy: side +inf\n", drawn(runs, expect=3)[0])
+            (runs / "results.json").write_text(json.dumps({"claims": [{**row, "verdict": "holds"}]}))
+            assert "contradicts its numbers" in drawn(runs, expect=2)[1]
+            shutil.rmtree(runs)
+
+
+def test_without_the_library_of_the_plots_pictures_take_their_place(runs):
+    write_fracture(runs, [HOLDS])
+    with mock.patch.object(live, "DYGRAPHS", runs):
+        drawn(runs, "--quiet", expect=0)
+    html, _ = read_page(runs)
+    assert "new Dygraph" not in html
+    assert 'class="viewer"' in html
+    stills = html.index('id="stills-0"')
+    for name in ("The crack in the undeformed sheet", "Energy balance per metre of sheet thickness"):
+        assert html.index(f'alt="runs: {name}') < stills
+
+
+def test_runs_as_a_script(runs):
+    write_verification(runs, [FAILS])
+    command = ["/usr/bin/python3", str(FOLDER / "report.py"), str(runs)]
+    loud = subprocess.run(command, capture_output=True, text=True, check=False)
+    quiet = subprocess.run(command + ["--quiet"], capture_output=True, text=True, check=False)
+    assert (loud.returncode, quiet.returncode) == (3, 3)
+    assert loud.stdout.endswith(f"\n{runs}/report.html\n"), loud.stdout
+    assert (loud.stderr, quiet.stdout, quiet.stderr) == ("", "", "")
+
+
+def test_an_interrupted_run_is_shown_as_far_as_it_went(runs):
+    write_fracture(runs / "cut", [HOLDS])
+    for name in ("results.json", "crack.json", "lattice-0000.vtp"):
+        (runs / "cut" / name).unlink()
+    (runs / "cut" / "run.json").write_text(json.dumps({"version": "1.2.3", "exit_code": None}))
+    assert "unfinished" in drawn(runs, expect=0)[0]
+    _, page = read_page(runs)
+    assert "Not complete" in page.text
+    assert "no crack.json" in page.text
+    assert "has no data for it: sheet.png, sheet_fields.png" in page.text
+    assert len(page.images) == 2
+
+
+def test_a_skipped_verification_is_said(runs):
+    write_fracture(runs, [PUBLISHED])
+    (runs / "run.json").write_text(json.dumps({"exit_code": 0, "skip_verification": True}))
+    out, _ = drawn(runs, expect=0)
+    html, page = read_page(runs)
+    assert "without verification of its material and pre-stretch" in page.text
+    assert "Not verified: all checks made hold" in page.text
+    assert 'class="banner warns"' in html
+    assert "holds, not verified" in page.text
+    assert not re.search(r'class="[^"]*\bholds\b', html)  # nothing is green
+    assert "not verified" in out
+    # Together with a verified run as well.
+    write_verification(runs.parent / "both" / "verify", [HOLDS])
+    write_fracture(runs.parent / "both" / "fig", [PUBLISHED])
+    (runs.parent / "both" / "fig" / "run.json").write_text(json.dumps({"exit_code": 0, "skip_verification": True}))
+    drawn(runs.parent / "both", "--quiet", expect=0)
+    assert 'class="banner holds"' not in read_page(runs.parent / "both")[0]
+
+
+def test_reused_verdicts_are_said(runs):
+    write_fracture(runs, [HOLDS, PUBLISHED])
+    verification = {"hash": "abc", "reused": True, "checked_at": "2026-01-02T03:04:05Z"}
+    (runs / "run.json").write_text(json.dumps({"exit_code": 0, "verification": verification}))
+    drawn(runs, "--quiet", expect=0)
+    assert "cached verdicts of 2026-01-02T03:04:05Z" in read_page(runs)[1].text
+
+
+def test_refuses_a_folder_without_a_run(runs):
+    runs.mkdir()
+    assert "no run found" in drawn(runs, expect=2)[1]
+    assert "missing" in drawn(runs / "missing", expect=2)[1]
+
+
+def test_names_the_damaged_file(runs):
+    write_fracture(runs, [HOLDS])
+    intact = {name: (runs / name).read_bytes()
+              for name in ("results.json", "crack.json", "near_tip.json", "crack.csv", "energy.csv",
+                           "lattice.pvd", "lattice-0000.vtp", "motion.pvd", "motion-0002.vtp")}
+    for name, content in intact.items():
+        for damaged in (content[:len(content) * 2 // 3], b"\xff\xfe"):
+            (runs / name).write_bytes(damaged)
+            (runs / "report.html").write_text("stale")
+            out, err = drawn(runs, expect=2)
+            assert "cannot be read" in out
+            assert re.search(rf"\Aerror: .*{re.escape(name)}: .+\n\Z", err)
+            _, page = read_page(runs)
+            assert re.search(rf"cannot be read, not shown : .*{re.escape(name)}: ", page.text)
+            assert "Holds: all" not in page.text
+        (runs / name).write_bytes(content)
+    drawn(runs, "--quiet", expect=0)
+
+
+def test_one_unreadable_run_does_not_cost_the_others(runs):
+    write_verification(runs / "verify", [HOLDS, FAILS])
+    write_fracture(runs / "fig", [HOLDS, PUBLISHED])
+    write_fracture(runs / "damaged", [HOLDS])
+    (runs / "damaged" / "crack.json").write_text("{")
+    write_fracture(runs / "torn", [HOLDS])
+    (runs / "torn" / "motion-0002.vtp").write_bytes(b"\xff\xfe")
+    out, err = drawn(runs, expect=2)
+    assert re.search(r"\Aerror: .*damaged/crack.json: .*\nerror: .*torn/motion-0002.vtp: .*\n\Z", err)
+    assert re.search(r"fig +wavelength, undeformed +cm +2\.1 +2\.000 \+- 0\.015 +-4\.8 % +holds", out)
+    assert re.search(r"damaged +cannot be read\ntorn +cannot be read\n", out)
+    _, page = read_page(runs)
+    for words in ("Fails: 1 of 4 checks", "damaged: cannot be read", "torn: cannot be read", "Crack: fig"):
+        assert words in page.text
+
+
+def test_shows_runs_of_the_continuum(runs):
+    for name, energies in (("equilibrium", "load_factor,elastic\n0.5,1.25\n1,5\n"),
+                           ("motion", "t,elastic,kinetic,micro_inertia,viscous,boundary_work,imbalance\n"
+                                      "0,5,0,0,0,0,0\n0.001,4,1,0,0,0,1e-9\n")):
+        write_verification(runs / name, [check_row("continuum", f"energy of the {name}", "reported")])
+        (runs / name / "energy.csv").write_text(energies)
+    write_fracture(runs / "fig", [HOLDS, PUBLISHED])
+    out, err = drawn(runs, expect=0)
+    assert err == ""
+    assert "fig" in out
+    for name in ("equilibrium", "motion"):
+        assert f"energy of the {name}" in read_page(runs)[1].text
+
+
+def test_does_not_believe_a_verdict_against_its_numbers(runs):
+    write_verification(runs, [{**FAILS, "verdict": "holds"}])
+    assert re.search("results.json: row 1 .* verdict 'holds' contradicts", drawn(runs, expect=2)[1])
+
+
+def test_a_file_that_cannot_be_written_exits_5(runs):
+    write_verification(runs, [HOLDS])
+    (runs / "report.html").mkdir()
+    assert "report.html" in drawn(runs, expect=5)[1]

@@ -1,11 +1,9 @@
-#!/usr/bin/python3
 """Tests of the report in Chromium: the viewer shows the values of the files, and plots and page respond to the reader."""
 import base64
 import hashlib
 import io
 import json
 import re
-import sys
 import tempfile
 import time
 import unittest
@@ -19,7 +17,6 @@ from PIL import Image
 from vtkmodules.util.numpy_support import vtk_to_numpy
 from vtkmodules.vtkIOXML import vtkXMLPolyDataReader
 
-sys.dont_write_bytecode = True
 from browser import Browser
 from made_up_sheet import FRAMES, SPACING, write_torn_sheet
 from report_test import FAILS, HOLDS, REPORTED, report, write_verification
@@ -431,7 +428,3 @@ class FoldedTest(unittest.TestCase):
             html = (Path(name) / "report.html").read_text(encoding="utf-8")
         for claim, opened in (("energy", ""), ("prestretch", " open")):
             self.assertIn(f'<section id="claim-{claim}"><details class="claim"{opened}><summary>', html)
-
-
-if __name__ == "__main__":
-    unittest.main(verbosity=2)

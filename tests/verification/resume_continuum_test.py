@@ -1,25 +1,20 @@
-#!/usr/bin/python3
 """Tests of motions of the finite element sheet that are stopped, resumed, or fail.
 
 Kills at arbitrary times are tested in tests/faults.
-
-Usage: resume_continuum_test.py PATH_OF_LATCON
 """
 import json
 import os
 import pathlib
+import re
 import signal
 import subprocess
-import sys
 import time
-import unittest
 
 import h5py
 import numpy as np
+import pytest
 
-sys.dont_write_bytecode = True
-from program import CASES, LATCON, TemporaryFolder, children, frames, latcon, latcon_on_ranks, read_csv
-
+from program import CASES, LATCON, children, frames, latcon, latcon_on_ranks, read_csv
 
 # Waves in a layer between held faces: 20 steps, checkpoints after every third, six frames.
 WAVES = {
@@ -48,130 +43,135 @@ def files(folder):
     return {path.name: path.read_bytes() for path in folder.iterdir() if path.is_file() and path.name not in ("run.json", "log.txt")}
 
 
-class Resume(TemporaryFolder):
-    def checkpoints(self):
-        return sorted((self.out / "checkpoints").glob("*.h5"))
-
-    def run_json(self):
-        return json.loads((self.out / "run.json").read_text())
-
-    def run_to_end(self, *more, case=WAVES, ranks=1):
-        arguments = command(case, self.out, *more)
-        run = latcon(*arguments) if ranks == 1 else latcon_on_ranks(ranks, *arguments)
-        self.assertEqual(run.returncode, 0, run.stderr)
-        return run
-
-    def stop(self, which, case=WAVES, ranks=1, victim=None):
-        """Sends the signal `which` once there are checkpoints, to mpirun, or to that rank alone. @return exit code"""
-        launcher = [] if ranks == 1 else ["mpirun", "--oversubscribe", "-n", str(ranks)]
-        with subprocess.Popen([*launcher, LATCON, *command(case, self.out)], stdout=subprocess.DEVNULL,
-                              stderr=subprocess.PIPE, env=ENVIRONMENT) as run:
-            while not self.checkpoints():
-                self.assertIsNone(run.poll(), "it ended too soon")
-                time.sleep(0.005)
-            target = run.pid
-            if victim is not None:
-                [target] = [pid for pid in children(run.pid) if f"OMPI_COMM_WORLD_RANK={victim}\0".encode()
-                            in pathlib.Path(f"/proc/{pid}/environ").read_bytes()]
-            started = children(run.pid) if launcher else []
-            os.kill(target, which)
-            run.communicate(timeout=600)
-            # The ranks outlive an mpirun that was killed for a moment.
-            while any(pathlib.Path(f"/proc/{rank}").exists() for rank in started):
-                time.sleep(0.005)
-            return run.returncode
-
-    def goes_on_to_the_same_files(self, which, case=WAVES, ranks=1, victim=None):
-        self.out = self.folder / "undisturbed"
-        self.run_to_end(case=case, ranks=ranks)
-        expected = files(self.out)
-        self.out = self.folder / "stopped"
-        status = self.stop(which, case, ranks, victim)
-        self.assertNotEqual(status, 0)
-        with h5py.File(self.checkpoints()[-1], "r") as file:
-            step = int(file["run/step"][0])
-        self.assertLess(step, 20)
-        if status == 130:
-            # The instant of the signal is in a frame, in the table and in a checkpoint.
-            with h5py.File(self.checkpoints()[-1], "r") as file:
-                self.assertEqual(file["solver/time"][0], frames(self.out / "continuum.pvd")[-1][0])
-                self.assertEqual(file["solver/time"][0], float(read_csv(self.out / "energy.csv")[-1]["t"]))
-            self.assertEqual(self.run_json()["exit_code"], 130)
-        run = self.run_to_end("--resume", case=case, ranks=ranks)
-        self.assertIn(f"step {step},", run.stdout)
-        self.assertEqual(self.run_json()["resumed_from"]["step"], step)
-        found = files(self.out)
-        self.assertEqual(sorted(found), sorted(expected))
-        for name, content in expected.items():
-            self.assertEqual(found[name] == content, True, name)
-        return status
-
-    def test_signal(self):
-        self.assertEqual(self.goes_on_to_the_same_files(signal.SIGTERM), 130)
-
-    def test_kill_with_multigrid(self):
-        self.assertEqual(self.goes_on_to_the_same_files(signal.SIGKILL, BY_MULTIGRID), -9)
-
-    def test_signal_to_one_rank_stops_all(self):
-        # mpirun returns the exit code of a rank.
-        self.assertEqual(self.goes_on_to_the_same_files(signal.SIGTERM, ranks=2, victim=1), 130)
-
-    def test_killed_rank_ends_all(self):
-        self.goes_on_to_the_same_files(signal.SIGKILL, BY_MULTIGRID, ranks=2, victim=1)
-
-    def test_on_another_number_of_ranks(self):
-        self.out = self.folder / "undisturbed"
-        self.run_to_end()
-        expected = {name: np.array([float(row[name]) for row in read_csv(self.out / "energy.csv")])
-                    for name in ("t", "elastic", "kinetic")}
-        self.out = self.folder / "stopped"
-        self.stop(signal.SIGKILL, ranks=2)
-        self.run_to_end("--resume")
-        self.assertEqual([time for time, _ in frames(self.out / "continuum.pvd")],
-                         [time for time, _ in frames(self.folder / "undisturbed" / "continuum.pvd")])
-        for time_, file in frames(self.out / "continuum.pvd"):
-            self.assertTrue(file.exists(), file)
-        for name, column in expected.items():
-            found = np.array([float(row[name]) for row in read_csv(self.out / "energy.csv")])
-            # Newton stops at 1e-10 of the forces.
-            np.testing.assert_allclose(found, column, rtol=1e-8, atol=1e-8 * abs(column).max())
-
-    def test_equilibrium_starts_from_the_beginning(self):
-        run = self.run_to_end("--resume", case={**WAVES, "Continuum/solution": "equilibrium"})
-        self.assertIn("starting from the beginning", run.stdout)
+def checkpoints(out):
+    return sorted((out / "checkpoints").glob("*.h5"))
 
 
-class Failure(TemporaryFolder):
-    def test_last_good_state_is_left(self):
-        for ranks in (1, 2):
-            self.out = self.folder / str(ranks)
-            run = latcon_on_ranks(ranks, *command(COLLISION, self.out))
-            self.assertEqual(run.returncode, 4, run.stderr)
-            self.assertRegex(run.stderr, r"the time step from [\d.e-]+ s failed")
-            self.assertRegex(run.stderr, r"X = \([-\d.e]+, [-\d.e]+\) m")
-            last = float(run.stderr.split("the time step from ")[1].split(" s ")[0])
-            rows = read_csv(self.out / "energy.csv")
-            self.assertAlmostEqual(float(rows[-1]["t"]), last, delta=1e-6)
-            self.assertGreater(float(rows[-1]["t"]), 0.)
-            time_, file = frames(self.out / "continuum.pvd")[-1]
-            self.assertEqual(time_, float(rows[-1]["t"]))
-            self.assertTrue(file.exists())
-            self.assertFalse(list(self.out.rglob("*.part")))
-
-    def test_output_that_fails_on_one_rank_ends_all(self):
-        self.out.mkdir()
-        for which in ("continuum_0001.1.vtu", "continuum_0002.pvtu", "energy.csv"):
-            (self.out / which).mkdir()
-            (self.out / which / "mine").write_text("")
-            run = latcon_on_ranks(2, *command(WAVES, self.out))
-            self.assertEqual(run.returncode, 5, run.stderr)
-            self.assertIn(f"cannot write {self.out / which}: it is a folder", run.stderr)
-            (self.out / which / "mine").unlink()
-            (self.out / which).rmdir()
-            for _, file in frames(self.out / "continuum.pvd"):
-                self.assertTrue(file.exists())
-            self.assertFalse(list(self.out.rglob("*.part")))
+def run_json(out):
+    return json.loads((out / "run.json").read_text())
 
 
-if __name__ == "__main__":
-    unittest.main(verbosity=2)
+def run_to_end(out, *more, case=WAVES, ranks=1):
+    arguments = command(case, out, *more)
+    run = latcon(*arguments) if ranks == 1 else latcon_on_ranks(ranks, *arguments)
+    assert run.returncode == 0, run.stderr
+    return run
+
+
+def stop(out, which, case=WAVES, ranks=1, victim=None):
+    """Sends the signal `which` once there are checkpoints, to mpirun, or to that rank alone. @return exit code"""
+    launcher = [] if ranks == 1 else ["mpirun", "--oversubscribe", "-n", str(ranks)]
+    with subprocess.Popen([*launcher, LATCON, *command(case, out)], stdout=subprocess.DEVNULL,
+                          stderr=subprocess.PIPE, env=ENVIRONMENT) as run:
+        while not checkpoints(out):
+            assert run.poll() is None, "it ended too soon"
+            time.sleep(0.005)
+        target = run.pid
+        if victim is not None:
+            [target] = [pid for pid in children(run.pid) if f"OMPI_COMM_WORLD_RANK={victim}\0".encode()
+                        in pathlib.Path(f"/proc/{pid}/environ").read_bytes()]
+        started = children(run.pid) if launcher else []
+        os.kill(target, which)
+        run.communicate(timeout=600)
+        # The ranks outlive an mpirun that was killed for a moment.
+        while any(pathlib.Path(f"/proc/{rank}").exists() for rank in started):
+            time.sleep(0.005)
+        return run.returncode
+
+
+def goes_on_to_the_same_files(out, tmp_path, which, case=WAVES, ranks=1, victim=None):
+    out = tmp_path / "undisturbed"
+    run_to_end(out, case=case, ranks=ranks)
+    expected = files(out)
+    out = tmp_path / "stopped"
+    status = stop(out, which, case, ranks, victim)
+    assert status != 0
+    with h5py.File(checkpoints(out)[-1], "r") as file:
+        step = int(file["run/step"][0])
+    assert step < 20
+    if status == 130:
+        # The instant of the signal is in a frame, in the table and in a checkpoint.
+        with h5py.File(checkpoints(out)[-1], "r") as file:
+            assert file["solver/time"][0] == frames(out / "continuum.pvd")[-1][0]
+            assert file["solver/time"][0] == float(read_csv(out / "energy.csv")[-1]["t"])
+        assert run_json(out)["exit_code"] == 130
+    run = run_to_end(out, "--resume", case=case, ranks=ranks)
+    assert f"step {step}," in run.stdout
+    assert run_json(out)["resumed_from"]["step"] == step
+    found = files(out)
+    assert sorted(found) == sorted(expected)
+    for name, content in expected.items():
+        assert found[name] == content, name
+    return status
+
+
+def test_signal(out, tmp_path):
+    assert goes_on_to_the_same_files(out, tmp_path, signal.SIGTERM) == 130
+
+
+def test_kill_with_multigrid(out, tmp_path):
+    assert goes_on_to_the_same_files(out, tmp_path, signal.SIGKILL, BY_MULTIGRID) == -9
+
+
+def test_signal_to_one_rank_stops_all(out, tmp_path):
+    # mpirun returns the exit code of a rank.
+    assert goes_on_to_the_same_files(out, tmp_path, signal.SIGTERM, ranks=2, victim=1) == 130
+
+
+def test_killed_rank_ends_all(out, tmp_path):
+    goes_on_to_the_same_files(out, tmp_path, signal.SIGKILL, BY_MULTIGRID, ranks=2, victim=1)
+
+
+def test_on_another_number_of_ranks(out, tmp_path):
+    out = tmp_path / "undisturbed"
+    run_to_end(out)
+    expected = {name: np.array([float(row[name]) for row in read_csv(out / "energy.csv")])
+                for name in ("t", "elastic", "kinetic")}
+    out = tmp_path / "stopped"
+    stop(out, signal.SIGKILL, ranks=2)
+    run_to_end(out, "--resume")
+    assert [time for time, _ in frames(out / "continuum.pvd")] == (
+        [time for time, _ in frames(tmp_path / "undisturbed" / "continuum.pvd")])
+    for time_, file in frames(out / "continuum.pvd"):
+        assert file.exists(), file
+    for name, column in expected.items():
+        found = np.array([float(row[name]) for row in read_csv(out / "energy.csv")])
+        # Newton stops at 1e-10 of the forces.
+        np.testing.assert_allclose(found, column, rtol=1e-8, atol=1e-8 * abs(column).max())
+
+
+def test_equilibrium_starts_from_the_beginning(out):
+    run = run_to_end(out, "--resume", case={**WAVES, "Continuum/solution": "equilibrium"})
+    assert "starting from the beginning" in run.stdout
+
+
+def test_last_good_state_is_left(out, tmp_path):
+    for ranks in (1, 2):
+        out = tmp_path / str(ranks)
+        run = latcon_on_ranks(ranks, *command(COLLISION, out))
+        assert run.returncode == 4, run.stderr
+        assert re.search(r"the time step from [\d.e-]+ s failed", run.stderr)
+        assert re.search(r"X = \([-\d.e]+, [-\d.e]+\) m", run.stderr)
+        last = float(run.stderr.split("the time step from ")[1].split(" s ")[0])
+        rows = read_csv(out / "energy.csv")
+        assert float(rows[-1]["t"]) == pytest.approx(last, abs=1e-6)
+        assert float(rows[-1]["t"]) > 0.
+        time_, file = frames(out / "continuum.pvd")[-1]
+        assert time_ == float(rows[-1]["t"])
+        assert file.exists()
+        assert not list(out.rglob("*.part"))
+
+
+def test_output_that_fails_on_one_rank_ends_all(out):
+    out.mkdir()
+    for which in ("continuum_0001.1.vtu", "continuum_0002.pvtu", "energy.csv"):
+        (out / which).mkdir()
+        (out / which / "mine").write_text("")
+        run = latcon_on_ranks(2, *command(WAVES, out))
+        assert run.returncode == 5, run.stderr
+        assert f"cannot write {out / which}: it is a folder" in run.stderr
+        (out / which / "mine").unlink()
+        (out / which).rmdir()
+        for _, file in frames(out / "continuum.pvd"):
+            assert file.exists()
+        assert not list(out.rglob("*.part"))

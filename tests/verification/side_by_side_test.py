@@ -1,10 +1,4 @@
-#!/usr/bin/python3
-"""Tests of the three views of verification/paraview/side_by_side.py, drawn by ParaView on a virtual display.
-
-Usage: side_by_side_test.py FOLDER_WITH_PARAVIEWS_PYTHON_MODULES
-Exits with 77 if the modules or Xvfb are missing; cmake/set-up.sh installs both.
-"""
-import sys
+"""Tests of the three views of verification/paraview/side_by_side.py, drawn by ParaView on a virtual display."""
 
 import numpy as np
 from PIL import Image
@@ -13,8 +7,7 @@ from vtkmodules.vtkCommonCore import vtkPoints
 from vtkmodules.vtkCommonDataModel import VTK_QUAD, vtkCellArray, vtkPolyData, vtkUnstructuredGrid
 from vtkmodules.vtkIOXML import vtkXMLPolyDataWriter, vtkXMLUnstructuredGridWriter
 
-sys.dont_write_bytecode = True
-from paraview_display import ParaView, run_tests
+from paraview_display import ParaView
 
 WIDTH, HEIGHT = 0.06, 0.03  # of the sheet [m]
 SPACING = 0.5e-3  # [m]
@@ -146,7 +139,3 @@ class SideBySide(ParaView):
         run = self.script("side_by_side.py", self.folder, "--field", "velocity", "--screenshot", self.folder / "none.png")
         self.assertEqual(run.returncode, 1)
         self.assertIn("velocity", run.stderr)
-
-
-if __name__ == "__main__":
-    run_tests()

@@ -1,19 +1,20 @@
-#!/usr/bin/python3
 """Checks from the command line that every claim holds for the shipped case, in the quick or, with --full, in the full versions,
 and that the pages about claims and their files agree with the results.
-
-Usage: verify_test.py LATCON [--full]
 """
 import json
 import pathlib
+import re
 import sys
-import unittest
 
-sys.dont_write_bytecode = True
+import pytest
+
 sys.path.append(str(pathlib.Path(__file__).resolve().parents[1] / "docs"))
 import verification_page
 from documented import undocumented
-from program import CASES, TemporaryFolder, claims_where, latcon
+from program import CASES, FULL, claims_where, latcon
+
+VERSION = [] if FULL else ["--quick"]
+quick_only = pytest.mark.skipif(FULL, reason="the quick versions are enough")
 
 PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs" / "verification.md"
 
@@ -32,36 +33,35 @@ TABLES = ("wave_speeds", "attenuation", "dispersion", "dispersion_runs", "edge_l
           "travelling_waves", "steady_crack")
 
 
-class Verify(TemporaryFolder):
-    def test_every_claim_holds(self):
-        # The full versions should take less than ten minutes on two idle cores; the cores may be busy here.
-        result = latcon("verify", *VERSION, "--output-dir", self.out, timeout=1800)
-        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
-        results = json.loads((self.out / "results.json").read_text())
-        rows = results["claims"]
-        self.assertEqual({row["claim"] for row in rows}, claims_where("default"))
-        self.assertLessEqual(set(SUBJECTS), claims_where("default"))
-        for claim in claims_where("default"):
-            quantities = [row["quantity"] for row in rows if row["claim"] == claim]
-            for subject in SUBJECTS.get(claim, ()):
-                self.assertTrue(any(subject in quantity for quantity in quantities), f"{claim}: {subject}")
-            for shells in ("NN+NNN", "NN") if claim != "steady-crack" else ():
-                self.assertTrue(any(quantity.startswith((f"{shells}:", f"{shells},")) for quantity in quantities), claim)
-        # A tolerance without its reason says nothing; a crack waits for all rows that are judged.
-        self.assertEqual([row["quantity"] for row in rows if row["tolerance"] is not None and not row["reason"]], [])
-        self.assertEqual([row["quantity"] for row in rows if row["gate"] != (row["tolerance"] is not None)], [])
-        claims = json.loads((self.out / "claims.json").read_text())["claims"]
-        self.assertEqual({claim["name"] for claim in claims}, claims_where("default"))
-        for name in TABLES:
-            self.assertGreater(len((self.out / f"{name}.csv").read_text().splitlines()), 4, name)
-        if VERSION:
-            self.assertEqual(verification_page.differences(PAGE.read_text(encoding="utf-8"), results), [],
-                             "if that is as it should be: cmake --build build/release --target verification_page")
-        report = latcon("report", self.out, "--quiet")
-        self.assertEqual(report.returncode, 0, report.stderr)
-        page = (self.out / "report.html").read_text()
-        self.assertGreaterEqual(page.count("<img "), len(TABLES) - 1)  # dispersion and its runs share one
-        self.assertEqual(undocumented(self.out), [])
+def test_every_claim_holds(out):
+    # The full versions should take less than ten minutes on two idle cores; the cores may be busy here.
+    result = latcon("verify", *VERSION, "--output-dir", out, timeout=1800)
+    assert result.returncode == 0, result.stdout + result.stderr
+    results = json.loads((out / "results.json").read_text())
+    rows = results["claims"]
+    assert {row["claim"] for row in rows} == claims_where("default")
+    assert set(SUBJECTS) <= claims_where("default")
+    for claim in claims_where("default"):
+        quantities = [row["quantity"] for row in rows if row["claim"] == claim]
+        for subject in SUBJECTS.get(claim, ()):
+            assert any(subject in quantity for quantity in quantities), f"{claim}: {subject}"
+        for shells in ("NN+NNN", "NN") if claim != "steady-crack" else ():
+            assert any(quantity.startswith((f"{shells}:", f"{shells},")) for quantity in quantities), claim
+    # A tolerance without its reason says nothing; a crack waits for all rows that are judged.
+    assert [row["quantity"] for row in rows if row["tolerance"] is not None and not row["reason"]] == []
+    assert [row["quantity"] for row in rows if row["gate"] != (row["tolerance"] is not None)] == []
+    claims = json.loads((out / "claims.json").read_text())["claims"]
+    assert {claim["name"] for claim in claims} == claims_where("default")
+    for name in TABLES:
+        assert len((out / f"{name}.csv").read_text().splitlines()) > 4, name
+    if VERSION:
+        assert verification_page.differences(PAGE.read_text(encoding="utf-8"), results) == [], (
+            "if that is as it should be: cmake --build build/release --target verification_page")
+    report = latcon("report", out, "--quiet")
+    assert report.returncode == 0, report.stderr
+    page = (out / "report.html").read_text()
+    assert page.count("<img ") >= len(TABLES) - 1  # dispersion and its runs share one
+    assert undocumented(out) == []
 
 
 # A sheet of nearest neighbours, compressed along x until the speed of shear waves along x vanishes: it buckles.
@@ -70,75 +70,68 @@ BUCKLED = [word for setting in (
     "Nearest neighbours/viscosity=0", "Next-nearest neighbours/viscosity=0") for word in ("--set", setting)]
 
 
-@unittest.skipIf("--full" in sys.argv, "the quick versions are enough")
-class WithoutNumbers(TemporaryFolder):
-    def test_waves_that_never_ran_fail(self):
-        """Checks the case of quick.prm with other settings. Rows with NaN must not hold."""
-        result = latcon("verify", "energy", "wave-speeds", "--quick", "--case", CASES / "quick.prm", *BUCKLED, "--output-dir",
-                        self.out)
-        self.assertEqual(result.returncode, 3, result.stdout + result.stderr)
-        rows = json.loads((self.out / "results.json").read_text())["claims"]
-        for row in rows:
-            if row["verdict"] == "holds":
-                self.assertFalse({"nan", "inf", "-inf"} & {str(value) for value in row.values()}, row)
-        end = result.stdout.splitlines()[-3:]
-        self.assertIn("2 of ", end[0])
-        for claim, line in zip(("energy", "wave-speeds"), end[1:]):
-            self.assertRegex(line, f"{claim}: NN: stability of the loaded lattice, .*; it buckles in waves of kd = ")
-            failing = [row["quantity"] for row in rows if (row["claim"], row["verdict"]) == (claim, "fails")]
-            self.assertTrue(any("it buckles in waves of kd" in quantity for quantity in failing), failing)
+@quick_only
+def test_waves_that_never_ran_fail(out):
+    """Checks the case of quick.prm with other settings. Rows with NaN must not hold."""
+    result = latcon("verify", "energy", "wave-speeds", "--quick", "--case", CASES / "quick.prm", *BUCKLED, "--output-dir", out)
+    assert result.returncode == 3, result.stdout + result.stderr
+    rows = json.loads((out / "results.json").read_text())["claims"]
+    for row in rows:
+        if row["verdict"] == "holds":
+            assert not {"nan", "inf", "-inf"} & {str(value) for value in row.values()}, row
+    end = result.stdout.splitlines()[-3:]
+    assert "2 of " in end[0]
+    for claim, line in zip(("energy", "wave-speeds"), end[1:]):
+        assert re.search(f"{claim}: NN: stability of the loaded lattice, .*; it buckles in waves of kd = ", line)
+        failing = [row["quantity"] for row in rows if (row["claim"], row["verdict"]) == (claim, "fails")]
+        assert any("it buckles in waves of kd" in quantity for quantity in failing), failing
 
 
-@unittest.skipIf("--full" in sys.argv, "the quick versions are enough")
-class Scope(TemporaryFolder):
-    def judged(self, *options, expect=0):
-        run = latcon("verify", "energy", "--quick", "--output-dir", self.out, *options)
-        self.assertEqual(run.returncode, expect, run.stdout + run.stderr)
-        document = json.loads((self.out / "run.json").read_text())
-        rows = json.loads((self.out / "results.json").read_text())["claims"]
-        return sum(row["verdict"] == "holds" for row in rows), document["laws"], "--laws all judges every law" in run.stdout
-
-    def test_only_a_case_or_an_option_chooses_the_laws_that_are_judged(self):
-        entry = ("--set", "Lattice/noise seed=1")
-        case = ("--case", CASES / "fig1.prm")
-        every, laws, _ = self.judged()
-        self.assertEqual(laws, "all")
-        for options in (entry, (*case, "--laws", "all")):
-            self.assertEqual(self.judged(*options), (every, "all", False))
-        fewer, laws, is_said = self.judged(*entry, "--laws", "case")
-        self.assertLess(fewer, every)
-        self.assertEqual((laws, is_said), ("case", True))
-        self.assertEqual(self.judged(*case), (fewer, "case", True))
-
-    def test_a_claim_that_is_named_judges_something_or_fails(self):
-        run = latcon("verify", "running-crack", "--quick", "--set", "Loading/strain y=0", "--output-dir", self.out)
-        self.assertEqual(run.returncode, 3, run.stdout + run.stderr)
-        self.assertIn("running-crack: rows that are judged: not computed: this case has none", run.stdout)
+def judged(out, *options, expect=0):
+    run = latcon("verify", "energy", "--quick", "--output-dir", out, *options)
+    assert run.returncode == expect, run.stdout + run.stderr
+    document = json.loads((out / "run.json").read_text())
+    rows = json.loads((out / "results.json").read_text())["claims"]
+    return sum(row["verdict"] == "holds" for row in rows), document["laws"], "--laws all judges every law" in run.stdout
 
 
-@unittest.skipIf("--full" in sys.argv, "the quick version is enough")
-class DamagedBars(TemporaryFolder):
-    def test_the_claim_takes_its_constants_from_the_case(self):
-        """Checks another length than the spacing, another threshold and another residual stiffness, each with its effect."""
-        constants = ("Damage/length=2 mm", "Damage/threshold energy=2e6", "Damage/residual stiffness=5e-6")
-        result = latcon("verify", "damage", "--quick", "--case", CASES / "quick.prm",
-                        *(word for entry in constants for word in ("--set", entry)), "--output-dir", self.out)
-        self.assertEqual(result.returncode, 0, result.stdout + result.stderr)
-        rows = json.loads((self.out / "results.json").read_text())["claims"]
-        self.assertEqual({row["claim"] for row in rows}, {"damage"})
-        self.assertLessEqual({row["verdict"] for row in rows}, {"holds", "reported"})
-        self.assertGreater(sum(row["verdict"] == "holds" for row in rows), 15)
-        # Energy dissipated in two elements of xi/4: 2 (1 - k) W_c d times an area of 2 (xi/4)^2.
-        energy, = (row for row in rows if "energy dissipated" in row["quantity"])
-        self.assertLess(float(energy["theory"]), 2 * 2e6 * 2 * (2e-3 / 4)**2)
-        self.assertGreater(float(energy["theory"]), 2e6 * 2 * (2e-3 / 4)**2)
-        lines = (self.out / "damaged_bar.csv").read_text().splitlines()
-        self.assertEqual(lines[0], "shells,law,h/xi,X/xi,damage,theory")
-        self.assertEqual(len(lines), 1 + 18 + 34 + 34)  # nodes of bars of 17, 33 and 33 elements
-        self.assertEqual(undocumented(self.out), [])
+@quick_only
+def test_only_a_case_or_an_option_chooses_the_laws_that_are_judged(out):
+    entry = ("--set", "Lattice/noise seed=1")
+    case = ("--case", CASES / "fig1.prm")
+    every, laws, _ = judged(out)
+    assert laws == "all"
+    for options in (entry, (*case, "--laws", "all")):
+        assert judged(out, *options) == (every, "all", False)
+    fewer, laws, is_said = judged(out, *entry, "--laws", "case")
+    assert fewer < every
+    assert (laws, is_said) == ("case", True)
+    assert judged(out, *case) == (fewer, "case", True)
 
 
-VERSION = [] if "--full" in sys.argv else ["--quick"]
+@quick_only
+def test_a_claim_that_is_named_judges_something_or_fails(out):
+    run = latcon("verify", "running-crack", "--quick", "--set", "Loading/strain y=0", "--output-dir", out)
+    assert run.returncode == 3, run.stdout + run.stderr
+    assert "running-crack: rows that are judged: not computed: this case has none" in run.stdout
 
-if __name__ == "__main__":
-    unittest.main(argv=sys.argv[:1])
+
+@quick_only
+def test_the_claim_takes_its_constants_from_the_case(out):
+    """Checks another length than the spacing, another threshold and another residual stiffness, each with its effect."""
+    constants = ("Damage/length=2 mm", "Damage/threshold energy=2e6", "Damage/residual stiffness=5e-6")
+    result = latcon("verify", "damage", "--quick", "--case", CASES / "quick.prm",
+                    *(word for entry in constants for word in ("--set", entry)), "--output-dir", out)
+    assert result.returncode == 0, result.stdout + result.stderr
+    rows = json.loads((out / "results.json").read_text())["claims"]
+    assert {row["claim"] for row in rows} == {"damage"}
+    assert {row["verdict"] for row in rows} <= {"holds", "reported"}
+    assert sum(row["verdict"] == "holds" for row in rows) > 15
+    # Energy dissipated in two elements of xi/4: 2 (1 - k) W_c d times an area of 2 (xi/4)^2.
+    energy, = (row for row in rows if "energy dissipated" in row["quantity"])
+    assert float(energy["theory"]) < 2 * 2e6 * 2 * (2e-3 / 4)**2
+    assert float(energy["theory"]) > 2e6 * 2 * (2e-3 / 4)**2
+    lines = (out / "damaged_bar.csv").read_text().splitlines()
+    assert lines[0] == "shells,law,h/xi,X/xi,damage,theory"
+    assert len(lines) == 1 + 18 + 34 + 34  # nodes of bars of 17, 33 and 33 elements
+    assert undocumented(out) == []

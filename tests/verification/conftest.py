@@ -1,0 +1,32 @@
+"""Fixtures of tests of the program and of its report: processes in the background, a folder of runs."""
+import os
+import subprocess
+
+import pytest
+
+
+@pytest.fixture
+def runs(tmp_path):
+    """Folder of runs of a report, which does not exist yet."""
+    return tmp_path / "runs"
+
+
+@pytest.fixture
+def start():
+    """Starts latcon in the background, by default without standard output; it ends with the test at the latest."""
+    from program import LATCON  # starts nothing, but needs the program, which tests of pages do not have
+    started = []
+
+    def begin(*arguments, launcher=(), **keywords):
+        environment = dict(os.environ, OMPI_ALLOW_RUN_AS_ROOT="1", OMPI_ALLOW_RUN_AS_ROOT_CONFIRM="1")
+        process = subprocess.Popen([*launcher, LATCON, *map(str, arguments)], stdout=subprocess.DEVNULL,
+                                   stderr=subprocess.PIPE, text=True, env=environment, **keywords)
+        started.append(process)
+        return process
+
+    yield begin
+    for process in started:
+        if process.poll() is None:
+            process.kill()
+        process.wait()
+        process.stderr.close()
