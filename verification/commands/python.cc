@@ -24,18 +24,16 @@ namespace
 namespace fs = std::filesystem;
 using Json = nlohmann::ordered_json;
 
-// The folder that contains the Python package: above the data folder, in the source tree or in an installation.
+// The folder that contains the Python package: in the data folder, or beside it in the source tree.
 fs::path package_folder()
 {
   const fs::path data = input::data_folder();
-  for (const fs::path &folder :
-       {data.parent_path() / "python", data.parent_path().parent_path() / "lib/python3/dist-packages"})
+  for (const fs::path &folder : {data / "python", data.parent_path() / "python"})
     if (fs::exists(folder / "latcon" / "study"))
       return folder;
   throw support::Error(support::ExitCode::output_failed,
-                       "the Python package latcon is neither in " + (data.parent_path() / "python").string() +
-                         " nor in " + (data.parent_path().parent_path() / "lib/python3/dist-packages").string() +
-                         "; install it beside the program");
+                       (data / "python").string() + " is missing: a copy of the program needs share/latcon beside its "
+                                                    "bin, a symbolic link to the program does not");
 }
 
 // The environment of the user without variables that would change the interpreter.
