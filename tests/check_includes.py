@@ -81,7 +81,6 @@ PLANTED = [
     ("verification/output", '#include "verification/claims/claim_outcome.h"'),
     ("verification/claims", '#include "verification/claims/energy/energy_claim.h"'),
     ("verification/claims/energy", '#include "verification/claims/prestretch/cut_study.h"'),
-    ("verification/study", '#include "verification/commands/command.h"'),
     ("tests/lattice", "#include <deal.II/base/tensor.h>"),
     ("tests/verification/analysis", '#include "tests/verification/claims/subjects.h"'),
 ]

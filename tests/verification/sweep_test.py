@@ -18,7 +18,7 @@ import PIL
 
 sys.dont_write_bytecode = True
 from program import CASES, LATCON, TemporaryFolder, children, latcon, wait_for
-from study_test import TINY
+from study_test import TINY, words_of
 
 SMALL = [word for entry, value in TINY["set"].items() for word in ("--set", f"{entry}={str(value).lower()}")]
 # Two cracks that run through in a moment.

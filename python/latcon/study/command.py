@@ -54,7 +54,7 @@ def run(command: str, options: Mapping[str, Any]) -> int:
         else:
             traceback.print_exc()
             service.finish(INTERNAL_ERROR, f"internal error: {error}")
-    return service.wait()
+    return INTERNAL_ERROR if service is None else service.wait()
 
 
 class _StudyCommand:

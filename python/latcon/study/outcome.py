@@ -64,7 +64,8 @@ def read_outcome(service: Service, run: PlannedRun, folder: str, exit_code: int 
         return outcome
     outcome.state = RunState.MEASURED
     outcome.pattern = pattern
-    outcome.reason = crack.get("reason") if isinstance(crack.get("reason"), str) else ""
+    reason = crack.get("reason")
+    outcome.reason = reason if isinstance(reason, str) else ""
     files = {"crack": crack, "near_tip": _object_in(f"{folder}/near_tip.json")}
     for quantity in service.quantities:
         value = files.get(quantity.source, {}).get(quantity.name)

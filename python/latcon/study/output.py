@@ -62,7 +62,7 @@ def _seed(service: Service, planned: PlannedRun, outcome: RunOutcome) -> dict[st
 
 def _row(outcome: RowOutcome) -> dict[str, Any]:
     row = outcome.row
-    document = {"runs": row.runs, "quantity": row.quantity, "unit": row.unit, "against": row.against or None,
+    document: dict[str, Any] = {"runs": row.runs, "quantity": row.quantity, "unit": row.unit, "against": row.against or None,
                 "against_unit": row.against_unit if row.against else None, "expected": outcome.expected,
                 "measured": "; ".join(outcome.measured), "number": _finite(outcome.number)}
     if row.rule is Rule.ONSET_EXPONENT:
@@ -80,7 +80,7 @@ def _onset(fit: OnsetFit | None) -> dict[str, Any] | None:
     def interval(values: Interval) -> dict[str, float]:
         return dict(zip(("value", "low", "high"), values))
 
-    return fit and {"exponent": interval(fit.exponent), "onset": interval(fit.onset), "prefactor": fit.prefactor, "p_fit": fit.p_fit}
+    return None if fit is None else {"exponent": interval(fit.exponent), "onset": interval(fit.onset), "prefactor": fit.prefactor, "p_fit": fit.p_fit}
 
 
 def _varied(service: Service, results: StudyResults) -> list[dict[str, Any]]:

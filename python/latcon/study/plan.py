@@ -112,7 +112,7 @@ def plan_runs(service: Service, study: Study, overrides: Settings, verification:
     keys = {key for run in study.runs for key in run.own} | set(study.swept)
     keys |= {row.against for claim in study.claims for row in claim.rows if row.against}
     frames = {"Output/frame interval": "0", "Output/motion frames": "0"}
-    cases = [{"changes": assignments(run.all | overrides | frames), "seeds": run.seeds, "on_continuum": run.on_continuum}
+    cases: list[dict[str, Any]] = [{"changes": assignments(run.all | overrides | frames), "seeds": run.seeds, "on_continuum": run.on_continuum}
              for run in study.runs]
     replies = service.ask_in_parts("plan", cases, keys=sorted(keys), checks_laws=verification is Verification.EVERY_RUN)
     runs: list[PlannedRun] = []

@@ -31,9 +31,14 @@ def refined_runs(study: Study, plan: Sequence[PlannedRun], outcomes: Sequence[Ru
     """
     swept = {run.name: run for run in study.runs if run.is_swept}
     planned = {run.run: run for run in plan if run.run in swept}
-    axes = [sorted({run.value(entry) for run in planned.values() if swept[run.run].level == 0}) for entry in study.swept]
+    def value(run: PlannedRun, entry: str) -> float:
+        number = run.value(entry)
+        assert number is not None, f"{entry} is not a number"
+        return number
+
+    axes = [sorted({value(run, entry) for run in planned.values() if swept[run.run].level == 0}) for entry in study.swept]
     per_interval = 2**level  # points of this level are at odd indices
-    points = {tuple(_index(axis, run.value(entry), per_interval) for entry, axis in zip(study.swept, axes)): name
+    points = {tuple(_index(axis, value(run, entry), per_interval) for entry, axis in zip(study.swept, axes)): name
               for name, run in planned.items()}
     patterns: dict[str, set[str]] = {}
     for outcome in outcomes:

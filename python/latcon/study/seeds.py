@@ -5,6 +5,7 @@ import dataclasses
 import math
 from collections import Counter
 from collections.abc import Sequence
+from typing import Any
 
 from .outcome import RunOutcome, RunState
 from .statistical_tests import SampleMean
@@ -38,8 +39,8 @@ class SeedStatistics:
     run: str
     n_seeds: int = 0
     n: int = 0
-    abscissa: float | None = None
-    mean: float | None = None
+    abscissa: Any = None
+    mean: Any = None
     deviation: float | None = None
     uncertainty: float | None = None
     patterns: dict[str, int] = dataclasses.field(default_factory=dict)

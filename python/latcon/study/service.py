@@ -93,7 +93,7 @@ class Service:
         self._socket, other = socket.socketpair()
         environment = {name: value for name, value in os.environ.items() if name != "PYTHONPATH"}
         # A group of its own: Ctrl-C reaches this process, which decides when the service ends.
-        self.process = subprocess.Popen([options["program"], "study-service"], stdin=other, env=environment, process_group=0)
+        self.process = subprocess.Popen([options["program"], "study-service"], stdin=other.fileno(), env=environment, process_group=0)
         other.close()
         self._replies = self._socket.makefile("rb")
         self._send({name: options[name] for name in ("arguments", "output_dir", "threads", "quiet", "verbose", "yes")})

@@ -4,6 +4,7 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Sequence
+from typing import Any
 
 SIGNIFICANCE = 0.05
 """Probability that a test finds a difference if there is none."""
@@ -101,7 +102,7 @@ def level_probabilities(weights: Sequence[float]) -> list[float]:
     return [count / n_draws for count in counts]
 
 
-def _mersenne_twister(seed: int, n: int):
+def _mersenne_twister(seed: int, n: int) -> Any:
     """Returns n numbers of the 64-bit Mersenne twister (T. Nishimura, ACM Trans. Model. Comput. Simul. 10, 348 (2000))."""
     import numpy as np
     mask = 2**64 - 1
@@ -115,11 +116,11 @@ def _mersenne_twister(seed: int, n: int):
             x = state[i] & upper | state[(i + 1) % 312] & 0x7FFFFFFF
             state[i] = state[(i + 156) % 312] ^ x >> 1 ^ (0xB5026F5AA96619E9 if x & 1 else 0)
         numbers += state
-    x = np.array(numbers[:n], np.uint64)
-    x ^= x >> np.uint64(29) & np.uint64(0x5555555555555555)
-    x ^= x << np.uint64(17) & np.uint64(0x71D67FFFEDA60000)
-    x ^= x << np.uint64(37) & np.uint64(0xFFF7EEE000000000)
-    return x ^ x >> np.uint64(43)
+    y = np.array(numbers[:n], np.uint64)
+    y ^= y >> np.uint64(29) & np.uint64(0x5555555555555555)
+    y ^= y << np.uint64(17) & np.uint64(0x71D67FFFEDA60000)
+    y ^= y << np.uint64(37) & np.uint64(0xFFF7EEE000000000)
+    return y ^ y >> np.uint64(43)
 
 
 def isotonic_test(samples: Sequence[SampleMean], levels: Sequence[float] | None = None) -> tuple[float, float] | None:

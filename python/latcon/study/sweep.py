@@ -7,8 +7,8 @@ import itertools
 import json
 import math
 import re
-from collections.abc import Mapping, Sequence
-from typing import NoReturn
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, NoReturn
 
 from .service import Entry, InputError, Service
 
@@ -88,7 +88,7 @@ def _canonical(service: Service, values: Sequence[str], entry: Entry) -> list[fl
     return [value if number["wrong"] else float(number["value"]) for value, number in zip(values, numbers)]
 
 
-def _grid(service: Service, refuse, values: str, unit: str) -> list[str]:
+def _grid(service: Service, refuse: Callable[[str], NoReturn], values: str, unit: str) -> list[str]:
     parts = [part.strip(_BLANKS) for part in values.split(":")]
     shown = service.printable
     if len(parts) != 3:
@@ -101,7 +101,7 @@ def _grid(service: Service, refuse, values: str, unit: str) -> list[str]:
         if number["wrong"]:
             refuse(f"{name} '{shown(part)}': {number['wrong']}")
         match = re.match(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", part)
-        if match is None or part.startswith("+-"):
+        if match is None:
             refuse(f"{name} '{shown(part)}' is not a number")
         ends.append((float(match[0]), part[match.end():].strip(_BLANKS)))
     (start, start_unit), (stop, stop_unit) = ends
@@ -172,7 +172,7 @@ def sweep_study(service: Service, sweeps: Sequence[str], case_name: str, base: s
         entries.append(parse_sweep(service, text).entry)
         if entries[-1] in settings:
             raise InputError(f"--set: {entries[-1]} is also an entry of --sweep")
-    document = {"title": f"Sweep of {', '.join(entries)} ({case_name})", "base": base,
+    document: dict[str, Any] = {"title": f"Sweep of {', '.join(entries)} ({case_name})", "base": base,
                 **({"set": dict(settings)} if settings else {}),
                 "seeds": list(range(1, max(n_seeds, 1) + 1)), "sweep": list(sweeps)}
     return json.dumps(document, indent=1, ensure_ascii=False) + "\n"

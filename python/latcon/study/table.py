@@ -54,7 +54,7 @@ class RowOutcome:
     """
 
     row: StudyRow
-    bound: float | None = None
+    bound: Any = None
     verdict: Verdict = Verdict.NOT_MEASURED
     measured: list[str] = dataclasses.field(default_factory=list)
     note: list[str] = dataclasses.field(default_factory=list)
@@ -104,7 +104,7 @@ class RowOutcome:
         if self.number is None and self.verdict is Verdict.REPORTED:
             return None
         row = self.row
-        result = {"claim": claim, "quantity": ", ".join(row.runs) + ": " + row.quantity, "unit": row.unit, "lattice": self.number,
+        result: dict[str, Any] = {"claim": claim, "quantity": ", ".join(row.runs) + ": " + row.quantity, "unit": row.unit, "lattice": self.number,
                   "theory": 1.0 if row.rule is Rule.IS else self.bound, "error": None, "tolerance": None, "reason": ""}
         if row.rule.is_along:
             result["quantity"] += ", " + self.expected
@@ -239,7 +239,7 @@ def _judge_each(outcome: RowOutcome) -> None:
         return
     pairs = []
     for run in outcome.runs:
-        number = run.patterns.get(outcome.row.pattern, 0) / run.n if rule is Rule.IS else run.mean
+        number: float = run.patterns.get(outcome.row.pattern, 0) / run.n if rule is Rule.IS else run.mean
         if rule is Rule.IS:
             misfit = 1.0 - number
         elif rule is Rule.IS_NEAR:
