@@ -85,6 +85,9 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
 support::ExitCode write_batch(const input::Options &options, const BatchOptions &chosen);      ///< `latcon batch`
 support::ExitCode print_schema(const input::Options &options);                                 ///< `latcon schema`
 
+/// Serves `latcon study` and `latcon batch` in Python. @throws what any command throws
+support::ExitCode serve_study();
+
 /// `latcon entries`: lists the entries of a section, or of all if it is empty. @throws InputError for an unknown
 /// section
 support::ExitCode print_entries(const std::string &section);
