@@ -158,6 +158,9 @@ def test_refinement_compares_seeds_and_ignores_what_was_not_measured():
     sweep = MadeUpSweep()
     sweep.show("strain-x-1_strain-y-1.5", "straight", "oscillating")
     assert sweep.names(1) == ["strain-x-1_strain-y-1.6", "strain-x-1.2_strain-y-1.5"]
+    sweep.show("strain-x-1_strain-y-1.7", "oscillating", "straight")  # as mixed as its neighbour
+    assert sweep.names(1) == ["strain-x-1_strain-y-1.6", "strain-x-1.2_strain-y-1.5", "strain-x-1.2_strain-y-1.7"]
+    sweep.show("strain-x-1_strain-y-1.7", "straight", "straight")
     for outcome in sweep.outcomes[:2]:
         outcome.state = RunState.FAILED
     assert sweep.refined(1) == []
