@@ -187,8 +187,11 @@ private:
     {
       const int dimension = read_.next<int>("a dimension"), number = read_.next<int>("a physical number");
       const std::string name = read_.quoted();
-      if (dimension == line)
-        names_[number] = name;
+      if (dimension != line)
+        continue;
+      const auto [known, is_first] = names_.emplace(number, name);
+      if (!is_first && known->second != name)
+        refuse("gives the physical curve ", number, " two names, \"", known->second, "\" and \"", name, "\"");
     }
   }
 

@@ -233,6 +233,8 @@ TEST(Meshes, NamesOfCurvesDecideWhereThereAreAny)
   const auto refused = [&](const std::string &names) { return refusal("$Nodes", named(names)); };
   EXPECT_NE(refused("3\n1 0 \"left\"\n1 2 \"clamp\"\n1 4 \"top\"").find("curve 2 named \"clamp\""), std::string::npos);
   EXPECT_NE(refused("2\n1 0 \"left\"\n1 4 \"top\"").find("curve 2 without a name"), std::string::npos);
+  EXPECT_NE(refused("2\n1 2 \"left\"\n1 2 \"right\"").find("curve 2 two names, \"left\" and \"right\""),
+            std::string::npos);
   EXPECT_EQ(refused("1\n2 7 \"left\""), "accepted"); // a surface
 }
 

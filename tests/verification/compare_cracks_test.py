@@ -100,9 +100,21 @@ class CompareCracks(TemporaryFolder):
         html = (self.out / "compare.html").read_text(encoding="utf-8")
         self.assertEqual(html.count('class="viewer"'), 2)
         self.assertIn("Loading/strain y", html)
+        self.assertNotIn("failed its checks", html)
         shutil.rmtree(self.out)
         self.compare(self.one, self.other)
         self.assertFalse((self.out / "compare.html").exists())
+
+    def test_the_page_says_which_run_failed_its_checks(self):
+        failed = self.folder / "failed"
+        shutil.copytree(self.one, failed)
+        info = json.loads((failed / "run.json").read_text())
+        info |= {"exit_code": 3, "failed_rows": {"fracture: energy imbalance over energy exchanged": "ledger"}}
+        (failed / "run.json").write_text(json.dumps(info))
+        latcon("compare", failed, self.other, "--output-dir", self.out)
+        html = (self.out / "compare.html").read_text(encoding="utf-8")
+        self.assertRegex(html, r'failed its checks</b>: [^<]*energy imbalance over energy exchanged \(ledger\)')
+        self.assertEqual(html.count("failed its checks"), 1)
 
     def test_what_is_no_pair_of_cracks_is_refused(self):
         empty = self.folder / "empty"

@@ -340,6 +340,7 @@ class ComparisonTest(unittest.TestCase):
             quantity = {"name": "wavelength", "unit": "m", "first": 0.02, "first_uncertainty": 1e-4, "second": 0.0212,
                         "second_uncertainty": None, "difference": 0.0012, "difference_over_uncertainty": None}
             document = {"first": "one", "second": "other", "first_folder": "../one", "second_folder": "../other",
+                        "failed_checks": {"first": "", "second": "energy"},
                         "pattern": {"first": "oscillating", "second": "straight"}, "quantities": [quantity],
                         "entries": [{"key": "Loading/strain y", "unit": "1", "first": "1.8", "second": "1.9"}], "paths": None}
             (folder / "compare").mkdir()
@@ -370,7 +371,8 @@ class ComparisonTest(unittest.TestCase):
                     self.assertEqual(ranges[1][name], [low, high])
                 text = browser.value("document.body.innerText")
                 self.assertEqual(browser.said, [])
-        for words in (f"{len(fewer)} frames", "2.000 ± 0.010", "2.12", "oscillating", "straight", "Loading/strain y"):
+        for words in (f"{len(fewer)} frames", "2.000 ± 0.010", "2.12", "oscillating", "straight", "Loading/strain y",
+                      "other failed its checks"):
             self.assertIn(words, text)
 
     def test_a_damaged_comparison_is_bad_input(self):

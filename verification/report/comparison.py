@@ -90,6 +90,7 @@ def page(comparison, runs, sheets):
                     for name, side, run, sheet in zip(names, SIDES, runs, sheets))
     title = f"{names[0]} compared with {names[1]}"
     body = f"""<h1>{escape(title)}</h1>
+{failed_checks(comparison["failed_checks"], names)}
 <main>
 <div class="pair">{films}</div>
 {live_plot("both", "path", plot, PATHS_CAPTION, False) if plot else ""}
@@ -102,6 +103,13 @@ is measured by a study.</p>
 {entries_table(comparison["entries"], names)}
 </main>"""
     return whole_page(title, body, styles(plot is not None), scripts(any(sheets), plot is not None))
+
+
+def failed_checks(problems, names):
+    """Which run failed its checks, and so measures nothing; empty if none did."""
+    notes = "<br>".join(f'<b class="fails">{escape(name)} failed its checks</b>: {escape(problems[side])}'
+                        for name, side in zip(names, SIDES) if problems[side])
+    return f'<div class="banner fails">{notes}</div>' if notes else ""
 
 
 def distance_sentence(paths):
@@ -118,7 +126,7 @@ def comparison_page(folder, quiet):
     comparison = read_json(folder / "compare.json")
     if comparison is None:
         raise DamagedFile(folder, "no comparison of two cracks found (compare.json)")
-    wanted = [*(f"{side}_folder" for side in SIDES), *SIDES, "pattern", "quantities", "entries", "paths"]
+    wanted = [*(f"{side}_folder" for side in SIDES), *SIDES, "failed_checks", "pattern", "quantities", "entries", "paths"]
     if missing := [name for name in wanted if name not in comparison]:
         raise DamagedFile(folder / "compare.json", f"{', '.join(missing)} missing")
     runs = [read_run(folder / comparison[f"{side}_folder"]) for side in SIDES]
