@@ -13,7 +13,8 @@ def main(words: list[str]) -> int:
     """Runs a command whose options the program has parsed; otherwise starts the program, which parses them."""
     if words[:1] == ["--parsed"]:
         from .study.command import run
-        return run(words[1], json.loads(words[2]))
+        # Paths, which need not be UTF-8, then the other options.
+        return run(words[1], dict(zip(("study", "output_dir", "program", "data"), words[2:6])) | json.loads(words[6]))
     try:
         program = os.fspath(find_program())
     except ProgramNotFound as error:

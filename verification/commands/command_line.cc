@@ -202,8 +202,6 @@ support::ExitCode run_program(int argc, char **argv)
   input::Options options;
   options.arguments.assign(argv, argv + argc);
   std::function<support::ExitCode()> command;
-  if (argc == 2 && std::string(argv[1]) == "study-service") // not a command of users
-    return run_command(serve_study);
 
   CLI::App app("latcon: dynamic fracture of rubber on a triangular lattice, and the continuum it approximates",
                "latcon");
@@ -305,12 +303,19 @@ support::ExitCode run_program(int argc, char **argv)
   fracture_command->add_flag("--skip-verification", options.skip_verification,
                              "run the crack unverified; noted in every output");
   fracture_command->add_flag("--no-report", options.no_report, "draw neither pictures nor page");
-  fracture_command
-    ->add_option_function<std::string>(
-      "--side", [&options](const std::string &side) { options.on_continuum = side == "continuum"; },
-      "which side breaks, the lattice or the continuum with damage; default: lattice")
-    ->check(CLI::IsMember({"lattice", "continuum"}))
-    ->type_name("SIDE");
+  CLI::App *gate_command = add_case_command("gate", "check the claims that wait before a crack, run none", "latcon gate quick",
+                                            "-gate", verify_before_cracks);
+  for (CLI::App *of_crack : {fracture_command, gate_command})
+    of_crack
+      ->add_option_function<std::string>(
+        "--side", [&options](const std::string &side) { options.on_continuum = side == "continuum"; },
+        "which side breaks, the lattice or the continuum with damage; default: lattice")
+      ->check(CLI::IsMember({"lattice", "continuum"}))
+      ->type_name("SIDE");
+  CLI::App *resolve_command = add_command("resolve", "cases as JSON, for programs", "latcon resolve <questions.jsonl");
+  resolve_command->callback([&] { command = [&] { return resolve_cases(options); }; });
+  for (CLI::App *internal : {gate_command, resolve_command})
+    internal->group(""); // not listed: `latcon study` uses them
 
   StudyOptions study;
   BatchOptions batch;

@@ -1,5 +1,6 @@
 // Commands above one simulation are Python (python/latcon): this program replaces itself by the interpreter.
 #include <algorithm>
+#include <csignal>
 #include <cstdlib>
 #include <filesystem>
 #include <iostream>
@@ -58,15 +59,12 @@ std::vector<char *> pointers(std::vector<std::string> &words)
   return list;
 }
 
-Json json_of(const input::Options &options, const std::string &study, const SweepOptions &sweep)
+Json json_of(const input::Options &options, const SweepOptions &sweep)
 {
-  return {{"program", fs::read_symlink("/proc/self/exe").string()},
-          {"arguments", options.arguments},
-          {"study", study},
+  return {{"arguments", options.arguments},
           {"sweeps", sweep.sweeps},
           {"seeds", sweep.seeds},
           {"overrides", options.overrides},
-          {"output_dir", options.output_dir},
           {"threads", options.threads},
           {"quick", options.quick},
           {"quiet", options.quiet},
@@ -78,20 +76,26 @@ Json json_of(const input::Options &options, const std::string &study, const Swee
           {"resume", options.resume}};
 }
 
-support::ExitCode continue_in_python(const std::string &command, const Json &options)
+// Paths are words of their own: they need not be UTF-8.
+support::ExitCode continue_in_python(const std::string &command, const std::string &study, const std::string &output_dir,
+                                     const Json &options)
 {
   const std::string python = python_interpreter();
   if (access(python.c_str(), X_OK) != 0)
     throw support::Error(support::ExitCode::output_failed,
                          "cannot start " + python + "; install python3, or set LATCON_PYTHON to its path");
   const fs::path package = package_folder();
-  std::vector<std::string> words{python, "-sP", "-m", "latcon", "--parsed", command,
+  std::vector<std::string> words{python, "-sP", "-m", "latcon", "--parsed", command, study, output_dir,
+                                 fs::read_symlink("/proc/self/exe"), input::data_folder(),
                                  options.dump(-1, ' ', false, Json::error_handler_t::replace)};
   std::vector<std::string> environment = environment_of_python(package);
   const std::vector<char *> arguments = pointers(words), variables = pointers(environment);
   std::cout << std::flush;
   disregard_signals();
   MPI_Finalize();
+  sigset_t all; // until Python handles them
+  sigfillset(&all);
+  sigprocmask(SIG_BLOCK, &all, nullptr);
   execve(python.c_str(), arguments.data(), variables.data());
   std::cerr << "latcon: cannot start " << python << std::endl;
   std::_Exit(static_cast<int>(support::ExitCode::output_failed));
@@ -121,23 +125,23 @@ support::ExitCode run_study(const input::Options &options, const StudyOptions &c
 {
   if (support::n_ranks() > 1)
     throw support::InputError("`latcon study` starts its own processes, one a core; run it without mpirun");
-  Json all = json_of(options, chosen.study, chosen.sweep);
+  Json all = json_of(options, chosen.sweep);
   all["shard"] = chosen.shard;
   all["collect"] = chosen.collect;
-  return continue_in_python("study", all);
+  return continue_in_python("study", chosen.study, options.output_dir, all);
 }
 
 support::ExitCode write_batch(const input::Options &options, const BatchOptions &chosen)
 {
   if (support::n_ranks() > 1)
     throw support::InputError("`latcon batch` writes scripts for one cluster; run it without mpirun");
-  Json all = json_of(options, chosen.study, chosen.sweep);
+  Json all = json_of(options, chosen.sweep);
   all["submit"] = chosen.submit;
   all["tasks"] = chosen.tasks;
   all["cpus_per_task"] = chosen.cpus_per_task;
   all["time"] = chosen.time;
   all["partition"] = chosen.partition;
-  return continue_in_python("batch", all);
+  return continue_in_python("batch", chosen.study, options.output_dir, all);
 }
 
 } // namespace latcon::commands

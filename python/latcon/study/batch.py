@@ -9,10 +9,12 @@ import subprocess
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from .folder import FolderLock, write_file
 from .output import plan_table
 from .plan import plan_runs
+from .record import Printed
 from .requested import RequestedStudy, read_requested_study, require_folder_of, require_no_refinement, verification_of
-from .service import DONE, InputError, Service
+from .program import DONE, InputError, Program, printable
 
 _MAX_DEFAULT_TASKS = 1000  # MaxArraySize of Slurm is 1001 unless configured
 
@@ -51,44 +53,43 @@ exit "$code"
 """
 
 
-def write_batch(service: Service, options: Mapping[str, Any]) -> int:
+def write_batch(program: Program, printed: Printed, options: Mapping[str, Any]) -> int:
     """Writes the scripts of a study, and submits them if wanted. Returns the exit code."""
     time, partition = options["time"], options["partition"]
     if not re.fullmatch(r"([0-9]+-)?[0-9]+(:[0-9]{2}){0,2}", time):
-        raise InputError(f"--time '{service.printable(time)}': expected [days-]hours:minutes:seconds, for example 1-00:00:00")
+        raise InputError(f"--time '{printable(time)}': expected [days-]hours:minutes:seconds, for example 1-00:00:00")
     if _seconds_of(time) < 300:
         raise InputError(f"--time '{time}': a run writes its checkpoint two minutes before the limit; give at least 5 minutes")
     if not re.fullmatch(r"[A-Za-z0-9_.,-]*", partition):
-        raise InputError(f"--partition '{service.printable(partition)}': expected a name")
-    requested = read_requested_study(service, options)
+        raise InputError(f"--partition '{printable(partition)}': expected a name")
+    requested = read_requested_study(program, options)
     require_no_refinement(requested.study)
-    plan = plan_runs(service, requested.study, requested.overrides, verification_of(options))
+    plan = plan_runs(program, requested.study, requested.overrides, verification_of(options))
     n_tasks = min(len(plan), options["tasks"] or _MAX_DEFAULT_TASKS)
     if options["dry_run"]:
         if not options["quiet"]:
-            service.print(plan_table(requested.study, plan, n_tasks * options["cpus_per_task"]))
+            printed.print(plan_table(requested.study, plan, n_tasks * options["cpus_per_task"]))
         return DONE
     directory = options["output_dir"]
     folder = os.path.join(os.path.abspath(directory), "batch")
     if not re.fullmatch(r"[^\s%\\'\"]+", folder):
-        raise InputError(f"--output-dir '{service.printable(folder)}': sbatch does not support folders with blanks, quotes, % or \\ "
+        raise InputError(f"--output-dir '{printable(folder)}': sbatch does not support folders with blanks, quotes, % or \\ "
                          "for its log files")
-    require_folder_of(service, requested.study, directory)
+    require_folder_of(requested.study, directory)
     os.makedirs(folder, exist_ok=True)
     if requested.kept:
-        service.ask("lock", directory=directory, milliseconds=1000)
-        requested.write_sweep(service)
-        service.ask("unlock")
+        lock = FolderLock(directory)
+        requested.write_sweep()
+        lock.release()
     command = _study_command(options, requested)
     runs, collect = os.path.join(folder, "runs.sh"), os.path.join(folder, "collect.sh")
-    service.ask("write", file=runs, text=_directives(options, "latcon-runs", f"{folder}/runs-%a.log") + _ARRAY.format(
+    write_file(runs, _directives(options, "latcon-runs", f"{folder}/runs-%a.log") + _ARRAY.format(
         n_tasks=n_tasks, cpus_per_task=options["cpus_per_task"], command=command))
-    service.ask("write", file=collect,
-                text=_directives(options, "latcon-collect", f"{folder}/collect.log") + f"\nexec {command} --collect\n")
+    write_file(collect, _directives(options, "latcon-collect", f"{folder}/collect.log") + f"\nexec {command} --collect\n")
 
     def say(text: str) -> None:
         if not options["quiet"]:
-            service.print(text + "\n")
+            printed.print(text + "\n")
 
     counts = f"{len(plan)} runs in {n_tasks} tasks"
     if not options["submit"]:
@@ -96,9 +97,9 @@ def write_batch(service: Service, options: Mapping[str, Any]) -> int:
             f"  sbatch --dependency=afterany:$runs {shlex.quote(collect)}")
         return DONE
     log = os.path.join(folder, "sbatch.log")
-    array = _submit(service, [runs], log)
+    array = _submit([runs], log)
     say(f"{counts}: job {array}")
-    say(f"then the verdict: job {_submit(service, [f'--dependency=afterany:{array}', collect], log)}")
+    say(f"then the verdict: job {_submit([f'--dependency=afterany:{array}', collect], log)}")
     return DONE
 
 
@@ -117,7 +118,7 @@ def _directives(options: Mapping[str, Any], name: str, log: str) -> str:
     return _DIRECTIVES.format(name=name, time=options["time"], log=log) + partition
 
 
-def _submit(service: Service, arguments: Sequence[str], log: str) -> str:
+def _submit(arguments: Sequence[str], log: str) -> str:
     """Submits a script and returns the number of the job."""
     try:
         ended = subprocess.run(["sbatch", "--parsable", *arguments], stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
@@ -129,7 +130,7 @@ def _submit(service: Service, arguments: Sequence[str], log: str) -> str:
         file.write(ended.stdout)
     printed = ended.stdout.strip()
     if ended.returncode != 0:
-        raise InputError(f"--submit: sbatch ended with {ended.returncode}: {service.printable(printed, 300)}")
+        raise InputError(f"--submit: sbatch ended with {ended.returncode}: {printable(printed, 300)}")
     return printed.rpartition("\n")[2]  # warnings come first
 
 

@@ -8,7 +8,7 @@ import pathlib
 from typing import Any
 
 from .plan import PlannedRun
-from .service import CLAIM_FAILED, DONE, Service
+from .program import CLAIM_FAILED, DONE, Program, printable
 
 
 class RunState(enum.Enum):
@@ -36,7 +36,7 @@ class RunOutcome:
     wall_time: float = 0.0  # [s]
 
 
-def read_outcome(service: Service, run: PlannedRun, folder: str, exit_code: int | None = None) -> RunOutcome:
+def read_outcome(program: Program, run: PlannedRun, folder: str, exit_code: int | None = None) -> RunOutcome:
     """Reads the outcome of a run that ended.
 
     Parameters
@@ -55,7 +55,7 @@ def read_outcome(service: Service, run: PlannedRun, folder: str, exit_code: int 
     pattern = crack.get("pattern")
     if outcome.exit_code not in (DONE, CLAIM_FAILED) or not isinstance(pattern, str) or not pattern:
         outcome.state = RunState.REFUSED if outcome.exit_code == CLAIM_FAILED else RunState.FAILED
-        outcome.problem = service.printable(_last_words(_content(f"{folder}/log.txt")), 300)
+        outcome.problem = printable(_last_words(_content(f"{folder}/log.txt")), 300)
         return outcome
     if outcome.exit_code == CLAIM_FAILED:
         outcome.problem = _unfit_rows(info)
@@ -67,7 +67,7 @@ def read_outcome(service: Service, run: PlannedRun, folder: str, exit_code: int 
     reason = crack.get("reason")
     outcome.reason = reason if isinstance(reason, str) else ""
     files = {"crack": crack, "near_tip": _object_in(f"{folder}/near_tip.json")}
-    for quantity in service.quantities:
+    for quantity in program.quantities:
         value = files.get(quantity.source, {}).get(quantity.name)
         if isinstance(value, (int, float)) and not isinstance(value, bool):
             outcome.values[quantity.name] = float(value)
@@ -78,25 +78,30 @@ def read_outcome(service: Service, run: PlannedRun, folder: str, exit_code: int 
     return outcome
 
 
-def is_begun(service: Service, run: PlannedRun, folder: str, skip_verification: bool) -> bool:
+def is_begun(program: Program, run: PlannedRun, folder: str, case: str, skip_verification: bool) -> bool:
     """Returns whether a folder contains a possibly unfinished run of exactly this case by exactly this program.
 
     It must have the same choice of verification, if it has recorded one.
+
+    Parameters
+    ----------
+    case
+        File with the resolved case.
     """
     info, crack = _object_in(f"{folder}/run.json"), _object_in(f"{folder}/crack.json")
     # Cracks of the lattice do not name their side. A run that has not ended has no crack.json.
-    if crack and crack.get("side", "lattice") != run.side or info.get("program_hash") != service.program_hash:
+    if crack and crack.get("side", "lattice") != run.side or info.get("program_hash") != program.facts["program_hash"]:
         return False
     skipped = info.get("skip_verification")
-    # A killed run has not recorded whether it was verified. The case comes last, because it takes milliseconds to resolve.
+    # A killed run has not recorded whether it was verified.
     return ((not isinstance(skipped, bool) or skipped == skip_verification)
-            and _content(f"{folder}/case.prm") == service.ask("case text", **run.request()))
+            and _content(f"{folder}/case.prm") == _content(case) != "")
 
 
-def is_finished(service: Service, run: PlannedRun, folder: str, skip_verification: bool) -> bool:
+def is_finished(program: Program, run: PlannedRun, folder: str, case: str, skip_verification: bool) -> bool:
     """Returns whether a folder contains this run, and its crack ended: another run would end alike."""
-    return (is_begun(service, run, folder, skip_verification)
-            and read_outcome(service, run, folder).state in (RunState.MEASURED, RunState.REJECTED))
+    return (is_begun(program, run, folder, case, skip_verification)
+            and read_outcome(program, run, folder).state in (RunState.MEASURED, RunState.REJECTED))
 
 
 def _content(path: str) -> str:

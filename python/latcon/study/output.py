@@ -14,7 +14,7 @@ from .onset import Interval, OnsetFit
 from .outcome import RunOutcome, RunState
 from .plan import PlannedRun, Verification
 from .seeds import SeedStatistics, group_by_run, statistics
-from .service import Service
+from .program import Program
 from .study_file import Rule, Study
 from .table import ClaimOutcome, RowOutcome
 
@@ -33,16 +33,16 @@ class StudyResults:
     claims: list[ClaimOutcome] = dataclasses.field(default_factory=list)
 
 
-def study_json(service: Service, results: StudyResults) -> str:
+def study_json(program: Program, results: StudyResults) -> str:
     """Returns the content of `study.json`: all data, for the page and for other programs. Equal runs give equal texts."""
     study = results.study
     document = {
-        "title": study.title, "version": service.version, "git_commit": service.git_commit, "quick": results.quick,
+        "title": study.title, "version": program.facts["version"], "git_commit": program.facts["git_commit"], "quick": results.quick,
         "verification": results.verification.value, "verified": results.verification is Verification.EVERY_RUN,
-        "settings": study.settings, "units": service.units,
+        "settings": study.settings, "units": program.units,
         "runs": [{"run": run.name, "about": run.about, "set": run.own, "level": run.level} for run in study.runs],
-        "swept": study.swept, "varied": _varied(service, results), "left_out": study.left_out, "pictures": study.pictures,
-        "seeds": [_seed(service, planned, outcome) for planned, outcome in zip(results.plan, results.outcomes)],
+        "swept": study.swept, "varied": _varied(program, results), "left_out": study.left_out, "pictures": study.pictures,
+        "seeds": [_seed(program, planned, outcome) for planned, outcome in zip(results.plan, results.outcomes)],
         "claims": [{"claim": claim.claim.claim, "paper": claim.claim.paper, "note": claim.claim.note,
                     "verdict": claim.verdict.value, "rows": [_row(row) for row in claim.rows]} for claim in results.claims]}
     return json.dumps(document, indent=2, ensure_ascii=False) + "\n"
@@ -53,11 +53,11 @@ def _finite(value: float | None) -> float | str | None:
     return value if value is None or math.isfinite(value) else str(value)
 
 
-def _seed(service: Service, planned: PlannedRun, outcome: RunOutcome) -> dict[str, Any]:
+def _seed(program: Program, planned: PlannedRun, outcome: RunOutcome) -> dict[str, Any]:
     return {"run": outcome.run, "seed": outcome.seed, "folder": f"runs/{planned.folder}", "state": outcome.state.value,
             "exit_code": outcome.exit_code, "problem": outcome.problem, "pattern": outcome.pattern or None, "reason": outcome.reason,
             "side": planned.side, "cells" if planned.on_continuum else "sites": int(planned.size),
-            "values": {name: outcome.values.get(name) for name in service.units}}
+            "values": {name: outcome.values.get(name) for name in program.units}}
 
 
 def _row(outcome: RowOutcome) -> dict[str, Any]:
@@ -83,30 +83,30 @@ def _onset(fit: OnsetFit | None) -> dict[str, Any] | None:
     return None if fit is None else {"exponent": interval(fit.exponent), "onset": interval(fit.onset), "prefactor": fit.prefactor, "p_fit": fit.p_fit}
 
 
-def _varied(service: Service, results: StudyResults) -> list[dict[str, Any]]:
+def _varied(program: Program, results: StudyResults) -> list[dict[str, Any]]:
     """Entries in which the runs differ, with their value in each run: a number, or a text."""
     runs: list[PlannedRun] = []
     for run in results.plan:
         if not runs or runs[-1].run != run.run:
             runs.append(run)
     keys = dict.fromkeys(key for run in results.study.runs for key in run.own)
-    entries = [{"entry": key, "unit": service.entries[key].unit, "values": [run.values.get(key, "") for run in runs]} for key in keys]
+    entries = [{"entry": key, "unit": program.entries[key].unit, "values": [run.values.get(key, "") for run in runs]} for key in keys]
     return [entry for entry in entries if any(value != entry["values"][0] for value in entry["values"])]
 
 
-def study_csv(service: Service, results: StudyResults) -> str:
+def study_csv(program: Program, results: StudyResults) -> str:
     """Returns the content of `study.csv`: a line per run and seed, empty fields for quantities that were not measured."""
     text = io.StringIO()
     table = csv.writer(text, lineterminator="\n")
-    table.writerow(["run", "seed", "set", "state", "pattern", *(f"{name} [{unit}]" for name, unit in service.units.items())])
+    table.writerow(["run", "seed", "set", "state", "pattern", *(f"{name} [{unit}]" for name, unit in program.units.items())])
     own = {run.name: "; ".join(f"{key}={value}" for key, value in run.own.items()) for run in results.study.runs}
     for outcome in results.outcomes:
         table.writerow([outcome.run, outcome.seed, own[outcome.run], outcome.state.value, outcome.pattern,
-                        *(_shortest(outcome.values.get(name)) for name in service.units)])
+                        *(shortest(outcome.values.get(name)) for name in program.units)])
     return text.getvalue()
 
 
-def _shortest(value: float | None) -> str:
+def shortest(value: float | None) -> str:
     """Returns the shortest text that converts back to the same number, in the form of C++."""
     if value is None:
         return ""
@@ -145,11 +145,11 @@ def _rounded(value: float) -> int:
     return math.floor(value + 0.5)
 
 
-def result_table(service: Service, results: StudyResults) -> str:
+def result_table(program: Program, results: StudyResults) -> str:
     """Returns the table of verdicts, at most 120 columns wide; without claims a line per run."""
     lines: list[str] = []
     if not results.claims:
-        lines += _run_lines(service, results)
+        lines += _run_lines(program, results)
     for claim in results.claims:
         lines += _wrapped(f"{claim.claim.claim}: {claim.verdict.value}", "", "")
         for row in claim.rows:
@@ -163,7 +163,7 @@ def result_table(service: Service, results: StudyResults) -> str:
     return "".join(line + "\n" for line in lines)
 
 
-def _run_lines(service: Service, results: StudyResults) -> list[str]:
+def _run_lines(program: Program, results: StudyResults) -> list[str]:
     """Returns a line per run, of at most 60: patterns, speed, wavelength and amplitude over the seeds."""
     groups = group_by_run(results.outcomes)
     lines = []
@@ -173,7 +173,7 @@ def _run_lines(service: Service, results: StudyResults) -> list[str]:
         for quantity, label in (("speed_lagrangian", ""), ("wavelength", "wavelength "), ("amplitude", "amplitude ")):
             seeds = statistics(run.name, quantity, outcomes)
             if seeds.n:
-                line += f", {label}{seeds.text(service.units[quantity])}"
+                line += f", {label}{seeds.text(program.units[quantity])}"
         lines.append(line)
     if len(results.study.runs) > 60:
         lines.append(f"... {len(results.study.runs)} cases in all: study.csv")

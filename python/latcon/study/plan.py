@@ -6,7 +6,7 @@ import enum
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from .service import InputError, Service
+from .program import InputError, Program, printable
 from .study_file import Settings, Study
 from .sweep import SEED_ENTRY
 
@@ -69,18 +69,18 @@ class PlannedRun:
         value = float(self.seed) if against == SEED_ENTRY else self.values.get(against)
         return None if isinstance(value, str) or value is None else float(value)
 
-    def request(self) -> dict[str, Any]:
-        """Returns the case for requests to the service."""
-        return {"changes": self.changes, "seed": self.seed}
+    def text(self, program: Program) -> str:
+        """Returns the text of the resolved case."""
+        return program.ask(changes=self.changes, seeds=[self.seed], checks_laws=False, wants_text=True)  # checked when planned
 
 
-def parse_settings(service: Service, texts: Sequence[str]) -> Settings:
+def parse_settings(texts: Sequence[str]) -> Settings:
     """Splits settings ``Section/Name=value`` of the command line."""
     settings: Settings = {}
     for text in texts:
         key, equals, value = text.partition("=")
         if not equals:
-            raise InputError(f"--set: not understood: '{service.printable(text)}'; allowed: --set Section/Name=value")
+            raise InputError(f"--set: not understood: '{printable(text)}'; allowed: --set Section/Name=value")
         settings[key.strip()] = value.strip()
     if SEED_ENTRY in settings:
         raise InputError(f"--set: {SEED_ENTRY} is set by the seeds of the study")
@@ -92,12 +92,12 @@ def assignments(settings: Settings) -> list[str]:
     return [f"{key}={value}" for key, value in settings.items()]
 
 
-def base_changes(study: Study, overrides: Settings) -> list[str]:
-    """Returns the changes of the base case for claims that are checked on it alone."""
-    return assignments(study.settings | overrides)
+def base_text(program: Program, study: Study, overrides: Settings) -> str:
+    """Returns the text of the base case, for claims that are checked on it alone."""
+    return program.ask(changes=assignments(study.settings | overrides), seeds=[], checks_laws=True, wants_text=True)
 
 
-def plan_runs(service: Service, study: Study, overrides: Settings, verification: Verification) -> list[PlannedRun]:
+def plan_runs(program: Program, study: Study, overrides: Settings, verification: Verification) -> list[PlannedRun]:
     """Returns all runs of a study with all their seeds, in the order of the file, with the first and the last frame alone.
 
     Raises
@@ -114,14 +114,15 @@ def plan_runs(service: Service, study: Study, overrides: Settings, verification:
     frames = {"Output/frame interval": "0", "Output/motion frames": "0"}
     cases: list[dict[str, Any]] = [{"changes": assignments(run.all | overrides | frames), "seeds": run.seeds, "on_continuum": run.on_continuum}
              for run in study.runs]
-    replies = service.ask_in_parts("plan", cases, keys=sorted(keys), checks_laws=verification is Verification.EVERY_RUN)
     runs: list[PlannedRun] = []
     problems: list[str] = []
-    for run, case, reply in zip(study.runs, cases, (reply for part in replies for reply in part)):
-        for problem in reply.get("problems", ()):
+    for run, case in zip(study.runs, cases):
+        try:
+            reply = program.ask(**case, keys=sorted(keys - {"zeta"}), checks_laws=verification is Verification.EVERY_RUN, wants_text=False)
+        except InputError as error:
             # A problem of the base case occurs in every run: report it once.
-            if not any(known.endswith(": " + problem) for known in problems):
-                problems.append(f"{study.file}: runs/{run.name}: {problem}")
+            problems += [f"{study.file}: runs/{run.name}: {problem}" for problem in error.problems
+                         if not any(known.endswith(": " + problem) for known in problems)]
         if not problems:
             digests = reply.pop("sha256")
             runs += [PlannedRun(run.name, seed, run.on_continuum, case["changes"], case_sha256=digest, **reply)
@@ -131,7 +132,7 @@ def plan_runs(service: Service, study: Study, overrides: Settings, verification:
     if problems:
         raise InputError(*problems)
     if verification is Verification.BASE_CASE:
-        service.ask("check base", changes=base_changes(study, overrides))
+        base_text(program, study, overrides)
     return runs
 
 

@@ -66,21 +66,30 @@ def run_processes(n_jobs: int, limit: int, start: Callable[[int], tuple[Sequence
         _end([child for child in running.values() if child is not None])
 
 
-def _start(command: Sequence[str], log: str) -> subprocess.Popen[bytes] | None:
-    environment = {name: value for name, value in os.environ.items()
-                   if not name.startswith(_LAUNCHER) and name not in ("FLUX_JOB_ID", "PYTHONPATH")}
-    parent = os.getpid()
-    libc = ctypes.CDLL(None)
+def environment_of_children() -> dict[str, str]:
+    """Returns the variables of this process without those that would make a child a rank of another job."""
+    return {name: value for name, value in os.environ.items()
+            if not name.startswith(_LAUNCHER) and name not in ("FLUX_JOB_ID", "PYTHONPATH")}
+
+
+def end_with_parent(number: int) -> Callable[[], None]:
+    """Returns what a child has to do before it starts, so that it gets a signal when this process dies."""
+    parent, libc = os.getpid(), ctypes.CDLL(None)
 
     def prepare() -> None:
-        libc.prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
+        libc.prctl(_PR_SET_PDEATHSIG, number)
         if os.getppid() != parent:
             os._exit(_NOT_STARTED)
         signal.signal(signal.SIGINT, signal.SIG_IGN)
 
+    return prepare
+
+
+def _start(command: Sequence[str], log: str) -> subprocess.Popen[bytes] | None:
     output = os.open(log, os.O_WRONLY | os.O_CREAT | os.O_TRUNC | os.O_NOFOLLOW, 0o666)
     try:
-        return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output, stderr=output, env=environment, preexec_fn=prepare)
+        return subprocess.Popen(command, stdin=subprocess.DEVNULL, stdout=output, stderr=output, env=environment_of_children(),
+                                preexec_fn=end_with_parent(signal.SIGTERM))
     except FileNotFoundError:
         return None
     finally:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Sequence
 
 from .plan import PlannedRun, longest_first
-from .service import InputError, Service
+from .program import InputError, printable
 
 PLAN_FILE = "plan.json"
 """File in the output directory of a study that its shards share."""
@@ -14,13 +14,13 @@ PLAN_FILE = "plan.json"
 _MAX_SHARDS = 100000
 
 
-def parse_shard(service: Service, text: str) -> tuple[int, int]:
+def parse_shard(text: str) -> tuple[int, int]:
     """Parses ``I/N`` with 1 <= I <= N <= 100,000."""
     if match := re.fullmatch(r"([0-9]{1,18})/([0-9]{1,18})", text):
         index, count = int(match[1]), int(match[2])
         if 1 <= index <= count <= _MAX_SHARDS:
             return index, count
-    raise InputError(f"--shard '{service.printable(text)}': expected I/N with 1 <= I <= N <= {_MAX_SHARDS}, for example 3/8")
+    raise InputError(f"--shard '{printable(text)}': expected I/N with 1 <= I <= N <= {_MAX_SHARDS}, for example 3/8")
 
 
 def runs_of_shard(plan: Sequence[PlannedRun], index: int, count: int) -> list[int]:
@@ -35,13 +35,13 @@ def plan_text(title: str, plan: Sequence[PlannedRun], skip_verification: bool, n
     return json.dumps(document, indent=1, ensure_ascii=False) + "\n"
 
 
-def plan_difference(service: Service, stored: str, wanted: str) -> str:
+def plan_difference(stored: str, wanted: str) -> str:
     """Returns the first difference between the plan in a file and that of this study, in words; empty if they are the same."""
     here = json.loads(wanted)
     try:
         there = json.loads(stored)
         if there["study"] != here["study"]:
-            return f"it is of another study, '{service.printable(there['study'])}'"
+            return f"it is of another study, '{printable(there['study'])}'"
         if there["skip_verification"] != here["skip_verification"]:
             return "it was begun with another choice of --skip-verification"
         if "shards" in here and there["shards"] != here["shards"]:

@@ -2,39 +2,44 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Sequence
 from typing import Any
 
-from .service import InputError, Service
+from .program import InputError, Program, printable
 
 
-def parse_json(service: Service, file: str, text: str | None = None) -> dict[str, Any]:
+def parse_json(file: str, text: bytes) -> dict[str, Any]:
     """Parses a JSON object without repeated keys.
-
-    Parameters
-    ----------
-    text
-        Content; default: that of the file.
 
     Raises
     ------
     InputError
         If it is not JSON, not an object, nested deeper than 64 levels, or if a key is repeated.
     """
-    reply = service.ask("parse", file=file, **({} if text is None else {"text": text}))
-    if "error" in reply:
-        raise InputError(reply["error"])
+    if b"\0" in text:
+        raise InputError(f"{file}:{1 + text[:text.index(0)].count(10)}: not a text file: it holds zero bytes")
     problems = []
 
     def unique(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
         members: dict[str, Any] = {}
         for key, value in pairs:
             if key in members:
-                problems.append(f"{file}: the key '{service.printable(key)}' occurs twice in an object")
+                problems.append(f"{file}: the key '{printable(key)}' occurs twice in an object")
             members[key] = value
         return members
 
-    document = json.loads(reply["text"].removeprefix("\ufeff"), object_pairs_hook=unique, parse_int=_whole)
+    try:
+        document = json.loads(text.decode("utf-8-sig"), object_pairs_hook=unique, parse_int=_whole, parse_constant=_refuse)
+        json.dumps(document, ensure_ascii=False).encode()  # without half a pair of surrogates
+    except RecursionError:
+        document, deepest = None, math.inf
+    except ValueError as error:
+        raise InputError(f"{file}: not JSON: {printable(str(error), 200)}") from None
+    else:
+        deepest = _depth(document)
+    if deepest > _MAX_DEPTH:
+        raise InputError(f"{file}: not a study: objects and lists are nested deeper than {_MAX_DEPTH}")
     if not isinstance(document, dict):
         problems.append(f"{file}: a study must be a JSON object")
     if problems:
@@ -42,17 +47,29 @@ def parse_json(service: Service, file: str, text: str | None = None) -> dict[str
     return document
 
 
+_MAX_DEPTH = 64  # deeper than any study, and safe for recursion
+
+
 def _whole(text: str) -> int | float:
     number = int(text)
     return number if -2**63 <= number < 2**64 else float(text)
 
 
+def _refuse(word: str) -> float:
+    raise ValueError(f"{word} is not a number of JSON")
+
+
+def _depth(value: Any) -> int:
+    items = value.values() if isinstance(value, dict) else value if isinstance(value, list) else None
+    return 0 if items is None else 1 + max(map(_depth, items), default=0)
+
+
 class JsonPlace:
     """Position in a JSON document, and the list of problems that all positions of the document share."""
 
-    def __init__(self, value: Any, file: str, path: str, problems: list[str], service: Service) -> None:
+    def __init__(self, value: Any, file: str, path: str, problems: list[str], program: Program) -> None:
         self.value = value
-        self._file, self._path, self._problems, self._service = file, path, problems, service
+        self._file, self._path, self._problems, self._program = file, path, problems, program
 
     @property
     def place(self) -> str:
@@ -79,7 +96,7 @@ class JsonPlace:
             return False
         for key in self.value:
             if key not in known:
-                self.problem(f"unknown key '{self._service.printable(key)}'{self._service.hint(key, known)}; known: "
+                self.problem(f"unknown key '{printable(key)}'{self._program.hint(key, known)}; known: "
                              + ", ".join(known))
         return True
 
@@ -133,12 +150,12 @@ class JsonPlace:
         if not given or given in known:
             return given
         names = ", ".join(known[:60]) + (f", ... ({len(known)} in all)" if len(known) > 60 else "")
-        self.problem(f"'{self._service.printable(given)}' is not a known {what}{self._service.hint(given, known)}; known: {names}")
+        self.problem(f"'{printable(given)}' is not a known {what}{self._program.hint(given, known)}; known: {names}")
         return ""
 
     def _wrong(self, wanted: str, empty: Any) -> Any:
-        self.problem(f"must be {wanted}, not {self._service.printable(self.dump())}")
+        self.problem(f"must be {wanted}, not {printable(self.dump())}")
         return empty
 
     def _child(self, value: Any, key: str) -> JsonPlace:
-        return JsonPlace(value, self._file, f"{self._path}/{key}" if self._path else key, self._problems, self._service)
+        return JsonPlace(value, self._file, f"{self._path}/{key}" if self._path else key, self._problems, self._program)

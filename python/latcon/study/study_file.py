@@ -7,7 +7,7 @@ import os
 import re
 from typing import Any
 
-from .service import InputError, Service
+from .program import InputError, Program
 from .strict_json import JsonPlace, parse_json
 from .sweep import SEED_ENTRY, Sweep, combinations, parse_sweep
 
@@ -96,7 +96,7 @@ class Study:
     pictures: list[str] = dataclasses.field(default_factory=list)
 
 
-def read_study(service: Service, path: str, quick: bool, text: str | None = None) -> Study:
+def read_study(program: Program, path: str, quick: bool, text: bytes) -> Study:
     """Reads a study.
 
     Parameters
@@ -104,7 +104,7 @@ def read_study(service: Service, path: str, quick: bool, text: str | None = None
     path
         Name of the file; the base case is relative to its folder.
     text
-        Content; default: that of the file.
+        Content of the file.
 
     Raises
     ------
@@ -112,12 +112,12 @@ def read_study(service: Service, path: str, quick: bool, text: str | None = None
         With all problems and their positions: unknown or missing keys, values of another type or out of range, unknown runs,
         quantities and entries.
     """
-    return _Reader(service, path, quick).read(text)
+    return _Reader(program, path, quick).read(text)
 
 
 class _Reader:
-    def __init__(self, service: Service, path: str, quick: bool) -> None:
-        self.service = service
+    def __init__(self, program: Program, path: str, quick: bool) -> None:
+        self.program = program
         self.quick = quick
         self.study = Study(path)
         self.problems: list[str] = []
@@ -125,9 +125,9 @@ class _Reader:
         self.n_swept = 0
         self.is_continuous = True
 
-    def read(self, text: str | None) -> Study:
+    def read(self, text: bytes) -> Study:
         study = self.study
-        top = JsonPlace(parse_json(self.service, study.file, text), study.file, "", self.problems, self.service)
+        top = JsonPlace(parse_json(study.file, text), study.file, "", self.problems, self.program)
         top.is_object("title", "base", "side", "set", "seeds", "quick", "sweep", "refine", "runs", "claims", "pictures")
         if title := top.required("title"):
             study.title = title.text()
@@ -166,8 +166,8 @@ class _Reader:
     def settings(self, place: JsonPlace) -> Settings:
         found = {}
         for key, value in place.members():
-            if key not in self.service.entries:
-                value.problem("not an entry of a case" + self.service.hint(key, self.service.sorted_entries))
+            if key not in self.program.entries:
+                value.problem("not an entry of a case" + self.program.hint(key, self.program.sorted_entries))
             elif key == SEED_ENTRY:
                 value.problem('is set by "seeds"')
             elif isinstance(value.value, str):
@@ -227,7 +227,7 @@ class _Reader:
 
     def sweep(self, place: JsonPlace, n_seeds: int, is_run: bool) -> dict[str, Settings]:
         try:
-            found: list[Sweep] = [parse_sweep(self.service, text.text()) for text in place.list()]
+            found: list[Sweep] = [parse_sweep(self.program, text.text()) for text in place.list()]
             cases = combinations(found, n_seeds)
         except InputError as error:
             place.problem(str(error))
@@ -279,16 +279,16 @@ class _Reader:
                 if row.runs[-1] and row.runs.count(row.runs[-1]) > 1:
                     run.problem(f"'{row.runs[-1]}' is given twice")
         if quantity := place.required("quantity"):
-            row.quantity = quantity.word(["pattern", *self.service.units], "quantity")
-            row.unit = self.service.units.get(row.quantity, "1")
+            row.quantity = quantity.word(["pattern", *self.program.units], "quantity")
+            row.unit = self.program.units.get(row.quantity, "1")
         if place.has("against"):
             against = place.at("against")
             row.against = against.text()
-            known = ["zeta", *self.service.sorted_entries]
+            known = ["zeta", *self.program.sorted_entries]
             if row.against not in known:
-                against.problem("must be zeta or an entry of a case" + self.service.hint(row.against, known))
+                against.problem("must be zeta or an entry of a case" + self.program.hint(row.against, known))
             else:
-                row.against_unit = "1" if row.against == "zeta" else self.service.entries[row.against].unit
+                row.against_unit = "1" if row.against == "zeta" else self.program.entries[row.against].unit
         self.rule(place, row)
         if place.has("quick") and not place.at("quick").boolean() and self.quick:
             row.rule = Rule.REPORTED

@@ -10,7 +10,7 @@ import re
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, NoReturn
 
-from .service import Entry, InputError, Service
+from .program import Entry, InputError, Program, printable
 
 SEED_ENTRY = "Lattice/noise seed"
 """Entry that the seeds of a run set."""
@@ -37,7 +37,7 @@ class Sweep:
     is_continuous: bool = False
 
 
-def parse_sweep(service: Service, text: str) -> Sweep:
+def parse_sweep(program: Program, text: str) -> Sweep:
     """Parses ``Section/Name=START:STOP:COUNT``, both ends included, or ``Section/Name=VALUE,VALUE,...``.
 
     Raises
@@ -46,16 +46,16 @@ def parse_sweep(service: Service, text: str) -> Sweep:
         Names the wrong part.
     """
     def refuse(reason: str) -> NoReturn:
-        raise InputError(f"sweep '{service.printable(text)}': {reason}")
+        raise InputError(f"sweep '{printable(text)}': {reason}")
 
     name, equals, values = text.partition("=")
     if not equals:
         refuse("expected Section/Name=START:STOP:COUNT or Section/Name=VALUE,VALUE,...")
     name, values = name.strip(_BLANKS), values.strip(_BLANKS)
-    entry = service.entries.get(name)
+    entry = program.entries.get(name)
     if entry is None:
-        refuse(f"'{service.printable(name)}' is not an entry of a case"
-               + (service.hint(name, list(service.entries)) or "; latcon entries lists them"))
+        refuse(f"'{printable(name)}' is not an entry of a case"
+               + (program.hint(name, list(program.entries)) or "; latcon entries lists them"))
     if name == SEED_ENTRY:
         refuse("seeds are set by --seeds")
     if entry.is_list:
@@ -63,41 +63,41 @@ def parse_sweep(service: Service, text: str) -> Sweep:
     if ":" in values:
         if not entry.is_number and not entry.is_whole:
             refuse(f"{name} is not a number; give its values separated by commas")
-        found = _grid(service, refuse, values, entry.number_unit)
+        found = _grid(program, refuse, values, entry.number_unit)
     else:
         found = [value.strip(_BLANKS) for value in values.split(",")]
     if len(found) < 2:
         refuse("expected two values or more; for one value use --set")
-    canonical = _canonical(service, found, entry)
+    canonical = _canonical(program, found, entry)
     earlier: dict[float | str, str] = {}
     for number, (value, same) in enumerate(zip(found, canonical), 1):
         if not value:
             refuse(f"value {number} is empty")
         if same in earlier:
-            also = "" if earlier[same] == value else ", also as " + service.printable(earlier[same])
-            refuse(f"the value {service.printable(value)} is given twice{also}")
+            also = "" if earlier[same] == value else ", also as " + printable(earlier[same])
+            refuse(f"the value {printable(value)} is given twice{also}")
         earlier[same] = value
     return Sweep(name, found, entry.is_number and all(isinstance(value, float) for value in canonical))
 
 
-def _canonical(service: Service, values: Sequence[str], entry: Entry) -> list[float | str]:
+def _canonical(program: Program, values: Sequence[str], entry: Entry) -> list[float | str]:
     """Returns numbers as SI values, and all other values as they are."""
     if not entry.is_number and not entry.is_whole:
         return list(values)
-    numbers = service.ask("numbers", texts=values, unit=entry.number_unit)
+    numbers = program.ask(numbers=list(values), unit=entry.number_unit)
     return [value if number["wrong"] else float(number["value"]) for value, number in zip(values, numbers)]
 
 
-def _grid(service: Service, refuse: Callable[[str], NoReturn], values: str, unit: str) -> list[str]:
+def _grid(program: Program, refuse: Callable[[str], NoReturn], values: str, unit: str) -> list[str]:
     parts = [part.strip(_BLANKS) for part in values.split(":")]
-    shown = service.printable
+    shown = printable
     if len(parts) != 3:
         refuse(f"expected START:STOP:COUNT, for example 1.5:1.9:5; '{shown(values)}' has {len(parts)} parts")
     for part, name in zip(parts, ("START", "STOP", "COUNT")):
         if not part:
             refuse(f"{name} is empty")
     ends = []
-    for part, name, number in zip(parts, ("START", "STOP"), service.ask("numbers", texts=parts[:2], unit=unit)):
+    for part, name, number in zip(parts, ("START", "STOP"), program.ask(numbers=parts[:2], unit=unit)):
         if number["wrong"]:
             refuse(f"{name} '{shown(part)}': {number['wrong']}")
         match = re.match(r"[+-]?(\d+\.?\d*|\.\d+)([eE][+-]?\d+)?", part)
@@ -164,12 +164,12 @@ def combinations(sweeps: Sequence[Sweep], n_seeds: int) -> dict[str, dict[str, s
     return cases
 
 
-def sweep_study(service: Service, sweeps: Sequence[str], case_name: str, base: str, settings: Mapping[str, str],
+def sweep_study(program: Program, sweeps: Sequence[str], case_name: str, base: str, settings: Mapping[str, str],
                 n_seeds: int) -> str:
     """Returns the text of a study file that runs sweeps, with the seeds 1 to `n_seeds` (0: 1)."""
     entries = []
     for text in sweeps:
-        entries.append(parse_sweep(service, text).entry)
+        entries.append(parse_sweep(program, text).entry)
         if entries[-1] in settings:
             raise InputError(f"--set: {entries[-1]} is also an entry of --sweep")
     document: dict[str, Any] = {"title": f"Sweep of {', '.join(entries)} ({case_name})", "base": base,
