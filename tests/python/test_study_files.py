@@ -9,28 +9,25 @@ import pytest
 
 from latcon.study.plan import PlannedRun
 from latcon.study.pool import run_processes
-from latcon.study.service import InputError, Service
+from latcon.study.program import InputError, Program
 from latcon.study.shard import parse_shard, plan_difference, plan_text, runs_of_shard
 from latcon.study.study_file import read_study
 from latcon.study.sweep import combinations, parse_sweep, sweep_study
 
 
 @pytest.fixture(scope="module")
-def service():
-    options = {"program": os.fspath(latcon.find_program()), "arguments": [], "output_dir": "", "threads": 1, "quiet": True,
-               "verbose": False, "yes": False}
-    service = Service(options)
-    yield service
-    service.finish(0)
-    assert service.wait() == 0
+def program():
+    program = Program({"program": os.fspath(latcon.find_program()), "data": "", "arguments": [], "threads": 1, "yes": False})
+    yield program
+    program.close()
 
 
 @pytest.mark.parametrize("text, values", [
     ("Loading/strain y=1.5:1.9:5", ["1.5", "1.6", "1.7", "1.8", "1.9"]), ("Loading/strain x = -0.1 : 0.2 : 4", ["-0.1", "0", "0.1", "0.2"]),
     ("Sheet/height=1 cm:2cm:3", ["1 cm", "1.5 cm", "2 cm"]), ("Nearest neighbours/a=1e5:+2e5:2", ["100000", "200000"]),
     ("Sheet/orientation=rows-along-crack, rows-across-crack", ["rows-along-crack", "rows-across-crack"])])
-def test_sweeps_are_grids_or_lists(service, text, values):
-    assert parse_sweep(service, text).values == values
+def test_sweeps_are_grids_or_lists(program, text, values):
+    assert parse_sweep(program, text).values == values
 
 
 @pytest.mark.parametrize("text, part", [
@@ -45,28 +42,28 @@ def test_sweeps_are_grids_or_lists(service, text, values):
     ("Sheet/height=2 cm,3 cm,0.02 m", "the value 0.02 m is given twice, also as 2 cm"),
     ("Loading/strain y=1", "expected two values or more; for one value use --set"),
     ("Lattice/noise seed=1,2", "seeds are set by --seeds")])
-def test_messages_name_the_wrong_part_of_a_sweep(service, text, part):
+def test_messages_name_the_wrong_part_of_a_sweep(program, text, part):
     with pytest.raises(InputError) as error:
-        parse_sweep(service, text)
+        parse_sweep(program, text)
     assert part in str(error.value)
 
 
-def test_sweeps_give_all_combinations_as_a_study_file(service):
-    text = sweep_study(service, ["Loading/strain y=1.5:1.6:2", "Sheet/height=2 cm,3 cm"], "fig1", "base.prm",
+def test_sweeps_give_all_combinations_as_a_study_file(program):
+    text = sweep_study(program, ["Loading/strain y=1.5:1.6:2", "Sheet/height=2 cm,3 cm"], "fig1", "base.prm",
                        {"Material/density": "900"}, 3)
-    study = read_study(service, "folder/sweep.json", False, text)
+    study = read_study(program, "folder/sweep.json", False, text.encode())
     assert (study.title, study.base) == ("Sweep of Loading/strain y, Sheet/height (fig1)", "folder/base.prm")
     assert [run.name for run in study.runs][:2] == ["strain-y-1.5_height-2cm", "strain-y-1.5_height-3cm"]
     assert study.runs[3].own == {"Loading/strain y": "1.6", "Sheet/height": "3 cm"} and study.runs[3].seeds == [1, 2, 3]
 
 
-def test_runs_of_a_sweep_are_limited_and_have_distinct_names(service):
-    sweep = parse_sweep(service, "Loading/strain y=1:2:1000")
+def test_runs_of_a_sweep_are_limited_and_have_distinct_names(program):
+    sweep = parse_sweep(program, "Loading/strain y=1:2:1000")
     assert len(combinations([sweep], 100)) == 1000
     for sweeps, n_seeds in (([sweep], 101), ([sweep, sweep], 1)):
         with pytest.raises(InputError):
             combinations(sweeps, n_seeds)
-    long = parse_sweep(service, f"Nearest neighbours/psi=lam^2 + {'1' * 200},lam^2 + {'1' * 200} + lam")
+    long = parse_sweep(program, f"Nearest neighbours/psi=lam^2 + {'1' * 200},lam^2 + {'1' * 200} + lam")
     names = list(combinations([long], 1))
     assert len(set(names)) == 2 and all(len(name) == 150 and name.startswith("psi-lam-21") for name in names)
 
@@ -76,10 +73,10 @@ GOOD = {"title": "t", "base": "b.prm", "seeds": [4, 5], "sweep": ["Sheet/height=
         "claims": [{"claim": "c", "rows": [{"run": "height-3cm", "quantity": "pattern"}]}]}
 
 
-def test_quick_versions_of_sweeps(service):
-    study = read_study(service, "s.json", False, json.dumps(GOOD))
+def test_quick_versions_of_sweeps(program):
+    study = read_study(program, "s.json", False, json.dumps(GOOD).encode())
     assert [run.name for run in study.runs] == ["height-2cm", "height-3cm", "height-4cm", "own"] and study.left_out == []
-    quick = read_study(service, "s.json", True, json.dumps(GOOD))
+    quick = read_study(program, "s.json", True, json.dumps(GOOD).encode())
     assert [run.seeds for run in quick.runs] == [[7]] * 3 and quick.left_out == ["height-3cm"]
 
 
@@ -95,18 +92,18 @@ def test_quick_versions_of_sweeps(service):
         ({"above": 1, "below": 2}, 'a row can have only one rule; the second one is "below"'), ({"is near": 1}, "must be given together"),
         ({"is near": 0, "tolerance": 1}, "must not be 0, because the tolerance is relative"), ({"above": {}}, 'must be a number or {"run": NAME}'),
         ({"against": "Sheet"}, "must be zeta or an entry of a case"), ({"runs": ["own"]}, 'a row needs either "run" or "runs"'))]])
-def test_problems_of_study_files_name_their_place(service, change, problem):
+def test_problems_of_study_files_name_their_place(program, change, problem):
     with pytest.raises(InputError) as error:
-        read_study(service, "s.json", False, json.dumps(GOOD | change))
+        read_study(program, "s.json", False, json.dumps(GOOD | change).encode())
     assert problem in str(error.value)
 
 
 @pytest.mark.parametrize("text, problem", [
-    ("{", "s.json: not JSON: parse error"), ("[]", "a study must be a JSON object"), ('{"a": {"b": 1, "b": 2}}', "the key 'b' occurs twice"),
-    ("[" * 100, "nested deeper than 64")])
-def test_files_that_are_no_json_objects(service, text, problem):
+    ("{", "s.json: not JSON: Expecting"), ("{\"a\": NaN}", "NaN is not a number of JSON"), ("[" * 99999, "nested deeper"), ("{}\0", "s.json:1: not a text file"), ("[]", "a study must be a JSON object"), ('{"a": {"b": 1, "b": 2}}', "the key 'b' occurs twice"),
+    ("[" * 100 + "]" * 100, "nested deeper than 64")])
+def test_files_that_are_no_json_objects(program, text, problem):
     with pytest.raises(InputError) as error:
-        read_study(service, "s.json", False, text)
+        read_study(program, "s.json", False, text.encode())
     assert problem in str(error.value)
 
 
@@ -114,25 +111,25 @@ def planned(name, seconds):
     return PlannedRun(name, 1, False, [], {}, "digest of " + name, 1e-3, None, 1, 1, seconds, 1)
 
 
-def test_shards_share_the_runs(service):
+def test_shards_share_the_runs():
     plan = [planned(name, seconds) for name, seconds in zip("abcde", (1, 5, 3, 5, 2))]
     assert [runs_of_shard(plan, i, 2) for i in (1, 2)] == [[1, 2, 0], [3, 4]]
-    assert parse_shard(service, "3/8") == (3, 8)
+    assert parse_shard("3/8") == (3, 8)
     for text in ("0/8", "9/8", "1/100001", "3", "a/b", "1/2/3", "-1/2"):
         with pytest.raises(InputError):
-            parse_shard(service, text)
+            parse_shard(text)
 
 
-def test_plans_differ_in_words(service):
+def test_plans_differ_in_words():
     plan = [planned("a", 1), planned("b", 1)]
     stored = plan_text("t", plan, False, 2)
-    assert plan_difference(service, stored, plan_text("t", plan, False, 0)) == ""
-    assert "another study, 't'" in plan_difference(service, stored, plan_text("u", plan, False, 2))
-    assert "--skip-verification" in plan_difference(service, stored, plan_text("t", plan, True, 2))
-    assert "begun with 2 shards" in plan_difference(service, stored, plan_text("t", plan, False, 3))
-    assert "the case of run c-1 differs" in plan_difference(service, stored, plan_text("t", [plan[0], planned("c", 1)], False, 2))
-    assert "it has 2 runs, now there are 1" in plan_difference(service, stored, plan_text("t", plan[:1], False, 2))
-    assert "damaged" in plan_difference(service, "[", plan_text("t", plan, False, 2))
+    assert plan_difference(stored, plan_text("t", plan, False, 0)) == ""
+    assert "another study, 't'" in plan_difference(stored, plan_text("u", plan, False, 2))
+    assert "--skip-verification" in plan_difference(stored, plan_text("t", plan, True, 2))
+    assert "begun with 2 shards" in plan_difference(stored, plan_text("t", plan, False, 3))
+    assert "the case of run c-1 differs" in plan_difference(stored, plan_text("t", [plan[0], planned("c", 1)], False, 2))
+    assert "it has 2 runs, now there are 1" in plan_difference(stored, plan_text("t", plan[:1], False, 2))
+    assert "damaged" in plan_difference("[", plan_text("t", plan, False, 2))
 
 
 def test_pool_runs_all_jobs_and_keeps_its_limit(tmp_path):

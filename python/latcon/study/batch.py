@@ -78,9 +78,8 @@ def write_batch(program: Program, printed: Printed, options: Mapping[str, Any]) 
     require_folder_of(requested.study, directory)
     os.makedirs(folder, exist_ok=True)
     if requested.kept:
-        lock = FolderLock(directory)
-        requested.write_sweep()
-        lock.release()
+        with FolderLock(directory):
+            requested.write_sweep()
     command = _study_command(options, requested)
     runs, collect = os.path.join(folder, "runs.sh"), os.path.join(folder, "collect.sh")
     write_file(runs, _directives(options, "latcon-runs", f"{folder}/runs-%a.log") + _ARRAY.format(

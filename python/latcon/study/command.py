@@ -272,13 +272,12 @@ class _StudyCommand:
         """Records the plan of a study that runs in shards, and its sweep, unless they are recorded."""
         os.makedirs(self.directory, exist_ok=True)
         # Shards start at the same moment, and each removes unfinished files once it has the lock.
-        lock = FolderLock(self.directory, _PATIENCE_WITH_SHARDS)
-        file = os.path.join(self.directory, PLAN_FILE)
-        if not os.path.exists(file):
-            write_file(file, text)
-        self.require_plan(text)
-        self.requested.write_sweep()
-        lock.release()
+        with FolderLock(self.directory, _PATIENCE_WITH_SHARDS):
+            file = os.path.join(self.directory, PLAN_FILE)
+            if not os.path.exists(file):
+                write_file(file, text)
+            self.require_plan(text)
+            self.requested.write_sweep()
 
     def require_plan(self, text: str) -> None:
         """Checks that a plan is the recorded one of the study whose shards run in the directory."""

@@ -62,6 +62,12 @@ class FolderLock:
                     with contextlib.suppress(OSError):  # of a killed process
                         os.remove(os.path.join(place, name))
 
+    def __enter__(self) -> None:
+        pass
+
+    def __exit__(self, *_: object) -> None:
+        self.release()
+
     def is_in_place(self) -> bool:
         """Whether the path still refers to the locked folder."""
         try:

@@ -155,7 +155,7 @@ class Record:
         with open(f"{folder}/run.json", encoding="utf-8") as file:
             found = json.load(file)
         self.add(**{key: found[key] for key in ("verification", "verification_of_program", "failed_rows", "verdict") if key in found})
-        self.add_time("claims", found["wall_time_s"]["claims"])
+        self._document["wall_time_s"] |= found["wall_time_s"]
         with open(f"{folder}/log.txt", encoding="utf-8") as file:
             message = file.read().partition("\nlatcon: ")[2]
         for name in os.listdir(folder):
