@@ -1,6 +1,7 @@
 """Record of a study in its output directory: `run.json`, `log.txt`, `results.json`, `results.csv`; what is printed."""
 from __future__ import annotations
 
+import contextlib
 import csv
 import io
 import json
@@ -10,7 +11,6 @@ import resource
 import select
 import signal
 import subprocess
-import sys
 import time
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -183,8 +183,8 @@ BEGIN = time.monotonic()
 
 def say_error(text: str) -> None:
     """Prints to standard error, at once."""
-    sys.stderr.write(text.encode("utf-8", "surrogateescape").decode("utf-8", "replace"))
-    sys.stderr.flush()
+    with contextlib.suppress(OSError):
+        os.write(2, text.encode("utf-8", "surrogateescape"))
 
 
 def output_is_lost(printed: Printed) -> bool:
