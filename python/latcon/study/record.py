@@ -9,6 +9,7 @@ import math
 import os
 import resource
 import select
+import shutil
 import signal
 import subprocess
 import time
@@ -134,8 +135,9 @@ class Record:
         Ended
             If one does not hold.
         """
-        folder = f"{self.directory}/gate"
-        os.makedirs(folder, exist_ok=True)
+        folder = f"{self.directory}/.latcon-gate"
+        shutil.rmtree(folder, ignore_errors=True)  # of a killed study
+        os.mkdir(folder)
         write_atomically(f"{folder}/base.prm", case)
         options = self._options
         words = [program.executable, "gate", f"{folder}/base.prm", "--side", "continuum" if on_continuum else "lattice",
@@ -148,6 +150,8 @@ class Record:
                 printed = child.stdout.read()
             except BaseException:
                 child.kill()
+                child.wait()
+                shutil.rmtree(folder, ignore_errors=True)
                 raise
         self._printed.print(printed.decode("utf-8", "surrogateescape"))
         if child.returncode not in (DONE, CLAIM_FAILED):
@@ -162,9 +166,7 @@ class Record:
             if name not in ("run.json", "log.txt", "base.prm") and not name.startswith("."):
                 add_to_list(self.directory, [name])
                 os.replace(f"{folder}/{name}", f"{self.directory}/{name}")
-            else:
-                os.remove(f"{folder}/{name}")
-        os.rmdir(folder)
+        shutil.rmtree(folder)
         if child.returncode != DONE:
             raise Ended(CLAIM_FAILED, "latcon: " + message)
 
